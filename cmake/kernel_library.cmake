@@ -1,0 +1,24 @@
+# add_kernel_library(NAME source...): compiles each source once per instruction set of WAVECREST_ISAS and gathers the
+# objects in one static library.
+#
+# Each compilation sees Highway with exactly one target, so its code lives in that target's own namespace
+# (wavecrest::N_AVX3 and so on). The instruction set is switched on by a pragma around our own code
+# (HWY_BEFORE_NAMESPACE), never by -m flags: code of the standard library that a kernel file instantiates stays
+# baseline x86-64, and the linker may keep any copy of it.
+set(WAVECREST_ISA_DEFINES_scalar HWY_COMPILE_ONLY_SCALAR)
+set(WAVECREST_ISA_DEFINES_sse4 HWY_COMPILE_ONLY_STATIC HWY_BASELINE_TARGETS=HWY_SSE4)
+set(WAVECREST_ISA_DEFINES_avx2 HWY_COMPILE_ONLY_STATIC HWY_BASELINE_TARGETS=HWY_AVX2)
+set(WAVECREST_ISA_DEFINES_avx512 HWY_COMPILE_ONLY_STATIC HWY_BASELINE_TARGETS=HWY_AVX3)
+
+function(add_kernel_library name)
+  add_library(${name} STATIC)
+  foreach(isa IN LISTS WAVECREST_ISAS)
+    if(NOT DEFINED WAVECREST_ISA_DEFINES_${isa})
+      message(FATAL_ERROR "WAVECREST_ISAS: unknown instruction set '${isa}'; known: scalar sse4 avx2 avx512")
+    endif()
+    add_library(${name}_${isa} OBJECT ${ARGN})
+    target_compile_definitions(${name}_${isa} PRIVATE ${WAVECREST_ISA_DEFINES_${isa}})
+    target_link_libraries(${name}_${isa} PRIVATE wavecrest_options)
+    target_sources(${name} PRIVATE $<TARGET_OBJECTS:${name}_${isa}>)
+  endforeach()
+endfunction()
