@@ -50,7 +50,8 @@ TEST(HtmlPage, escapesTextFromResults) {
 TEST(HtmlPage, ranksByTheFirstMetric) {
   const std::string section = renderScene(sampleReport(), 0);
   const size_t table = section.find("At the end");
-  const size_t bpt = section.find(">bpt <", table), pt = section.find(">pt <", table), vcm = section.find(">vcm <", table);
+  const size_t bpt = section.find(">bpt <", table), pt = section.find(">pt <", table),
+               vcm = section.find(">vcm <", table);
   EXPECT_LT(table, bpt);
   EXPECT_LT(bpt, pt);
   EXPECT_LT(pt, vcm);

@@ -37,9 +37,10 @@ TEST(Base64, testVectorsOfRfc4648) {
 }
 
 TEST(PngEmbedding, pixelsSurviveTheRoundTrip) {
-  const ReportImage image{
-      .label = "two by three", .width = 2, .height = 3, .rgb = {0,  1,  2,  3,   4,   5,   255, 254, 253,
-                                                               10, 20, 30, 100, 150, 200, 7,   8,   9}};
+  const ReportImage image{.label = "two by three",
+                          .width = 2,
+                          .height = 3,
+                          .rgb = {0, 1, 2, 3, 4, 5, 255, 254, 253, 10, 20, 30, 100, 150, 200, 7, 8, 9}};
   const std::string uri = pngDataUri(image);
   const std::string_view prefix = "data:image/png;base64,";
   ASSERT_EQ(uri.substr(0, prefix.size()), prefix);

@@ -33,16 +33,18 @@ ReportSeries sampleSeries(const std::string& method, double start, double bias) 
       const double seconds = 0.1 * std::pow(10, k / 3.0);
       const double scatter = seed == 1 ? 0.94 : 1.06;
       const double rmse = std::hypot(scatter * start / std::sqrt(seconds), bias);
-      run.points.push_back({.seconds = seconds,
-                            .iterations = static_cast<uint64_t>(30 * seconds),
-                            .values = {rmse, 20 * rmse * rmse}});
+      run.points.push_back(
+          {.seconds = seconds, .iterations = static_cast<uint64_t>(30 * seconds), .values = {rmse, 20 * rmse * rmse}});
     }
     series.runs.push_back(run);
   }
   series.pathsPerSecond = 11.3e6;
   series.cpuSeconds = 93;
-  series.stages = {{"generate", 41000000, 0.04}, {"extend", 250000000, 8.5}, {"shade", 210000000, 3.4},
-                   {"occlude", 170000000, 4.6},  {"splat", 41000000, 0.3}};
+  series.stages = {{"generate", 41000000, 0.04},
+                   {"extend", 250000000, 8.5},
+                   {"shade", 210000000, 3.4},
+                   {"occlude", 170000000, 4.6},
+                   {"splat", 41000000, 0.3}};
   series.settings = {{"sampler", "independent"}, {"precision", "float"}, {"max_depth", "-1"}};
   series.snapshots = {sampleImage(method + ", 46 s", 300 * start)};
   return series;

@@ -1,5 +1,5 @@
-// A made-up convergence report, with curves of the kinds that real ones have: falling as 1/sqrt(t), stalling, seeds that
-// scatter, a point that no logarithmic axis can show. For the tests of the page.
+// A made-up convergence report, with curves of the kinds that real ones have: falling as 1/sqrt(t), stalling, seeds
+// that scatter, a point that no logarithmic axis can show. For the tests of the page.
 #pragma once
 
 #include "bench/report/report_data.h"

@@ -32,7 +32,8 @@ Plot plotOf(const std::vector<PlotCurve>& curves) {
 std::vector<double> numbers(const std::string& svg, const std::string& pattern) {
   std::vector<double> found;
   const std::regex expression(pattern);
-  for (auto match = std::sregex_iterator(svg.begin(), svg.end(), expression); match != std::sregex_iterator(); ++match) {
+  for (auto match = std::sregex_iterator(svg.begin(), svg.end(), expression); match != std::sregex_iterator();
+       ++match) {
     found.push_back(std::stod((*match)[1]));
   }
   return found;
@@ -58,8 +59,8 @@ TEST(SvgPlot, powerLawIsAStraightLineOnLogarithmicAxes) {
 
 TEST(SvgPlot, leavesOutWhatTheAxesCannotShow) {
   const double infinity = std::numeric_limits<double>::infinity();
-  const std::string svg =
-      renderPlot(plotOf({curveOf("pt", {{0, 1}, {1, 0.5}, {2, 0}, {3, -1}, {4, std::nan("")}, {5, infinity}, {6, 0.2}})}));
+  const std::string svg = renderPlot(
+      plotOf({curveOf("pt", {{0, 1}, {1, 0.5}, {2, 0}, {3, -1}, {4, std::nan("")}, {5, infinity}, {6, 0.2}})}));
   EXPECT_EQ(count(svg, "data-x"), 2U);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);
@@ -113,8 +114,7 @@ TEST(SvgPlot, guideRunsParallelToACurveOfTheIdealSlope) {
   ASSERT_TRUE(std::regex_search(svg, guide, line));
   const std::vector<double> x = numbers(svg, "data-x=\"([0-9.]+)\"");
   const std::vector<double> y = numbers(svg, "data-y=\"([0-9.]+)\"");
-  const double slopeOfGuide =
-      (std::stod(guide[4]) - std::stod(guide[2])) / (std::stod(guide[3]) - std::stod(guide[1]));
+  const double slopeOfGuide = (std::stod(guide[4]) - std::stod(guide[2])) / (std::stod(guide[3]) - std::stod(guide[1]));
   EXPECT_NEAR(slopeOfGuide, (y[1] - y[0]) / (x[1] - x[0]), 2e-3);
 }
 
