@@ -73,6 +73,16 @@ int compressionThreads() {
   return Imf::globalThreadCount();
 }
 
+// A header may claim any size; beyond these OpenEXR refuses before it allocates.
+void setLimitsOnce() {
+  constexpr int kLongestSide = 1 << 20, kLongestTileSide = 1 << 13;
+  static std::once_flag once;
+  std::call_once(once, [] {
+    Imf::Header::setMaxImageSize(kLongestSide, kLongestSide);
+    Imf::Header::setMaxTileSize(kLongestTileSide, kLongestTileSide);
+  });
+}
+
 // ---- reading --------------------------------------------------------------------------------------------------------
 
 // The names of the three channels of a layer: R G B, or one Y for all three. Empty: the layer is not there.
@@ -146,11 +156,8 @@ Metadata stringAttributes(const Imf::Header& header) {
 }
 
 ImageFile readLayerAndMetadata(const std::string& path, codecs::Bytes bytes, const std::string& layer) {
-  // A header may claim any size; beyond these OpenEXR refuses before it allocates.
-  constexpr int kLongestSide = 1 << 20, kLongestTileSide = 1 << 13;
   try {
-    Imf::Header::setMaxImageSize(kLongestSide, kLongestSide);
-    Imf::Header::setMaxTileSize(kLongestTileSide, kLongestTileSide);
+    setLimitsOnce();
     MemoryInput stream(path, bytes);
     Imf::InputFile input(stream, 0);
     ImageFile file;
