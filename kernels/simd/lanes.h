@@ -85,6 +85,30 @@ WAVECREST_INLINE UInt max(UInt a, UInt b) { return {hn::Max(a.v, b.v)}; }
 WAVECREST_INLINE UInt select(Mask m, UInt yes, UInt no) {
   return {hn::IfThenElse(hn::RebindMask(UIntTag(), m.m), yes.v, no.v)};
 }
+WAVECREST_INLINE UInt xor3(UInt a, UInt b, UInt c) { return {hn::Xor3(a.v, b.v, c.v)}; }
+WAVECREST_INLINE uint32_t xor3(uint32_t a, uint32_t b, uint32_t c) { return a ^ b ^ c; }
+
+// The upper and lower halves of a 64-bit product; word is UInt, or uint32_t where all lanes agree.
+template <class Word>
+struct HighLow {
+  Word high, low;
+};
+WAVECREST_INLINE HighLow<uint32_t> mulHighLow(uint32_t a, uint32_t b) {
+  const uint64_t product = uint64_t{a} * b;
+  return {static_cast<uint32_t>(product >> 32), static_cast<uint32_t>(product)};
+}
+WAVECREST_INLINE HighLow<UInt> mulHighLow(UInt a, uint32_t b) {
+#if HWY_TARGET == HWY_SCALAR
+  const HighLow<uint32_t> product = mulHighLow(hn::GetLane(a.v), b);
+  return {product.high, product.low};
+#else
+  // Even and odd lanes separately: the instruction sets multiply every other 32-bit lane to 64 bits.
+  const auto factor = hn::Set(UIntTag(), b);
+  const auto even = hn::BitCast(UIntTag(), hn::MulEven(a.v, factor));
+  const auto odd = hn::BitCast(UIntTag(), hn::MulEven(hn::Shuffle2301(a.v), factor));
+  return {hn::OddEven(odd, hn::Shuffle2301(even)), hn::OddEven(hn::Shuffle2301(odd), even)};
+#endif
+}
 // 0, 1, 2, ... from the given start
 WAVECREST_INLINE UInt laneIndex(uint32_t start = 0) { return {hn::Iota(UIntTag(), start)}; }
 
@@ -121,6 +145,8 @@ WAVECREST_INLINE Float min(Float a, Float b) { return {hn::Min(a.v, b.v)}; }
 WAVECREST_INLINE Float max(Float a, Float b) { return {hn::Max(a.v, b.v)}; }
 WAVECREST_INLINE Float sqrt(Float a) { return {hn::Sqrt(a.v)}; }
 WAVECREST_INLINE Float floor(Float a) { return {hn::Floor(a.v)}; }
+// To the nearest integer, halves to even.
+WAVECREST_INLINE Float round(Float a) { return {hn::Round(a.v)}; }
 WAVECREST_INLINE Float copySign(Float magnitude, Float sign) { return {hn::CopySign(magnitude.v, sign.v)}; }
 WAVECREST_INLINE Float select(Mask m, Float yes, Float no) { return {hn::IfThenElse(m.m, yes.v, no.v)}; }
 WAVECREST_INLINE Float zeroUnless(Mask m, Float a) { return {hn::IfThenElseZero(m.m, a.v)}; }
@@ -161,7 +187,7 @@ WAVECREST_INLINE UInt gather(const uint32_t* base, UInt index) {
   return {hn::GatherIndex(UIntTag(), base, hn::BitCast(IntTag(), index.v))};
 }
 // Lanes with equal indices: the last one wins.
-WAVECREST_INLINE void scatter(Float a, float* base, UInt index) {
+WAVECREST_INLINE void storeScattered(Float a, float* base, UInt index) {
   hn::ScatterIndex(a.v, FloatTag(), base, hn::BitCast(IntTag(), index.v));
 }
 
