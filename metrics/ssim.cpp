@@ -14,17 +14,18 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kRadius = kSsimTaps / 2;
 constexpr size_t kBandRows = 48;  // rows of one task: its float rows stay in a core's L2
 
-std::array<double, kSsimTaps> gaussianTaps() {
+// Weights of the centre and of the offsets 1..5 on either side.
+std::array<double, kSsimRadius + 1> gaussianTaps() {
   constexpr double kSigma = 1.5;
-  std::array<double, kSsimTaps> taps{};
-  for (size_t i = 0; i < kSsimTaps; ++i) {
-    const double t = (static_cast<double>(i) - double{kRadius}) / kSigma;
-    taps[i] = std::exp(-0.5 * t * t);
+  std::array<double, kSsimRadius + 1> taps{};
+  double sum = 0;
+  for (size_t offset = 0; offset <= kSsimRadius; ++offset) {
+    const double t = static_cast<double>(offset) / kSigma;
+    taps[offset] = std::exp(-0.5 * t * t);
+    sum += offset == 0 ? taps[offset] : 2 * taps[offset];
   }
-  const double sum = std::accumulate(taps.begin(), taps.end(), 0.0);
   for (double& tap : taps) tap /= sum;
   return taps;
 }
@@ -36,29 +37,31 @@ void channelRow(const Image8& image, size_t channel, size_t y, float* out) {
     for (size_t x = 0; x < image.width; ++x) out[x] = codes[3 * x + channel];
   } else {
     for (size_t x = 0; x < image.width; ++x)
-      out[x] = 0.2126f * codes[3 * x] + 0.7152f * codes[3 * x + 1] + 0.0722f * codes[3 * x + 2];
+      out[x] = std::floor(0.2126f * codes[3 * x] + 0.7152f * codes[3 * x + 1] + 0.0722f * codes[3 * x + 2] + 0.5f);
   }
 }
 
 // Window means and variances in double: done once per reference, so plain loops do.
-void windowMoments(const Plane& values, const std::array<double, kSsimTaps>& taps, Plane& mean, Plane& variance) {
+void windowMoments(const Plane& values, const std::array<double, kSsimRadius + 1>& taps, DoublePlane& mean,
+                   DoublePlane& variance) {
   tbb::parallel_for(size_t{0}, mean.height(), [&](size_t y) {
     std::vector<double> sums(values.width()), squares(values.width());
+    const auto weight = [&](size_t i) { return taps[i < kSsimRadius ? kSsimRadius - i : i - kSsimRadius]; };
     for (size_t i = 0; i < kSsimTaps; ++i) {
       const float* row = values.row(y + i);
       for (size_t x = 0; x < values.width(); ++x) {
-        sums[x] += taps[i] * row[x];
-        squares[x] += taps[i] * row[x] * row[x];
+        sums[x] += weight(i) * row[x];
+        squares[x] += weight(i) * row[x] * row[x];
       }
     }
     for (size_t x = 0; x < mean.width(); ++x) {
       double m = 0, s = 0;
       for (size_t i = 0; i < kSsimTaps; ++i) {
-        m += taps[i] * sums[x + i];
-        s += taps[i] * squares[x + i];
+        m += weight(i) * sums[x + i];
+        s += weight(i) * squares[x + i];
       }
-      mean.row(y)[x] = static_cast<float>(m);
-      variance.row(y)[x] = static_cast<float>(s - m * m);
+      mean.row(y)[x] = m;
+      variance.row(y)[x] = s - m * m;
     }
   });
 }
@@ -69,15 +72,14 @@ PreparedSsim::PreparedSsim(const Image8& reference, Isa isa) : isa_(isa) {
   const size_t width = reference.width, height = reference.height;
   if (std::min(width, height) < kSsimSmallestSide)
     throw std::invalid_argument("SSIM needs at least " + std::to_string(kSsimSmallestSide) + " pixels on each side");
-  const auto taps = gaussianTaps();
-  std::transform(taps.begin(), taps.end(), taps_.begin(), [](double t) { return static_cast<float>(t); });
+  taps_ = gaussianTaps();
   for (size_t c = 0; c < kPlanes; ++c) {
     Channel& channel = channels_[c];
     channel.values = Plane(width, height);
     for (size_t y = 0; y < height; ++y) channelRow(reference, c, y, channel.values.row(y));
-    channel.mean = Plane(width - 2 * kRadius, height - 2 * kRadius);
-    channel.variance = Plane(width - 2 * kRadius, height - 2 * kRadius);
-    windowMoments(channel.values, taps, channel.mean, channel.variance);
+    channel.mean = DoublePlane(width - 2 * kSsimRadius, height - 2 * kSsimRadius);
+    channel.variance = DoublePlane(width - 2 * kSsimRadius, height - 2 * kSsimRadius);
+    windowMoments(channel.values, taps_, channel.mean, channel.variance);
   }
 }
 
@@ -87,29 +89,26 @@ void PreparedSsim::compareRows(const Image8& test, size_t channel, size_t firstR
   const Channel& reference = channels_[channel];
   const size_t width = reference.values.width(), windows = reference.mean.width();
   const size_t inputRows = rowSums.size() + kSsimTaps - 1;
-  Plane difference(width + kPlaneLanes, inputRows), shifted(width + kPlaneLanes, inputRows);
+  Plane difference(width + kPlaneLanes, inputRows), values(width + kPlaneLanes, inputRows);
   for (size_t i = 0; i < inputRows; ++i) {
-    float* y = shifted.row(i);
+    float* y = values.row(i);
     channelRow(test, channel, firstRow + i, y);
     const float* x = reference.values.row(firstRow + i);
     float* d = difference.row(i);
-    for (size_t column = 0; column < width; ++column) {
-      d[column] = x[column] - y[column];
-      y[column] -= kSsimShift;
-    }
+    for (size_t column = 0; column < width; ++column) d[column] = x[column] - y[column];
   }
-  AlignedFloats scratch(3 * (roundUpToLanes(width) + kPlaneLanes));
+  AlignedArray<double> scratch(3 * (roundUpToLanes(width) + kPlaneLanes));
   Plane oneRow(windows, 1);
   const auto kernel = metricKernels(isa_).ssimRow;
   for (size_t i = 0; i < rowSums.size(); ++i) {
     SsimRow row{};
     for (size_t tap = 0; tap < kSsimTaps; ++tap) {
       row.difference[tap] = difference.row(i + tap);
-      row.test[tap] = shifted.row(i + tap);
+      row.test[tap] = values.row(i + tap);
     }
     row.referenceMean = reference.mean.row(firstRow + i);
     row.referenceVariance = reference.variance.row(firstRow + i);
-    row.taps = taps_.data();
+    row.taps = taps_;
     row.windows = windows;
     row.scratch = scratch.data();
     row.map = map ? map->row(firstRow + i) : oneRow.row(0);
@@ -142,9 +141,9 @@ SsimResult PreparedSsim::compare(const Image8& test, bool withMap) const {
   if (withMap) {
     result.map.reserve(test.pixelCount());
     for (size_t y = 0; y < test.height; ++y) {
-      const size_t row = std::clamp(y, kRadius, kRadius + rows - 1) - kRadius;
+      const size_t row = std::clamp(y, kSsimRadius, kSsimRadius + rows - 1) - kSsimRadius;
       for (size_t x = 0; x < test.width; ++x) {
-        const size_t column = std::clamp(x, kRadius, kRadius + windows - 1) - kRadius;
+        const size_t column = std::clamp(x, kSsimRadius, kSsimRadius + windows - 1) - kSsimRadius;
         result.map.push_back((maps[0].row(row)[column] + maps[1].row(row)[column] + maps[2].row(row)[column]) / 3);
       }
     }

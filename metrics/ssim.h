@@ -38,13 +38,13 @@ class PreparedSsim {
  private:
   static constexpr size_t kPlanes = 4;  // R, G, B, luma
   struct Channel {
-    Plane values;          // x, full size
-    Plane mean, variance;  // of each window: (width - 10) x (height - 10)
+    Plane values;                // x, full size
+    DoublePlane mean, variance;  // of each window: (width - 10) x (height - 10)
   };
   void compareRows(const Image8& test, size_t channel, size_t firstRow, std::span<double> rowSums, Plane* map) const;
 
   Isa isa_;
-  std::array<float, 11> taps_{};
+  std::array<double, 6> taps_{};  // centre and offsets 1..5 of the window
   std::array<Channel, kPlanes> channels_;
 };
 

@@ -1,47 +1,43 @@
 #include "metrics/kernels/metric_kernels.h"
 
 #include <stdexcept>
+#include <string>
 
-// The namespaces are Highway's names of its targets; the build says which of them hold a copy.
-#define WAVECREST_DECLARE_TABLE(TARGET)     \
-  namespace wavecrest::TARGET {             \
-  const MetricKernels& metricKernelTable(); \
-  }
-#ifdef WAVECREST_HAS_scalar
-WAVECREST_DECLARE_TABLE(N_SCALAR)
-#endif
-#ifdef WAVECREST_HAS_sse4
-WAVECREST_DECLARE_TABLE(N_SSE4)
-#endif
-#ifdef WAVECREST_HAS_avx2
-WAVECREST_DECLARE_TABLE(N_AVX2)
-#endif
-#ifdef WAVECREST_HAS_avx512
-WAVECREST_DECLARE_TABLE(N_AVX3)
-#endif
+#include "compiled_isas.h"
 
 namespace wavecrest {
 
+// Defined by metrics/kernels/table.cpp, once per compiled instruction set.
+#define WAVECREST_DECLARE_TABLE(NAMESPACE)  \
+  namespace NAMESPACE {                     \
+  const MetricKernels& metricKernelTable(); \
+  }
+WAVECREST_DECLARE_TABLE(N_SCALAR)
+WAVECREST_DECLARE_TABLE(N_SSE4)
+WAVECREST_DECLARE_TABLE(N_AVX2)
+WAVECREST_DECLARE_TABLE(N_AVX3)
+#undef WAVECREST_DECLARE_TABLE
+
 const MetricKernels& metricKernels(Isa isa) {
   switch (isa) {
-#ifdef WAVECREST_HAS_scalar
+#ifdef WAVECREST_ISA_SCALAR
     case Isa::scalar:
       return N_SCALAR::metricKernelTable();
 #endif
-#ifdef WAVECREST_HAS_sse4
+#ifdef WAVECREST_ISA_SSE4
     case Isa::sse4:
       return N_SSE4::metricKernelTable();
 #endif
-#ifdef WAVECREST_HAS_avx2
+#ifdef WAVECREST_ISA_AVX2
     case Isa::avx2:
       return N_AVX2::metricKernelTable();
 #endif
-#ifdef WAVECREST_HAS_avx512
+#ifdef WAVECREST_ISA_AVX512
     case Isa::avx512:
       return N_AVX3::metricKernelTable();
 #endif
     default:
-      throw std::logic_error("the metrics were not compiled for this instruction set");
+      throw std::invalid_argument("no metric kernels were compiled for " + std::string(toString(isa)));
   }
 }
 

@@ -2,7 +2,7 @@
 // in: 11 rows of d and y, moments of the reference; out: map [windows]. metrics/kernels/ssim_row.h.
 #include "metrics/kernels/ssim_row.h"
 
-#include "kernels/simd/lanes.h"
+#include "kernels/simd/double_lanes.h"
 #include "metrics/plane.h"
 
 WAVECREST_SIMD_BEGIN
@@ -10,19 +10,21 @@ WAVECREST_SIMD_BEGIN
 namespace {
 
 // C1 and C2 of Wang et al. 2004 for codes 0..255.
-constexpr float kC1 = 6.5025f, kC2 = 58.5225f;
+constexpr double kC1 = 6.5025, kC2 = 58.5225;
 
 // Column sums of d, d^2 and y^2 into three scratch rows (the mean of y follows from those of x and d).
-void sumColumns(const SsimRow& row, float* d, float* dd, float* yy, size_t count) {
+void sumColumns(const SsimRow& row, double* d, double* dd, double* yy, size_t count) {
   for (size_t x = 0; x < count; x += kLanes) {
-    Float sumD(0.0f), sumDD(0.0f), sumYY(0.0f);
-    for (size_t i = 0; i < kSsimTaps; ++i) {
-      const Float weight(row.taps[i]);
-      const Float difference = loadUnaligned(row.difference[i] + x), test = loadUnaligned(row.test[i] + x);
-      const Float weighted = weight * difference;
-      sumD = sumD + weighted;
-      sumDD = mulAdd(weighted, difference, sumDD);
-      sumYY = mulAdd(weight * test, test, sumYY);
+    Double sumD(0.0), sumDD(0.0), sumYY(0.0);
+    for (size_t offset = 0; offset <= kSsimRadius; ++offset) {
+      const size_t above = kSsimRadius - offset, below = kSsimRadius + offset;
+      const Float dAbove = loadUnaligned(row.difference[above] + x), dBelow = loadUnaligned(row.difference[below] + x);
+      const Float yAbove = loadUnaligned(row.test[above] + x), yBelow = loadUnaligned(row.test[below] + x);
+      // The centre row is its own mirror image and would count twice.
+      const Double weight(offset == 0 ? 0.5 * row.taps[0] : row.taps[offset]);
+      sumD = mulAdd(weight, toDouble(dAbove + dBelow), sumD);
+      sumDD = mulAdd(weight, toDouble(mulAdd(dAbove, dAbove, dBelow * dBelow)), sumDD);
+      sumYY = mulAdd(weight, toDouble(mulAdd(yAbove, yAbove, yBelow * yBelow)), sumYY);
     }
     storeUnaligned(sumD, d + x);
     storeUnaligned(sumDD, dd + x);
@@ -30,9 +32,13 @@ void sumColumns(const SsimRow& row, float* d, float* dd, float* yy, size_t count
   }
 }
 
-WAVECREST_INLINE Float sumAcross(const float* columns, const float* taps) {
-  Float sum(0.0f);
-  for (size_t i = 0; i < kSsimTaps; ++i) sum = mulAdd(Float(taps[i]), loadUnaligned(columns + i), sum);
+// The window sum that starts at the given column.
+WAVECREST_INLINE Double sumAcross(const SsimRow& row, const double* columns) {
+  Double sum = Double(row.taps[0]) * loadUnaligned(columns + kSsimRadius);
+  for (size_t offset = 1; offset <= kSsimRadius; ++offset) {
+    const Double pair = loadUnaligned(columns + kSsimRadius - offset) + loadUnaligned(columns + kSsimRadius + offset);
+    sum = mulAdd(Double(row.taps[offset]), pair, sum);
+  }
   return sum;
 }
 
@@ -40,20 +46,20 @@ WAVECREST_INLINE Float sumAcross(const float* columns, const float* taps) {
 
 double ssimRow(const SsimRow& row) {
   const size_t columns = roundUpToLanes(row.windows + kSsimTaps - 1);
-  float* d = row.scratch;
-  float* dd = d + columns + kPlaneLanes;
-  float* yy = dd + columns + kPlaneLanes;
+  double* d = row.scratch;
+  double* dd = d + columns + kPlaneLanes;
+  double* yy = dd + columns + kPlaneLanes;
   sumColumns(row, d, dd, yy, columns);
   for (size_t x = 0; x < row.windows; x += kLanes) {
-    const Float meanD = sumAcross(d + x, row.taps);
-    const Float meanX = loadUnaligned(row.referenceMean + x), meanY = meanX - meanD;
-    const Float shiftedY = meanY - Float(kSsimShift);
-    const Float varianceD = sumAcross(dd + x, row.taps) - meanD * meanD;
-    const Float varianceY = sumAcross(yy + x, row.taps) - shiftedY * shiftedY;
-    const Float luminance = mulAdd(meanX, meanX, mulAdd(meanY, meanY, Float(kC1)));
-    const Float structure = loadUnaligned(row.referenceVariance + x) + varianceY + Float(kC2);
-    const Float ssim = (luminance - meanD * meanD) * (structure - varianceD) / (luminance * structure);
-    storeUnaligned(ssim, row.map + x);
+    const Double meanD = sumAcross(row, d + x);
+    const Double meanX = loadUnaligned(row.referenceMean + x), meanY = meanX - meanD;
+    const Double varianceD = sumAcross(row, dd + x) - meanD * meanD;
+    const Double varianceY = sumAcross(row, yy + x) - meanY * meanY;
+    const Double luminance = mulAdd(meanX, meanX, mulAdd(meanY, meanY, Double(kC1)));
+    const Double structure = loadUnaligned(row.referenceVariance + x) + varianceY + Double(kC2);
+    const Float a = toFloat(negMulAdd(meanD, meanD, luminance) / luminance);
+    const Float b = toFloat((structure - varianceD) / structure);
+    storeUnaligned(a * b, row.map + x);
   }
   double sum = 0;
   for (size_t x = 0; x < row.windows; ++x) sum += double{row.map[x]};

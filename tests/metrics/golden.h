@@ -37,7 +37,8 @@ struct GoldenPair {
 inline const std::vector<GoldenPair>& goldenPairs() {
   static const std::vector<GoldenPair> pairs = [] {
     std::vector<GoldenPair> list;
-    for (const auto& entry : goldenJson("rmse.json")["pairs"]) {
+    const auto figures = goldenJson("rmse.json");
+    for (const auto& entry : figures["pairs"]) {
       const std::string name = entry["pair"];
       list.push_back({name, readCodes(goldenPath(name + "_ref.png")), readCodes(goldenPath(name + "_test.png"))});
     }
@@ -48,7 +49,8 @@ inline const std::vector<GoldenPair>& goldenPairs() {
 
 // The figures of one pair in one golden file.
 inline nlohmann::json goldenFigures(const std::string& file, const std::string& pair) {
-  for (const auto& entry : goldenJson(file)["pairs"])
+  const auto figures = goldenJson(file);
+  for (const auto& entry : figures["pairs"])
     if (entry["pair"] == pair) return entry;
   throw std::runtime_error("no golden figures for " + pair);
 }
