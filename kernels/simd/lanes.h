@@ -86,31 +86,12 @@ WAVECREST_INLINE UInt select(Mask m, UInt yes, UInt no) {
   return {hn::IfThenElse(hn::RebindMask(UIntTag(), m.m), yes.v, no.v)};
 }
 WAVECREST_INLINE UInt xor3(UInt a, UInt b, UInt c) { return {hn::Xor3(a.v, b.v, c.v)}; }
-WAVECREST_INLINE uint32_t xor3(uint32_t a, uint32_t b, uint32_t c) { return a ^ b ^ c; }
-
-// The upper and lower halves of a 64-bit product; word is UInt, or uint32_t where all lanes agree.
-template <class Word>
-struct HighLow {
-  Word high, low;
-};
-WAVECREST_INLINE HighLow<uint32_t> mulHighLow(uint32_t a, uint32_t b) {
-  const uint64_t product = uint64_t{a} * b;
-  return {static_cast<uint32_t>(product >> 32), static_cast<uint32_t>(product)};
+// 0, 1, 2, ... from the given start. A load: hn::Iota of this Highway version writes the lanes one by one.
+HWY_ALIGN inline constexpr uint32_t kLaneNumbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+static_assert(kLanes <= 16);
+WAVECREST_INLINE UInt laneIndex(uint32_t start = 0) {
+  return {hn::Add(hn::Load(UIntTag(), kLaneNumbers), hn::Set(UIntTag(), start))};
 }
-WAVECREST_INLINE HighLow<UInt> mulHighLow(UInt a, uint32_t b) {
-#if HWY_TARGET == HWY_SCALAR
-  const HighLow<uint32_t> product = mulHighLow(hn::GetLane(a.v), b);
-  return {product.high, product.low};
-#else
-  // Even and odd lanes separately: the instruction sets multiply every other 32-bit lane to 64 bits.
-  const auto factor = hn::Set(UIntTag(), b);
-  const auto even = hn::BitCast(UIntTag(), hn::MulEven(a.v, factor));
-  const auto odd = hn::BitCast(UIntTag(), hn::MulEven(hn::Shuffle2301(a.v), factor));
-  return {hn::OddEven(odd, hn::Shuffle2301(even)), hn::OddEven(hn::Shuffle2301(odd), even)};
-#endif
-}
-// 0, 1, 2, ... from the given start
-WAVECREST_INLINE UInt laneIndex(uint32_t start = 0) { return {hn::Iota(UIntTag(), start)}; }
 
 // ---- float ----------------------------------------------------------------------------------------------------------
 
