@@ -139,7 +139,7 @@ WAVECREST_INLINE Double gather(const double* base, UInt index) {
       [&](size_t i) HWY_ATTR { return hn::GatherIndex(DoubleTag(), base, hn::PromoteTo(LongTag(), part(lanes, i))); });
 }
 // Lanes with equal indices: the last one wins.
-WAVECREST_INLINE void scatter(Double a, double* base, UInt index) {
+WAVECREST_INLINE void storeScattered(Double a, double* base, UInt index) {
   HWY_ALIGN double values[kLanes];
   HWY_ALIGN uint32_t indices[kLanes];
   store(a, values);

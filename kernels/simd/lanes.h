@@ -168,7 +168,7 @@ WAVECREST_INLINE UInt gather(const uint32_t* base, UInt index) {
   return {hn::GatherIndex(UIntTag(), base, hn::BitCast(IntTag(), index.v))};
 }
 // Lanes with equal indices: the last one wins.
-WAVECREST_INLINE void scatter(Float a, float* base, UInt index) {
+WAVECREST_INLINE void storeScattered(Float a, float* base, UInt index) {
   hn::ScatterIndex(a.v, FloatTag(), base, hn::BitCast(IntTag(), index.v));
 }
 
