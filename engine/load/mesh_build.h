@@ -1,0 +1,29 @@
+// From triangles as a file gives them (object space) to a Mesh of the scene: placed, oriented, with its normals.
+#pragma once
+
+#include "engine/load/context.h"
+#include "engine/load/matrix.h"
+
+namespace wavecrest {
+
+// Triangles in object space, indices checked by whoever made them.
+struct TriangleSoup {
+  std::vector<Float3> positions;
+  std::vector<Float3> normals;  // empty or one per position
+  std::vector<Float2> uvs;      // empty or one per position
+  std::vector<std::array<uint32_t, 3>> triangles;
+};
+
+struct MeshPlacement {
+  Matrix4 toWorld = identityMatrix();
+  bool faceNormals = false, flipNormals = false;
+};
+
+// Orientation follows the side that Mitsuba 3.9 shades and emits from:
+//  - normals of the file are transformed as normals; a mirroring transform then reverses the winding to stay with them;
+//  - without normals the winding in world space decides, mirrored or not, and smooth normals are made from it;
+//  - flip_normals turns both around.
+// Triangles without area are left out and counted in Scene::droppedTriangles.
+Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& placement, const SourceLocation& where);
+
+}  // namespace wavecrest
