@@ -5,6 +5,8 @@
 #include <exception>
 
 #include "cli/commands.h"
+#include "engine/load/load.h"
+#include "metrics/image/image.h"
 
 int main(int argc, char** argv) {
   using namespace wavecrest;
@@ -24,6 +26,12 @@ int main(int argc, char** argv) {
   } catch (const UsageError& error) {
     fmt::print(stderr, "wavecrest: error: {}\n", error.what());
     return kExitUsage;
+  } catch (const LoadError& error) {
+    fmt::print(stderr, "wavecrest: error: {}\n", error.what());
+    return kExitInput;
+  } catch (const ImageError& error) {
+    fmt::print(stderr, "wavecrest: error: {}\n", error.what());
+    return kExitInput;
   } catch (const InputError& error) {
     fmt::print(stderr, "wavecrest: error: {}\n", error.what());
     return kExitInput;
