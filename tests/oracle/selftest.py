@@ -3,6 +3,7 @@
 import unittest
 
 import numpy as np
+from scipy import stats
 
 import image_statistics
 import renderers
@@ -35,10 +36,14 @@ class Statistics(unittest.TestCase):
         self.assertGreater(alarms, 20)
         self.assertLess(alarms, 62)
 
-    def test_unequal_noise_is_not_a_difference(self):
+    def test_z_has_the_probability_of_welchs_test(self):
         generator = np.random.default_rng(2)
-        verdict = image_statistics.compare(noise(generator, 16, deviation=1.0), noise(generator, 8, deviation=0.1))
-        self.assertTrue(verdict.equal, verdict.summary())
+        test, reference = noise(generator, 16, (50,), deviation=1.0), noise(generator, 9, (50,), deviation=0.4)
+        z = image_statistics.welch_z(test, reference)
+        expected = stats.ttest_ind(test, reference, equal_var=False)
+        # 1e-5 of rounding is allowed for in z, and negligible beside this noise
+        np.testing.assert_allclose(2 * stats.norm.sf(np.abs(z)), expected.pvalue, rtol=1e-6)
+        np.testing.assert_array_equal(np.sign(z), np.sign(expected.statistic))
 
     def test_one_wrong_tile_is_found(self):
         generator = np.random.default_rng(3)
@@ -50,9 +55,10 @@ class Statistics(unittest.TestCase):
 
     def test_faint_difference_everywhere_is_found_by_the_mean(self):
         generator = np.random.default_rng(4)
-        verdict = image_statistics.compare(noise(generator, 16, mean=1.05), noise(generator, 16))
-        self.assertFalse(verdict.equal)
+        verdict = image_statistics.compare(noise(generator, 16, mean=1.032), noise(generator, 16))
+        self.assertLess(np.abs(verdict.tile_z).max(), verdict.tile_limit, "no tile may show it, or the test is too easy")
         self.assertGreater(verdict.mean_z.min(), verdict.mean_limit)
+        self.assertFalse(verdict.equal)
 
     def test_constant_pixels_may_differ_by_rounding_only(self):
         constant = np.full((16, 8, 8, 3), 14.0)
