@@ -107,7 +107,8 @@ struct SceneView {
   double center[3]{}, radius = 0;     // bounding sphere
   CameraView camera;
   const SmallSceneView* small = nullptr;
-  void* embree = nullptr;  // RTCScene
+  void* embree = nullptr;        // RTCScene
+  uint32_t firstPrimitive[3]{};  // of the quads, triangles and spheres in `primitives`
 };
 
 }  // namespace wavecrest

@@ -1,6 +1,7 @@
 // Sampling a point on a light, or a direction to an infinite one, as seen from a receiver (METHODS 2.2).
 #pragma once
 
+#include "kernels/sampling/warp_lanes.h"
 #include "kernels/shade/light_lanes.h"
 
 WAVECREST_SIMD_BEGIN
@@ -42,13 +43,9 @@ WAVECREST_INLINE void sampleSphere(const RecordLanes<LightRecord<typename P::Sto
   coneHeight = sphereConeHeight(r2, d2);
   const Real distance = sqrt(d2);
   const Frame<Real> frame = Frame<Real>::fromNormal(toCenter * (Real(1) / distance));
-  const Real height = u * coneHeight;  // 1 - cos of the sampled angle
-  const Real cosine = Real(1) - height;
-  const Real sin2 = height * (Real(2) - height);
-  Real sine, cosinePhi, sinePhi;
-  sine = sqrt(sin2);
-  sinCos2Pi(v, sinePhi, cosinePhi);
-  const Vec3<Real> direction = frame.toWorld({sine * cosinePhi, sine * sinePhi, cosine});
+  const Vec3<Real> local = uniformCone(u, v, coneHeight);
+  const Vec3<Real> direction = frame.toWorld(local);
+  const Real cosine = local.z, sin2 = local.x * local.x + local.y * local.y;
   const Real near = distance * cosine - sqrt(max(r2 - d2 * sin2, Real(0)));
   const Vec3<Real> fromCone = normalize(mulAdd(direction, near, receiver) - center);
   const Vec3<Real> fromArea = uniformSphere<Real>(u, v);
@@ -103,7 +100,7 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   sample.delta = noLanes();
   sample.end = mulAdd(normal, at(fields.offset), point);
   if constexpr (has(kFeatures, kCurvedShapes)) {
-    sample.pdf = select(cone, Real(1 / (2 * 3.14159265358979323846)) * reciprocal<P>(coneHeight), sample.pdf);
+    sample.pdf = select(cone, Real(kInvPi / 2) * reciprocal<P>(coneHeight), sample.pdf);
   }
 
   const Mask pointLike = kind == lightKind(LightKind::point);
@@ -117,7 +114,7 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   if (any(constant)) {
     const Vec3<Real> direction = uniformSphere<Real>(to<Real>(uniform.c), to<Real>(uniform.d));
     sample.direction = select(constant, direction, sample.direction);
-    sample.pdf = select(constant, Real(1 / (4 * 3.14159265358979323846)), sample.pdf);
+    sample.pdf = select(constant, Real(kInvPi / 4), sample.pdf);
     sample.end = select(constant, mulAdd(direction, Real(3 * scene.radius), receiver), sample.end);
     sample.valid = sample.valid | constant;
   }

@@ -11,9 +11,8 @@ namespace {
 
 // Closest hits of one block. u, v: coordinates in the primitive; for a sphere u is the distance t.
 struct Closest {
-  Float t = Float(3.0e38f);
-  Float u = Float(0), v = Float(0);
-  UInt primitive = UInt(kMiss);
+  Float t, u, v;
+  UInt primitive;
 
   WAVECREST_INLINE void take(Mask closer, const PlaneHit& hit, uint32_t index) {
     t = select(closer, hit.t, t);
@@ -24,7 +23,7 @@ struct Closest {
 };
 
 WAVECREST_INLINE Closest closestHit(const SmallSceneView& scene, Vec3<Float> origin, Vec3<Float> direction) {
-  Closest best;
+  Closest best{Float(3.0e38f), Float(0), Float(0), UInt(kMiss)};
   const auto nearer = [&](Float t) HWY_ATTR { return (t > Float(0)) & (t < best.t); };
   uint32_t index = 0;
   for (; index < scene.quadCount; ++index) {

@@ -23,9 +23,10 @@ WAVECREST_INLINE Float toUnitInterval(UInt bits) { return toFloat(shiftRight<8>(
 WAVECREST_INLINE Uniform4 independentUniform4(const SamplerSettings& sampler, UInt path, uint32_t block,
                                               Stream stream) {
   const PhiloxKey key{static_cast<uint32_t>(sampler.seed), static_cast<uint32_t>(sampler.seed >> 32)};
-  const PhiloxBlock counter{path, sampler.iteration, block, static_cast<uint32_t>(stream)};
+  const PhiloxBlock counter{split(path), sampler.iteration, block, static_cast<uint32_t>(stream)};
   const auto bits = philox4x32<kPhiloxRounds>(counter, key);
-  return {toUnitInterval(bits.a), toUnitInterval(bits.b), toUnitInterval(bits.c), toUnitInterval(bits.d)};
+  return {toUnitInterval(join(bits.a)), toUnitInterval(join(bits.b)), toUnitInterval(join(bits.c)),
+          toUnitInterval(join(bits.d))};
 }
 
 WAVECREST_INLINE Uniform4 uniform4(const SamplerSettings& sampler, UInt path, uint32_t block, Stream stream) {

@@ -22,7 +22,7 @@ WAVECREST_INLINE Vec3<typename P::Real> missedRadiance(const SceneView<typename 
   Vec3<Real> radiance{Real(light.radiance[0]), Real(light.radiance[1]), Real(light.radiance[2])};
   if (direct) return radiance;
   // directPdfW = pick / (4 pi) for the constant environment; dVCM is 1 / pdfW of the BSDF's choice.
-  const Real directPdfW = Real(light.pick) * Real(1 / (4 * 3.14159265358979323846));
+  const Real directPdfW = Real(light.pick) * Real(kInvPi / 4);
   return radiance * reciprocal<P>(Real(1) + directPdfW * dVCM);
 }
 

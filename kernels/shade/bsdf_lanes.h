@@ -1,4 +1,4 @@
-// The contract between stages and BSDFs, and the list of all BSDFs.
+// The contract between stages and BSDFs, and the dispatch over a feature set's kinds.
 //
 // A BSDF works in the shading frame (z along the shading normal): `fix` points back along the path, `gen` is the
 // generated direction, both away from the surface. f contains no cosine. Densities are per solid angle, lobe choice
@@ -15,8 +15,6 @@
 #include "kernels/sampling/warp_lanes.h"
 
 WAVECREST_SIMD_BEGIN
-
-constexpr double kInversePi = 0.31830988618379067154;
 
 template <class Real>
 struct BsdfValue {
@@ -65,8 +63,8 @@ struct DiffuseBsdf {
                                                            Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
     const Mask front = (fix.z > Real(0)) & (gen.z > Real(0));
-    return {zeroUnless(front, input.reflectance() * Real(kInversePi)), zeroUnless(front, gen.z * Real(kInversePi)),
-            zeroUnless(front, fix.z * Real(kInversePi))};
+    return {zeroUnless(front, input.reflectance() * Real(kInvPi)), zeroUnless(front, gen.z * Real(kInvPi)),
+            zeroUnless(front, fix.z * Real(kInvPi))};
   }
 
   template <class P>
@@ -76,8 +74,8 @@ struct DiffuseBsdf {
     BsdfSample<Real> sample;
     sample.gen = cosineHemisphere<Real>(to<Real>(u.b), to<Real>(u.c));
     sample.weight = zeroUnless(fix.z > Real(0), input.reflectance());
-    sample.pdf = sample.gen.z * Real(kInversePi);
-    sample.pdfReverse = abs(fix.z) * Real(kInversePi);
+    sample.pdf = sample.gen.z * Real(kInvPi);
+    sample.pdfReverse = abs(fix.z) * Real(kInvPi);
     sample.etaRatio = Real(1);
     sample.specular = noLanes();
     return sample;

@@ -2,19 +2,17 @@
 #pragma once
 
 #include "kernels/lane_support.h"
+#include "kernels/sampling/warp_lanes.h"
 #include "kernels/shade/surface_lanes.h"
 
 WAVECREST_SIMD_BEGIN
 
 WAVECREST_INLINE UInt lightKind(LightKind kind) { return UInt(static_cast<uint32_t>(kind)); }
 
-// 1 - cos of the half angle under which a sphere of squared radius r2 is seen from squared distance d2 > r2, without
-// cancellation for small spheres (METHODS: stable forms).
+// 1 - cos of the half angle under which a sphere of squared radius r2 is seen from squared distance d2.
 template <class Real>
 WAVECREST_INLINE Real sphereConeHeight(Real r2, Real d2) {
-  const Real sin2 = min(r2 / d2, Real(1));
-  const Real cosine = sqrt(max(Real(1) - sin2, Real(0)));
-  return sin2 / (Real(1) + cosine);
+  return oneMinusCosFromSin2(min(r2 / d2, Real(1)));
 }
 
 // Receivers this close to a spherical light sample its area uniformly instead of its cone.
@@ -37,7 +35,7 @@ WAVECREST_INLINE typename P::Real directPdfA(const SceneView<typename P::Storage
       const Real r2 = radius * radius;
       const Real d2 = length2(at(fields.p0) - receiver);
       const Mask outside = sphere & (d2 > r2 * Real(kInsideSphere));
-      const Real pdfW = Real(1 / (2 * 3.14159265358979323846)) / sphereConeHeight(r2, d2);
+      const Real pdfW = Real(kInvPi / 2) / sphereConeHeight(r2, d2);
       pdfA = select(outside, pdfW * n0 / dist2, pdfA);
     }
   }

@@ -127,6 +127,9 @@ WAVECREST_INLINE Float toFloat(Float a) { return a; }
 WAVECREST_INLINE Double load(const double* p) {
   return mapParts([&](size_t i) HWY_ATTR { return hn::Load(DoubleTag(), p + i * kPartLanes); });
 }
+WAVECREST_INLINE Double loadUnaligned(const double* p) {
+  return mapParts([&](size_t i) HWY_ATTR { return hn::LoadU(DoubleTag(), p + i * kPartLanes); });
+}
 WAVECREST_INLINE void store(Double a, double* p) {
   for (size_t i = 0; i < kDoubleParts; ++i) hn::Store(a.v[i], DoubleTag(), p + i * kPartLanes);
 }

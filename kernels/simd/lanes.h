@@ -13,6 +13,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/simd/isa.h"
+
 // Everything between these two lines is compiled for the chosen instruction set, in its own namespace.
 #define WAVECREST_SIMD_BEGIN \
   HWY_BEFORE_NAMESPACE();    \
@@ -33,6 +35,13 @@ using UIntTag = hn::ScalableTag<uint32_t>;
 using IntTag = hn::ScalableTag<int32_t>;
 
 constexpr size_t kLanes = hn::MaxLanes(FloatTag());
+
+// The instruction set of this compilation.
+constexpr Isa kIsa = HWY_TARGET == HWY_AVX3   ? Isa::avx512
+                     : HWY_TARGET == HWY_AVX2 ? Isa::avx2
+                     : HWY_TARGET == HWY_SSE4 ? Isa::sse4
+                                              : Isa::scalar;
+static_assert(kIsa != Isa::scalar || HWY_TARGET == HWY_SCALAR, "an instruction set that kernels/simd does not know");
 
 // ---- masks ----------------------------------------------------------------------------------------------------------
 
@@ -86,31 +95,13 @@ WAVECREST_INLINE UInt select(Mask m, UInt yes, UInt no) {
   return {hn::IfThenElse(hn::RebindMask(UIntTag(), m.m), yes.v, no.v)};
 }
 WAVECREST_INLINE UInt xor3(UInt a, UInt b, UInt c) { return {hn::Xor3(a.v, b.v, c.v)}; }
-WAVECREST_INLINE uint32_t xor3(uint32_t a, uint32_t b, uint32_t c) { return a ^ b ^ c; }
 
-// The upper and lower halves of a 64-bit product; word is UInt, or uint32_t where all lanes agree.
-template <class Word>
-struct HighLow {
-  Word high, low;
-};
-WAVECREST_INLINE HighLow<uint32_t> mulHighLow(uint32_t a, uint32_t b) {
-  const uint64_t product = uint64_t{a} * b;
-  return {static_cast<uint32_t>(product >> 32), static_cast<uint32_t>(product)};
+// 0, 1, 2, ... from the given start. A load: hn::Iota of this Highway version writes the lanes one by one.
+HWY_ALIGN inline constexpr uint32_t kLaneNumbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+static_assert(kLanes <= 16);
+WAVECREST_INLINE UInt laneIndex(uint32_t start = 0) {
+  return {hn::Add(hn::Load(UIntTag(), kLaneNumbers), hn::Set(UIntTag(), start))};
 }
-WAVECREST_INLINE HighLow<UInt> mulHighLow(UInt a, uint32_t b) {
-#if HWY_TARGET == HWY_SCALAR
-  const HighLow<uint32_t> product = mulHighLow(hn::GetLane(a.v), b);
-  return {product.high, product.low};
-#else
-  // Even and odd lanes separately: the instruction sets multiply every other 32-bit lane to 64 bits.
-  const auto factor = hn::Set(UIntTag(), b);
-  const auto even = hn::BitCast(UIntTag(), hn::MulEven(a.v, factor));
-  const auto odd = hn::BitCast(UIntTag(), hn::MulEven(hn::Shuffle2301(a.v), factor));
-  return {hn::OddEven(odd, hn::Shuffle2301(even)), hn::OddEven(hn::Shuffle2301(odd), even)};
-#endif
-}
-// 0, 1, 2, ... from the given start
-WAVECREST_INLINE UInt laneIndex(uint32_t start = 0) { return {hn::Iota(UIntTag(), start)}; }
 
 // ---- float ----------------------------------------------------------------------------------------------------------
 
@@ -156,9 +147,14 @@ WAVECREST_INLINE Float approximateReciprocal(Float a) {
   return {hn::Mul(guess, hn::NegMulAdd(a.v, guess, hn::Set(FloatTag(), 2.0f)))};
 }
 WAVECREST_INLINE Float approximateReciprocalSqrt(Float a) {
+#if HWY_TARGET == HWY_SCALAR
+  // There is no estimate instruction to stand in for, and Highway's bit trick is still 4e-6 off after a Newton step.
+  return {hn::Div(hn::Set(FloatTag(), 1.0f), hn::Sqrt(a.v))};
+#else
   const auto guess = hn::ApproximateReciprocalSqrt(a.v);
   const auto half = hn::Mul(hn::Set(FloatTag(), 0.5f), a.v);
   return {hn::Mul(guess, hn::NegMulAdd(hn::Mul(half, guess), guess, hn::Set(FloatTag(), 1.5f)))};
+#endif
 }
 
 WAVECREST_INLINE UInt bits(Float a) { return {hn::BitCast(UIntTag(), a.v)}; }
