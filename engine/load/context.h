@@ -23,8 +23,9 @@ struct LoadContext {
   std::map<const XmlElement*, uint32_t> textures{};
   std::set<const XmlElement*> reading{};                           // objects being read, to find reference cycles
   std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};  // by path and colour treatment
-  std::map<std::string, std::shared_ptr<const TriangleSoup>> instancedMeshes{};  // mesh files inside shape groups
-  uint32_t defaultMaterial[2] = {kNone, kNone};                                  // of surfaces, of lights
+  std::map<std::string, std::shared_ptr<const TriangleSoup>> groupMeshes{};  // mesh files inside shape groups
+  bool inShapeGroup = false;
+  uint32_t defaultMaterial[2] = {kNone, kNone};  // of surfaces, of lights
   uint64_t instancedTriangles = 0;
 
   // Follows <ref>; any other element is itself.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/load/bitmap_file.h"
 #include "engine/load/materials.h"
 #include "engine/load/values.h"
 
@@ -116,6 +117,23 @@ EmitterKind readDirectional(LoadContext& context, Parameters& parameters) {
 EmitterKind readConstant(LoadContext& context, Parameters& parameters) {
   parameters.ignore({"to_world"});  // the same radiance from everywhere
   return ConstantEmitter{.radiance = readConstantEmission(context, parameters, "radiance")};
+}
+
+EmitterKind readEnvmap(LoadContext& context, Parameters& parameters) {
+  const std::string filename = parameters.requiredString("filename");
+  const SourceLocation where = parameters.locationOf("filename");
+  EnvmapEmitter light{.bitmap = readBitmap(context, context.resolvePath(filename, parameters.object()), false, where),
+                      .scale = parameters.real("scale", 1),
+                      .toWorld = readToWorld(parameters)};
+  parameters.ignore({"mis_compensation"});  // guides sampling only
+  if (!(light.scale >= 0)) {
+    throw LoadError(parameters.locationOf("scale"), "scale of the environment is negative; expected 0 or more");
+  }
+  const std::vector<float>& pixels = light.bitmap->pixels;
+  if (std::any_of(pixels.begin(), pixels.end(), [](float v) { return v < 0; })) {
+    throw LoadError(where, "environment map " + inQuotes(filename) + " has negative pixels; expected radiance from 0");
+  }
+  return light;
 }
 
 }  // namespace wavecrest

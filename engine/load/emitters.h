@@ -15,5 +15,6 @@ EmitterKind readPoint(LoadContext&, Parameters&);
 EmitterKind readSpot(LoadContext&, Parameters&);
 EmitterKind readDirectional(LoadContext&, Parameters&);
 EmitterKind readConstant(LoadContext&, Parameters&);
+EmitterKind readEnvmap(LoadContext&, Parameters&);
 
 }  // namespace wavecrest

@@ -1,5 +1,7 @@
 #include "engine/load/load.h"
 
+#include <new>
+
 #include "engine/load/context.h"
 #include "engine/load/emitters.h"
 #include "engine/load/materials.h"
@@ -61,13 +63,17 @@ void readScene(LoadContext& context) {
 }  // namespace
 
 Scene loadScene(const std::filesystem::path& xml, const LoadOptions& options) {
-  const std::unique_ptr<XmlDocument> document = readXmlDocument(xml, options);
-  LoadContext context{.options = options, .document = *document, .scene = {}};
-  context.scene.name = xml.stem().string();
-  context.scene.warnings = document->warnings;
-  readScene(context);
-  context.scene.hash = hashScene(context.scene);
-  return std::move(context.scene);
+  try {
+    const std::unique_ptr<XmlDocument> document = readXmlDocument(xml, options);
+    LoadContext context{.options = options, .document = *document, .scene = {}};
+    context.scene.name = xml.stem().string();
+    context.scene.warnings = document->warnings;
+    readScene(context);
+    context.scene.hash = hashScene(context.scene);
+    return std::move(context.scene);
+  } catch (const std::bad_alloc&) {
+    throw LoadError({xml.string(), 0}, "out of memory while loading; expected a scene that fits into memory");
+  }
 }
 
 }  // namespace wavecrest

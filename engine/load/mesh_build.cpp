@@ -75,37 +75,43 @@ void placeNormals(std::vector<Float3>& normals, const Matrix4& toWorld) {
   }
 }
 
+// Reverses triangles whose winding contradicts their normals, so that both name the same front side. Mitsuba shades and
+// emits by the normals; a mirroring transform or a careless exporter leaves the winding behind.
+void windAlongNormals(Mesh& mesh) {
+  for (std::array<uint32_t, 3>& t : mesh.triangles) {
+    const Double3 a = toDouble(mesh.positions[t[0]]);
+    const Double3 facing = cross(toDouble(mesh.positions[t[1]]) - a, toDouble(mesh.positions[t[2]]) - a);
+    const Double3 sum = toDouble(mesh.normals[t[0]]) + toDouble(mesh.normals[t[1]]) + toDouble(mesh.normals[t[2]]);
+    if (dot(facing, sum) < 0) std::swap(t[1], t[2]);
+  }
+}
+
+void turnAround(Mesh& mesh) {
+  for (std::array<uint32_t, 3>& t : mesh.triangles) std::swap(t[1], t[2]);
+  for (Float3& n : mesh.normals) n = {-n[0], -n[1], -n[2]};
+}
+
 }  // namespace
 
 Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& placement, const SourceLocation& where) {
-  const bool mirrored = determinant3(placement.toWorld) < 0;
-  const bool hasNormals = !soup.normals.empty();
   Mesh mesh{.positions = std::move(soup.positions),
             .normals = std::move(soup.normals),
             .uvs = std::move(soup.uvs),
             .triangles = std::move(soup.triangles)};
   placePositions(mesh.positions, placement.toWorld, where);
   context.scene.droppedTriangles += dropTrianglesWithoutArea(mesh);
-
   if (placement.faceNormals) {
     mesh.normals.clear();
-  } else if (hasNormals) {
+  } else if (!mesh.normals.empty()) {
     placeNormals(mesh.normals, placement.toWorld);
+    windAlongNormals(mesh);
     const bool complete = std::find(mesh.normals.begin(), mesh.normals.end(), Float3{0, 0, 0}) == mesh.normals.end();
     if (!complete) fillMissingNormals(mesh);
   } else {
     mesh.normals.assign(mesh.positions.size(), Float3{0, 0, 0});
     fillMissingNormals(mesh);
   }
-
-  // face_normals drops the file's normals before Mitsuba looks at them, so then the winding decides.
-  const bool follow = mirrored && hasNormals && !placement.faceNormals;
-  if (follow != placement.flipNormals) {
-    for (std::array<uint32_t, 3>& t : mesh.triangles) std::swap(t[1], t[2]);
-  }
-  if (placement.flipNormals) {
-    for (Float3& n : mesh.normals) n = {-n[0], -n[1], -n[2]};
-  }
+  if (placement.flipNormals) turnAround(mesh);
   return mesh;
 }
 

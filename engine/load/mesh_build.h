@@ -20,8 +20,10 @@ struct MeshPlacement {
 };
 
 // Orientation follows the side that Mitsuba 3.9 shades and emits from:
-//  - normals of the file are transformed as normals; a mirroring transform then reverses the winding to stay with them;
-//  - without normals the winding in world space decides, mirrored or not, and smooth normals are made from it;
+//  - with normals in the file these decide: each triangle is wound so that it faces along them, also when a transform
+//    mirrors the mesh;
+//  - without them, or with face_normals, the winding in world space decides, mirrored or not; smooth normals are made
+//    from it unless face_normals is set;
 //  - flip_normals turns both around.
 // Triangles without area are left out and counted in Scene::droppedTriangles.
 Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& placement, const SourceLocation& where);

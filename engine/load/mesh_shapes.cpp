@@ -14,14 +14,14 @@ Geometry readMeshShape(LoadContext& context, Parameters& parameters, const Matri
                                 .faceNormals = parameters.boolean("face_normals", false),
                                 .flipNormals = parameters.boolean("flip_normals", false)};
   const bool flipTexCoords = parameters.boolean("flip_tex_coords", flipTexCoordsDefault);
-  const std::string filename = parameters.string("filename", "");
-  if (filename.empty()) {
-    throw LoadError(parameters.locationOf("filename"),
-                    parameters.describe() + " has no filename; expected the path of a mesh file");
-  }
+  const std::string filename = parameters.requiredString("filename");
   const SourceLocation where = parameters.locationOf("filename");
-  TriangleSoup soup = read(context.resolvePath(filename, parameters.object()), flipTexCoords, where);
-  return buildMesh(context, std::move(soup), placement, where);
+  const std::filesystem::path path = context.resolvePath(filename, parameters.object());
+  if (!context.inShapeGroup) return buildMesh(context, read(path, flipTexCoords, where), placement, where);
+  // Every instance of the group asks for the same file.
+  std::shared_ptr<const TriangleSoup>& soup = context.groupMeshes[(flipTexCoords ? "flipped:" : "") + path.string()];
+  if (!soup) soup = std::make_shared<const TriangleSoup>(read(path, flipTexCoords, where));
+  return buildMesh(context, *soup, placement, where);
 }
 
 }  // namespace

@@ -125,6 +125,14 @@ std::string Parameters::string(std::string_view name, std::string_view fallback)
   return value ? *value : std::string(fallback);
 }
 
+std::string Parameters::requiredString(std::string_view name) {
+  const std::string value = string(name, "");
+  if (value.empty()) {
+    throw LoadError(locationOf(name), describe() + " has no " + inQuotes(name) + "; expected a <string> of that name");
+  }
+  return value;
+}
+
 std::optional<Double3> Parameters::vector(std::string_view name) {
   const Child* child = take(name);
   if (!child) return std::nullopt;

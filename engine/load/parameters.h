@@ -26,6 +26,7 @@ class Parameters {
   int64_t integer(std::string_view name, int64_t fallback, int64_t lowest, int64_t highest);
   bool boolean(std::string_view name, bool fallback);
   std::string string(std::string_view name, std::string_view fallback);
+  std::string requiredString(std::string_view name);
   std::optional<Double3> vector(std::string_view name);  // <point> or <vector>
   std::optional<Matrix4> transform(std::string_view name);
   // An index of refraction: a number, or the name of a substance (ior_table.h).

@@ -27,7 +27,7 @@ std::span<const BsdfPlugin> bsdfPlugins() {
 }
 
 std::span<const TexturePlugin> texturePlugins() {
-  static constexpr TexturePlugin kPlugins[] = {{"checkerboard", &readCheckerboard}};
+  static constexpr TexturePlugin kPlugins[] = {{"bitmap", &readBitmapTexture}, {"checkerboard", &readCheckerboard}};
   return kPlugins;
 }
 
@@ -40,8 +40,11 @@ std::span<const ShapePlugin> shapePlugins() {
 }
 
 std::span<const EmitterPlugin> emitterPlugins() {
-  static constexpr EmitterPlugin kPlugins[] = {
-      {"point", &readPoint}, {"spot", &readSpot}, {"directional", &readDirectional}, {"constant", &readConstant}};
+  static constexpr EmitterPlugin kPlugins[] = {{"point", &readPoint},
+                                               {"spot", &readSpot},
+                                               {"directional", &readDirectional},
+                                               {"constant", &readConstant},
+                                               {"envmap", &readEnvmap}};
   return kPlugins;
 }
 

@@ -28,16 +28,12 @@ void attachAreaLight(LoadContext& context, const XmlElement& element, uint32_t s
       {.kind = readAreaEmitter(context, element, shapeIndex), .source = element.location()});
 }
 
-struct ShapeFrame {
-  Matrix4 placement = identityMatrix();
-  bool inGroup = false;
-};
-
-void addPlacedShape(LoadContext& context, const XmlElement& element, const ShapeFrame& frame);
+// `placement` is applied after the shape's own to_world: that of the instance, when inside a shape group.
+void addPlacedShape(LoadContext& context, const XmlElement& element, const Matrix4& placement);
 
 // Instances are flattened: each becomes a copy of the group's shapes in world space.
-void addInstance(LoadContext& context, Parameters& parameters, const ShapeFrame& frame) {
-  if (frame.inGroup) {
+void addInstance(LoadContext& context, Parameters& parameters) {
+  if (context.inShapeGroup) {
     throw LoadError(parameters.location(), "instance inside a shapegroup; expected only plain shapes in a shapegroup");
   }
   const XmlElement& group = parameters.onlyObject("shape");
@@ -50,7 +46,9 @@ void addInstance(LoadContext& context, Parameters& parameters, const ShapeFrame&
   Parameters members(context, group);
   const std::vector<const XmlElement*> shapes = members.objects("shape");
   members.finish();
-  for (const XmlElement* shape : shapes) addPlacedShape(context, *shape, {.placement = toWorld, .inGroup = true});
+  context.inShapeGroup = true;
+  for (const XmlElement* shape : shapes) addPlacedShape(context, *shape, toWorld);
+  context.inShapeGroup = false;
 }
 
 void countInstancedTriangles(LoadContext& context, const Geometry& geometry, const SourceLocation& where) {
@@ -63,11 +61,11 @@ void countInstancedTriangles(LoadContext& context, const Geometry& geometry, con
   }
 }
 
-void addPlacedShape(LoadContext& context, const XmlElement& element, const ShapeFrame& frame) {
+void addPlacedShape(LoadContext& context, const XmlElement& element, const Matrix4& placement) {
   const std::string_view type = element.get("type");
-  if (type == "shapegroup" && !frame.inGroup) return;  // a definition: only its instances appear
+  if (type == "shapegroup" && !context.inShapeGroup) return;  // a definition: only its instances appear
   Parameters parameters(context, element);
-  if (type == "instance") return addInstance(context, parameters, frame);
+  if (type == "instance") return addInstance(context, parameters);
   const ShapePlugin* plugin = findPlugin(context, shapePlugins(), element, "left out");
   if (!plugin) return;
 
@@ -75,7 +73,7 @@ void addPlacedShape(LoadContext& context, const XmlElement& element, const Shape
   Shape shape;
   shape.id = element.get("id");
   shape.source = element.location();
-  shape.kind = plugin->read(context, parameters, multiply(frame.placement, own));
+  shape.kind = plugin->read(context, parameters, multiply(placement, own));
   const XmlElement* bsdf = singleChild(parameters, "bsdf");
   const XmlElement* light = singleChild(parameters, "emitter");
   ignoreCommonParameters(parameters);
@@ -89,7 +87,7 @@ void addPlacedShape(LoadContext& context, const XmlElement& element, const Shape
     context.unsupported(element.location(), message);
     return;
   }
-  if (frame.inGroup) {
+  if (context.inShapeGroup) {
     if (light) throw LoadError(light->location(), "light inside a shapegroup; expected instances without lights");
     countInstancedTriangles(context, shape.kind, element.location());
   }
@@ -120,6 +118,6 @@ struct Area {
 
 double surfaceArea(const Geometry& geometry) { return std::visit(Area{}, geometry); }
 
-void addShape(LoadContext& context, const XmlElement& shape) { addPlacedShape(context, shape, {}); }
+void addShape(LoadContext& context, const XmlElement& shape) { addPlacedShape(context, shape, identityMatrix()); }
 
 }  // namespace wavecrest

@@ -5,7 +5,7 @@
 
 namespace wavecrest {
 
-// Adds a <shape> to the scene; `placement` is applied after its to_world (identity outside of instances).
+// Adds a <shape> to the scene; an instance adds a copy of every shape of its group.
 void addShape(LoadContext& context, const XmlElement& shape);
 
 Geometry readRectangle(LoadContext&, Parameters&, const Matrix4& toWorld);

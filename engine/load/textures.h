@@ -5,6 +5,7 @@
 
 namespace wavecrest {
 
+Texture readBitmapTexture(LoadContext&, Parameters&);
 Texture readCheckerboard(LoadContext&, Parameters&);
 
 }  // namespace wavecrest
