@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/columns/records.h"
+
 namespace wavecrest {
 
 enum class PrimitiveKind : uint32_t { triangle, quad, sphere };
@@ -22,7 +24,6 @@ struct alignas(sizeof(S) * 16) PrimitiveRecord {
   uint32_t kind;        // PrimitiveKind
   uint32_t attributes;  // index into SceneView::attributes, or kNoIndex
 };
-constexpr uint32_t kNoIndex = 0xffffffffu;
 
 // Vertex normals and texture coordinates at (u, v) = (0, 0), (1, 0) and (0, 1) of a triangle or quad.
 struct alignas(64) AttributeRecord {
@@ -89,6 +90,8 @@ struct CameraView {
   double origin[3], corner[3], du[3], dv[3], axis[3];
   uint32_t width = 0, height = 0;  // of the full film
   double pixelDistance = 0;
+  double planeDepth = 0;                   // corner . axis
+  double inverseDu2 = 0, inverseDv2 = 0;   // 1 / |du|^2, 1 / |dv|^2
   double lensRadius = 0, focusDistance = 0;
 };
 
