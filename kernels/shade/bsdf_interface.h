@@ -38,9 +38,6 @@ struct BsdfSample {
   Mask specular;         // a delta lobe was taken
 };
 
-// Which way the sub-path is walked: from the eye, so that gen points to the light's side, or from a light.
-enum class Walk { camera, light };
-
 // Which lobes sample() chooses from. specularOnly: the delta lobes, with their probabilities renormalised.
 enum class Lobes { all, specularOnly };
 
@@ -51,7 +48,7 @@ struct BsdfInput {
   const MaterialRecord* materials;
   RecordLanes<MaterialRecord> at;
   UInt kind;
-  Walk walk = Walk::camera;
+  Walk walk = Walk::camera;  // from the eye, so that gen points to the light's side, or from a light
   Lobes lobes = Lobes::all;
 
   WAVECREST_INLINE BsdfInput(const MaterialRecord* base, UInt index) : materials(base), at(base, index) {
