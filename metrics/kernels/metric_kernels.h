@@ -12,7 +12,7 @@
 namespace wavecrest {
 
 struct MetricKernels {
-  double (*ssimRow)(const SsimRow& row);
+  std::array<double, 3> (*ssimRow)(const SsimRow& row);
 };
 
 // The kernels of one of availableIsas().

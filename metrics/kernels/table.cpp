@@ -4,7 +4,7 @@
 
 namespace wavecrest::WAVECREST_SIMD_NAMESPACE {
 
-double ssimRow(const SsimRow& row);
+std::array<double, 3> ssimRow(const SsimRow& row);
 
 const MetricKernels& metricKernelTable() {
   static constexpr MetricKernels table{.ssimRow = ssimRow};
