@@ -42,9 +42,9 @@ bool holdsScenes(const fs::path& folder) {
 
 }  // namespace
 
-std::span<const SceneEntry> sceneList() { return kScenes; }
+std::span<const SceneEntry> builtInScenes() { return kScenes; }
 
-fs::path scenesFolder() {
+fs::path sceneFolder() {
   if (const char* folder = std::getenv("WAVECREST_SCENES"); folder && *folder) {
     if (!fs::is_directory(folder)) {
       throw std::runtime_error("WAVECREST_SCENES is '" + std::string(folder) + "'; expected a folder of scenes");
@@ -60,15 +60,10 @@ fs::path scenesFolder() {
                            "; expected WAVECREST_SCENES to name their folder");
 }
 
-std::optional<fs::path> builtinScenePath(std::string_view name) {
-  for (const SceneEntry& scene : kScenes) {
-    if (scene.name != name) continue;
-    fs::path file = scenesFolder() / (std::string(name) + ".xml");
-    if (!fs::exists(file))
-      throw std::runtime_error(file.string() + ": no such file; expected the built-in scene there");
-    return file;
-  }
-  return std::nullopt;
+fs::path findScene(const std::string& nameOrPath) {
+  for (const SceneEntry& scene : kScenes)
+    if (scene.name == nameOrPath) return sceneFolder() / (nameOrPath + ".xml");
+  return nameOrPath;
 }
 
 std::string missingAssetHint(const fs::path& file) {

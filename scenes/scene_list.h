@@ -5,7 +5,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,23 +12,22 @@
 namespace wavecrest {
 
 struct SceneEntry {
-  std::string_view name;
-  std::string_view description;
+  std::string_view name;         // as on the command line; its file is NAME.xml
+  std::string_view description;  // one line
 };
 
-std::span<const SceneEntry> sceneList();
+std::span<const SceneEntry> builtInScenes();
 
-// The folder with the scenes' XML files: $WAVECREST_SCENES if set, else the first that exists of the source folder this
-// build was made from, the installed folder, and ../../scenes beside the running executable.
+// The folder of the built-in scenes: $WAVECREST_SCENES if set, else the first that exists of the source folder this
+// binary was built from, the installed folder, and ../../scenes beside the running executable.
 // Throws std::runtime_error when the folder that $WAVECREST_SCENES names does not exist, or none of the others does.
-std::filesystem::path scenesFolder();
+std::filesystem::path sceneFolder();
 
-// The XML file of a built-in scene; nothing when `name` is not in the list. Throws as scenesFolder does, and when the
-// folder lacks the file.
-std::optional<std::filesystem::path> builtinScenePath(std::string_view name);
+// A built-in scene's file, or the argument itself taken as a path. Throws as sceneFolder does.
+std::filesystem::path findScene(const std::string& nameOrPath);
 
-// How to get an asset that a scene names but that does not exist, for the end of an error message: "scenes/fetch-dragon
-// gets ..." for the dragon, the build target for what the build generates. Empty for any other file.
+// How to get an asset of the scenes that does not exist, for the end of an error message: scenes/fetch-dragon for the
+// dragon, the build for what it generates. Empty for any other file.
 std::string missingAssetHint(const std::filesystem::path& file);
 
 }  // namespace wavecrest

@@ -1,0 +1,72 @@
+// Every record that stages hand to each other, declared once. S is the storage type of the precision policy: float, or
+// double for the `double` policy.
+//
+// A path is one lane of a wave for its whole life; compaction moves its record forward in the columns, and `lane` keeps
+// where it began, which is also where its radiance is summed.
+#pragma once
+
+#include "kernels/columns/columns.h"
+
+namespace wavecrest {
+
+constexpr uint32_t kMiss = 0xffffffffu;  // Hits::primitive of a ray that left the scene
+
+// The front of each live path. Written by generate and scatter: origin and unit direction of the next ray. arrive moves
+// the origin to the surface point in place; from there to scatter it is the position of the path's vertex and the
+// direction is still that of arrival.
+template <class S>
+struct Rays : Columns<Rays<S>> {
+  Column<S> originX, originY, originZ, directionX, directionY, directionZ;
+  auto all() { return std::tie(originX, originY, originZ, directionX, directionY, directionZ); }
+};
+
+// Written by extend in ray order, one per ray; compacted by arrive. u, v: coordinates in the primitive
+// (kernels/scene_view.h says which).
+struct Hits : Columns<Hits> {
+  Column<float> u, v;
+  Column<uint32_t> primitive;  // kMiss, or an index into SceneView::primitives
+  auto all() { return std::tie(u, v, primitive); }
+};
+
+// The vertex under each live path, written by arrive: what its position (in Rays) and primitive (in Hits) do not say.
+template <class S>
+struct Surfaces : Columns<Surfaces<S>> {
+  Column<S> normalX, normalY, normalZ;     // geometric normal, unit
+  Column<S> offset;                        // bound on the position's error along the normal
+  Column<S> shadingX, shadingY, shadingZ;  // shading normal; dropped where the scene has none
+  Column<float> uvU, uvV;                  // texture coordinates; dropped where the scene has no textures
+  auto all() { return std::tie(normalX, normalY, normalZ, offset, shadingX, shadingY, shadingZ, uvU, uvV); }
+};
+
+// What a path carries along. dVCM, dVC and dVM are the partial sums of the MIS recursion of Georgiev's technical report
+// "Implementing Vertex Connection and Merging" (2012); path tracing needs only dVCM.
+template <class S>
+struct PathStates : Columns<PathStates<S>> {
+  Column<S> throughputR, throughputG, throughputB;
+  Column<S> dVCM, dVC, dVM;  // dVC, dVM: dropped without connections
+  Column<S> etaScale;        // product of (eta_gen/eta_fix)^2, for roulette; dropped without refraction
+  Column<uint32_t> lane;
+  auto all() { return std::tie(throughputR, throughputG, throughputB, dVCM, dVC, dVM, etaScale, lane); }
+};
+
+// Segments whose visibility decides over a contribution. Pushed by nextEvent and the connecting stages in lane order,
+// at most one per path and stage call; drained by occlude. The direction spans the whole segment: it is blocked iff
+// something is hit at t in [0, 1).
+template <class S>
+struct ShadowRays : Columns<ShadowRays<S>> {
+  Column<float> originX, originY, originZ, directionX, directionY, directionZ;
+  Column<S> red, green, blue;  // contribution if visible, weight included
+  Column<uint32_t> target;     // lane whose radiance it joins
+  auto all() {
+    return std::tie(originX, originY, originZ, directionX, directionY, directionZ, red, green, blue, target);
+  }
+};
+
+// Radiance gathered by each lane of the wave in this iteration.
+template <class S>
+struct Radiance : Columns<Radiance<S>> {
+  Column<S> red, green, blue;
+  auto all() { return std::tie(red, green, blue); }
+};
+
+}  // namespace wavecrest

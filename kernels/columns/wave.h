@@ -1,0 +1,66 @@
+// A wave: the columns of a few thousand paths that one worker takes from generation to the film.
+#pragma once
+
+#include "kernels/columns/records.h"
+
+namespace wavecrest {
+
+// Which optional columns a scene and method need.
+struct ColumnNeeds {
+  bool shadingNormals = true;
+  bool textures = true;
+  bool refraction = true;
+  bool connections = true;
+};
+
+template <class S>
+struct Wave {
+  Rays<S> rays;
+  Hits hits;
+  Surfaces<S> surfaces;
+  PathStates<S> paths;
+  ShadowRays<S> shadowRays;
+  Radiance<S> radiance;
+  size_t firstPath = 0;  // index of lane 0 in the iteration's order of paths
+  size_t pathCount = 0;  // lanes in use when the wave began
+
+  Wave(size_t capacity, const ColumnNeeds& needs) {
+    if (!needs.shadingNormals) {
+      for (Column<S>* column : {&surfaces.shadingX, &surfaces.shadingY, &surfaces.shadingZ}) column->drop();
+    }
+    if (!needs.textures) {
+      surfaces.uvU.drop();
+      surfaces.uvV.drop();
+    }
+    if (!needs.refraction) paths.etaScale.drop();
+    if (!needs.connections) {
+      paths.dVC.drop();
+      paths.dVM.drop();
+    }
+    size_t bytes = 0;
+    forEachQueue([&](auto& queue) { bytes += queue.bytes(capacity); });
+    arena_ = Arena(bytes);
+    forEachQueue([&](auto& queue) { queue.bind(arena_, capacity); });
+  }
+
+  size_t bytesPerPath() {
+    size_t bytes = 0;
+    forEachQueue([&](auto& queue) { bytes += queue.bytesPerItem(); });
+    return bytes;
+  }
+
+ private:
+  template <class Function>
+  void forEachQueue(Function&& function) {
+    function(rays);
+    function(hits);
+    function(surfaces);
+    function(paths);
+    function(shadowRays);
+    function(radiance);
+  }
+
+  Arena arena_;
+};
+
+}  // namespace wavecrest

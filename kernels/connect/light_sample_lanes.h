@@ -1,0 +1,125 @@
+// Sampling a point on a light, or a direction to an infinite one, as seen from a receiver (METHODS 2.2).
+#pragma once
+
+#include "kernels/sampling/warp_lanes.h"
+#include "kernels/shade/light_lanes.h"
+
+WAVECREST_SIMD_BEGIN
+
+template <class Real>
+struct LightSample {
+  Vec3<Real> direction;  // unit, from the receiver
+  Vec3<Real> end;        // where the shadow segment ends, clear of the light's own surface
+  Vec3<Real> radiance;   // radiance; intensity for point lights, perpendicular irradiance for directional ones
+  Real pdf;              // per solid angle at the receiver, selection included; delta lights: formal, without the delta
+  Mask delta;            // no other strategy can find this light
+  Mask valid;
+};
+
+// Picks a light by the alias table: one number chooses the entry, another keeps or replaces it.
+template <class S>
+WAVECREST_INLINE UInt pickLight(const SceneView<S>& scene, Float entry, Float keep) {
+  if (scene.lightCount == 1) return UInt(0u);
+  const UInt index = min(toUInt(entry * Float(static_cast<float>(scene.lightCount))), UInt(scene.lightCount - 1));
+  const RecordLanes<AliasEntry> at(scene.lightTable, index);
+  return select(keep < at(scene.lightTable->keep), index, at(scene.lightTable->other));
+}
+
+namespace {
+
+// The part of a sphere light that the receiver sees: uniform in the cone it fills, uniform over its area from inside.
+template <class P>
+WAVECREST_INLINE void sampleSphere(const RecordLanes<LightRecord<typename P::Storage>>& at,
+                                   const LightRecord<typename P::Storage>& fields, Vec3<typename P::Real> receiver,
+                                   typename P::Real u, typename P::Real v, Vec3<typename P::Real>& point,
+                                   Vec3<typename P::Real>& normal, typename P::Real& coneHeight, Mask& outside) {
+  using Real = typename P::Real;
+  const Vec3<Real> center = at(fields.p0);
+  const Real radius = at(fields.radius);
+  const Real r2 = radius * radius;
+  const Vec3<Real> toCenter = center - receiver;
+  const Real d2 = length2(toCenter);
+  outside = d2 > r2 * Real(kInsideSphere);
+  coneHeight = sphereConeHeight(r2, d2);
+  const Real distance = sqrt(d2);
+  const Frame<Real> frame = Frame<Real>::fromNormal(toCenter * (Real(1) / distance));
+  const Vec3<Real> local = uniformCone(u, v, coneHeight);
+  const Vec3<Real> direction = frame.toWorld(local);
+  const Real cosine = local.z, sin2 = local.x * local.x + local.y * local.y;
+  const Real near = distance * cosine - sqrt(max(r2 - d2 * sin2, Real(0)));
+  const Vec3<Real> fromCone = normalize(mulAdd(direction, near, receiver) - center);
+  const Vec3<Real> fromArea = uniformSphere<Real>(u, v);
+  normal = select(outside, fromCone, fromArea);
+  point = mulAdd(normal, radius, center);
+}
+
+}  // namespace
+
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typename P::Storage>& scene, UInt light,
+                                                           Vec3<typename P::Real> receiver, const Uniform4& uniform) {
+  using Real = typename P::Real;
+  const RecordLanes<LightRecord<typename P::Storage>> at(scene.lights, light);
+  const auto& fields = *scene.lights;
+  const UInt kind = at(fields.kind);
+  Real u = to<Real>(uniform.c), v = to<Real>(uniform.d);
+  LightSample<Real> sample;
+  sample.radiance = at(fields.radiance);
+  const Real pick = at(fields.pick);
+
+  // Quads and triangles: uniform over the area. A triangle folds the square's far half back.
+  const Mask triangle = kind == lightKind(LightKind::triangle);
+  const Mask fold = triangle & (u + v > Real(1));
+  u = select(fold, Real(1) - u, u);
+  v = select(fold, Real(1) - v, v);
+  Vec3<Real> point = mulAdd(at(fields.e1), u, mulAdd(at(fields.e2), v, at(fields.p0)));
+  Vec3<Real> normal = at(fields.normal);
+  Real pdfA = at(fields.inverseArea);
+
+  Mask cone = noLanes();
+  Real coneHeight(1);
+  if constexpr (has(kFeatures, kCurvedShapes)) {
+    const Mask sphere = kind == lightKind(LightKind::sphere);
+    if (any(sphere)) {
+      Vec3<Real> spherePoint, sphereNormal;
+      sampleSphere<P>(at, fields, receiver, to<Real>(uniform.c), to<Real>(uniform.d), spherePoint, sphereNormal,
+                      coneHeight, cone);
+      cone = cone & sphere;
+      point = select(sphere, spherePoint, point);
+      normal = select(sphere, sphereNormal, normal);
+    }
+  }
+
+  const Vec3<Real> segment = point - receiver;
+  const Real dist2 = length2(segment);
+  const Real inverseDistance = reciprocalSqrt<P>(max(dist2, Real(1e-37f)));
+  sample.direction = segment * inverseDistance;
+  const Real n0 = -dot(sample.direction, normal);
+  sample.pdf = pdfA * dist2 * reciprocal<P>(max(n0, Real(1e-12f)));
+  sample.valid = n0 > Real(1e-6f);
+  sample.delta = noLanes();
+  sample.end = mulAdd(normal, at(fields.offset), point);
+  if constexpr (has(kFeatures, kCurvedShapes)) {
+    sample.pdf = select(cone, Real(kInvPi / 2) * reciprocal<P>(coneHeight), sample.pdf);
+  }
+
+  const Mask pointLike = kind == lightKind(LightKind::point);
+  if (any(pointLike)) {  // d^2 turns intensity into irradiance
+    sample.pdf = select(pointLike, dist2, sample.pdf);
+    sample.delta = pointLike;
+    sample.valid = sample.valid | pointLike;
+    sample.end = select(pointLike, point, sample.end);
+  }
+  const Mask constant = kind == lightKind(LightKind::constant);
+  if (any(constant)) {
+    const Vec3<Real> direction = uniformSphere<Real>(to<Real>(uniform.c), to<Real>(uniform.d));
+    sample.direction = select(constant, direction, sample.direction);
+    sample.pdf = select(constant, Real(kInvPi / 4), sample.pdf);
+    sample.end = select(constant, mulAdd(direction, Real(3 * scene.radius), receiver), sample.end);
+    sample.valid = sample.valid | constant;
+  }
+  sample.pdf = sample.pdf * pick;
+  return sample;
+}
+
+WAVECREST_SIMD_END

@@ -1,0 +1,49 @@
+// occlude, small scenes: adds the contribution of each shadow ray that nothing blocks.
+//
+// in: ShadowRays [n]. out: Radiance grows; ShadowRays empty.
+#include "kernels/extend/small_lanes.h"
+#include "kernels/stage_declarations.h"
+
+WAVECREST_SIMD_BEGIN
+
+namespace {
+
+WAVECREST_INLINE Mask blocked(const SmallSceneView& scene, Vec3<Float> origin, Vec3<Float> direction) {
+  Mask hit = noLanes();
+  const auto within = [](Float t) HWY_ATTR { return (t > Float(0)) & (t < Float(1)); };
+  uint32_t index = 0;
+  for (; index < scene.quadCount; ++index) {
+    const PlaneHit at = intersectPlane(scene.planes[index], origin, direction);
+    hit = hit | (insideQuad(at) & within(at.t));
+  }
+  for (const uint32_t end = index + scene.triangleCount; index < end; ++index) {
+    const PlaneHit at = intersectPlane(scene.planes[index], origin, direction);
+    hit = hit | (insideTriangle(at, scene.limits[index]) & within(at.t));
+  }
+  for (uint32_t i = 0; i < scene.sphereCount; ++i) {
+    hit = hit | within(intersectSphere(scene.spheres[i], origin, direction));
+  }
+  return hit;
+}
+
+}  // namespace
+
+template <class P, uint32_t kFeatures>
+void occludeSmall(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  const SmallSceneView scene = *context.scene->small;
+  auto& shadow = wave.shadowRays;
+  const size_t count = shadow.size;
+  context.counters->raysShadow += count;
+  for (size_t i = 0; i < count; i += kLanes) {
+    const Vec3<Float> origin = loadVec3(shadow.originX, shadow.originY, shadow.originZ, i);
+    const Vec3<Float> direction = loadVec3(shadow.directionX, shadow.directionY, shadow.directionZ, i);
+    const Mask visible = andNot(firstLanes(count - i), blocked(scene, origin, direction));
+    if (none(visible)) continue;
+    addRadiance(wave.radiance, load(shadow.target, i), visible, loadVec3(shadow.red, shadow.green, shadow.blue, i));
+  }
+  shadow.size = 0;
+}
+
+WAVECREST_SIMD_END
+
+WAVECREST_INSTANTIATE_STAGE(occludeSmall)

@@ -1,0 +1,39 @@
+// generate: starts one camera path per lane of the wave.
+//
+// in: the pixels of paths [firstPath, firstPath + pathCount). out: Rays, PathStates [pathCount], in lane order;
+// Radiance set to zero. The raster position is uniform in the pixel, so W_j cos / p = 1 and the throughput begins at 1.
+#include "kernels/generate/camera_lanes.h"
+#include "kernels/stage_declarations.h"
+
+WAVECREST_SIMD_BEGIN
+
+template <class P, uint32_t kFeatures>
+void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  using Real = typename P::Real;
+  const size_t count = wave.pathCount;
+  wave.rays.size = wave.paths.size = wave.radiance.size = 0;
+  wave.rays.claim(count);
+  wave.paths.claim(count);
+  wave.radiance.claim(count);
+
+  for (size_t i = 0; i < count; i += kLanes) {
+    const UInt lane = min(laneIndex(static_cast<uint32_t>(i)), UInt(static_cast<uint32_t>(count - 1)));
+    const PixelLanes pixel = pixelsOf(context, wave, lane);
+    const Uniform4 u = drawCamera(context, pixel.path, Block::scatter);
+    const auto ray = cameraRay<P, kFeatures>(context.scene->camera, pixel, u);
+
+    storeVec3(ray.origin, wave.rays.originX, wave.rays.originY, wave.rays.originZ, i);
+    storeVec3(ray.direction, wave.rays.directionX, wave.rays.directionY, wave.rays.directionZ, i);
+    const Vec3<Real> one{Real(1), Real(1), Real(1)}, zero{Real(0), Real(0), Real(0)};
+    storeVec3(one, wave.paths.throughputR, wave.paths.throughputG, wave.paths.throughputB, i);
+    storeVec3(zero, wave.radiance.red, wave.radiance.green, wave.radiance.blue, i);
+    // No strategy of path tracing connects to the lens, so the recursion starts from nothing.
+    store(Real(0), wave.paths.dVCM, i);
+    if constexpr (has(kFeatures, kSpecularBsdfs)) store(Real(1), wave.paths.etaScale, i);
+    store(laneIndex(static_cast<uint32_t>(i)), wave.paths.lane, i);
+  }
+}
+
+WAVECREST_SIMD_END
+
+WAVECREST_INSTANTIATE_STAGE(generateCameraPaths)

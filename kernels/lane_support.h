@@ -1,0 +1,159 @@
+// What stage kernels share: precision policies in lanes, loads of column triples, gathers of scene records, and the
+// instantiation of a stage for every precision and feature set.
+#pragma once
+
+#include "kernels/sampling/random_lanes.h"
+#include "kernels/simd/vec3.h"
+#include "kernels/stages.h"
+
+WAVECREST_SIMD_BEGIN
+
+struct FloatPrecision {
+  using Real = Float;
+  using Storage = float;
+  static constexpr bool kApproximate = false;
+};
+struct DoublePrecision {
+  using Real = Double;
+  using Storage = double;
+  static constexpr bool kApproximate = false;
+};
+struct FastPrecision {
+  using Real = Float;
+  using Storage = float;
+  static constexpr bool kApproximate = true;
+};
+
+template <class P>
+WAVECREST_INLINE typename P::Real reciprocal(typename P::Real a) {
+  if constexpr (P::kApproximate) {
+    return approximateReciprocal(a);
+  } else {
+    return typename P::Real(1) / a;
+  }
+}
+// 1 / sqrt(a)
+template <class P>
+WAVECREST_INLINE typename P::Real reciprocalSqrt(typename P::Real a) {
+  if constexpr (P::kApproximate) {
+    return approximateReciprocalSqrt(a);
+  } else {
+    return typename P::Real(1) / sqrt(a);
+  }
+}
+template <class P>
+WAVECREST_INLINE Vec3<typename P::Real> normalizeFast(Vec3<typename P::Real> a) {
+  return a * reciprocalSqrt<P>(length2(a));
+}
+
+// ---- columns --------------------------------------------------------------------------------------------------------
+
+template <class T>
+WAVECREST_INLINE auto load(const Column<T>& column, size_t i) {
+  return load(static_cast<const T*>(column) + i);
+}
+template <class V, class T>
+WAVECREST_INLINE void store(V a, const Column<T>& column, size_t i) {
+  store(a, static_cast<T*>(column) + i);
+}
+// Appends the lanes of a where m holds at index `out` of the column.
+template <class V, class T>
+WAVECREST_INLINE void append(V a, Mask m, const Column<T>& column, size_t out) {
+  storeUnaligned(compress(a, m), static_cast<T*>(column) + out);
+}
+
+template <class S>
+WAVECREST_INLINE auto loadVec3(const Column<S>& x, const Column<S>& y, const Column<S>& z, size_t i) {
+  return Vec3<decltype(load(x, i))>{load(x, i), load(y, i), load(z, i)};
+}
+template <class Real, class S>
+WAVECREST_INLINE void storeVec3(Vec3<Real> a, const Column<S>& x, const Column<S>& y, const Column<S>& z, size_t i) {
+  store(a.x, x, i);
+  store(a.y, y, i);
+  store(a.z, z, i);
+}
+template <class Real, class S>
+WAVECREST_INLINE void appendVec3(Vec3<Real> a, Mask m, const Column<S>& x, const Column<S>& y, const Column<S>& z,
+                                 size_t out) {
+  append(a.x, m, x, out);
+  append(a.y, m, y, out);
+  append(a.z, m, z, out);
+}
+
+// Adds a to the radiance of the given lanes, which are distinct within the block. One scalar loop for the few lanes
+// that have something to add: scattering would have to mask the others anyway.
+template <class Real, class S>
+WAVECREST_INLINE void addRadiance(Radiance<S>& radiance, UInt lane, Mask m, Vec3<Real> a) {
+  HWY_ALIGN S values[3][kLanes];
+  HWY_ALIGN uint32_t lanes[kLanes];
+  store(compress(a.x, m), values[0]);
+  store(compress(a.y, m), values[1]);
+  store(compress(a.z, m), values[2]);
+  store(compress(lane, m), lanes);
+  for (size_t i = 0, count = countTrue(m); i < count; ++i) {
+    radiance.red[lanes[i]] += values[0][i];
+    radiance.green[lanes[i]] += values[1][i];
+    radiance.blue[lanes[i]] += values[2][i];
+  }
+}
+
+// ---- scene records --------------------------------------------------------------------------------------------------
+
+// One record per lane: `RecordLanes prims(base, index); prims(base->p0[0])` gathers that field of each lane's record.
+template <class Record>
+class RecordLanes {
+ public:
+  WAVECREST_INLINE RecordLanes(const Record*, UInt index)
+      : wordIndex_(index * UInt(sizeof(Record) / sizeof(uint32_t))),
+        longIndex_(index * UInt(sizeof(Record) / sizeof(double))) {}
+  WAVECREST_INLINE Float operator()(const float& field) const { return gather(&field, wordIndex_); }
+  WAVECREST_INLINE UInt operator()(const uint32_t& field) const { return gather(&field, wordIndex_); }
+  WAVECREST_INLINE Double operator()(const double& field) const { return gather(&field, longIndex_); }
+  template <class S>
+  WAVECREST_INLINE auto operator()(const S (&field)[3]) const {
+    return Vec3<decltype((*this)(field[0]))>{(*this)(field[0]), (*this)(field[1]), (*this)(field[2])};
+  }
+
+ private:
+  UInt wordIndex_, longIndex_;
+};
+
+template <class Real>
+WAVECREST_INLINE Vec3<Real> broadcast(const double (&a)[3]) {
+  return {Real(a[0]), Real(a[1]), Real(a[2])};
+}
+
+WAVECREST_INLINE constexpr bool has(uint32_t features, uint32_t feature) { return (features & feature) != 0; }
+
+// Raster position of each lane's path, and its index in the full film, which is what random numbers depend on.
+struct PixelLanes {
+  UInt x, y, path;
+};
+template <class S>
+WAVECREST_INLINE PixelLanes pixelsOf(const StageContext<S>& context, const Wave<S>& wave, UInt lane) {
+  const UInt packed = gather(context.pixels + wave.firstPath, lane);
+  const UInt x = packed & UInt(0xffffu);
+  const UInt y = shiftRight<16>(packed);
+  return {x, y, y * UInt(context.scene->camera.width) + x};
+}
+
+// Four numbers of the camera path's vertex at the context's depth (METHODS: dimension table).
+enum class Block : uint32_t { scatter = 0, light = 1, partner = 2 };
+template <class S>
+WAVECREST_INLINE Uniform4 drawCamera(const StageContext<S>& context, UInt path, Block block) {
+  return uniform4(context.sampler, path, 4 * context.depth + static_cast<uint32_t>(block), Stream::camera);
+}
+
+WAVECREST_SIMD_END
+
+// Compiles STAGE<Precision, features> for every precision and specialisation.
+#define WAVECREST_INSTANTIATE_STAGE(STAGE)     \
+  WAVECREST_SIMD_BEGIN                         \
+  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 0) \
+  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 1) \
+  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 2) \
+  WAVECREST_SIMD_END
+#define WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, INDEX)                                                            \
+  template void STAGE<FloatPrecision, kSpecializationFeatures[INDEX]>(const StageContext<float>&, Wave<float>&);    \
+  template void STAGE<DoublePrecision, kSpecializationFeatures[INDEX]>(const StageContext<double>&, Wave<double>&); \
+  template void STAGE<FastPrecision, kSpecializationFeatures[INDEX]>(const StageContext<float>&, Wave<float>&);

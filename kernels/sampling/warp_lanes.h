@@ -1,0 +1,105 @@
+// Warps: from numbers in [0,1) to points on discs, spheres, cones and triangles, each with its density.
+//
+// Directions are in a local frame whose z axis is the normal or the axis. Densities are per solid angle (PdfW) or per
+// area of the unit shape (PdfA). The maps are continuous, so that well distributed numbers stay well distributed.
+#pragma once
+
+#include "kernels/simd/math.h"
+#include "kernels/simd/vec3.h"
+
+WAVECREST_SIMD_BEGIN
+
+inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kInvPi = 1 / kPi;
+
+template <class Real>
+struct Vec2 {
+  Real x, y;
+};
+
+// ---- unit disc ------------------------------------------------------------------------------------------------------
+// Shirley and Chiu, "A Low Distortion Map Between Disk and Square", 1997; the centre of the square goes to the centre.
+
+template <class Real>
+WAVECREST_INLINE Vec2<Real> concentricDisc(Real u, Real v) {
+  const Real a = mulSub(Real(2), u, Real(1));
+  const Real b = mulSub(Real(2), v, Real(1));
+  // The wedge |a| > |b| is measured from the x axis, the other from the y axis: the angle stays within pi/4.
+  const Mask alongX = abs(a) > abs(b);
+  const Real radius = select(alongX, a, b);
+  const Real ratio = zeroUnless(abs(radius) > Real(0), select(alongX, b, a) / radius);
+  const SinCos<Real> angle = sinCosFirstOctant(ratio * Real(kPi / 4));
+  const Real along = radius * angle.cos;
+  const Real across = radius * angle.sin;
+  return {select(alongX, along, across), select(alongX, across, along)};
+}
+template <class Real>
+WAVECREST_INLINE Real concentricDiscPdfA() {
+  return Real(kInvPi);
+}
+
+// ---- hemisphere, proportional to the cosine -------------------------------------------------------------------------
+
+// z = sqrt(1 - u) is formed from the number itself, not from x and y, and is never zero.
+template <class Real>
+WAVECREST_INLINE Vec3<Real> cosineHemisphere(Real u, Real v) {
+  const SinCos<Real> azimuth = sinCos2Pi(v);
+  const Real radius = sqrt(u);
+  return {radius * azimuth.cos, radius * azimuth.sin, sqrt(Real(1) - u)};
+}
+// Zero below the horizon.
+template <class Real>
+WAVECREST_INLINE Real cosineHemispherePdfW(Real cosTheta) {
+  return max(cosTheta, Real(0)) * Real(kInvPi);
+}
+
+// ---- sphere ---------------------------------------------------------------------------------------------------------
+
+// sin theta = 2 sqrt(u - u^2) keeps its digits at the poles.
+template <class Real>
+WAVECREST_INLINE Vec3<Real> uniformSphere(Real u, Real v) {
+  const SinCos<Real> azimuth = sinCos2Pi(v);
+  const Real sinTheta = Real(2) * sqrt(u * (Real(1) - u));
+  return {sinTheta * azimuth.cos, sinTheta * azimuth.sin, negMulAdd(Real(2), u, Real(1))};
+}
+template <class Real>
+WAVECREST_INLINE Real uniformSpherePdfW() {
+  return Real(kInvPi / 4);
+}
+
+// ---- cone around the z axis -----------------------------------------------------------------------------------------
+
+// 1 - cos of a cone's half angle, from the squared sine: without the cancellation that makes it 0 for far light
+// sources.
+template <class Real>
+WAVECREST_INLINE Real oneMinusCosFromSin2(Real sin2) {
+  return sin2 / (Real(1) + sqrt(max(Real(1) - sin2, Real(0))));
+}
+template <class Real>
+WAVECREST_INLINE Vec3<Real> uniformCone(Real u, Real v, Real oneMinusCosMax) {
+  const SinCos<Real> azimuth = sinCos2Pi(v);
+  const Real oneMinusCos = u * oneMinusCosMax;
+  const Real sinTheta = sqrt(oneMinusCos * (Real(2) - oneMinusCos));
+  return {sinTheta * azimuth.cos, sinTheta * azimuth.sin, Real(1) - oneMinusCos};
+}
+template <class Real>
+WAVECREST_INLINE Real uniformConePdfW(Real oneMinusCosMax) {
+  return Real(kInvPi / 2) / oneMinusCosMax;
+}
+
+// ---- triangle -------------------------------------------------------------------------------------------------------
+
+// Barycentrics of the second and third corner; the first has the rest. The unit square is folded along its diagonal's
+// halves (Heitz, "A Low-Distortion Map Between Triangle and Square", 2019): no square root. Density: 1 / area.
+template <class Real>
+WAVECREST_INLINE Vec2<Real> uniformTriangle(Real u, Real v) {
+  const Mask below = u > v;
+  const Real half = Real(0.5) * min(u, v);
+  return {select(below, u - half, half), select(below, half, v - half)};
+}
+template <class Real>
+WAVECREST_INLINE Real uniformTrianglePdfA(Real area) {
+  return Real(1) / area;
+}
+
+WAVECREST_SIMD_END

@@ -1,0 +1,29 @@
+// The instruction sets that kernels are compiled for, and which of them this machine can run.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace wavecrest {
+
+// In order of preference, worst first. scalar is the width-1 twin: plain C++, the oracle of the kernel tests.
+enum class Isa { scalar, sse4, avx2, avx512 };
+
+constexpr std::array<Isa, 4> kAllIsas{Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512};
+
+// "scalar", "sse4", "avx2" or "avx512": the spelling of --isa.
+std::string_view toString(Isa isa);
+
+// The inverse of toString; nothing for any other word.
+std::optional<Isa> parseIsa(std::string_view word);
+
+// The instruction sets that are both compiled into this binary and supported by this CPU and operating system, worst
+// first. Never empty in a correctly built binary.
+const std::vector<Isa>& availableIsas();
+
+// The last of availableIsas().
+Isa bestIsa();
+
+}  // namespace wavecrest

@@ -1,0 +1,222 @@
+// OpenEXR, single part, scan lines or tiles. Files are decoded from and encoded to memory: reading gets one place that
+// checks lengths, writing goes through the same atomic rename as every other format.
+#include <ImathBox.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <mutex>
+#include <thread>
+
+#include "metrics/image/atomic_file.h"
+#include "metrics/image/codecs.h"
+#include "metrics/image/image_io.h"
+
+namespace wavecrest {
+namespace {
+
+// ---- streams over memory --------------------------------------------------------------------------------------------
+
+class MemoryInput : public Imf::IStream {
+ public:
+  MemoryInput(const std::string& path, codecs::Bytes bytes) : Imf::IStream(path.c_str()), bytes_(bytes) {}
+  bool read(char out[], int count) override {
+    const auto wanted = static_cast<uint64_t>(count);
+    if (count < 0 || position_ > bytes_.size() || wanted > bytes_.size() - position_)
+      throw std::runtime_error("the file ends early");
+    std::memcpy(out, bytes_.data() + position_, wanted);
+    position_ += wanted;
+    return position_ < bytes_.size();
+  }
+  uint64_t tellg() override { return position_; }
+  void seekg(uint64_t position) override { position_ = position; }
+
+ private:
+  codecs::Bytes bytes_;
+  uint64_t position_ = 0;
+};
+
+class MemoryOutput : public Imf::OStream {
+ public:
+  explicit MemoryOutput(const std::string& path) : Imf::OStream(path.c_str()) {}
+  void write(const char data[], int count) override {
+    const auto size = static_cast<uint64_t>(count);
+    if (position_ + size > bytes.size()) bytes.resize(position_ + size);
+    std::memcpy(bytes.data() + position_, data, size);
+    position_ += size;
+  }
+  uint64_t tellp() override { return position_; }
+  void seekp(uint64_t position) override { position_ = position; }
+
+  std::vector<unsigned char> bytes;
+
+ private:
+  uint64_t position_ = 0;
+};
+
+// Compression dominates the time of a write; blocks are compressed by OpenEXR's own threads. The bytes do not depend
+// on their number.
+int compressionThreads() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    if (Imf::globalThreadCount() == 0) Imf::setGlobalThreadCount(threads);
+  });
+  return Imf::globalThreadCount();
+}
+
+// A header may claim any size; beyond these OpenEXR refuses before it allocates.
+void setLimitsOnce() {
+  constexpr int kLongestSide = 1 << 20, kLongestTileSide = 1 << 13;
+  static std::once_flag once;
+  std::call_once(once, [] {
+    Imf::Header::setMaxImageSize(kLongestSide, kLongestSide);
+    Imf::Header::setMaxTileSize(kLongestTileSide, kLongestTileSide);
+  });
+}
+
+// ---- reading --------------------------------------------------------------------------------------------------------
+
+// The names of the three channels of a layer: R G B, or one Y for all three. Empty: the layer is not there.
+std::vector<std::string> channelsOfLayer(const Imf::ChannelList& channels, const std::string& layer) {
+  const std::string prefix = layer.empty() ? "" : layer + ".";
+  for (const auto& names : {std::vector<std::string>{"R", "G", "B"}, std::vector<std::string>{"Y"}}) {
+    std::vector<std::string> found;
+    for (const std::string& name : names)
+      if (channels.findChannel((prefix + name).c_str())) found.push_back(prefix + name);
+    if (found.size() == names.size()) return found;
+  }
+  return {};
+}
+
+std::string listChannels(const Imf::ChannelList& channels) {
+  std::string list;
+  int count = 0;
+  for (auto it = channels.begin(); it != channels.end(); ++it) {
+    if (++count > 16) return list + " ...";
+    list += (list.empty() ? "" : " ") + std::string(it.name());
+  }
+  return list.empty() ? "none" : list;
+}
+
+Image readLayer(const std::string& path, Imf::InputFile& input, uint64_t fileBytes, const std::string& layer) {
+  const Imf::ChannelList& channels = input.header().channels();
+  const std::vector<std::string> names = channelsOfLayer(channels, layer);
+  if (names.empty()) {
+    const std::string wanted = layer.empty() ? "R G B or Y" : "a layer '" + layer + "'";
+    throw ImageError(path, "EXR channels are: " + listChannels(channels), "expected " + wanted);
+  }
+  for (const std::string& name : names) {
+    const Imf::Channel& channel = channels[name.c_str()];
+    if (channel.xSampling != 1 || channel.ySampling != 1)
+      throw ImageError(path, "EXR channel " + name + " is subsampled", "expected a sample for every pixel");
+  }
+
+  const Imath::Box2i window = input.header().dataWindow();
+  const auto width = static_cast<uint64_t>(int64_t{window.max.x} - window.min.x + 1);
+  const auto height = static_cast<uint64_t>(int64_t{window.max.y} - window.min.y + 1);
+  // ZIP shrinks at most about 1000 times, the run-length and wavelet coders less than 4096.
+  codecs::checkSize(path, width, height, 0, 0);
+  codecs::checkSize(path, width, height, width * height * 2 * names.size() / 4096, fileBytes);
+
+  Image image{static_cast<uint32_t>(width), static_cast<uint32_t>(height), 3, {}};
+  image.pixels.resize(width * height * 3);
+  Imf::FrameBuffer frame;
+  for (size_t c = 0; c < names.size(); ++c) {
+    // OpenEXR addresses pixels by their absolute position in the data window.
+    char* base = reinterpret_cast<char*>(image.pixels.data() + c);
+    const size_t xStride = 3 * sizeof(float), yStride = xStride * width;
+    frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, base, window.min, static_cast<int64_t>(width),
+                                            static_cast<int64_t>(height), xStride, yStride));
+  }
+  input.setFrameBuffer(frame);
+  input.readPixels(window.min.y, window.max.y);
+  if (names.size() == 1) {
+    for (size_t i = 0; i < image.pixels.size(); i += 3) image.pixels[i + 1] = image.pixels[i + 2] = image.pixels[i];
+  }
+  return image;
+}
+
+Metadata stringAttributes(const Imf::Header& header) {
+  Metadata metadata;
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute())) {
+      metadata[it.name()] = text->value();
+    }
+  }
+  return metadata;
+}
+
+ImageFile readLayerAndMetadata(const std::string& path, codecs::Bytes bytes, const std::string& layer) {
+  try {
+    setLimitsOnce();
+    MemoryInput stream(path, bytes);
+    Imf::InputFile input(stream, 0);
+    ImageFile file;
+    file.image = readLayer(path, input, bytes.size(), layer);
+    file.metadata = stringAttributes(input.header());
+    return file;
+  } catch (const ImageError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw ImageError(path, std::string("OpenEXR error: ") + error.what(), "expected an intact EXR file");
+  }
+}
+
+// ---- writing --------------------------------------------------------------------------------------------------------
+
+void addChannels(Imf::Header& header, Imf::FrameBuffer& frame, const Image& image, const std::string& prefix) {
+  const std::vector<std::string> names =
+      image.channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+  for (size_t c = 0; c < names.size(); ++c) {
+    // FrameBuffer has no const form; writing only reads through it.
+    char* base = reinterpret_cast<char*>(const_cast<float*>(image.pixels.data() + c));
+    const size_t xStride = image.channels * sizeof(float);
+    header.channels().insert(prefix + names[c], Imf::Channel(Imf::FLOAT));
+    frame.insert(prefix + names[c], Imf::Slice(Imf::FLOAT, base, xStride, xStride * image.width));
+  }
+}
+
+}  // namespace
+
+ImageFile codecs::decodeExr(const std::string& path, Bytes bytes) { return readLayerAndMetadata(path, bytes, ""); }
+
+Image codecs::decodeExrLayer(const std::string& path, Bytes bytes, const std::string& layer) {
+  return readLayerAndMetadata(path, bytes, layer).image;
+}
+
+void writeExr(const std::string& path, const Image& image, const Metadata& metadata, std::span<const ExrLayer> layers) {
+  try {
+    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const auto& [key, value] : metadata) header.insert(key, Imf::StringAttribute(value));
+    Imf::FrameBuffer frame;
+    addChannels(header, frame, image, "");
+    for (const ExrLayer& layer : layers) {
+      if (layer.image.width != image.width || layer.image.height != image.height)
+        throw ImageError(path, "EXR layer '" + layer.name + "' differs in size", "expected the main image's size");
+      addChannels(header, frame, layer.image, layer.name + ".");
+    }
+    MemoryOutput stream(path);
+    {
+      Imf::OutputFile output(stream, header, compressionThreads());
+      output.setFrameBuffer(frame);
+      output.writePixels(static_cast<int>(image.height));
+    }
+    writeFileAtomically(path, stream.bytes);
+  } catch (const ImageError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw ImageError(path, std::string("OpenEXR error: ") + error.what(), "expected an image that can be written");
+  }
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,50 @@
+// Images as the whole project exchanges them: what readers return, what writers take, what metrics compare.
+//
+// Image holds floats as read or rendered; Image8 holds the 8-bit gamma-corrected codes that the perceptual metrics are
+// defined on. Both are row-major from the top row, channels interleaved. Nothing here knows of rendering.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace wavecrest {
+
+struct Image {
+  uint32_t width = 0, height = 0;
+  uint32_t channels = 3;      // 1 or 3
+  std::vector<float> pixels;  // width * height * channels
+
+  size_t pixelCount() const { return size_t{width} * height; }
+};
+
+// RGB codes 0..255.
+struct Image8 {
+  uint32_t width = 0, height = 0;
+  std::vector<uint8_t> pixels;  // width * height * 3
+
+  size_t pixelCount() const { return size_t{width} * height; }
+};
+
+// What the numbers of a file mean: light (EXR, PFM, HDR), or codes of an sRGB curve scaled to 0..1 (PNG).
+enum class Encoding { linear, srgb8, srgb16 };
+
+// A file as read: always three channels, grey replicated, alpha dropped.
+struct ImageFile {
+  Image image;
+  Encoding encoding = Encoding::linear;
+  std::map<std::string, std::string> metadata;  // string attributes of an EXR header
+};
+
+// An image file that cannot be read or written. The text is complete: "FILE: what is wrong; what was expected".
+class ImageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+  ImageError(const std::string& path, const std::string& wrong, const std::string& expected)
+      : std::runtime_error(path + ": " + wrong + "; " + expected) {}
+};
+
+}  // namespace wavecrest

@@ -1,0 +1,103 @@
+#include "metrics/image/image_io.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+#include "metrics/image/atomic_file.h"
+#include "metrics/image/codecs.h"
+#include "metrics/image/srgb.h"
+
+namespace wavecrest {
+namespace {
+
+struct Format {
+  std::string_view extension;
+  ImageFile (*decode)(const std::string& path, codecs::Bytes bytes);
+};
+
+// The list of readable formats.
+constexpr std::array kFormats{
+    Format{".exr", codecs::decodeExr},
+    Format{".pfm", codecs::decodePfm},
+    Format{".hdr", codecs::decodeHdr},
+    Format{".png", codecs::decodePng},
+};
+
+std::string extensionOf(const std::string& path) {
+  const size_t dot = path.find_last_of("./");
+  if (dot == std::string::npos || path[dot] == '/') return {};
+  std::string extension = path.substr(dot);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+[[noreturn]] void failFormat(const std::string& path, const std::string& extension, const std::string& expected) {
+  const std::string wrong = extension.empty() ? "has no file extension" : "unknown image format '" + extension + "'";
+  throw ImageError(path, wrong, expected);
+}
+
+}  // namespace
+
+ImageFile readImage(const std::string& path) {
+  const std::string extension = extensionOf(path);
+  for (const Format& format : kFormats)
+    if (format.extension == extension) return format.decode(path, readFileBytes(path));
+  failFormat(path, extension, "expected .exr, .pfm, .hdr or .png");
+}
+
+Image readExrLayer(const std::string& path, const std::string& layer) {
+  return codecs::decodeExrLayer(path, readFileBytes(path), layer);
+}
+
+void writePng(const std::string& path, const Image& linear) { writePng(path, encodeSrgb8(linear)); }
+
+void writeImage(const std::string& path, const Image& linear, const Metadata& metadata) {
+  const std::string extension = extensionOf(path);
+  if (extension == ".exr") return writeExr(path, linear, metadata);
+  if (extension == ".pfm") return writePfm(path, linear);
+  if (extension == ".png") return writePng(path, linear);
+  failFormat(path, extension, "expected .exr, .pfm or .png for writing");
+}
+
+namespace codecs {
+
+void checkSize(const std::string& path, uint64_t width, uint64_t height, uint64_t leastBytes, uint64_t fileBytes) {
+  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  if (width == 0 || height == 0) throw ImageError(path, "empty image (" + size + ")", "expected at least one pixel");
+  if (height > kMaxPixels / width) {
+    throw ImageError(path, "image of " + size + " pixels",
+                     "expected at most " + std::to_string(kMaxPixels) + " pixels");
+  }
+  if (leastBytes > fileBytes) {
+    throw ImageError(path, "file of " + std::to_string(fileBytes) + " bytes ends before its " + size + " pixels",
+                     "expected at least " + std::to_string(leastBytes) + " bytes");
+  }
+}
+
+std::string HeaderReader::line() {
+  constexpr size_t kLongest = 4096;
+  std::string text;
+  while (!atEnd() && text.size() < kLongest) {
+    const char c = static_cast<char>(bytes_[position_++]);
+    if (c == '\n') break;
+    text.push_back(c);
+  }
+  return text;
+}
+
+std::string HeaderReader::token() {
+  std::string text;
+  while (!atEnd() && std::isspace(bytes_[position_])) ++position_;
+  while (!atEnd() && text.size() < 64) {
+    const unsigned char c = bytes_[position_++];
+    if (std::isspace(c)) break;
+    text.push_back(static_cast<char>(c));
+  }
+  return text;
+}
+
+}  // namespace codecs
+}  // namespace wavecrest

@@ -1,0 +1,45 @@
+// Reading and writing image files. The format follows from the file's name: .exr .pfm .hdr .png.
+//
+// Readers take any well-formed file of these formats and refuse everything else with one ImageError; they never trust a
+// size in a header before the file's length makes it plausible. Writers never leave a half-written file behind: they
+// write a temporary name beside the target, flush it to the device and rename it.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "metrics/image/image.h"
+
+namespace wavecrest {
+
+using Metadata = std::map<std::string, std::string>;
+
+// Three channels, top row first. Throws ImageError.
+ImageFile readImage(const std::string& path);
+
+// A named group of channels beside the main image of an EXR, e.g. "variance" -> variance.R, variance.G, variance.B.
+struct ExrLayer {
+  std::string name;
+  Image image;  // same size as the main image
+};
+
+// Single part, 32-bit float, ZIP-compressed scan lines. Channels R G B, or Y for one channel.
+void writeExr(const std::string& path, const Image& image, const Metadata& metadata = {},
+              std::span<const ExrLayer> layers = {});
+
+// One named layer of an EXR (an empty name: the main image). Throws ImageError when it is absent.
+Image readExrLayer(const std::string& path, const std::string& layer);
+
+// Little-endian floats as they are.
+void writePfm(const std::string& path, const Image& image);
+
+// 8-bit sRGB. The second form clamps, applies the sRGB curve and rounds.
+void writePng(const std::string& path, const Image8& image);
+void writePng(const std::string& path, const Image& linear);
+
+// By extension: .exr, .pfm or .png (metadata is kept by EXR only).
+void writeImage(const std::string& path, const Image& linear, const Metadata& metadata = {});
+
+}  // namespace wavecrest

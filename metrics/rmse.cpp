@@ -1,0 +1,96 @@
+#include "metrics/rmse.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "metrics/image/srgb.h"
+
+namespace wavecrest {
+namespace {
+
+struct RowSums {
+  std::array<double, 3> squares{};
+  uint64_t excluded = 0;
+};
+
+// Sums rows in parallel and adds the rows in order. value(image, i) gives sample i of an image as a double.
+template <class AnyImage, class Value>
+RmseResult rmseOf(const AnyImage& reference, const AnyImage& test, Value value) {
+  std::vector<RowSums> rows(reference.height);
+  tbb::parallel_for(size_t{0}, rows.size(), [&](size_t y) {
+    const size_t begin = y * reference.width * 3, end = begin + size_t{reference.width} * 3;
+    for (size_t i = begin; i < end; i += 3) {
+      std::array<double, 3> squares{};
+      for (size_t c = 0; c < 3; ++c) {
+        const double difference = value(test, i + c) - value(reference, i + c);
+        squares[c] = difference * difference;
+      }
+      // inf - inf is NaN, so one test of the sum finds every non-finite sample; a square that overflows is an error
+      // too.
+      if (!std::isfinite(squares[0] + squares[1] + squares[2])) {
+        ++rows[y].excluded;
+      } else {
+        for (size_t c = 0; c < 3; ++c) rows[y].squares[c] += squares[c];
+      }
+    }
+  });
+  RowSums sum;
+  for (const RowSums& row : rows) {
+    for (size_t c = 0; c < 3; ++c) sum.squares[c] += row.squares[c];
+    sum.excluded += row.excluded;
+  }
+  RmseResult result;
+  result.excludedPixels = sum.excluded;
+  const auto count = static_cast<double>(reference.pixelCount() - sum.excluded);
+  result.rmse = std::sqrt((sum.squares[0] + sum.squares[1] + sum.squares[2]) / (3 * count));
+  for (size_t c = 0; c < 3; ++c) result.channels[c] = std::sqrt(sum.squares[c] / count);
+  return result;
+}
+
+}  // namespace
+
+RmseResult rmse(const Image& reference, const Image& test) {
+  return rmseOf(reference, test, [](const Image& image, size_t i) { return double{image.pixels[i]}; });
+}
+
+RmseResult rmse(const Image8& reference, const Image8& test, CodeScale scale) {
+  if (scale == CodeScale::gammaCorrected) {
+    return rmseOf(reference, test, [](const Image8& image, size_t i) { return image.pixels[i] / 255.0; });
+  }
+  const auto& decode = srgbDecodeTable();
+  return rmseOf(reference, test, [&](const Image8& image, size_t i) { return decode[image.pixels[i]]; });
+}
+
+RelmseResult relmse(const Image& reference, const Image& test, const RelmseSettings& settings) {
+  std::vector<double> errors(reference.pixelCount());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, errors.size()), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+      double sum = 0;
+      for (size_t i = pixel * 3; i < pixel * 3 + 3; ++i) {
+        const double r = reference.pixels[i], difference = test.pixels[i] - r;
+        sum += difference * difference / (r * r + settings.epsilon);
+      }
+      errors[pixel] = sum / 3;
+    }
+  });
+  RelmseResult result;
+  const auto finiteEnd = std::remove_if(errors.begin(), errors.end(), [](double e) { return !std::isfinite(e); });
+  result.excludedPixels = static_cast<uint64_t>(errors.end() - finiteEnd);
+  errors.erase(finiteEnd, errors.end());
+
+  // Both means from one order: the part below the cut, then the worst pixels.
+  const auto worst = static_cast<size_t>(settings.trimmedFraction * static_cast<double>(errors.size()));
+  const auto cut = errors.end() - static_cast<std::ptrdiff_t>(worst);
+  if (worst > 0) std::nth_element(errors.begin(), cut, errors.end());
+  const double kept = std::accumulate(errors.begin(), cut, 0.0);
+  result.trimmed = kept / static_cast<double>(errors.size() - worst);
+  result.relmse = std::accumulate(cut, errors.end(), kept) / static_cast<double>(errors.size());
+  return result;
+}
+
+}  // namespace wavecrest

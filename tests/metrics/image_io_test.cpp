@@ -1,0 +1,181 @@
+#include "metrics/image/image_io.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "metrics/image/srgb.h"
+#include "tests/metrics/golden.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImageFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) / ("wavecrest_images_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  void writeText(const std::string& name, const std::string& bytes) const {
+    std::ofstream(path(name), std::ios::binary) << bytes;
+  }
+  // What reading the file complains about; empty when it succeeds.
+  std::string complaint(const std::string& name) const {
+    try {
+      readImage(path(name));
+      return {};
+    } catch (const ImageError& error) {
+      return error.what();
+    }
+  }
+
+  fs::path folder_;
+};
+
+Image testImage(uint32_t channels = 3) {
+  Image image{5, 3, channels, {}};
+  for (uint32_t i = 0; i < 15 * channels; ++i) image.pixels.push_back(static_cast<float>(i) * 1.25f - 3);
+  image.pixels[2] = 1e30f;
+  image.pixels[3] = 1e-30f;
+  return image;
+}
+
+TEST_F(ImageFiles, ExrKeepsEveryBitAndTheMetadata) {
+  const Image image = testImage();
+  writeExr(path("a.exr"), image, {{"scene", "cornell"}, {"method", "vcm"}});
+  const ImageFile file = readImage(path("a.exr"));
+  EXPECT_EQ(file.image.width, 5u);
+  EXPECT_EQ(file.image.height, 3u);
+  EXPECT_EQ(file.image.pixels, image.pixels);
+  EXPECT_EQ(file.encoding, Encoding::linear);
+  EXPECT_EQ(file.metadata.at("scene"), "cornell");
+  EXPECT_EQ(file.metadata.at("method"), "vcm");
+}
+
+TEST_F(ImageFiles, ExrLayersAreReadByName) {
+  const Image image = testImage();
+  Image variance = image;
+  for (float& v : variance.pixels) v *= 2;
+  const std::vector<ExrLayer> layers{{"variance", variance}};
+  writeExr(path("a.exr"), image, {}, layers);
+  EXPECT_EQ(readExrLayer(path("a.exr"), "variance").pixels, variance.pixels);
+  EXPECT_EQ(readExrLayer(path("a.exr"), "").pixels, image.pixels);
+  EXPECT_THROW(readExrLayer(path("a.exr"), "depth"), ImageError);
+}
+
+TEST_F(ImageFiles, PfmKeepsEveryBit) {
+  const Image image = testImage();
+  writePfm(path("a.pfm"), image);
+  EXPECT_EQ(readImage(path("a.pfm")).image.pixels, image.pixels);
+}
+
+TEST_F(ImageFiles, GreyImagesComeBackWithThreeEqualChannels) {
+  const Image grey = testImage(1);
+  for (const char* name : {"a.exr", "a.pfm"}) {
+    writeImage(path(name), grey);
+    const Image back = readImage(path(name)).image;
+    ASSERT_EQ(back.pixels.size(), 45u);
+    for (size_t i = 0; i < 45; ++i) EXPECT_EQ(back.pixels[i], grey.pixels[i / 3]);
+  }
+}
+
+TEST_F(ImageFiles, BigEndianPfmIsRead) {
+  writeText("a.pfm", std::string("PF\n1 1\n1.0\n") + std::string("\x3f\x80\0\0\x40\0\0\0\xc0\x40\0\0", 12));
+  EXPECT_EQ(readImage(path("a.pfm")).image.pixels, (std::vector<float>{1, 2, -3}));
+}
+
+TEST_F(ImageFiles, PngKeepsEveryCode) {
+  const Image8 image = test::patternImage(31, 9);
+  writePng(path("a.png"), image);
+  const ImageFile file = readImage(path("a.png"));
+  EXPECT_EQ(file.encoding, Encoding::srgb8);
+  EXPECT_EQ(test::codesOf(file.image).pixels, image.pixels);
+}
+
+TEST_F(ImageFiles, RadianceRunLengthAndPlainPixelsAreRead) {
+  const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+  // 9 wide, new encoding: red is a run of 128, green counts up, blue a run of 0, exponent a run of 129 (factor 2^-7).
+  std::string line = std::string("\2\2\0\11", 4) + "\x89\x80" + std::string("\11\0\1\2\3\4\5\6\7\10", 10) +
+                     std::string("\x89\0", 2) + "\x89\x81";
+  writeText("a.hdr", head + "-Y 1 +X 9\n" + line);
+  const Image image = readImage(path("a.hdr")).image;
+  for (size_t x = 0; x < 9; ++x) {
+    EXPECT_EQ(image.pixels[3 * x], 1.0f);
+    EXPECT_EQ(image.pixels[3 * x + 1], static_cast<float>(x) / 128);
+    EXPECT_EQ(image.pixels[3 * x + 2], 0.0f);
+  }
+  // 3 wide, plain, with an old-style run: pixel, (1 1 1 2).
+  writeText("b.hdr", head + "EXPOSURE=2\n" + "-Y 1 +X 3\n");
+  EXPECT_NE(complaint("b.hdr"), "") << "the blank line must end the header";
+  writeText("b.hdr", "#?RGBE\nEXPOSURE=2\n\n-Y 1 +X 3\n" + std::string("\x80\x40\0\x82\1\1\1\2", 8));
+  EXPECT_EQ(readImage(path("b.hdr")).image.pixels, (std::vector<float>{1, .5, 0, 1, .5, 0, 1, .5, 0}));
+}
+
+TEST_F(ImageFiles, BadFilesAreNamedWithWhatIsWrong) {
+  writeText("empty.exr", "");
+  writeText("text.png", "hello");
+  writeText("short.pfm", "PF\n100 100\n-1\nabc");
+  writeText("zero.pfm", "PF\n0 5\n-1\n");
+  writeText("huge.pfm", "PF\n4000000000 4000000000\n-1\n");
+  writeText("size.pfm", "PF\n-3 5\n-1\n");
+  writeText("scale.pfm", "PF\n1 1\n0\nabcdefghijkl");
+  writeText("huge.hdr", "#?RADIANCE\n\n-Y 100000 +X 1000\n");
+  writeText("a.tif", "x");
+  const std::pair<const char*, const char*> expected[] = {
+      {"empty.exr", "OpenEXR"},   {"text.png", "PNG"},     {"short.pfm", "ends before"}, {"zero.pfm", "empty image"},
+      {"huge.pfm", "at most"},    {"size.pfm", "'-3'"},    {"scale.pfm", "'0'"},         {"huge.hdr", "ends before"},
+      {"a.tif", "unknown image"}, {"none.exr", "No such"},
+  };
+  for (const auto& [name, text] : expected) {
+    const std::string message = complaint(name);
+    EXPECT_NE(message.find(text), std::string::npos) << name << " gave: " << message;
+    EXPECT_EQ(message.find(path(name) + ": "), 0u) << "does not start with the file name: " << message;
+    EXPECT_NE(message.find("; expected"), std::string::npos) << "does not say what was expected: " << message;
+  }
+}
+
+TEST_F(ImageFiles, WritingLeavesNoTemporaryFilesAndReportsUnwritablePlaces) {
+  writeImage(path("a.exr"), testImage());
+  writeImage(path("a.exr"), testImage());
+  writeImage(path("a.png"), testImage());
+  size_t files = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder_)) ++files;
+  EXPECT_EQ(files, 2u);
+  EXPECT_THROW(writeImage(path("missing/a.exr"), testImage()), ImageError);
+  EXPECT_THROW(writeImage(path("a.tiff"), testImage()), ImageError);
+}
+
+TEST(Srgb, CodeIsTheRoundedCurveAtEveryThreshold) {
+  const auto exact = [](float v) {
+    return static_cast<int>(std::lround(255 * srgbEncode(std::clamp(double{v}, 0.0, 1.0))));
+  };
+  for (int c = 1; c < 256; ++c) {
+    float v = static_cast<float>(srgbDecode((c - 0.5) / 255));
+    for (int step = 0; step < 8; ++step) v = std::nextafter(v, 0.0f);
+    for (int step = 0; step < 16; ++step, v = std::nextafter(v, 2.0f)) {
+      // The curve's two directions meet their published constants only to 1e-7: allow either code at the threshold.
+      if (std::abs(255 * srgbEncode(double{v}) - c + 0.5) < 1e-4) continue;
+      EXPECT_EQ(srgbCode(v), exact(v)) << v;
+    }
+  }
+  for (int i = -10; i < 20000; ++i) {
+    const float v = static_cast<float>(i) / 17321;
+    EXPECT_EQ(srgbCode(v), exact(v)) << v;
+  }
+  EXPECT_EQ(srgbCode(std::nanf("")), 0);
+  EXPECT_EQ(srgbCode(INFINITY), 255);
+}
+
+TEST(Srgb, ExposureScalesLinearLight) {
+  const Image image{1, 1, 3, {0.1f, 0.2f, 0.4f}};
+  EXPECT_EQ(encodeSrgb8(image, 1).pixels, (std::vector<uint8_t>{srgbCode(0.2f), srgbCode(0.4f), srgbCode(0.8f)}));
+}
+
+}  // namespace
+}  // namespace wavecrest
