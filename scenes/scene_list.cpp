@@ -20,8 +20,11 @@ constexpr SceneEntry kScenes[] = {
     {"lafortune-room", "a living room lit by lamps in opaque shades; nearly all light is indirect"},
     {"pool-interior", "a tiled pool under water, lit by sunlight through the waves"},
     {"veach-door", "three teapots in a room lit through a door ajar"},
-    {"mitsuba-cornell-box", "benchmark: Mitsuba 3's built-in Cornell box, 256 x 256"},
-    {"dragon-diffuse", "benchmark: the full dragon, 871,414 triangles, diffuse under a constant sky"},
+};
+
+constexpr SceneEntry kBenchmarkScenes[] = {
+    {"mitsuba-cornell-box", "Mitsuba 3's built-in Cornell box, 256 x 256"},
+    {"dragon-diffuse", "the full dragon, 871,414 triangles, diffuse under a constant sky"},
 };
 
 // Prepared dragons are called dragon_full.ply, dragon_res2.ply, ...; the scans they come from dragon_vrip*.ply.gz.
@@ -43,6 +46,7 @@ bool holdsScenes(const fs::path& folder) {
 }  // namespace
 
 std::span<const SceneEntry> builtInScenes() { return kScenes; }
+std::span<const SceneEntry> benchmarkScenes() { return kBenchmarkScenes; }
 
 fs::path sceneFolder() {
   if (const char* folder = std::getenv("WAVECREST_SCENES"); folder && *folder) {
@@ -61,8 +65,10 @@ fs::path sceneFolder() {
 }
 
 fs::path findScene(const std::string& nameOrPath) {
-  for (const SceneEntry& scene : kScenes)
-    if (scene.name == nameOrPath) return sceneFolder() / (nameOrPath + ".xml");
+  for (std::span<const SceneEntry> list : {builtInScenes(), benchmarkScenes()}) {
+    for (const SceneEntry& scene : list)
+      if (scene.name == nameOrPath) return sceneFolder() / (nameOrPath + ".xml");
+  }
   return nameOrPath;
 }
 
