@@ -8,6 +8,7 @@
 
 #include "kernels/simd/isa.h"
 #include "metrics/kernels/fft_stage.h"
+#include "metrics/kernels/flip_rows.h"
 #include "metrics/kernels/hdrvdp2_rows.h"
 #include "metrics/kernels/row_filters.h"
 #include "metrics/kernels/ssim_row.h"
@@ -25,6 +26,9 @@
   KERNEL(void, sensitivityRow, (const SensitivityRow& row))                                            \
   KERNEL(void, mutualMaskRow, (const MutualMaskRow& row))                                              \
   KERNEL(double, differenceRow, (const DifferenceRow& row))                                            \
+  KERNEL(void, flipAppearanceRow, (const FlipAppearanceRow& row))                                      \
+  KERNEL(void, flipFeatureRow, (const FlipFeatureRow& row))                                            \
+  KERNEL(void, flipErrorRow, (const FlipErrorRow& row))                                                \
   KERNEL(SsimSums, ssimRow, (const SsimRow& row))
 
 namespace wavecrest {
