@@ -22,3 +22,18 @@ function(add_kernel_library name)
     target_sources(${name} PRIVATE $<TARGET_OBJECTS:${name}_${isa}>)
   endforeach()
 endfunction()
+
+# add_lane_executable(NAME SOURCES source... LANE_SOURCES source... LIBRARIES library...): an executable of plain sources
+# and of lane sources, which are compiled once per instruction set and register their entry points (kernels/simd/
+# isa_table.h). For tests and microbenchmarks.
+function(add_lane_executable name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LANE_SOURCES;LIBRARIES")
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE wavecrest_options wavecrest_isa ${ARG_LIBRARIES})
+  foreach(isa IN LISTS WAVECREST_ISAS)
+    add_library(${name}_${isa} OBJECT ${ARG_LANE_SOURCES})
+    target_compile_definitions(${name}_${isa} PRIVATE ${WAVECREST_ISA_DEFINES_${isa}})
+    target_link_libraries(${name}_${isa} PRIVATE wavecrest_options)
+    target_sources(${name} PRIVATE $<TARGET_OBJECTS:${name}_${isa}>)
+  endforeach()
+endfunction()

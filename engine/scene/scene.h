@@ -53,7 +53,7 @@ struct CheckerboardTexture {
 
 struct Texture {
   std::variant<BitmapTexture, CheckerboardTexture> kind;
-  Matrix4 toUv{};  // affine map of (u, v, 0, 1)
+  Matrix4 toUv{};  // affine map of (u, v, 0, 1); a bitmap's top left corner is at (0, 0), its bottom right at (1, 1)
 };
 
 // A value that is constant or looked up in scene.textures.
@@ -122,9 +122,11 @@ struct Mesh {
 };
 struct Rectangle {  // corner + u * edgeU + v * edgeV, (u, v) in [0,1]^2; normal along edgeU x edgeV
   Double3 corner{}, edgeU{}, edgeV{};
+  bool mirrored = false;  // texture coordinates are (1 - u, v): flip_normals, or a transform that mirrors
 };
-struct Disk {  // centre, two perpendicular radius vectors, normal along axisU x axisV
+struct Disk {  // centre, two perpendicular radius vectors, normal along axisU x axisV; (u, v) = (r, phi / 2 pi)
   Double3 center{}, axisU{}, axisV{};
+  bool mirrored = false;  // texture coordinates are (u, 1 - v)
 };
 struct Sphere {
   Double3 center{};
@@ -218,6 +220,7 @@ struct Scene {
   Sensor sensor;
   FilmSettings film;
   RenderDefaults defaults;
+  uint64_t droppedTriangles = 0;      // without area, left out of the meshes
   uint64_t hash = 0;                  // of all data above that can change an image; stable across runs and machines
   std::vector<std::string> warnings;  // what --lenient skipped
 };

@@ -2,10 +2,10 @@
 //
 // The position comes from the primitive, not from the ray, so its error does not grow with the ray's length. The offset
 // bounds that error along the normal plus the error with which an intersector evaluates the same plane, so a ray that
-// starts `offset` off the surface cannot meet the surface it starts on (Pharr, Jakob, Humphreys, PBR, 3.9.4: gamma(n)
-// = n u / (1 - n u), u the unit roundoff of float, in which rays are traced under every precision).
+// starts `offset` off the surface cannot meet the surface it starts on (kernels/extend/offset.h).
 #pragma once
 
+#include "kernels/extend/offset.h"
 #include "kernels/lane_support.h"
 
 WAVECREST_SIMD_BEGIN
@@ -15,10 +15,6 @@ struct SurfacePoint {
   Vec3<Real> position, normal;
   Real offset;
 };
-
-constexpr double kUnitRoundoff = 0x1p-24;
-// 7 roundings in p0 + u e1 + v e2, 5 in the plane equation at either end, and margin for a unit normal that is not.
-constexpr double kOffsetGamma = 16 * kUnitRoundoff;
 
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE SurfacePoint<typename P::Real> surfacePoint(

@@ -1,0 +1,12 @@
+// The page's style sheet and script. They are ordinary files (assets/report.css, assets/report.js), turned into these
+// strings at build time by cmake/embed_text.cmake.
+#pragma once
+
+#include <string_view>
+
+namespace wavecrest {
+
+extern const std::string_view kReportCss;
+extern const std::string_view kReportJs;
+
+}  // namespace wavecrest

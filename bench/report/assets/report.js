@@ -1,0 +1,170 @@
+// What the page adds when scripts run; without them plots, images and tables are all there already.
+"use strict";
+
+// Tooltips: the mark nearest to the pointer, so that nobody has to hit a three-pixel circle.
+function addTooltips(plot) {
+  const marks = [...plot.querySelectorAll(".mark[data-x]")];
+  for (const mark of marks) {  // our tooltip takes over from the browser's
+    const title = mark.querySelector("title");
+    mark.dataset.text = title.textContent;
+    title.remove();
+  }
+  const tooltip = document.createElement("div");
+  tooltip.className = "tooltip";
+  tooltip.hidden = true;
+  document.body.append(tooltip);
+  let near = null;
+  const highlight = (next) => {
+    near?.classList.remove("near");
+    near = next;
+    near?.classList.add("near");
+    tooltip.hidden = !near;
+  };
+  plot.addEventListener("pointermove", (event) => {
+    const box = plot.getBoundingClientRect();
+    const scale = plot.viewBox.baseVal.width / box.width;
+    const x = (event.clientX - box.left) * scale, y = (event.clientY - box.top) * scale;
+    let best = null, bestDistance = 40;
+    for (const candidate of marks) {
+      const distance = Math.hypot(candidate.dataset.x - x, candidate.dataset.y - y);
+      if (distance < bestDistance) { best = candidate; bestDistance = distance; }
+    }
+    highlight(best);
+    if (!best) return;
+    tooltip.textContent = best.dataset.text;
+    const left = box.left + best.dataset.x / scale, half = tooltip.offsetWidth / 2 + 4;
+    tooltip.style.left = Math.min(Math.max(left, half), document.documentElement.clientWidth - half) + scrollX + "px";
+    tooltip.style.top = box.top + scrollY + best.dataset.y / scale + "px";
+  });
+  plot.addEventListener("pointerleave", () => highlight(null));
+}
+
+// Images: all panes of a scene share one view {zoom, x, y}: x and y are the image point, in 0..1, at the pane's corner.
+class Viewer {
+  constructor(root) {
+    this.root = root;
+    this.panes = [...root.querySelectorAll(".pane")];
+    this.view = { zoom: 1, x: 0, y: 0 };
+    this.shown = 0;
+    root.classList.add("ready");
+    root.tabIndex = -1;
+    this.addTools();
+    for (const pane of this.panes) this.addGestures(pane.querySelector(".frame"));
+    root.addEventListener("keydown", (event) => this.onKey(event));
+    this.show(this.panes.length - 1);
+  }
+
+  addTools() {
+    const tools = document.createElement("div");
+    tools.className = "tools";
+    const button = (text, action) => {
+      const element = document.createElement("button");
+      element.type = "button";
+      element.textContent = text;
+      element.addEventListener("click", action);
+      tools.append(element);
+      return element;
+    };
+    this.sideButton = button("Side by side", () => this.flip(false));
+    this.flipButton = button("Flip", () => this.flip(true));
+    tools.append(Object.assign(document.createElement("span"), { className: "gap" }));
+    for (const zoom of [1, 2, 4, 8]) button(zoom + "×", () => this.zoomTo(zoom, 0.5, 0.5));
+    tools.append(Object.assign(document.createElement("span"), { className: "gap" }));
+    this.paneButtons = this.panes.map((pane, index) =>
+      button(index + 1 + " " + pane.querySelector("figcaption").textContent, () => { this.flip(true); this.show(index); }));
+    const hint = document.createElement("span");
+    hint.className = "hint";
+    hint.textContent = "click an image: wheel zooms, drag moves, keys 1–9 and arrows flip";
+    tools.append(hint);
+    this.root.prepend(tools);
+    this.flip(false);
+  }
+
+  flip(on) {
+    this.root.classList.toggle("flip", on);
+    this.sideButton.setAttribute("aria-pressed", !on);
+    this.flipButton.setAttribute("aria-pressed", on);
+    this.show(this.shown);
+  }
+
+  show(index) {
+    this.shown = (index + this.panes.length) % this.panes.length;
+    const flipping = this.root.classList.contains("flip");
+    this.panes.forEach((pane, i) => pane.classList.toggle("shown", i === this.shown));
+    this.paneButtons.forEach((button, i) => button.setAttribute("aria-pressed", flipping && i === this.shown));
+  }
+
+  onKey(event) {
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    const digit = Number(event.key);
+    if (step) this.show(this.shown + step);
+    else if (digit >= 1 && digit <= this.panes.length) this.show(digit - 1);
+    else return;
+    if (!this.root.classList.contains("flip")) this.flip(true);
+    event.preventDefault();
+  }
+
+  // Zooms so that the image point under (u, v), given in 0..1 of the pane, stays there.
+  zoomTo(zoom, u, v) {
+    const next = Math.min(Math.max(zoom, 1), 64);
+    this.view.x += u / this.view.zoom - u / next;
+    this.view.y += v / this.view.zoom - v / next;
+    this.view.zoom = next;
+    this.apply();
+  }
+
+  apply() {
+    const room = 1 - 1 / this.view.zoom;
+    this.view.x = Math.min(Math.max(this.view.x, 0), room);
+    this.view.y = Math.min(Math.max(this.view.y, 0), room);
+    const { zoom, x, y } = this.view;
+    this.root.classList.toggle("zoomed", zoom > 1);
+    for (const pane of this.panes) {
+      pane.querySelector("img").style.transform = `scale(${zoom}) translate(${-100 * x}%, ${-100 * y}%)`;
+    }
+  }
+
+  addGestures(frame) {
+    const place = (event) => {
+      const box = frame.getBoundingClientRect();
+      return [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height, box];
+    };
+    frame.addEventListener("wheel", (event) => {
+      // The page must scroll past the images: the wheel is theirs only after a click on them.
+      if (!event.ctrlKey && !this.root.contains(document.activeElement)) return;
+      const [u, v] = place(event);
+      this.zoomTo(this.view.zoom * Math.exp(-event.deltaY * 0.002), u, v);
+      event.preventDefault();
+    }, { passive: false });
+    frame.addEventListener("dblclick", () => this.zoomTo(1, 0, 0));
+    // One pointer drags, two pinch.
+    const pointers = new Map();
+    frame.addEventListener("dragstart", (event) => event.preventDefault());
+    frame.addEventListener("pointerdown", (event) => {
+      frame.setPointerCapture(event.pointerId);
+      pointers.set(event.pointerId, event);
+      this.root.focus({ preventScroll: true });
+    });
+    frame.addEventListener("pointermove", (event) => {
+      const before = pointers.get(event.pointerId);
+      if (!before) return;
+      const [u, v, box] = place(event);
+      const other = [...pointers.values()].find((pointer) => pointer.pointerId !== event.pointerId);
+      if (other) {
+        const gap = (pointer) => Math.hypot(pointer.clientX - other.clientX, pointer.clientY - other.clientY);
+        this.zoomTo(this.view.zoom * gap(event) / Math.max(gap(before), 1), u, v);
+      } else {
+        this.view.x -= (event.clientX - before.clientX) / box.width / this.view.zoom;
+        this.view.y -= (event.clientY - before.clientY) / box.height / this.view.zoom;
+        this.apply();
+      }
+      pointers.set(event.pointerId, event);
+    });
+    for (const end of ["pointerup", "pointercancel"]) {
+      frame.addEventListener(end, (event) => pointers.delete(event.pointerId));
+    }
+  }
+}
+
+document.querySelectorAll("svg.plot").forEach(addTooltips);
+document.querySelectorAll(".viewer").forEach((root) => new Viewer(root));

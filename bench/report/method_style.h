@@ -1,0 +1,37 @@
+// How a method looks in every plot and table: its name in words, and the mark of its curve. Colours are in
+// assets/report.css under the same identifier, so that they follow light and dark.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace wavecrest {
+
+/// Shapes tell curves apart where colour cannot: in print and for colour-blind readers.
+enum class CurveMark { kCircle, kSquare, kTriangleUp, kDiamond, kTriangleDown, kPlus, kCross };
+
+struct MethodStyle {
+  std::string_view id, name;
+  CurveMark mark;
+};
+
+inline constexpr std::array<MethodStyle, 7> kMethodStyles = {{
+    {"pt", "path tracing", CurveMark::kCircle},
+    {"lt", "light tracing", CurveMark::kSquare},
+    {"bpt", "bidirectional path tracing", CurveMark::kTriangleUp},
+    {"mlt", "Metropolis light transport", CurveMark::kDiamond},
+    {"ppm", "progressive photon mapping", CurveMark::kTriangleDown},
+    {"bpm", "bidirectional photon mapping", CurveMark::kPlus},
+    {"vcm", "vertex connection and merging", CurveMark::kCross},
+}};
+
+/// The style of a method; one that is not listed gets a plain one under its own name.
+constexpr MethodStyle methodStyle(std::string_view id) {
+  for (const MethodStyle& style : kMethodStyles) {
+    if (style.id == id) return style;
+  }
+  return {id, id, CurveMark::kCircle};
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,218 @@
+#include "bench/report/svg_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bench/report/html_text.h"
+
+namespace wavecrest {
+namespace {
+
+// Small in user units, so that text stays readable when a phone shows the plot 350 pixels wide.
+constexpr double kWidth = 520, kHeight = 340;
+constexpr double kLeft = 52, kRight = kWidth - 52, kTop = 12, kBottom = kHeight - 46;
+constexpr double kLabelSpacing = 15;
+constexpr size_t kDensePoints = 40;  // from here on marks shrink to dots
+
+struct Frame {
+  Axis x, y;
+  double pixelX(double value) const { return kLeft + x.position(value) * (kRight - kLeft); }
+  double pixelY(double value) const { return kBottom - y.position(value) * (kBottom - kTop); }
+};
+
+bool showable(AxisScale scale, double value) {
+  return std::isfinite(value) && (scale == AxisScale::kLinear || value > 0);
+}
+
+// The curves without what the axes cannot show.
+std::vector<PlotCurve> showableCurves(const Plot& plot) {
+  std::vector<PlotCurve> curves = plot.curves;
+  for (PlotCurve& curve : curves) {
+    std::erase_if(curve.points, [&](const PlotPoint& point) {
+      return !showable(plot.xScale, point.x) || !showable(plot.yScale, point.y);
+    });
+    for (PlotPoint& point : curve.points) {
+      if (!showable(plot.yScale, point.low) || !showable(plot.yScale, point.high)) point.low = point.high = point.y;
+    }
+  }
+  std::erase_if(curves, [](const PlotCurve& curve) { return curve.points.empty(); });
+  return curves;
+}
+
+Frame frameAround(const Plot& plot, const std::vector<PlotCurve>& curves) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double left = kInfinity, right = -kInfinity, low = kInfinity, high = -kInfinity;
+  for (const PlotCurve& curve : curves) {
+    for (const PlotPoint& point : curve.points) {
+      left = std::min(left, point.x);
+      right = std::max(right, point.x);
+      low = std::min({low, point.y, point.low});
+      high = std::max({high, point.y, point.high});
+    }
+  }
+  if (plot.floor && showable(plot.yScale, *plot.floor)) {
+    low = std::min(low, *plot.floor);
+    high = std::max(high, *plot.floor);
+  }
+  return {Axis(plot.xScale, left, right), Axis(plot.yScale, low, high)};
+}
+
+void drawGrid(std::string& svg, const Plot& plot, const Frame& frame) {
+  for (const AxisTick& tick : frame.x.ticks()) {
+    const double x = frame.pixelX(tick.value);
+    append(svg, "<line class=\"{}\" x1=\"{:.1f}\" y1=\"{}\" x2=\"{:.1f}\" y2=\"{}\"/>",
+           tick.label.empty() ? "minor" : "major", x, kTop, x, kBottom);
+    if (!tick.label.empty()) {
+      append(svg, "<text class=\"tick\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>", x, kBottom + 17,
+             tick.label);
+    }
+  }
+  for (const AxisTick& tick : frame.y.ticks()) {
+    const double y = frame.pixelY(tick.value);
+    append(svg, "<line class=\"{}\" x1=\"{}\" y1=\"{:.1f}\" x2=\"{}\" y2=\"{:.1f}\"/>",
+           tick.label.empty() ? "minor" : "major", kLeft, y, kRight, y);
+    if (!tick.label.empty()) {
+      append(svg, "<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", kLeft - 7, y + 4,
+             tick.label);
+    }
+  }
+  append(svg, "<path class=\"axis\" d=\"M{} {}V{}H{}\"/>", kLeft, kTop, kBottom, kRight);
+  append(svg, "<text class=\"axis-label\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", 0.5 * (kLeft + kRight),
+         kHeight - 8, escapeHtml(plot.xLabel));
+}
+
+void drawFloor(std::string& svg, const Plot& plot, const Frame& frame) {
+  if (!plot.floor || !showable(plot.yScale, *plot.floor)) return;
+  const double y = frame.pixelY(*plot.floor);
+  append(svg, "<line class=\"floor\" x1=\"{}\" y1=\"{:.1f}\" x2=\"{}\" y2=\"{:.1f}\"/>", kLeft, y, kRight, y);
+  append(svg, "<text class=\"note\" x=\"{}\" y=\"{:.1f}\">{}</text>", kLeft + 6, y - 5, escapeHtml(plot.floorLabel));
+}
+
+// A straight line on two logarithmic axes, a little above the curve that ends lowest, cut off at the lower edge.
+void drawGuide(std::string& svg, const Plot& plot, const Frame& frame, const std::vector<PlotCurve>& curves) {
+  constexpr double kAbove = 1.7;
+  if (!plot.guideSlope || plot.xScale != AxisScale::kLogarithmic || plot.yScale != AxisScale::kLogarithmic) return;
+  const auto& lowest = *std::min_element(curves.begin(), curves.end(), [](const PlotCurve& a, const PlotCurve& b) {
+    return a.points.back().y < b.points.back().y;
+  });
+  const PlotPoint& anchor = lowest.points.back();
+  const auto guide = [&](double x) { return kAbove * anchor.y * std::pow(x / anchor.x, *plot.guideSlope); };
+  const auto inverse = [&](double y) { return anchor.x * std::pow(y / (kAbove * anchor.y), 1 / *plot.guideSlope); };
+  double first = lowest.points.front().x, last = anchor.x;
+  if (guide(first) > frame.y.high()) first = inverse(frame.y.high());
+  if (guide(last) < frame.y.low()) last = inverse(frame.y.low());
+  if (!(first < last)) return;
+  append(svg, "<line class=\"guide\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", frame.pixelX(first),
+         frame.pixelY(guide(first)), frame.pixelX(last), frame.pixelY(guide(last)));
+  const double labelX = std::sqrt(first * last);
+  append(svg, "<text class=\"note\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", frame.pixelX(labelX) + 6,
+         frame.pixelY(guide(labelX)) - 6, escapeHtml(plot.guideLabel));
+}
+
+std::string markPath(CurveMark mark, double x, double y, double r) {
+  switch (mark) {
+    case CurveMark::kSquare:
+      return fmt::format("M{:.1f} {:.1f}h{}v{}h{}z", x - r, y - r, 2 * r, 2 * r, -2 * r);
+    case CurveMark::kTriangleUp:
+      return fmt::format("M{:.1f} {:.1f}l{} {}h{}z", x, y - 1.2 * r, 1.2 * r, 2.1 * r, -2.4 * r);
+    case CurveMark::kTriangleDown:
+      return fmt::format("M{:.1f} {:.1f}l{} {}h{}z", x, y + 1.2 * r, 1.2 * r, -2.1 * r, -2.4 * r);
+    case CurveMark::kDiamond:
+      return fmt::format("M{:.1f} {:.1f}l{} {}l{} {}l{} {}z", x, y - 1.3 * r, 1.3 * r, 1.3 * r, -1.3 * r, 1.3 * r,
+                         -1.3 * r, -1.3 * r);
+    case CurveMark::kPlus:
+      return fmt::format("M{:.1f} {:.1f}h{}M{:.1f} {:.1f}v{}", x - 1.2 * r, y, 2.4 * r, x, y - 1.2 * r, 2.4 * r);
+    case CurveMark::kCross:
+      return fmt::format("M{:.1f} {:.1f}l{} {}M{:.1f} {:.1f}l{} {}", x - r, y - r, 2 * r, 2 * r, x - r, y + r, 2 * r,
+                         -2 * r);
+    case CurveMark::kCircle:
+      break;
+  }
+  return fmt::format("M{:.1f} {:.1f}a{} {} 0 1 0 {} 0a{} {} 0 1 0 {} 0z", x - r, y, r, r, 2 * r, r, r, -2 * r);
+}
+
+void drawBand(std::string& svg, const PlotCurve& curve, const Frame& frame) {
+  const bool visible = std::any_of(curve.points.begin(), curve.points.end(),
+                                   [](const PlotPoint& point) { return point.low < point.high; });
+  if (!visible) return;
+  svg += "<path class=\"band\" d=\"";
+  char command = 'M';
+  for (const PlotPoint& point : curve.points) {
+    append(svg, "{}{:.1f} {:.1f}", command, frame.pixelX(point.x), frame.pixelY(point.high));
+    command = 'L';
+  }
+  for (auto point = curve.points.rbegin(); point != curve.points.rend(); ++point) {
+    append(svg, "L{:.1f} {:.1f}", frame.pixelX(point->x), frame.pixelY(point->low));
+  }
+  svg += "z\"/>";
+}
+
+// Band below, line, then marks with their tooltips; data-x and data-y let the script find the mark near the pointer.
+void drawCurve(std::string& svg, const PlotCurve& curve, const Frame& frame) {
+  append(svg, "<g class=\"curve {}\" data-label=\"{}\">", curve.cssClass, escapeHtml(curve.label));
+  drawBand(svg, curve, frame);
+  svg += "<path class=\"line\" d=\"";
+  char command = 'M';
+  for (const PlotPoint& point : curve.points) {
+    append(svg, "{}{:.1f} {:.1f}", command, frame.pixelX(point.x), frame.pixelY(point.y));
+    command = 'L';
+  }
+  svg += "\"/>";
+  const double radius = curve.points.size() < kDensePoints ? 3.2 : 1.6;
+  for (const PlotPoint& point : curve.points) {
+    const double x = frame.pixelX(point.x), y = frame.pixelY(point.y);
+    append(svg, "<path class=\"mark\" data-x=\"{:.1f}\" data-y=\"{:.1f}\" d=\"{}\"><title>{}</title></path>", x, y,
+           markPath(curve.mark, x, y, radius), escapeHtml(point.tooltip));
+  }
+  svg += "</g>";
+}
+
+// Labels at the ends of the curves are the legend: in the order of the curves, moved apart where they would overlap.
+void drawEndLabels(std::string& svg, const std::vector<PlotCurve>& curves, const Frame& frame) {
+  struct Label {
+    const PlotCurve* curve;
+    double y;
+  };
+  std::vector<Label> labels;
+  labels.reserve(curves.size());
+  for (const PlotCurve& curve : curves) labels.push_back({&curve, frame.pixelY(curve.points.back().y)});
+  std::stable_sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.y < b.y; });
+  // Downwards until each has room, then upwards from the lower edge for those that were pushed out.
+  for (size_t i = 1; i < labels.size(); ++i) labels[i].y = std::max(labels[i].y, labels[i - 1].y + kLabelSpacing);
+  double limit = kBottom;
+  for (size_t i = labels.size(); i-- > 0; limit = labels[i].y - kLabelSpacing) {
+    labels[i].y = std::min(labels[i].y, limit);
+  }
+  for (const Label& label : labels) {
+    append(svg, "<g class=\"curve {}\"><path class=\"mark\" d=\"{}\"/>", label.curve->cssClass,
+           markPath(label.curve->mark, kRight + 10, label.y, 3.2));
+    append(svg, "<text class=\"end-label\" x=\"{}\" y=\"{:.1f}\">{}</text></g>", kRight + 18, label.y + 4,
+           escapeHtml(label.curve->label));
+  }
+}
+
+}  // namespace
+
+std::string renderPlot(const Plot& plot) {
+  const std::vector<PlotCurve> curves = showableCurves(plot);
+  std::string svg = fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth,
+                                kHeight, escapeHtml(plot.title));
+  if (curves.empty()) {
+    append(svg, "<text class=\"note\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">no data that these axes can show</text>",
+           kWidth / 2, kHeight / 2);
+  } else {
+    const Frame frame = frameAround(plot, curves);
+    drawGrid(svg, plot, frame);
+    drawGuide(svg, plot, frame, curves);
+    drawFloor(svg, plot, frame);
+    for (const PlotCurve& curve : curves) drawCurve(svg, curve, frame);
+    drawEndLabels(svg, curves, frame);
+  }
+  svg += "</svg>\n";
+  return svg;
+}
+
+}  // namespace wavecrest

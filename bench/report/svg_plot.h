@@ -1,0 +1,42 @@
+// A line plot as SVG text: curves with marks, bands and end labels over a grid. Carries class names and no colours: the
+// page's style sheet decides those, for light, dark and print alike.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/report/axis.h"
+#include "bench/report/method_style.h"
+
+namespace wavecrest {
+
+struct PlotPoint {
+  double x = 0, y = 0;
+  double low = 0, high = 0;  ///< band around y; low == high where there is none
+  std::string tooltip;       ///< plain text
+};
+
+struct PlotCurve {
+  std::string label;     ///< short: written at the end of the curve
+  std::string cssClass;  ///< carries the colour
+  CurveMark mark = CurveMark::kCircle;
+  std::vector<PlotPoint> points;  ///< in order of x, at least one
+};
+
+struct Plot {
+  std::string title;  ///< for screen readers
+  std::string xLabel;
+  AxisScale xScale = AxisScale::kLogarithmic, yScale = AxisScale::kLogarithmic;
+  std::vector<PlotCurve> curves;
+  std::optional<double> floor;  ///< horizontal line with the label floorLabel
+  std::string floorLabel;
+  std::optional<double> guideSlope;  ///< dashed line y ~ x^slope beside the lowest curve; logarithmic axes only
+  std::string guideLabel;
+};
+
+/// The `<svg>` element. Points that an axis cannot show (non-finite, or not positive on a logarithmic axis) are left
+/// out; a plot without any point says so instead of drawing axes.
+std::string renderPlot(const Plot& plot);
+
+}  // namespace wavecrest

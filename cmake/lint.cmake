@@ -1,0 +1,11 @@
+# Target `lint`: formatting and clang-tidy, the same two runs as in ./check. `format` rewrites the sources.
+find_package(Python3 COMPONENTS Interpreter)
+if(Python3_FOUND)
+  add_custom_target(lint
+    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/lint.py format
+    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/lint.py tidy --build ${PROJECT_BINARY_DIR}
+    USES_TERMINAL VERBATIM)
+  add_custom_target(format
+    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/lint.py format --fix
+    USES_TERMINAL VERBATIM)
+endif()

@@ -1,0 +1,103 @@
+#include "engine/compile/compiled_scene.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "engine/compile/materials.h"
+#include "engine/compile/vector_math.h"
+
+namespace wavecrest {
+namespace {
+
+void assign(double (&out)[3], const Double3& a) {
+  for (size_t i = 0; i < 3; ++i) out[i] = a[i];
+}
+
+}  // namespace
+
+uint32_t sceneFeatures(const Scene& scene) {
+  uint32_t features = 0;
+  for (const Material& material : scene.materials) features |= materialFeatures(material);
+  for (const Shape& shape : scene.shapes) {
+    if (std::holds_alternative<Sphere>(shape.kind)) features |= kCurvedShapes;
+    if (std::holds_alternative<Cylinder>(shape.kind)) features |= kShadingNormals;
+    if (const Mesh* mesh = std::get_if<Mesh>(&shape.kind); mesh != nullptr && !mesh->normals.empty()) {
+      features |= kShadingNormals;
+    }
+  }
+  for (const Emitter& emitter : scene.emitters) {
+    if (std::holds_alternative<SpotEmitter>(emitter.kind) || std::holds_alternative<DirectionalEmitter>(emitter.kind) ||
+        std::holds_alternative<EnvmapEmitter>(emitter.kind)) {
+      features |= kRareLights;
+    }
+    const auto* area = std::get_if<AreaEmitter>(&emitter.kind);
+    if (area != nullptr && area->radiance.texture != kNone) features |= kTextures;
+  }
+  if (scene.sensor.kind != Sensor::Kind::perspective || scene.film.filter != ReconstructionFilter::box) {
+    features |= kLens;
+  }
+  return features;
+}
+
+CameraView compileCamera(const Sensor& sensor, const FilmSettings& film) {
+  CameraView camera;
+  camera.width = film.width;
+  camera.height = film.height;
+  const double halfWidth = std::tan(sensor.fovX * std::numbers::pi / 360);
+  const double halfHeight = halfWidth * film.height / film.width;
+  camera.pixelDistance = film.width / (2 * halfWidth);
+  // Mitsuba's camera looks along +z with +x to the left of the image, so raster x runs against x.
+  assign(camera.origin, transformPoint(sensor.toWorld, {0, 0, 0}));
+  assign(camera.corner, transformVector(sensor.toWorld, {halfWidth, halfHeight, 1}));
+  assign(camera.du, transformVector(sensor.toWorld, {-2 * halfWidth / film.width, 0, 0}));
+  assign(camera.dv, transformVector(sensor.toWorld, {0, -2 * halfHeight / film.height, 0}));
+  assign(camera.axis, normalized(transformVector(sensor.toWorld, {0, 0, 1})));
+  const auto vec = [](const double(&a)[3]) { return Double3{a[0], a[1], a[2]}; };
+  camera.planeDepth = dot(vec(camera.corner), vec(camera.axis));
+  camera.inverseDu2 = 1 / dot(vec(camera.du), vec(camera.du));
+  camera.inverseDv2 = 1 / dot(vec(camera.dv), vec(camera.dv));
+  camera.lensRadius = sensor.apertureRadius;
+  camera.focusDistance = sensor.focusDistance;
+  return camera;
+}
+
+template <class S>
+std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel) {
+  auto compiled = std::make_unique<CompiledScene<S>>();
+  const bool textured = (sceneFeatures(scene) & kTextures) != 0;
+  auto& primitives = compiled->primitives = compilePrimitives<S>(scene, textured);
+  if (primitives.records.empty()) throw std::runtime_error(scene.name + ": the scene has no surface; expected a shape");
+  const BoundingSphere bounds = boundPrimitives(primitives.records);
+  compiled->lights = compileLights(scene, bounds, primitives);
+  for (const Material& material : scene.materials) compiled->materials.push_back(compileMaterial(material, scene));
+
+  SceneView<S>& view = compiled->view;
+  if (accel == Accel::small || (accel == Accel::automatic && primitives.counts.total() <= kSmallSceneLimit)) {
+    const Primitives<double> precise = compilePrimitives<double>(scene, false);
+    compiled->small = std::make_unique<SmallScene>(precise.records.data(), precise.records.size());
+    view.small = &compiled->small->view();
+  } else {
+    compiled->embree = std::make_unique<EmbreeScene>(primitives.records.data(), primitives.counts.quads,
+                                                     primitives.counts.triangles, primitives.counts.spheres);
+    view.embree = compiled->embree->handle();
+  }
+  view.primitives = primitives.records.data();
+  view.attributes = primitives.attributes.data();
+  view.materials = compiled->materials.data();
+  view.lights = compiled->lights.records.data();
+  view.lightTable = compiled->lights.table.data();
+  view.lightCount = static_cast<uint32_t>(compiled->lights.records.size());
+  view.infiniteLight = compiled->lights.infinite;
+  view.spheres = primitives.counts.spheres != 0;
+  view.firstPrimitive[1] = primitives.counts.quads;
+  view.firstPrimitive[2] = primitives.counts.quads + primitives.counts.triangles;
+  for (size_t i = 0; i < 3; ++i) view.center[i] = bounds.center[i];
+  view.radius = bounds.radius;
+  view.camera = compileCamera(scene.sensor, scene.film);
+  return compiled;
+}
+template std::unique_ptr<CompiledScene<float>> compileScene(const Scene&, Accel);
+template std::unique_ptr<CompiledScene<double>> compileScene(const Scene&, Accel);
+
+}  // namespace wavecrest

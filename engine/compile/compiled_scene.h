@@ -1,0 +1,46 @@
+// The scene in the form that one precision's kernels read, and everything that owns its memory.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/compile/lights.h"
+#include "engine/compile/primitives.h"
+#include "kernels/extend/embree_scene.h"
+#include "kernels/extend/small_scene.h"
+#include "kernels/stages.h"
+
+namespace wavecrest {
+
+enum class Accel { automatic, embree, small };
+constexpr std::array<std::string_view, 3> kAccelNames{"auto", "embree", "small"};
+
+// Scenes of up to this many primitives are faster without a hierarchy (measured: bench/micro, extend).
+constexpr uint32_t kSmallSceneLimit = 96;
+
+// What a scene asks of the kernels, before anything is compiled: Feature bits.
+uint32_t sceneFeatures(const Scene& scene);
+
+template <class S>
+struct CompiledScene {
+  Primitives<S> primitives;
+  std::vector<MaterialRecord> materials;
+  Lights<S> lights;
+  std::unique_ptr<SmallScene> small;    // either this
+  std::unique_ptr<EmbreeScene> embree;  // or this
+  SceneView<S> view;                    // into all of the above
+
+  CompiledScene() = default;
+  CompiledScene(const CompiledScene&) = delete;
+  CompiledScene& operator=(const CompiledScene&) = delete;
+};
+
+// Builds everything; threads bounds the hierarchy's build. Throws std::runtime_error where the scene cannot be
+// rendered.
+template <class S>
+std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel);
+
+// The camera of a sensor over its full film.
+CameraView compileCamera(const Sensor& sensor, const FilmSettings& film);
+
+}  // namespace wavecrest

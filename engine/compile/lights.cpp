@@ -1,0 +1,177 @@
+#include "engine/compile/lights.h"
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+#include "engine/compile/vector_math.h"
+#include "kernels/extend/offset.h"
+
+namespace wavecrest {
+namespace {
+
+// Share of the light picks that goes to all lights alike, so that a dim light near the receiver is still sampled.
+constexpr double kDefensiveShare = 0.1;
+
+template <class S>
+void assign(S (&out)[3], const Double3& a) {
+  for (size_t i = 0; i < 3; ++i) out[i] = static_cast<S>(a[i]);
+}
+
+template <class S>
+Double3 widenedRecord(const S (&a)[3]) {
+  return {a[0], a[1], a[2]};
+}
+
+template <class S>
+double areaOf(const PrimitiveRecord<S>& primitive) {
+  if (static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere) {
+    return 4 * std::numbers::pi * primitive.e1[0] * primitive.e1[0];
+  }
+  const double parallelogram = length(cross(widenedRecord(primitive.e1), widenedRecord(primitive.e2)));
+  return static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::quad ? parallelogram : parallelogram / 2;
+}
+
+template <class S>
+LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radiance) {
+  LightRecord<S> light{};
+  std::copy(std::begin(primitive.p0), std::end(primitive.p0), light.p0);
+  std::copy(std::begin(primitive.e1), std::end(primitive.e1), light.e1);
+  std::copy(std::begin(primitive.e2), std::end(primitive.e2), light.e2);
+  std::copy(std::begin(primitive.normal), std::end(primitive.normal), light.normal);
+  assign(light.radiance, radiance);
+  light.inverseArea = static_cast<S>(1 / areaOf(primitive));
+  Double3 extent{};
+  for (size_t i = 0; i < 3; ++i) {
+    extent[i] = std::abs(primitive.p0[i]) + std::abs(primitive.e1[i]) + std::abs(primitive.e2[i]);
+  }
+  light.offset = static_cast<S>(kOffsetGamma * (extent[0] + extent[1] + extent[2]));
+  switch (static_cast<PrimitiveKind>(primitive.kind)) {
+    case PrimitiveKind::quad:
+      light.kind = static_cast<uint32_t>(LightKind::quad);
+      break;
+    case PrimitiveKind::triangle:
+      light.kind = static_cast<uint32_t>(LightKind::triangle);
+      break;
+    case PrimitiveKind::sphere:
+      light.kind = static_cast<uint32_t>(LightKind::sphere);
+      light.radius = primitive.e1[0];
+      break;
+  }
+  return light;
+}
+
+// Collects the records with their power (luminance of the flux), which decides how often each is picked.
+template <class S>
+class Collector {
+ public:
+  Collector(const Scene& scene, const BoundingSphere& bounds) : scene_(scene), bounds_(bounds) {}
+
+  void addPrimitives(Primitives<S>& primitives) {
+    for (size_t i = 0; i < primitives.shapeOf.size(); ++i) {
+      const uint32_t shape = primitives.shapeOf[i];
+      if (shape == kNone) continue;
+      const Emitter& emitter = scene_.emitters[scene_.shapes[shape].emitter];
+      const Rgb& radiance = std::get<AreaEmitter>(emitter.kind).radiance.value;
+      primitives.records[i].light = static_cast<uint32_t>(lights_.records.size());
+      add(areaLight(primitives.records[i], radiance),
+          std::numbers::pi * areaOf(primitives.records[i]) * luminance(radiance));
+    }
+  }
+
+  void addOthers() {
+    for (const Emitter& emitter : scene_.emitters) {
+      location_ = emitter.source;
+      std::visit([&](const auto& kind) { visit(kind); }, emitter.kind);
+    }
+  }
+
+  Lights<S> finish() {
+    const double total = std::accumulate(power_.begin(), power_.end(), 0.0);
+    const auto count = static_cast<double>(power_.size());
+    for (size_t i = 0; i < power_.size(); ++i) {
+      const double byPower = total > 0 ? power_[i] / total : 1 / count;
+      power_[i] = (1 - kDefensiveShare) * byPower + kDefensiveShare / count;
+      lights_.records[i].pick = static_cast<S>(power_[i]);
+    }
+    if (!power_.empty()) lights_.table = makeAliasTable(power_);
+    return std::move(lights_);
+  }
+
+ private:
+  void add(const LightRecord<S>& light, double power) {
+    lights_.records.push_back(light);
+    power_.push_back(power);
+  }
+
+  void visit(const AreaEmitter&) {}  // by primitive
+  void visit(const PointEmitter& point) {
+    LightRecord<S> light{};
+    assign(light.p0, point.position);
+    assign(light.radiance, point.intensity);
+    light.kind = static_cast<uint32_t>(LightKind::point);
+    add(light, 4 * std::numbers::pi * luminance(point.intensity));
+  }
+  void visit(const ConstantEmitter& constant) {
+    if (lights_.infinite != kNoIndex) {
+      throw std::runtime_error(location_.file + ":" + std::to_string(location_.line) +
+                               ": a second environment emitter; expected at most one");
+    }
+    lights_.infinite = static_cast<uint32_t>(lights_.records.size());
+    LightRecord<S> light{};
+    assign(light.radiance, constant.radiance);
+    light.kind = static_cast<uint32_t>(LightKind::constant);
+    const double area = std::numbers::pi * bounds_.radius * bounds_.radius;
+    add(light, 4 * std::numbers::pi * area * luminance(constant.radiance));
+  }
+  template <class Other>
+  void visit(const Other&) {
+    throw std::runtime_error(location_.file + ":" + std::to_string(location_.line) +
+                             ": this kind of emitter is not supported; expected area, point or constant");
+  }
+
+  const Scene& scene_;
+  const BoundingSphere& bounds_;
+  Lights<S> lights_;
+  std::vector<double> power_;
+  SourceLocation location_;
+};
+
+}  // namespace
+
+template <class S>
+Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives) {
+  Collector<S> collector(scene, bounds);
+  collector.addPrimitives(primitives);
+  collector.addOthers();
+  return collector.finish();
+}
+template Lights<float> compileLights(const Scene&, const BoundingSphere&, Primitives<float>&);
+template Lights<double> compileLights(const Scene&, const BoundingSphere&, Primitives<double>&);
+
+std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights) {
+  const size_t count = weights.size();
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  std::vector<double> scaled(count);
+  std::vector<uint32_t> small, large;
+  for (size_t i = 0; i < count; ++i) {
+    scaled[i] = weights[i] / sum * static_cast<double>(count);
+    (scaled[i] < 1 ? small : large).push_back(static_cast<uint32_t>(i));
+  }
+  std::vector<AliasEntry> table(count);
+  for (size_t i = 0; i < count; ++i) table[i] = {1.0f, static_cast<uint32_t>(i)};
+  while (!small.empty() && !large.empty()) {
+    const uint32_t less = small.back(), more = large.back();
+    small.pop_back();
+    table[less] = {static_cast<float>(scaled[less]), more};
+    scaled[more] -= 1 - scaled[less];
+    if (scaled[more] < 1) {
+      large.pop_back();
+      small.push_back(more);
+    }
+  }
+  return table;  // what is left over differs from 1 by rounding only
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,27 @@
+// Emitters to light records and the table from which lights are picked.
+#pragma once
+
+#include <vector>
+
+#include "engine/compile/primitives.h"
+
+namespace wavecrest {
+
+template <class S>
+struct Lights {
+  std::vector<LightRecord<S>> records;
+  std::vector<AliasEntry> table;  // over records
+  uint32_t infinite = kNoIndex;   // the constant or environment emitter
+};
+
+// Each emitting primitive becomes a light of its own, so that picking a light by power also picks the place on a mesh
+// by area. Sets `light` of the emitting primitives. Throws std::runtime_error, with the emitter's file and line, for
+// more than one infinite light.
+template <class S>
+Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives);
+
+// Entries such that picking one uniformly and keeping it with its probability, else taking its alias, yields each index
+// in proportion to its weight (Vose 1991). Weights must be >= 0 with a positive sum.
+std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights);
+
+}  // namespace wavecrest

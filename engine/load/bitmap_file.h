@@ -1,0 +1,16 @@
+// Image files as textures: PNG and JPEG (gamma-encoded), EXR, PFM and Radiance HDR (linear).
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "engine/load/context.h"
+
+namespace wavecrest {
+
+// Linear pixels, top row first. 8- and 16-bit files are decoded by the sRGB curve unless `raw`; files of linear light
+// are taken as they are. Read once per path and treatment. `where` names the file in the XML.
+std::shared_ptr<const Bitmap> readBitmap(LoadContext& context, const std::filesystem::path& path, bool raw,
+                                         const SourceLocation& where);
+
+}  // namespace wavecrest

@@ -1,0 +1,23 @@
+// Readers of the BSDF plugins (table in plugins.cpp).
+#pragma once
+
+#include "engine/load/parameters.h"
+
+namespace wavecrest {
+
+void readDiffuse(LoadContext&, Parameters&, Material&);
+void readConductor(LoadContext&, Parameters&, Material&);
+void readRoughConductor(LoadContext&, Parameters&, Material&);
+void readDielectric(LoadContext&, Parameters&, Material&);
+void readThinDielectric(LoadContext&, Parameters&, Material&);
+void readRoughDielectric(LoadContext&, Parameters&, Material&);
+void readPlastic(LoadContext&, Parameters&, Material&);
+void readRoughPlastic(LoadContext&, Parameters&, Material&);
+void readPhong(LoadContext&, Parameters&, Material&);
+// Adapters around a nested BSDF.
+void readTwoSided(LoadContext&, Parameters&, Material&);
+void readMask(LoadContext&, Parameters&, Material&);
+void readBumpMap(LoadContext&, Parameters&, Material&);
+void readNormalMap(LoadContext&, Parameters&, Material&);
+
+}  // namespace wavecrest

@@ -1,0 +1,168 @@
+#include "engine/load/color.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/load/cie_tables.h"
+#include "engine/load/parameters.h"
+#include "engine/load/transform.h"
+#include "engine/load/values.h"
+
+namespace wavecrest {
+
+namespace {
+
+// XYZ to linear Rec. 709 with a D65 white point.
+Rgb xyzToRgb(const Rgb& xyz) {
+  constexpr double kMatrix[3][3] = {
+      {3.240479, -1.537150, -0.498535}, {-0.969256, 1.875991, 0.041556}, {0.055648, -0.204043, 1.057311}};
+  Rgb rgb{};
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = 0; j < 3; ++j) rgb[i] += kMatrix[i][j] * xyz[j];
+  }
+  return rgb;
+}
+
+Rgb grey(double value) { return {value, value, value}; }
+Rgb scaled(double factor, const Rgb& color) { return {factor * color[0], factor * color[1], factor * color[2]}; }
+
+// A spectrum of one value everywhere. As emission it has the colour of illuminant E.
+Rgb uniformSpectrum(double value, ColorRole role) {
+  return role == ColorRole::emission ? scaled(value, xyzToRgb({1, 1, 1})) : grey(value);
+}
+
+Rgb readRgb(std::string_view text, const SourceLocation& where) {
+  const std::vector<double> values = parseReals(text, where);
+  if (values.size() == 1) return grey(values[0]);
+  if (values.size() == 3) return {values[0], values[1], values[2]};
+  throw LoadError(where, std::to_string(values.size()) + " numbers in <rgb>; expected 1 or 3");
+}
+
+int hexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return -1;
+}
+
+// "#rrggbb" or gamma-encoded numbers in [0, 1].
+Rgb readSrgb(std::string_view text, const SourceLocation& where) {
+  Rgb encoded{};
+  if (!text.empty() && text[0] == '#') {
+    const std::string digits = toLower(text.substr(1));
+    const bool valid =
+        digits.size() == 6 && std::all_of(digits.begin(), digits.end(), [](char c) { return hexDigit(c) >= 0; });
+    if (!valid) throw LoadError(where, "bad colour " + inQuotes(text) + "; expected #rrggbb");
+    for (size_t i = 0; i < 3; ++i) encoded[i] = (16 * hexDigit(digits[2 * i]) + hexDigit(digits[2 * i + 1])) / 255.0;
+  } else {
+    encoded = readRgb(text, where);
+  }
+  Rgb linear{};
+  for (size_t i = 0; i < 3; ++i) linear[i] = srgbToLinear(encoded[i]);
+  return linear;
+}
+
+// "wavelength:value, …" lists.
+Rgb readSpectrum(std::string_view text, const SourceLocation& where, ColorRole role) {
+  const std::vector<std::string_view> tokens = splitTokens(text);
+  if (tokens.size() == 1 && tokens[0].find(':') == std::string_view::npos) {
+    return uniformSpectrum(parseReal(tokens[0], where), role);
+  }
+  std::vector<double> wavelengths, values;
+  for (const std::string_view token : tokens) {
+    const size_t colon = token.find(':');
+    if (colon == std::string_view::npos) {
+      throw LoadError(where, "bad entry " + inQuotes(token) + " of a spectrum; expected wavelength:value");
+    }
+    wavelengths.push_back(parseReal(token.substr(0, colon), where));
+    values.push_back(parseReal(token.substr(colon + 1), where));
+    if (wavelengths.size() > 1 && wavelengths.back() <= wavelengths[wavelengths.size() - 2]) {
+      throw LoadError(where, "wavelengths of a spectrum do not increase at " + inQuotes(token) +
+                                 "; expected them in increasing order");
+    }
+  }
+  if (wavelengths.size() < 2) {
+    throw LoadError(where, "spectrum " + inQuotes(text) + " has too few entries; expected one value or two pairs");
+  }
+  return spectrumToRgb(wavelengths, values, role);
+}
+
+// <spectrum type="uniform|d65|srgb">
+Rgb readSpectrumObject(LoadContext& context, const XmlElement& object, ColorRole role) {
+  Parameters parameters(context, object);
+  const std::string_view type = object.get("type");
+  Rgb color = grey(1);
+  if (type == "uniform") {
+    color = grey(parameters.requiredReal("value"));
+  } else if (type == "d65") {
+    if (const XmlElement* value = parameters.element("color")) color = readColor(context, *value, ColorRole::emission);
+    color = scaled(parameters.real("scale", 1), color);
+  } else if (type == "srgb") {
+    const XmlElement* value = parameters.element("color");
+    if (!value) throw LoadError(object.location(), "spectrum \"srgb\" has no color; expected <rgb name=\"color\">");
+    color = readColor(context, *value, parameters.boolean("unbounded", false) ? ColorRole::unbounded : role);
+  } else {
+    throw LoadError(object.location(),
+                    "spectrum " + inQuotes(type) + " is not supported; expected uniform, d65 or srgb");
+  }
+  parameters.finish();
+  return color;
+}
+
+}  // namespace
+
+double srgbToLinear(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> values, ColorRole role) {
+  // Mitsuba's quadrature: 1000 samples over the CIE range, both ends included.
+  constexpr int kSteps = 1000;
+  Rgb xyz{0, 0, 0};
+  size_t interval = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double w = kCieFirst + (kCieLast - kCieFirst) * i / (kSteps - 1);
+    if (w < wavelengths.front() || w > wavelengths.back()) continue;
+    while (interval + 2 < wavelengths.size() && wavelengths[interval + 1] <= w) ++interval;
+    const double t = (w - wavelengths[interval]) / (wavelengths[interval + 1] - wavelengths[interval]);
+    double value = (1 - t) * values[interval] + t * values[interval + 1];
+    if (role != ColorRole::emission) value *= cieD65(w);
+    const std::array<double, 3> observer = cie1931(w);
+    for (size_t c = 0; c < 3; ++c) xyz[c] += observer[c] * value;
+  }
+  const double step = (kCieLast - kCieFirst) / kSteps;
+  Rgb rgb = xyzToRgb(scaled(step, xyz));
+  // Colours outside the gamut are clamped.
+  const double highest = role == ColorRole::reflectance ? 1.0 : std::numeric_limits<double>::max();
+  for (double& channel : rgb) channel = std::clamp(channel, 0.0, highest);
+  return rgb;
+}
+
+Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role) {
+  if (element.isObject() && element.tag == "spectrum") return readSpectrumObject(context, element, role);
+  const SourceLocation where = element.location();
+  const std::string* value = element.find("value");
+  Rgb color{};
+  if (element.tag != "rgb" && element.tag != "srgb" && element.tag != "spectrum" && element.tag != "float" &&
+      element.tag != "integer") {
+    throw LoadError(where, "<" + element.tag + "> given for a colour; expected <rgb>, <srgb>, <spectrum> or <float>");
+  }
+  checkAttributes(element, {"name", "value"});
+  if (!value) throw LoadError(where, "<" + element.tag + "> has no value; expected the attribute value");
+  if (element.tag == "rgb")
+    color = readRgb(*value, where);
+  else if (element.tag == "srgb")
+    color = readSrgb(*value, where);
+  else if (element.tag == "spectrum")
+    color = readSpectrum(*value, where, role);
+  else
+    color = grey(parseReal(*value, where));
+  for (const double channel : color) {
+    if (!(channel >= 0) || (role == ColorRole::reflectance && channel > 1)) {
+      throw LoadError(where, "colour " + inQuotes(*value) + " is out of range; expected " +
+                                 (role == ColorRole::reflectance ? "values from 0 to 1" : "values from 0"));
+    }
+  }
+  return color;
+}
+
+}  // namespace wavecrest

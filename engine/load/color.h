@@ -1,0 +1,28 @@
+// Colours of a scene file as linear Rec. 709 RGB, converted as Mitsuba's rgb variants do.
+//
+// A value is a <float> (grey), an <rgb>, an <srgb> (hexadecimal or gamma-encoded), a <spectrum> (one number, or
+// wavelength:value pairs) or an object <spectrum type=…>. What a spectrum becomes depends on its role: reflectance is
+// seen under D65 and clamped to [0, 1]; radiance is integrated as it is, so that a flat spectrum is slightly purple.
+#pragma once
+
+#include <span>
+
+#include "engine/load/context.h"
+
+namespace wavecrest {
+
+enum class ColorRole {
+  reflectance,  // in [0, 1]
+  unbounded,    // not a reflectance: index of refraction, roughness
+  emission,
+};
+
+// The colour of a value element or a <spectrum type=…> object; anything else is an error.
+Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role);
+
+// A piecewise linear spectrum, zero outside its wavelengths (nm, increasing), as RGB.
+Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> values, ColorRole role);
+
+double srgbToLinear(double encoded);
+
+}  // namespace wavecrest

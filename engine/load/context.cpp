@@ -1,0 +1,42 @@
+#include "engine/load/context.h"
+
+#include "engine/load/values.h"
+
+namespace wavecrest {
+
+const XmlElement& LoadContext::resolve(const XmlElement& element) const {
+  if (element.tag != "ref") return element;
+  const std::string* id = element.find("id");
+  if (!id) throw LoadError(element.location(), "<ref> has no id; expected the id of an object");
+  const auto target = document.ids.find(*id);
+  if (target == document.ids.end()) {
+    throw LoadError(element.location(), "no object has the id " + inQuotes(*id) + "; expected the id of an object");
+  }
+  return *target->second;
+}
+
+std::filesystem::path LoadContext::resolvePath(std::string_view name, const XmlElement& namedIn) const {
+  const auto folderOf = [](const std::string& file) { return std::filesystem::path(file).parent_path(); };
+  const std::filesystem::path besideScene = (folderOf(document.files.front()) / name).lexically_normal();
+  std::vector<std::filesystem::path> candidates = {besideScene, folderOf(*namedIn.file) / name};
+  for (const std::filesystem::path& folder : document.searchPaths) candidates.push_back(folder / name);
+  for (const std::filesystem::path& candidate : candidates) {
+    std::error_code error;
+    if (std::filesystem::exists(candidate, error)) return candidate.lexically_normal();
+  }
+  return besideScene;
+}
+
+void LoadContext::unsupported(const SourceLocation& where, const std::string& message) {
+  if (!options.lenient) throw LoadError(where, message);
+  scene.warnings.push_back(where.file + ":" + std::to_string(where.line) + ": " + message);
+}
+
+ReadingGuard::ReadingGuard(LoadContext& context, const XmlElement& object) : context_(context), object_(object) {
+  if (!context.reading.insert(&object).second) {
+    throw LoadError(object.location(),
+                    "<" + object.tag + "> contains itself through a reference; expected references without a cycle");
+  }
+}
+
+}  // namespace wavecrest

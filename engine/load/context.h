@@ -1,0 +1,55 @@
+// What all readers share while one scene is loaded: the XML, the scene being built, and what was read already.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "engine/load/load.h"
+#include "engine/load/xml_document.h"
+
+namespace wavecrest {
+
+struct TriangleSoup;
+
+struct LoadContext {
+  const LoadOptions& options;
+  const XmlDocument& document;
+  Scene scene;
+
+  // An object that is referenced many times is read once.
+  std::map<const XmlElement*, uint32_t> materials{};
+  std::map<const XmlElement*, uint32_t> textures{};
+  std::set<const XmlElement*> reading{};                           // objects being read, to find reference cycles
+  std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};  // by path and colour treatment
+  std::map<std::string, std::shared_ptr<const TriangleSoup>> groupMeshes{};  // mesh files inside shape groups
+  bool inShapeGroup = false;
+  uint32_t defaultMaterial[2] = {kNone, kNone};  // of surfaces, of lights
+  uint64_t instancedTriangles = 0;
+
+  // Follows <ref>; any other element is itself.
+  const XmlElement& resolve(const XmlElement& element) const;
+  // A file named in the XML, relative to the scene file (as Mitsuba takes it, also in included files), else to the file
+  // that names it, else to a <path>. The first that exists; if none does, the one beside the scene file.
+  std::filesystem::path resolvePath(std::string_view name, const XmlElement& namedIn) const;
+
+  // Something well-formed that wavecrest does not support: an error, or with --lenient a warning after which the
+  // caller goes on without it.
+  void unsupported(const SourceLocation& where, const std::string& message);
+};
+
+// Marks an object as being read for its lifetime; throws if it already is, that is, if it contains itself.
+class ReadingGuard {
+ public:
+  ReadingGuard(LoadContext& context, const XmlElement& object);
+  ~ReadingGuard() { context_.reading.erase(&object_); }
+  ReadingGuard(const ReadingGuard&) = delete;
+  ReadingGuard& operator=(const ReadingGuard&) = delete;
+
+ private:
+  LoadContext& context_;
+  const XmlElement& object_;
+};
+
+}  // namespace wavecrest

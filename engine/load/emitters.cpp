@@ -1,0 +1,139 @@
+#include "engine/load/emitters.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/load/bitmap_file.h"
+#include "engine/load/materials.h"
+#include "engine/load/values.h"
+
+namespace wavecrest {
+
+namespace {
+
+// Mitsuba's sampling_weight only guides which light is sampled.
+void ignoreCommonParameters(Parameters& parameters) { parameters.ignore({"sampling_weight"}); }
+
+Matrix4 readToWorld(Parameters& parameters) { return parameters.transform("to_world").value_or(identityMatrix()); }
+
+Double3 unitDirection(const Parameters& parameters, const Double3& v, std::string_view name) {
+  const double size = length(v);
+  if (!(size > 0) || !std::isfinite(size)) {
+    throw LoadError(parameters.locationOf(name),
+                    inQuotes(name) + " has no direction; expected a vector of positive length");
+  }
+  return (1 / size) * v;
+}
+
+bool isInfinite(const EmitterKind& kind) {
+  return std::holds_alternative<ConstantEmitter>(kind) || std::holds_alternative<EnvmapEmitter>(kind);
+}
+
+}  // namespace
+
+void addEmitter(LoadContext& context, const XmlElement& emitter) {
+  if (emitter.get("type") == "area") {
+    throw LoadError(emitter.location(),
+                    "area light outside of a shape; expected it as a child of the shape that emits");
+  }
+  const EmitterPlugin* plugin = findPlugin(context, emitterPlugins(), emitter, "left out");
+  if (!plugin) return;
+  Parameters parameters(context, emitter);
+  EmitterKind kind = plugin->read(context, parameters);
+  ignoreCommonParameters(parameters);
+  parameters.finish();
+  if (isInfinite(kind)) {
+    for (const Emitter& other : context.scene.emitters) {
+      if (isInfinite(other.kind)) {
+        throw LoadError(emitter.location(), "second environment light (the first is at line " +
+                                                std::to_string(other.source.line) + "); expected at most one");
+      }
+    }
+  }
+  context.scene.emitters.push_back({.kind = std::move(kind), .source = emitter.location()});
+}
+
+AreaEmitter readAreaEmitter(LoadContext& context, const XmlElement& emitter, uint32_t shape) {
+  if (emitter.get("type") != "area") {
+    throw LoadError(emitter.location(),
+                    "emitter " + inQuotes(emitter.get("type")) + " inside a shape; expected \"area\"");
+  }
+  Parameters parameters(context, emitter);
+  AreaEmitter light{.radiance = readTexturedEmission(context, parameters, "radiance"), .shape = shape};
+  ignoreCommonParameters(parameters);
+  if (parameters.has("to_world")) {
+    throw LoadError(parameters.locationOf("to_world"), "area light has a to_world; expected it on the shape");
+  }
+  parameters.finish();
+  return light;
+}
+
+EmitterKind readPoint(LoadContext& context, Parameters& parameters) {
+  const std::optional<Double3> position = parameters.vector("position");
+  const std::optional<Matrix4> toWorld = parameters.transform("to_world");
+  if (position && toWorld) {
+    throw LoadError(parameters.locationOf("to_world"),
+                    "point light has position and to_world; expected one of the two");
+  }
+  return PointEmitter{.position = position.value_or(transformPoint(toWorld.value_or(identityMatrix()), {0, 0, 0})),
+                      .intensity = readConstantEmission(context, parameters, "intensity")};
+}
+
+EmitterKind readSpot(LoadContext& context, Parameters& parameters) {
+  SpotEmitter spot{.toWorld = readToWorld(parameters)};
+  spot.position = transformPoint(spot.toWorld, {0, 0, 0});
+  spot.direction = unitDirection(parameters, transformVector(spot.toWorld, {0, 0, 1}), "to_world");
+  spot.intensity = readConstantEmission(context, parameters, "intensity");
+  spot.cutoffAngle = parameters.positiveReal("cutoff_angle", 20);
+  spot.beamWidth = parameters.real("beam_width", 0.75 * spot.cutoffAngle);
+  if (spot.cutoffAngle > 90) {
+    throw LoadError(parameters.locationOf("cutoff_angle"), "cutoff_angle is above 90 degrees; expected 0 to 90");
+  }
+  if (spot.beamWidth < 0 || spot.beamWidth > spot.cutoffAngle) {
+    throw LoadError(parameters.locationOf("beam_width"), "beam_width is not below the cutoff_angle; expected 0 to " +
+                                                             std::to_string(spot.cutoffAngle) + " degrees");
+  }
+  if (const XmlElement* texture = parameters.element("texture")) {
+    if (texture->tag != "texture") {
+      throw LoadError(texture->location(), "texture of a spot light is a <" + texture->tag + ">; expected a <texture>");
+    }
+    spot.texture = textureOf(context, *texture);
+  }
+  return spot;
+}
+
+EmitterKind readDirectional(LoadContext& context, Parameters& parameters) {
+  const std::optional<Double3> direction = parameters.vector("direction");
+  const std::optional<Matrix4> toWorld = parameters.transform("to_world");
+  if (direction && toWorld) {
+    throw LoadError(parameters.locationOf("to_world"),
+                    "directional light has direction and to_world; expected one of the two");
+  }
+  const Double3 along = direction.value_or(transformVector(toWorld.value_or(identityMatrix()), {0, 0, 1}));
+  return DirectionalEmitter{.direction = unitDirection(parameters, along, direction ? "direction" : "to_world"),
+                            .irradiance = readConstantEmission(context, parameters, "irradiance")};
+}
+
+EmitterKind readConstant(LoadContext& context, Parameters& parameters) {
+  parameters.ignore({"to_world"});  // the same radiance from everywhere
+  return ConstantEmitter{.radiance = readConstantEmission(context, parameters, "radiance")};
+}
+
+EmitterKind readEnvmap(LoadContext& context, Parameters& parameters) {
+  const std::string filename = parameters.requiredString("filename");
+  const SourceLocation where = parameters.locationOf("filename");
+  EnvmapEmitter light{.bitmap = readBitmap(context, context.resolvePath(filename, parameters.object()), false, where),
+                      .scale = parameters.real("scale", 1),
+                      .toWorld = readToWorld(parameters)};
+  parameters.ignore({"mis_compensation"});  // guides sampling only
+  if (!(light.scale >= 0)) {
+    throw LoadError(parameters.locationOf("scale"), "scale of the environment is negative; expected 0 or more");
+  }
+  const std::vector<float>& pixels = light.bitmap->pixels;
+  if (std::any_of(pixels.begin(), pixels.end(), [](float v) { return v < 0; })) {
+    throw LoadError(where, "environment map " + inQuotes(filename) + " has negative pixels; expected radiance from 0");
+  }
+  return light;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,107 @@
+#include "engine/load/film.h"
+
+#include "engine/load/plugins.h"
+
+namespace wavecrest {
+
+namespace {
+
+constexpr int64_t kLargestSide = 32768;
+constexpr int64_t kMostPixels = int64_t{1} << 28;
+constexpr double kWidestFilter = 32;  // pixels
+
+void setGaussian(FilmSettings& film, double stddev) {
+  film.filter = ReconstructionFilter::gaussian;
+  film.gaussianStddev = stddev;
+  film.filterRadius = 4 * stddev;  // where Mitsuba cuts it off
+}
+
+void readCrop(Parameters& parameters, FilmSettings& film) {
+  const auto pixels = [&](std::string_view name, int64_t fallback) {
+    return static_cast<uint32_t>(parameters.integer(name, fallback, 0, kLargestSide));
+  };
+  film.cropX = pixels("crop_offset_x", 0);
+  film.cropY = pixels("crop_offset_y", 0);
+  const bool any = parameters.has("crop_width") || parameters.has("crop_height") || film.cropX > 0 || film.cropY > 0;
+  if (!any) return;
+  film.cropWidth = pixels("crop_width", film.width);
+  film.cropHeight = pixels("crop_height", film.height);
+  if (film.cropWidth == 0 || film.cropHeight == 0 || film.cropX + film.cropWidth > film.width ||
+      film.cropY + film.cropHeight > film.height) {
+    throw LoadError(parameters.location(), "crop window leaves the film; expected it to be inside " +
+                                               std::to_string(film.width) + " x " + std::to_string(film.height));
+  }
+}
+
+double checkedRadius(const Parameters& parameters, std::string_view name, double radius) {
+  if (radius <= kWidestFilter) return radius;
+  throw LoadError(parameters.locationOf(name), "reconstruction filter is wider than " +
+                                                   std::to_string(static_cast<int>(kWidestFilter)) +
+                                                   " pixels; expected a smaller one");
+}
+
+}  // namespace
+
+void readBoxFilter(Parameters& parameters, FilmSettings& film) {
+  film.filter = ReconstructionFilter::box;
+  film.filterRadius = checkedRadius(parameters, "radius", parameters.positiveReal("radius", 0.5));
+}
+
+void readTentFilter(Parameters& parameters, FilmSettings& film) {
+  film.filter = ReconstructionFilter::tent;
+  film.filterRadius = checkedRadius(parameters, "radius", parameters.positiveReal("radius", 1));
+}
+
+void readGaussianFilter(Parameters& parameters, FilmSettings& film) {
+  setGaussian(film, parameters.positiveReal("stddev", 0.5));
+  checkedRadius(parameters, "stddev", film.filterRadius);
+}
+
+void readFilm(LoadContext& context, const XmlElement* element) {
+  FilmSettings& film = context.scene.film;
+  setGaussian(film, 0.5);
+  if (element) {
+    const std::string_view type = element->get("type");
+    if (type != "hdrfilm" && type != "ldrfilm") {
+      context.unsupported(element->location(), "film \"" + std::string(type) + "\" is not supported; expected hdrfilm");
+    }
+    Parameters parameters(context, *element);
+    film.width = static_cast<uint32_t>(parameters.integer("width", 768, 1, kLargestSide));
+    film.height = static_cast<uint32_t>(parameters.integer("height", 576, 1, kLargestSide));
+    readCrop(parameters, film);
+    // How the file is stored is the command line's business.
+    parameters.ignore({"file_format", "pixel_format", "component_format", "banner", "compensate", "sample_border",
+                       "high_quality_edges", "gamma", "exposure", "tonemap_method"});
+    const std::vector<const XmlElement*> filters = parameters.objects("rfilter");
+    if (filters.size() > 1) throw LoadError(filters[1]->location(), "film has two rfilters; expected at most one");
+    if (!filters.empty()) {
+      if (const FilterPlugin* plugin = findPlugin(context, filterPlugins(), *filters[0], "replaced by gaussian")) {
+        Parameters filterParameters(context, *filters[0]);
+        plugin->read(filterParameters, film);
+        filterParameters.finish();
+      }
+    }
+    parameters.finish();
+  }
+  if (context.options.filmSize) {
+    film.width = (*context.options.filmSize)[0];
+    film.height = (*context.options.filmSize)[1];
+    film.cropX = film.cropY = film.cropWidth = film.cropHeight = 0;
+  }
+  if (film.width == 0 || film.height == 0 || int64_t{film.width} * film.height > kMostPixels) {
+    throw LoadError(element ? element->location() : context.document.scene.location(),
+                    "film of " + std::to_string(film.width) + " x " + std::to_string(film.height) +
+                        " pixels; expected 1 to 2^28 pixels");
+  }
+}
+
+void readSampler(LoadContext& context, const XmlElement* element) {
+  context.scene.defaults.sampleCount = 4;
+  if (!element) return;
+  constexpr int64_t kMost = 1'000'000'000;
+  Parameters parameters(context, *element);
+  context.scene.defaults.sampleCount = static_cast<uint32_t>(parameters.integer("sample_count", 4, 1, kMost));
+  parameters.ignoreOthers();  // the sampler itself is chosen by the user
+}
+
+}  // namespace wavecrest

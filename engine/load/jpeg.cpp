@@ -1,0 +1,90 @@
+#include "engine/load/jpeg.h"
+
+#include <algorithm>
+#include <csetjmp>
+#include <cstddef>
+#include <cstdio>
+// After <cstdio>: jpeglib.h uses FILE without declaring it.
+#include <jpeglib.h>
+
+namespace wavecrest {
+
+namespace {
+
+// libjpeg reports errors through callbacks that must not return. It is C, so no exception may pass through it: the
+// callback jumps back instead, and decodeJpeg keeps objects with destructors out of the frame it jumps over.
+struct ErrorState {
+  jpeg_error_mgr manager;  // first member: libjpeg hands back a pointer to it
+  std::jmp_buf returnPoint;
+  char message[JMSG_LENGTH_MAX];
+};
+
+void onError(j_common_ptr info) {
+  ErrorState* state = reinterpret_cast<ErrorState*>(info->err);
+  state->manager.format_message(info, state->message);
+  std::longjmp(state->returnPoint, 1);
+}
+
+// Warnings mean damaged data that libjpeg would paper over in grey.
+void onWarning(j_common_ptr info, int level) {
+  if (level < 0) onError(info);
+}
+
+// Plain data only: false and state.message on error.
+bool decode(ErrorState& state, jpeg_decompress_struct& info, std::span<const char> bytes, Image& image,
+            std::vector<unsigned char>& row) {
+  if (setjmp(state.returnPoint) != 0) return false;
+  jpeg_create_decompress(&info);
+  jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<unsigned long>(bytes.size()));
+  jpeg_read_header(&info, TRUE);
+  info.out_color_space = JCS_RGB;
+  // A block of 8 x 8 takes at least a bit or two, so the file's length bounds the size it may announce.
+  constexpr size_t kPixelsPerByte = 1024, kMostPixels = size_t{1} << 27;
+  const size_t pixels = size_t{info.image_width} * info.image_height;
+  if (pixels > std::min(kMostPixels, kPixelsPerByte * bytes.size())) {
+    std::snprintf(state.message, sizeof state.message, "announces %u x %u pixels in %zu bytes", info.image_width,
+                  info.image_height, bytes.size());
+    return false;
+  }
+  jpeg_start_decompress(&info);
+  image.width = info.output_width;
+  image.height = info.output_height;
+  const size_t rowSize = size_t{3} * image.width;
+  image.pixels.resize(rowSize * image.height);
+  row.resize(rowSize);
+  while (info.output_scanline < info.output_height) {
+    float* out = image.pixels.data() + rowSize * info.output_scanline;
+    unsigned char* rows[1] = {row.data()};
+    jpeg_read_scanlines(&info, rows, 1);
+    for (size_t i = 0; i < rowSize; ++i) out[i] = static_cast<float>(row[i]) / 255.0f;
+  }
+  jpeg_finish_decompress(&info);
+  return true;
+}
+
+struct Decompressor {
+  jpeg_decompress_struct info{};
+  Decompressor() = default;
+  ~Decompressor() { jpeg_destroy_decompress(&info); }
+  Decompressor(const Decompressor&) = delete;
+  Decompressor& operator=(const Decompressor&) = delete;
+};
+
+}  // namespace
+
+ImageFile decodeJpeg(const std::string& path, std::span<const char> bytes) {
+  ImageFile file;
+  file.encoding = Encoding::srgb8;
+  std::vector<unsigned char> row;
+  ErrorState state{};
+  Decompressor decompressor;
+  decompressor.info.err = jpeg_std_error(&state.manager);
+  state.manager.error_exit = &onError;
+  state.manager.emit_message = &onWarning;
+  if (!decode(state, decompressor.info, bytes, file.image, row)) {
+    throw ImageError(path, std::string("damaged JPEG: ") + state.message, "expected an intact JPEG file");
+  }
+  return file;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,79 @@
+#include "engine/load/load.h"
+
+#include <new>
+
+#include "engine/load/context.h"
+#include "engine/load/emitters.h"
+#include "engine/load/materials.h"
+#include "engine/load/scene_hash.h"
+#include "engine/load/sensor.h"
+#include "engine/load/shapes.h"
+#include "engine/load/values.h"
+#include "engine/load/xml_document.h"
+
+namespace wavecrest {
+
+namespace {
+
+// Definitions that no shape uses are checked all the same, and leave nothing in the scene.
+void checkUnusedDefinition(LoadContext& context, const XmlElement& element) {
+  const size_t materials = context.scene.materials.size(), textures = context.scene.textures.size();
+  if (element.tag == "bsdf") {
+    if (context.materials.contains(&element)) return;
+    materialOf(context, element);
+  } else {
+    if (context.textures.contains(&element)) return;
+    textureOf(context, element);
+  }
+  context.scene.materials.resize(materials);
+  context.scene.textures.resize(textures);
+  std::erase_if(context.materials, [&](const auto& entry) { return entry.second >= materials; });
+  std::erase_if(context.textures, [&](const auto& entry) { return entry.second >= textures; });
+}
+
+void readSensors(LoadContext& context, const std::vector<const XmlElement*>& sensors) {
+  if (sensors.empty()) {
+    throw LoadError(context.document.scene.location(), "scene has no sensor; expected a <sensor type=\"perspective\">");
+  }
+  readSensor(context, *sensors.front());
+  if (sensors.size() > 1) {
+    context.scene.warnings.push_back(sensors[1]->location().file + ":" + std::to_string(sensors[1]->line) +
+                                     ": only the first of " + std::to_string(sensors.size()) + " sensors is used");
+  }
+}
+
+void readScene(LoadContext& context) {
+  Parameters parameters(context, context.document.scene);
+  const std::vector<const XmlElement*> integrators = parameters.objects("integrator");
+  if (integrators.size() > 1) {
+    throw LoadError(integrators[1]->location(), "scene has a second integrator; expected at most one");
+  }
+  if (!integrators.empty()) readIntegrator(context, *integrators.front());
+  readSensors(context, parameters.objects("sensor"));
+  for (const XmlElement* shape : parameters.objects("shape")) addShape(context, *shape);
+  for (const XmlElement* emitter : parameters.objects("emitter")) addEmitter(context, *emitter);
+  for (const XmlElement* bsdf : parameters.objects("bsdf")) checkUnusedDefinition(context, *bsdf);
+  for (const XmlElement* texture : parameters.objects("texture")) checkUnusedDefinition(context, *texture);
+  parameters.finish();
+  if (context.scene.shapes.empty()) {
+    throw LoadError(context.document.scene.location(), "scene is empty; expected at least one shape");
+  }
+}
+
+}  // namespace
+
+Scene loadScene(const std::filesystem::path& xml, const LoadOptions& options) {
+  try {
+    const std::unique_ptr<XmlDocument> document = readXmlDocument(xml, options);
+    LoadContext context{.options = options, .document = *document, .scene = {}};
+    context.scene.name = xml.stem().string();
+    context.scene.warnings = document->warnings;
+    readScene(context);
+    context.scene.hash = hashScene(context.scene);
+    return std::move(context.scene);
+  } catch (const std::bad_alloc&) {
+    throw LoadError({xml.string(), 0}, "out of memory while loading; expected a scene that fits into memory");
+  }
+}
+
+}  // namespace wavecrest

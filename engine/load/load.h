@@ -1,0 +1,44 @@
+// Reads a scene file: Mitsuba 3 XML, and by automatic upgrade the names of versions 0.5 to 2.x, into a Scene.
+//
+// In: a path to an XML file; the meshes and textures it names are found relative to the file that names them.
+// Out: a complete, checked Scene: every index valid, every number finite, every light of positive area.
+// Input is untrusted: whatever the bytes, the result is a Scene or a LoadError that names file and line.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "engine/scene/scene.h"
+
+namespace wavecrest {
+
+// What is wrong with an input file; what() reads "FILE:LINE: what is wrong; what was expected". Line 0: the whole file.
+class LoadError : public std::runtime_error {
+ public:
+  LoadError(const SourceLocation& where, const std::string& message)
+      : std::runtime_error(where.file + ":" + std::to_string(where.line) + ": " + message),
+        location(where),
+        text(message) {}
+
+  SourceLocation location;
+  std::string text;  // without the location
+};
+
+struct LoadOptions {
+  // Values of $name, stronger than the file's <default>. A name that the scene never uses is an error.
+  std::map<std::string, std::string> defines;
+  // Skip what is not supported and list it in Scene::warnings. Malformed input is an error all the same.
+  bool lenient = false;
+  // Width and height instead of the film's; a crop window, being in pixels of the old size, is dropped. The field of
+  // view follows the new aspect ratio by the sensor's fov_axis.
+  std::optional<std::array<uint32_t, 2>> filmSize;
+};
+
+Scene loadScene(const std::filesystem::path& xml, const LoadOptions& options = {});
+
+}  // namespace wavecrest

@@ -1,0 +1,102 @@
+#include "engine/load/materials.h"
+
+#include "engine/load/color.h"
+#include "engine/load/plugins.h"
+#include "engine/load/values.h"
+
+namespace wavecrest {
+
+namespace {
+
+bool isTexture(const XmlElement& element) { return element.isObject() && element.tag == "texture"; }
+
+TexturedRgb readTextured(LoadContext& context, Parameters& parameters, std::string_view name, double fallback,
+                         ColorRole role) {
+  const XmlElement* element = parameters.element(name);
+  if (!element) return {.value = {fallback, fallback, fallback}};
+  if (isTexture(*element)) return {.value = {0, 0, 0}, .texture = textureOf(context, *element)};
+  return {.value = readColor(context, *element, role)};
+}
+
+}  // namespace
+
+uint32_t materialOf(LoadContext& context, const XmlElement& bsdf) {
+  if (const auto known = context.materials.find(&bsdf); known != context.materials.end()) return known->second;
+  Material material;
+  material.id = bsdf.get("id");
+  material.source = bsdf.location();
+  readBsdf(context, bsdf, material);
+  const uint32_t index = static_cast<uint32_t>(context.scene.materials.size());
+  context.scene.materials.push_back(std::move(material));
+  context.materials.emplace(&bsdf, index);
+  return index;
+}
+
+uint32_t defaultMaterial(LoadContext& context, bool isLight) {
+  uint32_t& index = context.defaultMaterial[isLight ? 1 : 0];
+  if (index == kNone) {
+    index = static_cast<uint32_t>(context.scene.materials.size());
+    Material material;
+    const double reflectance = isLight ? 0 : 0.5;
+    material.kind = Diffuse{.reflectance = {.value = {reflectance, reflectance, reflectance}}};
+    material.source = context.document.scene.location();
+    context.scene.materials.push_back(std::move(material));
+  }
+  return index;
+}
+
+void readBsdf(LoadContext& context, const XmlElement& bsdf, Material& material) {
+  const ReadingGuard guard(context, bsdf);
+  const BsdfPlugin* plugin = findPlugin(context, bsdfPlugins(), bsdf, "replaced by diffuse of reflectance 0.5");
+  if (!plugin) {
+    material.kind = Diffuse{};
+    return;
+  }
+  Parameters parameters(context, bsdf);
+  plugin->read(context, parameters, material);
+  parameters.finish();
+}
+
+uint32_t textureOf(LoadContext& context, const XmlElement& texture) {
+  if (const auto known = context.textures.find(&texture); known != context.textures.end()) return known->second;
+  const ReadingGuard guard(context, texture);
+  Texture result{.kind = CheckerboardTexture{.color0 = {0.5, 0.5, 0.5}, .color1 = {0.5, 0.5, 0.5}},
+                 .toUv = identityMatrix()};
+  if (const TexturePlugin* plugin = findPlugin(context, texturePlugins(), texture, "replaced by a constant of 0.5")) {
+    Parameters parameters(context, texture);
+    result = plugin->read(context, parameters);
+    parameters.finish();
+  }
+  const uint32_t index = static_cast<uint32_t>(context.scene.textures.size());
+  context.scene.textures.push_back(std::move(result));
+  context.textures.emplace(&texture, index);
+  return index;
+}
+
+TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
+  return readTextured(context, parameters, name, fallback, ColorRole::reflectance);
+}
+
+TexturedRgb readTexturedEmission(LoadContext& context, Parameters& parameters, std::string_view name) {
+  return readTextured(context, parameters, name, 1, ColorRole::emission);
+}
+
+TexturedFloat readTexturedFloat(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
+  const TexturedRgb color = readTextured(context, parameters, name, fallback, ColorRole::unbounded);
+  // Luminance of linear Rec. 709.
+  const double value = 0.212671 * color.value[0] + 0.715160 * color.value[1] + 0.072169 * color.value[2];
+  const bool grey = color.value[0] == color.value[1] && color.value[1] == color.value[2];
+  return {.value = grey ? color.value[0] : value, .texture = color.texture};
+}
+
+Rgb readConstantEmission(LoadContext& context, Parameters& parameters, std::string_view name) {
+  const XmlElement* element = parameters.element(name);
+  if (!element) return {1, 1, 1};
+  if (isTexture(*element)) {
+    throw LoadError(parameters.locationOf(name),
+                    inQuotes(name) + " of " + parameters.describe() + " is a texture; expected one colour");
+  }
+  return readColor(context, *element, ColorRole::emission);
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,25 @@
+// BSDFs and textures to scene.materials and scene.textures.
+#pragma once
+
+#include "engine/load/parameters.h"
+
+namespace wavecrest {
+
+// Index of the material of a <bsdf> (read once however often it is referenced).
+uint32_t materialOf(LoadContext& context, const XmlElement& bsdf);
+// What a shape without a BSDF has: Mitsuba's `diffuse` of reflectance 0.5, and 0 on a light.
+uint32_t defaultMaterial(LoadContext& context, bool isLight);
+
+uint32_t textureOf(LoadContext& context, const XmlElement& texture);
+
+// A parameter that is a colour or a texture; TexturedRgb::texture says which.
+TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);
+TexturedRgb readTexturedEmission(LoadContext& context, Parameters& parameters, std::string_view name);
+TexturedFloat readTexturedFloat(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);
+// A parameter that must be one colour everywhere.
+Rgb readConstantEmission(LoadContext& context, Parameters& parameters, std::string_view name);
+
+// Reads a nested <bsdf> into `material`, for the adapters (twosided, mask, bumpmap, normalmap).
+void readBsdf(LoadContext& context, const XmlElement& bsdf, Material& material);
+
+}  // namespace wavecrest

@@ -1,0 +1,107 @@
+#include "engine/load/matrix.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace wavecrest {
+
+Double3 operator+(const Double3& a, const Double3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Double3 operator-(const Double3& a, const Double3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Double3 operator*(double s, const Double3& a) { return {s * a[0], s * a[1], s * a[2]}; }
+double dot(const Double3& a, const Double3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Double3 cross(const Double3& a, const Double3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double length(const Double3& a) { return std::sqrt(dot(a, a)); }
+Double3 normalize(const Double3& a) { return (1 / length(a)) * a; }
+
+Matrix4 identityMatrix() { return {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}; }
+
+Matrix4 multiply(const Matrix4& a, const Matrix4& b) {
+  Matrix4 product{};
+  for (size_t i = 0; i < 4; ++i) {
+    for (size_t j = 0; j < 4; ++j) {
+      for (size_t k = 0; k < 4; ++k) product[i][j] += a[i][k] * b[k][j];
+    }
+  }
+  return product;
+}
+
+Matrix4 translation(const Double3& offset) {
+  Matrix4 m = identityMatrix();
+  for (size_t i = 0; i < 3; ++i) m[i][3] = offset[i];
+  return m;
+}
+
+Matrix4 scaling(const Double3& factors) {
+  Matrix4 m = identityMatrix();
+  for (size_t i = 0; i < 3; ++i) m[i][i] = factors[i];
+  return m;
+}
+
+// Rodrigues' formula: R = cos(a) I + (1 - cos(a)) n n^T + sin(a) [n]_x.
+Matrix4 rotation(const Double3& axis, double degrees) {
+  const Double3 n = normalize(axis);
+  const double angle = degrees * (std::numbers::pi / 180), s = std::sin(angle), c = std::cos(angle);
+  Matrix4 m = identityMatrix();
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = 0; j < 3; ++j) m[i][j] = (1 - c) * n[i] * n[j] + (i == j ? c : 0);
+  }
+  for (size_t i = 0; i < 3; ++i) {
+    m[(i + 1) % 3][(i + 2) % 3] -= s * n[i];
+    m[(i + 2) % 3][(i + 1) % 3] += s * n[i];
+  }
+  return m;
+}
+
+Matrix4 lookAt(const Double3& origin, const Double3& target, const Double3& up) {
+  const Double3 forward = normalize(target - origin), left = normalize(cross(up, forward)),
+                newUp = cross(forward, left);
+  Matrix4 m = identityMatrix();
+  for (size_t i = 0; i < 3; ++i) {
+    m[i][0] = left[i];
+    m[i][1] = newUp[i];
+    m[i][2] = forward[i];
+    m[i][3] = origin[i];
+  }
+  return m;
+}
+
+Double3 transformPoint(const Matrix4& m, const Double3& p) {
+  Double3 q{};
+  for (size_t i = 0; i < 3; ++i) q[i] = m[i][0] * p[0] + m[i][1] * p[1] + m[i][2] * p[2] + m[i][3];
+  return q;
+}
+
+Double3 transformVector(const Matrix4& m, const Double3& v) {
+  Double3 w{};
+  for (size_t i = 0; i < 3; ++i) w[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
+  return w;
+}
+
+double determinant3(const Matrix4& m) {
+  const Double3 x{m[0][0], m[1][0], m[2][0]}, y{m[0][1], m[1][1], m[2][1]}, z{m[0][2], m[1][2], m[2][2]};
+  return dot(cross(x, y), z);
+}
+
+Matrix4 normalMatrix(const Matrix4& m) {
+  const Double3 x{m[0][0], m[1][0], m[2][0]}, y{m[0][1], m[1][1], m[2][1]}, z{m[0][2], m[1][2], m[2][2]};
+  const double sign = determinant3(m) < 0 ? -1 : 1;
+  const Double3 columns[3] = {sign * cross(y, z), sign * cross(z, x), sign * cross(x, y)};
+  Matrix4 normal = identityMatrix();
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = 0; j < 3; ++j) normal[i][j] = columns[j][i];
+  }
+  return normal;
+}
+
+bool isFinite(const Matrix4& m) {
+  return std::all_of(m.begin(), m.end(), [](const auto& row) {
+    return std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); });
+  });
+}
+
+bool isIdentity(const Matrix4& m) { return m == identityMatrix(); }
+
+}  // namespace wavecrest

@@ -1,0 +1,31 @@
+// From triangles as a file gives them (object space) to a Mesh of the scene: placed, oriented, with its normals.
+#pragma once
+
+#include "engine/load/context.h"
+#include "engine/load/matrix.h"
+
+namespace wavecrest {
+
+// Triangles in object space, indices checked by whoever made them.
+struct TriangleSoup {
+  std::vector<Float3> positions;
+  std::vector<Float3> normals;  // empty or one per position
+  std::vector<Float2> uvs;      // empty or one per position
+  std::vector<std::array<uint32_t, 3>> triangles;
+};
+
+struct MeshPlacement {
+  Matrix4 toWorld = identityMatrix();
+  bool faceNormals = false, flipNormals = false;
+};
+
+// Orientation follows the side that Mitsuba 3.9 shades and emits from:
+//  - with normals in the file these decide: each triangle is wound so that it faces along them, also when a transform
+//    mirrors the mesh;
+//  - without them, or with face_normals, the winding in world space decides, mirrored or not; smooth normals are made
+//    from it unless face_normals is set;
+//  - flip_normals turns both around.
+// Triangles without area are left out and counted in Scene::droppedTriangles.
+Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& placement, const SourceLocation& where);
+
+}  // namespace wavecrest

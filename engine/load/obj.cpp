@@ -1,0 +1,149 @@
+// Wavefront OBJ: v, vt, vn and f lines; every other line (groups, materials, smoothing) is skipped as in Mitsuba.
+#include <algorithm>
+#include <unordered_map>
+
+#include "engine/load/input_file.h"
+#include "engine/load/mesh_files.h"
+#include "engine/load/text_scanner.h"
+
+namespace wavecrest {
+
+namespace {
+
+constexpr uint32_t kAbsent = std::numeric_limits<uint32_t>::max();
+
+// A corner names its position, texture coordinates and normal separately; each distinct triple becomes one vertex.
+struct Corner {
+  uint32_t position = 0, uv = kAbsent, normal = kAbsent;
+  bool operator==(const Corner&) const = default;
+};
+
+struct CornerHash {
+  // Mixes all bits, so that no choice of indices can crowd the table (finalizer of splitmix64).
+  static uint64_t mix(uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+  }
+  size_t operator()(const Corner& c) const { return mix(mix((uint64_t{c.position} << 32) + c.uv) + c.normal); }
+};
+
+class ObjReader {
+ public:
+  ObjReader(TextScanner scanner, bool flipTexCoords) : scanner_(scanner), flipTexCoords_(flipTexCoords) {}
+
+  TriangleSoup read() {
+    while (!scanner_.atEnd()) {
+      scanner_.skipBlanks();
+      if (scanner_.takeWord("v")) {
+        positions_.push_back(readVector<3>());
+      } else if (scanner_.takeWord("vn")) {
+        normals_.push_back(readVector<3>());
+      } else if (scanner_.takeWord("vt")) {
+        Float2 uv = readVector<2>();
+        if (flipTexCoords_) uv[1] = 1 - uv[1];
+        uvs_.push_back(uv);
+      } else if (scanner_.takeWord("f")) {
+        readFace();
+      }
+      scanner_.skipLine();
+    }
+    return assemble();
+  }
+
+ private:
+  template <size_t N>
+  std::array<float, N> readVector() {
+    std::array<float, N> vector{};
+    for (float& component : vector) {
+      if (scanner_.atLineEnd()) scanner_.fail("line has too few numbers; expected " + std::to_string(N));
+      component = scanner_.readFloat("a coordinate");
+    }
+    return vector;
+  }
+
+  // 1-based, or negative and counted back from the latest; 0-based on return.
+  uint32_t readIndex(size_t count, const char* what) {
+    const int64_t index = scanner_.readInteger("an index");
+    const int64_t size = static_cast<int64_t>(count);
+    if (index == 0 || index > size || index < -size) {
+      scanner_.fail("face refers to " + std::string(what) + " " + std::to_string(index) + "; expected 1 to " +
+                    std::to_string(size) + " or -" + std::to_string(size) + " to -1");
+    }
+    return static_cast<uint32_t>(index > 0 ? index - 1 : index + size);
+  }
+
+  Corner readCorner() {
+    Corner corner;
+    corner.position = readIndex(positions_.size(), "vertex");
+    if (scanner_.peek() != '/') return corner;
+    scanner_.advance(1);
+    if (scanner_.peek() != '/') corner.uv = readIndexHere(uvs_.size(), "texture coordinate");
+    if (scanner_.peek() != '/') return corner;
+    scanner_.advance(1);
+    corner.normal = readIndexHere(normals_.size(), "normal");
+    return corner;
+  }
+  uint32_t readIndexHere(size_t count, const char* what) {
+    const char c = scanner_.peek();
+    if (c == ' ' || c == '\t' || c == '\r' || c == '\n')
+      scanner_.fail("index is missing; expected v, v/vt, v//vn or v/vt/vn");
+    return readIndex(count, what);
+  }
+
+  void readFace() {
+    uint32_t fan[3] = {};
+    size_t corners = 0;
+    for (; !scanner_.atLineEnd(); ++corners) {
+      fan[std::min<size_t>(corners, 2)] = vertexOf(readCorner());
+      const char next = scanner_.peek();
+      if (next != ' ' && next != '\t' && next != '\r' && next != '\n') {
+        scanner_.fail("face corner is malformed; expected v, v/vt, v//vn or v/vt/vn");
+      }
+      if (corners < 2) continue;
+      triangles_.push_back({fan[0], fan[1], fan[2]});
+      fan[1] = fan[2];
+    }
+    if (corners < 3) scanner_.fail("face has " + std::to_string(corners) + " corners; expected at least 3");
+  }
+
+  uint32_t vertexOf(const Corner& corner) {
+    const auto [entry, inserted] = vertices_.try_emplace(corner, static_cast<uint32_t>(corners_.size()));
+    if (inserted) corners_.push_back(corner);
+    hasUvs_ = hasUvs_ || corner.uv != kAbsent;
+    hasNormals_ = hasNormals_ || corner.normal != kAbsent;
+    return entry->second;
+  }
+
+  TriangleSoup assemble() {
+    TriangleSoup soup;
+    soup.triangles = std::move(triangles_);
+    soup.positions.reserve(corners_.size());
+    for (const Corner& corner : corners_) {
+      soup.positions.push_back(positions_[corner.position]);
+      // A corner without a normal among others with one gets the smooth normal: zero stands for missing.
+      if (hasNormals_) soup.normals.push_back(corner.normal == kAbsent ? Float3{0, 0, 0} : normals_[corner.normal]);
+      if (hasUvs_) soup.uvs.push_back(corner.uv == kAbsent ? Float2{0, 0} : uvs_[corner.uv]);
+    }
+    return soup;
+  }
+
+  TextScanner scanner_;
+  bool flipTexCoords_, hasUvs_ = false, hasNormals_ = false;
+  std::vector<Float3> positions_, normals_;
+  std::vector<Float2> uvs_;
+  std::vector<Corner> corners_;
+  std::unordered_map<Corner, uint32_t, CornerHash> vertices_;
+  std::vector<std::array<uint32_t, 3>> triangles_;
+};
+
+}  // namespace
+
+TriangleSoup readObj(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where) {
+  std::vector<char> bytes = readInputFile(path, where);
+  bytes.push_back('\n');
+  const std::string file = path.string();
+  return ObjReader(TextScanner({bytes.data(), bytes.size()}, file), flipTexCoords).read();
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,219 @@
+#include "engine/load/parameters.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/load/ior_table.h"
+#include "engine/load/transform.h"
+#include "engine/load/values.h"
+
+namespace wavecrest {
+
+namespace {
+
+constexpr std::array<std::string_view, 11> kValueTags = {"boolean",  "integer", "float", "string", "point",    "vector",
+                                                         "spectrum", "rgb",     "srgb",  "color",  "transform"};
+
+std::string article(std::string_view tag) { return "<" + std::string(tag) + ">"; }
+
+void checkValueElement(const XmlElement& element) {
+  if (element.get("name").empty()) {
+    throw LoadError(element.location(), article(element.tag) + " has no name; expected the name of a parameter");
+  }
+  if (element.tag != "transform" && !element.children.empty()) {
+    throw LoadError(element.children.front().location(),
+                    article(element.children.front().tag) + " inside " + article(element.tag) + "; expected no child");
+  }
+}
+
+}  // namespace
+
+Parameters::Parameters(LoadContext& context, const XmlElement& object) : context_(context), object_(object) {
+  checkAttributes(object, {"type", "id", "name", "version"});
+  for (const XmlElement& child : object.children) {
+    const bool isValue =
+        !child.isObject() && std::find(kValueTags.begin(), kValueTags.end(), child.tag) != kValueTags.end();
+    if (isValue) {
+      checkValueElement(child);
+    } else if (child.tag == "alias") {
+      continue;
+    } else if (child.tag != "ref" && !child.isObject()) {
+      context.unsupported(child.location(), "unknown element " + article(child.tag) + " in " + describe() +
+                                                "; expected a parameter or an object of Mitsuba's scene format");
+      continue;
+    }
+    if (child.tag == "ref") checkAttributes(child, {"id", "name"});
+    const std::string_view name = child.get("name");
+    const auto sameName = [&](const Child& other) { return !name.empty() && other.name == name; };
+    if (std::any_of(children_.begin(), children_.end(), sameName)) {
+      throw LoadError(child.location(),
+                      "parameter " + inQuotes(name) + " of " + describe() + " is given twice; expected it once");
+    }
+    children_.push_back({.site = &child, .target = &context.resolve(child), .name = name});
+  }
+}
+
+Parameters::Child* Parameters::take(std::string_view name) {
+  if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.emplace_back(name);
+  for (Child& child : children_) {
+    if (child.name != name) continue;
+    child.used = true;
+    return &child;
+  }
+  return nullptr;
+}
+
+bool Parameters::has(std::string_view name) { return take(name) != nullptr; }
+
+const XmlElement* Parameters::element(std::string_view name) {
+  const Child* child = take(name);
+  return child ? child->target : nullptr;
+}
+
+const std::string* Parameters::valueOf(std::string_view name, std::initializer_list<std::string_view> tags) {
+  const Child* child = take(name);
+  if (!child) return nullptr;
+  const XmlElement& element = *child->site;
+  if (std::find(tags.begin(), tags.end(), element.tag) == tags.end()) {
+    std::string expected;
+    for (const std::string_view tag : tags) expected += (expected.empty() ? "" : " or ") + article(tag);
+    throw LoadError(element.location(),
+                    "parameter " + inQuotes(name) + " is a " + article(element.tag) + "; expected " + expected);
+  }
+  checkAttributes(element, {"name", "value"});
+  const std::string* value = element.find("value");
+  if (!value) throw LoadError(element.location(), article(element.tag) + " has no value; expected the attribute value");
+  return value;
+}
+
+double Parameters::real(std::string_view name, double fallback) {
+  const std::string* value = valueOf(name, {"float", "integer"});
+  return value ? parseReal(*value, locationOf(name)) : fallback;
+}
+
+double Parameters::requiredReal(std::string_view name) {
+  if (!has(name)) {
+    throw LoadError(location(), describe() + " has no " + inQuotes(name) + "; expected a <float> of that name");
+  }
+  return real(name, 0);
+}
+
+double Parameters::positiveReal(std::string_view name, double fallback) {
+  const double value = real(name, fallback);
+  if (!(value > 0)) throw LoadError(locationOf(name), inQuotes(name) + " is not positive; expected a number above 0");
+  return value;
+}
+
+int64_t Parameters::integer(std::string_view name, int64_t fallback, int64_t lowest, int64_t highest) {
+  const std::string* text = valueOf(name, {"integer"});
+  if (!text) return fallback;
+  const int64_t value = parseInteger(*text, locationOf(name));
+  if (value < lowest || value > highest) {
+    throw LoadError(locationOf(name), inQuotes(name) + " is " + std::to_string(value) + "; expected " +
+                                          std::to_string(lowest) + " to " + std::to_string(highest));
+  }
+  return value;
+}
+
+bool Parameters::boolean(std::string_view name, bool fallback) {
+  const std::string* value = valueOf(name, {"boolean"});
+  return value ? parseBoolean(*value, locationOf(name)) : fallback;
+}
+
+std::string Parameters::string(std::string_view name, std::string_view fallback) {
+  const std::string* value = valueOf(name, {"string"});
+  return value ? *value : std::string(fallback);
+}
+
+std::string Parameters::requiredString(std::string_view name) {
+  const std::string value = string(name, "");
+  if (value.empty()) {
+    throw LoadError(locationOf(name), describe() + " has no " + inQuotes(name) + "; expected a <string> of that name");
+  }
+  return value;
+}
+
+std::optional<Double3> Parameters::vector(std::string_view name) {
+  const Child* child = take(name);
+  if (!child) return std::nullopt;
+  if (child->site->tag != "point" && child->site->tag != "vector") {
+    throw LoadError(child->site->location(), "parameter " + inQuotes(name) + " is a " + article(child->site->tag) +
+                                                 "; expected <point> or <vector>");
+  }
+  checkAttributes(*child->site, {"name", "x", "y", "z", "value"});
+  return readVectorAttributes(*child->site, 0);
+}
+
+std::optional<Matrix4> Parameters::transform(std::string_view name) {
+  const Child* child = take(name);
+  if (!child) return std::nullopt;
+  if (child->site->tag != "transform") {
+    throw LoadError(child->site->location(),
+                    "parameter " + inQuotes(name) + " is a " + article(child->site->tag) + "; expected <transform>");
+  }
+  return readTransform(*child->site);
+}
+
+double Parameters::ior(std::string_view name, std::string_view fallback) {
+  const Child* child = take(name);
+  if (child && child->site->tag != "string") {
+    return positiveReal(name, 1);
+  }
+  const std::string substance = string(name, fallback);
+  if (const std::optional<double> value = findIor(substance)) return *value;
+  throw LoadError(locationOf(name),
+                  "unknown substance " + inQuotes(substance) + "; expected a number or one of " + listIorNames());
+}
+
+std::vector<const XmlElement*> Parameters::objects(std::string_view tag) {
+  std::vector<const XmlElement*> found;
+  for (Child& child : children_) {
+    if (!child.target->isObject() || child.target->tag != tag) continue;
+    child.used = true;
+    found.push_back(child.target);
+  }
+  return found;
+}
+
+const XmlElement& Parameters::onlyObject(std::string_view tag) {
+  const std::vector<const XmlElement*> found = objects(tag);
+  if (found.size() != 1) {
+    throw LoadError(location(), describe() + " contains " + std::to_string(found.size()) + " objects " + article(tag) +
+                                    "; expected exactly 1");
+  }
+  return *found.front();
+}
+
+void Parameters::ignore(std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names) take(name);
+}
+
+void Parameters::ignoreOthers() {
+  for (Child& child : children_) child.used = true;
+}
+
+void Parameters::finish() {
+  for (const Child& child : children_) {
+    if (child.used) continue;
+    std::string list;
+    for (const std::string& name : known_) list += (list.empty() ? "" : ", ") + name;
+    if (list.empty()) list = "no parameters";
+    const std::string what =
+        child.target->isObject() ? "object " + article(child.target->tag) : "parameter " + inQuotes(child.name);
+    context_.unsupported(child.site->location(), "unknown " + what + " of " + describe() + "; expected " + list);
+  }
+}
+
+SourceLocation Parameters::locationOf(std::string_view name) const {
+  for (const Child& child : children_) {
+    if (child.name == name) return child.site->location();
+  }
+  return location();
+}
+
+std::string Parameters::describe() const {
+  const std::string_view type = object_.get("type");
+  return object_.tag + (type.empty() ? "" : " " + inQuotes(type));
+}
+
+}  // namespace wavecrest

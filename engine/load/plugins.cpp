@@ -1,0 +1,63 @@
+#include "engine/load/plugins.h"
+
+#include "engine/load/bsdfs.h"
+#include "engine/load/emitters.h"
+#include "engine/load/film.h"
+#include "engine/load/sensor.h"
+#include "engine/load/shapes.h"
+#include "engine/load/textures.h"
+
+namespace wavecrest {
+
+std::span<const BsdfPlugin> bsdfPlugins() {
+  static constexpr BsdfPlugin kPlugins[] = {{"diffuse", &readDiffuse},
+                                            {"conductor", &readConductor},
+                                            {"roughconductor", &readRoughConductor},
+                                            {"dielectric", &readDielectric},
+                                            {"thindielectric", &readThinDielectric},
+                                            {"roughdielectric", &readRoughDielectric},
+                                            {"plastic", &readPlastic},
+                                            {"roughplastic", &readRoughPlastic},
+                                            {"phong", &readPhong},
+                                            {"twosided", &readTwoSided},
+                                            {"mask", &readMask},
+                                            {"bumpmap", &readBumpMap},
+                                            {"normalmap", &readNormalMap}};
+  return kPlugins;
+}
+
+std::span<const TexturePlugin> texturePlugins() {
+  static constexpr TexturePlugin kPlugins[] = {{"bitmap", &readBitmapTexture}, {"checkerboard", &readCheckerboard}};
+  return kPlugins;
+}
+
+// `shapegroup` and `instance` are handled by addShape.
+std::span<const ShapePlugin> shapePlugins() {
+  static constexpr ShapePlugin kPlugins[] = {
+      {"rectangle", &readRectangle}, {"cube", &readCube},    {"sphere", &readSphere}, {"disk", &readDisk},
+      {"cylinder", &readCylinder},   {"ply", &readPlyShape}, {"obj", &readObjShape}};
+  return kPlugins;
+}
+
+std::span<const EmitterPlugin> emitterPlugins() {
+  static constexpr EmitterPlugin kPlugins[] = {{"point", &readPoint},
+                                               {"spot", &readSpot},
+                                               {"directional", &readDirectional},
+                                               {"constant", &readConstant},
+                                               {"envmap", &readEnvmap}};
+  return kPlugins;
+}
+
+std::span<const SensorPlugin> sensorPlugins() {
+  static constexpr SensorPlugin kPlugins[] = {
+      {"perspective", &readPerspective}, {"thinlens", &readThinLens}, {"orthographic", &readOrthographic}};
+  return kPlugins;
+}
+
+std::span<const FilterPlugin> filterPlugins() {
+  static constexpr FilterPlugin kPlugins[] = {
+      {"box", &readBoxFilter}, {"tent", &readTentFilter}, {"gaussian", &readGaussianFilter}};
+  return kPlugins;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,275 @@
+// The body of a PLY file: vertices and faces, read by one routine over two kinds of source, text and binary.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "engine/load/input_file.h"
+#include "engine/load/mesh_files.h"
+#include "engine/load/ply_header.h"
+#include "engine/load/text_scanner.h"
+
+namespace wavecrest {
+
+namespace {
+
+class AsciiSource {
+ public:
+  explicit AsciiSource(const TextScanner& scanner) : scanner_(scanner) {}
+
+  float real(PlyType) { return scanner_.readFloat("a number of the announced element"); }
+  int64_t integer(PlyType) { return scanner_.readInteger("a whole number"); }
+  void skip(PlyType type, uint64_t count) {
+    for (uint64_t i = 0; i < count; ++i) real(type);
+  }
+  // Whether `count` more values can follow at all: at least a digit and a separator each.
+  bool canHold(PlyType, uint64_t count) const { return count <= scanner_.bytesLeft() / 2; }
+  bool atEnd() {
+    scanner_.skipSpace();
+    return scanner_.atEnd();
+  }
+  [[noreturn]] void fail(const std::string& message) const { scanner_.fail(message); }
+
+ private:
+  TextScanner scanner_;
+};
+
+template <class T>
+T byteSwapped(T value) {
+  char bytes[sizeof(T)];
+  std::memcpy(bytes, &value, sizeof(T));
+  std::reverse(bytes, bytes + sizeof(T));
+  std::memcpy(&value, bytes, sizeof(T));
+  return value;
+}
+
+// Errors are placed at the first line of the body: binary data has no lines.
+class BinarySource {
+ public:
+  BinarySource(std::string_view body, bool swap, SourceLocation where)
+      : at_(body.data()), end_(body.data() + body.size()), swap_(swap), where_(std::move(where)) {}
+
+  float real(PlyType type) { return static_cast<float>(value(type)); }
+  int64_t integer(PlyType type) {
+    const double number = value(type);
+    if (number != std::floor(number) || std::abs(number) > 1e15) fail("index is not whole; expected an integer type");
+    return static_cast<int64_t>(number);
+  }
+  void skip(PlyType type, uint64_t count) {
+    if (!canHold(type, count)) fail("file ends early; expected the announced elements");
+    at_ += byteSize(type) * count;
+  }
+  bool canHold(PlyType type, uint64_t count) const { return count <= static_cast<size_t>(end_ - at_) / byteSize(type); }
+  bool atEnd() const { return at_ == end_; }
+  [[noreturn]] void fail(const std::string& message) const { throw LoadError(where_, message); }
+
+ private:
+  template <class T>
+  double read() {
+    T value;
+    if (static_cast<size_t>(end_ - at_) < sizeof(T)) fail("file ends early; expected the announced elements");
+    std::memcpy(&value, at_, sizeof(T));
+    at_ += sizeof(T);
+    return static_cast<double>(swap_ ? byteSwapped(value) : value);
+  }
+  double value(PlyType type) {
+    switch (type) {
+      case PlyType::int8:
+        return read<int8_t>();
+      case PlyType::uint8:
+        return read<uint8_t>();
+      case PlyType::int16:
+        return read<int16_t>();
+      case PlyType::uint16:
+        return read<uint16_t>();
+      case PlyType::int32:
+        return read<int32_t>();
+      case PlyType::uint32:
+        return read<uint32_t>();
+      case PlyType::float32:
+        return read<float>();
+      case PlyType::float64:
+        return read<double>();
+    }
+    return 0;
+  }
+
+  const char *at_, *end_;
+  bool swap_;
+  SourceLocation where_;
+};
+
+// Where a vertex property goes in a row of eight: position, normal, texture coordinates.
+constexpr int kNormalSlot = 3, kUvSlot = 6, kSlots = 8, kNoSlot = 8;
+
+int slotOf(const PlyProperty& property) {
+  struct Entry {
+    std::string_view name;
+    int slot;
+  };
+  static constexpr Entry kNames[] = {{"x", 0}, {"y", 1}, {"z", 2}, {"nx", 3}, {"ny", 4},        {"nz", 5},
+                                     {"u", 6}, {"v", 7}, {"s", 6}, {"t", 7},  {"texture_u", 6}, {"texture_v", 7}};
+  if (property.isList) return kNoSlot;
+  for (const Entry& entry : kNames) {
+    if (entry.name == property.name) return entry.slot;
+  }
+  return kNoSlot;
+}
+
+bool isFinite(const float* values, int count) {
+  return std::all_of(values, values + count, [](float v) { return std::isfinite(v); });
+}
+
+template <class Source>
+void readVertices(Source& source, const PlyElement& element, const SourceLocation& where, TriangleSoup& soup) {
+  std::vector<int> slots;
+  bool present[kSlots + 1] = {};
+  for (const PlyProperty& property : element.properties) {
+    slots.push_back(slotOf(property));
+    present[slots.back()] = true;
+  }
+  if (!present[0] || !present[1] || !present[2]) {
+    throw LoadError({where.file, element.line}, "PLY vertices lack a coordinate; expected the properties x, y and z");
+  }
+  const bool hasNormals = present[3] && present[4] && present[5], hasUvs = present[6] && present[7];
+  soup.positions.reserve(element.count);
+  if (hasNormals) soup.normals.reserve(element.count);
+  if (hasUvs) soup.uvs.reserve(element.count);
+  float row[kSlots + 1] = {};
+  for (uint64_t i = 0; i < element.count; ++i) {
+    for (size_t j = 0; j < slots.size(); ++j) {
+      const PlyProperty& property = element.properties[j];
+      if (!property.isList) {
+        row[slots[j]] = source.real(property.type);
+      } else {
+        const int64_t count = source.integer(property.countType);
+        if (count < 0) source.fail("list has a negative length; expected 0 or more");
+        source.skip(property.type, static_cast<uint64_t>(count));
+      }
+    }
+    if (!isFinite(row, 3)) source.fail("vertex " + std::to_string(i) + " is not finite; expected finite coordinates");
+    soup.positions.push_back({row[0], row[1], row[2]});
+    if (hasNormals) {
+      if (!isFinite(row + kNormalSlot, 3)) {
+        source.fail("normal of vertex " + std::to_string(i) + " is not finite; expected a finite vector");
+      }
+      soup.normals.push_back({row[kNormalSlot], row[kNormalSlot + 1], row[kNormalSlot + 2]});
+    }
+    if (hasUvs) {
+      if (!isFinite(row + kUvSlot, 2)) {
+        source.fail("texture coordinates of vertex " + std::to_string(i) + " are not finite; expected finite numbers");
+      }
+      soup.uvs.push_back({row[kUvSlot], row[kUvSlot + 1]});
+    }
+  }
+}
+
+template <class Source>
+void readPolygon(Source& source, const PlyProperty& property, uint64_t vertexCount, TriangleSoup& soup) {
+  const int64_t corners = source.integer(property.countType);
+  if (corners < 3) source.fail("face has " + std::to_string(corners) + " corners; expected at least 3");
+  if (!source.canHold(property.type, static_cast<uint64_t>(corners))) {
+    source.fail("face has " + std::to_string(corners) + " corners but the file ends; expected the announced elements");
+  }
+  uint32_t fan[3] = {};
+  for (int64_t i = 0; i < corners; ++i) {
+    const int64_t index = source.integer(property.type);
+    if (index < 0 || static_cast<uint64_t>(index) >= vertexCount) {
+      source.fail("face refers to vertex " + std::to_string(index) + "; expected 0 to " +
+                  std::to_string(static_cast<int64_t>(vertexCount) - 1));
+    }
+    fan[std::min<int64_t>(i, 2)] = static_cast<uint32_t>(index);
+    if (i < 2) continue;
+    soup.triangles.push_back({fan[0], fan[1], fan[2]});
+    fan[1] = fan[2];
+  }
+}
+
+template <class Source>
+void readFaces(Source& source, const PlyElement& element, uint64_t vertexCount, const SourceLocation& where,
+               TriangleSoup& soup) {
+  const auto isIndices = [](const PlyProperty& property) {
+    return property.isList && (property.name == "vertex_indices" || property.name == "vertex_index");
+  };
+  if (std::count_if(element.properties.begin(), element.properties.end(), isIndices) != 1) {
+    throw LoadError({where.file, element.line},
+                    "PLY faces have no vertices; expected one list property vertex_indices or vertex_index");
+  }
+  soup.triangles.reserve(element.count);
+  for (uint64_t i = 0; i < element.count; ++i) {
+    for (const PlyProperty& property : element.properties) {
+      if (isIndices(property)) {
+        readPolygon(source, property, vertexCount, soup);
+      } else if (property.isList) {
+        const int64_t count = source.integer(property.countType);
+        if (count < 0) source.fail("list has a negative length; expected 0 or more");
+        source.skip(property.type, static_cast<uint64_t>(count));
+      } else {
+        source.skip(property.type, 1);
+      }
+    }
+  }
+}
+
+template <class Source>
+void skipElement(Source& source, const PlyElement& element) {
+  if (element.properties.empty()) return;
+  for (uint64_t i = 0; i < element.count; ++i) {
+    for (const PlyProperty& property : element.properties) {
+      const int64_t count = property.isList ? source.integer(property.countType) : 1;
+      if (count < 0) source.fail("list has a negative length; expected 0 or more");
+      source.skip(property.type, static_cast<uint64_t>(count));
+    }
+  }
+}
+
+template <class Source>
+TriangleSoup readBody(Source source, const PlyHeader& header, const std::string& file) {
+  TriangleSoup soup;
+  const SourceLocation where{file, header.bodyLine};
+  uint64_t vertexCount = 0;
+  int vertexElements = 0, faceElements = 0;
+  for (const PlyElement& element : header.elements) {
+    if (element.name == "vertex") {
+      vertexCount = element.count;
+      if (++vertexElements == 1) readVertices(source, element, where, soup);
+    } else if (element.name == "face") {
+      if (++faceElements == 1) readFaces(source, element, vertexCount, where, soup);
+    } else {
+      skipElement(source, element);
+    }
+  }
+  if (vertexElements != 1 || faceElements != 1) {
+    throw LoadError({file, 1}, "PLY file has " + std::to_string(vertexElements) + " elements \"vertex\" and " +
+                                   std::to_string(faceElements) + " \"face\"; expected one of each");
+  }
+  if (!source.atEnd()) source.fail("PLY file goes on after its last element; expected the end of the file");
+  return soup;
+}
+
+}  // namespace
+
+TriangleSoup readPly(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where) {
+  std::vector<char> bytes = readInputFile(path, where);
+  const size_t size = bytes.size();
+  bytes.push_back('\n');
+  const std::string file = path.string();
+  const std::string_view text(bytes.data(), bytes.size());
+  const PlyHeader header = readPlyHeader(text, file);
+  TriangleSoup soup;
+  if (header.format == PlyFormat::ascii) {
+    soup = readBody(AsciiSource(TextScanner(text.substr(header.bodyOffset), file, header.bodyLine)), header, file);
+  } else {
+    static_assert(std::endian::native == std::endian::little);
+    const std::string_view body = text.substr(0, size).substr(std::min(size, header.bodyOffset));
+    soup =
+        readBody(BinarySource(body, header.format == PlyFormat::binaryBigEndian, SourceLocation{file, header.bodyLine}),
+                 header, file);
+  }
+  if (flipTexCoords) {
+    for (Float2& uv : soup.uvs) uv[1] = 1 - uv[1];
+  }
+  return soup;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,123 @@
+#include "engine/load/shapes.h"
+
+#include <cmath>
+
+#include "engine/load/emitters.h"
+#include "engine/load/materials.h"
+#include "engine/load/values.h"
+
+namespace wavecrest {
+
+namespace {
+
+// Parameters of shapes that only guide sampling, or say what is inside.
+void ignoreCommonParameters(Parameters& parameters) { parameters.ignore({"silhouette_sampling_weight"}); }
+
+const XmlElement* singleChild(Parameters& parameters, std::string_view tag) {
+  const std::vector<const XmlElement*> found = parameters.objects(tag);
+  if (found.size() > 1) {
+    throw LoadError(found[1]->location(), parameters.describe() + " contains " + std::to_string(found.size()) +
+                                              " objects <" + std::string(tag) + ">; expected at most 1");
+  }
+  return found.empty() ? nullptr : found.front();
+}
+
+void attachAreaLight(LoadContext& context, const XmlElement& element, uint32_t shapeIndex, Shape& shape) {
+  shape.emitter = static_cast<uint32_t>(context.scene.emitters.size());
+  context.scene.emitters.push_back(
+      {.kind = readAreaEmitter(context, element, shapeIndex), .source = element.location()});
+}
+
+// `placement` is applied after the shape's own to_world: that of the instance, when inside a shape group.
+void addPlacedShape(LoadContext& context, const XmlElement& element, const Matrix4& placement);
+
+// Instances are flattened: each becomes a copy of the group's shapes in world space.
+void addInstance(LoadContext& context, Parameters& parameters) {
+  if (context.inShapeGroup) {
+    throw LoadError(parameters.location(), "instance inside a shapegroup; expected only plain shapes in a shapegroup");
+  }
+  const XmlElement& group = parameters.onlyObject("shape");
+  if (group.get("type") != "shapegroup") {
+    throw LoadError(parameters.location(),
+                    "instance of a shape of type " + inQuotes(group.get("type")) + "; expected a shapegroup");
+  }
+  const Matrix4 toWorld = parameters.transform("to_world").value_or(identityMatrix());
+  parameters.finish();
+  Parameters members(context, group);
+  const std::vector<const XmlElement*> shapes = members.objects("shape");
+  members.finish();
+  context.inShapeGroup = true;
+  for (const XmlElement* shape : shapes) addPlacedShape(context, *shape, toWorld);
+  context.inShapeGroup = false;
+}
+
+void countInstancedTriangles(LoadContext& context, const Geometry& geometry, const SourceLocation& where) {
+  constexpr uint64_t kMost = 20'000'000;  // about 1 GB of flattened copies
+  const Mesh* mesh = std::get_if<Mesh>(&geometry);
+  context.instancedTriangles += mesh ? mesh->triangles.size() : 1;
+  if (context.instancedTriangles > kMost) {
+    throw LoadError(where, "instances add up to more than " + std::to_string(kMost) +
+                               " triangles; expected fewer, since instances are flattened");
+  }
+}
+
+void addPlacedShape(LoadContext& context, const XmlElement& element, const Matrix4& placement) {
+  const std::string_view type = element.get("type");
+  if (type == "shapegroup" && !context.inShapeGroup) return;  // a definition: only its instances appear
+  Parameters parameters(context, element);
+  if (type == "instance") return addInstance(context, parameters);
+  const ShapePlugin* plugin = findPlugin(context, shapePlugins(), element, "left out");
+  if (!plugin) return;
+
+  const Matrix4 own = parameters.transform("to_world").value_or(identityMatrix());
+  Shape shape;
+  shape.id = element.get("id");
+  shape.source = element.location();
+  shape.kind = plugin->read(context, parameters, multiply(placement, own));
+  const XmlElement* bsdf = singleChild(parameters, "bsdf");
+  const XmlElement* light = singleChild(parameters, "emitter");
+  ignoreCommonParameters(parameters);
+  parameters.finish();
+
+  const double area = surfaceArea(shape.kind);
+  if (!(area > 0) || !std::isfinite(area)) {
+    const std::string message = parameters.describe() + (light ? ", a light," : "") +
+                                (area > 0 ? " has an infinite area" : " has no area") + "; expected a positive area";
+    if (light) throw LoadError(element.location(), message);
+    context.unsupported(element.location(), message);
+    return;
+  }
+  if (context.inShapeGroup) {
+    if (light) throw LoadError(light->location(), "light inside a shapegroup; expected instances without lights");
+    countInstancedTriangles(context, shape.kind, element.location());
+  }
+  shape.material = bsdf ? materialOf(context, *bsdf) : defaultMaterial(context, light != nullptr);
+  if (light) attachAreaLight(context, *light, static_cast<uint32_t>(context.scene.shapes.size()), shape);
+  context.scene.shapes.push_back(std::move(shape));
+}
+
+struct Area {
+  double operator()(const Mesh& mesh) const {
+    double sum = 0;
+    for (const std::array<uint32_t, 3>& t : mesh.triangles) {
+      const auto at = [&](size_t i) {
+        const Float3& p = mesh.positions[t[i]];
+        return Double3{p[0], p[1], p[2]};
+      };
+      sum += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
+    }
+    return sum;
+  }
+  double operator()(const Rectangle& r) const { return length(cross(r.edgeU, r.edgeV)); }
+  double operator()(const Disk& d) const { return M_PI * length(cross(d.axisU, d.axisV)); }
+  double operator()(const Sphere& s) const { return 4 * M_PI * s.radius * s.radius; }
+  double operator()(const Cylinder& c) const { return 2 * M_PI * c.radius * length(c.p1 - c.p0); }
+};
+
+}  // namespace
+
+double surfaceArea(const Geometry& geometry) { return std::visit(Area{}, geometry); }
+
+void addShape(LoadContext& context, const XmlElement& shape) { addPlacedShape(context, shape, identityMatrix()); }
+
+}  // namespace wavecrest

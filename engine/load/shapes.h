@@ -1,0 +1,22 @@
+// Shapes: <shape> elements to scene.shapes with their material and light, and the readers of the shape plugins.
+#pragma once
+
+#include "engine/load/plugins.h"
+
+namespace wavecrest {
+
+// Adds a <shape> to the scene; an instance adds a copy of every shape of its group.
+void addShape(LoadContext& context, const XmlElement& shape);
+
+Geometry readRectangle(LoadContext&, Parameters&, const Matrix4& toWorld);
+Geometry readCube(LoadContext&, Parameters&, const Matrix4& toWorld);
+Geometry readSphere(LoadContext&, Parameters&, const Matrix4& toWorld);
+Geometry readDisk(LoadContext&, Parameters&, const Matrix4& toWorld);
+Geometry readCylinder(LoadContext&, Parameters&, const Matrix4& toWorld);
+Geometry readPlyShape(LoadContext&, Parameters&, const Matrix4& toWorld);
+Geometry readObjShape(LoadContext&, Parameters&, const Matrix4& toWorld);
+
+// Surface area of a shape in world space; not finite if its numbers overflow.
+double surfaceArea(const Geometry& geometry);
+
+}  // namespace wavecrest

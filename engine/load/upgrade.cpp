@@ -1,0 +1,82 @@
+#include "engine/load/upgrade.h"
+
+#include <array>
+#include <cctype>
+
+namespace wavecrest {
+
+namespace {
+
+struct Rename {
+  std::string_view from, to;
+};
+constexpr std::array<Rename, 3> kTags = {{{"lookAt", "lookat"}, {"luminaire", "emitter"}, {"camera", "sensor"}}};
+
+bool isLower(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
+bool isUpper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
+
+// intIOR -> int_ior: an underscore where lower case turns to upper case, and the whole run of capitals lowered.
+std::string camelToUnderscore(const std::string& name) {
+  std::string result;
+  bool inRun = false;
+  for (size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    const bool startsRun = i > 0 && isLower(name[i - 1]) && isUpper(c);
+    if (startsRun) result += '_';
+    inRun = isUpper(c) && (startsRun || inRun);
+    result += inRun ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : c;
+  }
+  return result;
+}
+
+}  // namespace
+
+void upgradeElement(XmlElement& element) {
+  for (const Rename& rename : kTags) {
+    if (element.tag == rename.from) element.tag = rename.to;
+  }
+  for (auto& [name, value] : element.attributes) {
+    if (name == "name" && element.tag != "default") value = camelToUnderscore(value);
+  }
+}
+
+void upgradeChildren(XmlElement& element) {
+  if (!element.isObject()) return;
+  std::string offset[2] = {"0", "0"}, scale[2] = {"1", "1"};
+  bool any = false;
+  XmlElement transform;
+  std::erase_if(element.children, [&](const XmlElement& child) {
+    const std::string_view name = child.get("name");
+    for (int axis = 0; axis < 2; ++axis) {
+      const bool isOffset = name == (axis == 0 ? "uoffset" : "voffset");
+      const bool isScale = name == (axis == 0 ? "uscale" : "vscale");
+      if (!isOffset && !isScale) continue;
+      (isOffset ? offset : scale)[axis] = child.get("value");
+      any = true;
+      transform.line = child.line;
+      return true;
+    }
+    return false;
+  });
+  if (element.tag == "bsdf" && element.get("type") == "diffuse") {
+    for (XmlElement& child : element.children) {
+      for (auto& [name, value] : child.attributes) {
+        if (name == "name" && value == "diffuse_reflectance") value = "reflectance";
+      }
+    }
+  }
+  if (!any) return;
+  // Mitsuba 3 upgrades to scale * translate: the offset is applied before the scale.
+  transform.tag = "transform";
+  transform.file = element.file;
+  transform.attributes = {{"name", "to_uv"}};
+  XmlElement translate = transform, scaling = transform;
+  translate.tag = "translate";
+  translate.attributes = {{"x", offset[0]}, {"y", offset[1]}};
+  scaling.tag = "scale";
+  scaling.attributes = {{"x", scale[0]}, {"y", scale[1]}};
+  transform.children = {std::move(translate), std::move(scaling)};
+  element.children.push_back(std::move(transform));
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,73 @@
+#include "engine/load/variables.h"
+
+#include <algorithm>
+
+namespace wavecrest {
+
+namespace {
+
+// A chain of <default>s that each contain the previous one twice doubles at every step; no honest value is this long.
+constexpr size_t kLongestValue = 1 << 20;
+
+bool isNameCharacter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+}  // namespace
+
+Variables::Variables(const std::map<std::string, std::string>& defines) {
+  for (const auto& [name, value] : defines) {
+    variables_[name] = {.value = value, .fromOutside = true, .used = false};
+    longestName_ = std::max(longestName_, name.size());
+  }
+}
+
+void Variables::setDefault(std::string_view name, std::string_view value, const SourceLocation& where) {
+  if (name.empty()) throw LoadError(where, "<default> has an empty name; expected the name of a variable");
+  longestName_ = std::max(longestName_, name.size());
+  variables_.try_emplace(std::string(name), Variable{.value = std::string(value)});
+}
+
+std::string Variables::substitute(std::string_view text, const SourceLocation& where) {
+  std::string result;
+  for (size_t i = 0; i < text.size();) {
+    if (text[i] == '\\' && i + 1 < text.size() && text[i + 1] == '$') {
+      result += '$';
+      i += 2;
+      continue;
+    }
+    if (text[i] != '$') {
+      result += text[i++];
+      continue;
+    }
+    const std::string_view rest = text.substr(i + 1);
+    auto found = variables_.end();
+    for (size_t length = std::min(longestName_, rest.size()); length > 0 && found == variables_.end(); --length) {
+      found = variables_.find(rest.substr(0, length));
+    }
+    if (found == variables_.end()) {
+      const size_t end =
+          static_cast<size_t>(std::find_if_not(rest.begin(), rest.end(), isNameCharacter) - rest.begin());
+      const std::string name(rest.substr(0, end));
+      throw LoadError(where, "undefined variable $" + name + "; expected a <default name=\"" + name +
+                                 "\"> above this line or -D " + name + "=…");
+    }
+    found->second.used = true;
+    result += found->second.value;
+    i += 1 + found->first.size();
+    if (result.size() > kLongestValue) {
+      throw LoadError(where, "value grows beyond 1 MiB by variable substitution; expected a shorter value");
+    }
+  }
+  return result;
+}
+
+std::string Variables::unusedDefines() const {
+  std::string list;
+  for (const auto& [name, variable] : variables_) {
+    if (variable.fromOutside && !variable.used) list += (list.empty() ? "-D " : ", -D ") + name;
+  }
+  return list;
+}
+
+}  // namespace wavecrest

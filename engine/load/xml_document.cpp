@@ -1,0 +1,253 @@
+#include "engine/load/xml_document.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <pugixml.hpp>
+
+#include "engine/load/input_file.h"
+#include "engine/load/upgrade.h"
+#include "engine/load/variables.h"
+
+namespace wavecrest {
+
+namespace {
+
+// Bounds on what untrusted XML may ask for. Real scenes nest about 8 deep.
+constexpr int kDeepestNesting = 64, kDeepestInclude = 15;
+constexpr size_t kMostElements = 1'000'000;
+constexpr size_t kLargestXml = 32 << 20;
+
+constexpr std::array<std::string_view, 14> kObjectTags = {"scene",  "bsdf",    "emitter", "film",    "integrator",
+                                                          "medium", "phase",   "rfilter", "sensor",  "sampler",
+                                                          "shape",  "texture", "volume",  "spectrum"};
+
+// Byte offset -> line number of one file.
+class LineIndex {
+ public:
+  explicit LineIndex(const std::vector<char>& text) {
+    for (size_t i = 0; i < text.size(); ++i) {
+      if (text[i] == '\n') newlines_.push_back(i);
+    }
+  }
+  int lineOf(ptrdiff_t offset) const {
+    if (offset < 0) return 0;
+    const auto before = std::lower_bound(newlines_.begin(), newlines_.end(), static_cast<size_t>(offset));
+    return static_cast<int>(before - newlines_.begin()) + 1;
+  }
+
+ private:
+  std::vector<size_t> newlines_;
+};
+
+class XmlReader {
+ public:
+  XmlReader(const LoadOptions& options, XmlDocument& document) : variables_(options.defines), document_(document) {}
+
+  XmlElement readFile(const std::filesystem::path& path, const SourceLocation& namedAt);
+  const Variables& variables() const { return variables_; }
+
+ private:
+  struct OpenFile {
+    std::filesystem::path path;
+    const std::string* name;
+    const LineIndex* lines;
+    bool legacy;  // a file of version < 2: names are upgraded
+  };
+  XmlElement readElement(const OpenFile& file, const pugi::xml_node& node, int depth);
+  void readChildren(const OpenFile& file, const pugi::xml_node& node, int depth, XmlElement& parent);
+  void readInclude(const OpenFile& file, const XmlElement& include, XmlElement& parent);
+
+  Variables variables_;
+  XmlDocument& document_;
+  std::vector<std::filesystem::path> openFiles_;  // include chain
+  size_t elementCount_ = 0, byteCount_ = 0;
+};
+
+// "3.0.0" -> 3.0; nothing if it is no version number.
+std::optional<double> majorVersion(const std::string& text) {
+  if (text.empty() || !std::isdigit(static_cast<unsigned char>(text[0])) ||
+      text.find_first_not_of("0123456789.") != std::string::npos || text.size() > 20) {
+    return std::nullopt;
+  }
+  return std::floor(std::strtod(text.c_str(), nullptr));
+}
+
+XmlElement XmlReader::readFile(const std::filesystem::path& path, const SourceLocation& namedAt) {
+  const std::vector<char> text = readInputFile(path, namedAt, kLargestXml);
+  byteCount_ += text.size();
+  if (byteCount_ > kLargestXml) {
+    throw LoadError(namedAt, "scene and its includes exceed 32 MiB of XML; expected a smaller description");
+  }
+  document_.files.push_back(path.string());
+  const LineIndex lines(text);
+  OpenFile file{.path = path, .name = &document_.files.back(), .lines = &lines, .legacy = false};
+
+  pugi::xml_document xml;
+  const pugi::xml_parse_result parsed = xml.load_buffer(text.data(), text.size());
+  if (!parsed) {
+    throw LoadError({*file.name, std::max(1, lines.lineOf(parsed.offset))},
+                    std::string("malformed XML: ") + parsed.description() + "; expected a Mitsuba scene file");
+  }
+  const pugi::xml_node root = xml.document_element();
+  const SourceLocation rootAt{*file.name, lines.lineOf(root.offset_debug())};
+  const pugi::xml_attribute version = root.attribute("version");
+  if (!version) {
+    throw LoadError(rootAt,
+                    std::string("<") + root.name() + "> has no version; expected for example version=\"3.0.0\"");
+  }
+  const std::optional<double> major = majorVersion(version.value());
+  if (!major || *major > 3) {
+    throw LoadError(rootAt, std::string("version \"") + version.value() + "\" is not supported; expected 0.5.0 to 3.x");
+  }
+  file.legacy = *major < 2;
+  openFiles_.push_back(path);
+  XmlElement element = readElement(file, root, 1);
+  openFiles_.pop_back();
+  return element;
+}
+
+XmlElement XmlReader::readElement(const OpenFile& file, const pugi::xml_node& node, int depth) {
+  XmlElement element;
+  element.file = file.name;
+  element.line = file.lines->lineOf(node.offset_debug());
+  element.tag = node.name();
+  if (depth > kDeepestNesting) {
+    throw LoadError(element.location(),
+                    "elements nest deeper than " + std::to_string(kDeepestNesting) + "; expected a flatter scene");
+  }
+  if (++elementCount_ > kMostElements) {
+    throw LoadError(element.location(),
+                    "more than " + std::to_string(kMostElements) + " elements; expected meshes to be in mesh files");
+  }
+  for (const pugi::xml_attribute& attribute : node.attributes()) {
+    if (element.find(attribute.name())) {
+      throw LoadError(element.location(), std::string("attribute \"") + attribute.name() + "\" of <" + element.tag +
+                                              "> is given twice; expected it once");
+    }
+    element.attributes.emplace_back(attribute.name(), variables_.substitute(attribute.value(), element.location()));
+  }
+  if (file.legacy) upgradeElement(element);
+  readChildren(file, node, depth, element);
+  if (file.legacy) upgradeChildren(element);
+  return element;
+}
+
+void XmlReader::readChildren(const OpenFile& file, const pugi::xml_node& node, int depth, XmlElement& parent) {
+  for (const pugi::xml_node& child : node.children()) {
+    if (child.type() != pugi::node_element) continue;  // comments and stray text, as in Mitsuba
+    XmlElement element = readElement(file, child, depth + 1);
+    if (element.tag == "default") {
+      const std::string *name = element.find("name"), *value = element.find("value");
+      if (!name || !value) {
+        throw LoadError(element.location(), "<default> is incomplete; expected the attributes name and value");
+      }
+      variables_.setDefault(*name, *value, element.location());
+    } else if (element.tag == "path") {
+      document_.searchPaths.push_back(file.path.parent_path() / element.get("value"));
+    } else if (element.tag == "include") {
+      readInclude(file, element, parent);
+    } else {
+      parent.children.push_back(std::move(element));
+    }
+  }
+}
+
+// The children of an included <scene> take the place of the <include>; any other root element does so itself.
+void XmlReader::readInclude(const OpenFile& file, const XmlElement& include, XmlElement& parent) {
+  const std::string_view filename = include.get("filename");
+  if (filename.empty()) {
+    throw LoadError(include.location(), "<include> has no filename; expected the path of an XML file");
+  }
+  if (openFiles_.size() >= static_cast<size_t>(kDeepestInclude)) {
+    throw LoadError(include.location(), "includes nest deeper than " + std::to_string(kDeepestInclude) +
+                                            "; expected a flatter set of files");
+  }
+  const std::filesystem::path path = (file.path.parent_path() / filename).lexically_normal();
+  for (const std::filesystem::path& open : openFiles_) {
+    std::error_code error;
+    if (open == path || std::filesystem::equivalent(open, path, error)) {
+      throw LoadError(include.location(),
+                      "\"" + path.string() + "\" includes itself; expected includes without a cycle");
+    }
+  }
+  XmlElement root = readFile(path, include.location());
+  if (root.tag == "scene") {
+    for (XmlElement& child : root.children) parent.children.push_back(std::move(child));
+  } else {
+    if (const std::string* name = include.find("name")) root.attributes.emplace_back("name", *name);
+    std::erase_if(root.attributes, [](const auto& attribute) { return attribute.first == "version"; });
+    parent.children.push_back(std::move(root));
+  }
+}
+
+void collectIds(const XmlElement& element, XmlDocument& document) {
+  if (element.isObject()) {
+    if (const std::string* id = element.find("id"); id && !id->empty()) {
+      const auto [entry, inserted] = document.ids.try_emplace(*id, &element);
+      if (!inserted) {
+        const SourceLocation first = entry->second->location();
+        throw LoadError(element.location(), "id \"" + *id + "\" is already used at " + first.file + ":" +
+                                                std::to_string(first.line) + "; expected unique ids");
+      }
+    }
+  }
+  for (const XmlElement& child : element.children) collectIds(child, document);
+}
+
+// <alias id="old" as="new"/> gives an object a second id.
+void collectAliases(const XmlElement& element, XmlDocument& document) {
+  if (element.tag == "alias") {
+    const std::string *id = element.find("id"), *as = element.find("as");
+    if (!id || !as) throw LoadError(element.location(), "<alias> is incomplete; expected the attributes id and as");
+    const auto target = document.ids.find(*id);
+    if (target == document.ids.end()) {
+      throw LoadError(element.location(), "no object has the id \"" + *id + "\"; expected the id of an object above");
+    }
+    if (!document.ids.try_emplace(*as, target->second).second) {
+      throw LoadError(element.location(), "id \"" + *as + "\" is already used; expected a new id in \"as\"");
+    }
+  }
+  for (const XmlElement& child : element.children) collectAliases(child, document);
+}
+
+}  // namespace
+
+const std::string* XmlElement::find(std::string_view attribute) const {
+  for (const auto& [name, value] : attributes) {
+    if (name == attribute) return &value;
+  }
+  return nullptr;
+}
+
+std::string_view XmlElement::get(std::string_view attribute) const {
+  const std::string* value = find(attribute);
+  return value ? std::string_view(*value) : std::string_view();
+}
+
+bool XmlElement::isObject() const {
+  if (tag == "spectrum") return find("type") != nullptr;
+  return std::find(kObjectTags.begin(), kObjectTags.end(), tag) != kObjectTags.end();
+}
+
+std::unique_ptr<XmlDocument> readXmlDocument(const std::filesystem::path& path, const LoadOptions& options) {
+  auto document = std::make_unique<XmlDocument>();
+  XmlReader reader(options, *document);
+  document->scene = reader.readFile(path, {path.string(), 0});
+  if (document->scene.tag != "scene") {
+    throw LoadError(document->scene.location(), "root element is <" + document->scene.tag + ">; expected <scene>");
+  }
+  if (const std::string unused = reader.variables().unusedDefines(); !unused.empty()) {
+    const std::string message = "the scene does not use " + unused + "; expected names of its variables";
+    if (!options.lenient) throw LoadError({path.string(), 0}, message);
+    document->warnings.push_back(message);
+  }
+  collectIds(document->scene, *document);
+  collectAliases(document->scene, *document);
+  return document;
+}
+
+}  // namespace wavecrest

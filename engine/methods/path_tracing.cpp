@@ -1,0 +1,23 @@
+// Path tracing with next event estimation: strategies s = 0 and s = 1, weighted by the balance heuristic.
+#include "engine/methods/method_list.h"
+
+namespace wavecrest {
+
+template <class S>
+Pipeline<S> pathTracing(const Stages<S>& stages, const Intersector<S>& intersector) {
+  return {
+      .generate = {"generate", stages.generateCameraPaths, [](const Wave<S>& wave) { return wave.pathCount; }},
+      .perDepth =
+          {
+              {"extend", intersector.extend, pathItems<S>},
+              {"arrive", stages.arrive, pathItems<S>},
+              {"next event", stages.nextEvent, pathItems<S>},
+              {"occlude", intersector.occlude, shadowItems<S>},
+              {"scatter", stages.scatter, pathItems<S>},
+          },
+  };
+}
+template Pipeline<float> pathTracing(const Stages<float>&, const Intersector<float>&);
+template Pipeline<double> pathTracing(const Stages<double>&, const Intersector<double>&);
+
+}  // namespace wavecrest

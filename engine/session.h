@@ -1,0 +1,80 @@
+// A session: one render of one scene by one method, its clock and its film.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/compile/compiled_scene.h"
+#include "engine/film.h"
+#include "engine/methods/method_list.h"
+
+namespace wavecrest {
+
+constexpr uint32_t kUnlimitedDepth = 64;  // edges; roulette ends paths long before
+
+struct RenderSettings {
+  Method method = Method::pt;
+  Precision precision = Precision::floating;
+  Isa isa = Isa::scalar;
+  Accel accel = Accel::automatic;
+  SamplerKind sampler = SamplerKind::independent;
+  uint64_t seed = 0;
+  uint32_t threads = 1;
+  uint32_t waveSize = 2048;  // paths
+  PathLimits limits;
+  std::optional<uint64_t> iterations;            // stop after this many,
+  std::optional<double> seconds;                 // or after this much render time, whichever comes first
+  std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene
+  bool measureStages = false;
+};
+
+// Numbers of a render so far, as --stats reports them.
+struct RenderStatistics {
+  uint64_t iterations = 0;  // whole iterations in the film (the least over pixels)
+  uint64_t paths = 0;
+  StageCounters counters;
+  double buildSeconds = 0, renderSeconds = 0, cpuSeconds = 0;
+  struct StageRow {
+    std::string name;
+    uint64_t items = 0;
+    double seconds = 0;  // summed over threads
+  };
+  std::vector<StageRow> stages;
+  Isa isa{};
+  Specialization specialization{};
+  Accel accel{};
+  size_t bytesPerPath = 0;
+};
+
+class Session {
+ public:
+  virtual ~Session() = default;
+
+  // Renders until the given iteration count or render time (both counted from the session's beginning) is reached, or
+  // interrupt() was called. The clock runs only inside. May be called again to go on.
+  virtual void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) = 0;
+
+  // Asks a running renderUntil to return once the waves under way are done. Safe from any thread and signal handler.
+  void interrupt() { interrupted_.store(true, std::memory_order_relaxed); }
+  bool interrupted() const { return interrupted_.load(std::memory_order_relaxed); }
+
+  virtual RenderStatistics statistics() const = 0;
+  virtual const Film& film() const = 0;
+  // Iterations of the slowest wave and seconds so far, for progress shown from another thread.
+  virtual double progressSeconds() const = 0;
+  virtual uint64_t progressPaths() const = 0;
+
+  // Compiles the scene and prepares one wave per thread. Throws std::runtime_error where the scene cannot be rendered.
+  static std::unique_ptr<Session> create(const Scene& scene, const RenderSettings& settings);
+
+ private:
+  std::atomic<bool> interrupted_{false};
+};
+
+}  // namespace wavecrest

@@ -1,0 +1,36 @@
+// The general intersector: Embree 3 (or 4, chosen by the headers that are installed) behind the interface of a stage.
+//
+// Geometries: quads, triangles and spheres, in that order, so Embree's (geometry, primitive) pair maps to an index into
+// SceneView::primitives by one addition. Rays go in packets; Embree's stream interface is not used (gone in Embree 4).
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/stages.h"
+
+namespace wavecrest {
+
+class EmbreeScene {
+ public:
+  // records: quads, then triangles, then spheres. The hierarchy is built at once, by as many threads as the calling TBB
+  // arena has. Throws std::runtime_error with Embree's message if that fails.
+  template <class S>
+  EmbreeScene(const PrimitiveRecord<S>* records, uint32_t quads, uint32_t triangles, uint32_t spheres);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  void* handle() const { return scene_; }  // RTCScene
+
+ private:
+  void* device_ = nullptr;  // RTCDevice
+  void* scene_ = nullptr;
+};
+
+// extend and occlude, with the contracts of extend_small.cpp and occlude_small.cpp.
+template <class S>
+void extendEmbree(const StageContext<S>& context, Wave<S>& wave);
+template <class S>
+void occludeEmbree(const StageContext<S>& context, Wave<S>& wave);
+
+}  // namespace wavecrest

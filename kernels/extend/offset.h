@@ -1,0 +1,13 @@
+// The bound on rounding that keeps rays from meeting the surface they start on.
+//
+// gamma(n) = n u / (1 - n u), u the unit roundoff of float, in which rays are traced under every precision policy
+// (Pharr, Jakob, Humphreys, "Physically Based Rendering", 3.9.4).
+#pragma once
+
+namespace wavecrest {
+
+constexpr double kUnitRoundoff = 0x1p-24;
+// 7 roundings in p0 + u e1 + v e2, 5 in the plane equation at either end, and margin for a unit normal that is not.
+constexpr double kOffsetGamma = 16 * kUnitRoundoff;
+
+}  // namespace wavecrest

@@ -1,0 +1,79 @@
+#include "tests/bench/sample_report.h"
+
+#include <cmath>
+
+namespace wavecrest {
+namespace {
+
+// A picture with an edge and a gradient, and speckle of the given strength.
+ReportImage sampleImage(const std::string& label, double noise) {
+  constexpr uint32_t kWidth = 96, kHeight = 72;
+  ReportImage image{.label = label, .width = kWidth, .height = kHeight, .rgb = {}};
+  uint32_t state = 1;
+  for (uint32_t y = 0; y < kHeight; ++y) {
+    for (uint32_t x = 0; x < kWidth; ++x) {
+      state = state * 1664525U + 1013904223U;
+      const double speckle = noise * (static_cast<double>(state >> 8) / (1 << 24) - 0.5);
+      const double grey = 60 + 120.0 * x / kWidth + (y > kHeight / 2 ? 40 : 0) + speckle;
+      for (const double tint : {1.0, 0.9, 0.75}) {
+        image.rgb.push_back(static_cast<uint8_t>(std::min(255.0, std::max(0.0, tint * grey))));
+      }
+    }
+  }
+  return image;
+}
+
+// Error a / sqrt(t) over a floor, one point per third of a decade.
+ReportSeries sampleSeries(const std::string& method, double start, double bias) {
+  ReportSeries series;
+  series.method = series.label = method;
+  for (const uint64_t seed : {1, 2}) {
+    ReportRun run{.seed = seed, .points = {}};
+    for (int k = 0; k <= 8; ++k) {
+      const double seconds = 0.1 * std::pow(10, k / 3.0);
+      const double scatter = seed == 1 ? 0.94 : 1.06;
+      const double rmse = std::hypot(scatter * start / std::sqrt(seconds), bias);
+      run.points.push_back(
+          {.seconds = seconds, .iterations = static_cast<uint64_t>(30 * seconds), .values = {rmse, 20 * rmse * rmse}});
+    }
+    series.runs.push_back(run);
+  }
+  series.pathsPerSecond = 11.3e6;
+  series.cpuSeconds = 93;
+  series.stages = {{"generate", 41000000, 0.04},
+                   {"extend", 250000000, 8.5},
+                   {"shade", 210000000, 3.4},
+                   {"occlude", 170000000, 4.6},
+                   {"splat", 41000000, 0.3}};
+  series.settings = {{"sampler", "independent"}, {"precision", "float"}, {"max_depth", "-1"}};
+  series.snapshots = {sampleImage(method + ", 46 s", 300 * start)};
+  return series;
+}
+
+}  // namespace
+
+ConvergenceReport sampleReport() {
+  ConvergenceReport report;
+  report.title = "Convergence of <three> methods";
+  report.metrics = {
+      {.key = "rmse", .name = "RMSE", .explanation = "linear radiance, all pixels", .idealSlope = -0.5},
+      {.key = "relmse", .name = "relMSE", .explanation = "squared error over squared value", .idealSlope = -1.0}};
+  ReportScene first;
+  first.name = "cornell-spheres";
+  first.width = 96;
+  first.height = 72;
+  first.reference = sampleImage("reference", 0);
+  first.referenceOrigin = "bpt, two halves of 3 min 20 s";
+  first.noiseFloors = {0.004, std::nullopt};
+  first.series = {sampleSeries("pt", 0.21, 0), sampleSeries("bpt", 0.12, 0), sampleSeries("vcm", 0.1, 0.03)};
+  // The first snapshot of one run came out black: nothing a logarithmic axis could show.
+  first.series[0].runs[0].points[0].values[1] = 0;
+  ReportScene second = first;
+  second.name = "veach-door & co";
+  second.series.resize(1);
+  report.scenes = {first, second};
+  report.environment = {{"cpu", "AMD EPYC"}, {"isa", "avx512"}, {"threads", "2"}, {"commit", "0123abc"}};
+  return report;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,135 @@
+"""Runs the steps of ./check and counts every test case, build and lint run as one item that passed or failed.
+
+In: the source tree; --steps picks some. Out: the tools' own output, a list of what failed, and as the last line
+`N passed, N failed`; status 1 if anything failed. Test counts come from ctest's JUnit file, never from its text: a test
+that could not start (missing executable, failed fixture) is a failure here, one that said "skip" is listed and not counted.
+"""
+
+import argparse
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+JOBS = os.cpu_count() or 1
+TEST_TIMEOUT_SECONDS = 600
+
+
+class Tally:
+    """What has passed, failed and been skipped so far, by name."""
+
+    def __init__(self):
+        self.passed = []
+        self.failed = []
+        self.skipped = []
+
+    def record(self, name, held):
+        (self.passed if held else self.failed).append(name)
+        return held
+
+
+def run(tally, name, command, **environment):
+    """Runs one command as one item of the tally; true if it succeeded."""
+    print(f"\n=== {name}: {' '.join(map(str, command))}", flush=True)
+    start = time.monotonic()
+    status = subprocess.run(command, cwd=ROOT, env={**os.environ, **environment}, check=False).returncode
+    print(f"=== {name}: {'done' if status == 0 else 'FAILED'} in {time.monotonic() - start:.0f} s", flush=True)
+    return tally.record(name, status == 0)
+
+
+def build(tally, preset, *options):
+    """Configures and builds a preset, through ccache where there is one."""
+    if shutil.which("ccache"):
+        options = ("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", *options)
+    return run(tally, f"{preset}: configure", ["cmake", "--preset", preset, *options]) and run(
+        tally, f"{preset}: build", ["cmake", "--build", "--preset", preset, "--parallel", str(JOBS)]
+    )
+
+
+def read_junit(tally, step, path):
+    """Adds the test cases of a ctest JUnit file; returns how many failed."""
+    failures = 0
+    for case in ElementTree.parse(path).getroot().iter("testcase"):
+        name = f"{step}: {case.get('name')}"
+        skipped = case.find("skipped")
+        reason = skipped.get("message", "") if skipped is not None else ""
+        if case.get("status") == "run":
+            tally.passed.append(name)
+        elif case.get("status") == "disabled" or reason.startswith("SKIP_"):
+            tally.skipped.append(name)
+        else:
+            tally.failed.append(f"{name}{f' ({reason})' if reason else ''}")
+            failures += 1
+    return failures
+
+
+def test(tally, preset, *selection, **environment):
+    """Runs the tests of a built preset, each test case being an item."""
+    step = f"{preset}: tests"
+    report = ROOT / "build" / preset / "junit.xml"
+    report.unlink(missing_ok=True)
+    command = ["ctest", "--test-dir", f"build/{preset}", "--output-junit", str(report), "--output-on-failure"]
+    command += ["--no-tests=error", "--parallel", str(JOBS), "--timeout", str(TEST_TIMEOUT_SECONDS), *selection]
+    print(f"\n=== {step}: {' '.join(command)}", flush=True)
+    start = time.monotonic()
+    status = subprocess.run(command, cwd=ROOT, env={**os.environ, **environment}, check=False).returncode
+    try:
+        failures = read_junit(tally, step, report)
+    except (OSError, ElementTree.ParseError) as error:
+        tally.failed.append(f"{step}: no readable result ({error})")
+        failures = 1
+    if status != 0 and failures == 0:  # no test found, or ctest itself failed
+        tally.failed.append(f"{step}: ctest ended with status {status}")
+    print(f"=== {step}: {time.monotonic() - start:.0f} s", flush=True)
+
+
+def step_release(tally):
+    if not build(tally, "release"):
+        return
+    if os.environ.get("CHECK_OFFLINE") == "1":
+        print("CHECK_OFFLINE=1: the tests against Mitsuba (label oracle) are left out")
+        test(tally, "release", "--label-exclude", "oracle")
+    else:
+        test(tally, "release")
+
+
+def step_sanitizers(tally):
+    if build(tally, "asan-ubsan", "-DWAVECREST_BENCH=OFF"):
+        test(tally, "asan-ubsan", "--label-regex", "^(unit|kernel)$", UBSAN_OPTIONS="print_stacktrace=1")
+
+
+def step_lint(tally):
+    run(tally, "format", [sys.executable, "tools/lint.py", "format"])
+    run(tally, "tidy", [sys.executable, "tools/lint.py", "tidy", "--build", "build/release"])
+
+
+STEPS = {"release": step_release, "sanitizers": step_sanitizers, "lint": step_lint}
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="check", description="Build, test and lint; ends with `N passed, N failed`.")
+    parser.add_argument("--steps", default=",".join(STEPS), help="comma-separated subset of " + ",".join(STEPS))
+    steps = parser.parse_args().steps.split(",")
+    if unknown := [step for step in steps if step not in STEPS]:
+        parser.error(f"unknown step {unknown[0]!r}; expected some of {','.join(STEPS)}")
+
+    tally = Tally()
+    start = time.monotonic()
+    for step in steps:
+        STEPS[step](tally)
+
+    print(f"\n=== summary after {(time.monotonic() - start) / 60:.1f} minutes")
+    for name in tally.skipped:
+        print(f"skipped: {name}")
+    for name in tally.failed:
+        print(f"FAILED: {name}")
+    print(f"{len(tally.passed)} passed, {len(tally.failed)} failed", flush=True)
+    sys.exit(1 if tally.failed else 0)
+
+
+if __name__ == "__main__":
+    main()
