@@ -137,11 +137,27 @@ WAVECREST_INLINE PixelLanes pixelsOf(const StageContext<S>& context, const Wave<
   return {x, y, y * UInt(context.scene->camera.width) + x};
 }
 
-// Four numbers of the camera path's vertex at the context's depth (METHODS: dimension table).
-enum class Block : uint32_t { scatter = 0, light = 1, partner = 2 };
+// The index that a path's random numbers depend on: the raster index for camera paths; light paths are counted.
 template <class S>
-WAVECREST_INLINE Uniform4 drawCamera(const StageContext<S>& context, UInt path, Block block) {
-  return uniform4(context.sampler, path, 4 * context.depth + static_cast<uint32_t>(block), Stream::camera);
+WAVECREST_INLINE UInt pathOf(const StageContext<S>& context, const Wave<S>& wave, UInt lane) {
+  if (context.walk == Walk::light) return lane + UInt(static_cast<uint32_t>(wave.firstPath));
+  return pixelsOf(context, wave, lane).path;
+}
+
+// Whether a feature set's paths carry PathStates::rouletteScale.
+constexpr bool hasRouletteScale(uint32_t features) { return has(features, kSpecularBsdfs | kBidirectional); }
+
+// Four numbers of the vertex at the context's depth. Each vertex has four blocks; this is the one table of their uses.
+enum class Block : uint32_t {
+  scatter = 0,  // lobe, direction (2), roulette; of a camera path's origin: raster (2), lens (2); of a light's: light,
+                // direction (2), choice within the light
+  light = 1,    // next event: light, choice within the light, position (2); of a light path's origin: position (2)
+  opacity = 2   // second lobe choice
+};
+template <class S>
+WAVECREST_INLINE Uniform4 draw(const StageContext<S>& context, UInt path, Block block) {
+  return uniform4(context.sampler, path, 4 * context.depth + static_cast<uint32_t>(block),
+                  context.walk == Walk::camera ? Stream::camera : Stream::light);
 }
 
 WAVECREST_SIMD_END
@@ -151,8 +167,17 @@ WAVECREST_SIMD_END
   WAVECREST_SIMD_BEGIN                         \
   WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 0) \
   WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 1) \
-  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 2) \
+  WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)   \
   WAVECREST_SIMD_END
+// The same for a stage that only bidirectional methods have.
+#define WAVECREST_INSTANTIATE_BIDIRECTIONAL_STAGE(STAGE) \
+  WAVECREST_SIMD_BEGIN                                   \
+  WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)             \
+  WAVECREST_SIMD_END
+#define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE) \
+  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 2)     \
+  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 3)     \
+  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 4)
 #define WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, INDEX)                                                            \
   template void STAGE<FloatPrecision, kSpecializationFeatures[INDEX]>(const StageContext<float>&, Wave<float>&);    \
   template void STAGE<DoublePrecision, kSpecializationFeatures[INDEX]>(const StageContext<double>&, Wave<double>&); \

@@ -9,7 +9,7 @@ namespace wavecrest {
 struct ColumnNeeds {
   bool shadingNormals = true;
   bool textures = true;
-  bool refraction = true;
+  bool rouletteScale = true;
   bool connections = true;
 };
 
@@ -32,10 +32,11 @@ struct Wave {
       surfaces.uvU.drop();
       surfaces.uvV.drop();
     }
-    if (!needs.refraction) paths.etaScale.drop();
+    if (!needs.rouletteScale) paths.rouletteScale.drop();
     if (!needs.connections) {
       paths.dVC.drop();
       paths.dVM.drop();
+      paths.light.drop();
     }
     size_t bytes = 0;
     forEachQueue([&](auto& queue) { bytes += queue.bytes(capacity); });
