@@ -9,7 +9,8 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
-#include <stdexcept>
+
+#include "engine/render_plan.h"
 
 namespace wavecrest {
 namespace {
@@ -39,48 +40,22 @@ class FlushToZero {
   unsigned saved_;
 };
 
-ColumnNeeds columnNeeds(Specialization specialization) {
-  const uint32_t features = kSpecializationFeatures[static_cast<size_t>(specialization)];
-  return {.shadingNormals = (features & kShadingNormals) != 0,
-          .textures = (features & kTextures) != 0,
-          .refraction = (features & kSpecularBsdfs) != 0,
-          .connections = false};
-}
-
-Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
-  const uint32_t features = sceneFeatures(scene);
-  const Specialization least = chooseSpecialization(features);
-  if (!settings.specialization) return least;
-  if ((features & ~kSpecializationFeatures[static_cast<size_t>(*settings.specialization)]) != 0) {
-    throw std::runtime_error("the scene needs the '" + std::string(kSpecializationNames[static_cast<size_t>(least)]) +
-                             "' kernels");
-  }
-  return *settings.specialization;
-}
-
-FilmArea filmArea(const FilmSettings& film) {
-  if (film.cropWidth == 0 || film.cropHeight == 0) return FilmArea::make(0, 0, film.width, film.height);
-  return FilmArea::make(film.cropX, film.cropY, film.cropWidth, film.cropHeight);
-}
+// TBB gives an arena of more threads than the machine has cores no workers for the surplus unless it is told to. Only
+// while a session works: the least of all limits alive counts, and several sessions may be.
+struct WorkerLimit {
+  explicit WorkerLimit(size_t threads) : control(oneapi::tbb::global_control::max_allowed_parallelism, threads) {}
+  oneapi::tbb::global_control control;
+};
 
 // The part of a session that depends on the storage type of its precision.
 template <class S>
 class TypedSession final : public Session {
  public:
   TypedSession(const Scene& scene, const RenderSettings& settings)
-      : settings_(settings),
-        concurrency_(oneapi::tbb::global_control::max_allowed_parallelism, settings.threads),
-        arena_(static_cast<int>(settings.threads)),
-        specialization_(specializationFor(scene, settings)),
-        film_(filmArea(scene.film)) {
+      : settings_(settings), arena_(static_cast<int>(settings.threads)), film_(filmArea(scene.film)) {
     const auto begin = Clock::now();
-    arena_.execute([&] { compiled_ = compileScene<S>(scene, settings.accel); });
-    const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, specialization_);
-    const Intersector<S> intersector = compiled_->small != nullptr
-                                           ? Intersector<S>{stages.extendSmall, stages.occludeSmall}
-                                           : Intersector<S>{extendEmbree<S>, occludeEmbree<S>};
-    pipeline_ = pathTracing(stages, intersector);
-    isa_ = stages.isa;
+    const WorkerLimit limit(settings.threads);
+    arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
     const size_t pixels = film_.area().pixels.size();
     waves_.resize((pixels + settings.waveSize - 1) / settings.waveSize);
     buildSeconds_ = secondsSince(begin);
@@ -106,13 +81,9 @@ class TypedSession final : public Session {
   void trace(size_t waveIndex, Worker& worker);
 
   const RenderSettings settings_;
-  oneapi::tbb::global_control concurrency_;
   oneapi::tbb::task_arena arena_;
-  const Specialization specialization_;
   Film film_;
-  std::unique_ptr<CompiledScene<S>> compiled_;
-  Pipeline<S> pipeline_;
-  Isa isa_{};
+  RenderPlan<S> plan_;
   std::vector<uint64_t> waves_;  // iterations done by each wave
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
   double buildSeconds_ = 0, renderSeconds_ = 0, cpuSeconds_ = 0;
@@ -127,13 +98,13 @@ void TypedSession<S>::trace(size_t waveIndex, Worker& worker) {
   const auto& pixels = film_.area().pixels;
   wave.firstPath = waveIndex * settings_.waveSize;
   wave.pathCount = std::min<size_t>(settings_.waveSize, pixels.size() - wave.firstPath);
-  StageContext<S> context{.scene = &compiled_->view,
+  StageContext<S> context{.scene = &plan_.scene->view,
                           .pixels = pixels.data(),
                           .sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(waves_[waveIndex])},
                           .limits = settings_.limits,
                           .depth = 0,
                           .counters = &worker.counters};
-  runWave(pipeline_, context, wave, settings_.measureStages ? worker.tallies.data() : nullptr);
+  runWave(plan_.pipeline, context, wave, settings_.measureStages ? worker.tallies.data() : nullptr);
   worker.counters.nonFinite += film_.add(wave);
   worker.paths += wave.pathCount;
   progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
@@ -144,6 +115,7 @@ template <class S>
 void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
+  const WorkerLimit limit(settings_.threads);
   const auto finished = [&](size_t wave) {
     if (iterations && waves_[wave] >= *iterations) return true;
     const double now = renderSeconds_ + secondsSince(begin);
@@ -161,7 +133,7 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
         graph, settings_.threads, [&](size_t wave) {
           std::unique_ptr<Worker>& worker = workers_.local();
           if (!worker) {
-            worker = std::make_unique<Worker>(settings_.waveSize, columnNeeds(specialization_), pipeline_.stageCount());
+            worker = std::make_unique<Worker>(settings_.waveSize, plan_.needs, plan_.pipeline.stageCount());
           }
           if (finished(wave)) return continue_msg();
           trace(wave, *worker);
@@ -185,11 +157,11 @@ RenderStatistics TypedSession<S>::statistics() const {
   out.buildSeconds = buildSeconds_;
   out.renderSeconds = renderSeconds_;
   out.cpuSeconds = cpuSeconds_;
-  out.isa = isa_;
-  out.specialization = specialization_;
-  out.accel = compiled_->small != nullptr ? Accel::small : Accel::embree;
-  out.stages.push_back({std::string(pipeline_.generate.name), 0, 0});
-  for (const auto& stage : pipeline_.perDepth) out.stages.push_back({std::string(stage.name), 0, 0});
+  out.isa = plan_.isa;
+  out.specialization = plan_.specialization;
+  out.accel = plan_.accel();
+  out.stages.push_back({std::string(plan_.pipeline.generate.name)});
+  for (const auto& stage : plan_.pipeline.perDepth) out.stages.push_back({std::string(stage.name)});
   for (const auto& worker : workers_) {
     out.paths += worker->paths;
     out.counters.raysClosest += worker->counters.raysClosest;
@@ -199,6 +171,7 @@ RenderStatistics TypedSession<S>::statistics() const {
     out.bytesPerPath = worker->wave.bytesPerPath();
     for (size_t i = 0; i < out.stages.size(); ++i) {
       out.stages[i].items += worker->tallies[i].items;
+      out.stages[i].laneSlots += worker->tallies[i].laneSlots;
       out.stages[i].seconds += static_cast<double>(worker->tallies[i].ticks) * secondsPerTick();
     }
   }
