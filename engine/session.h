@@ -28,6 +28,8 @@ struct RenderSettings {
   uint32_t threads = 1;
   uint32_t waveSize = 2048;  // paths
   PathLimits limits;
+  double radius = 0.001;                         // of the first merges, relative to the bounding sphere's
+  double radiusAlpha = 0.75;                     // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
   std::optional<uint64_t> iterations;            // stop after this many,
   std::optional<double> seconds;                 // or after this much render time, whichever comes first
   std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene
@@ -37,7 +39,8 @@ struct RenderSettings {
 // Numbers of a render so far, as --stats reports them.
 struct RenderStatistics {
   uint64_t iterations = 0;  // whole iterations in the film (the least over pixels)
-  uint64_t paths = 0;
+  uint64_t paths = 0;       // camera paths
+  uint64_t lightPaths = 0;
   StageCounters counters;
   double buildSeconds = 0, renderSeconds = 0, cpuSeconds = 0;
   struct StageRow {
@@ -49,7 +52,8 @@ struct RenderStatistics {
   Isa isa{};
   Specialization specialization{};
   Accel accel{};
-  size_t bytesPerPath = 0;
+  size_t bytesPerPath = 0;  // of a wave's columns
+  size_t lightBytes = 0;    // light vertices and photon map
 };
 
 class Session {

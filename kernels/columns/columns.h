@@ -89,10 +89,10 @@ struct Columns {
   size_t capacity() const { return capacity_; }
 
   // Memory of a queue of this capacity, and per item, without dropped columns.
-  size_t bytes(size_t capacity) {
+  size_t bytes(size_t capacity) const {
     return std::apply([&](auto&... column) { return (column.bytes(capacity) + ...); }, tied());
   }
-  size_t bytesPerItem() {
+  size_t bytesPerItem() const {
     return std::apply([](auto&... column) { return (column.bytesPerItem() + ...); }, tied());
   }
 
@@ -111,8 +111,9 @@ struct Columns {
   }
 
  private:
-  auto tied() {
-    auto columns = static_cast<Derived*>(this)->all();
+  auto tied() const {
+    // all() has one form, for writing; measuring does not write.
+    auto columns = const_cast<Derived*>(static_cast<const Derived*>(this))->all();
     using Tuple = decltype(columns);
     static_assert(sizeof(Derived) == sizeof(Columns) + std::tuple_size_v<Tuple> * sizeof(Column<float>),
                   "a column is missing in all()");

@@ -20,6 +20,7 @@ struct Wave {
   Surfaces<S> surfaces;
   PathStates<S> paths;
   ShadowRays<S> shadowRays;
+  VertexPairs pairs;
   Radiance<S> radiance;
   size_t firstPath = 0;  // index of lane 0 in the iteration's order of paths
   size_t pathCount = 0;  // lanes in use when the wave began
@@ -37,6 +38,8 @@ struct Wave {
       paths.dVC.drop();
       paths.dVM.drop();
       paths.light.drop();
+      pairs.camera.drop();
+      pairs.light.drop();
     }
     size_t bytes = 0;
     forEachQueue([&](auto& queue) { bytes += queue.bytes(capacity); });
@@ -58,6 +61,7 @@ struct Wave {
     function(surfaces);
     function(paths);
     function(shadowRays);
+    function(pairs);
     function(radiance);
   }
 

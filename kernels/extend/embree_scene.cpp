@@ -95,6 +95,18 @@ void setValid(size_t remaining, int (&valid)[kPacket]) {
   for (size_t i = 0; i < kPacket; ++i) valid[i] = i < remaining ? -1 : 0;
 }
 
+// The scalar form of addSplats (kernels/lane_support.h).
+template <class S>
+void splat(const StageContext<S>& context, const ShadowRays<S>& shadow, size_t i) {
+  const double rgb[3] = {shadow.red[i], shadow.green[i], shadow.blue[i]};
+  if (!(rgb[0] < kSplatLimit && rgb[1] < kSplatLimit && rgb[2] < kSplatLimit)) {
+    ++context.counters->nonFinite;
+    return;
+  }
+  int64_t* const sums = context.splats.sums + 3 * size_t{shadow.target[i]};
+  for (size_t c = 0; c < 3; ++c) sums[c] += static_cast<int64_t>(rgb[c] * kSplatScale + 0.5);
+}
+
 void setSegment(float tfar, RTCRay16& ray) {
   for (size_t i = 0; i < kPacket; ++i) {
     ray.tnear[i] = 0;
@@ -197,10 +209,14 @@ void occludeEmbree(const StageContext<S>& context, Wave<S>& wave) {
     occludedPacket(valid, scene, query, packet);
     for (size_t k = 0; k < std::min(kPacket, count - i); ++k) {
       if (packet.tfar[k] < 0) continue;  // -infinity: blocked
-      const uint32_t target = shadow.target[i + k];
-      wave.radiance.red[target] += shadow.red[i + k];
-      wave.radiance.green[target] += shadow.green[i + k];
-      wave.radiance.blue[target] += shadow.blue[i + k];
+      if (context.walk == Walk::camera) {
+        const uint32_t target = shadow.target[i + k];
+        wave.radiance.red[target] += shadow.red[i + k];
+        wave.radiance.green[target] += shadow.green[i + k];
+        wave.radiance.blue[target] += shadow.blue[i + k];
+      } else {
+        splat(context, shadow, i + k);
+      }
     }
   }
   shadow.size = 0;
