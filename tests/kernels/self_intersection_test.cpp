@@ -25,7 +25,7 @@ struct Fixture {
       : scene(std::move(primitives)), stages(findStages<S>(bestIsa(), precision(), Specialization::smooth)) {
     std::fill_n(scene.materials[0].reflectance, 3, 1.0f);
     scene.view.materials = scene.materials.data();
-    CameraView camera;
+    CameraView camera{};
     camera.width = camera.height = 32;
     const Point first = Point{-0.5, 0.5, 0.7} * spread;
     for (size_t i = 0; i < 3; ++i) {
@@ -79,7 +79,6 @@ class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersecto
       f.begin(iteration);
       std::vector<uint32_t> previous(kPaths, kMiss);
       for (f.context.depth = 1; f.context.depth <= 24; ++f.context.depth) {
-        for (size_t i = 0; i < f.wave.rays.size; ++i) { auto&r=f.wave.rays; auto&s=f.wave.surfaces; if(!std::isfinite(r.originX[i]+r.directionX[i]+r.originY[i]+r.originZ[i]+r.directionY[i]+r.directionZ[i])) printf("BAD depth %u i %zu o %g %g %g d %g %g %g n %g %g %g off %g\n",f.context.depth,i,(double)r.originX[i],(double)r.originY[i],(double)r.originZ[i],(double)r.directionX[i],(double)r.directionY[i],(double)r.directionZ[i],(double)s.normalX[i],(double)s.normalY[i],(double)s.normalZ[i],(double)s.offset[i]); }
         f.extend(f.context, f.wave);
         for (size_t i = 0; i < f.wave.rays.size; ++i) {
           const uint32_t now = f.wave.hits.primitive[i];
