@@ -63,6 +63,12 @@ struct BsdfInput {
   WAVECREST_INLINE Real opacity() const { return to<Real>(at(materials->opacity)); }
 };
 
+// Vertices whose BSDF has more than delta lobes: only those can be joined by next event, connections and merges.
+WAVECREST_INLINE Mask hasNonDeltaLobes(UInt kind) {
+  const auto is = [kind](BsdfKind k) HWY_ATTR { return kind == UInt(static_cast<uint32_t>(k)); };
+  return !(is(BsdfKind::conductor) | is(BsdfKind::dielectric) | is(BsdfKind::thinDielectric));
+}
+
 // Real zero in all fields.
 template <class Real>
 WAVECREST_INLINE BsdfValue<Real> zeroBsdfValue() {
