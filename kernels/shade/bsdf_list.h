@@ -1,6 +1,7 @@
 // The list of BSDFs. A new one is a file beside this, an include and a name here, and a kind in kernels/scene_view.h.
 #pragma once
 
+#include "kernels/shade/beckmann_lanes.h"
 #include "kernels/shade/bsdf_conductor.h"
 #include "kernels/shade/bsdf_dielectric.h"
 #include "kernels/shade/bsdf_diffuse.h"
@@ -16,7 +17,12 @@ WAVECREST_SIMD_BEGIN
 template <class... Bsdfs>
 struct BsdfList {};
 
+using BeckmannConductorBsdf = RoughConductor<BeckmannNormals, BsdfKind::beckmannConductor, kLayeredBsdfs>;
+using BeckmannDielectricBsdf = RoughDielectric<BeckmannNormals, BsdfKind::beckmannDielectric>;
+using BeckmannPlasticBsdf = RoughPlastic<BeckmannNormals, BsdfKind::beckmannPlastic>;
+
 using AllBsdfs = BsdfList<DiffuseBsdf, ConductorBsdf, DielectricBsdf, RoughConductorBsdf, ThinDielectricBsdf,
-                          RoughDielectricBsdf, PlasticBsdf, RoughPlasticBsdf, PhongBsdf>;
+                          RoughDielectricBsdf, PlasticBsdf, RoughPlasticBsdf, PhongBsdf, BeckmannConductorBsdf,
+                          BeckmannDielectricBsdf, BeckmannPlasticBsdf>;
 
 WAVECREST_SIMD_END

@@ -60,7 +60,7 @@ struct RoughDielectric {
     const Real eta = etaBeyond(input, fix);
     const Real inverseEta = reciprocal<P>(eta);
     const Vec3<Real> near{fix.x, fix.y, abs(fix.z)};  // fix as seen from its own side
-    const Vec3<Real> m = normals.sampleVisible(near, to<Real>(u.b), to<Real>(u.c));
+    const Vec3<Real> m = normals.sampleVisible(fix, to<Real>(u.b), to<Real>(u.c));
     const Real cosine = dot(near, m);
     const auto fresnel = fresnelDielectric<P>(cosine, eta);
 

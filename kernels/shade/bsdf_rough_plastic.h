@@ -57,11 +57,11 @@ struct RoughPlastic {
   template <class P>
   static WAVECREST_INLINE typename P::Real roughTransmittance(const BsdfInput<P>& input, typename P::Real cosine) {
     using Real = typename P::Real;
-    const Float x = min(toFloat(cosine), Float(1)) * Float(static_cast<float>(kTransmittanceSize - 1));
-    const UInt index = min(toUInt(x), UInt(kTransmittanceSize - 2));
-    const Float low = input.at(input.materials->roughTransmittance, index);
-    const Float high = input.at(input.materials->roughTransmittance, index + UInt(1u));
-    return to<Real>(mulAdd(high - low, x - toFloat(index), low));
+    const Real x = min(cosine, Real(1)) * Real(static_cast<float>(kTransmittanceSize - 1));
+    const UInt index = min(toUInt(toFloat(x)), UInt(kTransmittanceSize - 2));
+    const Real low = to<Real>(input.at(input.materials->roughTransmittance, index));
+    const Real high = to<Real>(input.at(input.materials->roughTransmittance, index + UInt(1u)));
+    return mulAdd(high - low, x - to<Real>(toFloat(index)), low);
   }
 
   template <class P>

@@ -45,10 +45,11 @@ struct GgxNormals {
     return alpha2 * Real(kInvPi) * ratio * ratio;
   }
 
-  // A visible normal for v_z > 0. Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023: the
-  // half vector of v and a uniform direction of the cap z > -v_z, after stretching v to alpha = 1.
+  // A normal visible from v, or from its image above the surface. Dupuy and Benyoub, "Sampling Visible GGX Normals with
+  // Spherical Caps", 2023: the half vector of v and a uniform direction of the cap z > -v_z, after stretching v to
+  // alpha = 1.
   WAVECREST_INLINE Vec3<Real> sampleVisible(Vec3<Real> v, Real u1, Real u2) const {
-    const Vec3<Real> stretched = normalizeFast<P>(Vec3<Real>{v.x * alpha, v.y * alpha, v.z});
+    const Vec3<Real> stretched = normalizeFast<P>(Vec3<Real>{v.x * alpha, v.y * alpha, abs(v.z)});
     const SinCos<Real> azimuth = sinCos2Pi(u2);
     const Real depth = u1 * (Real(1) + stretched.z);  // 1 - z of the direction in the cap
     const Real radius = sqrt(max(depth * (Real(2) - depth), Real(0)));

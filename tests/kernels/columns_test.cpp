@@ -183,9 +183,7 @@ TYPED_TEST(WaveTest, eachNeedCostsItsColumns) {
 }
 
 // The bound that makes a wave of 2048 paths leave most of a core's L2 to the scene.
-TEST(WaveMemory, plainestWaveIsAtMost128BytesPerPath) {
-  EXPECT_LE(Wave<float>(2048, kPlainest).bytesPerPath(), 128u);
-}
+TEST(WaveMemory, plainestWaveIsAtMost128BytesPerPath) { EXPECT_LE(Wave<float>(2048, kPlainest).bytesPerPath(), 128u); }
 
 }  // namespace
 }  // namespace wavecrest

@@ -24,9 +24,9 @@ namespace {
       WAVECREST_FUNCTION(T, "sin", sin(a)), WAVECREST_FUNCTION(T, "cos", cos(a)),                           \
       WAVECREST_FUNCTION(T, "log", log(a)), WAVECREST_FUNCTION(T, "log2", log2(a)),                         \
       WAVECREST_FUNCTION(T, "log1p", log1p(a)), WAVECREST_FUNCTION(T, "exp", exp(a)),                       \
-      WAVECREST_FUNCTION(T, "exp2", exp2(a)), WAVECREST_FUNCTION(T, "acos", acos(a)),                       \
-      WAVECREST_FUNCTION(T, "atan", atan(a)), WAVECREST_FUNCTION(T, "atan2", atan2(a, b)),                  \
-      WAVECREST_FUNCTION(T, "pow", pow(a, b))
+      WAVECREST_FUNCTION(T, "expm1", expm1(a)), WAVECREST_FUNCTION(T, "exp2", exp2(a)),                     \
+      WAVECREST_FUNCTION(T, "acos", acos(a)), WAVECREST_FUNCTION(T, "atan", atan(a)),                       \
+      WAVECREST_FUNCTION(T, "atan2", atan2(a, b)), WAVECREST_FUNCTION(T, "pow", pow(a, b))
 
 const MathFunction<float> kFloats[] = {
     WAVECREST_FUNCTIONS(float),

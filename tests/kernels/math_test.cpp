@@ -64,6 +64,8 @@ const Case kCases[] = {
      {1e-30, 1e30, true},
      {1e-200, 1e200, true}},
     {"exp", [](Long a, Long) { return std::exp(a); }, Measure::ulp, 1, 1, {-87, 88}, {-700, 700}},
+    {"expm1", [](Long a, Long) { return std::expm1(a); }, Measure::ulp, 4, 4, {-87, 88}, {-700, 700}},
+    {"expm1", [](Long a, Long) { return std::expm1(a); }, Measure::ulp, 4, 4, {-1, 1}, {-1, 1}},
     {"exp2", [](Long a, Long) { return std::exp2(a); }, Measure::ulp, 1.2, 1.2, {-126, 127.4}, {-1022, 1023.4}},
     {"acos", [](Long a, Long) { return std::acos(a); }, Measure::ulp, 1.5, 1.5, {-1, 1}, {-1, 1}},
     {"acos", [](Long a, Long) { return std::acos(a); }, Measure::ulp, 1.5, 1.5, {0.999, 1}, {0.999, 1}},

@@ -44,11 +44,11 @@ template <class S>
 StageScene<S> makeRoom(bool spheres) {
   const auto p = [](double x, double y, double z) { return turned({x, y, z}); };
   std::vector<PrimitiveRecord<double>> list{
-      quadPrimitive(p(-1, -1, 1), p(1, -1, 1), p(-1, -1, -1)),           // floor
-      quadPrimitive(p(-1, 1, -1), p(1, 1, -1), p(-1, 1, 1)),             // ceiling
-      quadPrimitive(p(-1, -1, -1), p(1, -1, -1), p(-1, 1, -1)),          // back
-      quadPrimitive(p(-1, -1, 1), p(-1, -1, -1), p(-1, 1, 1)),           // left
-      quadPrimitive(p(1, -1, -1), p(1, -1, 1), p(1, 1, -1)),             // right
+      quadPrimitive(p(-1, -1, 1), p(1, -1, 1), p(-1, -1, -1)),                     // floor
+      quadPrimitive(p(-1, 1, -1), p(1, 1, -1), p(-1, 1, 1)),                       // ceiling
+      quadPrimitive(p(-1, -1, -1), p(1, -1, -1), p(-1, 1, -1)),                    // back
+      quadPrimitive(p(-1, -1, 1), p(-1, -1, -1), p(-1, 1, 1)),                     // left
+      quadPrimitive(p(1, -1, -1), p(1, -1, 1), p(1, 1, -1)),                       // right
       quadPrimitive(p(-0.4, 0.98, -0.4), p(0.4, 0.98, -0.4), p(-0.4, 0.98, 0.4)),  // lamp
       trianglePrimitive(p(-0.8, -0.9, 0.2), p(0.1, -0.7, 0.3), p(-0.5, 0.1, 0.1)),
       trianglePrimitive(p(0.3, -0.2, 0.5), p(0.7, -0.3, 0.6), p(0.5, 0.3, 0.4)),  // glowing
@@ -84,7 +84,8 @@ StageScene<S> makeRoom(bool spheres) {
 
   CameraView camera{};
   camera.width = camera.height = 24;
-  const Point origin = p(0.1, 0.05, 3.2), first = p(-0.5, 0.5, -1.5), across = p(1.0 / 24, 0, 0), down = p(0, -1.0 / 24, 0);
+  const Point origin = p(0.1, 0.05, 3.2), first = p(-0.5, 0.5, -1.5), across = p(1.0 / 24, 0, 0),
+              down = p(0, -1.0 / 24, 0);
   for (size_t i = 0; i < 3; ++i) {
     camera.origin[i] = origin[i];
     camera.corner[i] = first[i];
@@ -232,9 +233,8 @@ std::vector<Choice> allChoices() {
   return choices;
 }
 std::string nameOf(const Choice& choice) {
-  return std::string(toString(choice.isa)) + "_" +
-         std::string(kPrecisionNames[static_cast<size_t>(choice.precision)]) + "_" +
-         std::string(kSpecializationNames[static_cast<size_t>(choice.specialization)]);
+  return std::string(toString(choice.isa)) + "_" + std::string(kPrecisionNames[static_cast<size_t>(choice.precision)]) +
+         "_" + std::string(kSpecializationNames[static_cast<size_t>(choice.specialization)]);
 }
 
 class StageTest : public testing::TestWithParam<Choice> {

@@ -1,0 +1,134 @@
+// The BSDFs behind plain pointers, for the BSDF tests. Values cross as double, whatever the precision policy.
+#include "tests/kernels/bsdf_entries.h"
+
+#include "kernels/shade/bsdf_lanes.h"
+#include "kernels/simd/isa_table.h"
+
+WAVECREST_SIMD_BEGIN
+namespace {
+
+constexpr uint32_t kAllFeatures = kSpecializationFeatures[static_cast<size_t>(Specialization::general)];
+
+// Calls function(policy) with the policy of the given precision.
+template <class Function>
+auto withPolicy(Precision precision, Function&& function) {
+  switch (precision) {
+    case Precision::doubled:
+      return function(DoublePrecision{});
+    case Precision::fast:
+      return function(FastPrecision{});
+    default:
+      return function(FloatPrecision{});
+  }
+}
+
+// One block of a column; lanes past the end repeat the last value.
+template <class Real, class Value>
+Real loadLanes(size_t first, size_t count, Value&& value) {
+  HWY_ALIGN typename Real::Storage lanes[kLanes];
+  for (size_t i = 0; i < kLanes; ++i) {
+    lanes[i] = static_cast<typename Real::Storage>(value(std::min(first + i, count - 1)));
+  }
+  return load(lanes);
+}
+template <class Real>
+Vec3<Real> loadDirections(std::span<const Direction> from, size_t first) {
+  const auto axis = [&](size_t k) { return loadLanes<Real>(first, from.size(), [&](size_t i) { return from[i][k]; }); };
+  return {axis(0), axis(1), axis(2)};
+}
+// Calls assign(item, value) for the lanes of a that are items of the batch.
+template <class Real, class Assign>
+void storeLanes(Real a, size_t first, size_t count, Assign&& assign) {
+  HWY_ALIGN typename Real::Storage lanes[kLanes];
+  store(a, lanes);
+  for (size_t i = 0; i < kLanes && first + i < count; ++i) assign(first + i, double{lanes[i]});
+}
+template <class Real, class Assign>
+void storeLanes(Vec3<Real> a, size_t first, size_t count, Assign&& assign) {
+  storeLanes(a.x, first, count, [&](size_t i, double x) { assign(i, size_t{0}, x); });
+  storeLanes(a.y, first, count, [&](size_t i, double x) { assign(i, size_t{1}, x); });
+  storeLanes(a.z, first, count, [&](size_t i, double x) { assign(i, size_t{2}, x); });
+}
+
+template <class P>
+BsdfInput<P> inputOf(const BsdfQuery& query) {
+  BsdfInput<P> input(query.material, UInt(0u));
+  input.walk = query.walk;
+  input.lobes = query.specularOnly ? Lobes::specularOnly : Lobes::all;
+  return input;
+}
+
+template <class P>
+void evalBlocks(const BsdfQuery& query, std::span<const Direction> fix, std::span<const Direction> gen,
+                BsdfEvaluation* out) {
+  using Real = typename P::Real;
+  const BsdfInput<P> input = inputOf<P>(query);
+  for (size_t i = 0; i < fix.size(); i += kLanes) {
+    const auto value = evalBsdf<P, kAllFeatures>(input, firstLanes(fix.size() - i), loadDirections<Real>(fix, i),
+                                                 loadDirections<Real>(gen, i));
+    storeLanes(value.f, i, fix.size(), [&](size_t item, size_t k, double x) { out[item].f[k] = x; });
+    storeLanes(value.pdf, i, fix.size(), [&](size_t item, double x) { out[item].pdf = x; });
+    storeLanes(value.pdfReverse, i, fix.size(), [&](size_t item, double x) { out[item].pdfReverse = x; });
+  }
+}
+
+template <class P>
+void sampleBlocks(const BsdfQuery& query, std::span<const Direction> fix, std::span<const std::array<float, 3>> u,
+                  BsdfDraw* out) {
+  using Real = typename P::Real;
+  const BsdfInput<P> input = inputOf<P>(query);
+  const size_t count = fix.size();
+  for (size_t i = 0; i < count; i += kLanes) {
+    const auto number = [&](size_t k) { return loadLanes<Float>(i, count, [&](size_t item) { return u[item][k]; }); };
+    const auto draw = sampleBsdf<P, kAllFeatures>(input, firstLanes(count - i), loadDirections<Real>(fix, i),
+                                                  {number(0), number(1), number(2), Float(0.5f)});
+    storeLanes(draw.gen, i, count, [&](size_t item, size_t k, double x) { out[item].gen[k] = x; });
+    storeLanes(draw.weight, i, count, [&](size_t item, size_t k, double x) { out[item].weight[k] = x; });
+    storeLanes(draw.pdf, i, count, [&](size_t item, double x) { out[item].pdf = x; });
+    storeLanes(draw.pdfReverse, i, count, [&](size_t item, double x) { out[item].pdfReverse = x; });
+    storeLanes(draw.etaRatio, i, count, [&](size_t item, double x) { out[item].etaRatio = x; });
+    const Float specular = zeroUnless(draw.specular, Float(1));
+    storeLanes(specular, i, count, [&](size_t item, double x) { out[item].specular = x != 0; });
+  }
+}
+
+template <class Real>
+double firstLane(Real a) {
+  double first = 0;
+  storeLanes(a, 0, 1, [&](size_t, double x) { first = x; });
+  return first;
+}
+
+constexpr BsdfEntries kEntries = {
+    .lanes = kLanes,
+    .eval =
+        [](const BsdfQuery& query, std::span<const Direction> fix, std::span<const Direction> gen,
+           BsdfEvaluation* out) {
+          withPolicy(query.precision, [&](auto policy) { evalBlocks<decltype(policy)>(query, fix, gen, out); });
+        },
+    .sample =
+        [](const BsdfQuery& query, std::span<const Direction> fix, std::span<const std::array<float, 3>> u,
+           BsdfDraw* out) {
+          withPolicy(query.precision, [&](auto policy) { sampleBlocks<decltype(policy)>(query, fix, u, out); });
+        },
+    .fresnelDielectric =
+        [](Precision precision, double cosine, double eta) {
+          return withPolicy(precision, [&](auto policy) HWY_ATTR {
+            using P = decltype(policy);
+            using Real = typename P::Real;
+            return firstLane(fresnelDielectric<P>(Real(cosine), Real(eta)).reflectance);
+          });
+        },
+    .fresnelConductor =
+        [](Precision precision, double cosine, double eta, double k) {
+          return withPolicy(precision, [&](auto policy) HWY_ATTR {
+            using P = decltype(policy);
+            using Real = typename P::Real;
+            return firstLane(fresnelConductor<P>(Real(cosine), Real(eta), Real(k)));
+          });
+        },
+};
+WAVECREST_REGISTER_ENTRIES(BsdfEntries, kEntries);
+
+}  // namespace
+WAVECREST_SIMD_END

@@ -1,0 +1,47 @@
+// Entry points of bsdf_entries.cpp: the BSDFs and Fresnel functions of the general feature set, under every precision.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "kernels/scene_view.h"
+#include "kernels/stages.h"
+
+namespace wavecrest {
+
+using Direction = std::array<double, 3>;
+
+struct BsdfEvaluation {
+  std::array<double, 3> f;
+  double pdf, pdfReverse;
+};
+
+struct BsdfDraw {
+  Direction gen;
+  std::array<double, 3> weight;
+  double pdf, pdfReverse, etaRatio;
+  bool specular;
+};
+
+// One material, seen by one walk.
+struct BsdfQuery {
+  const MaterialRecord* material;
+  Precision precision = Precision::floating;
+  Walk walk = Walk::camera;
+  bool specularOnly = false;
+};
+
+struct BsdfEntries {
+  size_t lanes;
+  void (*eval)(const BsdfQuery& query, std::span<const Direction> fix, std::span<const Direction> gen,
+               BsdfEvaluation* out);
+  // u holds the numbers a, b and c of each draw.
+  void (*sample)(const BsdfQuery& query, std::span<const Direction> fix, std::span<const std::array<float, 3>> u,
+                 BsdfDraw* out);
+  double (*fresnelDielectric)(Precision precision, double cosine, double eta);
+  double (*fresnelConductor)(Precision precision, double cosine, double eta, double k);
+};
+
+}  // namespace wavecrest

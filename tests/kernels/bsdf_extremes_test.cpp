@@ -1,0 +1,149 @@
+// The ends of every parameter's range: results stay finite, and nothing jumps where one kind of kernel takes over from
+// another.
+#include "tests/kernels/bsdf_cases.h"
+#include "tests/kernels/isa_test.h"
+
+namespace wavecrest {
+namespace {
+
+class BsdfExtremesTest : public IsaTest {};
+WAVECREST_TEST_EVERY_ISA(BsdfExtremesTest);
+
+constexpr double kEtas[] = {0.9999, 1, 1 + 1e-6, 1 + 1e-4, 1.0003, 1.5, 2.4, 4};
+constexpr double kAlphas[] = {0, 1e-6, 1e-4, 1e-3, 0.01, 0.5, 1};
+
+std::vector<BsdfCase> extremeCases() {
+  std::vector<BsdfCase> cases;
+  for (const Distribution distribution : {Distribution::ggx, Distribution::beckmann}) {
+    for (const double alpha : kAlphas) {
+      const std::string name = " alpha " + std::to_string(alpha);
+      cases.push_back(bsdfCase("metal" + name, aluminium(alpha, distribution)));
+      for (const double eta : kEtas) {
+        const std::string both = name + " eta " + std::to_string(eta);
+        cases.push_back(bsdfCase("glass" + both, glass(alpha, eta, distribution), true));
+        cases.push_back(bsdfCase("plastic" + both, plastic(alpha, eta, distribution)));
+        if (alpha == 0) {
+          cases.push_back(bsdfCase("pane" + both, Dielectric{.intIor = eta, .extIor = 1, .thin = true}, true));
+        }
+      }
+    }
+  }
+  for (const double exponent : {0.0, 1.0, 30.0, 1e4, 1e6}) {
+    cases.push_back(bsdfCase("phong " + std::to_string(exponent), phong(exponent)));
+  }
+  for (const double rho : {0.0, 1 - 1e-6, 1.0}) {
+    cases.push_back(bsdfCase("diffuse " + std::to_string(rho), Diffuse{rgb(rho, rho, rho)}));
+    Plastic bright = plastic(0.1);
+    bright.diffuseReflectance = bright.specularReflectance = rgb(rho, rho, rho);
+    for (const bool nonlinear : {false, true}) {
+      bright.nonlinear = nonlinear;
+      for (const double alpha : {0.0, 0.1}) {
+        bright.alpha = {alpha};
+        cases.push_back(bsdfCase("bright plastic", bright));
+      }
+    }
+    cases.push_back(bsdfCase("opacity " + std::to_string(rho), Diffuse{rgb(0.5, 0.5, 0.5)}, false, rho));
+  }
+  return cases;
+}
+
+std::vector<Direction> extremeDirections() {
+  std::vector<Direction> directions{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}};
+  for (const double cosine : {1e-6, 1e-3, 0.1, 0.7453559925, 0.9, 1 - 1e-7}) {  // the fourth: critical for eta = 1.5
+    for (const double sign : {1.0, -1.0}) {
+      const double sine = std::sqrt(1 - cosine * cosine);
+      directions.push_back({sine * 0.6, sine * 0.8, sign * cosine});
+      directions.push_back({-sine * 0.6, -sine * 0.8, sign * cosine});
+    }
+  }
+  return directions;
+}
+
+bool finite(const std::array<double, 3>& values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x) && std::abs(x) < 1e30; });
+}
+
+TEST_P(BsdfExtremesTest, everythingIsFinite) {
+  const auto directions = extremeDirections();
+  std::vector<std::array<float, 3>> draws = randomDraws(24, 3);
+  const float last = 1 - 0x1p-24f;
+  for (const float a : {0.0f, last}) {
+    for (const float b : {0.0f, 0.5f, last}) draws.push_back({a, b, b});
+  }
+  for (const BsdfCase& bsdf : extremeCases()) {
+    for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
+      for (const Walk walk : {Walk::camera, Walk::light}) {
+        const BsdfQuery query{.material = &bsdf.record, .precision = precision, .walk = walk};
+        for (const Direction& fix : directions) {
+          const auto values =
+              evaluate(entries<BsdfEntries>(), query, std::vector<Direction>(directions.size(), fix), directions);
+          for (size_t i = 0; i < values.size(); ++i) {
+            ASSERT_TRUE(finite(values[i].f)) << bsdf.name << " " << fix[2] << " " << directions[i][2];
+            ASSERT_TRUE(finite({values[i].pdf, values[i].pdfReverse, 0})) << bsdf.name << " " << fix[2];
+            ASSERT_GE(values[i].pdf, 0) << bsdf.name;
+          }
+          std::vector<BsdfDraw> drawn(draws.size());
+          entries<BsdfEntries>().sample(query, std::vector<Direction>(draws.size(), fix), draws, drawn.data());
+          for (const BsdfDraw& draw : drawn) {
+            ASSERT_TRUE(finite(draw.weight)) << bsdf.name << " " << fix[2];
+            if (draw.weight[0] == 0) continue;
+            ASSERT_TRUE(finite(draw.gen) && finite({draw.pdf, draw.pdfReverse, draw.etaRatio})) << bsdf.name;
+            ASSERT_NEAR(dot(draw.gen, draw.gen), 1, 1e-5) << bsdf.name << " " << fix[2];
+            ASSERT_GT(draw.pdf, 0) << bsdf.name << " " << fix[2];
+          }
+        }
+      }
+    }
+  }
+}
+
+// Where draws of one material go on average, and with what weight.
+struct Average {
+  double weight = 0, cosine = 0;
+};
+Average averageOf(const BsdfEntries& entries, const BsdfCase& bsdf, const Direction& fix) {
+  Average average;
+  constexpr size_t kDraws = 20000;
+  forEachDraw(entries, {.material = &bsdf.record}, fix, kDraws, 4, [&](const BsdfDraw& draw) {
+    average.weight += draw.weight[0] / kDraws;
+    average.cosine += draw.weight[0] * draw.gen[2] / kDraws;
+  });
+  return average;
+}
+
+void expectContinuous(const BsdfEntries& entries, const BsdfCase& below, const BsdfCase& above, double tolerance) {
+  for (const Direction& fix : fixDirections(below)) {
+    const Average a = averageOf(entries, below, fix), b = averageOf(entries, above, fix);
+    EXPECT_NEAR(a.weight, b.weight, tolerance) << below.name << " " << fix[2];
+    EXPECT_NEAR(a.cosine, b.cosine, tolerance) << below.name << " " << fix[2];
+  }
+}
+
+TEST_P(BsdfExtremesTest, roughBecomesSmoothWithoutAJump) {
+  const BsdfEntries& kernel = entries<BsdfEntries>();
+  const double below = kSmallestAlpha * 0.999, above = kSmallestAlpha * 1.001;
+  for (const Distribution distribution : {Distribution::ggx, Distribution::beckmann}) {
+    // The same numbers choose the lobes on either side, so what remains is the lobe's width.
+    expectContinuous(kernel, bsdfCase("metal", aluminium(below, distribution)),
+                     bsdfCase("metal", aluminium(above, distribution)), 2e-3);
+    expectContinuous(kernel, bsdfCase("glass", glass(below, 1.5, distribution), true),
+                     bsdfCase("glass", glass(above, 1.5, distribution), true), 5e-3);
+  }
+}
+
+TEST_P(BsdfExtremesTest, aMatchedIndexLetsEverythingPass) {
+  const BsdfEntries& kernel = entries<BsdfEntries>();
+  // A narrow lobe: a wide one would lose to shadowing what a boundary that is not there does not.
+  expectContinuous(kernel, bsdfCase("glass", glass(0.01, 1 + 0.999e-4), true),
+                   bsdfCase("glass", glass(0.01, 1 + 1.001e-4), true), 1e-2);
+  const BsdfCase matched = bsdfCase("matched", glass(0, 1), true);
+  for (const Direction& fix : fixDirections(matched)) {
+    for (const BsdfDraw& draw : drawSamples(kernel, {.material = &matched.record}, fix, 100, 2)) {
+      EXPECT_NEAR(dot(draw.gen, fix), -1, 1e-6);
+      EXPECT_NEAR(draw.weight[0], 1, 1e-6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest

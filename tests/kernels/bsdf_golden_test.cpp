@@ -1,0 +1,122 @@
+// Our BSDFs against Mitsuba 3's plugins: golden/bsdf.json holds what its Python bindings returned.
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/kernels/bsdf_cases.h"
+#include "tests/kernels/isa_test.h"
+
+namespace wavecrest {
+namespace {
+
+using Json = nlohmann::json;
+
+class BsdfGoldenTest : public IsaTest {};
+WAVECREST_TEST_EVERY_ISA(BsdfGoldenTest);
+
+const Json& golden() {
+  static const Json document = Json::parse(std::ifstream(WAVECREST_GOLDEN_DIR "/bsdf.json"));
+  return document;
+}
+
+Rgb colour(const Json& material, const char* name, const Rgb& otherwise) {
+  return material.contains(name) ? material[name].get<Rgb>() : otherwise;
+}
+
+decltype(Material::kind) kindOf(const Json& m) {
+  const std::string type = m["type"];
+  const Distribution distribution =
+      m.value("distribution", "") == "beckmann" ? Distribution::beckmann : Distribution::ggx;
+  const TexturedFloat alpha{m.value("alpha", 0.0)};
+  const TexturedRgb diffuse{colour(m, "diffuse", {})}, specular{colour(m, "specular", {1, 1, 1})};
+  if (type == "diffuse") return Diffuse{diffuse};
+  if (type == "phong") return Phong{diffuse, specular, m["exponent"]};
+  if (type.ends_with("conductor")) {
+    return Conductor{colour(m, "eta", {}), colour(m, "k", {}), m.contains("material"), specular, alpha, distribution};
+  }
+  if (type.ends_with("dielectric")) {
+    return Dielectric{m["intIor"], m["extIor"],
+                      specular,    TexturedRgb{colour(m, "transmittance", {1, 1, 1})},
+                      alpha,       type.starts_with("thin"),
+                      distribution};
+  }
+  if (type.ends_with("plastic")) {
+    return Plastic{m["intIor"], m["extIor"], diffuse, specular, alpha, m["nonlinear"], distribution};
+  }
+  throw std::runtime_error("bsdf.json: unknown type " + type);
+}
+
+MaterialRecord recordOf(const Json& entry) {
+  const Json& m = entry["material"];
+  Material material;
+  material.kind = kindOf(m);
+  if (m.contains("opacity")) material.opacity = TexturedFloat{m["opacity"].get<double>()};
+  MaterialRecord record = compileMaterial(material, Scene{});
+  // Mitsuba fits a polynomial to the integral that we evaluate; materials_test.cpp compares the two.
+  if (entry.contains("fdrInt")) record.internalDiffuse = entry["fdrInt"];
+  return record;
+}
+
+struct Tolerance {
+  double value, pdf;  // relative
+};
+// Mitsuba computes in float. Its table of a rough plastic's transmittance T comes from a coarser quadrature than ours:
+// T differs by up to 5e-4, and so by up to 1 % does 1 - T, which decides how often the specular lobe is drawn.
+Tolerance toleranceOf(const Json& material) {
+  return material["type"] == "roughplastic" ? Tolerance{2e-3, 1e-2} : Tolerance{1e-4, 1e-4};
+}
+
+TEST_P(BsdfGoldenTest, valuesAndDensitiesAreMitsubas) {
+  size_t compared = 0;
+  for (const Json& entry : golden()["records"]) {
+    const MaterialRecord record = recordOf(entry);
+    const Tolerance tolerance = toleranceOf(entry["material"]);
+    for (const Json& item : entry["values"]) {
+      SCOPED_TRACE(entry["material"].dump() + item.dump());
+      const std::vector<Direction> fix{item["fix"].get<Direction>()}, gen{item["gen"].get<Direction>()};
+      for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
+        const auto value =
+            evaluate(entries<BsdfEntries>(), {.material = &record, .precision = precision}, fix, gen).front();
+        const double pdf = item["pdf"];
+        ASSERT_NEAR(value.pdf, pdf, tolerance.pdf * pdf + 1e-6);
+        for (size_t k = 0; k < 3; ++k) {
+          const double expected = item["fCos"][k];
+          ASSERT_NEAR(value.f[k] * std::abs(gen[0][2]), expected, tolerance.value * expected + 1e-6);
+        }
+        compared += pdf > 0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(compared, 1000u);
+}
+
+TEST_P(BsdfGoldenTest, deltaLobesAreMitsubas) {
+  size_t compared = 0;
+  for (const Json& entry : golden()["records"]) {
+    const MaterialRecord record = recordOf(entry);
+    for (const Json& item : entry["deltas"]) {
+      SCOPED_TRACE(entry["material"].dump() + item.dump());
+      const std::vector<Direction> fix{item["fix"].get<Direction>()};
+      std::vector<std::array<float, 3>> u{{item["u"].get<float>(), 0.3f, 0.6f}};
+      // Mitsuba's mask passes light on for large numbers, as we do, and its lobes come in our order.
+      BsdfDraw draw{};
+      entries<BsdfEntries>().sample({.material = &record, .precision = Precision::doubled}, fix, u, &draw);
+      const double weight = item["weight"][0];
+      if (weight == 0) {
+        EXPECT_EQ(draw.weight[0], 0);
+        continue;
+      }
+      ASSERT_TRUE(draw.specular);
+      ASSERT_NEAR(draw.pdf, item["pdf"], 1e-5);
+      ASSERT_NEAR(1 / draw.etaRatio, item["eta"], 1e-5);
+      for (size_t k = 0; k < 3; ++k) {
+        ASSERT_NEAR(draw.gen[k], item["gen"][k], 1e-5);
+        ASSERT_NEAR(draw.weight[k], item["weight"][k], 1e-4 * weight);
+      }
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 40u);
+}
+
+}  // namespace
+}  // namespace wavecrest

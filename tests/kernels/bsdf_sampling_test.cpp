@@ -1,0 +1,242 @@
+// Sampling of BSDFs against their densities, on every instruction set and precision.
+#include "tests/kernels/bsdf_cases.h"
+#include "tests/kernels/isa_test.h"
+#include "tests/kernels/statistics.h"
+
+namespace wavecrest {
+namespace {
+
+class BsdfSamplingTest : public IsaTest {};
+WAVECREST_TEST_EVERY_ISA(BsdfSamplingTest);
+
+constexpr std::array kPrecisions{Precision::floating, Precision::doubled, Precision::fast};
+
+// ---- a grid over the sphere -----------------------------------------------------------------------------------------
+// Cells are steps in theta and in azimuth, measured from the mirror direction, around which lobes at grazing incidence
+// are narrow: azimuth = pi s^3 with equal steps of s in [-1, 1]. Integrals over a cell use the nodes of a
+// Gauss-Legendre rule in either variable.
+
+constexpr size_t kThetaCells = 72, kPhiCells = 72;
+// Three nodes in each of kParts parts of a cell's side: refraction has kinks that no single rule resolves.
+constexpr size_t kParts = 4, kNodes = 3 * kParts;
+double nodePosition(size_t i) {  // in [0, 1]
+  constexpr double kOffsets[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
+  return (static_cast<double>(i / 3) + kOffsets[i % 3]) / kParts;
+}
+double nodeWeight(size_t i) {  // sums to 1
+  return (i % 3 == 1 ? 4.0 / 9 : 5.0 / 18) / kParts;
+}
+
+struct Integrals {
+  std::vector<double> pdf;         // over each cell
+  double total = 0;                // of pdf
+  std::array<double, 3> albedo{};  // INT f |cos|
+};
+
+double mirrorAzimuth(const Direction& fix) { return std::atan2(-fix[1], -fix[0]); }
+
+size_t cellOf(const Direction& d, double mirrorPhi) {
+  const double theta = std::acos(std::clamp(d[2], -1.0, 1.0));
+  const double turns = (std::atan2(d[1], d[0]) - mirrorPhi) / (2 * std::numbers::pi);
+  const double s = std::cbrt(2 * (turns - std::round(turns)));
+  const auto row = static_cast<size_t>(theta / std::numbers::pi * kThetaCells);
+  const auto column = static_cast<size_t>((s + 1) / 2 * kPhiCells);
+  return std::min(row, kThetaCells - 1) * kPhiCells + std::min(column, kPhiCells - 1);
+}
+
+Integrals integrate(const BsdfEntries& entries, const BsdfQuery& query, const Direction& fix) {
+  Integrals integrals;
+  integrals.pdf.resize(kThetaCells * kPhiCells);
+  constexpr double kThetaStep = std::numbers::pi / kThetaCells, kStep = 2.0 / kPhiCells;
+  const double mirrorPhi = mirrorAzimuth(fix);
+  std::vector<Direction> gens;
+  std::vector<double> weights;
+  for (size_t row = 0; row < kThetaCells; ++row) {
+    gens.clear();
+    weights.clear();
+    for (size_t column = 0; column < kPhiCells; ++column) {
+      for (size_t i = 0; i < kNodes; ++i) {
+        const double theta = (static_cast<double>(row) + nodePosition(i)) * kThetaStep;
+        for (size_t j = 0; j < kNodes; ++j) {
+          const double s = (static_cast<double>(column) + nodePosition(j)) * kStep - 1;
+          gens.push_back(fromAngles(theta, mirrorPhi + std::numbers::pi * s * s * s));
+          weights.push_back(nodeWeight(i) * nodeWeight(j) * kThetaStep * std::sin(theta) * kStep * 3 *
+                            std::numbers::pi * s * s);
+        }
+      }
+    }
+    const std::vector<Direction> fixes(gens.size(), fix);
+    const auto values = evaluate(entries, query, fixes, gens);
+    for (size_t n = 0; n < gens.size(); ++n) {
+      integrals.pdf[row * kPhiCells + n / (kNodes * kNodes)] += values[n].pdf * weights[n];
+      for (size_t k = 0; k < 3; ++k) integrals.albedo[k] += values[n].f[k] * std::abs(gens[n][2]) * weights[n];
+    }
+  }
+  for (const double mass : integrals.pdf) integrals.total += mass;
+  return integrals;
+}
+
+bool counts(const BsdfDraw& draw) {
+  return !draw.specular && std::max({draw.weight[0], draw.weight[1], draw.weight[2]}) > 0;
+}
+
+size_t drawCount(Precision precision) { return precision == Precision::floating ? 1'000'000 : 200'000; }
+
+// Significance 0.01 over all tests that this file makes, per test after Sidak, as a number of standard deviations.
+double sidakDeviations(size_t tests) {
+  const double perTest = 1 - std::pow(1 - 0.01, 1 / static_cast<double>(tests));
+  double low = 0, high = 10;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (std::erfc(middle / std::numbers::sqrt2) / 2 > perTest ? low : high) = middle;
+  }
+  return low;
+}
+
+// One material and direction on one instruction set and precision, against integrals of the double policy: draws fall
+// into cells as the density says, draws that are rejected or take a delta lobe being one more cell; and their mean
+// weight is the albedo.
+void checkSampling(const BsdfEntries& entries, const BsdfQuery& query, const Direction& fix, const Integrals& integrals,
+                   double maxDeviations) {
+  const size_t drawn = drawCount(query.precision);
+  const auto n = static_cast<double>(drawn);
+  const double mirrorPhi = mirrorAzimuth(fix);
+  std::vector<size_t> counted(integrals.pdf.size() + 1);
+  std::array<double, 3> sum{}, squares{};
+  forEachDraw(entries, query, fix, drawn, 7, [&](const BsdfDraw& draw) {
+    ++counted[counts(draw) ? cellOf(draw.gen, mirrorPhi) : counted.size() - 1];
+    for (size_t k = 0; k < 3 && counts(draw); ++k) {
+      sum[k] += draw.weight[k];
+      squares[k] += draw.weight[k] * draw.weight[k];
+    }
+  });
+  std::vector<double> expected(integrals.pdf);
+  for (double& mass : expected) mass *= n;
+  expected.push_back(std::max(0.0, 1 - integrals.total) * n);
+  EXPECT_LE(integrals.total, 1 + 1e-3);
+  const auto used =
+      static_cast<size_t>(std::count_if(expected.begin(), expected.end(), [](double e) { return e > 5; }));
+  if (used > 1) {
+    EXPECT_LT(chiSquareDeviations(counted, expected), maxDeviations);
+  } else {
+    EXPECT_EQ(counted.back(), drawn) << "a BSDF of delta lobes alone drew something else";
+  }
+  for (size_t k = 0; k < 3; ++k) {
+    const double mean = sum[k] / n, variance = std::max(0.0, squares[k] / n - mean * mean) / n;
+    // Besides noise: what the quadrature of narrow lobes leaves out.
+    EXPECT_NEAR(mean, integrals.albedo[k], 5 * std::sqrt(variance) + 1e-3 * integrals.albedo[k] + 1e-9);
+  }
+}
+
+TEST_P(BsdfSamplingTest, drawsFollowTheDensityAndAddUpToTheAlbedo) {
+  size_t tests = 0;
+  for (const BsdfCase& bsdf : bsdfCases()) tests += fixDirections(bsdf).size() * kPrecisions.size();
+  const double maxDeviations = sidakDeviations(tests * availableIsas().size());
+  for (const BsdfCase& bsdf : bsdfCases()) {
+    for (const Direction& fix : fixDirections(bsdf)) {
+      const BsdfQuery exact{.material = &bsdf.record, .precision = Precision::doubled};
+      const Integrals integrals = integrate(IsaTable<BsdfEntries>::of(bestIsa()), exact, fix);
+      for (const Precision precision : kPrecisions) {
+        SCOPED_TRACE(bsdf.name + ", " + std::string(kPrecisionNames[static_cast<size_t>(precision)]) + ", cosine " +
+                     std::to_string(fix[2]));
+        checkSampling(entries<BsdfEntries>(), {.material = &bsdf.record, .precision = precision}, fix, integrals,
+                      maxDeviations);
+      }
+    }
+  }
+}
+
+// A draw's weight and densities are those of evaluation, and nothing is drawn where evaluation sees nothing.
+TEST_P(BsdfSamplingTest, weightIsValueTimesCosineOverDensity) {
+  const BsdfEntries& kernel = entries<BsdfEntries>();
+  for (const BsdfCase& bsdf : bsdfCases()) {
+    for (const Precision precision : kPrecisions) {
+      for (const Walk walk : {Walk::camera, Walk::light}) {
+        SCOPED_TRACE(bsdf.name + ", " + std::string(kPrecisionNames[static_cast<size_t>(precision)]));
+        const BsdfQuery query{.material = &bsdf.record, .precision = precision, .walk = walk};
+        // Directions carry an error of an ulp of 1, which a lobe of width w amplifies to 1 / w of its value.
+        const double tolerance = precision == Precision::doubled ? 1e-7 : 1e-2;
+        double sumOfErrors = 0, terms = 0;
+        for (const Direction& fix : fixDirections(bsdf)) {
+          auto draws = drawSamples(kernel, query, fix, 2000, 11);
+          std::erase_if(draws, [](const BsdfDraw& d) { return !counts(d); });
+          std::vector<Direction> gens;
+          for (const BsdfDraw& draw : draws) gens.push_back(draw.gen);
+          const auto values = evaluate(kernel, query, std::vector<Direction>(gens.size(), fix), gens);
+          for (size_t i = 0; i < draws.size(); ++i) {
+            ASSERT_NEAR(draws[i].pdf, values[i].pdf, tolerance * values[i].pdf) << draws[i].gen[2];
+            ASSERT_NEAR(draws[i].pdfReverse, values[i].pdfReverse, tolerance * values[i].pdfReverse);
+            for (size_t k = 0; k < 3; ++k) {
+              const double weight = values[i].f[k] * std::abs(gens[i][2]) / values[i].pdf;
+              ASSERT_NEAR(draws[i].weight[k], weight, tolerance * weight);
+              sumOfErrors += std::abs(draws[i].weight[k] - weight);
+              ++terms;
+            }
+          }
+        }
+        EXPECT_LE(sumOfErrors, terms * tolerance * 1e-2);
+      }
+    }
+  }
+}
+
+// Particle walks carry power: no material returns more than it gets.
+TEST_P(BsdfSamplingTest, noMaterialCreatesEnergy) {
+  for (const BsdfCase& bsdf : bsdfCases()) {
+    for (const Direction& fix : fixDirections(bsdf)) {
+      const BsdfQuery query{.material = &bsdf.record, .walk = Walk::light};
+      const auto draws = drawSamples(entries<BsdfEntries>(), query, fix, 20000, 3);
+      for (size_t k = 0; k < 3; ++k) {
+        double sum = 0, squares = 0;
+        for (const BsdfDraw& draw : draws) {
+          sum += draw.weight[k];
+          squares += draw.weight[k] * draw.weight[k];
+        }
+        const auto n = static_cast<double>(draws.size());
+        const double mean = sum / n;
+        EXPECT_LE(mean, 1 + 1e-5 + 5 * std::sqrt(std::max(0.0, squares / n - mean * mean) / n)) << bsdf.name;
+      }
+    }
+  }
+}
+
+// Mean weight of the draws of delta lobes, and its standard error, per channel.
+struct DeltaMean {
+  std::array<double, 3> mean{}, error{};
+};
+DeltaMean deltaMean(const BsdfEntries& entries, const BsdfQuery& query, const Direction& fix) {
+  constexpr size_t kDraws = 20000;
+  DeltaMean result;
+  std::array<double, 3> squares{};
+  forEachDraw(entries, query, fix, kDraws, 5, [&](const BsdfDraw& draw) {
+    for (size_t k = 0; k < 3 && draw.specular; ++k) {
+      result.mean[k] += draw.weight[k] / kDraws;
+      squares[k] += draw.weight[k] * draw.weight[k] / kDraws;
+    }
+  });
+  for (size_t k = 0; k < 3; ++k) {
+    result.error[k] = std::sqrt(std::max(0.0, squares[k] - result.mean[k] * result.mean[k]) / kDraws);
+  }
+  return result;
+}
+
+// Delta lobes alone: the same light as when all lobes are sampled and the others thrown away, and nothing else.
+TEST_P(BsdfSamplingTest, deltaLobesAloneCarryTheirShare) {
+  for (const BsdfCase& bsdf : bsdfCases()) {
+    for (const Direction& fix : fixDirections(bsdf)) {
+      SCOPED_TRACE(bsdf.name);
+      const BsdfQuery all{.material = &bsdf.record}, alone{.material = &bsdf.record, .specularOnly = true};
+      const DeltaMean expected = deltaMean(entries<BsdfEntries>(), all, fix);
+      const DeltaMean actual = deltaMean(entries<BsdfEntries>(), alone, fix);
+      for (size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(actual.mean[k], expected.mean[k], 5 * (actual.error[k] + expected.error[k]) + 1e-5);
+      }
+      forEachDraw(entries<BsdfEntries>(), alone, fix, 1000, 6, [](const BsdfDraw& draw) {
+        ASSERT_TRUE(draw.specular || draw.weight[0] + draw.weight[1] + draw.weight[2] == 0);
+      });
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest
