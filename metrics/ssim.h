@@ -2,12 +2,11 @@
 //
 // Conventions, those of scikit-image with Gaussian weights: codes 0..255, 11x11 Gaussian window of sigma 1.5,
 // population variances, C1 = (0.01 * 255)^2, C2 = (0.03 * 255)^2, mean over the windows that lie wholly inside the
-// image. The score is the mean of the three channels. A fourth score is of the luma 0.2126 R + 0.7152 G + 0.0722 B of
-// the same codes.
+// image. The score is the mean of the three channels. A fourth score is of the luma, 0.2126 R + 0.7152 G + 0.0722 B
+// rounded to 8 bits.
 #pragma once
 
 #include <array>
-#include <span>
 #include <vector>
 
 #include "kernels/simd/isa.h"
@@ -36,16 +35,18 @@ class PreparedSsim {
   SsimResult compare(const Image8& test, bool withMap = false) const;
 
  private:
-  static constexpr size_t kPlanes = 4;  // R, G, B, luma
-  struct Channel {
-    Plane values;                // x, full size
-    DoublePlane mean, variance;  // of each window: (width - 10) x (height - 10)
+  // Interleaved samples of the three channels, or the luma alone.
+  struct Layer {
+    size_t channels = 0;
+    Plane values;          // x, full size
+    Plane mean, variance;  // of each window: (width - 10) x (height - 10)
   };
-  void compareRows(const Image8& test, size_t channel, size_t firstRow, std::span<double> rowSums, Plane* map) const;
+  struct Band;
+  void compareBand(const Image8& test, const Band& band) const;
 
   Isa isa_;
-  std::array<double, 6> taps_{};  // centre and offsets 1..5 of the window
-  std::array<Channel, kPlanes> channels_;
+  std::array<float, 6> taps_{};  // centre and offsets 1..5 of the window
+  std::array<Layer, 2> layers_;  // colour, luma
 };
 
 }  // namespace wavecrest

@@ -52,9 +52,10 @@ struct ReportImage {
   std::vector<uint8_t> rgb;
 };
 
-/// One method on one scene: its runs (one per seed) and what they cost.
+/// One method with one choice of settings on one scene: its runs (one per seed) and what they cost.
 struct ReportSeries {
   std::string method;
+  std::string label;  ///< the method, and what tells two series of one method apart
   std::vector<ReportRun> runs;
   double pathsPerSecond = 0;           ///< mean over runs
   double cpuSeconds = 0;               ///< sum over runs

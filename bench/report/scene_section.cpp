@@ -16,6 +16,16 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
+// The colour of the method; further series of the same method are told apart by dashes.
+std::string seriesClass(const ReportScene& scene, const ReportSeries& series) {
+  int earlier = 0;
+  for (const ReportSeries& other : scene.series) {
+    if (&other == &series) break;
+    earlier += other.method == series.method ? 1 : 0;
+  }
+  return fmt::format("m-{} variant-{}", escapeHtml(series.method), earlier);
+}
+
 // Runs of one series meet at their k-th snapshot, since all were asked for the same times: the curve is the mean over
 // the runs that got there, the band their extremes.
 std::vector<PlotPoint> meanOverRuns(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex) {
@@ -39,7 +49,7 @@ std::vector<PlotPoint> meanOverRuns(const ReportSeries& series, const ReportMetr
     }
     mean.x /= count;
     mean.y /= count;
-    mean.tooltip = fmt::format("{}: {} {} after {}, {} iterations", methodStyle(series.method).name, metric.name,
+    mean.tooltip = fmt::format("{}: {} {} after {}, {} iterations", series.label, metric.name,
                                formatSignificant(mean.y), formatSeconds(mean.x), formatCount(iterations / count));
     points.push_back(std::move(mean));
   }
@@ -56,8 +66,8 @@ std::string renderMetricPlot(const ReportScene& scene, const ReportMetric& metri
   plot.guideSlope = metric.idealSlope;
   if (metric.idealSlope) plot.guideLabel = *metric.idealSlope == -0.5 ? "1/√t" : "1/t";
   for (const ReportSeries& series : scene.series) {
-    plot.curves.push_back({.label = series.method,
-                           .cssClass = "m-" + series.method,
+    plot.curves.push_back({.label = series.label,
+                           .cssClass = seriesClass(scene, series),
                            .mark = methodStyle(series.method).mark,
                            .points = meanOverRuns(series, metric, metricIndex)});
   }
@@ -88,7 +98,7 @@ std::string renderResults(const ConvergenceReport& report, const ReportScene& sc
     const ReportPoint last = run.points.empty() ? ReportPoint{} : run.points.back();
     append(html,
            "<tr><th class=\"m-{}\"><i class=\"swatch\"></i>{} <small>{}</small><td class=\"n\">{}<td class=\"n\">{}",
-           escapeHtml(series->method), escapeHtml(series->method), escapeHtml(methodStyle(series->method).name),
+           escapeHtml(series->method), escapeHtml(series->label), escapeHtml(methodStyle(series->method).name),
            series->runs.size(), formatSeconds(last.seconds));
     append(html, "<td class=\"n\">{}", formatCount(static_cast<double>(last.iterations)));
     for (size_t m = 0; m < report.metrics.size(); ++m) {
@@ -141,13 +151,13 @@ std::string renderStages(const ReportSeries& series) {
       "<div class=\"card stages\"><h4 class=\"m-{0}\"><i class=\"swatch\"></i>{1}</h4><div class=\"bar\">{2}"
       "</div><div class=\"scroll\"><table><thead><tr><th>stage<th class=\"n\">share<th class=\"n\">time"
       "<th class=\"n\">items<th class=\"n\">ns/item</thead><tbody>{3}</tbody></table></div></div>\n",
-      escapeHtml(series.method), escapeHtml(methodStyle(series.method).name), bar, rows);
+      escapeHtml(series.method), escapeHtml(series.label), bar, rows);
 }
 
 std::string renderSettings(const ReportScene& scene) {
   std::string html = "<details><summary>Settings of each run</summary><div class=\"grid\">\n";
   for (const ReportSeries& series : scene.series) {
-    append(html, "<table class=\"pairs\"><caption>{}</caption><tbody>", escapeHtml(series.method));
+    append(html, "<table class=\"pairs\"><caption>{}</caption><tbody>", escapeHtml(series.label));
     for (const NamedValue& setting : series.settings) {
       append(html, "<tr><th>{}<td>{}", escapeHtml(setting.name), escapeHtml(setting.value));
     }

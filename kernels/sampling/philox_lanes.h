@@ -8,9 +8,14 @@
 
 WAVECREST_SIMD_BEGIN
 
+constexpr int kPhiloxRounds = 7;
+
 struct PhiloxKey {
   uint32_t low, high;
 };
+WAVECREST_INLINE PhiloxKey philoxKey(uint64_t seed) {
+  return {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)};
+}
 
 // The counter, and in the end the random bits. Each word is a SplitUInt or, where all lanes agree, a uint32_t: the
 // rounds then work on a plain integer, outside the caller's loop, until the word first meets one that differs per lane.

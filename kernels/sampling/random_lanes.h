@@ -1,12 +1,14 @@
 // uniform4: the random numbers of every kernel, four per call and lane.
 //
 // in: the sampler's settings, one path index per lane, a block and a stream; out: four numbers in [0,1) on the grid of
-// 2^-24, which a float holds exactly. Which block holds which dimension is listed in engine/sampler. Call it where the
-// numbers are used: it costs less than a load from memory that has left the cache.
+// 2^-24, which a float holds exactly. A block is one row of the dimension table: 4 times the vertex index plus the
+// Block of kernels/lane_support.h. Call it where the numbers are used; storing them costs more than drawing them (1.3
+// ns per path with AVX-512, kernels_bench).
 #pragma once
 
 #include "kernels/sampling/philox_lanes.h"
 #include "kernels/sampling/sampler.h"
+#include "kernels/sampling/sobol_lanes.h"
 #include "kernels/simd/lanes.h"
 
 WAVECREST_SIMD_BEGIN
@@ -15,22 +17,29 @@ struct Uniform4 {
   Float a, b, c, d;
 };
 
-constexpr int kPhiloxRounds = 7;
-
 // The upper 24 bits as a number in [0,1).
 WAVECREST_INLINE Float toUnitInterval(UInt bits) { return toFloat(shiftRight<8>(bits)) * Float(0x1p-24f); }
 
 WAVECREST_INLINE Uniform4 independentUniform4(const SamplerSettings& sampler, UInt path, uint32_t block,
                                               Stream stream) {
-  const PhiloxKey key{static_cast<uint32_t>(sampler.seed), static_cast<uint32_t>(sampler.seed >> 32)};
   const PhiloxBlock counter{split(path), sampler.iteration, block, static_cast<uint32_t>(stream)};
-  const auto bits = philox4x32<kPhiloxRounds>(counter, key);
+  const auto bits = philox4x32<kPhiloxRounds>(counter, philoxKey(sampler.seed));
   return {toUnitInterval(join(bits.a)), toUnitInterval(join(bits.b)), toUnitInterval(join(bits.c)),
           toUnitInterval(join(bits.d))};
 }
 
+// Not inlined: it would fill the loop of every caller with ten times the code of the other branch.
+inline WAVECREST_NOINLINE Uniform4 sobolUniform4(const SamplerSettings& sampler, UInt path, uint32_t block,
+                                                 Stream stream) {
+  const SobolPoint bits = sobolBits(sampler, path, block, stream);
+  return {toUnitInterval(bits.a), toUnitInterval(bits.b), toUnitInterval(bits.c), toUnitInterval(bits.d)};
+}
+
+// The sampler's kind is the same for all lanes and calls: the branch is predicted.
 WAVECREST_INLINE Uniform4 uniform4(const SamplerSettings& sampler, UInt path, uint32_t block, Stream stream) {
-  return independentUniform4(sampler, path, block, stream);
+  if (sampler.kind == SamplerKind::independent) [[likely]]
+    return independentUniform4(sampler, path, block, stream);
+  return sobolUniform4(sampler, path, block, stream);
 }
 
 WAVECREST_SIMD_END

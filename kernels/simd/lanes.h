@@ -20,6 +20,7 @@
   HWY_BEFORE_NAMESPACE();    \
   namespace wavecrest::HWY_NAMESPACE {
 #define WAVECREST_INLINE HWY_INLINE
+#define WAVECREST_NOINLINE HWY_NOINLINE
 #define WAVECREST_SIMD_END \
   }                        \
   HWY_AFTER_NAMESPACE();
@@ -62,6 +63,7 @@ WAVECREST_INLINE size_t countTrue(Mask a) { return hn::CountTrue(FloatTag(), a.m
 // The first n lanes; n may exceed the lane count.
 WAVECREST_INLINE Mask firstLanes(size_t n) { return {hn::FirstN(FloatTag(), n)}; }
 WAVECREST_INLINE Mask noLanes() { return {hn::MaskFromVec(hn::Zero(FloatTag()))}; }
+WAVECREST_INLINE Mask allLanes() { return !noLanes(); }
 
 // ---- 32-bit integers ------------------------------------------------------------------------------------------------
 
@@ -95,6 +97,37 @@ WAVECREST_INLINE UInt select(Mask m, UInt yes, UInt no) {
   return {hn::IfThenElse(hn::RebindMask(UIntTag(), m.m), yes.v, no.v)};
 }
 WAVECREST_INLINE UInt xor3(UInt a, UInt b, UInt c) { return {hn::Xor3(a.v, b.v, c.v)}; }
+// Where the given bit is set; 0 is the lowest.
+WAVECREST_INLINE Mask hasBit(UInt a, uint32_t bit) {
+  return {hn::RebindMask(FloatTag(), hn::TestBit(a.v, hn::Set(UIntTag(), 1u << bit)))};
+}
+
+// The bits in reverse order: lowest becomes highest.
+WAVECREST_INLINE constexpr uint32_t reverseBits(uint32_t x) {
+  x = (x >> 16) | (x << 16);
+  x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+  x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+  return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+}
+WAVECREST_INLINE UInt reverseBits(UInt a) {
+#if HWY_TARGET == HWY_SCALAR
+  return {reverseBits(hn::GetLane(a.v))};
+#else
+  // Byte shuffles: reverse the bytes of each lane, then look up each half byte reversed, in the other half's place.
+  const hn::Repartition<uint8_t, UIntTag> bytes;
+  HWY_ALIGN constexpr uint8_t kOrder[16] = {3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12};
+  HWY_ALIGN constexpr uint8_t kReversed[16] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+  HWY_ALIGN constexpr uint8_t kReversedHigh[16] = {0x00, 0x80, 0x40, 0xc0, 0x20, 0xa0, 0x60, 0xe0,
+                                                   0x10, 0x90, 0x50, 0xd0, 0x30, 0xb0, 0x70, 0xf0};
+  const auto swapped = hn::TableLookupBytes(hn::BitCast(bytes, a.v), hn::LoadDup128(bytes, kOrder));
+  const auto lowHalf = hn::And(swapped, hn::Set(bytes, uint8_t{15}));
+  const auto highHalf =
+      hn::And(hn::BitCast(bytes, hn::ShiftRight<4>(hn::BitCast(UIntTag(), swapped))), hn::Set(bytes, uint8_t{15}));
+  return {hn::BitCast(UIntTag(), hn::Or(hn::TableLookupBytes(hn::LoadDup128(bytes, kReversedHigh), lowHalf),
+                                        hn::TableLookupBytes(hn::LoadDup128(bytes, kReversed), highHalf)))};
+#endif
+}
 
 // 0, 1, 2, ... from the given start. A load: hn::Iota of this Highway version writes the lanes one by one.
 HWY_ALIGN inline constexpr uint32_t kLaneNumbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};

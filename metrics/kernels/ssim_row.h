@@ -4,8 +4,11 @@
 //   luminance  (2 mx my + C1) / (mx^2 + my^2 + C1) = 1 - md^2 / (mx^2 + my^2 + C1)
 //   structure  (2 cxy + C2) / (vx + vy + C2)       = 1 - vd / (vx + vy + C2)
 // where m, v, c are window means, variances and covariance: md = mx - my and vd = vx + vy - 2 cxy. So one product fewer
-// is filtered, and identical images give exactly 1. Codes are whole numbers: their squares and the sums of two squares
-// are exact in single precision, and only the weighted sums are kept in double.
+// is filtered, and identical images give exactly 1.
+//
+// Rows keep the interleaved order of the image: down the columns that makes no difference, and across them the window
+// steps over `channels` samples. Single precision is enough because each block of a row is filtered relative to the
+// codes at its middle: variances of flat areas come from small numbers, whose squares are exact.
 #pragma once
 
 #include <array>
@@ -15,16 +18,20 @@ namespace wavecrest {
 
 constexpr size_t kSsimTaps = 11;  // Gaussian window of sigma 1.5, cut at 5 pixels
 constexpr size_t kSsimRadius = kSsimTaps / 2;
+constexpr size_t kSsimBlock = 96;   // windows of one block, all channels together
+constexpr size_t kSsimSlack = 128;  // samples that the kernel may read and write beyond the end of a row
+
+using SsimSums = std::array<double, 3>;  // of the map, per channel
 
 struct SsimRow {
-  std::array<const float*, kSsimTaps> difference;  // rows of d, top to bottom, windows + 10 whole numbers each
+  std::array<const float*, kSsimTaps> difference;  // rows of d, top to bottom
   std::array<const float*, kSsimTaps> test;        // rows of y
-  const double* referenceMean;                     // mx of each window
-  const double* referenceVariance;                 // vx of each window
-  std::array<double, kSsimRadius + 1> taps;        // weights of the centre and of the offsets 1..5; symmetric, sum 1
-  size_t windows;                                  // windows in this row: width - 10
-  double* scratch;                                 // three rows of roundUpToLanes(windows + 10) + 16 numbers
-  float* map;                                      // out: SSIM of each window, rounded up to whole vectors
+  const float* referenceMean;                      // mx of each window
+  const float* referenceVariance;                  // vx of each window
+  std::array<float, kSsimRadius + 1> taps;         // weights of the centre and of the offsets 1..5
+  size_t windows;                                  // of all channels: (width - 10) * channels
+  size_t channels;                                 // 1 or 3
+  float* map;                                      // out: SSIM of each window
 };
 
 }  // namespace wavecrest

@@ -26,7 +26,7 @@ ReportImage sampleImage(const std::string& label, double noise) {
 // Error a / sqrt(t) over a floor, one point per third of a decade.
 ReportSeries sampleSeries(const std::string& method, double start, double bias) {
   ReportSeries series;
-  series.method = method;
+  series.method = series.label = method;
   for (const uint64_t seed : {1, 2}) {
     ReportRun run{.seed = seed, .points = {}};
     for (int k = 0; k <= 8; ++k) {

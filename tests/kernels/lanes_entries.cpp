@@ -63,6 +63,8 @@ const LaneOperation<uint32_t> kUIntOperations[] = {
     WAVECREST_OPERATION(uint32_t, "less", select(a < b, UInt(1u), UInt(0u))),
     WAVECREST_OPERATION(uint32_t, "min", min(a, b)),
     WAVECREST_OPERATION(uint32_t, "max", max(a, b)),
+    WAVECREST_OPERATION(uint32_t, "reverseBits", reverseBits(a)),
+    WAVECREST_OPERATION(uint32_t, "hasBit7", select(hasBit(a, 7), UInt(1u), UInt(0u))),
     WAVECREST_OPERATION(uint32_t, "mulHigh", join(mulHighLow(split(a), 0xD2511F53u).high)),
     WAVECREST_OPERATION(uint32_t, "mulLow", join(mulHighLow(split(a), 0xD2511F53u).low)),
     WAVECREST_OPERATION(uint32_t, "splitXor3", join(xor3(split(a), split(b), 0x12345678u))),

@@ -76,6 +76,13 @@ Reference<uint32_t> uintReference() {
           {"less", [](U a, U b, U) { return U{a < b}; }},
           {"min", [](U a, U b, U) { return std::min(a, b); }},
           {"max", [](U a, U b, U) { return std::max(a, b); }},
+          {"reverseBits",
+           [](U a, U, U) {
+             U reversed = 0;
+             for (int i = 0; i < 32; ++i) reversed |= (a >> i & 1) << (31 - i);
+             return reversed;
+           }},
+          {"hasBit7", [](U a, U, U) { return a >> 7 & 1; }},
           {"mulHigh", [](U a, U, U) { return static_cast<U>(a * kFactor >> 32); }},
           {"mulLow", [](U a, U, U) { return static_cast<U>(a * kFactor); }},
           {"splitXor3", [](U a, U b, U) { return a ^ b ^ 0x12345678u; }}};

@@ -1,0 +1,114 @@
+#include "bench/report/results_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kReferenceMark = ".reference";
+
+[[noreturn]] void fail(const fs::path& file, const std::string& wrong, const std::string& expected) {
+  throw ResultsError(fmt::format("{}: {}; expected {}", file.string(), wrong, expected));
+}
+
+json parseFile(const fs::path& path) {
+  std::ifstream file(path);
+  if (!file) fail(path, "cannot be read", "a stats file");
+  try {
+    return json::parse(file);
+  } catch (const json::parse_error& error) {
+    fail(path, fmt::format("is not JSON at byte {}", error.byte), "an object as written by render --stats");
+  }
+}
+
+template <class Value>
+Value require(const fs::path& path, const json& object, const char* key) {
+  const auto entry = object.find(key);
+  if (entry == object.end()) fail(path, fmt::format("has no '{}'", key), "the keys of render --stats");
+  try {
+    return entry->get<Value>();
+  } catch (const json::exception&) {
+    fail(path, fmt::format("'{}' is {}", key, entry->dump()), "the type that render --stats writes");
+  }
+}
+
+// Snapshot files are named as the renderer saw them; the folder may have been moved since.
+fs::path locate(const fs::path& stats, const std::string& name) {
+  for (const fs::path& candidate : {stats.parent_path() / name, stats.parent_path() / fs::path(name).filename()}) {
+    if (fs::is_regular_file(candidate)) return candidate;
+  }
+  fail(stats, fmt::format("snapshot '{}' does not exist", name), "an image beside this file");
+}
+
+std::vector<SnapshotFile> readSnapshots(const fs::path& path, const json& stats) {
+  std::vector<SnapshotFile> snapshots;
+  for (const json& entry : require<json>(path, stats, "snapshots")) {
+    if (!entry.is_object()) fail(path, "a snapshot is " + entry.dump(), "an object");
+    snapshots.push_back({.seconds = require<double>(path, entry, "render_seconds"),
+                         .iterations = require<uint64_t>(path, entry, "iterations"),
+                         .image = locate(path, require<std::string>(path, entry, "file"))});
+  }
+  std::stable_sort(snapshots.begin(), snapshots.end(),
+                   [](const SnapshotFile& a, const SnapshotFile& b) { return a.iterations < b.iterations; });
+  // The final image lies beside the stats under the same name; it counts if it is further than the last snapshot.
+  const auto iterations = require<uint64_t>(path, stats, "iterations");
+  const fs::path final = fs::path(path).replace_extension(".exr");
+  if (fs::is_regular_file(final) && (snapshots.empty() || snapshots.back().iterations < iterations)) {
+    snapshots.push_back(
+        {.seconds = require<double>(path, stats, "render_seconds"), .iterations = iterations, .image = final});
+  }
+  if (snapshots.empty()) fail(path, "has no snapshot and no final image", final.filename().string() + " beside it");
+  return snapshots;
+}
+
+RunFile readRun(const fs::path& path) {
+  RunFile run;
+  run.path = path;
+  run.stats = parseFile(path);
+  if (!run.stats.is_object()) fail(path, "is not an object", "an object as written by render --stats");
+  run.scene = fs::path(require<std::string>(path, run.stats, "scene")).stem().string();
+  run.method = require<std::string>(path, run.stats, "method");
+  run.sampler = require<std::string>(path, run.stats, "sampler");
+  run.precision = require<std::string>(path, run.stats, "precision");
+  run.seed = require<uint64_t>(path, run.stats, "seed");
+  run.snapshots = readSnapshots(path, run.stats);
+  return run;
+}
+
+}  // namespace
+
+std::vector<RunFile> readRuns(const fs::path& folder) {
+  if (!fs::is_directory(folder)) fail(folder, "is not a folder", "one with the results of render");
+  std::vector<fs::path> paths;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() == ".json" && name.find(kReferenceMark) == std::string::npos) {
+      paths.push_back(entry.path());
+    }
+  }
+  if (paths.empty()) fail(folder, "holds no stats file", "one *.json of render --stats for each run");
+  std::sort(paths.begin(), paths.end());
+  std::vector<RunFile> runs;
+  runs.reserve(paths.size());
+  for (const fs::path& path : paths) runs.push_back(readRun(path));
+  return runs;
+}
+
+std::vector<fs::path> findReference(const fs::path& folder, const std::string& scene) {
+  const fs::path whole = folder / (scene + kReferenceMark + ".exr");
+  if (fs::is_regular_file(whole)) return {whole};
+  const fs::path first = folder / (scene + kReferenceMark + ".1.exr");
+  const fs::path second = folder / (scene + kReferenceMark + ".2.exr");
+  if (fs::is_regular_file(first) && fs::is_regular_file(second)) return {first, second};
+  fail(folder, fmt::format("no reference for '{}'", scene),
+       fmt::format("{}, or {} and {}", whole.filename().string(), first.filename().string(),
+                   second.filename().string()));
+}
+
+}  // namespace wavecrest

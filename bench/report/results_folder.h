@@ -1,0 +1,43 @@
+// What a results folder holds: for each run the --stats file and its snapshots, and for each scene a reference.
+//
+// Runs are all `*.json` files with the keys of `render --stats`, except those of references. The reference of a scene
+// is `SCENE.reference.exr`, or two independent halves of equal effort `SCENE.reference.1.exr` and `.2.exr`, whose mean
+// is the reference and whose difference is its noise. SCENE is the stem of the name that the runs give.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace wavecrest {
+
+/// A folder that no report can be made of. The text is complete: "FILE: what is wrong; what was expected".
+struct ResultsError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct SnapshotFile {
+  double seconds = 0;  ///< render clock
+  uint64_t iterations = 0;
+  std::filesystem::path image;
+};
+
+struct RunFile {
+  std::filesystem::path path;  ///< of the stats file
+  std::string scene, method, sampler, precision;
+  uint64_t seed = 0;
+  nlohmann::json stats;  ///< everything it says
+  std::vector<SnapshotFile>
+      snapshots;  ///< in order of time, at least one; the last is the final image if that is there
+};
+
+/// All runs of a folder in the order of their file names. Throws ResultsError if there is none, or one is malformed or
+/// names a snapshot that does not exist.
+std::vector<RunFile> readRuns(const std::filesystem::path& folder);
+
+/// One or two files that are the reference of a scene. Throws ResultsError if there is none.
+std::vector<std::filesystem::path> findReference(const std::filesystem::path& folder, const std::string& scene);
+
+}  // namespace wavecrest

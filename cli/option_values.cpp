@@ -1,0 +1,55 @@
+#include "cli/option_values.h"
+
+#include <fmt/core.h>
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "cli/commands.h"
+
+namespace wavecrest {
+
+double parseDuration(const std::string& text) {
+  const auto fail = [&]() -> double {
+    throw UsageError(fmt::format("'{}' is no duration; expected one like 6s, 2m or 1h30m", text));
+  };
+  double total = 0;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  if (at == end) return fail();
+  while (at != end) {
+    double number = 0;
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || next == at) return fail();
+    at = next;
+    const char unit = at == end ? 's' : *at++;
+    const double scale = unit == 'h' ? 3600 : unit == 'm' ? 60 : unit == 's' ? 1 : 0;
+    total += number * scale;
+    if (scale == 0) return fail();
+  }
+  return std::isfinite(total) && total > 0 ? total : fail();
+}
+
+std::array<uint32_t, 2> parseSize(const std::string& text) {
+  std::array<uint32_t, 2> size{};
+  const char* const end = text.data() + text.size();
+  const auto [x, widthError] = std::from_chars(text.data(), end, size[0]);
+  if (widthError == std::errc() && x != end && *x == 'x') {
+    const auto [rest, heightError] = std::from_chars(x + 1, end, size[1]);
+    const auto valid = [](uint32_t n) { return n >= 1 && n <= 65535; };
+    if (heightError == std::errc() && rest == end && valid(size[0]) && valid(size[1])) return size;
+  }
+  throw UsageError(fmt::format("'{}' is no size; expected WIDTHxHEIGHT, each 1 to 65535", text));
+}
+
+size_t parseChoice(const std::string& option, const std::string& word, const std::string_view* names, size_t count) {
+  std::string choices;
+  for (size_t i = 0; i < count; ++i) {
+    if (names[i] == word) return i;
+    choices += (i == 0 ? "" : ", ") + std::string(names[i]);
+  }
+  throw UsageError(fmt::format("{} {}: unknown; expected one of {}", option, word, choices));
+}
+
+}  // namespace wavecrest

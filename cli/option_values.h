@@ -1,0 +1,24 @@
+// Values that several commands take: durations, sizes, memory, and words of a list.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace wavecrest {
+
+// "6s", "2m", "1h30m", "0.5s", or plain seconds. Positive and finite, or UsageError.
+double parseDuration(const std::string& text);
+
+// "1024x768": both 1 to 65535, or UsageError.
+std::array<uint32_t, 2> parseSize(const std::string& text);
+
+// The position of a word in a list of names; UsageError naming the option and the choices for any other.
+size_t parseChoice(const std::string& option, const std::string& word, const std::string_view* names, size_t count);
+template <size_t kCount>
+size_t parseChoice(const std::string& option, const std::string& word,
+                   const std::array<std::string_view, kCount>& names) {
+  return parseChoice(option, word, names.data(), kCount);
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,36 @@
+// Progress of a render on stderr, from a thread of its own that only reads counters.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <optional>
+#include <string_view>
+#include <thread>
+
+#include "engine/session.h"
+
+namespace wavecrest {
+
+enum class ProgressKind { automatic, bar, jsonl, none };
+constexpr std::array<std::string_view, 4> kProgressNames{"auto", "bar", "jsonl", "none"};
+
+class Progress {
+ public:
+  // automatic: a bar if stderr is a terminal, else nothing. The goal is what the render runs towards.
+  Progress(ProgressKind kind, const Session& session, std::optional<double> seconds, std::optional<uint64_t> paths);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+ private:
+  void show(bool last) const;
+
+  const ProgressKind kind_;
+  const Session& session_;
+  const std::optional<double> seconds_;
+  const std::optional<uint64_t> paths_;
+  std::atomic<bool> done_{false};
+  std::thread thread_;
+};
+
+}  // namespace wavecrest

@@ -1,0 +1,231 @@
+// wavecrest render: one scene, one method, images and statistics out.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <csignal>
+#include <thread>
+
+#include "cli/commands.h"
+#include "cli/option_values.h"
+#include "cli/progress.h"
+#include "cli/render_stats.h"
+#include "cli/snapshots.h"
+#include "engine/load/load.h"
+#include "metrics/image/atomic_file.h"
+#include "metrics/image/image_io.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace {
+
+// As written on the command line; resolved() turns words into settings.
+struct RenderOptions {
+  std::string scene, method = "pt", time, size, sampler = "independent", precision = "float", isa = "auto",
+                     accel = "auto", snapshotEvery, stats, progress = "auto";
+  uint64_t spp = 0;
+  uint32_t threads = 0;
+  uint64_t seed = 0;
+  int maxDepth = 0, rrDepth = 0;  // 0: what the scene says
+  uint32_t wave = 2048;
+  double radius = 0.001, radiusAlpha = 0.75;
+  std::vector<std::string> defines, outputs;
+  bool lenient = false;
+};
+
+Session* interruptible = nullptr;
+void onInterrupt(int) {
+  if (interruptible != nullptr) interruptible->interrupt();
+}
+
+// For as long as a session renders, Ctrl-C asks it to stop instead of ending the program.
+class InterruptGuard {
+ public:
+  explicit InterruptGuard(Session& session) {
+    interruptible = &session;
+    previous_ = std::signal(SIGINT, onInterrupt);
+  }
+  ~InterruptGuard() {
+    std::signal(SIGINT, previous_);
+    interruptible = nullptr;
+  }
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+ private:
+  void (*previous_)(int);
+};
+
+Scene load(const RenderOptions& options) {
+  LoadOptions load;
+  load.lenient = options.lenient;
+  if (!options.size.empty()) load.filmSize = parseSize(options.size);
+  for (const std::string& define : options.defines) {
+    const size_t equals = define.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw UsageError(fmt::format("-D {}: expected NAME=VALUE", define));
+    }
+    load.defines[define.substr(0, equals)] = define.substr(equals + 1);
+  }
+  Scene scene = loadScene(findScene(options.scene), load);
+  for (const std::string& warning : scene.warnings) fmt::print(stderr, "wavecrest: warning: {}\n", warning);
+  return scene;
+}
+
+Isa chosenIsa(const std::string& word) {
+  if (word == "auto") return bestIsa();
+  const std::optional<Isa> isa = parseIsa(word);
+  if (!isa) throw UsageError(fmt::format("--isa {}: expected auto, scalar, sse4, avx2 or avx512", word));
+  const auto& available = availableIsas();
+  if (std::find(available.begin(), available.end(), *isa) == available.end()) {
+    throw UsageError(fmt::format("--isa {}: this machine or build does not have it", word));
+  }
+  return *isa;
+}
+
+RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
+  RenderSettings settings;
+  const std::optional<Method> method = parseMethod(options.method);
+  if (!method)
+    throw UsageError(fmt::format("--method {}: unknown; expected one of {}", options.method, methodChoices()));
+  settings.method = *method;
+  const std::optional<SamplerKind> sampler = parseSamplerKind(options.sampler);
+  if (!sampler) throw UsageError(fmt::format("--sampler {}: expected independent or sobol", options.sampler));
+  settings.sampler = *sampler;
+  settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
+  settings.accel = static_cast<Accel>(parseChoice("--accel", options.accel, kAccelNames));
+  settings.isa = chosenIsa(options.isa);
+  settings.seed = options.seed;
+  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  settings.waveSize = options.wave;
+  settings.radius = options.radius;
+  settings.radiusAlpha = options.radiusAlpha;
+  const int maxDepth = options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth;
+  const int rrDepth = options.rrDepth != 0 ? options.rrDepth : scene.defaults.rrDepth;
+  if (maxDepth > 0) settings.limits.maxDepth = std::min(static_cast<uint32_t>(maxDepth), kUnlimitedDepth);
+  settings.limits.rouletteDepth = static_cast<uint32_t>(rrDepth);
+  if (options.spp != 0) settings.iterations = options.spp;
+  if (!options.time.empty()) settings.seconds = parseDuration(options.time);
+  if (!settings.iterations && !settings.seconds) settings.iterations = scene.defaults.sampleCount;
+  settings.measureStages = !options.stats.empty();
+  return settings;
+}
+
+// Files of one render: the image under each requested name, snapshots beside the first, the statistics.
+class Outputs {
+ public:
+  Outputs(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, double loadSeconds)
+      : options_(options), scene_(scene), settings_(settings), loadSeconds_(loadSeconds) {}
+
+  void writeSnapshot(const Session& session, unsigned index) {
+    const std::string path = snapshotPath(options_.outputs.front(), index);
+    const RenderStatistics statistics = session.statistics();
+    snapshots_.push_back({index, statistics.renderSeconds, statistics.iterations, path});
+    writeExr(path, image(session), metadata(stats(statistics)));
+  }
+
+  void writeFinal(const Session& session) {
+    const nlohmann::ordered_json all = stats(session.statistics());
+    for (const std::string& output : options_.outputs) writeImage(output, image(session), metadata(all));
+    if (!options_.stats.empty()) {
+      const std::string text = all.dump(2) + "\n";
+      writeFileAtomically(options_.stats, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+    }
+  }
+
+ private:
+  Image image(const Session& session) const {
+    const FilmArea& area = session.film().area();
+    return {.width = area.width, .height = area.height, .channels = 3, .pixels = session.film().resolve()};
+  }
+  nlohmann::ordered_json stats(const RenderStatistics& statistics) const {
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    return renderStats(scene_, settings_, statistics, loadSeconds_, wall, snapshots_);
+  }
+  // Every scalar of the stats as a string attribute.
+  static Metadata metadata(const nlohmann::ordered_json& stats) {
+    Metadata out;
+    for (const auto& [key, value] : stats.items()) {
+      if (value.is_primitive()) out["wavecrest:" + key] = value.is_string() ? value.get<std::string>() : value.dump();
+    }
+    return out;
+  }
+
+  const RenderOptions& options_;
+  const Scene& scene_;
+  const RenderSettings& settings_;
+  const double loadSeconds_;
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::vector<SnapshotRecord> snapshots_;
+};
+
+int runRender(const RenderOptions& options) {
+  if (options.outputs.empty() && !options.snapshotEvery.empty()) {
+    throw UsageError("--snapshot-every needs an output to name the snapshots after; expected -o FILE.exr");
+  }
+  SnapshotSchedule schedule(options.snapshotEvery);
+  const auto begin = std::chrono::steady_clock::now();
+  const Scene scene = load(options);
+  const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const RenderSettings settings = resolved(options, scene);
+  const std::unique_ptr<Session> session = Session::create(scene, settings);
+  Outputs outputs(options, scene, settings, loadSeconds);
+
+  {
+    const InterruptGuard guard(*session);
+    std::optional<uint64_t> goalPaths;
+    if (settings.iterations) goalPaths = *settings.iterations * session->film().area().pixels.size();
+    const Progress progress(static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)),
+                            *session, settings.seconds, goalPaths);
+    for (;;) {
+      const std::optional<double> snapshotAt = schedule.next();
+      const bool snapshotFirst = snapshotAt && (!settings.seconds || *snapshotAt <= *settings.seconds);
+      session->renderUntil(settings.iterations, snapshotFirst ? snapshotAt : settings.seconds);
+      const bool reachedSnapshot = snapshotFirst && session->progressSeconds() >= *snapshotAt;
+      if (session->interrupted() || !reachedSnapshot) break;
+      outputs.writeSnapshot(*session, schedule.index());
+      schedule.advance();
+    }
+  }
+  outputs.writeFinal(*session);
+  return session->interrupted() ? kExitInterrupted : kExitDone;
+}
+
+}  // namespace
+
+void addRenderCommand(CLI::App& app, int& exitCode) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = app.add_subcommand("render", "render a scene by one method");
+  command->add_option("scene", options->scene, "built-in scene or path of an XML file")->required();
+  command->add_option("-m,--method", options->method, "light-transport method")->capture_default_str();
+  command->add_option("--time", options->time, "stop after this much render time: 6s, 2m, 1h30m");
+  command->add_option("--spp", options->spp, "stop after N iterations: paths per pixel")->check(CLI::PositiveNumber);
+  command->add_option("--size", options->size, "film size, WIDTHxHEIGHT");
+  command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
+  command->add_option("--seed", options->seed, "seed of all random numbers")->capture_default_str();
+  command->add_option("--sampler", options->sampler, "independent or sobol")->capture_default_str();
+  command->add_option("--max-depth", options->maxDepth, "edges of the longest path; -1: unlimited");
+  command->add_option("--rr-depth", options->rrDepth, "first vertex where roulette may end a path")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--precision", options->precision, "float, double or fast")->capture_default_str();
+  command->add_option("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512")->capture_default_str();
+  command->add_option("--accel", options->accel, "intersector: auto, embree or small")->capture_default_str();
+  command->add_option("--wave", options->wave, "paths per wave")->capture_default_str()->check(CLI::Range(16, 1 << 20));
+  command
+      ->add_option("--radius", options->radius,
+                   "first merge radius of ppm, bpm and vcm, relative to the bounding sphere")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-9, 10.0));
+  command->add_option("--radius-alpha", options->radiusAlpha, "how slowly the radius shrinks, 0 to 1")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_option("-D", options->defines, "value of a scene's $name: NAME=VALUE")->allow_extra_args(false);
+  command->add_flag("--lenient", options->lenient, "skip what a scene asks and wavecrest lacks, with a warning");
+  command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");
+  command->add_option("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable")
+      ->allow_extra_args(false);
+  command->add_option("--stats", options->stats, "write statistics as JSON");
+  command->add_option("--progress", options->progress, "auto, bar, jsonl or none")->capture_default_str();
+  command->callback([options, &exitCode] { exitCode = runRender(*options); });
+}
+
+}  // namespace wavecrest

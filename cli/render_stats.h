@@ -1,0 +1,25 @@
+// The stats object of a render: what --stats writes, and what image metadata repeats.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.h"
+#include "engine/session.h"
+
+namespace wavecrest {
+
+struct SnapshotRecord {
+  unsigned index = 0;
+  double renderSeconds = 0;
+  uint64_t iterations = 0;
+  std::string file;
+};
+
+// Field names are fixed by the interface that scripts rely on; times in seconds, counts since the session began.
+nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& settings,
+                                   const RenderStatistics& statistics, double loadSeconds, double wallSeconds,
+                                   const std::vector<SnapshotRecord>& snapshots);
+
+}  // namespace wavecrest

@@ -1,0 +1,16 @@
+// wavecrest scenes: the built-in scenes, a line each.
+#include <fmt/core.h>
+
+#include "cli/commands.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+
+void addScenesCommand(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand("scenes", "list the built-in scenes");
+  command->callback([] {
+    for (const SceneEntry& scene : builtInScenes()) fmt::print("{:<24} {}\n", scene.name, scene.description);
+  });
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,61 @@
+"""The two sides of an oracle test: independent renders of one scene by Mitsuba 3 and by wavecrest.
+
+Each returns a stack (renders, height, width, 3) of float32 images, one per seed. Both get the scene's own file, the same
+film size, path depth and roulette depth; the film's filter has to be a box in the file already.
+"""
+
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+
+from mitsuba_support import scene_xml, variant  # noqa: E402  (the path has to be set first)
+
+RUSSIAN_ROULETTE_DEPTH = 5  # unbiased either way; the same so that noise is alike
+
+
+class MitsubaScene:
+    """A scene loaded once and rendered with many seeds."""
+
+    def __init__(self, path, size, max_depth, defaults=None):
+        self.mitsuba = variant.start("llvm_ad_rgb")
+        text = scene_xml.flatten(path, size=size, defaults=defaults)
+        if (kind := scene_xml.filter_type(text)) != "box":
+            raise ValueError(f"{path}: reconstruction filter '{kind}'; expected box for a comparison pixel by pixel")
+        self.scene = self.mitsuba.load_string(text)
+        self.integrator = self.mitsuba.load_dict(
+            {"type": "path", "max_depth": max_depth, "rr_depth": RUSSIAN_ROULETTE_DEPTH}
+        )
+
+    def render(self, spp, seeds):
+        images = []
+        for seed in seeds:
+            image = self.mitsuba.render(self.scene, integrator=self.integrator, spp=spp, seed=seed)
+            images.append(np.array(image, dtype=np.float32)[..., :3])
+        return np.stack(images)
+
+    def read_exr(self, path):
+        bitmap = self.mitsuba.Bitmap(str(path))
+        return np.array(
+            bitmap.convert(self.mitsuba.Bitmap.PixelFormat.RGB, self.mitsuba.Struct.Type.Float32, srgb_gamma=False)
+        )
+
+    def write_exr(self, path, image):
+        self.mitsuba.Bitmap(np.ascontiguousarray(image, dtype=np.float32)).write(str(path))
+
+
+def render_wavecrest(program, case, method, seeds, folder, read_exr):
+    """Runs the program once per seed, leaving its images in the folder."""
+    images = []
+    for seed in seeds:
+        output = folder / f"wavecrest-{seed}.exr"
+        command = [program, "render", case.scene, "--method", method, "--spp", case.spp, "--seed", seed]
+        command += ["--size", f"{case.size[0]}x{case.size[1]}", "--max-depth", case.max_depth]
+        command += ["--rr-depth", RUSSIAN_ROULETTE_DEPTH, "--progress", "none", "-o", output, *case.options]
+        subprocess.run([str(word) for word in command], check=True)
+        images.append(read_exr(output))
+    return np.stack(images)

@@ -1,0 +1,98 @@
+"""Tests of the oracle harness itself: an oracle that cannot fail, or that cries wolf, is worth nothing."""
+
+import unittest
+
+import numpy as np
+from scipy import stats
+
+import image_statistics
+import renderers
+
+SCENES = renderers.ROOT / "tests" / "oracle" / "scenes"
+
+
+def noise(generator, renders, shape=(24, 32, 3), mean=1.0, deviation=0.3):
+    return generator.normal(mean, deviation, (renders, *shape))
+
+
+class Statistics(unittest.TestCase):
+    """On made-up noise, where the truth is known."""
+
+    def test_tile_means_cover_partial_tiles(self):
+        image = np.arange(10 * 9 * 3, dtype=np.float64).reshape(10, 9, 3)
+        tiles = image_statistics.tile_means(image)
+        self.assertEqual(tiles.shape, (2, 2, 3))
+        np.testing.assert_allclose(tiles[0, 0], image[:8, :8].mean((0, 1)))
+        np.testing.assert_allclose(tiles[1, 1], image[8:, 8:].mean((0, 1)))
+
+    def test_false_alarm_rate_is_the_stated_one(self):
+        # At a stated rate of 10 %, Bonferroni over nearly independent tiles and their mean: 400 trials give 40 alarms,
+        # give or take 6; outside 20..62 (3.5 standard deviations) with probability 5e-4, for this fixed seed never.
+        generator = np.random.default_rng(1)
+        alarms = 0
+        for _ in range(400):
+            verdict = image_statistics.compare(noise(generator, 16), noise(generator, 16), false_alarm_rate=0.1)
+            alarms += not verdict.equal
+        self.assertGreater(alarms, 20)
+        self.assertLess(alarms, 62)
+
+    def test_z_has_the_probability_of_welchs_test(self):
+        generator = np.random.default_rng(2)
+        test, reference = noise(generator, 16, (50,), deviation=1.0), noise(generator, 9, (50,), deviation=0.4)
+        z = image_statistics.welch_z(test, reference)
+        expected = stats.ttest_ind(test, reference, equal_var=False)
+        # 1e-5 of rounding is allowed for in z, and negligible beside this noise
+        np.testing.assert_allclose(2 * stats.norm.sf(np.abs(z)), expected.pvalue, rtol=1e-6)
+        np.testing.assert_array_equal(np.sign(z), np.sign(expected.statistic))
+
+    def test_one_wrong_tile_is_found(self):
+        generator = np.random.default_rng(3)
+        test, reference = noise(generator, 16), noise(generator, 16)
+        test[:, 8:16, 16:24, 1] += 0.1  # 19 standard errors of a tile mean of 16 renders
+        verdict = image_statistics.compare(test, reference)
+        self.assertFalse(verdict.equal)
+        self.assertEqual(np.unravel_index(np.argmax(verdict.tile_z), verdict.tile_z.shape), (1, 2, 1))
+
+    def test_faint_difference_everywhere_is_found_by_the_mean(self):
+        generator = np.random.default_rng(4)
+        verdict = image_statistics.compare(noise(generator, 16, mean=1.032), noise(generator, 16))
+        self.assertLess(np.abs(verdict.tile_z).max(), verdict.tile_limit, "no tile may show it, or the test is too easy")
+        self.assertGreater(verdict.mean_z.min(), verdict.mean_limit)
+        self.assertFalse(verdict.equal)
+
+    def test_constant_pixels_may_differ_by_rounding_only(self):
+        constant = np.full((16, 8, 8, 3), 14.0)
+        self.assertTrue(image_statistics.compare(constant, constant * (1 + 1e-6)).equal)
+        self.assertFalse(image_statistics.compare(constant, constant * (1 + 1e-3)).equal)
+
+    def test_non_finite_pixels_are_a_difference(self):
+        generator = np.random.default_rng(5)
+        test, reference = noise(generator, 16), noise(generator, 16)
+        test[3, 1, 1, 0] = np.nan
+        self.assertFalse(image_statistics.compare(test, reference).equal)
+
+
+class MitsubaAgainstItself(unittest.TestCase):
+    """With the real oracle and the sizes of the real tests."""
+
+    def render(self, scene, seeds, **defaults):
+        return renderers.MitsubaScene(SCENES / scene, (96, 96), -1, defaults).render(64, seeds)
+
+    def test_other_seeds_pass(self):
+        for scene in ("diffuse.xml", "glass.xml"):
+            with self.subTest(scene):
+                verdict = image_statistics.compare(
+                    self.render(scene, range(1, 17)), self.render(scene, range(101, 117))
+                )
+                self.assertTrue(verdict.equal, verdict.summary())
+
+    def test_two_percent_of_albedo_fail(self):
+        verdict = image_statistics.compare(
+            self.render("diffuse.xml", range(1, 17), white=0.75 * 0.98), self.render("diffuse.xml", range(101, 117))
+        )
+        self.assertFalse(verdict.equal, verdict.summary())
+        self.assertLess(verdict.relative_difference.max(), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,81 @@
+"""Makes one self-standing XML text of a scene file: includes inlined, $variables kept with chosen defaults, paths absolute.
+
+So a scene can be given a film size (and, on request, another reconstruction filter) without touching its file, and two
+programs can be handed literally the same text wherever it is stored.
+"""
+
+import pathlib
+import xml.etree.ElementTree as ElementTree
+
+
+def flatten(path, size=None, box_filter=False, defaults=None):
+    """The scene as XML text.
+
+    size        (width, height) to write into the film, None to keep what is there
+    box_filter  True replaces the film's reconstruction filter by a box of one pixel
+    defaults    values for the scene's <default> entries, by name
+    Raises ValueError where the scene has no such entry.
+    """
+    path = pathlib.Path(path).resolve()
+    root = _read(path, path.parent)
+    for name, value in (defaults or {}).items():
+        entries = [entry for entry in root.iter("default") if entry.get("name") == name]
+        if not entries:
+            raise ValueError(f"{path}: no <default name='{name}'>; expected one to set")
+        for entry in entries:
+            entry.set("value", str(value))
+    if size or box_filter:
+        film = root.find(".//film")
+        if film is None:
+            raise ValueError(f"{path}: no <film>; expected one in the scene or its includes")
+        for name, value in zip(("width", "height"), size or ()):
+            _set_integer(film, name, value)
+        if box_filter:
+            for old in film.findall("rfilter"):
+                film.remove(old)
+            ElementTree.SubElement(film, "rfilter", {"type": "box"})
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def filter_type(xml_text):
+    """The type of the film's reconstruction filter; Mitsuba's default where none is given."""
+    entry = ElementTree.fromstring(xml_text).find(".//film/rfilter")
+    return "gaussian" if entry is None else entry.get("type")
+
+
+def _set_integer(parent, name, value):
+    for entry in parent.findall("integer"):
+        if entry.get("name") == name:
+            entry.set("value", str(value))
+            return
+    ElementTree.SubElement(parent, "integer", {"name": name, "value": str(value)})
+
+
+def _read(path, scene_folder):
+    root = ElementTree.parse(path).getroot()
+    for entry in root.iter("string"):
+        if entry.get("name") == "filename":
+            entry.set("value", _absolute(entry.get("value"), path.parent, scene_folder))
+    _inline_includes(root, path, scene_folder)
+    return root
+
+
+def _inline_includes(parent, path, scene_folder):
+    for index in range(len(parent) - 1, -1, -1):
+        child = parent[index]
+        if child.tag == "include":
+            included = _read(pathlib.Path(_absolute(child.get("filename"), path.parent, scene_folder)), scene_folder)
+            parent.remove(child)
+            for offset, element in enumerate(included):
+                parent.insert(index + offset, element)
+        else:
+            _inline_includes(child, path, scene_folder)
+
+
+def _absolute(name, *folders):
+    if name.startswith("$"):
+        return name
+    for folder in folders:
+        if (folder / name).exists():
+            return str((folder / name).resolve())
+    return name
