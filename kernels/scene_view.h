@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/columns/records.h"
+
 namespace wavecrest {
 
 enum class PrimitiveKind : uint32_t { triangle, quad, sphere };
@@ -22,7 +24,6 @@ struct alignas(sizeof(S) * 16) PrimitiveRecord {
   uint32_t kind;        // PrimitiveKind
   uint32_t attributes;  // index into SceneView::attributes, or kNoIndex
 };
-constexpr uint32_t kNoIndex = 0xffffffffu;
 
 // Vertex normals and texture coordinates at (u, v) = (0, 0), (1, 0) and (0, 1) of a triangle or quad.
 struct alignas(64) AttributeRecord {
@@ -40,12 +41,26 @@ enum class BsdfKind : uint32_t {
   roughDielectric,
   plastic,
   roughPlastic,
-  phong
+  phong,
+  beckmannConductor,  // the rough kinds with Beckmann's distribution of normals instead of GGX
+  beckmannDielectric,
+  beckmannPlastic
 };
 
-enum MaterialFlags : uint32_t { kTwoSided = 1 };
+enum MaterialFlags : uint32_t {
+  kTwoSided = 1,   // the back looks like the front
+  kHasDelta = 2,   // some lobe is a delta: smooth reflection or refraction, or opacity below 1
+  kHasFinite = 4,  // some lobe is not
+  kNonlinear = 8,  // plastic: internal scattering shifts colour
+};
 
-// Slots of a material that may be textured: the constant in the record is then multiplied by the texture's value.
+// Roughness below which a surface is treated as smooth: lobes narrower than about 0.1 degrees.
+constexpr float kSmallestAlpha = 1e-3f;
+
+// Entries of a rough plastic's transmittance, at cos theta = i / (kTransmittanceSize - 1).
+constexpr uint32_t kTransmittanceSize = 64;
+
+// Slots of a material that may be textured hold 1, or a constant by which the texture's value is multiplied.
 struct alignas(128) MaterialRecord {
   uint32_t kind;           // BsdfKind
   uint32_t flags;          // MaterialFlags
@@ -53,12 +68,14 @@ struct alignas(128) MaterialRecord {
   float specular[3];       // specular reflectance factor
   float transmittance[3];  // specular transmittance factor
   float eta[3], k[3];      // conductor: complex IOR; dielectric, plastic: eta[0] = interior / exterior
-  float alpha;             // GGX roughness, or Phong exponent
-  float specularPick;      // plastic, phong: probability weight of the specular lobe
-  float internalDiffuse;   // plastic: diffuse Fresnel reflectance from inside
-  float nonlinear;         // plastic: 1 where internal scattering shifts colour
+  float alpha;             // microfacet roughness, or Phong exponent
+  float specularPick;      // plastic, phong: share of the specular lobe before its reflectance is considered
+  float internalDiffuse;   // plastic: reflectance of the boundary for diffuse light from inside
   float opacity;
-  uint32_t reflectanceTexture, specularTexture, alphaTexture, opacityTexture, normalTexture, bumpTexture;
+  uint32_t reflectanceTexture, specularTexture, transmittanceTexture, alphaTexture, opacityTexture;
+  uint32_t normalTexture, bumpTexture;
+  float bumpScale;
+  float roughTransmittance[kTransmittanceSize];  // rough plastic: share of light that enters, shadowing included
 };
 
 enum class LightKind : uint32_t { quad, triangle, sphere, point, spot, directional, constant, envmap };
@@ -89,6 +106,8 @@ struct CameraView {
   double origin[3], corner[3], du[3], dv[3], axis[3];
   uint32_t width = 0, height = 0;  // of the full film
   double pixelDistance = 0;
+  double planeDepth = 0;                  // corner . axis
+  double inverseDu2 = 0, inverseDv2 = 0;  // 1 / |du|^2, 1 / |dv|^2
   double lensRadius = 0, focusDistance = 0;
 };
 

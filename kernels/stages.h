@@ -23,21 +23,25 @@ namespace wavecrest {
 enum class Precision { floating, doubled, fast };
 constexpr std::array<std::string_view, 3> kPrecisionNames{"float", "double", "fast"};
 
-// What a kernel must be able to handle. A scene gets the first specialisation that covers it; the last covers all.
-enum class Specialization { diffuse, smooth, general };
-constexpr std::array<std::string_view, 3> kSpecializationNames{"diffuse", "smooth", "general"};
-
 // Bits of a feature set. What a set lacks costs nothing in its kernels.
 enum Feature : uint32_t {
-  kSpecularBsdfs = 1,   // mirror, conductor, dielectric, rough conductor
-  kLayeredBsdfs = 2,    // plastic, rough dielectric, thin dielectric, phong, opacity
-  kTextures = 4,        // textures, bump and normal maps
-  kShadingNormals = 8,  // interpolated vertex normals
-  kCurvedShapes = 16,   // analytic spheres, as geometry or as lights
-  kRareLights = 32,     // spot, directional, environment map
-  kLens = 64,           // thin lens, orthographic, filters other than box
+  kSpecularBsdfs = 1,    // mirror, conductor, dielectric, rough conductor
+  kLayeredBsdfs = 2,     // plastic, rough dielectric, thin dielectric, phong, opacity
+  kTextures = 4,         // textures, bump and normal maps
+  kShadingNormals = 8,   // interpolated vertex normals
+  kCurvedShapes = 16,    // analytic spheres, as geometry or as lights
+  kRareLights = 32,      // spot, directional, environment map
+  kLens = 64,            // thin lens, orthographic, filters other than box
+  kBidirectional = 128,  // light paths, connections, merging: the whole MIS recursion
 };
-constexpr std::array<uint32_t, 3> kSpecializationFeatures{0, kSpecularBsdfs | kCurvedShapes, 127};
+
+// What kernels are instantiated for: feature sets, in the order in which a scene and method try them; the last has all.
+enum class Specialization { diffuse, smooth, diffuseBidirectional, smoothBidirectional, general };
+constexpr size_t kSpecializationCount = 5;
+constexpr std::array<std::string_view, kSpecializationCount> kSpecializationNames{
+    "diffuse", "smooth", "diffuse-bidirectional", "smooth-bidirectional", "general"};
+constexpr std::array<uint32_t, kSpecializationCount> kSpecializationFeatures{
+    0, kSpecularBsdfs | kCurvedShapes, kBidirectional, kSpecularBsdfs | kCurvedShapes | kBidirectional, 255};
 
 constexpr Specialization chooseSpecialization(uint32_t sceneFeatures) {
   for (size_t i = 0; i + 1 < kSpecializationFeatures.size(); ++i) {
@@ -45,6 +49,40 @@ constexpr Specialization chooseSpecialization(uint32_t sceneFeatures) {
   }
   return Specialization::general;
 }
+
+// Which way a sub-path is walked: from the eye, so that the generated direction points to the light's side, or from a
+// light.
+enum class Walk { camera, light };
+
+// Which strategies share a path, and the constants of their densities (METHODS 5.1). Set once per iteration.
+struct MisSettings {
+  bool emission = true;      // s = 0: a camera path meets a light
+  bool nextEvent = true;     // s = 1
+  bool connect = false;      // s >= 2, t >= 2
+  bool camera = false;       // t = 1
+  bool merge = false;        // vertex merging
+  bool mergeWeights = true;  // false: merging makes each path once, and alone
+  double kVM = 0;            // merging seen from a connection: pi r^2 N_L, or 0 without merging
+  double kVC = 0;            // connection seen from a merge: its reciprocal, or 0 where merging stands alone
+  double mergeNorm = 0;      // 1 / (pi r^2 N_L)
+  double radius = 0;         // r
+  double lightPaths = 0;     // N_L
+  double camN = 0;           // light paths per camera path of one pixel
+};
+
+// Where contributions of t = 1 go: fixed-point sums over the rendered rectangle of the film. Integers add up to the
+// same total in any order, so images do not depend on which worker splats first.
+struct SplatSink {
+  int64_t* sums = nullptr;  // RGB, row-major
+  uint32_t x0 = 0, y0 = 0, width = 0, height = 0;
+};
+constexpr double kSplatScale = 0x1p30;
+constexpr double kSplatLimit = 0x1p31;  // larger values, and those that are not finite, are dropped and counted
+
+template <class S>
+class LightStore;  // kernels/columns/light_vertices.h
+template <class S>
+struct PhotonMap;  // kernels/merge/photon_map.h
 
 struct PathLimits {
   uint32_t maxDepth = 64;      // K: edges of the longest path
@@ -54,6 +92,18 @@ struct PathLimits {
 // Counts that stages keep; summed over waves by the session.
 struct StageCounters {
   uint64_t raysClosest = 0, raysShadow = 0, misses = 0, nonFinite = 0;
+  uint64_t connections = 0, merges = 0, lightVertices = 0;
+
+  StageCounters& operator+=(const StageCounters& other) {
+    raysClosest += other.raysClosest;
+    raysShadow += other.raysShadow;
+    misses += other.misses;
+    nonFinite += other.nonFinite;
+    connections += other.connections;
+    merges += other.merges;
+    lightVertices += other.lightVertices;
+    return *this;
+  }
 };
 
 template <class S>
@@ -62,7 +112,13 @@ struct StageContext {
   const uint32_t* pixels = nullptr;  // raster (y << 16 | x) of each path of the iteration, in the order of waves
   SamplerSettings sampler;
   PathLimits limits;
-  uint32_t depth = 0;  // index of the vertex that the stage works on; 0 is the path's origin
+  Walk walk = Walk::camera;
+  MisSettings mis;
+  uint32_t depth = 0;                     // index of the vertex that the stage works on; 0 is the path's origin
+  uint32_t lightDepth = 0;                // index of the light vertices that connectVertices joins
+  LightStore<S>* light = nullptr;         // light vertices of this wave's paths
+  const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place
+  SplatSink splats;
   StageCounters* counters = nullptr;
 };
 
@@ -79,6 +135,13 @@ struct Stages {
   Stage<S> arrive = nullptr;
   Stage<S> nextEvent = nullptr;
   Stage<S> scatter = nullptr;
+  Stage<S> scatterSpecular = nullptr;  // only by delta lobes; paths without one end
+  // Of bidirectional feature sets only.
+  Stage<S> generateLightPaths = nullptr;
+  Stage<S> storeLightVertices = nullptr;
+  Stage<S> connectToCamera = nullptr;
+  Stage<S> connectVertices = nullptr;
+  Stage<S> merge = nullptr;
 };
 
 // The stages compiled for these choices. The instruction set must be one of availableIsas(), and S must be the storage

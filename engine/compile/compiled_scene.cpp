@@ -53,6 +53,10 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film) {
   assign(camera.du, transformVector(sensor.toWorld, {-2 * halfWidth / film.width, 0, 0}));
   assign(camera.dv, transformVector(sensor.toWorld, {0, -2 * halfHeight / film.height, 0}));
   assign(camera.axis, normalized(transformVector(sensor.toWorld, {0, 0, 1})));
+  const auto vec = [](const double(&a)[3]) { return Double3{a[0], a[1], a[2]}; };
+  camera.planeDepth = dot(vec(camera.corner), vec(camera.axis));
+  camera.inverseDu2 = 1 / dot(vec(camera.du), vec(camera.du));
+  camera.inverseDv2 = 1 / dot(vec(camera.dv), vec(camera.dv));
   camera.lensRadius = sensor.apertureRadius;
   camera.focusDistance = sensor.focusDistance;
   return camera;

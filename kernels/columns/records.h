@@ -9,7 +9,8 @@
 
 namespace wavecrest {
 
-constexpr uint32_t kMiss = 0xffffffffu;  // Hits::primitive of a ray that left the scene
+constexpr uint32_t kMiss = 0xffffffffu;     // Hits::primitive of a ray that left the scene
+constexpr uint32_t kNoIndex = 0xffffffffu;  // an index that leads nowhere
 
 // The front of each live path. Written by generate and scatter: origin and unit direction of the next ray. arrive moves
 // the origin to the surface point in place; from there to scatter it is the position of the path's vertex and the
@@ -44,9 +45,12 @@ template <class S>
 struct PathStates : Columns<PathStates<S>> {
   Column<S> throughputR, throughputG, throughputB;
   Column<S> dVCM, dVC, dVM;  // dVC, dVM: dropped without connections
-  Column<S> etaScale;        // product of (eta_gen/eta_fix)^2, for roulette; dropped without refraction
+  // What makes a throughput comparable with 1 in Russian roulette: on camera paths the product of (eta_gen /
+  // eta_fix)^2, on light paths the reciprocal of the first throughput. Dropped where it is always 1.
+  Column<S> rouletteScale;
   Column<uint32_t> lane;
-  auto all() { return std::tie(throughputR, throughputG, throughputB, dVCM, dVC, dVM, etaScale, lane); }
+  Column<uint32_t> light;  // light that a light path began on; dropped without connections
+  auto all() { return std::tie(throughputR, throughputG, throughputB, dVCM, dVC, dVM, rouletteScale, lane, light); }
 };
 
 // Segments whose visibility decides over a contribution. Pushed by nextEvent and the connecting stages in lane order,
@@ -60,6 +64,13 @@ struct ShadowRays : Columns<ShadowRays<S>> {
   auto all() {
     return std::tie(originX, originY, originZ, directionX, directionY, directionZ, red, green, blue, target);
   }
+};
+
+// Pairs of a camera vertex and a light vertex that connectVertices or merge is about to join. Scratch of one stage
+// call; dropped without connections.
+struct VertexPairs : Columns<VertexPairs> {
+  Column<uint32_t> camera, light;
+  auto all() { return std::tie(camera, light); }
 };
 
 // Radiance gathered by each lane of the wave in this iteration.

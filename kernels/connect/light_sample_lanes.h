@@ -12,6 +12,7 @@ struct LightSample {
   Vec3<Real> end;        // where the shadow segment ends, clear of the light's own surface
   Vec3<Real> radiance;   // radiance; intensity for point lights, perpendicular irradiance for directional ones
   Real pdf;              // per solid angle at the receiver, selection included; delta lights: formal, without the delta
+  Real emissionPdf;      // of emitting this ray, selection included, over the cosine at the light where there is one
   Mask delta;            // no other strategy can find this light
   Mask valid;
 };
@@ -97,6 +98,7 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   const Real n0 = -dot(sample.direction, normal);
   sample.pdf = pdfA * dist2 * reciprocal<P>(max(n0, Real(1e-12f)));
   sample.valid = n0 > Real(1e-6f);
+  sample.emissionPdf = pdfA * Real(kInvPi);  // cosine-distributed around a uniform point
   sample.delta = noLanes();
   sample.end = mulAdd(normal, at(fields.offset), point);
   if constexpr (has(kFeatures, kCurvedShapes)) {
@@ -107,6 +109,7 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   if (any(pointLike)) {  // d^2 turns intensity into irradiance
     sample.pdf = select(pointLike, dist2, sample.pdf);
     sample.delta = pointLike;
+    sample.emissionPdf = select(pointLike, Real(kInvPi / 4), sample.emissionPdf);
     sample.valid = sample.valid | pointLike;
     sample.end = select(pointLike, point, sample.end);
   }
@@ -117,8 +120,11 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
     sample.pdf = select(constant, Real(kInvPi / 4), sample.pdf);
     sample.end = select(constant, mulAdd(direction, Real(3 * scene.radius), receiver), sample.end);
     sample.valid = sample.valid | constant;
+    const double emission = kInvPi / 4 * kInvPi / (scene.radius * scene.radius);
+    sample.emissionPdf = select(constant, Real(emission), sample.emissionPdf);
   }
   sample.pdf = sample.pdf * pick;
+  sample.emissionPdf = sample.emissionPdf * pick;
   return sample;
 }
 

@@ -3,6 +3,7 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: ShadowRays [<= n], in lane order. METHODS 2.2, 5.6.
 #include "kernels/connect/light_sample_lanes.h"
+#include "kernels/mis_lanes.h"
 #include "kernels/shade/shading_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -24,17 +25,22 @@ void nextEvent(const StageContext<typename P::Storage>& context, Wave<typename P
     const Mask active = firstLanes(count - i);
     const auto shading = loadShading<P, kFeatures>(scene, wave, active, i);
     const UInt lane = select(active, load(paths.lane, i), UInt(0u));
-    const PixelLanes pixel = pixelsOf(context, wave, lane);
-    const Uniform4 u = drawCamera(context, pixel.path, Block::light);
+    const Uniform4 u = draw(context, pathOf(context, wave, lane), Block::light);
     const UInt light = pickLight(scene, u.a, u.b);
     const auto sample = sampleLight<P, kFeatures>(scene, light, shading.position, u);
 
     const Vec3<Real> gen = shading.toLocal(sample.direction);
     const auto bsdf = evalBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, gen);
-    // w = 1 / (1 + wLight): the light could also have been met by the BSDF's choice, unless it is a delta light.
+    // wLight: the BSDF's choice could also have met the light, unless it is a delta light.
     const Real inversePdf = reciprocal<P>(sample.pdf);
-    const Real wLight = select(sample.delta, Real(0), bsdf.pdf * inversePdf);
-    const Real scale = abs(gen.z) * inversePdf * reciprocal<P>(Real(1) + wLight);
+    Real wLight(0), wCamera(0);
+    if (context.mis.emission) wLight = select(sample.delta, Real(0), bsdf.pdf * inversePdf);
+    if constexpr (has(kFeatures, kBidirectional)) {
+      const MisSums<Real> mis = loadMis<kFeatures>(paths, i);
+      wCamera = sample.emissionPdf * abs(dot(sample.direction, shading.normal)) * inversePdf *
+                behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
+    }
+    const Real scale = abs(gen.z) * inversePdf * reciprocal<P>(Real(1) + wLight + wCamera);
     const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     const Vec3<Real> contribution = throughput * bsdf.f * sample.radiance * scale;
 

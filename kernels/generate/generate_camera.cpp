@@ -3,6 +3,7 @@
 // in: the pixels of paths [firstPath, firstPath + pathCount). out: Rays, PathStates [pathCount], in lane order;
 // Radiance set to zero. The raster position is uniform in the pixel, so W_j cos / p = 1 and the throughput begins at 1.
 #include "kernels/generate/camera_lanes.h"
+#include "kernels/mis_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -19,7 +20,7 @@ void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<
   for (size_t i = 0; i < count; i += kLanes) {
     const UInt lane = min(laneIndex(static_cast<uint32_t>(i)), UInt(static_cast<uint32_t>(count - 1)));
     const PixelLanes pixel = pixelsOf(context, wave, lane);
-    const Uniform4 u = drawCamera(context, pixel.path, Block::scatter);
+    const Uniform4 u = draw(context, pixel.path, Block::scatter);
     const auto ray = cameraRay<P, kFeatures>(context.scene->camera, pixel, u);
 
     storeVec3(ray.origin, wave.rays.originX, wave.rays.originY, wave.rays.originZ, i);
@@ -27,9 +28,14 @@ void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<
     const Vec3<Real> one{Real(1), Real(1), Real(1)}, zero{Real(0), Real(0), Real(0)};
     storeVec3(one, wave.paths.throughputR, wave.paths.throughputG, wave.paths.throughputB, i);
     storeVec3(zero, wave.radiance.red, wave.radiance.green, wave.radiance.blue, i);
-    // No strategy of path tracing connects to the lens, so the recursion starts from nothing.
-    store(Real(0), wave.paths.dVCM, i);
-    if constexpr (has(kFeatures, kSpecularBsdfs)) store(Real(1), wave.paths.etaScale, i);
+    // t = 1 would have found this edge with density p_cam per light path that a pixel's camera path competes with;
+    // without that strategy the recursion starts from nothing.
+    MisSums<Real> mis{Real(0), Real(0), Real(0)};
+    if constexpr (has(kFeatures, kBidirectional)) {
+      if (context.mis.camera) mis.dVCM = Real(context.mis.camN) / cameraPdfW<P>(context.scene->camera, ray.direction);
+    }
+    storeMis<kFeatures>(mis, wave.paths, i);
+    if constexpr (hasRouletteScale(kFeatures)) store(Real(1), wave.paths.rouletteScale, i);
     store(laneIndex(static_cast<uint32_t>(i)), wave.paths.lane, i);
   }
 }

@@ -3,8 +3,9 @@
 // in: Rays, Hits, PathStates [n]. out: Rays (origin moved to the vertex), Hits (primitive), Surfaces, PathStates [<= n]
 // in lane order, without paths that left the scene or may not go on; Radiance grows by emission found on the way.
 //
-// Per path: position and normal; the arrival step of the MIS recursion (METHODS 5.4); emission of strategy s = 0 with
-// its weight (5.6), which needs the distance and cosine of this edge.
+// Per path: position and normal; the arrival step of the MIS recursion (METHODS 5.3, 5.4); on camera paths emission of
+// strategy s = 0 with its weight (5.6), which needs the distance and cosine of this edge.
+#include "kernels/mis_lanes.h"
 #include "kernels/shade/light_lanes.h"
 #include "kernels/shade/surface_lanes.h"
 #include "kernels/stage_declarations.h"
@@ -13,17 +14,69 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Radiance of the infinite light along lanes that left the scene, weighted against next event estimation.
-template <class P>
-WAVECREST_INLINE Vec3<typename P::Real> missedRadiance(const SceneView<typename P::Storage>& scene,
-                                                       typename P::Real dVCM, bool direct) {
+// Radiance of the infinite light along lanes that left the scene, weighted against the other strategies. The sums are
+// those before arrival: the light has no area measure.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE Vec3<typename P::Real> missedRadiance(const StageContext<typename P::Storage>& context,
+                                                       const MisSums<typename P::Real>& mis, bool alone) {
   using Real = typename P::Real;
+  const auto& scene = *context.scene;
   const auto& light = scene.lights[scene.infiniteLight];
-  Vec3<Real> radiance{Real(light.radiance[0]), Real(light.radiance[1]), Real(light.radiance[2])};
-  if (direct) return radiance;
-  // directPdfW = pick / (4 pi) for the constant environment; dVCM is 1 / pdfW of the BSDF's choice.
-  const Real directPdfW = Real(light.pick) * Real(kInvPi / 4);
-  return radiance * reciprocal<P>(Real(1) + directPdfW * dVCM);
+  const Vec3<Real> radiance{Real(light.radiance[0]), Real(light.radiance[1]), Real(light.radiance[2])};
+  if (alone) return radiance;
+  const Real directPdf = Real(light.pick) * Real(context.mis.nextEvent ? kInvPi / 4 : 0.0);
+  Real wCamera = directPdf * mis.dVCM;
+  if constexpr (has(kFeatures, kBidirectional)) {
+    const Real emissionPdf = Real(light.pick) * Real(kInvPi / 4 * kInvPi / (scene.radius * scene.radius));
+    wCamera = mulAdd(emissionPdf, mis.dVC, wCamera);
+  }
+  return radiance * reciprocal<P>(Real(1) + wCamera);
+}
+
+// Radiance of area lights that lanes arrived at, weighted likewise with the sums after arrival (METHODS 5.6, s = 0).
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE Vec3<typename P::Real> metRadiance(const StageContext<typename P::Storage>& context, UInt light,
+                                                    Vec3<typename P::Real> receiver, typename P::Real n0,
+                                                    typename P::Real dist2, const MisSums<typename P::Real>& mis,
+                                                    bool alone) {
+  using Real = typename P::Real;
+  const auto& scene = *context.scene;
+  const RecordLanes<LightRecord<typename P::Storage>> at(scene.lights, light);
+  const Vec3<Real> radiance = at(scene.lights->radiance);
+  if (alone) return radiance;
+  Real wCamera(0);
+  if (context.mis.nextEvent) wCamera = directPdfA<P, kFeatures>(scene, at, receiver, n0, dist2) * mis.dVCM;
+  if constexpr (has(kFeatures, kBidirectional)) {
+    const Real emissionPdf = at(scene.lights->pick) * at(scene.lights->inverseArea) * n0 * Real(kInvPi);
+    wCamera = mulAdd(emissionPdf, mis.dVC, wCamera);
+  }
+  return radiance * reciprocal<P>(Real(1) + wCamera);
+}
+
+// What turns dVCM of a light path's first edge into area measure at y_1: d^2 for a light that has a place. For spheres
+// the density of next event estimation depends on the receiver and is only known here (METHODS 5.3).
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE typename P::Real firstLightEdge(const SceneView<typename P::Storage>& scene, UInt light,
+                                                 Vec3<typename P::Real> receiver, typename P::Real dist2) {
+  using Real = typename P::Real;
+  const RecordLanes<LightRecord<typename P::Storage>> at(scene.lights, light);
+  const UInt kind = at(scene.lights->kind);
+  Real factor = dist2;
+  const Mask infinite = isInfinite(kind);
+  if (any(infinite)) factor = select(infinite, Real(1), factor);
+  if constexpr (has(kFeatures, kCurvedShapes)) {
+    const Mask sphere = kind == lightKind(LightKind::sphere);
+    if (any(sphere)) {
+      const Real radius = at(scene.lights->radius);
+      const Real d2 = length2(at(scene.lights->p0) - receiver);
+      const Mask outside = d2 > radius * radius * Real(kInsideSphere);
+      const Real conePdf = Real(kInvPi / 2) * reciprocal<P>(sphereConeHeight(radius * radius, d2));
+      // generateLightPaths put n_0 / emissionPdf into dVCM: times the cone's density this is directPdfA d^2 over it.
+      // From inside the sphere, 1 / area d^2 / n_0 takes its place; n_0 is 1 / (pi area times what it put there).
+      factor = select(sphere & outside, conePdf, factor);
+    }
+  }
+  return factor;
 }
 
 }  // namespace
@@ -35,7 +88,12 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
   auto& rays = wave.rays;
   auto& paths = wave.paths;
   auto& surfaces = wave.surfaces;
-  const bool direct = context.depth == 1;  // k = 1: only s = 0 makes this path
+  const bool camera = context.walk == Walk::camera;
+  // Where merging stands alone it makes every path with a vertex to merge at; emission makes the others, which have met
+  // nothing but delta lobes. Those have no earlier strategy in their sums.
+  const bool mergingAlone = context.mis.merge && !context.mis.nextEvent;
+  const bool alone = context.depth == 1 || mergingAlone;  // s = 0 is the only strategy of a path of one edge
+  const bool firstLightVertex = !camera && context.depth == 1;
   const bool goesOn = context.depth + 1 <= context.limits.maxDepth;
   const size_t count = rays.size;
   size_t out = 0;
@@ -50,14 +108,16 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     const Vec3<Real> origin = loadVec3(rays.originX, rays.originY, rays.originZ, i);
     const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     const UInt lane = load(paths.lane, i);
-    Real dVCM = load(paths.dVCM, i);
+    MisSums<Real> mis = loadMis<kFeatures>(paths, i);
 
+    Mask unmergeable = active;
+    if (mergingAlone) unmergeable = active & (mis.dVCM == Real(0)) & (mis.dVM == Real(0));
     const Mask missed = andNot(active, hit);
     if (any(missed)) {
       misses += countTrue(missed);
-      if (scene.infiniteLight != kNoIndex) {
-        const Vec3<Real> radiance = throughput * missedRadiance<P>(scene, dVCM, direct);
-        addRadiance(wave.radiance, lane, missed, radiance);
+      if (camera && scene.infiniteLight != kNoIndex) {
+        const Vec3<Real> radiance = throughput * missedRadiance<P, kFeatures>(context, mis, alone);
+        addRadiance(wave.radiance, lane, missed & unmergeable, radiance);
       }
       if (none(hit)) continue;
     }
@@ -67,18 +127,26 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
         surfacePoint<P, kFeatures>(scene, at, origin, direction, load(wave.hits.u, i), load(wave.hits.v, i));
     const Real dist2 = length2(surface.position - origin);
     const Real cosine = -dot(surface.normal, direction);
-    dVCM = dVCM * dist2 * reciprocal<P>(max(abs(cosine), Real(1e-12f)));
-
-    const UInt light = at(scene.primitives->light);
-    const Mask emits = andNot(hit & (cosine > Real(0)), light == UInt(kNoIndex));
-    if (any(emits)) {
-      const RecordLanes<LightRecord<typename P::Storage>> lightAt(scene.lights, select(emits, light, UInt(0u)));
-      Vec3<Real> radiance = throughput * lightAt(scene.lights->radiance);
-      if (!direct) {
-        const Real pdfA = directPdfA<P, kFeatures>(scene, lightAt, origin, cosine, dist2);
-        radiance = radiance * reciprocal<P>(Real(1) + pdfA * dVCM);
+    const Real inverseCosine = reciprocal<P>(max(abs(cosine), Real(1e-12f)));
+    Real toArea = dist2;
+    if constexpr (has(kFeatures, kBidirectional)) {
+      if (firstLightVertex) {
+        const UInt from = select(hit, load(paths.light, i), UInt(0u));
+        toArea = firstLightEdge<P, kFeatures>(scene, from, surface.position, dist2);
       }
-      addRadiance(wave.radiance, lane, emits, radiance);
+      mis.dVC = mis.dVC * inverseCosine;
+      mis.dVM = mis.dVM * inverseCosine;
+    }
+    mis.dVCM = mis.dVCM * toArea * inverseCosine;
+
+    if (camera) {
+      const UInt light = at(scene.primitives->light);
+      const Mask emits = andNot(hit & (cosine > Real(0)), light == UInt(kNoIndex));
+      if (any(emits)) {
+        const Vec3<Real> radiance =
+            metRadiance<P, kFeatures>(context, select(emits, light, UInt(0u)), origin, cosine, dist2, mis, alone);
+        addRadiance(wave.radiance, lane, emits & unmergeable, throughput * radiance);
+      }
     }
     if (!goesOn) continue;
 
@@ -87,11 +155,11 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     appendVec3(surface.normal, hit, surfaces.normalX, surfaces.normalY, surfaces.normalZ, out);
     append(surface.offset, hit, surfaces.offset, out);
     appendVec3(throughput, hit, paths.throughputR, paths.throughputG, paths.throughputB, out);
-    append(dVCM, hit, paths.dVCM, out);
+    appendMis<kFeatures>(mis, hit, paths, out);
     append(lane, hit, paths.lane, out);
     append(primitive, hit, wave.hits.primitive, out);
-    if constexpr (has(kFeatures, kSpecularBsdfs)) {
-      append(load(paths.etaScale, i), hit, paths.etaScale, out);
+    if constexpr (hasRouletteScale(kFeatures)) {
+      append(load(paths.rouletteScale, i), hit, paths.rouletteScale, out);
     }
     out += countTrue(hit);
   }

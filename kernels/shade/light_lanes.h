@@ -9,6 +9,12 @@ WAVECREST_SIMD_BEGIN
 
 WAVECREST_INLINE UInt lightKind(LightKind kind) { return UInt(static_cast<uint32_t>(kind)); }
 
+// Lights that are met by leaving the scene.
+WAVECREST_INLINE Mask isInfinite(UInt kind) {
+  return (kind == lightKind(LightKind::constant)) | (kind == lightKind(LightKind::envmap)) |
+         (kind == lightKind(LightKind::directional));
+}
+
 // 1 - cos of the half angle under which a sphere of squared radius r2 is seen from squared distance d2.
 template <class Real>
 WAVECREST_INLINE Real sphereConeHeight(Real r2, Real d2) {

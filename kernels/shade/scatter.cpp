@@ -2,6 +2,7 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: Rays (new), PathStates [<= n], in lane order, without
 // paths that were absorbed or ended by roulette. METHODS 1.4 (throughput), 1.5 (roulette), 5.5 (MIS recursion).
+#include "kernels/mis_lanes.h"
 #include "kernels/shade/shading_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -9,17 +10,26 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Survival probability from the path's throughput; refraction's change of radiance is undone first, since it says
-// nothing about the light that the path can still carry.
+// Survival probability from the path's throughput, in the scale that makes it comparable with 1: refraction's change of
+// radiance says nothing about the light that the path can still carry.
 template <class Real>
-WAVECREST_INLINE Real survival(Vec3<Real> throughput, Real etaScale) {
-  return min(max(maxComponent(throughput) * etaScale, Real(0.05f)), Real(0.95f));
+WAVECREST_INLINE Real survival(Vec3<Real> throughput, Real scale) {
+  return min(max(maxComponent(throughput) * scale, Real(0.05f)), Real(0.95f));
 }
 
-}  // namespace
+// J of METHODS 5.5 for a delta lobe.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE typename P::Real specularJacobian(const ShadingLanes<P, kFeatures>& shading,
+                                                   const BsdfSample<typename P::Real>& sample,
+                                                   typename P::Real genCosine) {
+  using Real = typename P::Real;
+  const Real cosines = abs(shading.fix.z) * reciprocal<P>(max(abs(sample.gen.z), Real(1e-12f)));
+  return sample.pdfReverse * reciprocal<P>(sample.pdf) * genCosine * cosines * sample.etaRatio * sample.etaRatio;
+}
 
 template <class P, uint32_t kFeatures>
-void scatter(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+WAVECREST_INLINE void scatterBy(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
+                                Lobes lobes) {
   using Real = typename P::Real;
   auto& rays = wave.rays;
   auto& paths = wave.paths;
@@ -29,42 +39,73 @@ void scatter(const StageContext<typename P::Storage>& context, Wave<typename P::
 
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
-    const auto shading = loadShading<P, kFeatures>(*context.scene, wave, active, i);
+    auto shading = loadShading<P, kFeatures>(*context.scene, wave, active, i);
+    shading.bsdf.walk = context.walk;
+    shading.bsdf.lobes = lobes;
     const UInt lane = select(active, load(paths.lane, i), UInt(0u));
-    const PixelLanes pixel = pixelsOf(context, wave, lane);
-    const Uniform4 u = drawCamera(context, pixel.path, Block::scatter);
+    const Uniform4 u = draw(context, pathOf(context, wave, lane), Block::scatter);
     const auto sample = sampleBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, u);
     const Vec3<Real> direction = shading.toWorld(sample.gen);
+    const Real genCosine = abs(dot(direction, shading.normal));
 
     Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * sample.weight;
     Mask alive = active & shading.sidesAgree(direction, sample.gen) & (maxComponent(throughput) > Real(0)) &
                  (sample.pdf > Real(0));
-    Real etaScale(1);
-    if constexpr (has(kFeatures, kSpecularBsdfs)) {
-      // etaRatio = eta_fix / eta_gen; etaScale multiplies (eta_gen / eta_fix)^2.
-      etaScale = load(paths.etaScale, i) / (sample.etaRatio * sample.etaRatio);
+    if (lobes == Lobes::specularOnly) alive = alive & sample.specular;
+    if constexpr (has(kFeatures, kBidirectional) && has(kFeatures, kShadingNormals | kTextures)) {
+      if (context.walk == Walk::light) {  // METHODS 3.9: the non-symmetry of interpolated normals (Veach 1997, 5.3)
+        const Real fixCosine = max(abs(shading.fixCosine), Real(1e-6f));
+        throughput = throughput *
+                     (abs(shading.fix.z) * genCosine * reciprocal<P>(fixCosine * max(abs(sample.gen.z), Real(1e-12f))));
+      }
+    }
+    Real rouletteScale(1);
+    if constexpr (hasRouletteScale(kFeatures)) {
+      rouletteScale = load(paths.rouletteScale, i);
+      if (context.walk == Walk::camera) rouletteScale = rouletteScale / (sample.etaRatio * sample.etaRatio);
     }
     if (roulette) {
-      const Real q = survival(throughput, etaScale);
+      const Real q = survival(throughput, rouletteScale);
       alive = alive & (to<Real>(u.d) < q);
       throughput = throughput * reciprocal<P>(q);
     }
-    // Over a delta lobe no other strategy can replace this vertex: the recursion starts anew.
-    Real dVCM = reciprocal<P>(sample.pdf);
-    if constexpr (has(kFeatures, kSpecularBsdfs)) dVCM = select(sample.specular, Real(0), dVCM);
+
+    const MisSums<Real> before = loadMis<kFeatures>(paths, i);
+    MisSums<Real> mis =
+        scatterMis<P, kFeatures>(context.mis, context.depth, before, sample.pdf, sample.pdfReverse, genCosine);
+    if constexpr (has(kFeatures, kSpecularBsdfs | kLayeredBsdfs)) {
+      if (any(sample.specular)) {
+        const auto over = scatterSpecularMis(before, specularJacobian(shading, sample, genCosine));
+        mis = {select(sample.specular, over.dVCM, mis.dVCM), select(sample.specular, over.dVC, mis.dVC),
+               select(sample.specular, over.dVM, mis.dVM)};
+      }
+    }
 
     const Vec3<Real> origin = offsetOrigin(shading.position, shading.normal, shading.offset, direction);
     appendVec3(origin, alive, rays.originX, rays.originY, rays.originZ, out);
     appendVec3(direction, alive, rays.directionX, rays.directionY, rays.directionZ, out);
     appendVec3(throughput, alive, paths.throughputR, paths.throughputG, paths.throughputB, out);
-    append(dVCM, alive, paths.dVCM, out);
+    appendMis<kFeatures>(mis, alive, paths, out);
     append(lane, alive, paths.lane, out);
-    if constexpr (has(kFeatures, kSpecularBsdfs)) append(etaScale, alive, paths.etaScale, out);
+    if constexpr (hasRouletteScale(kFeatures)) append(rouletteScale, alive, paths.rouletteScale, out);
     out += countTrue(alive);
   }
   rays.size = paths.size = out;
 }
 
+}  // namespace
+
+template <class P, uint32_t kFeatures>
+void scatter(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  scatterBy<P, kFeatures>(context, wave, Lobes::all);
+}
+
+template <class P, uint32_t kFeatures>
+void scatterSpecular(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  scatterBy<P, kFeatures>(context, wave, Lobes::specularOnly);
+}
+
 WAVECREST_SIMD_END
 
 WAVECREST_INSTANTIATE_STAGE(scatter)
+WAVECREST_INSTANTIATE_STAGE(scatterSpecular)

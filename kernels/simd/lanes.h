@@ -63,6 +63,7 @@ WAVECREST_INLINE size_t countTrue(Mask a) { return hn::CountTrue(FloatTag(), a.m
 // The first n lanes; n may exceed the lane count.
 WAVECREST_INLINE Mask firstLanes(size_t n) { return {hn::FirstN(FloatTag(), n)}; }
 WAVECREST_INLINE Mask noLanes() { return {hn::MaskFromVec(hn::Zero(FloatTag()))}; }
+WAVECREST_INLINE Mask allLanes() { return !noLanes(); }
 
 // ---- 32-bit integers ------------------------------------------------------------------------------------------------
 

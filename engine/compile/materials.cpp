@@ -1,0 +1,234 @@
+#include "engine/compile/materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/compile/vector_math.h"
+#include "kernels/stages.h"
+
+namespace wavecrest {
+namespace {
+
+// An index ratio this close to 1 bends no light: a rough boundary is then compiled as a smooth one, which lets all of
+// it pass straight on.
+constexpr double kIndexMatched = 1e-4;
+
+// Scales of Mitsuba 0.6's phong: colours that add up to more than 1 are brought down to this sum.
+constexpr double kPhongEnergy = 0.99;
+
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+
+// ---- which kernel ---------------------------------------------------------------------------------------------------
+
+bool isSmooth(const TexturedFloat& alpha) { return alpha.texture == kNone && alpha.value < kSmallestAlpha; }
+
+double relativeIor(const Dielectric& dielectric) { return dielectric.intIor / dielectric.extIor; }
+
+BsdfKind kindOf(const Diffuse&) { return BsdfKind::diffuse; }
+BsdfKind kindOf(const Conductor& conductor) {
+  if (isSmooth(conductor.alpha)) return BsdfKind::conductor;
+  return conductor.distribution == Distribution::ggx ? BsdfKind::roughConductor : BsdfKind::beckmannConductor;
+}
+BsdfKind kindOf(const Dielectric& dielectric) {
+  if (dielectric.thin) return BsdfKind::thinDielectric;
+  const bool matched = std::abs(relativeIor(dielectric) - 1) < kIndexMatched;
+  if (matched || isSmooth(dielectric.alpha)) return BsdfKind::dielectric;
+  return dielectric.distribution == Distribution::ggx ? BsdfKind::roughDielectric : BsdfKind::beckmannDielectric;
+}
+BsdfKind kindOf(const Plastic& plastic) {
+  if (isSmooth(plastic.alpha)) return BsdfKind::plastic;
+  return plastic.distribution == Distribution::ggx ? BsdfKind::roughPlastic : BsdfKind::beckmannPlastic;
+}
+BsdfKind kindOf(const Phong&) { return BsdfKind::phong; }
+BsdfKind kindOf(const Material& material) {
+  return std::visit([](const auto& bsdf) { return kindOf(bsdf); }, material.kind);
+}
+
+uint32_t featureOf(BsdfKind kind) {
+  switch (kind) {
+    case BsdfKind::diffuse:
+      return 0;
+    case BsdfKind::conductor:
+    case BsdfKind::dielectric:
+    case BsdfKind::roughConductor:
+      return kSpecularBsdfs;
+    default:
+      return kLayeredBsdfs | kSpecularBsdfs;  // kernels with the second have the first
+  }
+}
+
+uint32_t lobesOf(BsdfKind kind) {
+  switch (kind) {
+    case BsdfKind::conductor:
+    case BsdfKind::dielectric:
+    case BsdfKind::thinDielectric:
+      return kHasDelta;
+    case BsdfKind::plastic:
+      return kHasDelta | kHasFinite;
+    default:
+      return kHasFinite;
+  }
+}
+
+// ---- means of textured values ---------------------------------------------------------------------------------------
+
+Rgb mean(const Texture& texture) {
+  if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {
+    Rgb sum{};
+    for (size_t i = 0; i < 3; ++i) sum[i] = (checkerboard->color0[i] + checkerboard->color1[i]) / 2;
+    return sum;
+  }
+  const Bitmap& bitmap = *std::get<BitmapTexture>(texture.kind).bitmap;
+  Rgb sum{};
+  const size_t pixels = size_t{bitmap.width} * bitmap.height;
+  for (size_t p = 0; p < pixels; ++p) {
+    for (size_t i = 0; i < 3; ++i) sum[i] += bitmap.pixels[p * bitmap.channels + (bitmap.channels == 3 ? i : 0)];
+  }
+  for (double& channel : sum) channel /= static_cast<double>(std::max<size_t>(pixels, 1));
+  return sum;
+}
+
+Rgb mean(const TexturedRgb& colour, const Scene& scene) {
+  return colour.texture == kNone ? colour.value : mean(scene.textures[colour.texture]);
+}
+
+double average(const Rgb& colour) { return (colour[0] + colour[1] + colour[2]) / 3; }
+
+// ---- fields ---------------------------------------------------------------------------------------------------------
+
+void assign(float (&out)[3], const Rgb& colour) {
+  for (size_t i = 0; i < 3; ++i) out[i] = static_cast<float>(colour[i]);
+}
+void assign(float (&out)[3], uint32_t& texture, const TexturedRgb& colour) {
+  assign(out, colour.texture == kNone ? colour.value : Rgb{1, 1, 1});
+  texture = colour.texture;
+}
+void assign(float& out, uint32_t& texture, const TexturedFloat& value) {
+  out = value.texture == kNone ? static_cast<float>(value.value) : 1.0f;
+  texture = value.texture;
+}
+
+// Fills in the fields of one material; the kind is already set.
+class Compiler {
+ public:
+  Compiler(MaterialRecord& record, const Scene& scene) : record_(record), scene_(scene) {}
+
+  void operator()(const Diffuse& diffuse) {
+    assign(record_.reflectance, record_.reflectanceTexture, diffuse.reflectance);
+  }
+
+  void operator()(const Conductor& conductor) {
+    assign(record_.eta, conductor.perfectMirror ? Rgb{0, 0, 0} : conductor.eta);
+    assign(record_.k, conductor.perfectMirror ? Rgb{1, 1, 1} : conductor.k);
+    assign(record_.specular, record_.specularTexture, conductor.specularReflectance);
+    assign(record_.alpha, record_.alphaTexture, conductor.alpha);
+  }
+
+  void operator()(const Dielectric& dielectric) {
+    record_.eta[0] = static_cast<float>(relativeIor(dielectric));
+    assign(record_.specular, record_.specularTexture, dielectric.specularReflectance);
+    assign(record_.transmittance, record_.transmittanceTexture, dielectric.specularTransmittance);
+    assign(record_.alpha, record_.alphaTexture, dielectric.alpha);
+  }
+
+  void operator()(const Plastic& plastic) {
+    const double eta = plastic.intIor / plastic.extIor;
+    record_.eta[0] = static_cast<float>(eta);
+    assign(record_.reflectance, record_.reflectanceTexture, plastic.diffuseReflectance);
+    assign(record_.specular, record_.specularTexture, plastic.specularReflectance);
+    assign(record_.alpha, record_.alphaTexture, plastic.alpha);
+    if (plastic.nonlinear) record_.flags |= kNonlinear;
+    const double diffuse = average(mean(plastic.diffuseReflectance, scene_));
+    const double specular = average(mean(plastic.specularReflectance, scene_));
+    record_.specularPick = specularShare(specular, diffuse);
+    record_.internalDiffuse = static_cast<float>(diffuseFresnelReflectance(1 / eta));
+  }
+
+  void operator()(const Phong& phong) {
+    assign(record_.reflectance, record_.reflectanceTexture, phong.diffuseReflectance);
+    assign(record_.specular, record_.specularTexture, phong.specularReflectance);
+    record_.alpha = static_cast<float>(phong.exponent);
+    const Rgb diffuse = mean(phong.diffuseReflectance, scene_), specular = mean(phong.specularReflectance, scene_);
+    double brightest = 0;
+    for (size_t i = 0; i < 3; ++i) brightest = std::max(brightest, diffuse[i] + specular[i]);
+    if (brightest > 1) {
+      const auto scale = static_cast<float>(kPhongEnergy / brightest);
+      for (float& channel : record_.reflectance) channel *= scale;
+      for (float& channel : record_.specular) channel *= scale;
+    }
+    record_.specularPick = specularShare(luminance(specular), luminance(diffuse));
+  }
+
+ private:
+  // A black material reflects nothing either way.
+  static float specularShare(double specular, double diffuse) {
+    return specular + diffuse > 0 ? static_cast<float>(specular / (specular + diffuse)) : 0.5f;
+  }
+
+  MaterialRecord& record_;
+  const Scene& scene_;
+};
+
+}  // namespace
+
+uint32_t materialFeatures(const Material& material) {
+  uint32_t features = featureOf(kindOf(material));
+  if (material.opacity) features |= kLayeredBsdfs | kSpecularBsdfs;
+  const auto textured = [](const auto&... values) { return ((values.texture != kNone) || ...); };
+  const bool anyTexture = std::visit(
+      Overloaded{[&](const Diffuse& d) { return textured(d.reflectance); },
+                 [&](const Conductor& c) { return textured(c.specularReflectance, c.alpha); },
+                 [&](const Dielectric& d) { return textured(d.specularReflectance, d.specularTransmittance, d.alpha); },
+                 [&](const Plastic& p) { return textured(p.diffuseReflectance, p.specularReflectance, p.alpha); },
+                 [&](const Phong& p) { return textured(p.diffuseReflectance, p.specularReflectance); }},
+      material.kind);
+  if (anyTexture || material.bumpTexture != kNone || material.normalTexture != kNone ||
+      (material.opacity && textured(*material.opacity))) {
+    features |= kTextures;
+  }
+  return features;
+}
+
+MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
+  MaterialRecord record{};
+  const BsdfKind kind = kindOf(material);
+  record.kind = static_cast<uint32_t>(kind);
+  record.flags = lobesOf(kind);
+  if (material.twoSided) record.flags |= kTwoSided;
+  for (uint32_t* texture : {&record.reflectanceTexture, &record.specularTexture, &record.transmittanceTexture,
+                            &record.alphaTexture, &record.opacityTexture}) {
+    *texture = kNone;
+  }
+  record.normalTexture = material.normalTexture;
+  record.bumpTexture = material.bumpTexture;
+  record.bumpScale = static_cast<float>(material.bumpScale);
+  record.opacity = 1;
+  if (material.opacity) {
+    assign(record.opacity, record.opacityTexture, *material.opacity);
+    if (record.opacity < 1 || record.opacityTexture != kNone) record.flags |= kHasDelta;
+  }
+  std::visit(Compiler(record, scene), material.kind);
+  return record;
+}
+
+double diffuseFresnelReflectance(double eta) {
+  // Total reflection begins at cos^2 = 1 - eta^2, where F has a kink: it is integrated on either side of it, over
+  // c = c0 + (1 - c0) t^2, which resolves the square root on the far side.
+  const double kink = eta < 1 ? std::sqrt((1 - eta) * (1 + eta)) : 0;
+  constexpr int kSteps = 4096;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = (i + 0.5) / kSteps;
+    const double c = kink + (1 - kink) * t * t;
+    const double cosT = std::sqrt(std::max(0.0, 1 - (1 - c * c) / (eta * eta)));
+    const double rs = (c - eta * cosT) / (c + eta * cosT), rp = (eta * c - cosT) / (eta * c + cosT);
+    sum += 0.5 * (rs * rs + rp * rp) * 2 * c * 2 * t * (1 - kink);
+  }
+  return kink * kink + sum / kSteps;
+}
+
+}  // namespace wavecrest

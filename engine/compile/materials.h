@@ -1,0 +1,19 @@
+// Materials to the records that BSDF kernels read.
+#pragma once
+
+#include "engine/scene/scene.h"
+#include "kernels/scene_view.h"
+
+namespace wavecrest {
+
+// What a material asks of the kernels: Feature bits (kernels/stages.h).
+uint32_t materialFeatures(const Material& material);
+
+// The scene is read for the means of textures, which decide how often a lobe is sampled.
+MaterialRecord compileMaterial(const Material& material, const Scene& scene);
+
+// Reflectance of a smooth dielectric boundary for diffuse light: INT_0^1 F(c, eta) 2 c dc, by quadrature; eta is the
+// index beyond the boundary over the index on the light's side.
+double diffuseFresnelReflectance(double eta);
+
+}  // namespace wavecrest

@@ -1,0 +1,88 @@
+// The MIS recursion in lanes: one set of partial sums for every method (Georgiev, "Implementing Vertex Connection and
+// Merging", 2012; the constants of the strategies are in MisSettings).
+//
+// Weights use the balance heuristic; roulette is not part of any density. Path tracing alone needs only dVCM: without
+// kBidirectional the other sums do not exist.
+#pragma once
+
+#include "kernels/lane_support.h"
+
+WAVECREST_SIMD_BEGIN
+
+// At vertex i, after arrival: dVCM is 1 / (area density of the generating vertex), dVC and dVM are the densities of all
+// earlier strategies relative to a connection and to a merge at i.
+template <class Real>
+struct MisSums {
+  Real dVCM, dVC, dVM;
+};
+
+template <uint32_t kFeatures, class S>
+WAVECREST_INLINE auto loadMis(const PathStates<S>& paths, size_t i) {
+  using Real = decltype(load(paths.dVCM, i));
+  if constexpr (has(kFeatures, kBidirectional)) {
+    return MisSums<Real>{load(paths.dVCM, i), load(paths.dVC, i), load(paths.dVM, i)};
+  } else {
+    return MisSums<Real>{load(paths.dVCM, i), Real(0), Real(0)};
+  }
+}
+template <uint32_t kFeatures, class Real, class S>
+WAVECREST_INLINE void storeMis(const MisSums<Real>& mis, PathStates<S>& paths, size_t i) {
+  store(mis.dVCM, paths.dVCM, i);
+  if constexpr (has(kFeatures, kBidirectional)) {
+    store(mis.dVC, paths.dVC, i);
+    store(mis.dVM, paths.dVM, i);
+  }
+}
+template <uint32_t kFeatures, class Real, class S>
+WAVECREST_INLINE void appendMis(const MisSums<Real>& mis, Mask m, PathStates<S>& paths, size_t out) {
+  append(mis.dVCM, m, paths.dVCM, out);
+  if constexpr (has(kFeatures, kBidirectional)) {
+    append(mis.dVC, m, paths.dVC, out);
+    append(mis.dVM, m, paths.dVM, out);
+  }
+}
+
+// e_i: whether the edge behind vertex `depth` could have been a connection. The switch of a sub-path's first edge (next
+// event, or the lens) is already part of dVCM.
+WAVECREST_INLINE double edgeSwitch(const MisSettings& mis, uint32_t depth) {
+  return depth >= 2 && !mis.connect ? 0.0 : 1.0;
+}
+
+// kVM m + e dVCM + p_r dVC: densities of everything behind this vertex relative to joining it by a connection.
+template <class Real>
+WAVECREST_INLINE Real behindConnection(const MisSettings& settings, uint32_t depth, const MisSums<Real>& mis,
+                                       Real pdfReverse) {
+  return Real(settings.kVM) + mulAdd(Real(edgeSwitch(settings, depth)), mis.dVCM, pdfReverse * mis.dVC);
+}
+
+// e dVCM kVC + p dVM: the same relative to joining it by a merge.
+template <class Real>
+WAVECREST_INLINE Real behindMerge(const MisSettings& settings, uint32_t depth, const MisSums<Real>& mis, Real pdf) {
+  return mulAdd(Real(edgeSwitch(settings, depth) * settings.kVC), mis.dVCM, pdf * mis.dVM);
+}
+
+// Scattering (34)-(36). genCosine: |gen . geometric normal|.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE MisSums<typename P::Real> scatterMis(const MisSettings& settings, uint32_t depth,
+                                                      const MisSums<typename P::Real>& mis, typename P::Real pdf,
+                                                      typename P::Real pdfReverse, typename P::Real genCosine) {
+  using Real = typename P::Real;
+  const Real inversePdf = reciprocal<P>(pdf);
+  if constexpr (has(kFeatures, kBidirectional)) {
+    const Real scale = genCosine * inversePdf;
+    return {inversePdf, scale * behindConnection(settings, depth, mis, pdfReverse),
+            scale * (Real(settings.merge ? 1 : 0) + behindMerge(settings, depth, mis, pdfReverse))};
+  } else {
+    return {inversePdf, Real(0), Real(0)};
+  }
+}
+
+// Scattering over a delta lobe (53)-(55): no strategy can take this vertex's place, and the densities behind it change
+// by the ratio of the two directions' discrete densities per area. With refraction that is
+// J = (P_r / P_f) |gen . N| (c_fix / c_gen) (eta_fix / eta_gen)^2, c being cosines to the shading normal.
+template <class Real>
+WAVECREST_INLINE MisSums<Real> scatterSpecularMis(const MisSums<Real>& mis, Real jacobian) {
+  return {Real(0), mis.dVC * jacobian, mis.dVM * jacobian};
+}
+
+WAVECREST_SIMD_END

@@ -1,0 +1,38 @@
+// Diffuse reflection, f = rho / pi on the front side (Lambert), sampled in proportion to the cosine.
+#pragma once
+
+#include "kernels/sampling/warp_lanes.h"
+#include "kernels/shade/bsdf_interface.h"
+
+WAVECREST_SIMD_BEGIN
+
+struct DiffuseBsdf {
+  static constexpr BsdfKind kKind = BsdfKind::diffuse;
+  static constexpr uint32_t kFeature = 0;
+  static constexpr bool kHasDelta = false;
+
+  template <class P>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
+                                                           Vec3<typename P::Real> gen) {
+    using Real = typename P::Real;
+    const Mask front = (fix.z > Real(0)) & (gen.z > Real(0));
+    return {zeroUnless(front, input.reflectance() * Real(kInvPi)), zeroUnless(front, gen.z * Real(kInvPi)),
+            zeroUnless(front, fix.z * Real(kInvPi))};
+  }
+
+  template <class P>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
+                                                              const Uniform4& u) {
+    using Real = typename P::Real;
+    BsdfSample<Real> sample;
+    sample.gen = cosineHemisphere<Real>(to<Real>(u.b), to<Real>(u.c));
+    sample.weight = zeroUnless(fix.z > Real(0), input.reflectance());
+    sample.pdf = sample.gen.z * Real(kInvPi);
+    sample.pdfReverse = abs(fix.z) * Real(kInvPi);
+    sample.etaRatio = Real(1);
+    sample.specular = noLanes();
+    return sample;
+  }
+};
+
+WAVECREST_SIMD_END

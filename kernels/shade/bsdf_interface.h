@@ -1,0 +1,86 @@
+// The contract between stages and BSDFs.
+//
+// A BSDF works in the shading frame (z along the shading normal, on the side that the material calls outside): `fix`
+// points back along the path, `gen` is the generated direction, both away from the surface. f contains no cosine.
+// Densities are per solid angle, lobe choice included, roulette not.
+//
+// f is the radiance BSDF from the light's side to the eye's side; which of fix and gen is which follows from the walk.
+// Only refraction tells the two apart: f(l, e) / eta_e^2 = f(e, l) / eta_l^2 (Veach 1997, 5.2).
+//
+// A kind is a struct with
+//   static constexpr BsdfKind kKind;
+//   static constexpr uint32_t kFeature;  // Feature bit that its kernels need; 0: part of every feature set
+//   static constexpr bool kHasDelta;     // may sample a delta lobe
+//   template <class P> static BsdfValue<Real> eval(const BsdfInput<P>&, Vec3<Real> fix, Vec3<Real> gen);
+//   template <class P> static BsdfSample<Real> sample(const BsdfInput<P>&, Vec3<Real> fix, const Uniform4& u);
+// in a file of its own, and a place in bsdf_list.h. eval covers the non-delta lobes only. sample uses u.a, u.b and u.c;
+// u.d is left to roulette. Where fix or gen lie on sides that the BSDF does not join, the weight and f are zero and the
+// densities are meaningless but finite.
+#pragma once
+
+#include "kernels/lane_support.h"
+
+WAVECREST_SIMD_BEGIN
+
+template <class Real>
+struct BsdfValue {
+  Vec3<Real> f;
+  Real pdf;         // of gen given fix
+  Real pdfReverse;  // of fix given gen
+};
+
+template <class Real>
+struct BsdfSample {
+  Vec3<Real> gen;
+  Vec3<Real> weight;     // f |cos gen| / pdf; for a delta lobe its albedo over the lobe's probability
+  Real pdf, pdfReverse;  // of a delta lobe: discrete probabilities
+  Real etaRatio;         // eta_fix / eta_gen: 1 unless refracted
+  Mask specular;         // a delta lobe was taken
+};
+
+// Which lobes sample() chooses from. specularOnly: the delta lobes, with their probabilities renormalised.
+enum class Lobes { all, specularOnly };
+
+// What a BSDF may ask about the surface. Constants come from the material record of each lane, times a texture.
+template <class P>
+struct BsdfInput {
+  using Real = typename P::Real;
+  const MaterialRecord* materials;
+  RecordLanes<MaterialRecord> at;
+  UInt kind;
+  Walk walk = Walk::camera;
+  Lobes lobes = Lobes::all;
+
+  WAVECREST_INLINE BsdfInput(const MaterialRecord* base, UInt index) : materials(base), at(base, index) {
+    kind = at(base->kind);
+  }
+  WAVECREST_INLINE Vec3<Real> reflectance() const { return to<Real>(at(materials->reflectance)); }
+  WAVECREST_INLINE Vec3<Real> specular() const { return to<Real>(at(materials->specular)); }
+  WAVECREST_INLINE Vec3<Real> transmittance() const { return to<Real>(at(materials->transmittance)); }
+  WAVECREST_INLINE Real alpha() const { return to<Real>(at(materials->alpha)); }
+  // Interior over exterior index of a dielectric boundary.
+  WAVECREST_INLINE Real eta() const { return to<Real>(at(materials->eta[0])); }
+  WAVECREST_INLINE Real opacity() const { return to<Real>(at(materials->opacity)); }
+};
+
+// Vertices whose BSDF has more than delta lobes: only those can be joined by next event, connections and merges.
+WAVECREST_INLINE Mask hasNonDeltaLobes(UInt kind) {
+  const auto is = [kind](BsdfKind k) HWY_ATTR { return kind == UInt(static_cast<uint32_t>(k)); };
+  return !(is(BsdfKind::conductor) | is(BsdfKind::dielectric) | is(BsdfKind::thinDielectric));
+}
+
+// Real zero in all fields.
+template <class Real>
+WAVECREST_INLINE BsdfValue<Real> zeroBsdfValue() {
+  const Real zero(0);
+  return {{zero, zero, zero}, zero, zero};
+}
+
+// Change of radiance across a refracting boundary, in the direction of a camera walk; a light walk carries power, which
+// does not change (Veach 1997, 5.2).
+template <class P>
+WAVECREST_INLINE typename P::Real radianceScale(const BsdfInput<P>& input, typename P::Real etaRatio) {
+  return input.walk == Walk::camera ? etaRatio * etaRatio : typename P::Real(1);
+}
+
+WAVECREST_SIMD_END
