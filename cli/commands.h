@@ -29,6 +29,7 @@ struct InputError : std::runtime_error {
 };
 
 void addRenderCommand(CLI::App& app, int& exitCode);
+void addReportCommand(CLI::App& app, int& exitCode);
 void addScenesCommand(CLI::App& app, int& exitCode);
 
 }  // namespace wavecrest
