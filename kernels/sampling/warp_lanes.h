@@ -9,9 +9,6 @@
 
 WAVECREST_SIMD_BEGIN
 
-inline constexpr double kPi = 3.14159265358979323846;
-inline constexpr double kInvPi = 1 / kPi;
-
 template <class Real>
 struct Vec2 {
   Real x, y;
