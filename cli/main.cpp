@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   int exitCode = kExitDone;
   addCompareCommand(app, exitCode);
   addRenderCommand(app, exitCode);
+  addReportCommand(app, exitCode);
   addScenesCommand(app, exitCode);
 
   try {
