@@ -27,6 +27,7 @@ struct RenderOptions {
   uint64_t seed = 0;
   int maxDepth = 0, rrDepth = 0;  // 0: what the scene says
   uint32_t wave = 2048;
+  double radius = 0.001, radiusAlpha = 0.75;
   std::vector<std::string> defines, outputs;
   bool lenient = false;
 };
@@ -84,7 +85,8 @@ Isa chosenIsa(const std::string& word) {
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   RenderSettings settings;
   const std::optional<Method> method = parseMethod(options.method);
-  if (!method) throw UsageError(fmt::format("--method {}: unknown; expected pt", options.method));
+  if (!method)
+    throw UsageError(fmt::format("--method {}: unknown; expected one of {}", options.method, methodChoices()));
   settings.method = *method;
   const std::optional<SamplerKind> sampler = parseSamplerKind(options.sampler);
   if (!sampler) throw UsageError(fmt::format("--sampler {}: expected independent or sobol", options.sampler));
@@ -95,6 +97,8 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   settings.seed = options.seed;
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
+  settings.radius = options.radius;
+  settings.radiusAlpha = options.radiusAlpha;
   const int maxDepth = options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth;
   const int rrDepth = options.rrDepth != 0 ? options.rrDepth : scene.defaults.rrDepth;
   if (maxDepth > 0) settings.limits.maxDepth = std::min(static_cast<uint32_t>(maxDepth), kUnlimitedDepth);
@@ -206,6 +210,14 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
   command->add_option("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512")->capture_default_str();
   command->add_option("--accel", options->accel, "intersector: auto, embree or small")->capture_default_str();
   command->add_option("--wave", options->wave, "paths per wave")->capture_default_str()->check(CLI::Range(16, 1 << 20));
+  command
+      ->add_option("--radius", options->radius,
+                   "first merge radius of ppm, bpm and vcm, relative to the bounding sphere")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-9, 10.0));
+  command->add_option("--radius-alpha", options->radiusAlpha, "how slowly the radius shrinks, 0 to 1")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
   command->add_option("-D", options->defines, "value of a scene's $name: NAME=VALUE")->allow_extra_args(false);
   command->add_flag("--lenient", options->lenient, "skip what a scene asks and wavecrest lacks, with a warning");
   command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "kernels/stages.h"
 
 namespace wavecrest {
 namespace {
@@ -62,13 +65,22 @@ uint64_t Film::add(const Wave<S>& wave) {
 template uint64_t Film::add(const Wave<float>&);
 template uint64_t Film::add(const Wave<double>&);
 
+void Film::setSplats(std::vector<int64_t> sums, uint64_t lightPaths) {
+  splats_ = std::move(sums);
+  lightPaths_ = lightPaths;
+}
+
 std::vector<float> Film::resolve() const {
   std::vector<float> image(3 * size_t{area_.width} * area_.height, 0.0f);
+  const double splatScale = lightPaths_ == 0 ? 0 : 1 / (kSplatScale * static_cast<double>(lightPaths_));
   for (size_t i = 0; i < area_.pixels.size(); ++i) {
-    if (samples_[i] == 0) continue;
     const uint32_t x = (area_.pixels[i] & 0xffffu) - area_.x0, y = (area_.pixels[i] >> 16) - area_.y0;
-    float* const out = &image[3 * (size_t{y} * area_.width + x)];
-    for (size_t c = 0; c < 3; ++c) out[c] = static_cast<float>(sums_[3 * i + c] / samples_[i]);
+    const size_t pixel = 3 * (size_t{y} * area_.width + x);
+    for (size_t c = 0; c < 3; ++c) {
+      double value = samples_[i] == 0 ? 0 : sums_[3 * i + c] / samples_[i];
+      if (!splats_.empty()) value += static_cast<double>(splats_[pixel + c]) * splatScale;
+      image[pixel + c] = static_cast<float>(value);
+    }
   }
   return image;
 }

@@ -29,7 +29,11 @@ class Film {
   template <class S>
   uint64_t add(const Wave<S>& wave);
 
-  // Mean radiance, row by row from the top, RGB; pixels without samples are black.
+  // What light paths have splatted so far, in fixed point (kSplatScale), row by row, and how many there were.
+  void setSplats(std::vector<int64_t> sums, uint64_t lightPaths);
+
+  // The image, row by row from the top, RGB: the mean of each pixel's samples (black where there are none) plus the
+  // splats per light path.
   std::vector<float> resolve() const;
 
   const FilmArea& area() const { return area_; }
@@ -39,6 +43,8 @@ class Film {
   FilmArea area_;
   std::vector<double> sums_;       // RGB, in wave order
   std::vector<uint32_t> samples_;  // in wave order
+  std::vector<int64_t> splats_;
+  uint64_t lightPaths_ = 0;
 };
 
 }  // namespace wavecrest

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <thread>
 
+#include "kernels/columns/light_vertices.h"
+
 namespace wavecrest {
 
 uint64_t readTicks() { return __rdtsc(); }
@@ -29,25 +31,54 @@ void call(const StageCall<S>& stage, const StageContext<S>& context, Wave<S>& wa
     stage.run(context, wave);
     return;
   }
-  tally->items += stage.items(wave);
+  const size_t items = stage.items(wave);
+  tally->items += items;
+  tally->laneSlots += (items + stage.lanes - 1) / stage.lanes * stage.lanes;
   const uint64_t begin = readTicks();
   stage.run(context, wave);
   tally->ticks += readTicks() - begin;
 }
 
+// Runs a depth's stages; rows of perLightDepth stages are repeated over the depths of the light store.
+template <class S>
+void runDepth(const std::vector<StageCall<S>>& stages, StageContext<S>& context, Wave<S>& wave, StageTally* tally) {
+  const auto tallyOf = [tally](size_t i) { return tally == nullptr ? nullptr : tally + i; };
+  for (size_t i = 0; i < stages.size();) {
+    if (stages[i].repeat == Repeat::once) {
+      call(stages[i], context, wave, tallyOf(i));
+      ++i;
+      continue;
+    }
+    size_t end = i;
+    while (end < stages.size() && stages[end].repeat == Repeat::perLightDepth) ++end;
+    for (context.lightDepth = 1; context.lightDepth <= context.light->depths(); ++context.lightDepth) {
+      for (size_t k = i; k < end; ++k) call(stages[k], context, wave, tallyOf(k));
+    }
+    i = end;
+  }
+}
+
 }  // namespace
 
 template <class S>
-void runWave(const Pipeline<S>& pipeline, StageContext<S>& context, Wave<S>& wave, StageTally* tally) {
+void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, StageTally* tally) {
+  context.walk = pass.walk;
   context.depth = 0;
-  call(pipeline.generate, context, wave, tally);
+  const bool storing = pass.walk == Walk::light && context.light != nullptr;
+  if (storing) context.light->clear();
+  call(pass.generate, context, wave, tally);
+  StageTally* const first = tally == nullptr ? nullptr : tally + 1;
+  StageTally* const rest = tally == nullptr ? nullptr : first + pass.firstDepth.size();
   for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {
-    for (size_t i = 0; i < pipeline.perDepth.size(); ++i) {
-      call(pipeline.perDepth[i], context, wave, tally == nullptr ? nullptr : tally + 1 + i);
+    if (storing) context.light->beginDepth(wave.rays.size);
+    if (context.depth == 1 && !pass.firstDepth.empty()) {
+      runDepth(pass.firstDepth, context, wave, first);
+    } else {
+      runDepth(pass.perDepth, context, wave, rest);
     }
   }
 }
-template void runWave(const Pipeline<float>&, StageContext<float>&, Wave<float>&, StageTally*);
-template void runWave(const Pipeline<double>&, StageContext<double>&, Wave<double>&, StageTally*);
+template void runPass(const Pass<float>&, StageContext<float>&, Wave<float>&, StageTally*);
+template void runPass(const Pass<double>&, StageContext<double>&, Wave<double>&, StageTally*);
 
 }  // namespace wavecrest

@@ -1,8 +1,8 @@
 // A pipeline: the stages of a method in the order they run, and the loop that runs them on one wave.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -10,12 +10,19 @@
 
 namespace wavecrest {
 
-// One entry of a pipeline. items: how many records the stage is about to read, for the statistics.
+// How often a stage runs at each depth of its walk. A row of stages with perLightDepth is repeated as a whole for each
+// depth of the stored light vertices.
+enum class Repeat { once, perLightDepth };
+
+// One entry of a pass. items: how many records the stage is about to read, for the statistics; lanes: how many of them
+// it works on at once.
 template <class S>
 struct StageCall {
   std::string_view name;
   Stage<S> run;
   size_t (*items)(const Wave<S>&);
+  size_t lanes;
+  Repeat repeat = Repeat::once;
 };
 
 // What a stage works on: rays of live paths, or shadow rays.
@@ -27,33 +34,53 @@ template <class S>
 size_t shadowItems(const Wave<S>& wave) {
   return wave.shadowRays.size;
 }
+template <class S>
+size_t generatedItems(const Wave<S>& wave) {
+  return wave.pathCount;
+}
 
+// One walk of a wave's paths: generated once, then depth by depth until none is left.
+template <class S>
+struct Pass {
+  Walk walk = Walk::camera;
+  MisSettings strategies{};  // the switches; constants of the iteration are filled in by the session
+  StageCall<S> generate;
+  std::vector<StageCall<S>> firstDepth = {};  // at depth 1, where it differs; else empty
+  std::vector<StageCall<S>> perDepth = {};
+
+  size_t stageCount() const { return 1 + firstDepth.size() + perDepth.size(); }
+};
+
+// A method. With a photon map, all light passes of an iteration come before all its camera passes.
 template <class S>
 struct Pipeline {
-  StageCall<S> generate;
-  std::vector<StageCall<S>> perDepth;
+  std::optional<Pass<S>> lightPass = std::nullopt;
+  bool photonMap = false;
+  Pass<S> cameraPass;
 
-  size_t stageCount() const { return 1 + perDepth.size(); }
+  bool splats() const { return lightPass && lightPass->strategies.camera; }
+  bool bidirectional() const { return lightPass.has_value(); }
 };
 
 // The two intersectors offer the same pair of stages.
 template <class S>
 struct Intersector {
   Stage<S> extend, occlude;
+  size_t lanes;
 };
 
-// Time and items of each stage, in pipeline order, of one worker.
+// Time and items of each stage, in pipeline order, of one worker. laneSlots: items rounded up to whole blocks.
 struct StageTally {
-  uint64_t items = 0, ticks = 0;
+  uint64_t items = 0, laneSlots = 0, ticks = 0;
 };
 
 // Time-stamp counter ticks, and their length.
 uint64_t readTicks();
 double secondsPerTick();
 
-// Takes one wave from generation to the end of its last path. tally: one entry per stage, or nullptr to measure
-// nothing. The wave's firstPath and pathCount say which paths.
+// Takes one wave from generation to the end of its last path. tally: one entry per stage in the order generate,
+// firstDepth, perDepth, or nullptr to measure nothing. The wave's firstPath and pathCount say which paths.
 template <class S>
-void runWave(const Pipeline<S>& pipeline, StageContext<S>& context, Wave<S>& wave, StageTally* tally);
+void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, StageTally* tally);
 
 }  // namespace wavecrest

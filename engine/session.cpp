@@ -3,13 +3,20 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/flow_graph.h>
 #include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 #include <pmmintrin.h>
 #include <sys/resource.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <cmath>
+#include <numbers>
+
+#include "engine/render_plan.h"
+#include "kernels/columns/light_vertices.h"
+#include "kernels/merge/photon_map.h"
 
 namespace wavecrest {
 namespace {
@@ -39,52 +46,22 @@ class FlushToZero {
   unsigned saved_;
 };
 
-ColumnNeeds columnNeeds(Specialization specialization) {
-  const uint32_t features = kSpecializationFeatures[static_cast<size_t>(specialization)];
-  return {.shadingNormals = (features & kShadingNormals) != 0,
-          .textures = (features & kTextures) != 0,
-          .refraction = (features & kSpecularBsdfs) != 0,
-          .connections = false};
-}
-
-Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
-  const uint32_t features = sceneFeatures(scene);
-  const Specialization least = chooseSpecialization(features);
-  if (!settings.specialization) return least;
-  if ((features & ~kSpecializationFeatures[static_cast<size_t>(*settings.specialization)]) != 0) {
-    throw std::runtime_error("the scene needs the '" + std::string(kSpecializationNames[static_cast<size_t>(least)]) +
-                             "' kernels");
-  }
-  return *settings.specialization;
-}
-
-FilmArea filmArea(const FilmSettings& film) {
-  if (film.cropWidth == 0 || film.cropHeight == 0) return FilmArea::make(0, 0, film.width, film.height);
-  return FilmArea::make(film.cropX, film.cropY, film.cropWidth, film.cropHeight);
-}
+// TBB gives an arena of more threads than the machine has cores no workers for the surplus unless it is told to. Only
+// while a session works: the least of all limits alive counts, and several sessions may be.
+struct WorkerLimit {
+  explicit WorkerLimit(size_t threads) : control(oneapi::tbb::global_control::max_allowed_parallelism, threads) {}
+  oneapi::tbb::global_control control;
+};
 
 // The part of a session that depends on the storage type of its precision.
+//
+// An iteration is one light path and one camera path per pixel. Without a photon map a wave's light and camera pass
+// follow each other and waves are independent; with one, all light passes come first, then the map, then all camera
+// passes. Where time runs out in between, what is done stays done and the next renderUntil goes on from there.
 template <class S>
 class TypedSession final : public Session {
  public:
-  TypedSession(const Scene& scene, const RenderSettings& settings)
-      : settings_(settings),
-        concurrency_(oneapi::tbb::global_control::max_allowed_parallelism, settings.threads),
-        arena_(static_cast<int>(settings.threads)),
-        specialization_(specializationFor(scene, settings)),
-        film_(filmArea(scene.film)) {
-    const auto begin = Clock::now();
-    arena_.execute([&] { compiled_ = compileScene<S>(scene, settings.accel); });
-    const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, specialization_);
-    const Intersector<S> intersector = compiled_->small != nullptr
-                                           ? Intersector<S>{stages.extendSmall, stages.occludeSmall}
-                                           : Intersector<S>{extendEmbree<S>, occludeEmbree<S>};
-    pipeline_ = pathTracing(stages, intersector);
-    isa_ = stages.isa;
-    const size_t pixels = film_.area().pixels.size();
-    waves_.resize((pixels + settings.waveSize - 1) / settings.waveSize);
-    buildSeconds_ = secondsSince(begin);
-  }
+  TypedSession(const Scene& scene, const RenderSettings& settings);
 
   void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) override;
   RenderStatistics statistics() const override;
@@ -96,24 +73,40 @@ class TypedSession final : public Session {
   // What one worker thread keeps from wave to wave; nothing is allocated while waves run.
   struct Worker {
     Wave<S> wave;
+    LightStore<S> light;  // of the wave under way, where light vertices do not outlive it
     StageCounters counters;
-    std::vector<StageTally> tallies;
-    uint64_t paths = 0;
-    Worker(size_t waveSize, const ColumnNeeds& needs, size_t stages) : wave(waveSize, needs), tallies(stages) {}
+    std::vector<StageTally> lightTallies, cameraTallies;
+    std::vector<int64_t> splats;
+    uint64_t paths = 0, lightPaths = 0;
+    Worker(size_t waveSize, const ColumnNeeds& needs) : wave(waveSize, needs), light(waveSize, needs) {}
   };
+  using Finished = std::function<bool(size_t wave)>;
 
-  // One iteration of one wave. Iterations of the same wave never overlap and come in order.
-  void trace(size_t waveIndex, Worker& worker);
+  Worker& worker();
+  void tracePass(const Pass<S>& pass, size_t waveIndex, uint64_t iteration, LightStore<S>* light, Worker& worker);
+  void traceLight(size_t waveIndex, Worker& worker);
+  void traceCamera(size_t waveIndex, Worker& worker);
+  // Iterations of a method whose waves are independent.
+  void renderWaves(const Finished& finished);
+  // Iterations of a method with a photon map.
+  void renderPhases(const Finished& finished);
+  void buildPhotonMap(uint64_t iteration);
+  void collectSplats();
+
+  // Runs body(i) for i in [0, count) on the session's threads.
+  static void forEach(size_t count, const std::function<void(size_t)>& body) {
+    oneapi::tbb::parallel_for(size_t{0}, count, body, oneapi::tbb::simple_partitioner());
+  }
 
   const RenderSettings settings_;
-  oneapi::tbb::global_control concurrency_;
   oneapi::tbb::task_arena arena_;
-  const Specialization specialization_;
   Film film_;
-  std::unique_ptr<CompiledScene<S>> compiled_;
-  Pipeline<S> pipeline_;
-  Isa isa_{};
-  std::vector<uint64_t> waves_;  // iterations done by each wave
+  RenderPlan<S> plan_;
+  std::vector<uint64_t> lightDone_, cameraDone_;        // iterations done by each wave
+  std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each wave, where a photon map gathers them
+  PhotonMap<S> photons_;
+  std::optional<uint64_t> photonIteration_;  // which iteration the map is of
+  StageTally photonTally_;
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
   double buildSeconds_ = 0, renderSeconds_ = 0, cpuSeconds_ = 0;
   std::atomic<double> progressSeconds_{0};
@@ -121,61 +114,181 @@ class TypedSession final : public Session {
 };
 
 template <class S>
-void TypedSession<S>::trace(size_t waveIndex, Worker& worker) {
+TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings)
+    : settings_(settings), arena_(static_cast<int>(settings.threads)), film_(filmArea(scene.film)) {
+  const auto begin = Clock::now();
+  const WorkerLimit limit(settings.threads);
+  arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
+  const size_t waves = (film_.area().pixels.size() + settings.waveSize - 1) / settings.waveSize;
+  lightDone_.resize(waves);
+  cameraDone_.resize(waves);
+  if (plan_.pipeline.photonMap) {
+    for (size_t i = 0; i < waves; ++i)
+      stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs));
+  }
+  buildSeconds_ = secondsSince(begin);
+}
+
+template <class S>
+typename TypedSession<S>::Worker& TypedSession<S>::worker() {
+  std::unique_ptr<Worker>& mine = workers_.local();
+  if (!mine) {
+    mine = std::make_unique<Worker>(settings_.waveSize, plan_.needs);
+    mine->cameraTallies.resize(plan_.pipeline.cameraPass.stageCount());
+    if (plan_.pipeline.lightPass) mine->lightTallies.resize(plan_.pipeline.lightPass->stageCount());
+    if (plan_.pipeline.splats()) mine->splats.resize(3 * film_.area().pixels.size());
+  }
+  return *mine;
+}
+
+// Constants of an iteration's densities (METHODS 5.1, 6.1): one light path per pixel of the rendered rectangle.
+MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t pixels,
+                        uint64_t iteration) {
+  const auto lightPaths = static_cast<double>(pixels);
+  strategies.lightPaths = lightPaths;
+  strategies.camN = lightPaths;
+  const double shrink = std::pow(static_cast<double>(iteration + 1), (settings.radiusAlpha - 1) / 2);
+  // Below the precision of positions nothing could be merged.
+  strategies.radius = std::max(settings.radius * shrink, 16 * 0x1p-24) * sceneRadius;
+  const double density = std::numbers::pi * strategies.radius * strategies.radius * lightPaths;
+  strategies.mergeNorm = 1 / density;
+  strategies.kVM = strategies.merge ? density : 0;
+  strategies.kVC = strategies.merge && strategies.connect ? 1 / density : 0;
+  return strategies;
+}
+
+template <class S>
+void TypedSession<S>::tracePass(const Pass<S>& pass, size_t waveIndex, uint64_t iteration, LightStore<S>* light,
+                                Worker& worker) {
   const FlushToZero flushToZero;
+  const FilmArea& area = film_.area();
   Wave<S>& wave = worker.wave;
-  const auto& pixels = film_.area().pixels;
   wave.firstPath = waveIndex * settings_.waveSize;
-  wave.pathCount = std::min<size_t>(settings_.waveSize, pixels.size() - wave.firstPath);
-  StageContext<S> context{.scene = &compiled_->view,
-                          .pixels = pixels.data(),
-                          .sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(waves_[waveIndex])},
-                          .limits = settings_.limits,
-                          .depth = 0,
-                          .counters = &worker.counters};
-  runWave(pipeline_, context, wave, settings_.measureStages ? worker.tallies.data() : nullptr);
-  worker.counters.nonFinite += film_.add(wave);
-  worker.paths += wave.pathCount;
-  progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
-  ++waves_[waveIndex];
+  wave.pathCount = std::min<size_t>(settings_.waveSize, area.pixels.size() - wave.firstPath);
+  StageContext<S> context{
+      .scene = &plan_.scene->view,
+      .pixels = area.pixels.data(),
+      .sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(iteration)},
+      .limits = settings_.limits,
+      .mis = misSettings(pass.strategies, settings_, plan_.scene->view.radius, area.pixels.size(), iteration),
+      .light = light,
+      .photons = &photons_,
+      .splats = {worker.splats.data(), area.x0, area.y0, area.width, area.height},
+      .counters = &worker.counters};
+  auto& tallies = pass.walk == Walk::light ? worker.lightTallies : worker.cameraTallies;
+  runPass(pass, context, wave, settings_.measureStages ? tallies.data() : nullptr);
+}
+
+template <class S>
+void TypedSession<S>::traceLight(size_t waveIndex, Worker& worker) {
+  LightStore<S>* const store = plan_.pipeline.photonMap ? stores_[waveIndex].get() : &worker.light;
+  tracePass(*plan_.pipeline.lightPass, waveIndex, lightDone_[waveIndex], store, worker);
+  worker.lightPaths += worker.wave.pathCount;
+  ++lightDone_[waveIndex];
+}
+
+template <class S>
+void TypedSession<S>::traceCamera(size_t waveIndex, Worker& worker) {
+  LightStore<S>* const store = plan_.pipeline.photonMap ? stores_[waveIndex].get() : &worker.light;
+  tracePass(plan_.pipeline.cameraPass, waveIndex, cameraDone_[waveIndex], store, worker);
+  worker.counters.nonFinite += film_.add(worker.wave);
+  worker.paths += worker.wave.pathCount;
+  progressPaths_.fetch_add(worker.wave.pathCount, std::memory_order_relaxed);
+  ++cameraDone_[waveIndex];
+}
+
+template <class S>
+void TypedSession<S>::renderWaves(const Finished& finished) {
+  // The graph has a token per wave. A token that has traced its iteration goes back to the queue, behind all others, so
+  // that waves advance together; the run ends when none is put back.
+  namespace flow = oneapi::tbb::flow;
+  flow::graph graph;
+  flow::queue_node<size_t> ready(graph);
+  flow::function_node<size_t, flow::continue_msg, flow::rejecting> tracing(graph, settings_.threads, [&](size_t wave) {
+    if (finished(wave)) return flow::continue_msg();
+    Worker& mine = worker();
+    if (plan_.pipeline.lightPass) traceLight(wave, mine);
+    traceCamera(wave, mine);
+    if (!finished(wave)) ready.try_put(wave);
+    return flow::continue_msg();
+  });
+  flow::make_edge(ready, tracing);
+  for (size_t wave = 0; wave < cameraDone_.size(); ++wave) ready.try_put(wave);
+  graph.wait_for_all();
+}
+
+template <class S>
+void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
+  std::vector<LightStore<S>*> stores;
+  for (const auto& store : stores_) stores.push_back(store.get());
+  const uint64_t begin = readTicks();
+  const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
+                                      film_.area().pixels.size(), iteration);
+  photons_.build(stores, mis.radius, forEach);
+  photonTally_.ticks += readTicks() - begin;
+  photonTally_.items += photons_.photons.size;
+  photonIteration_ = iteration;
+}
+
+template <class S>
+void TypedSession<S>::renderPhases(const Finished& finished) {
+  for (;;) {
+    const uint64_t iteration = *std::min_element(cameraDone_.begin(), cameraDone_.end());
+    forEach(stores_.size(), [&](size_t wave) {
+      if (lightDone_[wave] == iteration && !finished(wave)) traceLight(wave, worker());
+    });
+    if (*std::min_element(lightDone_.begin(), lightDone_.end()) == iteration) return;  // time ran out
+    if (photonIteration_ != iteration) buildPhotonMap(iteration);
+    forEach(stores_.size(), [&](size_t wave) {
+      if (cameraDone_[wave] == iteration && !finished(wave)) traceCamera(wave, worker());
+    });
+    if (*std::min_element(cameraDone_.begin(), cameraDone_.end()) == iteration) return;
+  }
+}
+
+template <class S>
+void TypedSession<S>::collectSplats() {
+  if (!plan_.pipeline.splats()) return;
+  std::vector<int64_t> sums(3 * film_.area().pixels.size(), 0);
+  uint64_t lightPaths = 0;
+  for (const auto& worker : workers_) {
+    for (size_t i = 0; i < sums.size(); ++i) sums[i] += worker->splats[i];
+    lightPaths += worker->lightPaths;
+  }
+  film_.setSplats(std::move(sums), lightPaths);
 }
 
 template <class S>
 void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
-  const auto finished = [&](size_t wave) {
-    if (iterations && waves_[wave] >= *iterations) return true;
+  const WorkerLimit limit(settings_.threads);
+  const Finished finished = [&](size_t wave) {
+    if (iterations && cameraDone_[wave] >= *iterations) return true;
     const double now = renderSeconds_ + secondsSince(begin);
     progressSeconds_.store(now, std::memory_order_relaxed);
     return (seconds && now >= *seconds) || interrupted();
   };
-
-  arena_.execute([&] {
-    // The graph has a token per wave. A token that has traced its iteration goes back to the queue, behind all others,
-    // so that waves advance together; the run ends when none is put back.
-    using oneapi::tbb::flow::continue_msg;
-    oneapi::tbb::flow::graph graph;
-    oneapi::tbb::flow::queue_node<size_t> ready(graph);
-    oneapi::tbb::flow::function_node<size_t, continue_msg, oneapi::tbb::flow::rejecting> tracing(
-        graph, settings_.threads, [&](size_t wave) {
-          std::unique_ptr<Worker>& worker = workers_.local();
-          if (!worker) {
-            worker = std::make_unique<Worker>(settings_.waveSize, columnNeeds(specialization_), pipeline_.stageCount());
-          }
-          if (finished(wave)) return continue_msg();
-          trace(wave, *worker);
-          if (!finished(wave)) ready.try_put(wave);
-          return continue_msg();
-        });
-    oneapi::tbb::flow::make_edge(ready, tracing);
-    for (size_t wave = 0; wave < waves_.size(); ++wave) ready.try_put(wave);
-    graph.wait_for_all();
-  });
-
+  arena_.execute([&] { plan_.pipeline.photonMap ? renderPhases(finished) : renderWaves(finished); });
   renderSeconds_ += secondsSince(begin);
   cpuSeconds_ += processCpuSeconds() - cpuBegin;
   progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
+  collectSplats();
+}
+
+// The rows of a pass's stages, filled from a worker's tallies.
+template <class S>
+void addRows(const Pass<S>& pass, std::vector<RenderStatistics::StageRow>& rows) {
+  rows.push_back({std::string(pass.generate.name)});
+  for (const auto& stage : pass.firstDepth) rows.push_back({std::string(stage.name)});
+  for (const auto& stage : pass.perDepth) rows.push_back({std::string(stage.name)});
+}
+void addTallies(const std::vector<StageTally>& tallies, size_t first, std::vector<RenderStatistics::StageRow>& rows) {
+  for (size_t i = 0; i < tallies.size(); ++i) {
+    rows[first + i].items += tallies[i].items;
+    rows[first + i].laneSlots += tallies[i].laneSlots;
+    rows[first + i].seconds += static_cast<double>(tallies[i].ticks) * secondsPerTick();
+  }
 }
 
 template <class S>
@@ -185,22 +298,26 @@ RenderStatistics TypedSession<S>::statistics() const {
   out.buildSeconds = buildSeconds_;
   out.renderSeconds = renderSeconds_;
   out.cpuSeconds = cpuSeconds_;
-  out.isa = isa_;
-  out.specialization = specialization_;
-  out.accel = compiled_->small != nullptr ? Accel::small : Accel::embree;
-  out.stages.push_back({std::string(pipeline_.generate.name), 0, 0});
-  for (const auto& stage : pipeline_.perDepth) out.stages.push_back({std::string(stage.name), 0, 0});
+  out.isa = plan_.isa;
+  out.specialization = plan_.specialization;
+  out.accel = plan_.accel();
+  if (plan_.pipeline.lightPass) addRows(*plan_.pipeline.lightPass, out.stages);
+  const size_t cameraRow = out.stages.size();
+  addRows(plan_.pipeline.cameraPass, out.stages);
   for (const auto& worker : workers_) {
     out.paths += worker->paths;
-    out.counters.raysClosest += worker->counters.raysClosest;
-    out.counters.raysShadow += worker->counters.raysShadow;
-    out.counters.misses += worker->counters.misses;
-    out.counters.nonFinite += worker->counters.nonFinite;
+    out.lightPaths += worker->lightPaths;
+    out.counters += worker->counters;
     out.bytesPerPath = worker->wave.bytesPerPath();
-    for (size_t i = 0; i < out.stages.size(); ++i) {
-      out.stages[i].items += worker->tallies[i].items;
-      out.stages[i].seconds += static_cast<double>(worker->tallies[i].ticks) * secondsPerTick();
-    }
+    out.lightBytes += worker->light.bytes();
+    addTallies(worker->lightTallies, 0, out.stages);
+    addTallies(worker->cameraTallies, cameraRow, out.stages);
+  }
+  if (plan_.pipeline.photonMap) {
+    out.stages.push_back({"photon map"});
+    addTallies({photonTally_}, out.stages.size() - 1, out.stages);
+    for (const auto& store : stores_) out.lightBytes += store->bytes();
+    out.lightBytes += photons_.bytes();
   }
   return out;
 }

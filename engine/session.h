@@ -10,46 +10,30 @@
 #include <string>
 #include <vector>
 
-#include "engine/compile/compiled_scene.h"
 #include "engine/film.h"
-#include "engine/methods/method_list.h"
+#include "engine/render_settings.h"
 
 namespace wavecrest {
-
-constexpr uint32_t kUnlimitedDepth = 64;  // edges; roulette ends paths long before
-
-struct RenderSettings {
-  Method method = Method::pt;
-  Precision precision = Precision::floating;
-  Isa isa = Isa::scalar;
-  Accel accel = Accel::automatic;
-  SamplerKind sampler = SamplerKind::independent;
-  uint64_t seed = 0;
-  uint32_t threads = 1;
-  uint32_t waveSize = 2048;  // paths
-  PathLimits limits;
-  std::optional<uint64_t> iterations;            // stop after this many,
-  std::optional<double> seconds;                 // or after this much render time, whichever comes first
-  std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene
-  bool measureStages = false;
-};
 
 // Numbers of a render so far, as --stats reports them.
 struct RenderStatistics {
   uint64_t iterations = 0;  // whole iterations in the film (the least over pixels)
-  uint64_t paths = 0;
+  uint64_t paths = 0;       // camera paths
+  uint64_t lightPaths = 0;
   StageCounters counters;
   double buildSeconds = 0, renderSeconds = 0, cpuSeconds = 0;
   struct StageRow {
     std::string name;
     uint64_t items = 0;
-    double seconds = 0;  // summed over threads
+    uint64_t laneSlots = 0;  // lanes of the blocks that the items filled; items / laneSlots is the lane use
+    double seconds = 0;      // summed over threads
   };
   std::vector<StageRow> stages;
   Isa isa{};
   Specialization specialization{};
   Accel accel{};
-  size_t bytesPerPath = 0;
+  size_t bytesPerPath = 0;  // of a wave's columns
+  size_t lightBytes = 0;    // light vertices and photon map
 };
 
 class Session {

@@ -66,6 +66,14 @@ template <class S>
 WAVECREST_INLINE auto loadVec3(const Column<S>& x, const Column<S>& y, const Column<S>& z, size_t i) {
   return Vec3<decltype(load(x, i))>{load(x, i), load(y, i), load(z, i)};
 }
+template <class T>
+WAVECREST_INLINE auto gather(const Column<T>& column, UInt index) {
+  return gather(static_cast<const T*>(column), index);
+}
+template <class S>
+WAVECREST_INLINE auto gatherVec3(const Column<S>& x, const Column<S>& y, const Column<S>& z, UInt index) {
+  return Vec3<decltype(gather(x, index))>{gather(x, index), gather(y, index), gather(z, index)};
+}
 template <class Real, class S>
 WAVECREST_INLINE void storeVec3(Vec3<Real> a, const Column<S>& x, const Column<S>& y, const Column<S>& z, size_t i) {
   store(a.x, x, i);
@@ -80,8 +88,7 @@ WAVECREST_INLINE void appendVec3(Vec3<Real> a, Mask m, const Column<S>& x, const
   append(a.z, m, z, out);
 }
 
-// Adds a to the radiance of the given lanes, which are distinct within the block. One scalar loop for the few lanes
-// that have something to add: scattering would have to mask the others anyway.
+// Adds a to the radiance of the given lanes, one after the other: a lane may come more than once.
 template <class Real, class S>
 WAVECREST_INLINE void addRadiance(Radiance<S>& radiance, UInt lane, Mask m, Vec3<Real> a) {
   HWY_ALIGN S values[3][kLanes];
@@ -94,6 +101,26 @@ WAVECREST_INLINE void addRadiance(Radiance<S>& radiance, UInt lane, Mask m, Vec3
     radiance.red[lanes[i]] += values[0][i];
     radiance.green[lanes[i]] += values[1][i];
     radiance.blue[lanes[i]] += values[2][i];
+  }
+}
+
+// Adds a to pixels of the splat sums in fixed point.
+template <class S, class Real>
+WAVECREST_INLINE void addSplats(const StageContext<S>& context, UInt pixel, Mask m, Vec3<Real> a) {
+  HWY_ALIGN S values[3][kLanes];
+  HWY_ALIGN uint32_t pixels[kLanes];
+  store(compress(a.x, m), values[0]);
+  store(compress(a.y, m), values[1]);
+  store(compress(a.z, m), values[2]);
+  store(compress(pixel, m), pixels);
+  for (size_t i = 0, count = countTrue(m); i < count; ++i) {
+    if (!(values[0][i] < kSplatLimit && values[1][i] < kSplatLimit && values[2][i] < kSplatLimit)) {
+      ++context.counters->nonFinite;
+      continue;
+    }
+    int64_t* const sums = context.splats.sums + 3 * size_t{pixels[i]};
+    for (size_t c = 0; c < 3; ++c)
+      sums[c] += static_cast<int64_t>(static_cast<double>(values[c][i]) * kSplatScale + 0.5);
   }
 }
 

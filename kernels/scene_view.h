@@ -106,8 +106,8 @@ struct CameraView {
   double origin[3], corner[3], du[3], dv[3], axis[3];
   uint32_t width = 0, height = 0;  // of the full film
   double pixelDistance = 0;
-  double planeDepth = 0;                   // corner . axis
-  double inverseDu2 = 0, inverseDv2 = 0;   // 1 / |du|^2, 1 / |dv|^2
+  double planeDepth = 0;                  // corner . axis
+  double inverseDu2 = 0, inverseDv2 = 0;  // 1 / |du|^2, 1 / |dv|^2
   double lensRadius = 0, focusDistance = 0;
 };
 

@@ -15,6 +15,12 @@ WAVECREST_DECLARE_STAGE(occludeSmall)         // extend/occlude_small.cpp
 WAVECREST_DECLARE_STAGE(arrive)               // shade/arrive.cpp
 WAVECREST_DECLARE_STAGE(nextEvent)            // connect/next_event.cpp
 WAVECREST_DECLARE_STAGE(scatter)              // shade/scatter.cpp
+WAVECREST_DECLARE_STAGE(scatterSpecular)      // shade/scatter.cpp
+WAVECREST_DECLARE_STAGE(generateLightPaths)   // generate/generate_light.cpp
+WAVECREST_DECLARE_STAGE(storeLightVertices)   // connect/store_light_vertices.cpp
+WAVECREST_DECLARE_STAGE(connectToCamera)      // connect/connect_camera.cpp
+WAVECREST_DECLARE_STAGE(connectVertices)      // connect/connect_vertices.cpp
+WAVECREST_DECLARE_STAGE(merge)                // merge/merge.cpp
 
 #undef WAVECREST_DECLARE_STAGE
 

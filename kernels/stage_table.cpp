@@ -1,4 +1,6 @@
 // The stages of this compilation's instruction set, for each precision and specialisation.
+#include <utility>
+
 #include "kernels/stage_declarations.h"
 #include "kernels/stages.h"
 
@@ -6,32 +8,39 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-constexpr Isa kThisIsa = HWY_TARGET == HWY_AVX3   ? Isa::avx512
-                         : HWY_TARGET == HWY_AVX2 ? Isa::avx2
-                         : HWY_TARGET == HWY_SSE4 ? Isa::sse4
-                                                  : Isa::scalar;
-
 template <class P, uint32_t kFeatures>
 constexpr Stages<typename P::Storage> makeStages() {
-  return {.isa = kThisIsa,
-          .lanes = kLanes,
-          .generateCameraPaths = generateCameraPaths<P, kFeatures>,
-          .extendSmall = extendSmall<P, kFeatures>,
-          .occludeSmall = occludeSmall<P, kFeatures>,
-          .arrive = arrive<P, kFeatures>,
-          .nextEvent = nextEvent<P, kFeatures>,
-          .scatter = scatter<P, kFeatures>};
+  Stages<typename P::Storage> stages{.isa = kIsa,
+                                     .lanes = kLanes,
+                                     .generateCameraPaths = generateCameraPaths<P, kFeatures>,
+                                     .extendSmall = extendSmall<P, kFeatures>,
+                                     .occludeSmall = occludeSmall<P, kFeatures>,
+                                     .arrive = arrive<P, kFeatures>,
+                                     .nextEvent = nextEvent<P, kFeatures>,
+                                     .scatter = scatter<P, kFeatures>,
+                                     .scatterSpecular = scatterSpecular<P, kFeatures>};
+  if constexpr (has(kFeatures, kBidirectional)) {
+    stages.generateLightPaths = generateLightPaths<P, kFeatures>;
+    stages.storeLightVertices = storeLightVertices<P, kFeatures>;
+    stages.connectToCamera = connectToCamera<P, kFeatures>;
+    stages.connectVertices = connectVertices<P, kFeatures>;
+    stages.merge = merge<P, kFeatures>;
+  }
+  return stages;
+}
+
+template <class P, size_t... kIndex>
+constexpr std::array<Stages<typename P::Storage>, kSpecializationCount> makeTable(std::index_sequence<kIndex...>) {
+  return {makeStages<P, kSpecializationFeatures[kIndex]>()...};
 }
 
 template <class P>
-constexpr Stages<typename P::Storage> kTable[] = {makeStages<P, kSpecializationFeatures[0]>(),
-                                                  makeStages<P, kSpecializationFeatures[1]>(),
-                                                  makeStages<P, kSpecializationFeatures[2]>()};
+constexpr auto kTable = makeTable<P>(std::make_index_sequence<kSpecializationCount>());
 
 }  // namespace
 
-const Stages<float>* floatStages() { return kTable<FloatPrecision>; }
-const Stages<float>* fastStages() { return kTable<FastPrecision>; }
-const Stages<double>* doubleStages() { return kTable<DoublePrecision>; }
+const Stages<float>* floatStages() { return kTable<FloatPrecision>.data(); }
+const Stages<float>* fastStages() { return kTable<FastPrecision>.data(); }
+const Stages<double>* doubleStages() { return kTable<DoublePrecision>.data(); }
 
 WAVECREST_SIMD_END

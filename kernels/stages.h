@@ -23,15 +23,14 @@ namespace wavecrest {
 enum class Precision { floating, doubled, fast };
 constexpr std::array<std::string_view, 3> kPrecisionNames{"float", "double", "fast"};
 
-
 // Bits of a feature set. What a set lacks costs nothing in its kernels.
 enum Feature : uint32_t {
-  kSpecularBsdfs = 1,   // mirror, conductor, dielectric, rough conductor
-  kLayeredBsdfs = 2,    // plastic, rough dielectric, thin dielectric, phong, opacity
-  kTextures = 4,        // textures, bump and normal maps
-  kShadingNormals = 8,  // interpolated vertex normals
-  kCurvedShapes = 16,   // analytic spheres, as geometry or as lights
-  kRareLights = 32,     // spot, directional, environment map
+  kSpecularBsdfs = 1,    // mirror, conductor, dielectric, rough conductor
+  kLayeredBsdfs = 2,     // plastic, rough dielectric, thin dielectric, phong, opacity
+  kTextures = 4,         // textures, bump and normal maps
+  kShadingNormals = 8,   // interpolated vertex normals
+  kCurvedShapes = 16,    // analytic spheres, as geometry or as lights
+  kRareLights = 32,      // spot, directional, environment map
   kLens = 64,            // thin lens, orthographic, filters other than box
   kBidirectional = 128,  // light paths, connections, merging: the whole MIS recursion
 };
@@ -57,26 +56,28 @@ enum class Walk { camera, light };
 
 // Which strategies share a path, and the constants of their densities (METHODS 5.1). Set once per iteration.
 struct MisSettings {
-  bool emission = true;    // s = 0: a camera path meets a light
-  bool nextEvent = true;   // s = 1
-  bool connect = false;    // s >= 2, t >= 2
-  bool camera = false;     // t = 1
-  bool merge = false;      // vertex merging
-  double kVM = 0;          // merging seen from a connection: pi r^2 N_L, or 0 without merging
-  double kVC = 0;          // connection seen from a merge: its reciprocal, or 0 where merging stands alone
-  double mergeNorm = 0;    // 1 / (pi r^2 N_L)
-  double radius = 0;       // r
-  double lightPaths = 0;   // N_L
-  double camN = 0;         // light paths per camera path of one pixel
+  bool emission = true;      // s = 0: a camera path meets a light
+  bool nextEvent = true;     // s = 1
+  bool connect = false;      // s >= 2, t >= 2
+  bool camera = false;       // t = 1
+  bool merge = false;        // vertex merging
+  bool mergeWeights = true;  // false: merging makes each path once, and alone
+  double kVM = 0;            // merging seen from a connection: pi r^2 N_L, or 0 without merging
+  double kVC = 0;            // connection seen from a merge: its reciprocal, or 0 where merging stands alone
+  double mergeNorm = 0;      // 1 / (pi r^2 N_L)
+  double radius = 0;         // r
+  double lightPaths = 0;     // N_L
+  double camN = 0;           // light paths per camera path of one pixel
 };
 
-// Where contributions of t = 1 go: fixed-point sums over the rendered rectangle of the film. Integers add up to the same
-// total in any order, so images do not depend on which worker splats first.
+// Where contributions of t = 1 go: fixed-point sums over the rendered rectangle of the film. Integers add up to the
+// same total in any order, so images do not depend on which worker splats first.
 struct SplatSink {
   int64_t* sums = nullptr;  // RGB, row-major
   uint32_t x0 = 0, y0 = 0, width = 0, height = 0;
 };
 constexpr double kSplatScale = 0x1p30;
+constexpr double kSplatLimit = 0x1p31;  // larger values, and those that are not finite, are dropped and counted
 
 template <class S>
 class LightStore;  // kernels/columns/light_vertices.h
@@ -92,6 +93,17 @@ struct PathLimits {
 struct StageCounters {
   uint64_t raysClosest = 0, raysShadow = 0, misses = 0, nonFinite = 0;
   uint64_t connections = 0, merges = 0, lightVertices = 0;
+
+  StageCounters& operator+=(const StageCounters& other) {
+    raysClosest += other.raysClosest;
+    raysShadow += other.raysShadow;
+    misses += other.misses;
+    nonFinite += other.nonFinite;
+    connections += other.connections;
+    merges += other.merges;
+    lightVertices += other.lightVertices;
+    return *this;
+  }
 };
 
 template <class S>
@@ -102,10 +114,10 @@ struct StageContext {
   PathLimits limits;
   Walk walk = Walk::camera;
   MisSettings mis;
-  uint32_t depth = 0;       // index of the vertex that the stage works on; 0 is the path's origin
-  uint32_t lightDepth = 0;  // index of the light vertices that connectVertices joins
-  LightStore<S>* light = nullptr;            // light vertices of this wave's paths
-  const PhotonMap<S>* photons = nullptr;     // light vertices of the whole iteration, by place
+  uint32_t depth = 0;                     // index of the vertex that the stage works on; 0 is the path's origin
+  uint32_t lightDepth = 0;                // index of the light vertices that connectVertices joins
+  LightStore<S>* light = nullptr;         // light vertices of this wave's paths
+  const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place
   SplatSink splats;
   StageCounters* counters = nullptr;
 };

@@ -1,37 +1,82 @@
 #include "scenes/scene_list.h"
 
-#include <array>
 #include <cstdlib>
+#include <stdexcept>
+#include <system_error>
+#include <vector>
 
 namespace wavecrest {
 namespace {
 
-constexpr std::array kScenes{
-    SceneEntry{"cornell-diffuse", "the measured Cornell box: diffuse walls and blocks under an area light"},
-    SceneEntry{"cornell-mirror", "the box with its tall block a perfect mirror"},
-    SceneEntry{"cornell-glossy", "the box with both blocks of highly glossy metal"},
-    SceneEntry{"cornell-spheres", "a mirror and a glass sphere in a box, lit by the sun alone"},
-    SceneEntry{"dragon-caustics", "a dragon of orange glass under a sky, its caustic on the floor"},
-    SceneEntry{"dragon-caustics-glossy", "the same beside a glossy box that reflects dragon and caustic"},
-    SceneEntry{"lafortune-room", "a room lit by lamps that are hidden in their shades"},
-    SceneEntry{"pool-interior", "under water: caustics of sunlight on the tiles of a pool"},
-    SceneEntry{"veach-door", "a room lit through a door ajar, with three teapots"},
+namespace fs = std::filesystem;
+
+constexpr SceneEntry kScenes[] = {
+    {"cornell-diffuse", "the measured Cornell box, all surfaces diffuse"},
+    {"cornell-mirror", "the Cornell box with a mirror block that throws lamp light onto the ceiling"},
+    {"cornell-glossy", "the Cornell box with two blocks of brushed aluminium that reflect each other"},
+    {"cornell-spheres", "a mirror and a glass sphere in a box lit by the sun alone; caustics, also seen in the mirror"},
+    {"dragon-caustics", "the Stanford dragon in amber glass under a small sun; caustics in its shadow"},
+    {"dragon-caustics-glossy", "the amber dragon beside a glossy metal box that reflects it and its caustics"},
+    {"lafortune-room", "a living room lit by lamps in opaque shades; nearly all light is indirect"},
+    {"pool-interior", "a tiled pool under water, lit by sunlight through the waves"},
+    {"veach-door", "three teapots in a room lit through a door ajar"},
 };
+
+constexpr SceneEntry kBenchmarkScenes[] = {
+    {"mitsuba-cornell-box", "Mitsuba 3's built-in Cornell box, 256 x 256"},
+    {"dragon-diffuse", "the full dragon, 871,414 triangles, diffuse under a constant sky"},
+};
+
+// Prepared dragons are called dragon_full.ply, dragon_res2.ply, ...; the scans they come from dragon_vrip*.ply.gz.
+bool isDragon(const fs::path& file) { return file.filename().string().starts_with("dragon_"); }
+
+std::vector<fs::path> defaultFolders() {
+  std::vector<fs::path> folders{WAVECREST_SCENES_SOURCE_DIR, WAVECREST_SCENES_INSTALL_DIR};
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  if (!error) folders.push_back((executable.parent_path() / "../../scenes").lexically_normal());
+  return folders;
+}
+
+bool holdsScenes(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / (std::string(kScenes[0].name) + ".xml"), error);
+}
 
 }  // namespace
 
 std::span<const SceneEntry> builtInScenes() { return kScenes; }
+std::span<const SceneEntry> benchmarkScenes() { return kBenchmarkScenes; }
 
-std::filesystem::path sceneFolder() {
-  const char* const folder = std::getenv("WAVECREST_SCENES");
-  return folder != nullptr ? folder : WAVECREST_SCENE_FOLDER;
+fs::path sceneFolder() {
+  if (const char* folder = std::getenv("WAVECREST_SCENES"); folder && *folder) {
+    if (!fs::is_directory(folder)) {
+      throw std::runtime_error("WAVECREST_SCENES is '" + std::string(folder) + "'; expected a folder of scenes");
+    }
+    return folder;
+  }
+  std::string tried;
+  for (const fs::path& folder : defaultFolders()) {
+    if (holdsScenes(folder)) return folder;
+    tried += (tried.empty() ? "" : ", ") + folder.string();
+  }
+  throw std::runtime_error("the built-in scenes are in none of " + tried +
+                           "; expected WAVECREST_SCENES to name their folder");
 }
 
-std::filesystem::path findScene(const std::string& nameOrPath) {
-  for (const SceneEntry& scene : kScenes) {
-    if (scene.name == nameOrPath) return sceneFolder() / (nameOrPath + ".xml");
+fs::path findScene(const std::string& nameOrPath) {
+  for (std::span<const SceneEntry> list : {builtInScenes(), benchmarkScenes()}) {
+    for (const SceneEntry& scene : list)
+      if (scene.name == nameOrPath) return sceneFolder() / (nameOrPath + ".xml");
   }
   return nameOrPath;
+}
+
+std::string missingAssetHint(const fs::path& file) {
+  const bool ours = file.parent_path().filename() == "assets" || file.parent_path().filename() == "stanford-dragon";
+  if (!ours) return "";
+  if (isDragon(file)) return "scenes/fetch-dragon gets the Stanford dragon, the build or that script then prepares it";
+  return "the build writes it (target wavecrest_scene_assets)";
 }
 
 }  // namespace wavecrest

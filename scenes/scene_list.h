@@ -1,4 +1,7 @@
-// The built-in scenes by name, and where their files are.
+// The built-in scenes: their names, a line about each, and where their files are.
+//
+// The nine scenes of the study come first, in its order, then those that exist for benchmarks. This list is the one
+// place that names them.
 #pragma once
 
 #include <filesystem>
@@ -13,12 +16,19 @@ struct SceneEntry {
   std::string_view description;  // one line
 };
 
-std::span<const SceneEntry> builtInScenes();
+std::span<const SceneEntry> builtInScenes();    // the nine
+std::span<const SceneEntry> benchmarkScenes();  // known by name too, not part of the study
 
-// The folder of the built-in scenes: $WAVECREST_SCENES if set, else the source tree this binary was built from.
+// The folder of the built-in scenes: $WAVECREST_SCENES if set, else the first that exists of the source folder this
+// binary was built from, the installed folder, and ../../scenes beside the running executable.
+// Throws std::runtime_error when the folder that $WAVECREST_SCENES names does not exist, or none of the others does.
 std::filesystem::path sceneFolder();
 
-// A built-in scene's file, or the argument itself taken as a path.
+// The file of a built-in or benchmark scene, or the argument itself taken as a path. Throws as sceneFolder does.
 std::filesystem::path findScene(const std::string& nameOrPath);
+
+// How to get an asset of the scenes that does not exist, for the end of an error message: scenes/fetch-dragon for the
+// dragon, the build for what it generates. Empty for any other file.
+std::string missingAssetHint(const std::filesystem::path& file);
 
 }  // namespace wavecrest

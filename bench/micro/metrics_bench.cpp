@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string>
 
+#include "metrics/flip.h"
+#include "metrics/hdrvdp2/hdrvdp2.h"
 #include "metrics/ssim.h"
 #include "tests/metrics/golden.h"
 
@@ -36,6 +38,26 @@ void ssim(benchmark::State& state) {
   reportPixels(state);
 }
 BENCHMARK(ssim)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+void flip(benchmark::State& state) {
+  const auto& pair = roomPair();
+  const PreparedFlip prepared(pair.reference);
+  const double golden = test::goldenFigures("flip.json", pair.name)["flip_map_mean_double"];
+  if (!checkScore(state, prepared.compare(pair.test).mean, golden, 2e-5)) return;
+  for (auto _ : state) benchmark::DoNotOptimize(prepared.compare(pair.test).mean);
+  reportPixels(state);
+}
+BENCHMARK(flip)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+void hdrvdp2(benchmark::State& state) {
+  const auto& pair = roomPair();
+  const PreparedHdrVdp2 prepared(pair.reference);
+  const double golden = test::goldenFigures("hdrvdp2.json", pair.name)["Q"];
+  if (!checkScore(state, prepared.compare(pair.test).q, golden, 1e-4)) return;
+  for (auto _ : state) benchmark::DoNotOptimize(prepared.compare(pair.test).q);
+  reportPixels(state);
+}
+BENCHMARK(hdrvdp2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace
 }  // namespace wavecrest

@@ -31,12 +31,12 @@ class LoadError : public std::runtime_error {
 
 struct LoadOptions {
   // Values of $name, stronger than the file's <default>. A name that the scene never uses is an error.
-  std::map<std::string, std::string> defines;
+  std::map<std::string, std::string> defines{};
   // Skip what is not supported and list it in Scene::warnings. Malformed input is an error all the same.
   bool lenient = false;
   // Width and height instead of the film's; a crop window, being in pixels of the old size, is dropped. The field of
   // view follows the new aspect ratio by the sensor's fov_axis.
-  std::optional<std::array<uint32_t, 2>> filmSize;
+  std::optional<std::array<uint32_t, 2>> filmSize{};
 };
 
 Scene loadScene(const std::filesystem::path& xml, const LoadOptions& options = {});

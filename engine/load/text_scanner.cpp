@@ -42,7 +42,10 @@ float TextScanner::readSlowFloat(const char* what) {
 }
 
 SourceLocation TextScanner::location() const {
-  const auto newlines = std::count(begin_, std::min(at_, end_), '\n');
+  // At the end of the text the last line with content is meant, not the empty one after it.
+  const char* position = at_;
+  while (at_ == end_ && position != begin_ && static_cast<unsigned char>(position[-1]) <= ' ') --position;
+  const auto newlines = std::count(begin_, position, '\n');
   return {std::string(file_), firstLine_ + static_cast<int>(newlines)};
 }
 

@@ -3,22 +3,29 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "engine/pipeline.h"
 
 namespace wavecrest {
 
-enum class Method { pt };
+enum class Method { pt, lt, bpt, ppm, bpm, vcm };
 
 struct MethodEntry {
   Method method;
   std::string_view name;         // spelling of --method
   std::string_view description;  // one line
+  bool bidirectional;            // needs kernels with the whole MIS recursion
 };
 
 constexpr std::array kMethods{
-    MethodEntry{Method::pt, "pt", "path tracing with next event estimation"},
+    MethodEntry{Method::pt, "pt", "path tracing with next event estimation", false},
+    MethodEntry{Method::lt, "lt", "light tracing, and path tracing of directly visible specular surfaces", true},
+    MethodEntry{Method::bpt, "bpt", "bidirectional path tracing", true},
+    MethodEntry{Method::ppm, "ppm", "progressive photon mapping", true},
+    MethodEntry{Method::bpm, "bpm", "bidirectional photon mapping: merging at every vertex", true},
+    MethodEntry{Method::vcm, "vcm", "vertex connection and merging", true},
 };
 
 constexpr std::optional<Method> parseMethod(std::string_view word) {
@@ -27,10 +34,27 @@ constexpr std::optional<Method> parseMethod(std::string_view word) {
   }
   return std::nullopt;
 }
-constexpr std::string_view toString(Method method) { return kMethods[static_cast<size_t>(method)].name; }
+constexpr const MethodEntry& entryOf(Method method) { return kMethods[static_cast<size_t>(method)]; }
+constexpr std::string_view toString(Method method) { return entryOf(method).name; }
+
+// "pt, lt, ...": what --method may be.
+std::string methodChoices();
 
 // Each method's pipeline, in a file of its own.
 template <class S>
 Pipeline<S> pathTracing(const Stages<S>& stages, const Intersector<S>& intersector);
+template <class S>
+Pipeline<S> lightTracing(const Stages<S>& stages, const Intersector<S>& intersector);
+template <class S>
+Pipeline<S> bidirectionalPathTracing(const Stages<S>& stages, const Intersector<S>& intersector);
+template <class S>
+Pipeline<S> progressivePhotonMapping(const Stages<S>& stages, const Intersector<S>& intersector);
+template <class S>
+Pipeline<S> bidirectionalPhotonMapping(const Stages<S>& stages, const Intersector<S>& intersector);
+template <class S>
+Pipeline<S> vertexConnectionAndMerging(const Stages<S>& stages, const Intersector<S>& intersector);
+
+template <class S>
+Pipeline<S> makePipeline(Method method, const Stages<S>& stages, const Intersector<S>& intersector);
 
 }  // namespace wavecrest

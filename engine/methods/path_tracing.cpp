@@ -6,14 +6,19 @@ namespace wavecrest {
 template <class S>
 Pipeline<S> pathTracing(const Stages<S>& stages, const Intersector<S>& intersector) {
   return {
-      .generate = {"generate", stages.generateCameraPaths, [](const Wave<S>& wave) { return wave.pathCount; }},
-      .perDepth =
+      .cameraPass =
           {
-              {"extend", intersector.extend, pathItems<S>},
-              {"arrive", stages.arrive, pathItems<S>},
-              {"next event", stages.nextEvent, pathItems<S>},
-              {"occlude", intersector.occlude, shadowItems<S>},
-              {"scatter", stages.scatter, pathItems<S>},
+              .walk = Walk::camera,
+              .strategies = {.emission = true, .nextEvent = true},
+              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>, stages.lanes},
+              .perDepth =
+                  {
+                      {"extend", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive", stages.arrive, pathItems<S>, stages.lanes},
+                      {"next event", stages.nextEvent, pathItems<S>, stages.lanes},
+                      {"occlude", intersector.occlude, shadowItems<S>, intersector.lanes},
+                      {"scatter", stages.scatter, pathItems<S>, stages.lanes},
+                  },
           },
   };
 }

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -48,6 +49,12 @@ class Arena {
     return begin;
   }
   size_t used() const { return used_; }
+
+  // The bytes of an arena from which the same things were taken in the same order.
+  void copyFrom(const Arena& other) {
+    if (used_ != other.used_) throw std::length_error("Arena: copy of columns of another shape");
+    std::memcpy(block_.get(), other.block_.get(), used_);
+  }
 
  private:
   struct Free {
@@ -89,10 +96,10 @@ struct Columns {
   size_t capacity() const { return capacity_; }
 
   // Memory of a queue of this capacity, and per item, without dropped columns.
-  size_t bytes(size_t capacity) {
+  size_t bytes(size_t capacity) const {
     return std::apply([&](auto&... column) { return (column.bytes(capacity) + ...); }, tied());
   }
-  size_t bytesPerItem() {
+  size_t bytesPerItem() const {
     return std::apply([](auto&... column) { return (column.bytesPerItem() + ...); }, tied());
   }
 
@@ -111,8 +118,9 @@ struct Columns {
   }
 
  private:
-  auto tied() {
-    auto columns = static_cast<Derived*>(this)->all();
+  auto tied() const {
+    // all() has one form, for writing; measuring does not write.
+    auto columns = const_cast<Derived*>(static_cast<const Derived*>(this))->all();
     using Tuple = decltype(columns);
     static_assert(sizeof(Derived) == sizeof(Columns) + std::tuple_size_v<Tuple> * sizeof(Column<float>),
                   "a column is missing in all()");

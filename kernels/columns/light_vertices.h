@@ -23,7 +23,8 @@ struct LightVertices : Columns<LightVertices<S>> {
   Column<uint32_t> depth;  // edges from the light
   auto all() {
     return std::tie(positionX, positionY, positionZ, fixX, fixY, fixZ, normalX, normalY, normalZ, shadingX, shadingY,
-                    shadingZ, offset, throughputR, throughputG, throughputB, dVCM, dVC, dVM, uvU, uvV, primitive, depth);
+                    shadingZ, offset, throughputR, throughputG, throughputB, dVCM, dVC, dVM, uvU, uvV, primitive,
+                    depth);
   }
 };
 
@@ -64,7 +65,7 @@ class LightStore {
   const uint32_t* partners(uint32_t depth) const { return partners_.data() + (depth - 1) * lanes_; }
   uint32_t* partners(uint32_t depth) { return partners_.data() + (depth - 1) * lanes_; }
 
-  size_t bytes() { return vertices.bytes(vertices.capacity()) + partners_.size() * sizeof(uint32_t); }
+  size_t bytes() const { return vertices.bytes(vertices.capacity()) + partners_.size() * sizeof(uint32_t); }
 
  private:
   void grow(size_t capacity) {

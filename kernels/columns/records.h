@@ -45,8 +45,8 @@ template <class S>
 struct PathStates : Columns<PathStates<S>> {
   Column<S> throughputR, throughputG, throughputB;
   Column<S> dVCM, dVC, dVM;  // dVC, dVM: dropped without connections
-  // What makes a throughput comparable with 1 in Russian roulette: on camera paths the product of (eta_gen / eta_fix)^2,
-  // on light paths the reciprocal of the first throughput. Dropped where it is always 1.
+  // What makes a throughput comparable with 1 in Russian roulette: on camera paths the product of (eta_gen /
+  // eta_fix)^2, on light paths the reciprocal of the first throughput. Dropped where it is always 1.
   Column<S> rouletteScale;
   Column<uint32_t> lane;
   Column<uint32_t> light;  // light that a light path began on; dropped without connections
@@ -64,6 +64,13 @@ struct ShadowRays : Columns<ShadowRays<S>> {
   auto all() {
     return std::tie(originX, originY, originZ, directionX, directionY, directionZ, red, green, blue, target);
   }
+};
+
+// Pairs of a camera vertex and a light vertex that connectVertices or merge is about to join. Scratch of one stage
+// call; dropped without connections.
+struct VertexPairs : Columns<VertexPairs> {
+  Column<uint32_t> camera, light;
+  auto all() { return std::tie(camera, light); }
 };
 
 // Radiance gathered by each lane of the wave in this iteration.

@@ -20,6 +20,7 @@ struct Wave {
   Surfaces<S> surfaces;
   PathStates<S> paths;
   ShadowRays<S> shadowRays;
+  VertexPairs pairs;
   Radiance<S> radiance;
   size_t firstPath = 0;  // index of lane 0 in the iteration's order of paths
   size_t pathCount = 0;  // lanes in use when the wave began
@@ -37,11 +38,26 @@ struct Wave {
       paths.dVC.drop();
       paths.dVM.drop();
       paths.light.drop();
+      pairs.camera.drop();
+      pairs.light.drop();
     }
     size_t bytes = 0;
     forEachQueue([&](auto& queue) { bytes += queue.bytes(capacity); });
     arena_ = Arena(bytes);
     forEachQueue([&](auto& queue) { queue.bind(arena_, capacity); });
+  }
+
+  // The state of another wave of the same capacity and columns, so that a stage can be run on it again.
+  void copyFrom(const Wave& other) {
+    arena_.copyFrom(other.arena_);
+    rays.size = other.rays.size;
+    hits.size = other.hits.size;
+    surfaces.size = other.surfaces.size;
+    paths.size = other.paths.size;
+    shadowRays.size = other.shadowRays.size;
+    radiance.size = other.radiance.size;
+    firstPath = other.firstPath;
+    pathCount = other.pathCount;
   }
 
   size_t bytesPerPath() {
@@ -58,6 +74,7 @@ struct Wave {
     function(surfaces);
     function(paths);
     function(shadowRays);
+    function(pairs);
     function(radiance);
   }
 

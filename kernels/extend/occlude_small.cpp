@@ -1,6 +1,6 @@
 // occlude, small scenes: adds the contribution of each shadow ray that nothing blocks.
 //
-// in: ShadowRays [n]. out: Radiance grows; ShadowRays empty.
+// in: ShadowRays [n]. out: Radiance grows, or on light walks the splat sums; ShadowRays empty.
 #include "kernels/extend/small_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -39,7 +39,13 @@ void occludeSmall(const StageContext<typename P::Storage>& context, Wave<typenam
     const Vec3<Float> direction = loadVec3(shadow.directionX, shadow.directionY, shadow.directionZ, i);
     const Mask visible = andNot(firstLanes(count - i), blocked(scene, origin, direction));
     if (none(visible)) continue;
-    addRadiance(wave.radiance, load(shadow.target, i), visible, loadVec3(shadow.red, shadow.green, shadow.blue, i));
+    const UInt target = load(shadow.target, i);
+    const auto contribution = loadVec3(shadow.red, shadow.green, shadow.blue, i);
+    if (context.walk == Walk::camera) {
+      addRadiance(wave.radiance, target, visible, contribution);
+    } else {
+      addSplats(context, target, visible, contribution);
+    }
   }
   shadow.size = 0;
 }

@@ -38,9 +38,6 @@ struct BsdfSample {
   Mask specular;         // a delta lobe was taken
 };
 
-// Which way the sub-path is walked: from the eye, so that gen points to the light's side, or from a light.
-enum class Walk { camera, light };
-
 // Which lobes sample() chooses from. specularOnly: the delta lobes, with their probabilities renormalised.
 enum class Lobes { all, specularOnly };
 
@@ -65,6 +62,12 @@ struct BsdfInput {
   WAVECREST_INLINE Real eta() const { return to<Real>(at(materials->eta[0])); }
   WAVECREST_INLINE Real opacity() const { return to<Real>(at(materials->opacity)); }
 };
+
+// Vertices whose BSDF has more than delta lobes: only those can be joined by next event, connections and merges.
+WAVECREST_INLINE Mask hasNonDeltaLobes(UInt kind) {
+  const auto is = [kind](BsdfKind k) HWY_ATTR { return kind == UInt(static_cast<uint32_t>(k)); };
+  return !(is(BsdfKind::conductor) | is(BsdfKind::dielectric) | is(BsdfKind::thinDielectric));
+}
 
 // Real zero in all fields.
 template <class Real>

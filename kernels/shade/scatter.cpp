@@ -55,8 +55,8 @@ WAVECREST_INLINE void scatterBy(const StageContext<typename P::Storage>& context
     if constexpr (has(kFeatures, kBidirectional) && has(kFeatures, kShadingNormals | kTextures)) {
       if (context.walk == Walk::light) {  // METHODS 3.9: the non-symmetry of interpolated normals (Veach 1997, 5.3)
         const Real fixCosine = max(abs(shading.fixCosine), Real(1e-6f));
-        throughput = throughput * (abs(shading.fix.z) * genCosine *
-                                   reciprocal<P>(fixCosine * max(abs(sample.gen.z), Real(1e-12f))));
+        throughput = throughput *
+                     (abs(shading.fix.z) * genCosine * reciprocal<P>(fixCosine * max(abs(sample.gen.z), Real(1e-12f))));
       }
     }
     Real rouletteScale(1);
@@ -71,8 +71,8 @@ WAVECREST_INLINE void scatterBy(const StageContext<typename P::Storage>& context
     }
 
     const MisSums<Real> before = loadMis<kFeatures>(paths, i);
-    MisSums<Real> mis = scatterMis<P, kFeatures>(context.mis, context.depth, before, sample.pdf, sample.pdfReverse,
-                                                 genCosine);
+    MisSums<Real> mis =
+        scatterMis<P, kFeatures>(context.mis, context.depth, before, sample.pdf, sample.pdfReverse, genCosine);
     if constexpr (has(kFeatures, kSpecularBsdfs | kLayeredBsdfs)) {
       if (any(sample.specular)) {
         const auto over = scatterSpecularMis(before, specularJacobian(shading, sample, genCosine));

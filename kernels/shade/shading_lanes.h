@@ -37,29 +37,85 @@ struct ShadingLanes {
   }
 };
 
+// What a vertex is, before its material is known: of a live path, or of a stored light vertex.
+template <class Real>
+struct VertexLanes {
+  Vec3<Real> position, fix, normal, shadingNormal;
+  Real offset;
+  Float u, v;  // texture coordinates
+  UInt primitive;
+};
+
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename P::Storage>& scene,
-                                                        const Wave<typename P::Storage>& wave, Mask active, size_t i) {
+WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P::Storage>& scene,
+                                                      const VertexLanes<typename P::Real>& vertex) {
   using Real = typename P::Real;
-  const UInt primitive = select(active, load(wave.hits.primitive, i), UInt(0u));
-  const RecordLanes<PrimitiveRecord<typename P::Storage>> at(scene.primitives, primitive);
-  const auto& surfaces = wave.surfaces;
-  ShadingLanes<P, kFeatures> s{.position = loadVec3(wave.rays.originX, wave.rays.originY, wave.rays.originZ, i),
-                               .normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i),
-                               .offset = load(surfaces.offset, i),
-                               .frame = {},
+  const RecordLanes<PrimitiveRecord<typename P::Storage>> at(scene.primitives, vertex.primitive);
+  ShadingLanes<P, kFeatures> s{.position = vertex.position,
+                               .normal = vertex.normal,
+                               .offset = vertex.offset,
+                               .frame = Frame<Real>::fromNormal(vertex.shadingNormal),
                                .fix = {},
                                .side = Real(1),
-                               .fixCosine = {},
+                               .fixCosine = dot(vertex.fix, vertex.normal),
                                .bsdf = BsdfInput<P>(scene.materials, at(scene.primitives->material))};
-  const Vec3<Real> fix = -loadVec3(wave.rays.directionX, wave.rays.directionY, wave.rays.directionZ, i);
-  s.frame = Frame<Real>::fromNormal(s.normal);
-  s.fixCosine = dot(fix, s.normal);
-  s.fix = s.frame.toLocal(fix);
+  s.fix = s.frame.toLocal(vertex.fix);
   const Mask twoSided = (s.bsdf.at(scene.materials->flags) & UInt(kTwoSided)) == UInt(kTwoSided);
   s.side = select(twoSided & (s.fix.z < Real(0)), Real(-1), Real(1));
   s.fix.z = s.fix.z * s.side;
   return s;
+}
+
+// Block i of the live paths' vertices.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename P::Storage>& scene,
+                                                        const Wave<typename P::Storage>& wave, Mask active, size_t i) {
+  using Real = typename P::Real;
+  const auto& rays = wave.rays;
+  const auto& surfaces = wave.surfaces;
+  VertexLanes<Real> vertex{.position = loadVec3(rays.originX, rays.originY, rays.originZ, i),
+                           .fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i),
+                           .normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i),
+                           .shadingNormal = {},
+                           .offset = load(surfaces.offset, i),
+                           .u = Float(0),
+                           .v = Float(0),
+                           .primitive = select(active, load(wave.hits.primitive, i), UInt(0u))};
+  vertex.shadingNormal = vertex.normal;
+  if constexpr (has(kFeatures, kShadingNormals)) {
+    vertex.shadingNormal = loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i);
+  }
+  if constexpr (has(kFeatures, kTextures)) {
+    vertex.u = load(surfaces.uvU, i);
+    vertex.v = load(surfaces.uvV, i);
+  }
+  return shadingOf<P, kFeatures>(scene, vertex);
+}
+
+// The live paths' vertices at any indices.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE ShadingLanes<P, kFeatures> gatherShading(const SceneView<typename P::Storage>& scene,
+                                                          const Wave<typename P::Storage>& wave, UInt index) {
+  using Real = typename P::Real;
+  const auto& rays = wave.rays;
+  const auto& surfaces = wave.surfaces;
+  VertexLanes<Real> vertex{.position = gatherVec3(rays.originX, rays.originY, rays.originZ, index),
+                           .fix = -gatherVec3(rays.directionX, rays.directionY, rays.directionZ, index),
+                           .normal = gatherVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, index),
+                           .shadingNormal = {},
+                           .offset = gather(surfaces.offset, index),
+                           .u = Float(0),
+                           .v = Float(0),
+                           .primitive = gather(wave.hits.primitive, index)};
+  vertex.shadingNormal = vertex.normal;
+  if constexpr (has(kFeatures, kShadingNormals)) {
+    vertex.shadingNormal = gatherVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, index);
+  }
+  if constexpr (has(kFeatures, kTextures)) {
+    vertex.u = gather(surfaces.uvU, index);
+    vertex.v = gather(surfaces.uvV, index);
+  }
+  return shadingOf<P, kFeatures>(scene, vertex);
 }
 
 WAVECREST_SIMD_END

@@ -7,12 +7,36 @@
 #pragma once
 
 #include "kernels/simd/isa.h"
+#include "metrics/kernels/fft_stage.h"
+#include "metrics/kernels/flip_rows.h"
+#include "metrics/kernels/hdrvdp2_rows.h"
+#include "metrics/kernels/row_filters.h"
 #include "metrics/kernels/ssim_row.h"
+
+// The list of kernels: return type, name, parameters.
+#define WAVECREST_METRIC_KERNELS(KERNEL)                                                               \
+  KERNEL(void, fftStage, (const FftStage& stage, const float* in, float* out, FftDirection direction)) \
+  KERNEL(void, multiplyElements,                                                                       \
+         (const float* in, const float* factors, float* out, size_t count, FftDirection direction))    \
+  KERNEL(void, multiplyGain, (float* batch, const float* gain, size_t length))                         \
+  KERNEL(void, weightedSum, (const WeightedSum& job))                                                  \
+  KERNEL(void, gatheredSum, (const GatheredSum& job))                                                  \
+  KERNEL(void, photoreceptorRow, (const PhotoreceptorRow& row))                                        \
+  KERNEL(void, logMeanRow, (const LogMeanRow& row))                                                    \
+  KERNEL(void, sensitivityRow, (const SensitivityRow& row))                                            \
+  KERNEL(void, mutualMaskRow, (const MutualMaskRow& row))                                              \
+  KERNEL(double, differenceRow, (const DifferenceRow& row))                                            \
+  KERNEL(void, flipAppearanceRow, (const FlipAppearanceRow& row))                                      \
+  KERNEL(void, flipFeatureRow, (const FlipFeatureRow& row))                                            \
+  KERNEL(void, flipErrorRow, (const FlipErrorRow& row))                                                \
+  KERNEL(SsimSums, ssimRow, (const SsimRow& row))
 
 namespace wavecrest {
 
 struct MetricKernels {
-  std::array<double, 3> (*ssimRow)(const SsimRow& row);
+#define WAVECREST_KERNEL_POINTER(RETURN, NAME, PARAMETERS) RETURN(*NAME) PARAMETERS;
+  WAVECREST_METRIC_KERNELS(WAVECREST_KERNEL_POINTER)
+#undef WAVECREST_KERNEL_POINTER
 };
 
 // The kernels of one of availableIsas().

@@ -76,7 +76,7 @@ WAVECREST_INLINE Float sumAcross(const SsimRow& row, const float* columns) {
 }
 
 template <size_t kChannels>
-std::array<double, 3> ssimRowOf(const SsimRow& row) {
+SsimSums ssimRowOf(const SsimRow& row) {
   ColumnSums sums;
   // One running sum for each channel that a vector may start with.
   Float totals[kMaxChannels] = {Float(0.0f), Float(0.0f), Float(0.0f)};
@@ -104,7 +104,7 @@ std::array<double, 3> ssimRowOf(const SsimRow& row) {
     }
   }
   // A vector that starts at channel s holds channel (s + lane) modulo the channels.
-  std::array<double, 3> channelSums{};
+  SsimSums channelSums{};
   for (size_t start = 0; start < kChannels; ++start) {
     float lanes[kLanes];
     storeUnaligned(totals[start], lanes);
@@ -115,6 +115,6 @@ std::array<double, 3> ssimRowOf(const SsimRow& row) {
 
 }  // namespace
 
-std::array<double, 3> ssimRow(const SsimRow& row) { return row.channels == 1 ? ssimRowOf<1>(row) : ssimRowOf<3>(row); }
+SsimSums ssimRow(const SsimRow& row) { return row.channels == 1 ? ssimRowOf<1>(row) : ssimRowOf<3>(row); }
 
 WAVECREST_SIMD_END

@@ -21,6 +21,8 @@ constexpr size_t kSsimRadius = kSsimTaps / 2;
 constexpr size_t kSsimBlock = 96;   // windows of one block, all channels together
 constexpr size_t kSsimSlack = 128;  // samples that the kernel may read and write beyond the end of a row
 
+using SsimSums = std::array<double, 3>;  // of the map, per channel
+
 struct SsimRow {
   std::array<const float*, kSsimTaps> difference;  // rows of d, top to bottom
   std::array<const float*, kSsimTaps> test;        // rows of y

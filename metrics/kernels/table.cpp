@@ -4,10 +4,14 @@
 
 namespace wavecrest::WAVECREST_SIMD_NAMESPACE {
 
-std::array<double, 3> ssimRow(const SsimRow& row);
+#define WAVECREST_DECLARE_KERNEL(RETURN, NAME, PARAMETERS) RETURN NAME PARAMETERS;
+WAVECREST_METRIC_KERNELS(WAVECREST_DECLARE_KERNEL)
+#undef WAVECREST_DECLARE_KERNEL
 
 const MetricKernels& metricKernelTable() {
-  static constexpr MetricKernels table{.ssimRow = ssimRow};
+#define WAVECREST_LIST_KERNEL(RETURN, NAME, PARAMETERS) .NAME = NAME,
+  static constexpr MetricKernels table{WAVECREST_METRIC_KERNELS(WAVECREST_LIST_KERNEL)};
+#undef WAVECREST_LIST_KERNEL
   return table;
 }
 

@@ -48,6 +48,9 @@ constexpr Asset kAssets[] = {
     {"tiles.png", [](const Path& file) { writePng(makeTiles(), file); }},
     {"wood.png", [](const Path& file) { writePng(makeWood(), file); }},
     {"landscape.png", [](const Path& file) { writePng(makeLandscape(), file); }},
+    {"bumps.png", [](const Path& file) { writePng(makeBumps(), file, PngEncoding::raw); }},
+    {"normals.png", [](const Path& file) { writePng(makeNormals(), file, PngEncoding::raw); }},
+    {"patches.exr", [](const Path& file) { writeExr(makePatches(), file); }},
 };
 
 }  // namespace

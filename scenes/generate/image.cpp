@@ -14,19 +14,19 @@
 namespace wavecrest::generate {
 namespace {
 
-// IEC 61966-2-1
-uint8_t encodeSrgb(double linear) {
-  const double x = std::clamp(linear, 0.0, 1.0);
-  const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-  return static_cast<uint8_t>(std::lround(255 * encoded));
+uint8_t encode(double linear, PngEncoding encoding) {
+  double x = std::clamp(linear, 0.0, 1.0);
+  // IEC 61966-2-1
+  if (encoding == PngEncoding::srgb) x = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+  return static_cast<uint8_t>(std::lround(255 * x));
 }
 
 }  // namespace
 
-void writePng(const Image& image, const std::filesystem::path& file) {
+void writePng(const Image& image, const std::filesystem::path& file, PngEncoding encoding) {
   std::vector<uint8_t> bytes;
   for (const Vec3& pixel : image.pixels)
-    for (double value : pixel) bytes.push_back(encodeSrgb(value));
+    for (double value : pixel) bytes.push_back(encode(value, encoding));
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = image.width;

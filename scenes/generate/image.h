@@ -18,9 +18,10 @@ struct Image {
   const Vec3& at(uint32_t x, uint32_t y) const { return pixels[size_t{y} * width + x]; }
 };
 
-// Values are clamped to [0, 1] and encoded with the sRGB curve, which is what readers of a PNG assume.
-// Both throw std::runtime_error when the file cannot be written.
-void writePng(const Image& image, const std::filesystem::path& file);
+// 8 bit, clamped to [0, 1]. Colours are encoded with the sRGB curve, which is what readers of a PNG assume; data such
+// as normals are stored raw. Both functions throw std::runtime_error when the file cannot be written.
+enum class PngEncoding { srgb, raw };
+void writePng(const Image& image, const std::filesystem::path& file, PngEncoding encoding = PngEncoding::srgb);
 void writeExr(const Image& image, const std::filesystem::path& file);
 
 }  // namespace wavecrest::generate

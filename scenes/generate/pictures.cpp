@@ -36,12 +36,12 @@ double ridge(double x, double hills, uint32_t seed) {
 
 Image makeTiles() {
   constexpr uint32_t kTile = 32, kJoint = 2;
-  constexpr Vec3 kGlaze{0.50, 0.72, 0.80}, kGrout{0.75, 0.75, 0.72};
+  constexpr Vec3 kGlaze{0.214, 0.477, 0.604}, kGrout{0.522, 0.522, 0.479};
   Image image(256, 256);
   for (uint32_t y = 0; y < image.height; ++y) {
     for (uint32_t x = 0; x < image.width; ++x) {
       const bool joint = x % kTile < kJoint || y % kTile < kJoint;
-      const double tone = 0.88 + 0.20 * cellNoise(static_cast<int>(x / kTile), static_cast<int>(y / kTile), 1);
+      const double tone = 0.76 + 0.43 * cellNoise(static_cast<int>(x / kTile), static_cast<int>(y / kTile), 1);
       image.at(x, y) = joint ? kGrout : tone * kGlaze;
     }
   }
@@ -81,6 +81,42 @@ Image makeLandscape() {
         if (y < crest) color = (0.85 + 0.15 * smoothNoise(60 * x, 60 * y, 20)) * mix(kFar, kNear, depth);
       }
       image.at(px, py) = color;
+    }
+  }
+  return image;
+}
+
+Image makeBumps() {
+  Image image(64, 64);
+  for (uint32_t y = 0; y < image.height; ++y) {
+    for (uint32_t x = 0; x < image.width; ++x) {
+      const double u = 4 * (x + 0.5) / image.width, v = 4 * (y + 0.5) / image.height;
+      const double height = std::pow(std::sin(std::numbers::pi * u) * std::sin(std::numbers::pi * v), 2);
+      image.at(x, y) = {height, height, height};
+    }
+  }
+  return image;
+}
+
+Image makeNormals() {
+  Image image(64, 64);
+  for (uint32_t y = 0; y < image.height; ++y) {
+    for (uint32_t x = 0; x < image.width; ++x) {
+      const double u = 2 * std::numbers::pi * (x + 0.5) / image.width,
+                   v = 2 * std::numbers::pi * (y + 0.5) / image.height;
+      const Vec3 normal = normalize({0.35 * std::cos(3 * u), 0.25 * std::cos(2 * v), 1});
+      image.at(x, y) = 0.5 * (normal + Vec3{1, 1, 1});
+    }
+  }
+  return image;
+}
+
+Image makePatches() {
+  Image image(8, 6);
+  for (uint32_t y = 0; y < image.height; ++y) {
+    for (uint32_t x = 0; x < image.width; ++x) {
+      for (uint32_t channel = 0; channel < 3; ++channel)
+        image.at(x, y)[channel] = 0.1 + 0.8 * cellNoise(static_cast<int>(x), static_cast<int>(y), 30 + channel);
     }
   }
   return image;

@@ -1,0 +1,50 @@
+// Vertex connection and merging (Georgiev et al. 2012; Hachisuka et al. 2012): bidirectional path tracing and photon
+// mapping as strategies of one estimator.
+#include "engine/methods/method_list.h"
+
+namespace wavecrest {
+
+template <class S>
+Pipeline<S> vertexConnectionAndMerging(const Stages<S>& stages, const Intersector<S>& intersector) {
+  constexpr MisSettings kAll{.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true};
+  return {
+      .lightPass =
+          Pass<S>{
+              .walk = Walk::light,
+              .strategies = kAll,
+              .generate = {"generate light", stages.generateLightPaths, generatedItems<S>, stages.lanes},
+              .perDepth =
+                  {
+                      {"extend light", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive light", stages.arrive, pathItems<S>, stages.lanes},
+                      {"store", stages.storeLightVertices, pathItems<S>, stages.lanes},
+                      {"connect to camera", stages.connectToCamera, pathItems<S>, stages.lanes},
+                      {"occlude light", intersector.occlude, shadowItems<S>, intersector.lanes},
+                      {"scatter light", stages.scatter, pathItems<S>, stages.lanes},
+                  },
+          },
+      .photonMap = true,
+      .cameraPass =
+          {
+              .walk = Walk::camera,
+              .strategies = kAll,
+              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>, stages.lanes},
+              .perDepth =
+                  {
+                      {"extend", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive", stages.arrive, pathItems<S>, stages.lanes},
+                      {"next event", stages.nextEvent, pathItems<S>, stages.lanes},
+                      {"occlude", intersector.occlude, shadowItems<S>, intersector.lanes},
+                      {"connect", stages.connectVertices, pathItems<S>, stages.lanes, Repeat::perLightDepth},
+                      {"occlude connection", intersector.occlude, shadowItems<S>, intersector.lanes,
+                       Repeat::perLightDepth},
+                      {"merge", stages.merge, pathItems<S>, stages.lanes},
+                      {"scatter", stages.scatter, pathItems<S>, stages.lanes},
+                  },
+          },
+  };
+}
+template Pipeline<float> vertexConnectionAndMerging(const Stages<float>&, const Intersector<float>&);
+template Pipeline<double> vertexConnectionAndMerging(const Stages<double>&, const Intersector<double>&);
+
+}  // namespace wavecrest

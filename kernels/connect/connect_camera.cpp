@@ -1,0 +1,68 @@
+// connectToCamera: strategy t = 1. Joins each light vertex with the lens and pushes a shadow ray towards the pixel that
+// sees it.
+//
+// in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: ShadowRays [<= n] whose targets are
+// pixels of the splat sink, in lane order. METHODS 4.3, 5.6. The contribution leaves out 1/N_L: the film divides by the
+// number of light paths, as the average over passes does.
+#include "kernels/generate/camera_lanes.h"
+#include "kernels/mis_lanes.h"
+#include "kernels/shade/shading_lanes.h"
+#include "kernels/stage_declarations.h"
+
+WAVECREST_SIMD_BEGIN
+
+template <class P, uint32_t kFeatures>
+void connectToCamera(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  using Real = typename P::Real;
+  const auto& scene = *context.scene;
+  const auto& paths = wave.paths;
+  const SplatSink& splats = context.splats;
+  auto& shadow = wave.shadowRays;
+  const size_t count = wave.rays.size;
+  shadow.size = 0;
+  shadow.claim(count);
+  size_t out = 0;
+
+  for (size_t i = 0; i < count; i += kLanes) {
+    const Mask active = firstLanes(count - i);
+    auto shading = loadShading<P, kFeatures>(scene, wave, active, i);
+    shading.bsdf.walk = Walk::light;
+    const auto view = project<P>(scene.camera, shading.position);
+    // Relative to the rendered rectangle; outside of it nothing is seen.
+    const Real x = floor(view.rasterX) - Real(static_cast<float>(splats.x0)),
+               y = floor(view.rasterY) - Real(static_cast<float>(splats.y0));
+    const Mask onFilm = view.inFront & (x >= Real(0)) & (y >= Real(0)) & (x < Real(static_cast<float>(splats.width))) &
+                        (y < Real(static_cast<float>(splats.height)));
+    if (none(active & onFilm)) continue;
+
+    const Vec3<Real> gen = shading.toLocal(view.direction);
+    const auto bsdf = evalBsdf<P, kFeatures>(shading.bsdf, active & onFilm, shading.fix, gen);
+    const Real genCosine = abs(dot(view.direction, shading.normal));
+    const Real fixCosine = abs(shading.fixCosine);
+    const Real pdfA = view.pdf * genCosine;
+    const MisSums<Real> mis = loadMis<kFeatures>(paths, i);
+    // LT has no other strategy: its weight is 1.
+    const Real wLight = pdfA * Real(context.mis.camN > 0 ? 1 / context.mis.camN : 0.0) *
+                        behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
+    // f c(omega_l) / n(omega_l): omega_l is fix, the light's side.
+    const Real scale = pdfA * abs(shading.fix.z) * reciprocal<P>(max(fixCosine, Real(1e-6f)) * (Real(1) + wLight));
+    const Vec3<Real> contribution =
+        loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * bsdf.f * scale;
+    const Mask lit = active & onFilm & (fixCosine > Real(1e-6f)) & shading.sidesAgree(view.direction, gen) &
+                     (maxComponent(contribution) > Real(0));
+    if (none(lit)) continue;
+
+    const Vec3<Real> origin = offsetOrigin(shading.position, shading.normal, shading.offset, view.direction);
+    const UInt pixel = toUInt(to<Float>(y)) * UInt(splats.width) + toUInt(to<Float>(x));
+    appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
+    appendVec3(to<Float>(view.lens - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
+    appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
+    append(pixel, lit, shadow.target, out);
+    out += countTrue(lit);
+  }
+  shadow.size = out;
+}
+
+WAVECREST_SIMD_END
+
+WAVECREST_INSTANTIATE_BIDIRECTIONAL_STAGE(connectToCamera)

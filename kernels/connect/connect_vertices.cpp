@@ -1,0 +1,103 @@
+// connectVertices: strategies s >= 2, t >= 2. Joins each camera vertex with the vertex that its paired light path has
+// at the context's lightDepth, and pushes a shadow ray with the weighted contribution.
+//
+// in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the light store of the wave's light paths. out: ShadowRays
+// [<= n], in lane order. METHODS 5.6 (40)-(41).
+//
+// Deep light vertices are rare, so the pairs are first packed: 16 lanes then work on 16 pairs, whatever the depth.
+#include "kernels/shade/light_vertex_lanes.h"
+#include "kernels/stage_declarations.h"
+
+WAVECREST_SIMD_BEGIN
+
+namespace {
+
+// Packs (camera vertex, light vertex) pairs into the first two integer columns that nothing else uses at this stage.
+template <class S>
+WAVECREST_INLINE size_t packPairs(const StageContext<S>& context, Wave<S>& wave, uint32_t* camera, uint32_t* light) {
+  const uint32_t* const partners = context.light->partners(context.lightDepth);
+  const size_t count = wave.rays.size;
+  size_t out = 0;
+  for (size_t i = 0; i < count; i += kLanes) {
+    const Mask active = firstLanes(count - i);
+    const UInt lane = select(active, load(wave.paths.lane, i), UInt(0u));
+    const UInt partner = gather(partners, lane);
+    const Mask paired = andNot(active, partner == UInt(kNoIndex));
+    storeUnaligned(compress(laneIndex(static_cast<uint32_t>(i)), paired), camera + out);
+    storeUnaligned(compress(partner, paired), light + out);
+    out += countTrue(paired);
+  }
+  return out;
+}
+
+}  // namespace
+
+template <class P, uint32_t kFeatures>
+void connectVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  using Real = typename P::Real;
+  const auto& scene = *context.scene;
+  const auto& vertices = context.light->vertices;
+  auto& shadow = wave.shadowRays;
+  shadow.size = 0;
+  // k = len_L + 1 + len_C
+  if (context.depth + context.lightDepth + 1 > context.limits.maxDepth) return;
+  uint32_t* const cameraIndex = wave.pairs.camera;
+  uint32_t* const lightIndex = wave.pairs.light;
+  const size_t count = packPairs(context, wave, cameraIndex, lightIndex);
+  context.counters->connections += count;
+  shadow.claim(count);
+  size_t out = 0;
+
+  for (size_t i = 0; i < count; i += kLanes) {
+    const Mask active = firstLanes(count - i);
+    const UInt camera = select(active, load(cameraIndex + i), UInt(0u));
+    const UInt light = select(active, load(lightIndex + i), UInt(0u));
+    const auto z = gatherShading<P, kFeatures>(scene, wave, camera);
+    const auto y = gatherLightShading<P, kFeatures>(scene, vertices, light);
+
+    const Vec3<Real> segment = y.position - z.position;
+    const Real dist2 = length2(segment);
+    const Real inverseDistance = reciprocalSqrt<P>(max(dist2, Real(1e-37f)));
+    const Vec3<Real> towards = segment * inverseDistance;  // from the camera vertex to the light vertex
+    const Vec3<Real> zGen = z.toLocal(towards), yGen = y.toLocal(-towards);
+    const auto zBsdf = evalBsdf<P, kFeatures>(z.bsdf, active, z.fix, zGen);
+    const auto yBsdf = evalBsdf<P, kFeatures>(y.bsdf, active, y.fix, yGen);
+
+    const Real inverseDist2 = inverseDistance * inverseDistance;
+    const Real zCosine = abs(dot(towards, z.normal)), yCosine = abs(dot(towards, y.normal));
+    const MisSums<Real> zMis{gather(wave.paths.dVCM, camera), gather(wave.paths.dVC, camera),
+                             gather(wave.paths.dVM, camera)};
+    const Real wLight =
+        zBsdf.pdf * yCosine * inverseDist2 *
+        behindConnection(context.mis, context.lightDepth, gatherLightMis(vertices, light), yBsdf.pdfReverse);
+    const Real wCamera =
+        yBsdf.pdf * zCosine * inverseDist2 * behindConnection(context.mis, context.depth, zMis, zBsdf.pdfReverse);
+
+    // c_z(omega_l) at the camera's end; c_y(omega_l) / n_y(omega_l) n_y(to z) at the light's (METHODS 3.9).
+    const Real yFix = max(abs(y.fixCosine), Real(1e-6f));
+    const Real scale =
+        abs(zGen.z) * abs(y.fix.z) * yCosine * inverseDist2 * reciprocal<P>(yFix * (Real(1) + wLight + wCamera));
+    const auto& paths = wave.paths;
+    const Vec3<Real> contribution =
+        gatherVec3(paths.throughputR, paths.throughputG, paths.throughputB, camera) * zBsdf.f *
+        gatherVec3(vertices.throughputR, vertices.throughputG, vertices.throughputB, light) * yBsdf.f * scale;
+
+    // Points closer than the offsets that keep their segment off the surfaces cannot be told apart.
+    const Real apart = Real(4) * (z.offset + y.offset);
+    const Mask lit = active & (dist2 > apart * apart) & z.sidesAgree(towards, zGen) & y.sidesAgree(-towards, yGen) &
+                     (maxComponent(contribution) > Real(0));
+    if (none(lit)) continue;
+    const Vec3<Real> origin = offsetOrigin(z.position, z.normal, z.offset, towards);
+    const Vec3<Real> end = offsetOrigin(y.position, y.normal, y.offset, -towards);
+    appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
+    appendVec3(to<Float>(end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
+    appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
+    append(gather(paths.lane, camera), lit, shadow.target, out);
+    out += countTrue(lit);
+  }
+  shadow.size = out;
+}
+
+WAVECREST_SIMD_END
+
+WAVECREST_INSTANTIATE_BIDIRECTIONAL_STAGE(connectVertices)

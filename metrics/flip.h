@@ -1,0 +1,86 @@
+// FLIP: the difference an observer perceives when flipping between two images, per pixel and on average, 0..1.
+//
+// LDR-FLIP: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference Evaluator for
+// Alternating Images", HPG 2020. Opponent colours are filtered by contrast sensitivity, compared as Hunt-adjusted
+// CIELAB by the HyAB distance, and the colour error is raised by differences of edges and points. HDR-FLIP: Andersson,
+// Nilsson, Shirley, Akenine-Moller, "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics 2021. The
+// largest LDR-FLIP over a series of exposures, tone-mapped; the exposures follow from the reference alone, so all
+// comparisons against it use the same.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "kernels/simd/isa.h"
+#include "metrics/image/image.h"
+#include "metrics/plane.h"
+
+namespace wavecrest {
+
+// 0.7 m from a 0.7 m wide display of 3840 pixels.
+constexpr double kFlipPixelsPerDegree = 67.02064327658225;
+
+struct FlipResult {
+  double mean = 0;
+  std::vector<float> map;  // width * height, empty unless asked for
+};
+
+// What both variants share: filters for one viewing condition, features of an image, comparison of two.
+class FlipModel {
+ public:
+  explicit FlipModel(double pixelsPerDegree, Isa isa);
+
+  // Opponent colours Y, Cx, Cz of linear RGB, relative to the white point.
+  using Opponents = std::array<Plane, 3>;
+  static std::array<float, 3> opponent(double red, double green, double blue);
+
+  // Lightness, a, b, edge, point.
+  using Features = std::array<Plane, 5>;
+  Features analyze(const Opponents& image) const;
+
+  // Writes max(map, error) of each pixel.
+  void compare(const Features& reference, const Opponents& test, Plane& map) const;
+
+ private:
+  struct RowBuffers;
+  void analyzeRow(const Opponents& image, size_t y, const std::array<float*, 5>& out, RowBuffers& buffers) const;
+
+  Isa isa_;
+  size_t radius_ = 0;
+  // One-dimensional factors of all filters, 2 radius + 1 taps each: achromatic, red-green, the two Gaussians of
+  // blue-yellow with their factors across the row; then Gaussian, edge and point of the feature detector.
+  enum Tap : size_t { kAchromatic, kRedGreen, kBlueYellow1, kBlueYellow2, kGaussian, kEdge, kPoint, kTapSets };
+  std::array<std::vector<float>, kTapSets> down_, across_;
+  std::array<float, 9> rgbFromXyz_{}, xyzFromRgb_{};
+  float colourMaximum_ = 0;
+};
+
+// LDR-FLIP against one reference of 8-bit gamma-corrected codes. Immutable; any number of threads may compare.
+class PreparedFlip {
+ public:
+  explicit PreparedFlip(const Image8& reference, double pixelsPerDegree = kFlipPixelsPerDegree, Isa isa = bestIsa());
+  FlipResult compare(const Image8& test, bool withMap = false) const;
+
+ private:
+  FlipModel::Opponents opponents(const Image8& image) const;
+
+  FlipModel model_;
+  std::array<std::array<std::array<float, 256>, 3>, 3> codeOpponents_{};  // of each code of each channel
+  FlipModel::Features reference_;
+};
+
+// HDR-FLIP against one reference of linear light.
+class PreparedHdrFlip {
+ public:
+  explicit PreparedHdrFlip(const Image& reference, double pixelsPerDegree = kFlipPixelsPerDegree, Isa isa = bestIsa());
+  FlipResult compare(const Image& test, bool withMap = false) const;
+
+  const std::vector<double>& exposures() const { return exposures_; }  // in stops
+
+ private:
+  FlipModel model_;
+  std::vector<double> exposures_;
+  std::vector<FlipModel::Features> references_;  // for each exposure
+};
+
+}  // namespace wavecrest

@@ -1,0 +1,91 @@
+"""Evaluates acceptance.json: what must be visible in each scene, on images that someone else renders.
+
+An image is asked for by a Shot (scene, method, max_depth) and given as a float array (height, width, 3) of linear RGB, so
+the same statements serve wavecrest's renders and Mitsuba's.
+"""
+
+import dataclasses
+import json
+import pathlib
+
+import numpy as np
+
+LUMINANCE = np.array([0.212671, 0.715160, 0.072169])  # Rec. 709, as in the renderer
+
+
+@dataclasses.dataclass(frozen=True)
+class Shot:
+    """A picture that a statement needs."""
+
+    scene: str
+    method: str
+    max_depth: int = -1
+
+
+@dataclasses.dataclass(frozen=True)
+class Verdict:
+    """The outcome of one statement; value is a number or one per channel."""
+
+    holds: bool
+    value: object
+    text: str
+
+
+def statements(scene=None):
+    """(scene, statement) pairs of the file, of one scene or of all."""
+    path = pathlib.Path(__file__).with_name("acceptance.json")
+    scenes = json.loads(path.read_text(encoding="utf-8"))["scenes"]
+    return [(name, entry) for name, entries in scenes.items() if scene in (None, name) for entry in entries]
+
+
+def shots(scene, statement):
+    """The pictures it needs: its own, and the one it is compared with if any."""
+    own = Shot(scene, statement["method"], statement.get("max_depth", -1))
+    if (over := statement.get("over")) is None:
+        return [own]
+    return [own, dataclasses.replace(own, **{key: over[key] for key in over if key != "region"})]
+
+
+def crop(image, region):
+    height, width = image.shape[:2]
+    x0, x1, y0, y1 = region
+    part = image[round(y0 * height) : round(y1 * height), round(x0 * width) : round(x1 * width)]
+    if part.size == 0:
+        raise ValueError(f"region {region} is empty in an image of {width} x {height}")
+    return part
+
+
+def statistic(kind, pixels):
+    luminance = pixels @ LUMINANCE
+    mean = pixels.mean((0, 1))
+    match kind:
+        case "rgb":
+            return mean
+        case "luminance":
+            return luminance.mean()
+        case "red_over_blue":
+            return mean[0] / mean[2]
+        case "contrast":
+            return luminance.std() / luminance.mean()
+        case "p99_over_median":
+            return np.percentile(luminance, 99) / np.median(luminance)
+        case "max":
+            return pixels.max()
+    raise ValueError(f"acceptance.json: unknown statistic '{kind}'")
+
+
+def evaluate(scene, statement, render):
+    """Verdict on a statement; render(shot) gives the image of a shot."""
+    region, kind = statement["region"], statement["statistic"]
+    pictures = shots(scene, statement)
+    value = statistic(kind, crop(render(pictures[0]), region))
+    if "over" in statement:
+        value = value / statistic(kind, crop(render(pictures[1]), statement["over"].get("region", region)))
+    low, high = statement.get("min"), statement.get("max")
+    if low is None and high is None:
+        raise ValueError(f"acceptance.json: '{statement['name']}' has no bounds")
+    holds = bool(np.all(np.isfinite(value)))
+    holds = holds and (low is None or bool(np.all(value >= np.array(low))))
+    holds = holds and (high is None or bool(np.all(value <= np.array(high))))
+    shown = " ".join(f"{number:.4g}" for number in np.atleast_1d(value))
+    return Verdict(holds, value, f"{statement['name']}: {shown} (bounds {low} .. {high})")

@@ -1,0 +1,233 @@
+// Both intersectors against a brute-force reference in double, on random quads, triangles and spheres.
+//
+// A ray is compared only where rounding cannot decide: away from edges, silhouettes, grazing incidence and near ties.
+// Everything else must agree exactly in the primitive, and in the point to a few units of rounding.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <optional>
+
+#include "tests/effort.h"
+#include "tests/kernels/intersectors.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kNear = 1e-3;        // closer than this to a decision, in units of the scene, is not compared
+constexpr double kPointError = 2e-5;  // in the same units: 300 units of rounding, for rays that graze by up to kNear
+
+struct Crossing {
+  double t;
+  Point point;
+  bool clear;  // rounding cannot turn it into a miss
+};
+
+// Where the ray's line crosses the primitive, near misses included.
+std::vector<Crossing> crossings(const PrimitiveRecord<double>& r, const TestRay& ray) {
+  const Point p0{r.p0[0], r.p0[1], r.p0[2]};
+  const auto at = [&](double t) { return ray.origin + ray.direction * t; };
+  if (static_cast<PrimitiveKind>(r.kind) == PrimitiveKind::sphere) {
+    const Point o = ray.origin - p0;
+    const double a = dot(ray.direction, ray.direction), b = dot(o, ray.direction), radius2 = r.e1[0] * r.e1[0];
+    const double discriminant = b * b - a * (dot(o, o) - radius2);
+    if (discriminant < -kNear * radius2) return {};
+    const double root = std::sqrt(std::max(discriminant, 0.0));
+    const bool clear = discriminant > kNear * radius2;
+    const double first = (-b - root) / a, second = (-b + root) / a;
+    return {{first, at(first), clear}, {second, at(second), clear}};
+  }
+  const Point e1{r.e1[0], r.e1[1], r.e1[2]}, e2{r.e2[0], r.e2[1], r.e2[2]}, n = cross(e1, e2);
+  const double speed = dot(n, ray.direction);
+  if (speed == 0) return {};
+  const double t = dot(n, p0 - ray.origin) / speed;
+  const Point q = at(t) - p0;
+  const double u = dot(cross(q, e2), n) / dot(n, n), v = dot(cross(e1, q), n) / dot(n, n);
+  const bool quad = static_cast<PrimitiveKind>(r.kind) == PrimitiveKind::quad;
+  const double inside = quad ? std::min(std::min(u, 1 - u), std::min(v, 1 - v)) : std::min(std::min(u, v), 1 - u - v);
+  if (inside < -kNear) return {};
+  return {{t, at(t), inside > kNear && std::abs(speed) > 0.02 * length(n)}};
+}
+
+struct Reference {
+  uint32_t primitive = kMiss;
+  Point point{};
+  bool certain = true;
+};
+
+// The closest crossing at t > 0; certain if no other choice lies within rounding.
+Reference closest(const std::vector<PrimitiveRecord<double>>& records, const TestRay& ray) {
+  Reference best;
+  double bestT = std::numeric_limits<double>::infinity();
+  for (uint32_t i = 0; i < records.size(); ++i) {
+    for (const Crossing& c : crossings(records[i], ray)) {
+      if (c.t > 0 && c.clear && c.t < bestT) {
+        bestT = c.t;
+        best.primitive = i;
+        best.point = c.point;
+      }
+    }
+  }
+  for (uint32_t i = 0; i < records.size(); ++i) {
+    for (const Crossing& c : crossings(records[i], ray)) {
+      const bool itself = i == best.primitive && c.t == bestT;
+      const bool tooNear = std::abs(c.t) < kNear || std::abs(c.t - bestT) < kNear;
+      const bool doubtful = !c.clear && c.t > -kNear && c.t < bestT + kNear;
+      if (!itself && (tooNear || doubtful)) best.certain = false;
+    }
+  }
+  return best;
+}
+
+// Whether something blocks t in (0, 1) times length; nothing where rounding decides.
+std::optional<bool> blockedBefore(const std::vector<PrimitiveRecord<double>>& records, const TestRay& ray, double end) {
+  bool blocked = false, certain = true;
+  for (const auto& record : records) {
+    for (const Crossing& c : crossings(record, ray)) {
+      if (c.clear && c.t > kNear && c.t < end - kNear) blocked = true;
+      if (std::abs(c.t) <= kNear || std::abs(c.t - end) <= kNear || (!c.clear && c.t > 0 && c.t < end)) certain = false;
+    }
+  }
+  if (!blocked && !certain) return std::nullopt;
+  return blocked;
+}
+
+// The point that (u, v) of a hit means.
+Point hitPoint(const PrimitiveRecord<double>& r, const TestRay& ray, float u, float v) {
+  if (static_cast<PrimitiveKind>(r.kind) == PrimitiveKind::sphere) return ray.origin + ray.direction * double{u};
+  return corner(r, u, v);
+}
+
+struct Mix {
+  const char* name;
+  size_t quads, triangles, spheres;
+};
+
+std::vector<PrimitiveRecord<double>> randomPrimitives(const Mix& mix, RandomPoints& random) {
+  std::vector<PrimitiveRecord<double>> list;
+  const auto face = [&](PrimitiveKind kind) {
+    const Point p = random.inCube(1), e1 = random.direction() * random.uniform(0.2, 1);
+    const Point across = normalized(cross(e1, random.direction()));
+    return facePrimitive(kind, p, e1, across * random.uniform(0.2, 1) + e1 * random.uniform(-0.5, 0.5));
+  };
+  for (size_t i = 0; i < mix.quads; ++i) list.push_back(face(PrimitiveKind::quad));
+  for (size_t i = 0; i < mix.triangles; ++i) list.push_back(face(PrimitiveKind::triangle));
+  for (size_t i = 0; i < mix.spheres; ++i) list.push_back(spherePrimitive(random.inCube(1), random.uniform(0.1, 0.5)));
+  // The reference sees what the float records hold.
+  for (auto& r : list) {
+    for (auto* field : {&r.p0, &r.e1, &r.e2}) {
+      for (double& x : *field) x = static_cast<float>(x);
+    }
+  }
+  return list;
+}
+
+class ExtendTest : public testing::TestWithParam<std::tuple<Intersector, Mix>> {
+ protected:
+  const Intersector& intersector() const { return std::get<0>(GetParam()); }
+  const Mix& mix() const { return std::get<1>(GetParam()); }
+};
+
+TEST_P(ExtendTest, closestHitEqualsBruteForce) {
+  RandomPoints random(7);
+  size_t compared = 0, hits = 0, rays = 0;
+  RayBatch batch;
+  for (size_t round = 0; round < effort(20, 3); ++round) {
+    const StageScene<float> scene(randomPrimitives(mix(), random));
+    std::vector<TestRay> list;
+    for (batch.clear(); !batch.full(); batch.push(list.back())) {
+      list.push_back(aimedRay(random.inCube(2), random.inCube(1)));
+    }
+    batch.extend(intersector(), scene.view);
+    for (size_t i = 0; i < list.size(); ++i) {
+      ++rays;
+      const Reference want = closest(scene.precise, list[i]);
+      if (!want.certain) continue;
+      ++compared;
+      const uint32_t got = batch.wave.hits.primitive[i];
+      ASSERT_EQ(got, want.primitive) << "ray " << i << " of round " << round;
+      if (got == kMiss) continue;
+      ++hits;
+      const Point point = hitPoint(scene.precise[got], list[i], batch.wave.hits.u[i], batch.wave.hits.v[i]);
+      ASSERT_LT(length(point - want.point), kPointError) << "ray " << i << " of round " << round;
+    }
+  }
+  EXPECT_GT(compared, rays * 8 / 10);
+  EXPECT_GT(hits, rays / 10);
+}
+
+TEST_P(ExtendTest, occlusionEqualsBruteForce) {
+  RandomPoints random(8);
+  size_t compared = 0, blocked = 0, rays = 0;
+  RayBatch batch;
+  for (size_t round = 0; round < effort(20, 3); ++round) {
+    const StageScene<float> scene(randomPrimitives(mix(), random));
+    std::vector<TestRay> list;
+    for (batch.clear(); !batch.full(); batch.push(list.back())) {
+      list.push_back(aimedRay(random.inCube(2), random.inCube(1)));
+    }
+    const float distance = 0.5f + 0.2f * static_cast<float>(round % 8);
+    const std::vector<bool> got = batch.occluded(intersector(), scene.view, distance);
+    for (size_t i = 0; i < list.size(); ++i) {
+      ++rays;
+      const std::optional<bool> want = blockedBefore(scene.precise, list[i], distance);
+      if (!want) continue;
+      ++compared;
+      blocked += *want ? 1 : 0;
+      ASSERT_EQ(got[i], *want) << "ray " << i << " of round " << round;
+    }
+  }
+  EXPECT_GT(compared, rays * 8 / 10);
+  EXPECT_GT(blocked, rays / 50);
+  EXPECT_LT(blocked, compared);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kernels, ExtendTest,
+    testing::Combine(testing::ValuesIn(allIntersectors()),
+                     testing::Values(Mix{"quads", 8, 0, 0}, Mix{"triangles", 0, 8, 0}, Mix{"spheres", 0, 0, 6},
+                                     Mix{"all", 5, 5, 4}, Mix{"crowded", 60, 60, 40})),
+    [](const auto& instance) {
+      return std::get<0>(instance.param).name + "_" + std::get<1>(instance.param).name;
+    });
+
+// Rays that run within or parallel to the planes of axis-aligned faces have zeros and infinities in every formula.
+class AxisAlignedTest : public testing::TestWithParam<Intersector> {};
+
+TEST_P(AxisAlignedTest, raysAlongTheAxesHitTheFacesTheyMeet) {
+  // A cube of side 2 around the origin: x = -1, x = 1, y = -1, y = 1, z = -1, z = 1.
+  std::vector<PrimitiveRecord<double>> faces;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Point p{-1, -1, -1}, u = p, v = p;
+      p[axis] = u[axis] = v[axis] = side;
+      u[(axis + 1) % 3] = 1;
+      v[(axis + 2) % 3] = 1;
+      faces.push_back(quadPrimitive(p, u, v));
+    }
+  }
+  const StageScene<float> scene(std::move(faces));
+  RayBatch batch;
+  std::vector<uint32_t> expected;
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      for (const double zero : {0.0, -0.0}) {
+        Point direction{zero, zero, zero};
+        direction[axis] = side;
+        batch.push({{0.3, -0.25, 0.5}, direction});
+        expected.push_back(2 * axis + (side > 0 ? 1 : 0));
+      }
+    }
+  }
+  batch.push({{0.3, 2, 0.5}, {1, 0, 0}});  // parallel to y = 1 and outside
+  expected.push_back(kMiss);
+  batch.push({{0.3, 2, 0.5}, {0, 1, 0}});  // leaves the cube behind
+  expected.push_back(kMiss);
+  batch.extend(GetParam(), scene.view);
+  for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(batch.wave.hits.primitive[i], expected[i]) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, AxisAlignedTest, testing::ValuesIn(allIntersectors()),
+                         [](const auto& instance) { return instance.param.name; });
+
+}  // namespace
+}  // namespace wavecrest

@@ -1,0 +1,170 @@
+// No path meets the surface it has just left, at any scale of the scene and far from its origin.
+//
+// Paths bounce inside a cube, whose flat walls cannot see themselves, and a hollow sphere, whose chords have a known
+// length; and they leave a solid sphere, which cannot be met again.
+#include <gtest/gtest.h>
+
+#include "tests/effort.h"
+#include "tests/kernels/closed_bodies.h"
+#include "tests/kernels/intersectors.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr size_t kPaths = 1024;
+
+// Where a room is and how large.
+struct Placement {
+  const char* name;
+  double scale, distance;  // of the centre from the origin, in units of the scale
+};
+
+template <class S>
+struct Fixture {
+  Fixture(std::vector<PrimitiveRecord<double>> primitives, const Point& eye, double spread, const Intersector& chosen)
+      : scene(std::move(primitives)), stages(findStages<S>(bestIsa(), precision(), Specialization::smooth)) {
+    std::fill_n(scene.materials[0].reflectance, 3, 1.0f);
+    scene.view.materials = scene.materials.data();
+    CameraView camera{};
+    camera.width = camera.height = 32;
+    const Point first = Point{-0.5, 0.5, 0.7} * spread;
+    for (size_t i = 0; i < 3; ++i) {
+      camera.origin[i] = eye[i];
+      camera.corner[i] = first[i];
+    }
+    camera.du[0] = spread / 32;
+    camera.dv[1] = -spread / 32;
+    scene.setCamera(camera);
+    if constexpr (sizeof(S) == sizeof(double)) {
+      extend = chosen.name == "embree" ? extendEmbree<double> : stages.extendSmall;
+    } else {
+      extend = chosen.extend;
+    }
+    context.scene = &scene.view;
+    context.pixels = scene.pixels.data();
+    context.limits = {.maxDepth = 1000, .rouletteDepth = 1000};
+    context.counters = &counters;
+    wave.pathCount = kPaths;
+  }
+  static constexpr Precision precision() { return sizeof(S) == sizeof(double) ? Precision::doubled : Precision::floating; }
+
+  void begin(uint32_t iteration) {
+    context.sampler.iteration = iteration;
+    context.depth = 0;
+    stages.generateCameraPaths(context, wave);
+  }
+
+  StageScene<S> scene;
+  const Stages<S>& stages;
+  Stage<S> extend = nullptr;
+  StageCounters counters;
+  StageContext<S> context;
+  Wave<S> wave{kPaths, {.shadingNormals = true, .textures = false, .refraction = true, .connections = false}};
+};
+
+class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersector, Placement>> {
+ protected:
+  const Intersector& intersector() const { return std::get<0>(GetParam()); }
+  double scale() const { return std::get<1>(GetParam()).scale; }
+  Point center() const { return Point{0.6, -0.5, 0.62} * (scale() * std::get<1>(GetParam()).distance); }
+
+  template <class S>
+  void bounceInCube(bool triangles) {
+    Fixture<S> f(turnedCube(scale(), center(), triangles).walls, center(), 1, intersector());
+    const auto wallOf = [&](uint32_t primitive) {  // the two triangles of a wall count as one
+      const auto& n = f.scene.precise[primitive].normal;
+      return std::array{std::lround(n[0] * 1000), std::lround(n[1] * 1000), std::lround(n[2] * 1000)};
+    };
+    for (uint32_t iteration = 0; iteration < effort(8, 1); ++iteration) {
+      f.begin(iteration);
+      std::vector<uint32_t> previous(kPaths, kMiss);
+      for (f.context.depth = 1; f.context.depth <= 24; ++f.context.depth) {
+        f.extend(f.context, f.wave);
+        for (size_t i = 0; i < f.wave.rays.size; ++i) {
+          const uint32_t now = f.wave.hits.primitive[i];
+          uint32_t& before = previous[f.wave.paths.lane[i]];
+          ASSERT_NE(now, kMiss) << "depth " << f.context.depth << " item " << i;
+          if (before != kMiss) {
+            ASSERT_NE(wallOf(now), wallOf(before)) << "depth " << f.context.depth << " item " << i;
+          }
+          before = now;
+        }
+        f.stages.arrive(f.context, f.wave);
+        f.stages.scatter(f.context, f.wave);
+      }
+      ASSERT_EQ(f.wave.rays.size, kPaths) << "paths were lost";
+      ASSERT_EQ(f.counters.misses, 0u);
+    }
+  }
+
+  // A chord that leaves a sphere at angle theta to the normal has length 2 R cos(theta).
+  template <class S>
+  void bounceInSphere() {
+    Fixture<S> f(hollowSphere(scale(), center()).walls, center(), 1, intersector());
+    const double radius = f.scene.records[0].e1[0];
+    // Two ends, each off by the offset and by the rounding of coordinates of the size of the centre's.
+    const double error = 64 * 0x1p-24 * (length(center()) + radius);
+    f.begin(0);
+    for (f.context.depth = 1; f.context.depth <= 24; ++f.context.depth) {
+      std::vector<double> chords(kPaths, -1);
+      for (size_t i = 0; f.context.depth > 1 && i < kPaths; ++i) {
+        const Point d{f.wave.rays.directionX[i], f.wave.rays.directionY[i], f.wave.rays.directionZ[i]};
+        const Point n{f.wave.surfaces.normalX[i], f.wave.surfaces.normalY[i], f.wave.surfaces.normalZ[i]};
+        chords[i] = 2 * radius * dot(d, n);
+      }
+      f.extend(f.context, f.wave);
+      for (size_t i = 0; i < kPaths; ++i) {
+        ASSERT_EQ(f.wave.hits.primitive[i], 0u) << "depth " << f.context.depth << " item " << i;
+        const double t = f.wave.hits.u[i];
+        // Grazing chords are ill-conditioned: an end off by `error` moves the other by error / cos(theta).
+        const double cosine = std::max(chords[i] / (2 * radius), 0x1p-12);
+        if (chords[i] > 0) {
+          ASSERT_NEAR(t, chords[i], error / cosine) << "depth " << f.context.depth << " item " << i;
+        }
+      }
+      f.stages.arrive(f.context, f.wave);
+      f.stages.scatter(f.context, f.wave);
+      ASSERT_EQ(f.wave.rays.size, kPaths);
+    }
+  }
+
+  template <class S>
+  void leaveSolidSphere() {
+    Fixture<S> f({spherePrimitive(center(), scale())}, center() - Point{0, 0, 3 * scale()}, 0.5, intersector());
+    for (uint32_t iteration = 0; iteration < effort(16, 2); ++iteration) {
+      f.begin(iteration);
+      f.context.depth = 1;
+      f.extend(f.context, f.wave);
+      f.stages.arrive(f.context, f.wave);
+      ASSERT_GT(f.wave.rays.size, kPaths / 8);
+      f.stages.scatter(f.context, f.wave);
+      f.context.depth = 2;
+      f.extend(f.context, f.wave);
+      for (size_t i = 0; i < f.wave.rays.size; ++i) ASSERT_EQ(f.wave.hits.primitive[i], kMiss) << "item " << i;
+    }
+  }
+};
+
+TEST_P(SelfIntersectionTest, wallsOfACubeOfQuads) {
+  if (std::get<1>(GetParam()).distance > 1) GTEST_SKIP() << "rounded corners far from the origin form no parallelogram";
+  bounceInCube<float>(false);
+}
+TEST_P(SelfIntersectionTest, wallsOfACubeOfTriangles) { bounceInCube<float>(true); }
+TEST_P(SelfIntersectionTest, wallsOfACubeInDouble) { bounceInCube<double>(true); }
+TEST_P(SelfIntersectionTest, insideOfASphere) { bounceInSphere<float>(); }
+TEST_P(SelfIntersectionTest, insideOfASphereInDouble) { bounceInSphere<double>(); }
+TEST_P(SelfIntersectionTest, outsideOfASphere) { leaveSolidSphere<float>(); }
+TEST_P(SelfIntersectionTest, outsideOfASphereInDouble) { leaveSolidSphere<double>(); }
+
+constexpr Placement kPlacements[] = {{"tiny", 1e-4, 0.1},   {"unit", 1, 0.1},        {"large", 1e4, 0.1},
+                                     {"huge", 1e6, 0.1},    {"far", 1, 100},         {"farther", 1, 1e4},
+                                     {"tinyAndFar", 1e-4, 1e3}};
+
+INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionTest,
+                         testing::Combine(testing::ValuesIn(fastestIntersectors()), testing::ValuesIn(kPlacements)),
+                         [](const auto& instance) {
+                           return std::get<0>(instance.param).name + "_" + std::get<1>(instance.param).name;
+                         });
+
+}  // namespace
+}  // namespace wavecrest

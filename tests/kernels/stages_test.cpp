@@ -1,0 +1,275 @@
+// Every stage against its scalar twin: the same wave in, the same columns out, on each instruction set, for each
+// precision policy and specialisation, for counts that leave every possible tail.
+//
+// The waves come from the twin itself: camera paths of a small room with an open side, carried to the depth and stage
+// under test. What lies past the size of a queue is poisoned before each run.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+#include "tests/kernels/stage_scene.h"
+#include "tests/kernels/stage_waves.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr size_t kPaths = 384;
+constexpr PathLimits kLimits{.maxDepth = 6, .rouletteDepth = 4};
+
+bool curved(Specialization specialization) {
+  return (kSpecializationFeatures[static_cast<size_t>(specialization)] & kCurvedShapes) != 0;
+}
+
+template <class S>
+LightRecord<S> areaLight(const PrimitiveRecord<S>& r, LightKind kind, double area) {
+  LightRecord<S> light{};
+  std::copy_n(r.p0, 3, light.p0);
+  std::copy_n(r.e1, 3, light.e1);
+  std::copy_n(r.e2, 3, light.e2);
+  std::copy_n(r.normal, 3, light.normal);
+  light.radiance[0] = S(3);
+  light.radiance[1] = S(2);
+  light.radiance[2] = S(1);
+  light.inverseArea = static_cast<S>(1 / area);
+  light.radius = r.e1[0];
+  light.offset = S(1e-6);
+  light.kind = static_cast<uint32_t>(kind);
+  return light;
+}
+
+// A turned room of quads, open towards the camera; two triangles in it, and two spheres where the feature set has them.
+// Lights: a quad, a triangle, a sphere, a point and the environment.
+template <class S>
+StageScene<S> makeRoom(bool spheres) {
+  const auto p = [](double x, double y, double z) { return turned({x, y, z}); };
+  std::vector<PrimitiveRecord<double>> list{
+      quadPrimitive(p(-1, -1, 1), p(1, -1, 1), p(-1, -1, -1)),           // floor
+      quadPrimitive(p(-1, 1, -1), p(1, 1, -1), p(-1, 1, 1)),             // ceiling
+      quadPrimitive(p(-1, -1, -1), p(1, -1, -1), p(-1, 1, -1)),          // back
+      quadPrimitive(p(-1, -1, 1), p(-1, -1, -1), p(-1, 1, 1)),           // left
+      quadPrimitive(p(1, -1, -1), p(1, -1, 1), p(1, 1, -1)),             // right
+      quadPrimitive(p(-0.4, 0.98, -0.4), p(0.4, 0.98, -0.4), p(-0.4, 0.98, 0.4)),  // lamp
+      trianglePrimitive(p(-0.8, -0.9, 0.2), p(0.1, -0.7, 0.3), p(-0.5, 0.1, 0.1)),
+      trianglePrimitive(p(0.3, -0.2, 0.5), p(0.7, -0.3, 0.6), p(0.5, 0.3, 0.4)),  // glowing
+  };
+  list[5].light = 0;
+  list[7].light = 1;
+  if (spheres) {
+    list.push_back(spherePrimitive(p(0.4, -0.6, -0.3), 0.35));
+    list.push_back(spherePrimitive(p(-0.5, 0.3, -0.4), 0.15));
+    list[9].light = 4;
+  }
+  for (size_t i = 0; i < list.size(); ++i) list[i].material = i % 2;
+  StageScene<S> scene(std::move(list));
+  scene.materials.resize(2);
+  std::fill_n(scene.materials[1].reflectance, 3, 0.6f);
+  scene.materials[1].reflectance[2] = 0.1f;
+  scene.materials[1].flags = kTwoSided;
+  scene.view.materials = scene.materials.data();
+
+  LightRecord<S> point{}, sky{};
+  const Point at = p(0.2, 0.5, 0.8);
+  for (size_t i = 0; i < 3; ++i) {
+    point.p0[i] = static_cast<S>(at[i]);
+    point.radiance[i] = S(0.5);
+    sky.radiance[i] = S(0.25);
+  }
+  point.kind = static_cast<uint32_t>(LightKind::point);
+  sky.kind = static_cast<uint32_t>(LightKind::constant);
+  std::vector<LightRecord<S>> lights{areaLight(scene.records[5], LightKind::quad, 0.64),
+                                     areaLight(scene.records[7], LightKind::triangle, 0.11), point, sky};
+  if (spheres) lights.push_back(areaLight(scene.records[9], LightKind::sphere, 4 * 3.14159265 * 0.15 * 0.15));
+  scene.setLights(std::move(lights));
+
+  CameraView camera{};
+  camera.width = camera.height = 24;
+  const Point origin = p(0.1, 0.05, 3.2), first = p(-0.5, 0.5, -1.5), across = p(1.0 / 24, 0, 0), down = p(0, -1.0 / 24, 0);
+  for (size_t i = 0; i < 3; ++i) {
+    camera.origin[i] = origin[i];
+    camera.corner[i] = first[i];
+    camera.du[i] = across[i];
+    camera.dv[i] = down[i];
+  }
+  scene.setCamera(camera);
+  return scene;
+}
+
+// A stage at a depth, and how its input is cut to a number of items.
+template <class S>
+struct StageCase {
+  const char* name;
+  uint32_t depth;
+  Stage<S> Stages<S>::*stage;
+  std::function<void(Wave<S>&, size_t)> cut;
+  double ulps;  // largest difference from the twin, in units of rounding of its own size and a typical item's
+};
+
+template <class S>
+void cutPaths(Wave<S>& wave, size_t count) {
+  for (size_t* size : {&wave.rays.size, &wave.paths.size, &wave.hits.size, &wave.surfaces.size}) {
+    *size = std::min(*size, count);
+  }
+}
+
+template <class S>
+std::vector<StageCase<S>> allStages() {
+  const auto paths = [](Wave<S>& wave, size_t count) { cutPaths(wave, count); };
+  const auto lanes = [](Wave<S>& wave, size_t count) { wave.pathCount = count; };
+  const auto shadow = [](Wave<S>& wave, size_t count) { wave.shadowRays.size = std::min(wave.shadowRays.size, count); };
+  using T = Stages<S>;
+  // Depths: 1 is lit by s = 0 alone, 2 has MIS weights, 4 roulette, 6 is the last.
+  return {{"generate", 0, &T::generateCameraPaths, lanes, 8},
+          {"extend 1", 1, &T::extendSmall, paths, 512},
+          {"extend 3", 3, &T::extendSmall, paths, 512},
+          {"arrive 1", 1, &T::arrive, paths, 64},
+          {"arrive 2", 2, &T::arrive, paths, 64},
+          {"arrive 6", 6, &T::arrive, paths, 64},
+          {"next event 1", 1, &T::nextEvent, paths, 256},
+          {"next event 2", 2, &T::nextEvent, paths, 256},
+          {"occlude 1", 1, &T::occludeSmall, shadow, 8},
+          {"occlude 2", 2, &T::occludeSmall, shadow, 8},
+          {"scatter 1", 1, &T::scatter, paths, 64},
+          {"scatter 4", 4, &T::scatter, paths, 64}};
+}
+
+template <class S>
+class TwinComparison {
+ public:
+  TwinComparison(Isa isa, Precision precision, Specialization specialization)
+      : scene_(makeRoom<S>(curved(specialization))),
+        twin_(findStages<S>(Isa::scalar, precision, specialization)),
+        stages_(findStages<S>(isa, precision, specialization)),
+        needs_(columnNeeds(specialization)) {}
+
+  void compare(const StageCase<S>& stage) {
+    Wave<S> input(kPaths, needs_), expected(kPaths, needs_), actual(kPaths, needs_);
+    poisonTails(input);
+    carryTo(stage, input);
+    context_.depth = stage.depth;
+    copyWave(input, expected);
+    run(twin_, stage, expected);
+    const ColumnScales scales = columnScales(expected);
+    for (size_t count = 0; count <= 2 * stages_.lanes + 1; ++count) {
+      if (stage.depth == 0 && count == 0) continue;  // a wave has at least one path
+      for (Wave<S>* wave : {&expected, &actual}) {
+        copyWave(input, *wave);
+        stage.cut(*wave, count);
+        poisonTails(*wave);
+      }
+      const StageCounters want = run(twin_, stage, expected), got = run(stages_, stage, actual);
+      const std::string where = std::string(stage.name) + ", " + std::to_string(count) + " items";
+      EXPECT_EQ(want.raysClosest, got.raysClosest) << where;
+      EXPECT_EQ(want.raysShadow, got.raysShadow) << where;
+      EXPECT_EQ(want.misses, got.misses) << where;
+      expectSameWave(expected, actual, scales, stage.ulps, where);
+    }
+  }
+
+ private:
+  // What the session gives to path tracing with these kernels (engine/session.cpp).
+  static ColumnNeeds columnNeeds(Specialization specialization) {
+    const uint32_t features = kSpecializationFeatures[static_cast<size_t>(specialization)];
+    return {.shadingNormals = (features & kShadingNormals) != 0,
+            .textures = (features & kTextures) != 0,
+            .refraction = (features & kSpecularBsdfs) != 0,
+            .connections = false};
+  }
+
+  // The twin's wave just before the stage.
+  void carryTo(const StageCase<S>& stage, Wave<S>& wave) {
+    wave.firstPath = 64;
+    wave.pathCount = kPaths;
+    using T = Stages<S>;
+    if (stage.depth == 0) return;
+    context_.depth = 0;
+    run(twin_.generateCameraPaths, wave);
+    for (context_.depth = 1;; ++context_.depth) {
+      for (const auto member : {&T::extendSmall, &T::arrive, &T::nextEvent, &T::occludeSmall, &T::scatter}) {
+        if (context_.depth == stage.depth && member == stage.stage) return;
+        run(twin_.*member, wave);
+      }
+    }
+  }
+  StageCounters run(const Stages<S>& stages, const StageCase<S>& stage, Wave<S>& wave) {
+    return run(stages.*stage.stage, wave);
+  }
+  StageCounters run(Stage<S> stage, Wave<S>& wave) {
+    StageCounters counters;
+    context_.scene = &scene_.view;
+    context_.pixels = scene_.pixels.data();
+    context_.sampler = {.kind = SamplerKind::independent, .seed = 11, .iteration = 3};
+    context_.limits = kLimits;
+    context_.counters = &counters;
+    stage(context_, wave);
+    return counters;
+  }
+
+  StageScene<S> scene_;
+  const Stages<S>& twin_;
+  const Stages<S>& stages_;
+  const ColumnNeeds needs_;
+  StageContext<S> context_;
+};
+
+// ---- the tests ------------------------------------------------------------------------------------------------------
+
+struct Choice {
+  Isa isa;
+  Precision precision;
+  Specialization specialization;
+};
+
+std::vector<Choice> allChoices() {
+  std::vector<Choice> choices;
+  for (const Isa isa : availableIsas()) {
+    for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
+      for (const auto specialization : {Specialization::diffuse, Specialization::smooth, Specialization::general}) {
+        choices.push_back({isa, precision, specialization});
+      }
+    }
+  }
+  return choices;
+}
+std::string nameOf(const Choice& choice) {
+  return std::string(toString(choice.isa)) + "_" +
+         std::string(kPrecisionNames[static_cast<size_t>(choice.precision)]) + "_" +
+         std::string(kSpecializationNames[static_cast<size_t>(choice.specialization)]);
+}
+
+class StageTest : public testing::TestWithParam<Choice> {
+ protected:
+  template <class S>
+  void compareAll() {
+    const Choice& choice = GetParam();
+    TwinComparison<S> comparison(choice.isa, choice.precision, choice.specialization);
+    for (const StageCase<S>& stage : allStages<S>()) {
+      comparison.compare(stage);
+      if (HasFatalFailure()) return;
+    }
+  }
+};
+
+TEST_P(StageTest, equalsScalarTwin) {
+  if (GetParam().precision == Precision::doubled) {
+    compareAll<double>();
+  } else {
+    compareAll<float>();
+  }
+}
+
+// The table hands out the kernels that were asked for: the width proves which ones run.
+TEST_P(StageTest, comesFromItsInstructionSet) {
+  const Choice& choice = GetParam();
+  constexpr size_t kLanesOf[] = {1, 4, 8, 16};
+  const size_t lanes = choice.precision == Precision::doubled
+                           ? findStages<double>(choice.isa, choice.precision, choice.specialization).lanes
+                           : findStages<float>(choice.isa, choice.precision, choice.specialization).lanes;
+  EXPECT_EQ(lanes, kLanesOf[static_cast<size_t>(choice.isa)]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, StageTest, testing::ValuesIn(allChoices()),
+                         [](const auto& instance) { return nameOf(instance.param); });
+
+}  // namespace
+}  // namespace wavecrest

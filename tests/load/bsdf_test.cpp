@@ -1,0 +1,198 @@
+// BSDFs: the defaults of every plugin, its parameters, the adapters around it, and what is refused.
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+Material materialOf(std::string_view bsdf) {
+  return loadBody("<shape type=\"sphere\">" + std::string(bsdf) + "</shape>").materials.at(0);
+}
+template <class Kind>
+Kind kindOf(std::string_view bsdf) {
+  return std::get<Kind>(materialOf(bsdf).kind);
+}
+void expectBsdfError(std::string_view bsdf, std::string_view text) {
+  expectErrorOnLine2("<shape type=\"sphere\">" + std::string(bsdf) + "</shape>", text);
+}
+
+constexpr Rgb kWhite{1, 1, 1}, kHalf{0.5, 0.5, 0.5};
+
+TEST(Bsdf, DiffuseDefaults) { EXPECT_EQ(kindOf<Diffuse>(R"(<bsdf type="diffuse"/>)").reflectance.value, kHalf); }
+
+TEST(Bsdf, ShapeWithoutOneIsDiffuse) {
+  EXPECT_EQ(std::get<Diffuse>(loadBody("").materials.at(0).kind).reflectance.value, kHalf);
+}
+
+TEST(Bsdf, LightWithoutOneIsBlack) {
+  const Scene scene = loadBody(R"(<shape type="sphere"><emitter type="area"/></shape>)");
+  EXPECT_EQ(std::get<Diffuse>(scene.materials.at(0).kind).reflectance.value, (Rgb{0, 0, 0}));
+}
+
+TEST(Bsdf, ConductorDefaultsToAPerfectMirror) {
+  const Conductor conductor = kindOf<Conductor>(R"(<bsdf type="conductor"/>)");
+  EXPECT_TRUE(conductor.perfectMirror);
+  EXPECT_EQ(conductor.specularReflectance.value, kWhite);
+  EXPECT_EQ(conductor.alpha.value, 0);
+}
+
+TEST(Bsdf, ConductorMaterialNoneIsAPerfectMirror) {
+  EXPECT_TRUE(
+      kindOf<Conductor>(R"(<bsdf type="conductor"><string name="material" value="none"/></bsdf>)").perfectMirror);
+}
+
+// Mitsuba 3.9, scalar_rgb.
+TEST(Bsdf, ConductorOfNamedMaterialHasMitsubasConstants) {
+  const Conductor gold = kindOf<Conductor>(R"(<bsdf type="conductor"><string name="material" value="Au"/></bsdf>)");
+  EXPECT_EQ(gold.eta, (Rgb{0.143036, 0.375307, 1.44205}));
+  EXPECT_EQ(gold.k, (Rgb{3.983, 2.38556, 1.60336}));
+  EXPECT_FALSE(gold.perfectMirror);
+}
+
+TEST(Bsdf, ConductorTakesEtaAndK) {
+  const Conductor conductor =
+      kindOf<Conductor>(R"(<bsdf type="conductor"><rgb name="eta" value="1,2,3"/><float name="k" value="4"/></bsdf>)");
+  EXPECT_EQ(conductor.eta, (Rgb{1, 2, 3}));
+  EXPECT_EQ(conductor.k, (Rgb{4, 4, 4}));
+}
+
+TEST(Bsdf, RoughConductorDefaults) {
+  const Conductor conductor = kindOf<Conductor>(R"(<bsdf type="roughconductor"/>)");
+  EXPECT_EQ(conductor.alpha.value, 0.1);
+  EXPECT_EQ(conductor.distribution, Distribution::beckmann);
+  EXPECT_TRUE(conductor.perfectMirror);
+}
+
+TEST(Bsdf, RoughConductorTakesDistributionAndAlpha) {
+  const Conductor conductor = kindOf<Conductor>(R"(<bsdf type="roughconductor">
+      <string name="distribution" value="GGX"/><float name="alpha" value="0.3"/></bsdf>)");
+  EXPECT_EQ(conductor.distribution, Distribution::ggx);
+  EXPECT_EQ(conductor.alpha.value, 0.3);
+}
+
+TEST(Bsdf, RoughnessOfZeroStaysRough) {
+  EXPECT_EQ(kindOf<Conductor>(R"(<bsdf type="roughconductor"><float name="alpha" value="0"/></bsdf>)").alpha.value,
+            1e-4);
+}
+
+TEST(Bsdf, EqualAlphaUAndAlphaVAreAlpha) {
+  EXPECT_EQ(kindOf<Conductor>(R"(<bsdf type="roughconductor"><float name="alpha_u" value="0.2"/>
+      <float name="alpha_v" value="0.2"/></bsdf>)")
+                .alpha.value,
+            0.2);
+}
+
+TEST(Bsdf, RoughnessCanBeATexture) {
+  EXPECT_EQ(kindOf<Conductor>(R"(<bsdf type="roughconductor"><texture type="checkerboard" name="alpha"/></bsdf>)")
+                .alpha.texture,
+            0u);
+}
+
+TEST(Bsdf, DielectricDefaults) {
+  const Dielectric glass = kindOf<Dielectric>(R"(<bsdf type="dielectric"/>)");
+  EXPECT_EQ(glass.intIor, 1.5046);
+  EXPECT_EQ(glass.extIor, 1.000277);
+  EXPECT_EQ(glass.specularReflectance.value, kWhite);
+  EXPECT_EQ(glass.specularTransmittance.value, kWhite);
+  EXPECT_EQ(glass.alpha.value, 0);
+  EXPECT_FALSE(glass.thin);
+}
+
+TEST(Bsdf, IndexOfRefractionByNameIgnoresCase) {
+  const Dielectric glass = kindOf<Dielectric>(R"(<bsdf type="dielectric"><string name="int_ior" value="Water Ice"/>
+      <string name="ext_ior" value="vacuum"/></bsdf>)");
+  EXPECT_EQ(glass.intIor, 1.31);
+  EXPECT_EQ(glass.extIor, 1);
+}
+
+TEST(Bsdf, ThinDielectricIsThin) { EXPECT_TRUE(kindOf<Dielectric>(R"(<bsdf type="thindielectric"/>)").thin); }
+
+TEST(Bsdf, RoughDielectricDefaults) {
+  const Dielectric glass = kindOf<Dielectric>(R"(<bsdf type="roughdielectric"/>)");
+  EXPECT_EQ(glass.intIor, 1.5046);
+  EXPECT_EQ(glass.alpha.value, 0.1);
+  EXPECT_EQ(glass.distribution, Distribution::beckmann);
+}
+
+TEST(Bsdf, PlasticDefaults) {
+  const Plastic plastic = kindOf<Plastic>(R"(<bsdf type="plastic"/>)");
+  EXPECT_EQ(plastic.intIor, 1.49);
+  EXPECT_EQ(plastic.extIor, 1.000277);
+  EXPECT_EQ(plastic.diffuseReflectance.value, kHalf);
+  EXPECT_EQ(plastic.specularReflectance.value, kWhite);
+  EXPECT_EQ(plastic.alpha.value, 0);
+  EXPECT_FALSE(plastic.nonlinear);
+}
+
+TEST(Bsdf, RoughPlasticDefaults) {
+  const Plastic plastic = kindOf<Plastic>(R"(<bsdf type="roughplastic"/>)");
+  EXPECT_EQ(plastic.alpha.value, 0.1);
+  EXPECT_EQ(plastic.distribution, Distribution::beckmann);
+}
+
+TEST(Bsdf, PhongDefaults) {
+  const Phong phong = kindOf<Phong>(R"(<bsdf type="phong"/>)");
+  EXPECT_EQ(phong.diffuseReflectance.value, kHalf);
+  EXPECT_EQ(phong.specularReflectance.value, (Rgb{0.2, 0.2, 0.2}));
+  EXPECT_EQ(phong.exponent, 30);
+}
+
+TEST(Bsdf, MaterialIsOneSidedUnlessToldOtherwise) {
+  EXPECT_FALSE(materialOf(R"(<bsdf type="diffuse"/>)").twoSided);
+  EXPECT_TRUE(materialOf(R"(<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>)").twoSided);
+}
+
+TEST(Bsdf, MaskHasOpacityOfOneHalf) {
+  const Material material = materialOf(R"(<bsdf type="mask"><bsdf type="conductor"/></bsdf>)");
+  ASSERT_TRUE(material.opacity.has_value());
+  EXPECT_EQ(material.opacity->value, 0.5);
+  EXPECT_TRUE(std::holds_alternative<Conductor>(material.kind));
+}
+
+TEST(Bsdf, MaskAroundTwoSidedKeepsBoth) {
+  const Material material = materialOf(R"(<bsdf type="mask"><float name="opacity" value="0.25"/>
+      <bsdf type="twosided"><bsdf type="diffuse"/></bsdf></bsdf>)");
+  EXPECT_TRUE(material.twoSided);
+  EXPECT_EQ(material.opacity->value, 0.25);
+}
+
+TEST(Bsdf, BumpMapTakesTextureAndScale) {
+  const Material material = materialOf(R"(<bsdf type="bumpmap"><float name="scale" value="3"/>
+      <texture type="checkerboard"/><bsdf type="diffuse"/></bsdf>)");
+  EXPECT_EQ(material.bumpTexture, 0u);
+  EXPECT_EQ(material.bumpScale, 3);
+}
+
+TEST(Bsdf, NormalMapTakesItsTexture) {
+  const Material material = materialOf(R"(<bsdf type="normalmap"><texture type="checkerboard" name="normalmap"/>
+      <bsdf type="diffuse"/></bsdf>)");
+  EXPECT_EQ(material.normalTexture, 0u);
+}
+
+TEST(Bsdf, MistakesAreErrors) {
+  expectBsdfError(R"(<bsdf type="null"/>)", "bsdf \"null\" is not supported");
+  expectBsdfError(R"(<bsdf type="conductor"><string name="material" value="Xx"/></bsdf>)", "unknown conductor \"Xx\"");
+  expectBsdfError(R"(<bsdf type="conductor"><string name="material" value="Al"/><rgb name="k" value="1"/></bsdf>)",
+                  "eta and k stand beside a material");
+  expectBsdfError(R"(<bsdf type="dielectric"><string name="int_ior" value="mud"/></bsdf>)",
+                  "unknown substance \"mud\"");
+  expectBsdfError(R"(<bsdf type="dielectric"><float name="int_ior" value="0"/></bsdf>)", "not positive");
+  expectBsdfError(R"(<bsdf type="roughconductor"><string name="distribution" value="phong"/></bsdf>)",
+                  "unknown distribution");
+  expectBsdfError(R"(<bsdf type="roughconductor"><float name="alpha_u" value="1"/></bsdf>)", "alpha_u and alpha_v");
+  expectBsdfError(
+      R"(<bsdf type="roughconductor"><float name="alpha_u" value="1"/><float name="alpha_v" value="0.5"/></bsdf>)",
+      "anisotropic roughness is not supported");
+  expectBsdfError(R"(<bsdf type="roughplastic"><texture type="checkerboard" name="alpha"/></bsdf>)", "is a texture");
+  expectBsdfError(R"(<bsdf type="twosided"/>)", "contains 0 objects <bsdf>");
+  expectBsdfError(R"(<bsdf type="twosided"><bsdf type="dielectric"/></bsdf>)", "BSDF that transmits");
+  expectBsdfError(R"(<bsdf type="twosided"><bsdf type="diffuse"/><bsdf type="conductor"/></bsdf>)",
+                  "two different BSDFs");
+  expectBsdfError(R"(<bsdf type="mask"><bsdf type="mask"><bsdf type="diffuse"/></bsdf></bsdf>)", "nested in another");
+  expectBsdfError(R"(<bsdf type="bumpmap"><bsdf type="diffuse"/></bsdf>)", "contains 0 objects <texture>");
+  expectBsdfError(R"(<bsdf type="normalmap"><texture type="checkerboard"/><bsdf type="diffuse"/></bsdf>)",
+                  "name=\"normalmap\"");
+  expectBsdfError(R"(<bsdf type="diffuse"/><bsdf type="diffuse"/>)", "contains 2 objects <bsdf>");
+}
+
+}  // namespace
+}  // namespace wavecrest::testing

@@ -1,0 +1,100 @@
+// Colours. Expected values of spectra: what Mitsuba 3.9's scalar_rgb variant reports for the same XML.
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+Rgb reflectanceOf(std::string_view element) {
+  const Scene scene =
+      loadBody("<shape type=\"sphere\"><bsdf type=\"diffuse\">" + std::string(element) + "</bsdf></shape>");
+  return std::get<Diffuse>(scene.materials.at(0).kind).reflectance.value;
+}
+
+Rgb intensityOf(std::string_view element) {
+  const Scene scene = loadBody("<emitter type=\"point\">" + std::string(element) + "</emitter>");
+  return std::get<PointEmitter>(scene.emitters.at(0).kind).intensity;
+}
+
+void expectRgb(const Rgb& color, const Rgb& expected, double tolerance) {
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(color[i], expected[i], tolerance) << "channel " << i;
+}
+
+constexpr double kPrinted = 6e-6;  // Mitsuba computes in single precision and prints six digits
+
+TEST(Color, RgbOfThree) {
+  expectRgb(reflectanceOf(R"(<rgb name="reflectance" value="0.1, 0.2 0.3"/>)"), {0.1, 0.2, 0.3}, 0);
+}
+
+TEST(Color, RgbOfOneIsGrey) {
+  expectRgb(reflectanceOf(R"(<rgb name="reflectance" value="0.25"/>)"), {0.25, 0.25, 0.25}, 0);
+}
+
+TEST(Color, FloatIsGrey) {
+  expectRgb(reflectanceOf(R"(<float name="reflectance" value="0.25"/>)"), {0.25, 0.25, 0.25}, 0);
+}
+
+TEST(Color, SrgbHexIsDecoded) {
+  // IEC 61966-2-1: 0x80 / 255 = 0.50196 decodes to 0.215861, below 0.04045 the curve is v / 12.92.
+  expectRgb(reflectanceOf(R"(<srgb name="reflectance" value="#FF8005"/>)"), {1, 0.2158605, 5 / 255.0 / 12.92}, 1e-7);
+}
+
+TEST(Color, SrgbNumbersAreDecoded) {
+  expectRgb(reflectanceOf(R"(<srgb name="reflectance" value="0.5"/>)"), {0.2140411, 0.2140411, 0.2140411}, 1e-7);
+}
+
+TEST(Color, UniformSpectrumAsReflectanceIsGrey) {
+  expectRgb(reflectanceOf(R"(<spectrum name="reflectance" value="0.3"/>)"), {0.3, 0.3, 0.3}, 0);
+}
+
+TEST(Color, UniformSpectrumAsEmissionHasTheColourOfIlluminantE) {
+  expectRgb(intensityOf(R"(<spectrum name="intensity" value="2"/>)"), {2.40959, 1.89658, 1.81783}, kPrinted);
+}
+
+TEST(Color, TabulatedSpectrumAsReflectanceIsSeenUnderD65) {
+  expectRgb(reflectanceOf(R"(<spectrum name="reflectance" value="400:0.1, 500:0.3, 600:0.9, 700:0.5"/>)"),
+            {0.950523, 0.558094, 0.154806}, kPrinted);
+}
+
+TEST(Color, TabulatedSpectrumAsEmissionIsIntegratedAsItIs) {
+  expectRgb(intensityOf(R"(<spectrum name="intensity" value="400:0.1, 500:0.3, 600:0.9, 700:0.5"/>)"),
+            {1.09588, 0.537125, 0.131576}, kPrinted);
+}
+
+TEST(Color, TabulatedSpectrumAsIndexOfRefractionIsNotClamped) {
+  const Scene scene = loadBody(R"(<shape type="sphere"><bsdf type="conductor">
+      <spectrum name="eta" value="400:1.1, 500:2.3, 600:3.9, 700:0.5"/><spectrum name="k" value="400:1, 700:1"/>
+    </bsdf></shape>)");
+  expectRgb(std::get<Conductor>(scene.materials.at(0).kind).eta, {3.51945, 3.05049, 1.56694}, 2 * kPrinted);
+  expectRgb(std::get<Conductor>(scene.materials.at(0).kind).k, {0.995342, 0.999756, 0.994909}, kPrinted);
+}
+
+TEST(Color, SpectrumObjectsOfD65AndUniformAreWhite) {
+  expectRgb(intensityOf(R"(<spectrum type="d65" name="intensity"><float name="scale" value="2"/></spectrum>)"),
+            {2, 2, 2}, 0);
+  expectRgb(intensityOf(R"(<spectrum type="uniform" name="intensity"><float name="value" value="2"/></spectrum>)"),
+            {2, 2, 2}, 0);
+}
+
+void expectColorError(std::string_view element, std::string_view text) {
+  expectErrorOnLine2("<shape type=\"sphere\"><bsdf type=\"diffuse\">" + std::string(element) + "</bsdf></shape>", text);
+}
+
+TEST(Color, BadOnesAreErrors) {
+  expectColorError(R"(<rgb name="reflectance" value="0.1 0.2"/>)", "2 numbers in <rgb>");
+  expectColorError(R"(<rgb name="reflectance"/>)", "no value");
+  expectColorError(R"(<rgb name="reflectance" value="1.5, 0, 0"/>)", "out of range; expected values from 0 to 1");
+  expectColorError(R"(<rgb name="reflectance" value="-0.1"/>)", "out of range");
+  expectColorError(R"(<srgb name="reflectance" value="#12345"/>)", "expected #rrggbb");
+  expectColorError(R"(<spectrum name="reflectance" value="400:1"/>)", "too few entries");
+  expectColorError(R"(<spectrum name="reflectance" value="400:1, 300:1"/>)", "do not increase");
+  expectColorError(R"(<spectrum name="reflectance" value="400:1, 500"/>)", "expected wavelength:value");
+  expectColorError(R"(<string name="reflectance" value="red"/>)", "<string> given for a colour");
+  expectColorError(R"(<spectrum name="reflectance" type="blackbody"/>)", "not supported");
+}
+
+TEST(Color, NegativeRadianceIsAnError) {
+  expectErrorOnLine2(R"(<emitter type="constant"><rgb name="radiance" value="1,-1,1"/></emitter>)", "out of range");
+}
+
+}  // namespace
+}  // namespace wavecrest::testing

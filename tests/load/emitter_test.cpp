@@ -1,0 +1,148 @@
+// Lights: defaults, parameters, and what is refused.
+#include <cmath>
+
+#include "metrics/image/image_io.h"
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+template <class Kind>
+Kind emitterOf(std::string_view type, std::string_view content = "") {
+  const Scene scene = loadBody("<emitter type=\"" + std::string(type) + "\">" + std::string(content) + "</emitter>");
+  return std::get<Kind>(scene.emitters.at(0).kind);
+}
+void expectEmitterError(std::string_view type, std::string_view content, std::string_view text) {
+  expectErrorOnLine2("<emitter type=\"" + std::string(type) + "\">" + std::string(content) + "</emitter>", text);
+}
+
+constexpr Rgb kOne{1, 1, 1};
+
+TEST(AreaLight, BelongsToItsShape) {
+  const Scene scene = loadBody(R"(<shape type="sphere"/><shape type="rectangle"><emitter type="area">
+      <rgb name="radiance" value="17, 12, 4"/></emitter></shape>)");
+  ASSERT_EQ(scene.emitters.size(), 1u);
+  const AreaEmitter& light = std::get<AreaEmitter>(scene.emitters[0].kind);
+  EXPECT_EQ(light.radiance.value, (Rgb{17, 12, 4}));
+  EXPECT_EQ(light.shape, 1u);
+  EXPECT_EQ(scene.shapes[1].emitter, 0u);
+  EXPECT_EQ(scene.shapes[0].emitter, kNone);
+}
+
+TEST(AreaLight, RadianceDefaultsToOne) {
+  const Scene scene = loadBody(R"(<shape type="sphere"><emitter type="area"/></shape>)");
+  EXPECT_EQ(std::get<AreaEmitter>(scene.emitters.at(0).kind).radiance.value, kOne);
+}
+
+TEST(AreaLight, RadianceCanBeATexture) {
+  const Scene scene = loadBody(
+      R"(<shape type="sphere"><emitter type="area"><texture type="checkerboard" name="radiance"/></emitter></shape>)");
+  EXPECT_EQ(std::get<AreaEmitter>(scene.emitters.at(0).kind).radiance.texture, 0u);
+}
+
+TEST(AreaLight, OutsideOfAShapeIsAnError) { expectEmitterError("area", "", "area light outside of a shape"); }
+
+TEST(AreaLight, OtherLightsInsideAShapeAreErrors) {
+  expectErrorOnLine2(R"(<shape type="sphere"><emitter type="point"/></shape>)", "inside a shape; expected \"area\"");
+}
+
+TEST(PointLight, Defaults) {
+  EXPECT_EQ(emitterOf<PointEmitter>("point").position, (Double3{0, 0, 0}));
+  EXPECT_EQ(emitterOf<PointEmitter>("point").intensity, kOne);
+}
+
+TEST(PointLight, PositionOrToWorld) {
+  EXPECT_EQ(emitterOf<PointEmitter>("point", R"(<point name="position" x="1" y="2" z="3"/>)").position,
+            (Double3{1, 2, 3}));
+  EXPECT_EQ(emitterOf<PointEmitter>("point", R"(<transform name="to_world"><translate y="4"/></transform>)").position,
+            (Double3{0, 4, 0}));
+  expectEmitterError("point", R"(<point name="position" value="1"/><transform name="to_world"/>)", "one of the two");
+}
+
+TEST(PointLight, TexturedIntensityIsAnError) {
+  expectEmitterError("point", R"(<texture type="checkerboard" name="intensity"/>)", "is a texture");
+}
+
+TEST(SpotLight, Defaults) {
+  const SpotEmitter spot = emitterOf<SpotEmitter>("spot");
+  EXPECT_EQ(spot.direction, (Double3{0, 0, 1}));
+  EXPECT_EQ(spot.intensity, kOne);
+  EXPECT_EQ(spot.cutoffAngle, 20);
+  EXPECT_EQ(spot.beamWidth, 15);
+  EXPECT_EQ(spot.texture, kNone);
+}
+
+TEST(SpotLight, BeamIsThreeQuartersOfTheCutoff) {
+  EXPECT_EQ(emitterOf<SpotEmitter>("spot", R"(<float name="cutoff_angle" value="40"/>)").beamWidth, 30);
+}
+
+TEST(SpotLight, LooksAlongItsTransform) {
+  const SpotEmitter spot = emitterOf<SpotEmitter>(
+      "spot", R"(<transform name="to_world"><lookat origin="0,5,0" target="0,0,0" up="1,0,0"/></transform>)");
+  EXPECT_EQ(spot.position, (Double3{0, 5, 0}));
+  EXPECT_EQ(spot.direction, (Double3{0, -1, 0}));
+}
+
+TEST(SpotLight, AnglesAreChecked) {
+  expectEmitterError("spot", R"(<float name="cutoff_angle" value="91"/>)", "above 90 degrees");
+  expectEmitterError("spot", R"(<float name="beam_width" value="30"/>)", "not below the cutoff_angle");
+}
+
+TEST(DirectionalLight, Defaults) {
+  EXPECT_EQ(emitterOf<DirectionalEmitter>("directional").direction, (Double3{0, 0, 1}));
+  EXPECT_EQ(emitterOf<DirectionalEmitter>("directional").irradiance, kOne);
+}
+
+TEST(DirectionalLight, DirectionIsNormalised) {
+  EXPECT_EQ(emitterOf<DirectionalEmitter>("directional", R"(<vector name="direction" x="0" y="-3" z="4"/>)").direction,
+            (Double3{0, -0.6000000000000001, 0.8}));
+}
+
+TEST(DirectionalLight, MistakesAreErrors) {
+  expectEmitterError("directional", R"(<vector name="direction" value="0"/>)", "no direction");
+  expectEmitterError("directional", R"(<vector name="direction" value="1"/><transform name="to_world"/>)",
+                     "one of the two");
+}
+
+TEST(ConstantLight, RadianceDefaultsToOne) { EXPECT_EQ(emitterOf<ConstantEmitter>("constant").radiance, kOne); }
+
+TEST(ConstantLight, SecondEnvironmentIsAnError) {
+  expectErrorOnLine2(R"(<emitter type="constant"/><emitter type="constant"/>)", "second environment light");
+}
+
+TEST(EnvironmentMap, KeepsPixelsScaleAndTransform) {
+  const Folder folder;
+  writeExr((folder.path() / "sky.exr").string(),
+           {.width = 2, .height = 1, .channels = 3, .pixels = {1, 2, 3, 4, 5, 6}});
+  const Scene scene = loadBody(folder, R"(<emitter type="envmap"><string name="filename" value="sky.exr"/>
+      <float name="scale" value="2"/><transform name="to_world"><rotate y="1" angle="180"/></transform></emitter>)");
+  const EnvmapEmitter& sky = std::get<EnvmapEmitter>(scene.emitters.at(0).kind);
+  EXPECT_EQ(sky.bitmap->width, 2u);
+  EXPECT_EQ(sky.bitmap->pixels, (std::vector<float>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(sky.scale, 2);
+  EXPECT_EQ(sky.toWorld[0][0], -1);
+}
+
+TEST(EnvironmentMap, NegativeAndNonFinitePixelsAreErrors) {
+  const Folder folder;
+  const std::string xml =
+      sceneXml(std::string(kSensor) + std::string(kSphere) +
+               "\n<emitter type=\"envmap\"><string name=\"filename\" value=\"sky.exr\"/></emitter>");
+  Image image{.width = 1, .height = 1, .channels = 3, .pixels = {1, -1, 1}};
+  writeExr((folder.path() / "sky.exr").string(), image);
+  expectError(folder, xml, 2, "negative pixels");
+  image.pixels[1] = NAN;
+  writeExr((folder.path() / "sky.exr").string(), image);
+  expectError(folder, xml, 2, "pixel (0, 0) is not finite");
+}
+
+TEST(EnvironmentMap, MissingFileIsReportedWhereItIsNamed) {
+  expectErrorOnLine2(R"(<emitter type="envmap"><string name="filename" value="sky.exr"/></emitter>)", "not found");
+}
+
+TEST(Light, SamplingWeightIsAccepted) {
+  EXPECT_EQ(emitterOf<ConstantEmitter>("constant", R"(<float name="sampling_weight" value="2"/>)").radiance, kOne);
+}
+
+}  // namespace
+}  // namespace wavecrest::testing

@@ -1,0 +1,92 @@
+// OBJ files.
+#include "tests/load/mesh_text.h"
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+constexpr std::string_view kQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+Mesh meshOf(std::string_view content, std::string_view options = "") {
+  const Folder folder;
+  folder.write("mesh.obj", content);
+  const Scene scene = load(folder, sceneXml(R"(<shape type="obj"><string name="filename" value="mesh.obj"/>)" +
+                                            std::string(options) + "</shape>" + std::string(kSensor)));
+  return std::get<Mesh>(scene.shapes.at(0).kind);
+}
+void expectObjError(std::string_view content, int line, std::string_view text) {
+  const Folder folder;
+  folder.write("mesh.obj", content);
+  expectError(
+      folder,
+      sceneXml(R"(<shape type="obj"><string name="filename" value="mesh.obj"/></shape>)" + std::string(kSensor)), line,
+      text, "mesh.obj");
+}
+
+TEST(Obj, QuadIsCutAsMitsubaCutsIt) {
+  EXPECT_EQ(meshOf(std::string(kQuad) + "f 1 2 3 4\n").triangles,
+            (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}}));
+}
+
+TEST(Obj, Gzipped) { EXPECT_EQ(meshOf(gzip(std::string(kQuad) + "f 1 2 3\n")).triangles.size(), 1u); }
+
+TEST(Obj, NegativeIndicesCountBackwards) {
+  const Mesh mesh = meshOf(std::string(kQuad) + "f -4 -3 -1\n");
+  EXPECT_EQ(mesh.positions, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+}
+
+TEST(Obj, CornersThatDifferInTextureCoordinatesAreSplit) {
+  const Mesh mesh = meshOf(std::string(kQuad) + "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/1\n");
+  EXPECT_EQ(mesh.positions.size(), 5u);  // vertex 1 twice, vertex 3 shared
+  EXPECT_EQ(mesh.uvs.size(), 5u);
+}
+
+TEST(Obj, TextureCoordinatesAreFlippedByDefault) {
+  const std::string text = std::string(kQuad) + "vt 0.25 0.25\nf 1/1 2/1 3/1\n";
+  EXPECT_EQ(meshOf(text).uvs[0], (Float2{0.25f, 0.75f}));
+  EXPECT_EQ(meshOf(text, R"(<boolean name="flip_tex_coords" value="false"/>)").uvs[0], (Float2{0.25f, 0.25f}));
+}
+
+TEST(Obj, NormalsOfTheFileAreUsed) {
+  const Mesh mesh = meshOf(std::string(kQuad) + "vn 0 0.6 0.8\nf 1//1 2//1 3//1\n");
+  EXPECT_FLOAT_EQ(mesh.normals[0][1], 0.6f);
+}
+
+TEST(Obj, CornerWithoutNormalAmongOthersGetsTheSmoothOne) {
+  const Mesh mesh = meshOf(std::string(kQuad) + "vn 0 0.6 0.8\nf 1//1 2//1 3\n");
+  EXPECT_EQ(mesh.normals[2], (Float3{0, 0, 1}));
+}
+
+TEST(Obj, OtherLinesAreSkipped) {
+  EXPECT_EQ(
+      meshOf("# a comment\nmtllib x.mtl\no thing\ng part\ns off\n" + std::string(kQuad) + "usemtl red\n\nf 1 2 3\n")
+          .triangles.size(),
+      1u);
+}
+
+TEST(Obj, ErrorsNameTheirLine) {
+  expectObjError("v 0 0\n", 1, "too few numbers; expected 3");
+  expectObjError("v 0 0 zero\n", 1, "bad number \"zero\"");
+  expectObjError("v 0 0 inf\n", 1, "not a finite float");
+  expectObjError(std::string(kQuad) + "f 1 2 5\n", 5, "refers to vertex 5; expected 1 to 4");
+  expectObjError(std::string(kQuad) + "f 0 1 2\n", 5, "refers to vertex 0");
+  expectObjError(std::string(kQuad) + "f 1 2 -5\n", 5, "refers to vertex -5");
+  expectObjError(std::string(kQuad) + "f 1/1 2/1 3/1\n", 5, "texture coordinate 1");
+  expectObjError(std::string(kQuad) + "f 1//1 2 3\n", 5, "normal 1");
+  expectObjError(std::string(kQuad) + "f 1 2\n", 5, "face has 2 corners");
+  expectObjError(std::string(kQuad) + "f 1 2 3x\n", 5, "face corner is malformed");
+  expectObjError(std::string(kQuad) + "f 1/ 2 3\n", 5, "index is missing");
+  expectObjError(std::string(kQuad) + "f 1 2 99999999999999999999\n", 5, "bad integer");
+}
+
+TEST(Obj, WithoutFacesHasNoArea) {
+  const Folder folder;
+  folder.write("mesh.obj", kQuad);
+  expectError(
+      folder,
+      sceneXml("\n<shape type=\"obj\"><string name=\"filename\" value=\"mesh.obj\"/></shape>" + std::string(kSensor)),
+      2, "has no area");
+}
+
+}  // namespace
+}  // namespace wavecrest::testing

@@ -1,0 +1,153 @@
+// PLY files: every encoding gives the same mesh; every damage gives an error with its line.
+#include "tests/load/mesh_text.h"
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+const std::string kShape =
+    "<shape type=\"ply\"><string name=\"filename\" value=\"mesh.ply\"/></shape>" + std::string(kSensor);
+
+Scene loadPly(std::string_view content, const std::string& shape = kShape) {
+  const Folder folder;
+  folder.write("mesh.ply", content);
+  return load(folder, sceneXml(shape));
+}
+Mesh meshOf(std::string_view content, const std::string& shape = kShape) {
+  return std::get<Mesh>(loadPly(content, shape).shapes.at(0).kind);
+}
+void expectPlyError(std::string_view content, int line, std::string_view text) {
+  const Folder folder;
+  folder.write("mesh.ply", content);
+  expectError(folder, sceneXml(kShape), line, text, "mesh.ply");
+}
+
+void expectQuad(const Mesh& mesh) {
+  EXPECT_EQ(mesh.positions, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {1, 3, 2}}));
+}
+
+std::string vertexLine(int index, std::string_view line) {
+  return withLine(kQuadPly, kQuadPlyVertexLine + index, line);
+}
+
+TEST(Ply, Ascii) { expectQuad(meshOf(kQuadPly)); }
+
+TEST(Ply, AsciiWithWindowsLineEnds) {
+  std::string text(kQuadPly);
+  for (size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2) text.replace(i, 1, "\r\n");
+  expectQuad(meshOf(text));
+}
+
+TEST(Ply, AsciiWithoutFinalNewline) { expectQuad(meshOf(kQuadPly.substr(0, kQuadPly.size() - 1))); }
+
+TEST(Ply, BinaryLittleEndian) { expectQuad(meshOf(binaryQuadPly(false))); }
+
+TEST(Ply, BinaryBigEndian) { expectQuad(meshOf(binaryQuadPly(true))); }
+
+TEST(Ply, GzippedByContentWhateverTheName) { expectQuad(meshOf(gzip(kQuadPly))); }
+
+TEST(Ply, GzipOfSeveralMembers) { expectQuad(meshOf(gzip(kQuadPly.substr(0, 100)) + gzip(kQuadPly.substr(100)))); }
+
+TEST(Ply, PolygonBecomesAFan) {
+  const std::string text = withLine(withLine(kQuadPly, 8, "element face 1"), kQuadPlyVertexLine + 4, "4 0 1 3 2");
+  EXPECT_EQ(meshOf(text.substr(0, text.rfind("3 1 3 2"))).triangles,
+            (std::vector<std::array<uint32_t, 3>>{{0, 1, 3}, {0, 3, 2}}));
+}
+
+TEST(Ply, TextureCoordinatesAndNormalsAreRead) {
+  const Mesh mesh = meshOf(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+      "nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nelement face 1\nproperty list "
+      "uchar int vertex_index\nend_header\n0 0 0 0 0 2 .25 .5\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n");
+  EXPECT_EQ(mesh.normals[0], (Float3{0, 0, 1}));
+  EXPECT_EQ(mesh.uvs[0], (Float2{0.25f, 0.5f}));
+}
+
+TEST(Ply, FlipTexCoords) {
+  const Mesh mesh = meshOf(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+      "u\nproperty float v\nelement face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0 .25 .25\n1 0 0 0 "
+      "0\n0 1 0 0 0\n3 0 1 2\n",
+      R"(<shape type="ply"><string name="filename" value="mesh.ply"/><boolean name="flip_tex_coords" value="true"/></shape>)" +
+          std::string(kSensor));
+  EXPECT_EQ(mesh.uvs[0], (Float2{0.25f, 0.75f}));
+}
+
+TEST(Ply, OtherElementsAndPropertiesAreSkipped) {
+  expectQuad(meshOf(
+      "ply\nformat ascii 1.0\nelement camera 1\nproperty list uchar float pose\nproperty float f\nelement vertex 4\n"
+      "property float confidence\nproperty float x\nproperty float y\nproperty list uchar int near\nproperty float z\n"
+      "element face 2\nproperty uchar flag\nproperty list uchar int vertex_indices\nproperty list uchar float w\n"
+      "end_header\n2 .5 .5 1\n9 0 0 0 0\n9 1 0 1 5 0\n9 0 1 2 5 5 0\n9 1 1 0 0\n1 3 0 1 2 0\n1 3 1 3 2 2 .5 .5\n"));
+}
+
+TEST(Ply, MissingFileIsReportedWhereItIsNamed) {
+  expectErrorOnLine2(R"(<shape type="ply"><string name="filename" value="none.ply"/></shape>)", "none.ply\" not found");
+  expectErrorOnLine2(R"(<shape type="ply"/>)", "has no \"filename\"");
+}
+
+TEST(Ply, HeaderErrorsNameTheirLine) {
+  expectPlyError("obj\n", 1, "not a PLY file");
+  expectPlyError("", 1, "not a PLY file");
+  expectPlyError(withLine(kQuadPly, 2, "format ascii 2.0"), 2, "unknown PLY format");
+  expectPlyError(withLine(kQuadPly, 2, "comment"), 10, "has no format");
+  expectPlyError(withLine(kQuadPly, 4, "element vertex four"), 4, "bad integer");
+  expectPlyError(withLine(kQuadPly, 4, "element vertex -1"), 4, "out of range");
+  expectPlyError(withLine(kQuadPly, 4, "element vertex 4294967295"), 4, "out of range");
+  expectPlyError(withLine(kQuadPly, 4, "element vertex 4000000000"), 4, "too short for 4000000000 rows");
+  expectPlyError(withLine(kQuadPly, 5, "property half x"), 5, "unknown PLY type \"half\"");
+  expectPlyError(withLine(kQuadPly, 5, "property float q"), 4, "lack a coordinate");
+  expectPlyError(withLine(kQuadPly, 9, "property list float int vertex_indices"), 9, "counted by a float");
+  expectPlyError(withLine(kQuadPly, 9, "property list uchar int corners"), 8, "have no vertices");
+  expectPlyError(withLine(kQuadPly, 3, "hello"), 3, "unknown PLY header line");
+  expectPlyError(kQuadPly.substr(0, kQuadPly.find("end_header")), 11, "header does not end");
+}
+
+TEST(Ply, BodyErrorsNameTheirLine) {
+  expectPlyError(vertexLine(1, "1 zero 0"), 12, "bad number \"zero\"");
+  expectPlyError(vertexLine(2, "0 nan 0"), 13, "not a finite float");
+  expectPlyError(vertexLine(2, "0 1e39 0"), 13, "not a finite float");
+  expectPlyError(vertexLine(4, "3 0 1 4"), 15, "refers to vertex 4; expected 0 to 3");
+  expectPlyError(vertexLine(4, "3 0 1 -1"), 15, "refers to vertex -1");
+  expectPlyError(vertexLine(4, "2 0 1"), 15, "face has 2 corners");
+  expectPlyError(vertexLine(5, "200 0 1 2"), 16, "face has 200 corners but the file ends");
+  expectPlyError(vertexLine(5, "3 1 3"), 16, "file ends");
+  expectPlyError(std::string(kQuadPly) + "1\n", 17, "goes on after its last element");
+}
+
+TEST(Ply, BinaryErrorsNameTheFirstLineOfTheBody) {
+  const std::string good = binaryQuadPly(false);
+  const int bodyLine = 11;
+  expectPlyError(good.substr(0, good.size() - 1), bodyLine, "file ends");
+  expectPlyError(good + "x", bodyLine, "goes on after its last element");
+  std::string nan = good;
+  const float bad = std::numeric_limits<float>::quiet_NaN();
+  const size_t body = good.find("end_header\n") + 11;
+  std::memcpy(nan.data() + body + 8, &bad, 4);  // y of vertex 0, after x as a double
+  expectPlyError(nan, bodyLine, "vertex 0 is not finite");
+  std::string outside = good;
+  outside[outside.size() - 4] = 9;  // last index, lowest byte
+  expectPlyError(outside, bodyLine, "refers to vertex 9");
+}
+
+TEST(Ply, DamagedGzipIsAnError) {
+  const std::string packed = gzip(kQuadPly);
+  expectPlyError(packed.substr(0, packed.size() / 2), 0, "truncated gzip data");
+  std::string damaged = packed;
+  damaged[packed.size() / 2] = static_cast<char>(~damaged[packed.size() / 2]);
+  expectPlyError(damaged, 0, "damaged gzip data");
+}
+
+TEST(Ply, CompressionBombIsStopped) {
+  expectPlyError(gzip(std::string(size_t{64} << 20, ' ')), 0, "inflates to more than");
+}
+
+TEST(Ply, NothingButTrianglesWithoutAreaIsAnError) {
+  const Folder folder;
+  folder.write("mesh.ply", vertexLine(2, "2 0 0").replace(kQuadPly.find("1 1 0"), 5, "3 0 0"));
+  expectError(folder, sceneXml("\n" + kShape), 2, "has no area");
+}
+
+}  // namespace
+}  // namespace wavecrest::testing

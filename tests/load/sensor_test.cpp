@@ -1,0 +1,207 @@
+// Cameras, film, filters, and what integrator and sampler ask for.
+#include <cmath>
+#include <numbers>
+
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+Scene sceneOf(std::string_view sensorContent, std::string_view type = "perspective", const LoadOptions& options = {}) {
+  return loadBody("<sensor type=\"" + std::string(type) + "\">" + std::string(sensorContent) + "</sensor>", options);
+}
+void expectSensorError(std::string_view content, std::string_view text, std::string_view type = "perspective") {
+  expectError(sceneXml("\n<sensor type=\"" + std::string(type) + "\">" + std::string(content) + "</sensor>" +
+                       std::string(kSphere)),
+              2, text);
+}
+
+constexpr std::string_view kTwoByOne =
+    R"(<film type="hdrfilm"><integer name="width" value="200"/><integer name="height" value="100"/></film>)";
+// Horizontal angle whose tangent of the half is `factor` times that of 90 degrees.
+double wide(double factor) { return 2 * std::atan(factor) * 180 / std::numbers::pi; }
+constexpr double kRounding = 1e-12;  // degrees
+
+TEST(Sensor, PerspectiveDefaults) {
+  const Sensor sensor = sceneOf("").sensor;
+  EXPECT_EQ(sensor.kind, Sensor::Kind::perspective);
+  EXPECT_EQ(sensor.nearClip, 1e-2);
+  EXPECT_EQ(sensor.farClip, 1e4);
+  EXPECT_NEAR(sensor.fovX, 38.184841, 1e-5);  // 50 mm on a film of 4:3; Mitsuba 3.9
+  EXPECT_EQ(sensor.principalPointOffset, (std::array<double, 2>{0, 0}));
+}
+
+TEST(Sensor, FovAxisX) {
+  EXPECT_EQ(sceneOf(std::string(kTwoByOne) + R"(<float name="fov" value="90"/>)").sensor.fovX, 90);
+}
+
+TEST(Sensor, FovAxisYFollowsTheAspect) {
+  EXPECT_NEAR(sceneOf(std::string(kTwoByOne) + R"(<float name="fov" value="90"/><string name="fov_axis" value="y"/>)")
+                  .sensor.fovX,
+              wide(2), kRounding);
+}
+
+TEST(Sensor, FovAxisSmallerAndLarger) {
+  const std::string fov = std::string(kTwoByOne) + R"(<float name="fov" value="90"/><string name="fov_axis" value=)";
+  EXPECT_NEAR(sceneOf(fov + R"("smaller"/>)").sensor.fovX, wide(2), kRounding);
+  EXPECT_NEAR(sceneOf(fov + R"("larger"/>)").sensor.fovX, 90, kRounding);
+}
+
+TEST(Sensor, FovAxisDiagonal) {
+  EXPECT_NEAR(
+      sceneOf(std::string(kTwoByOne) + R"(<float name="fov" value="90"/><string name="fov_axis" value="diagonal"/>)")
+          .sensor.fovX,
+      wide(2 / std::sqrt(5.0)), kRounding);
+}
+
+TEST(Sensor, FocalLengthRefersToTheDiagonalOf35mmFilm) {
+  const double halfDiagonal = std::sqrt(36.0 * 36 + 24 * 24) / 2 / 25;
+  EXPECT_NEAR(sceneOf(std::string(kTwoByOne) + R"(<string name="focal_length" value="25mm"/>)").sensor.fovX,
+              wide(halfDiagonal * 2 / std::sqrt(5.0)), kRounding);
+}
+
+TEST(Sensor, SizeFromOutsideChangesTheFieldOfView) {
+  const Scene scene =
+      sceneOf(std::string(kTwoByOne) + R"(<float name="fov" value="90"/><string name="fov_axis" value="y"/>)",
+              "perspective", {.filmSize = {{300, 100}}});
+  EXPECT_EQ(scene.film.width, 300u);
+  EXPECT_NEAR(scene.sensor.fovX, wide(3), kRounding);
+}
+
+TEST(Sensor, ThinLensTakesApertureAndFocus) {
+  const Sensor sensor =
+      sceneOf(R"(<float name="aperture_radius" value="0.1"/><float name="focus_distance" value="5"/>)", "thinlens")
+          .sensor;
+  EXPECT_EQ(sensor.kind, Sensor::Kind::thinlens);
+  EXPECT_EQ(sensor.apertureRadius, 0.1);
+  EXPECT_EQ(sensor.focusDistance, 5);
+}
+
+TEST(Sensor, ThinLensFocusesAtTheFarClip) {
+  EXPECT_EQ(sceneOf(R"(<float name="aperture_radius" value="0.1"/>)", "thinlens").sensor.focusDistance, 1e4);
+}
+
+TEST(Sensor, ThinLensNeedsAnAperture) { expectSensorError("", "has no \"aperture_radius\"", "thinlens"); }
+
+TEST(Sensor, OrthographicMayScale) {
+  const Sensor sensor =
+      sceneOf(R"(<transform name="to_world"><scale x="3" y="3"/></transform>)", "orthographic").sensor;
+  EXPECT_EQ(sensor.kind, Sensor::Kind::orthographic);
+  EXPECT_EQ(sensor.toWorld[0][0], 3);
+}
+
+TEST(Sensor, OnlyTheFirstIsUsedAndAWarningSaysSo) {
+  const Scene scene = loadBody(R"(<sensor type="perspective"><float name="fov" value="30"/></sensor>
+    <sensor type="perspective"><float name="fov" value="60"/></sensor>)");
+  EXPECT_EQ(scene.sensor.fovX, 30);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("only the first of 2 sensors"), std::string::npos);
+}
+
+TEST(Sensor, MistakesAreErrors) {
+  expectSensorError(R"(<float name="fov" value="180"/>)", "field of view is 180");
+  expectSensorError(R"(<float name="fov" value="0"/>)", "field of view is 0");
+  expectSensorError(R"(<float name="fov" value="30"/><string name="fov_axis" value="z"/>)", "unknown fov_axis \"z\"");
+  expectSensorError(R"(<float name="fov" value="30"/><string name="focal_length" value="50mm"/>)", "one of the two");
+  expectSensorError(R"(<string name="focal_length" value="fiftymm"/>)", "bad number");
+  expectSensorError(R"(<transform name="to_world"><scale value="2"/></transform>)", "scales or shears");
+  expectSensorError(R"(<float name="near_clip" value="0"/>)", "not positive");
+  expectSensorError(R"(<float name="near_clip" value="5"/><float name="far_clip" value="2"/>)", "not below far_clip");
+  expectSensorError(R"(<film type="hdrfilm"/><film type="hdrfilm"/>)", "more than one film");
+}
+
+TEST(Film, Defaults) {
+  const FilmSettings film = sceneOf("").film;
+  EXPECT_EQ(film.width, 768u);
+  EXPECT_EQ(film.height, 576u);
+  EXPECT_EQ(film.cropWidth, 0u);
+  EXPECT_EQ(film.filter, ReconstructionFilter::gaussian);
+  EXPECT_EQ(film.gaussianStddev, 0.5);
+  EXPECT_EQ(film.filterRadius, 2);
+}
+
+TEST(Film, HasMitsubasFilterWhenItNamesNone) {
+  EXPECT_EQ(sceneOf(kTwoByOne).film.filter, ReconstructionFilter::gaussian);
+}
+
+TEST(Film, BoxAndTentFilters) {
+  const FilmSettings box = sceneOf(R"(<film type="hdrfilm"><rfilter type="box"/></film>)").film;
+  EXPECT_EQ(box.filter, ReconstructionFilter::box);
+  EXPECT_EQ(box.filterRadius, 0.5);
+  const FilmSettings tent = sceneOf(R"(<film type="hdrfilm"><rfilter type="tent"/></film>)").film;
+  EXPECT_EQ(tent.filter, ReconstructionFilter::tent);
+  EXPECT_EQ(tent.filterRadius, 1);
+}
+
+TEST(Film, GaussianIsCutAtFourStandardDeviations) {
+  const FilmSettings film =
+      sceneOf(R"(<film type="hdrfilm"><rfilter type="gaussian"><float name="stddev" value="1.5"/></rfilter></film>)")
+          .film;
+  EXPECT_EQ(film.gaussianStddev, 1.5);
+  EXPECT_EQ(film.filterRadius, 6);
+}
+
+constexpr std::string_view kCrop =
+    R"(<film type="hdrfilm"><integer name="width" value="200"/><integer name="height" value="100"/>
+  <integer name="crop_offset_x" value="10"/><integer name="crop_offset_y" value="20"/><integer name="crop_width" value="30"/>
+  <integer name="crop_height" value="40"/></film>)";
+
+TEST(Film, CropWindow) {
+  const FilmSettings film = sceneOf(kCrop).film;
+  EXPECT_EQ((std::array{film.cropX, film.cropY, film.cropWidth, film.cropHeight}), (std::array{10u, 20u, 30u, 40u}));
+}
+
+TEST(Film, SizeFromOutsideDropsTheCropWindow) {
+  const FilmSettings film = sceneOf(kCrop, "perspective", {.filmSize = {{64, 32}}}).film;
+  EXPECT_EQ((std::array{film.width, film.height, film.cropX, film.cropWidth}), (std::array{64u, 32u, 0u, 0u}));
+}
+
+TEST(Film, MistakesAreErrors) {
+  expectSensorError(R"(<film type="specfilm"/>)", "not supported");
+  expectSensorError(R"(<film type="hdrfilm"><integer name="width" value="0"/></film>)", "\"width\" is 0; expected 1");
+  expectSensorError(R"(<film type="hdrfilm"><integer name="width" value="1e3"/></film>)", "bad integer");
+  expectSensorError(
+      R"(<film type="hdrfilm"><integer name="width" value="32768"/><integer name="height" value="32768"/></film>)",
+      "expected 1 to 2^28 pixels");
+  expectSensorError(
+      R"(<film type="hdrfilm"><integer name="crop_width" value="700"/><integer name="crop_offset_x" value="100"/></film>)",
+      "crop window leaves the film");
+  expectSensorError(R"(<film type="hdrfilm"><rfilter type="lanczos"/></film>)", "rfilter \"lanczos\" is not supported");
+  expectSensorError(R"(<film type="hdrfilm"><rfilter type="tent"><float name="radius" value="99"/></rfilter></film>)",
+                    "wider than 32 pixels");
+}
+
+TEST(Integrator, DefaultsAreUnlimitedDepthAndRouletteAfterFive) {
+  const RenderDefaults defaults = loadBody(R"(<integrator type="path"/>)").defaults;
+  EXPECT_EQ(defaults.maxDepth, -1);
+  EXPECT_EQ(defaults.rrDepth, 5);
+  EXPECT_FALSE(defaults.hideEmitters);
+}
+
+TEST(Integrator, AnyTypeIsAcceptedForItsDepths) {
+  const RenderDefaults defaults = loadBody(R"(<integrator type="bdpt"><integer name="max_depth" value="7"/>
+      <integer name="rr_depth" value="9"/><boolean name="hide_emitters" value="true"/>
+      <boolean name="lightImage" value="true"/></integrator>)")
+                                      .defaults;
+  EXPECT_EQ(defaults.maxDepth, 7);
+  EXPECT_EQ(defaults.rrDepth, 9);
+  EXPECT_TRUE(defaults.hideEmitters);
+}
+
+TEST(Integrator, DirectIsTwoEdges) { EXPECT_EQ(loadBody(R"(<integrator type="direct"/>)").defaults.maxDepth, 2); }
+
+TEST(Integrator, DepthBelowMinusOneIsAnError) {
+  expectErrorOnLine2(R"(<integrator type="path"><integer name="max_depth" value="-2"/></integrator>)",
+                     "\"max_depth\" is -2");
+}
+
+TEST(Sampler, CountDefaultsToFour) { EXPECT_EQ(sceneOf("").defaults.sampleCount, 4u); }
+
+TEST(Sampler, CountIsKept) {
+  EXPECT_EQ(sceneOf(R"(<sampler type="multijitter"><integer name="sample_count" value="64"/></sampler>)")
+                .defaults.sampleCount,
+            64u);
+}
+
+}  // namespace
+}  // namespace wavecrest::testing

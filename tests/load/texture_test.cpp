@@ -1,0 +1,165 @@
+// Textures: image files of each kind, their colour treatment, and the options of a bitmap.
+#include "metrics/image/image_io.h"
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+// A folder with one image of a single pixel, code 128 of 255.
+class ImageFolder : public Folder {
+ public:
+  ImageFolder() {
+    writePng((path() / "grey.png").string(), Image8{.width = 1, .height = 1, .pixels = {128, 128, 128}});
+  }
+};
+
+std::string material(std::string_view texture) {
+  return "<shape type=\"sphere\"><bsdf type=\"diffuse\">" + std::string(texture) + "</bsdf></shape>";
+}
+BitmapTexture bitmapOf(const Folder& folder, const std::string& file, std::string_view options = "") {
+  const Scene scene =
+      loadBody(folder, material("<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" value=\"" +
+                                file + "\"/>" + std::string(options) + "</texture>"));
+  return std::get<BitmapTexture>(scene.textures.at(0).kind);
+}
+
+TEST(Bitmap, EightBitIsDecodedFromSrgb) {
+  EXPECT_NEAR(bitmapOf(ImageFolder(), "grey.png").bitmap->pixels[0], 0.21586050, 1e-7);
+}
+
+TEST(Bitmap, RawIsNotDecoded) {
+  EXPECT_FLOAT_EQ(bitmapOf(ImageFolder(), "grey.png", R"(<boolean name="raw" value="true"/>)").bitmap->pixels[0],
+                  128 / 255.0f);
+}
+
+TEST(Bitmap, ExrIsTakenAsItIs) {
+  const Folder folder;
+  writeExr((folder.path() / "a.exr").string(), {.width = 1, .height = 1, .channels = 3, .pixels = {0.5f, 2, 0.25f}});
+  EXPECT_EQ(bitmapOf(folder, "a.exr").bitmap->pixels, (std::vector<float>{0.5f, 2, 0.25f}));
+}
+
+TEST(Bitmap, JpegIsDecodedFromSrgb) {
+  const BitmapTexture texture = bitmapOf(Folder(), std::string(WAVECREST_TEST_DATA) + "/halves.jpg");
+  const Bitmap& bitmap = *texture.bitmap;
+  ASSERT_EQ(bitmap.width, 32u);
+  ASSERT_EQ(bitmap.height, 16u);
+  // Left half red, right half mid grey (code 128); JPEG is lossy, two codes either way.
+  const float* left = &bitmap.pixels[3 * (8 * 32 + 4)];
+  const float* right = &bitmap.pixels[3 * (8 * 32 + 28)];
+  EXPECT_NEAR(left[0], 1, 0.02);
+  EXPECT_NEAR(left[1], 0, 0.01);
+  EXPECT_NEAR(right[0], 0.21586, 0.008);
+  EXPECT_NEAR(right[2], 0.21586, 0.008);
+}
+
+TEST(Bitmap, TopRowComesFirst) {
+  const Folder folder;
+  writePng((folder.path() / "two.png").string(), Image8{.width = 1, .height = 2, .pixels = {255, 255, 255, 0, 0, 0}});
+  EXPECT_EQ(bitmapOf(folder, "two.png").bitmap->pixels, (std::vector<float>{1, 1, 1, 0, 0, 0}));
+}
+
+TEST(Bitmap, Defaults) {
+  const BitmapTexture texture = bitmapOf(ImageFolder(), "grey.png");
+  EXPECT_EQ(texture.filter, Filter::bilinear);
+  EXPECT_EQ(texture.wrap, Wrap::repeat);
+}
+
+TEST(Bitmap, FilterAndWrap) {
+  const BitmapTexture texture =
+      bitmapOf(ImageFolder(), "grey.png",
+               R"(<string name="filter_type" value="nearest"/><string name="wrap_mode" value="mirror"/>)");
+  EXPECT_EQ(texture.filter, Filter::nearest);
+  EXPECT_EQ(texture.wrap, Wrap::mirror);
+}
+
+TEST(Bitmap, SameFileIsReadOnce) {
+  const ImageFolder folder;
+  const Scene scene = loadBody(folder, R"(
+    <shape type="sphere"><bsdf type="diffuse"><texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture></bsdf></shape>
+    <shape type="cube"><bsdf type="diffuse"><texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture></bsdf></shape>)");
+  ASSERT_EQ(scene.textures.size(), 2u);
+  EXPECT_EQ(std::get<BitmapTexture>(scene.textures[0].kind).bitmap,
+            std::get<BitmapTexture>(scene.textures[1].kind).bitmap);
+}
+
+TEST(Bitmap, IsFoundBesideTheFileThatNamesIt) {
+  const Folder folder;
+  std::filesystem::create_directories(folder.path() / "sub");
+  writePng((folder.path() / "sub/grey.png").string(), Image8{.width = 1, .height = 1, .pixels = {9, 9, 9}});
+  folder.write(
+      "sub/part.xml",
+      sceneXml(material(
+          R"(<texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture>)")));
+  EXPECT_EQ(load(folder, sceneXml(std::string(kSensor) + R"(<include filename="sub/part.xml"/>)")).textures.size(), 1u);
+}
+
+TEST(Bitmap, IsFoundInASearchPath) {
+  const Folder folder;
+  std::filesystem::create_directories(folder.path() / "images");
+  writePng((folder.path() / "images/grey.png").string(), Image8{.width = 1, .height = 1, .pixels = {9, 9, 9}});
+  const std::string body =
+      material(R"(<texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture>)");
+  EXPECT_EQ(loadBody(folder, R"(<path value="images"/>)" + body).textures.size(), 1u);
+}
+
+void expectTextureError(const Folder& folder, std::string_view content, std::string_view text) {
+  expectError(
+      folder,
+      sceneXml("\n" + material("<texture name=\"reflectance\" type=\"bitmap\">" + std::string(content) + "</texture>") +
+               std::string(kSensor)),
+      2, text);
+}
+
+TEST(Bitmap, MistakesAreErrorsWhereTheFileIsNamed) {
+  const ImageFolder folder;
+  folder.write("broken.png", "\x89PNG nonsense");
+  folder.write("broken.jpg", "\xff\xd8\xff nonsense");
+  folder.write("note.txt", "text");
+  const auto file = [](std::string_view name) {
+    return "<string name=\"filename\" value=\"" + std::string(name) + "\"/>";
+  };
+  expectTextureError(folder, "", "has no \"filename\"");
+  expectTextureError(folder, file("none.png"), "not found");
+  expectTextureError(folder, file("none.jpg"), "not found");
+  expectTextureError(folder, file("broken.png"), "broken.png");
+  expectTextureError(folder, file("broken.jpg"), "damaged JPEG");
+  expectTextureError(folder, file("note.txt"), "unknown image format '.txt'");
+  expectTextureError(folder, file("grey.png") + R"(<string name="wrap_mode" value="bend"/>)", "unknown wrap_mode");
+  expectTextureError(folder, file("grey.png") + R"(<string name="filter_type" value="ewa"/>)",
+                     "\"ewa\" is not supported");
+}
+
+TEST(Bitmap, TruncatedJpegIsAnError) {
+  std::ifstream in(std::string(WAVECREST_TEST_DATA) + "/halves.jpg", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  ASSERT_GT(bytes.size(), 300u);
+  const Folder folder;
+  folder.write("half.jpg", bytes.substr(0, bytes.size() - 40));
+  expectTextureError(folder, R"(<string name="filename" value="half.jpg"/>)", "damaged JPEG");
+}
+
+TEST(Checkerboard, Defaults) {
+  const Scene scene = loadBody(material(R"(<texture name="reflectance" type="checkerboard"/>)"));
+  const CheckerboardTexture& board = std::get<CheckerboardTexture>(scene.textures.at(0).kind);
+  EXPECT_EQ(board.color0, (Rgb{0.4, 0.4, 0.4}));
+  EXPECT_EQ(board.color1, (Rgb{0.2, 0.2, 0.2}));
+}
+
+TEST(Texture, ToUvActsOnTextureCoordinates) {
+  const Scene scene = loadBody(material(
+      R"(<texture name="reflectance" type="checkerboard"><transform name="to_uv"><translate x="0.1"/><scale x="2" y="3"/></transform></texture>)"));
+  const Matrix4& m = scene.textures.at(0).toUv;
+  EXPECT_EQ(m[0][0], 2);
+  EXPECT_EQ(m[1][1], 3);
+  EXPECT_EQ(m[0][3], 0.2);
+}
+
+TEST(Texture, IsReadOnceHoweverOftenItIsReferenced) {
+  const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"/>
+    <shape type="sphere"><bsdf type="diffuse"><ref id="t" name="reflectance"/></bsdf></shape>
+    <shape type="cube"><bsdf type="plastic"><ref id="t" name="diffuse_reflectance"/></bsdf></shape>)");
+  EXPECT_EQ(scene.textures.size(), 1u);
+}
+
+}  // namespace
+}  // namespace wavecrest::testing

@@ -1,0 +1,303 @@
+// Structure of scene files: variables, includes, references, versions, unknown things.
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+const Sphere& onlySphere(const Scene& scene) {
+  EXPECT_EQ(scene.shapes.size(), 1u);
+  return std::get<Sphere>(scene.shapes.at(0).kind);
+}
+
+TEST(Variables, DefaultReplacesDollarName) {
+  const Scene scene =
+      loadBody(R"(<default name="r" value="2.5"/><shape type="sphere"><float name="radius" value="$r"/></shape>)");
+  EXPECT_EQ(onlySphere(scene).radius, 2.5);
+}
+
+TEST(Variables, DefinitionFromOutsideWinsOverDefault) {
+  const Scene scene =
+      loadBody(R"(<default name="r" value="2.5"/><shape type="sphere"><float name="radius" value="$r"/></shape>)",
+               {.defines = {{"r", "7"}}});
+  EXPECT_EQ(onlySphere(scene).radius, 7);
+}
+
+TEST(Variables, FirstDefaultWins) {
+  const Scene scene = loadBody(R"(<default name="r" value="2"/><default name="r" value="3"/>
+    <shape type="sphere"><float name="radius" value="$r"/></shape>)");
+  EXPECT_EQ(onlySphere(scene).radius, 2);
+}
+
+TEST(Variables, LongestNameMatches) {
+  const Scene scene = loadBody(R"(<default name="r" value="2"/><default name="rr" value="3"/>
+    <shape type="sphere"><float name="radius" value="$rr"/></shape>)");
+  EXPECT_EQ(onlySphere(scene).radius, 3);
+}
+
+TEST(Variables, ReplacedInsideLongerText) {
+  const Scene scene = loadBody(R"(<default name="d" value="4"/>
+    <shape type="sphere"><float name="radius" value="1$d.5"/></shape>)");
+  EXPECT_EQ(onlySphere(scene).radius, 14.5);
+}
+
+TEST(Variables, EscapedDollarIsLiteral) {
+  const Scene scene = loadBody(R"(<bsdf type="diffuse" id="a\$b"/><shape type="sphere"><ref id="a\$b"/></shape>)");
+  EXPECT_EQ(scene.materials.at(0).id, "a$b");
+}
+
+TEST(Variables, UndefinedNamesItsLine) {
+  expectErrorOnLine2(R"(<float name="x" value="$nope"/>)", "undefined variable $nope");
+}
+
+TEST(Variables, DefinitionThatNothingUsesIsAnError) {
+  expectError(Folder(), sceneXml(std::string(kSensor) + std::string(kSphere)), 0, "does not use -D size", "scene.xml",
+              {.defines = {{"size", "7"}}});
+}
+
+TEST(Variables, DefinitionThatNothingUsesIsAWarningWithLenient) {
+  const Scene scene = loadBody("", {.defines = {{"size", "7"}}, .lenient = true});
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("-D size"), std::string::npos);
+}
+
+TEST(Variables, DoublingChainIsStopped) {
+  std::string body = R"(<default name="v0" value="xxxxxxxxxxxxxxxx"/>)";
+  for (int i = 1; i < 40; ++i) {
+    body += "<default name=\"v" + std::to_string(i) + "\" value=\"$v" + std::to_string(i - 1) + "$v" +
+            std::to_string(i - 1) + "\"/>";
+  }
+  expectErrorOnLine2(body, "beyond 1 MiB");
+}
+
+TEST(Include, ChildrenOfAnIncludedSceneTakeItsPlace) {
+  const Folder folder;
+  folder.write("part.xml", sceneXml(R"(<shape type="sphere"><float name="radius" value="3"/></shape>)"));
+  EXPECT_EQ(onlySphere(load(folder, sceneXml(std::string(kSensor) + R"(<include filename="part.xml"/>)"))).radius, 3);
+}
+
+TEST(Include, AnyOtherRootTakesItsPlaceItself) {
+  const Folder folder;
+  folder.write("part.xml", R"(<shape version="3.0.0" type="sphere"><float name="radius" value="3"/></shape>)");
+  EXPECT_EQ(onlySphere(load(folder, sceneXml(std::string(kSensor) + R"(<include filename="part.xml"/>)"))).radius, 3);
+}
+
+TEST(Include, SeesVariablesOfTheIncludingFile) {
+  const Folder folder;
+  folder.write("part.xml", sceneXml(R"(<shape type="sphere"><float name="radius" value="$r"/></shape>)"));
+  const Scene scene =
+      load(folder, sceneXml(std::string(kSensor) + R"(<default name="r" value="6"/><include filename="part.xml"/>)"));
+  EXPECT_EQ(onlySphere(scene).radius, 6);
+}
+
+TEST(Include, PathIsRelativeToTheIncludingFile) {
+  const Folder folder;
+  folder.write("sub/part.xml", sceneXml(R"(<include filename="deep.xml"/>)"));
+  folder.write("sub/deep.xml", sceneXml(kSphere));
+  EXPECT_EQ(onlySphere(load(folder, sceneXml(std::string(kSensor) + R"(<include filename="sub/part.xml"/>)"))).radius,
+            1);
+}
+
+TEST(Include, ErrorsNameTheIncludedFile) {
+  const Folder folder;
+  folder.write("part.xml", sceneXml("\n\n<shape type=\"sphere\"><float name=\"radius\" value=\"x\"/></shape>"));
+  expectError(folder, sceneXml(std::string(kSensor) + R"(<include filename="part.xml"/>)"), 3, "bad number \"x\"",
+              "part.xml");
+}
+
+TEST(Include, CycleIsAnError) {
+  const Folder folder;
+  folder.write("a.xml", sceneXml("\n<include filename=\"b.xml\"/>"));
+  folder.write("b.xml", sceneXml("\n\n<include filename=\"./a.xml\"/>"));
+  expectError(folder, sceneXml(R"(<include filename="a.xml"/>)"), 3, "includes itself", "b.xml");
+}
+
+TEST(Include, DepthIsLimited) {
+  const Folder folder;
+  for (int i = 0; i < 20; ++i) {
+    folder.write("f" + std::to_string(i) + ".xml",
+                 sceneXml("<include filename=\"f" + std::to_string(i + 1) + ".xml\"/>"));
+  }
+  expectError(folder, sceneXml(R"(<include filename="f0.xml"/>)"), 1, "includes nest deeper than 15", "f13.xml");
+}
+
+TEST(Include, MissingFileIsReportedWhereItIsIncluded) {
+  expectErrorOnLine2(R"(<include filename="nowhere.xml"/>)", "not found");
+}
+
+TEST(Reference, MaterialIsReadOnceHoweverOftenItIsReferenced) {
+  const Scene scene = loadBody(R"(<bsdf type="diffuse" id="m"/><shape type="sphere"><ref id="m"/></shape>
+    <shape type="cube"><ref id="m"/></shape>)");
+  EXPECT_EQ(scene.materials.size(), 1u);
+  EXPECT_EQ(scene.shapes[0].material, scene.shapes[1].material);
+}
+
+TEST(Reference, MayPrecedeTheDefinition) {
+  const Scene scene = loadBody(R"(<shape type="sphere"><ref id="m"/></shape><bsdf type="conductor" id="m"/>)");
+  EXPECT_TRUE(std::holds_alternative<Conductor>(scene.materials.at(0).kind));
+}
+
+TEST(Reference, NestedIdCanBeReferenced) {
+  const Scene scene = loadBody(R"(<bsdf type="twosided"><bsdf type="conductor" id="inner"/></bsdf>
+    <shape type="sphere"><ref id="inner"/></shape>)");
+  EXPECT_TRUE(std::holds_alternative<Conductor>(scene.materials.at(0).kind));
+  EXPECT_FALSE(scene.materials.at(0).twoSided);
+}
+
+TEST(Reference, AliasIsASecondId) {
+  const Scene scene = loadBody(R"(<bsdf type="conductor" id="m"/><alias id="m" as="n"/>
+    <shape type="sphere"><ref id="n"/></shape>)");
+  EXPECT_TRUE(std::holds_alternative<Conductor>(scene.materials.at(0).kind));
+}
+
+TEST(Reference, UnknownIdIsAnError) {
+  expectErrorOnLine2(R"(<shape type="sphere"><ref id="m"/></shape>)", "no object has the id \"m\"");
+}
+
+TEST(Reference, DuplicateIdIsAnError) {
+  expectErrorOnLine2(R"(<bsdf type="diffuse" id="m"/><bsdf type="diffuse" id="m"/>)", "already used at");
+}
+
+TEST(Reference, CycleIsAnError) {
+  expectErrorOnLine2(R"(<bsdf type="twosided" id="m"><bsdf type="twosided"><ref id="m"/></bsdf></bsdf>)",
+                     "contains itself");
+}
+
+TEST(Structure, UnusedDefinitionIsCheckedButLeavesNothingBehind) {
+  EXPECT_EQ(loadBody(R"(<bsdf type="conductor" id="m"/>)").materials.size(), 1u);  // that of the sphere
+  expectErrorOnLine2(R"(<bsdf type="diffuse" id="m"><float name="albedo" value="1"/></bsdf>)",
+                     "unknown parameter \"albedo\" of bsdf \"diffuse\"; expected reflectance");
+}
+
+TEST(Structure, MalformedXmlNamesItsLine) {
+  expectError("<scene version=\"3.0.0\">\n\n<shape type=\"sphere\"</scene>", 3, "malformed XML");
+}
+
+TEST(Structure, EmptyFileIsAnError) { expectError("", 1, "malformed XML"); }
+
+TEST(Structure, MissingSceneFileIsAnError) {
+  const Folder folder;
+  EXPECT_THROW(loadScene(folder.path() / "none.xml"), LoadError);
+}
+
+TEST(Structure, DirectoryInsteadOfFileIsAnError) {
+  const Folder folder;
+  EXPECT_THROW(loadScene(folder.path()), LoadError);
+}
+
+TEST(Structure, RootMustBeAScene) {
+  expectError("\n<shape version=\"3.0.0\" type=\"sphere\"/>", 2, "root element is <shape>");
+}
+
+TEST(Structure, VersionIsRequired) { expectError("<scene></scene>", 1, "has no version"); }
+
+TEST(Structure, VersionMustBeKnown) { expectError(sceneXml("", "4.0.0"), 1, "version \"4.0.0\" is not supported"); }
+
+TEST(Structure, SceneWithoutSensorIsAnError) { expectError("\n" + sceneXml(kSphere), 2, "no sensor"); }
+
+TEST(Structure, EmptySceneIsAnError) { expectError(sceneXml(kSensor), 1, "scene is empty"); }
+
+TEST(Structure, UnknownElementIsAnError) { expectErrorOnLine2("<bdsf type=\"diffuse\"/>", "unknown element <bdsf>"); }
+
+TEST(Structure, UnknownElementIsAWarningWithLenient) {
+  const Scene scene = loadBody("\n<bdsf type=\"diffuse\"/>", {.lenient = true});
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("scene.xml:2: unknown element <bdsf>"), std::string::npos);
+}
+
+TEST(Structure, UnknownPluginIsAnErrorThatListsTheKnownOnes) {
+  expectErrorOnLine2(R"(<shape type="heightfield"/>)",
+                     "shape \"heightfield\" is not supported; expected one of rectangle, cube, sphere");
+}
+
+TEST(Structure, UnknownShapeIsLeftOutWithLenient) {
+  const Scene scene = loadBody(R"(<shape type="heightfield"/><shape type="sphere"/>)", {.lenient = true});
+  EXPECT_EQ(scene.shapes.size(), 1u);
+  EXPECT_EQ(scene.warnings.size(), 1u);
+}
+
+TEST(Structure, UnknownBsdfBecomesDiffuseWithLenient) {
+  const Scene scene = loadBody(R"(<shape type="sphere"><bsdf type="null"/></shape>)", {.lenient = true});
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(scene.materials.at(0).kind));
+  EXPECT_EQ(scene.warnings.size(), 1u);
+}
+
+TEST(Structure, UnknownAttributeIsAnError) {
+  expectErrorOnLine2(R"(<shape type="sphere" colour="red"/>)", "unexpected attribute \"colour\"");
+}
+
+TEST(Structure, ParameterGivenTwiceIsAnError) {
+  expectErrorOnLine2(R"(<shape type="sphere"><float name="radius" value="1"/><float name="radius" value="2"/></shape>)",
+                     "given twice");
+}
+
+TEST(Structure, ParameterOfTheWrongTypeIsAnError) {
+  expectErrorOnLine2(R"(<shape type="sphere"><string name="radius" value="1"/></shape>)",
+                     "\"radius\" is a <string>; expected <float>");
+}
+
+TEST(Structure, DeepNestingIsAnError) {
+  std::string open, close;
+  for (int i = 0; i < 100; ++i) {
+    open += "<bsdf type=\"twosided\">";
+    close += "</bsdf>";
+  }
+  expectErrorOnLine2(open + close, "elements nest deeper than 64");
+}
+
+TEST(Structure, LineNumbersCountEveryKindOfLine) {
+  expectError(
+      "<?xml version=\"1.0\"?>\r\n<!-- a\ncomment -->\r\n<scene\nversion=\"3.0.0\"><sensor "
+      "type=\"perspective\"/>\n<shape\n "
+      "type=\"nope\"/></scene>",
+      6, "shape \"nope\"");
+}
+
+TEST(Numbers, PlusSignAndSpacesAreAccepted) {
+  const Scene scene = loadBody(R"(<shape type="sphere"><float name="radius" value=" +2.5e0 "/></shape>)");
+  EXPECT_EQ(onlySphere(scene).radius, 2.5);
+}
+
+TEST(Numbers, BadOnesAreErrors) {
+  for (const char* text : {"", "abc", "1.5x", "1,5", "--1", "0x10"}) {
+    expectErrorOnLine2("<shape type=\"sphere\"><float name=\"radius\" value=\"" + std::string(text) + "\"/></shape>",
+                       "bad number");
+  }
+}
+
+TEST(Numbers, HugeAndNonFiniteOnesAreErrors) {
+  const auto sphere = [](const char* text) {
+    return "<shape type=\"sphere\"><float name=\"radius\" value=\"" + std::string(text) + "\"/></shape>";
+  };
+  expectErrorOnLine2(sphere("1e999"), "out of range");
+  expectErrorOnLine2(sphere("inf"), "not finite");
+  expectErrorOnLine2(sphere("nan"), "not finite");
+}
+
+TEST(Upgrade, CamelCaseNamesBecomeSnakeCase) {
+  const Scene scene = load(sceneXml(R"(<sensor type="perspective"><float name="nearClip" value="0.5"/></sensor>
+    <shape type="sphere"><bsdf type="dielectric"><float name="intIOR" value="1.7"/></bsdf></shape>)",
+                                    "0.6.0"));
+  EXPECT_EQ(scene.sensor.nearClip, 0.5);
+  EXPECT_EQ(std::get<Dielectric>(scene.materials.at(0).kind).intIor, 1.7);
+}
+
+TEST(Upgrade, DoesNotTouchCurrentFiles) {
+  expectErrorOnLine2(
+      R"(<shape type="sphere"><bsdf type="dielectric"><float name="intIOR" value="1.7"/></bsdf></shape>)",
+      "unknown parameter \"intIOR\"");
+}
+
+TEST(Upgrade, LookAtAndTextureScalesAreUnderstood) {
+  const Scene scene = load(sceneXml(R"(
+    <sensor type="perspective"><transform name="toWorld"><lookAt origin="0,0,5" target="0,0,0" up="0,1,0"/></transform></sensor>
+    <shape type="sphere"><bsdf type="diffuse"><texture name="reflectance" type="checkerboard">
+      <float name="uscale" value="2"/><float name="voffset" value="0.25"/></texture></bsdf></shape>)",
+                                    "0.6.0"));
+  EXPECT_EQ(scene.sensor.toWorld[2][3], 5);
+  const Matrix4& toUv = scene.textures.at(0).toUv;
+  EXPECT_EQ(toUv[0][0], 2);
+  EXPECT_EQ(toUv[1][3], 0.25);
+}
+
+}  // namespace
+}  // namespace wavecrest::testing
