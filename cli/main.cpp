@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exitCode = kExitDone;
   addRenderCommand(app, exitCode);
+  addBenchCommand(app, exitCode);
   addScenesCommand(app, exitCode);
 
   try {
