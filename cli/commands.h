@@ -28,6 +28,7 @@ struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void addCompareCommand(CLI::App& app, int& exitCode);
 void addRenderCommand(CLI::App& app, int& exitCode);
 void addScenesCommand(CLI::App& app, int& exitCode);
 

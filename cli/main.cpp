@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string(kVersion));
   app.require_subcommand(1);
   int exitCode = kExitDone;
+  addCompareCommand(app, exitCode);
   addRenderCommand(app, exitCode);
   addScenesCommand(app, exitCode);
 

@@ -31,7 +31,9 @@ void call(const StageCall<S>& stage, const StageContext<S>& context, Wave<S>& wa
     stage.run(context, wave);
     return;
   }
-  tally->items += stage.items(wave);
+  const size_t items = stage.items(wave);
+  tally->items += items;
+  tally->laneSlots += (items + stage.lanes - 1) / stage.lanes * stage.lanes;
   const uint64_t begin = readTicks();
   stage.run(context, wave);
   tally->ticks += readTicks() - begin;

@@ -14,12 +14,14 @@ namespace wavecrest {
 // depth of the stored light vertices.
 enum class Repeat { once, perLightDepth };
 
-// One entry of a pass. items: how many records the stage is about to read, for the statistics.
+// One entry of a pass. items: how many records the stage is about to read, for the statistics; lanes: how many of them
+// it works on at once.
 template <class S>
 struct StageCall {
   std::string_view name;
   Stage<S> run;
   size_t (*items)(const Wave<S>&);
+  size_t lanes;
   Repeat repeat = Repeat::once;
 };
 
@@ -64,11 +66,12 @@ struct Pipeline {
 template <class S>
 struct Intersector {
   Stage<S> extend, occlude;
+  size_t lanes;
 };
 
-// Time and items of each stage, in pipeline order, of one worker.
+// Time and items of each stage, in pipeline order, of one worker. laneSlots: items rounded up to whole blocks.
 struct StageTally {
-  uint64_t items = 0, ticks = 0;
+  uint64_t items = 0, laneSlots = 0, ticks = 0;
 };
 
 // Time-stamp counter ticks, and their length.

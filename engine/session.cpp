@@ -13,8 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
+#include "engine/render_plan.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
 
@@ -46,29 +46,12 @@ class FlushToZero {
   unsigned saved_;
 };
 
-ColumnNeeds columnNeeds(Specialization specialization) {
-  const uint32_t features = kSpecializationFeatures[static_cast<size_t>(specialization)];
-  return {.shadingNormals = (features & kShadingNormals) != 0,
-          .textures = (features & kTextures) != 0,
-          .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
-          .connections = (features & kBidirectional) != 0};
-}
-
-Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
-  const uint32_t features = sceneFeatures(scene) | (entryOf(settings.method).bidirectional ? kBidirectional : 0u);
-  const Specialization least = chooseSpecialization(features);
-  if (!settings.specialization) return least;
-  if ((features & ~kSpecializationFeatures[static_cast<size_t>(*settings.specialization)]) != 0) {
-    throw std::runtime_error("scene and method need the '" +
-                             std::string(kSpecializationNames[static_cast<size_t>(least)]) + "' kernels");
-  }
-  return *settings.specialization;
-}
-
-FilmArea filmArea(const FilmSettings& film) {
-  if (film.cropWidth == 0 || film.cropHeight == 0) return FilmArea::make(0, 0, film.width, film.height);
-  return FilmArea::make(film.cropX, film.cropY, film.cropWidth, film.cropHeight);
-}
+// TBB gives an arena of more threads than the machine has cores no workers for the surplus unless it is told to. Only
+// while a session works: the least of all limits alive counts, and several sessions may be.
+struct WorkerLimit {
+  explicit WorkerLimit(size_t threads) : control(oneapi::tbb::global_control::max_allowed_parallelism, threads) {}
+  oneapi::tbb::global_control control;
+};
 
 // The part of a session that depends on the storage type of its precision.
 //
@@ -116,13 +99,9 @@ class TypedSession final : public Session {
   }
 
   const RenderSettings settings_;
-  oneapi::tbb::global_control concurrency_;
   oneapi::tbb::task_arena arena_;
-  const Specialization specialization_;
   Film film_;
-  std::unique_ptr<CompiledScene<S>> compiled_;
-  Pipeline<S> pipeline_;
-  Isa isa_{};
+  RenderPlan<S> plan_;
   std::vector<uint64_t> lightDone_, cameraDone_;        // iterations done by each wave
   std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each wave, where a photon map gathers them
   PhotonMap<S> photons_;
@@ -136,26 +115,16 @@ class TypedSession final : public Session {
 
 template <class S>
 TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings)
-    : settings_(settings),
-      concurrency_(oneapi::tbb::global_control::max_allowed_parallelism, settings.threads),
-      arena_(static_cast<int>(settings.threads)),
-      specialization_(specializationFor(scene, settings)),
-      film_(filmArea(scene.film)) {
+    : settings_(settings), arena_(static_cast<int>(settings.threads)), film_(filmArea(scene.film)) {
   const auto begin = Clock::now();
-  arena_.execute([&] { compiled_ = compileScene<S>(scene, settings.accel); });
-  const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, specialization_);
-  const Intersector<S> intersector = compiled_->small != nullptr
-                                         ? Intersector<S>{stages.extendSmall, stages.occludeSmall}
-                                         : Intersector<S>{extendEmbree<S>, occludeEmbree<S>};
-  pipeline_ = makePipeline(settings.method, stages, intersector);
-  isa_ = stages.isa;
+  const WorkerLimit limit(settings.threads);
+  arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
   const size_t waves = (film_.area().pixels.size() + settings.waveSize - 1) / settings.waveSize;
   lightDone_.resize(waves);
   cameraDone_.resize(waves);
-  if (pipeline_.photonMap) {
-    for (size_t i = 0; i < waves; ++i) {
-      stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, columnNeeds(specialization_)));
-    }
+  if (plan_.pipeline.photonMap) {
+    for (size_t i = 0; i < waves; ++i)
+      stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs));
   }
   buildSeconds_ = secondsSince(begin);
 }
@@ -164,10 +133,10 @@ template <class S>
 typename TypedSession<S>::Worker& TypedSession<S>::worker() {
   std::unique_ptr<Worker>& mine = workers_.local();
   if (!mine) {
-    mine = std::make_unique<Worker>(settings_.waveSize, columnNeeds(specialization_));
-    mine->cameraTallies.resize(pipeline_.cameraPass.stageCount());
-    if (pipeline_.lightPass) mine->lightTallies.resize(pipeline_.lightPass->stageCount());
-    if (pipeline_.splats()) mine->splats.resize(3 * film_.area().pixels.size());
+    mine = std::make_unique<Worker>(settings_.waveSize, plan_.needs);
+    mine->cameraTallies.resize(plan_.pipeline.cameraPass.stageCount());
+    if (plan_.pipeline.lightPass) mine->lightTallies.resize(plan_.pipeline.lightPass->stageCount());
+    if (plan_.pipeline.splats()) mine->splats.resize(3 * film_.area().pixels.size());
   }
   return *mine;
 }
@@ -197,11 +166,11 @@ void TypedSession<S>::tracePass(const Pass<S>& pass, size_t waveIndex, uint64_t 
   wave.firstPath = waveIndex * settings_.waveSize;
   wave.pathCount = std::min<size_t>(settings_.waveSize, area.pixels.size() - wave.firstPath);
   StageContext<S> context{
-      .scene = &compiled_->view,
+      .scene = &plan_.scene->view,
       .pixels = area.pixels.data(),
       .sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(iteration)},
       .limits = settings_.limits,
-      .mis = misSettings(pass.strategies, settings_, compiled_->view.radius, area.pixels.size(), iteration),
+      .mis = misSettings(pass.strategies, settings_, plan_.scene->view.radius, area.pixels.size(), iteration),
       .light = light,
       .photons = &photons_,
       .splats = {worker.splats.data(), area.x0, area.y0, area.width, area.height},
@@ -212,16 +181,16 @@ void TypedSession<S>::tracePass(const Pass<S>& pass, size_t waveIndex, uint64_t 
 
 template <class S>
 void TypedSession<S>::traceLight(size_t waveIndex, Worker& worker) {
-  LightStore<S>* const store = pipeline_.photonMap ? stores_[waveIndex].get() : &worker.light;
-  tracePass(*pipeline_.lightPass, waveIndex, lightDone_[waveIndex], store, worker);
+  LightStore<S>* const store = plan_.pipeline.photonMap ? stores_[waveIndex].get() : &worker.light;
+  tracePass(*plan_.pipeline.lightPass, waveIndex, lightDone_[waveIndex], store, worker);
   worker.lightPaths += worker.wave.pathCount;
   ++lightDone_[waveIndex];
 }
 
 template <class S>
 void TypedSession<S>::traceCamera(size_t waveIndex, Worker& worker) {
-  LightStore<S>* const store = pipeline_.photonMap ? stores_[waveIndex].get() : &worker.light;
-  tracePass(pipeline_.cameraPass, waveIndex, cameraDone_[waveIndex], store, worker);
+  LightStore<S>* const store = plan_.pipeline.photonMap ? stores_[waveIndex].get() : &worker.light;
+  tracePass(plan_.pipeline.cameraPass, waveIndex, cameraDone_[waveIndex], store, worker);
   worker.counters.nonFinite += film_.add(worker.wave);
   worker.paths += worker.wave.pathCount;
   progressPaths_.fetch_add(worker.wave.pathCount, std::memory_order_relaxed);
@@ -238,7 +207,7 @@ void TypedSession<S>::renderWaves(const Finished& finished) {
   flow::function_node<size_t, flow::continue_msg, flow::rejecting> tracing(graph, settings_.threads, [&](size_t wave) {
     if (finished(wave)) return flow::continue_msg();
     Worker& mine = worker();
-    if (pipeline_.lightPass) traceLight(wave, mine);
+    if (plan_.pipeline.lightPass) traceLight(wave, mine);
     traceCamera(wave, mine);
     if (!finished(wave)) ready.try_put(wave);
     return flow::continue_msg();
@@ -253,7 +222,7 @@ void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
   std::vector<LightStore<S>*> stores;
   for (const auto& store : stores_) stores.push_back(store.get());
   const uint64_t begin = readTicks();
-  const MisSettings mis = misSettings(pipeline_.lightPass->strategies, settings_, compiled_->view.radius,
+  const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
                                       film_.area().pixels.size(), iteration);
   photons_.build(stores, mis.radius, forEach);
   photonTally_.ticks += readTicks() - begin;
@@ -279,7 +248,7 @@ void TypedSession<S>::renderPhases(const Finished& finished) {
 
 template <class S>
 void TypedSession<S>::collectSplats() {
-  if (!pipeline_.splats()) return;
+  if (!plan_.pipeline.splats()) return;
   std::vector<int64_t> sums(3 * film_.area().pixels.size(), 0);
   uint64_t lightPaths = 0;
   for (const auto& worker : workers_) {
@@ -293,13 +262,14 @@ template <class S>
 void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
+  const WorkerLimit limit(settings_.threads);
   const Finished finished = [&](size_t wave) {
     if (iterations && cameraDone_[wave] >= *iterations) return true;
     const double now = renderSeconds_ + secondsSince(begin);
     progressSeconds_.store(now, std::memory_order_relaxed);
     return (seconds && now >= *seconds) || interrupted();
   };
-  arena_.execute([&] { pipeline_.photonMap ? renderPhases(finished) : renderWaves(finished); });
+  arena_.execute([&] { plan_.pipeline.photonMap ? renderPhases(finished) : renderWaves(finished); });
   renderSeconds_ += secondsSince(begin);
   cpuSeconds_ += processCpuSeconds() - cpuBegin;
   progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
@@ -309,13 +279,14 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
 // The rows of a pass's stages, filled from a worker's tallies.
 template <class S>
 void addRows(const Pass<S>& pass, std::vector<RenderStatistics::StageRow>& rows) {
-  rows.push_back({std::string(pass.generate.name), 0, 0});
-  for (const auto& stage : pass.firstDepth) rows.push_back({std::string(stage.name), 0, 0});
-  for (const auto& stage : pass.perDepth) rows.push_back({std::string(stage.name), 0, 0});
+  rows.push_back({std::string(pass.generate.name)});
+  for (const auto& stage : pass.firstDepth) rows.push_back({std::string(stage.name)});
+  for (const auto& stage : pass.perDepth) rows.push_back({std::string(stage.name)});
 }
 void addTallies(const std::vector<StageTally>& tallies, size_t first, std::vector<RenderStatistics::StageRow>& rows) {
   for (size_t i = 0; i < tallies.size(); ++i) {
     rows[first + i].items += tallies[i].items;
+    rows[first + i].laneSlots += tallies[i].laneSlots;
     rows[first + i].seconds += static_cast<double>(tallies[i].ticks) * secondsPerTick();
   }
 }
@@ -327,12 +298,12 @@ RenderStatistics TypedSession<S>::statistics() const {
   out.buildSeconds = buildSeconds_;
   out.renderSeconds = renderSeconds_;
   out.cpuSeconds = cpuSeconds_;
-  out.isa = isa_;
-  out.specialization = specialization_;
-  out.accel = compiled_->small != nullptr ? Accel::small : Accel::embree;
-  if (pipeline_.lightPass) addRows(*pipeline_.lightPass, out.stages);
+  out.isa = plan_.isa;
+  out.specialization = plan_.specialization;
+  out.accel = plan_.accel();
+  if (plan_.pipeline.lightPass) addRows(*plan_.pipeline.lightPass, out.stages);
   const size_t cameraRow = out.stages.size();
-  addRows(pipeline_.cameraPass, out.stages);
+  addRows(plan_.pipeline.cameraPass, out.stages);
   for (const auto& worker : workers_) {
     out.paths += worker->paths;
     out.lightPaths += worker->lightPaths;
@@ -342,8 +313,8 @@ RenderStatistics TypedSession<S>::statistics() const {
     addTallies(worker->lightTallies, 0, out.stages);
     addTallies(worker->cameraTallies, cameraRow, out.stages);
   }
-  if (pipeline_.photonMap) {
-    out.stages.push_back({"photon map", 0, 0});
+  if (plan_.pipeline.photonMap) {
+    out.stages.push_back({"photon map"});
     addTallies({photonTally_}, out.stages.size() - 1, out.stages);
     for (const auto& store : stores_) out.lightBytes += store->bytes();
     out.lightBytes += photons_.bytes();

@@ -10,31 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/compile/compiled_scene.h"
 #include "engine/film.h"
-#include "engine/methods/method_list.h"
+#include "engine/render_settings.h"
 
 namespace wavecrest {
-
-constexpr uint32_t kUnlimitedDepth = 64;  // edges; roulette ends paths long before
-
-struct RenderSettings {
-  Method method = Method::pt;
-  Precision precision = Precision::floating;
-  Isa isa = Isa::scalar;
-  Accel accel = Accel::automatic;
-  SamplerKind sampler = SamplerKind::independent;
-  uint64_t seed = 0;
-  uint32_t threads = 1;
-  uint32_t waveSize = 2048;  // paths
-  PathLimits limits;
-  double radius = 0.001;                         // of the first merges, relative to the bounding sphere's
-  double radiusAlpha = 0.75;                     // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
-  std::optional<uint64_t> iterations;            // stop after this many,
-  std::optional<double> seconds;                 // or after this much render time, whichever comes first
-  std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene
-  bool measureStages = false;
-};
 
 // Numbers of a render so far, as --stats reports them.
 struct RenderStatistics {
@@ -46,7 +25,8 @@ struct RenderStatistics {
   struct StageRow {
     std::string name;
     uint64_t items = 0;
-    double seconds = 0;  // summed over threads
+    uint64_t laneSlots = 0;  // lanes of the blocks that the items filled; items / laneSlots is the lane use
+    double seconds = 0;      // summed over threads
   };
   std::vector<StageRow> stages;
   Isa isa{};

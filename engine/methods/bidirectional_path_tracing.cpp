@@ -12,31 +12,32 @@ Pipeline<S> bidirectionalPathTracing(const Stages<S>& stages, const Intersector<
           Pass<S>{
               .walk = Walk::light,
               .strategies = kAll,
-              .generate = {"generate light", stages.generateLightPaths, generatedItems<S>},
+              .generate = {"generate light", stages.generateLightPaths, generatedItems<S>, stages.lanes},
               .perDepth =
                   {
-                      {"extend light", intersector.extend, pathItems<S>},
-                      {"arrive light", stages.arrive, pathItems<S>},
-                      {"store", stages.storeLightVertices, pathItems<S>},
-                      {"connect to camera", stages.connectToCamera, pathItems<S>},
-                      {"occlude light", intersector.occlude, shadowItems<S>},
-                      {"scatter light", stages.scatter, pathItems<S>},
+                      {"extend light", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive light", stages.arrive, pathItems<S>, stages.lanes},
+                      {"store", stages.storeLightVertices, pathItems<S>, stages.lanes},
+                      {"connect to camera", stages.connectToCamera, pathItems<S>, stages.lanes},
+                      {"occlude light", intersector.occlude, shadowItems<S>, intersector.lanes},
+                      {"scatter light", stages.scatter, pathItems<S>, stages.lanes},
                   },
           },
       .cameraPass =
           {
               .walk = Walk::camera,
               .strategies = kAll,
-              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>},
+              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>, stages.lanes},
               .perDepth =
                   {
-                      {"extend", intersector.extend, pathItems<S>},
-                      {"arrive", stages.arrive, pathItems<S>},
-                      {"next event", stages.nextEvent, pathItems<S>},
-                      {"occlude", intersector.occlude, shadowItems<S>},
-                      {"connect", stages.connectVertices, pathItems<S>, Repeat::perLightDepth},
-                      {"occlude connection", intersector.occlude, shadowItems<S>, Repeat::perLightDepth},
-                      {"scatter", stages.scatter, pathItems<S>},
+                      {"extend", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive", stages.arrive, pathItems<S>, stages.lanes},
+                      {"next event", stages.nextEvent, pathItems<S>, stages.lanes},
+                      {"occlude", intersector.occlude, shadowItems<S>, intersector.lanes},
+                      {"connect", stages.connectVertices, pathItems<S>, stages.lanes, Repeat::perLightDepth},
+                      {"occlude connection", intersector.occlude, shadowItems<S>, intersector.lanes,
+                       Repeat::perLightDepth},
+                      {"scatter", stages.scatter, pathItems<S>, stages.lanes},
                   },
           },
   };

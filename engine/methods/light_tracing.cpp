@@ -11,34 +11,34 @@ Pipeline<S> lightTracing(const Stages<S>& stages, const Intersector<S>& intersec
           Pass<S>{
               .walk = Walk::light,
               .strategies = {.emission = false, .nextEvent = false, .camera = true},
-              .generate = {"generate light", stages.generateLightPaths, generatedItems<S>},
+              .generate = {"generate light", stages.generateLightPaths, generatedItems<S>, stages.lanes},
               .perDepth =
                   {
-                      {"extend light", intersector.extend, pathItems<S>},
-                      {"arrive light", stages.arrive, pathItems<S>},
-                      {"connect to camera", stages.connectToCamera, pathItems<S>},
-                      {"occlude light", intersector.occlude, shadowItems<S>},
-                      {"scatter light", stages.scatter, pathItems<S>},
+                      {"extend light", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive light", stages.arrive, pathItems<S>, stages.lanes},
+                      {"connect to camera", stages.connectToCamera, pathItems<S>, stages.lanes},
+                      {"occlude light", intersector.occlude, shadowItems<S>, intersector.lanes},
+                      {"scatter light", stages.scatter, pathItems<S>, stages.lanes},
                   },
           },
       .cameraPass =
           {
               .walk = Walk::camera,
               .strategies = {.emission = true, .nextEvent = true},
-              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>},
+              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>, stages.lanes},
               .firstDepth =
                   {
-                      {"extend first", intersector.extend, pathItems<S>},
-                      {"arrive first", stages.arrive, pathItems<S>},
-                      {"scatter specular", stages.scatterSpecular, pathItems<S>},
+                      {"extend first", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive first", stages.arrive, pathItems<S>, stages.lanes},
+                      {"scatter specular", stages.scatterSpecular, pathItems<S>, stages.lanes},
                   },
               .perDepth =
                   {
-                      {"extend", intersector.extend, pathItems<S>},
-                      {"arrive", stages.arrive, pathItems<S>},
-                      {"next event", stages.nextEvent, pathItems<S>},
-                      {"occlude", intersector.occlude, shadowItems<S>},
-                      {"scatter", stages.scatter, pathItems<S>},
+                      {"extend", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive", stages.arrive, pathItems<S>, stages.lanes},
+                      {"next event", stages.nextEvent, pathItems<S>, stages.lanes},
+                      {"occlude", intersector.occlude, shadowItems<S>, intersector.lanes},
+                      {"scatter", stages.scatter, pathItems<S>, stages.lanes},
                   },
           },
   };

@@ -10,14 +10,14 @@ Pipeline<S> pathTracing(const Stages<S>& stages, const Intersector<S>& intersect
           {
               .walk = Walk::camera,
               .strategies = {.emission = true, .nextEvent = true},
-              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>},
+              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>, stages.lanes},
               .perDepth =
                   {
-                      {"extend", intersector.extend, pathItems<S>},
-                      {"arrive", stages.arrive, pathItems<S>},
-                      {"next event", stages.nextEvent, pathItems<S>},
-                      {"occlude", intersector.occlude, shadowItems<S>},
-                      {"scatter", stages.scatter, pathItems<S>},
+                      {"extend", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive", stages.arrive, pathItems<S>, stages.lanes},
+                      {"next event", stages.nextEvent, pathItems<S>, stages.lanes},
+                      {"occlude", intersector.occlude, shadowItems<S>, intersector.lanes},
+                      {"scatter", stages.scatter, pathItems<S>, stages.lanes},
                   },
           },
   };

@@ -16,13 +16,13 @@ Pipeline<S> photonMapping(const Stages<S>& stages, const Intersector<S>& interse
           Pass<S>{
               .walk = Walk::light,
               .strategies = merging,
-              .generate = {"generate light", stages.generateLightPaths, generatedItems<S>},
+              .generate = {"generate light", stages.generateLightPaths, generatedItems<S>, stages.lanes},
               .perDepth =
                   {
-                      {"extend light", intersector.extend, pathItems<S>},
-                      {"arrive light", stages.arrive, pathItems<S>},
-                      {"store", stages.storeLightVertices, pathItems<S>},
-                      {"scatter light", stages.scatter, pathItems<S>},
+                      {"extend light", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive light", stages.arrive, pathItems<S>, stages.lanes},
+                      {"store", stages.storeLightVertices, pathItems<S>, stages.lanes},
+                      {"scatter light", stages.scatter, pathItems<S>, stages.lanes},
                   },
           },
       .photonMap = true,
@@ -30,13 +30,13 @@ Pipeline<S> photonMapping(const Stages<S>& stages, const Intersector<S>& interse
           {
               .walk = Walk::camera,
               .strategies = merging,
-              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>},
+              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>, stages.lanes},
               .perDepth =
                   {
-                      {"extend", intersector.extend, pathItems<S>},
-                      {"arrive", stages.arrive, pathItems<S>},
-                      {"merge", stages.merge, pathItems<S>},
-                      {"scatter", everyVertex ? stages.scatter : stages.scatterSpecular, pathItems<S>},
+                      {"extend", intersector.extend, pathItems<S>, intersector.lanes},
+                      {"arrive", stages.arrive, pathItems<S>, stages.lanes},
+                      {"merge", stages.merge, pathItems<S>, stages.lanes},
+                      {"scatter", everyVertex ? stages.scatter : stages.scatterSpecular, pathItems<S>, stages.lanes},
                   },
           },
   };

@@ -47,6 +47,19 @@ struct Wave {
     forEachQueue([&](auto& queue) { queue.bind(arena_, capacity); });
   }
 
+  // The state of another wave of the same capacity and columns, so that a stage can be run on it again.
+  void copyFrom(const Wave& other) {
+    arena_.copyFrom(other.arena_);
+    rays.size = other.rays.size;
+    hits.size = other.hits.size;
+    surfaces.size = other.surfaces.size;
+    paths.size = other.paths.size;
+    shadowRays.size = other.shadowRays.size;
+    radiance.size = other.radiance.size;
+    firstPath = other.firstPath;
+    pathCount = other.pathCount;
+  }
+
   size_t bytesPerPath() {
     size_t bytes = 0;
     forEachQueue([&](auto& queue) { bytes += queue.bytesPerItem(); });

@@ -13,12 +13,10 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace wavecrest {
 namespace {
-
-// Rays per call. Measured on incoherent rays (bench/micro, extend): 16 wins against 8 in rooms and large meshes.
-constexpr size_t kPacket = 16;
 
 constexpr unsigned kQuads = 0, kTriangles = 1, kSpheres = 2;
 
@@ -64,35 +62,51 @@ void addSpheres(RTCDevice device, RTCScene scene, const PrimitiveRecord<S>* reco
   rtcReleaseGeometry(geometry);
 }
 
+// Embree's packet types and entry points by width.
+template <size_t kWidth>
+struct Packet;
+#define WAVECREST_PACKET(WIDTH)                            \
+  template <>                                              \
+  struct Packet<WIDTH> {                                   \
+    using Ray = RTCRay##WIDTH;                             \
+    using RayHit = RTCRayHit##WIDTH;                       \
+    static constexpr auto intersect = rtcIntersect##WIDTH; \
+    static constexpr auto occluded = rtcOccluded##WIDTH;   \
+  };
+WAVECREST_PACKET(4)
+WAVECREST_PACKET(8)
+WAVECREST_PACKET(16)
+#undef WAVECREST_PACKET
+
+// Embree 3 takes a context before the rays, Embree 4 optional arguments behind them.
+class Query {
+ public:
 #if WAVECREST_EMBREE == 3
-struct QueryContext {
-  RTCIntersectContext context;
-  QueryContext() { rtcInitIntersectContext(&context); }
-};
-void intersectPacket(const int* valid, RTCScene scene, QueryContext& query, RTCRayHit16& rays) {
-  rtcIntersect16(valid, scene, &query.context, &rays);
-}
-void occludedPacket(const int* valid, RTCScene scene, QueryContext& query, RTCRay16& rays) {
-  rtcOccluded16(valid, scene, &query.context, &rays);
-}
+  Query() { rtcInitIntersectContext(&context_); }
+  template <class Function, class Rays>
+  void operator()(Function function, const int* valid, RTCScene scene, Rays& rays) {
+    function(valid, scene, &context_, &rays);
+  }
+
+ private:
+  RTCIntersectContext context_;
 #else
-struct QueryContext {};
-void intersectPacket(const int* valid, RTCScene scene, QueryContext&, RTCRayHit16& rays) {
-  rtcIntersect16(valid, scene, &rays);
-}
-void occludedPacket(const int* valid, RTCScene scene, QueryContext&, RTCRay16& rays) {
-  rtcOccluded16(valid, scene, &rays);
-}
+  template <class Function, class Rays>
+  void operator()(Function function, const int* valid, RTCScene scene, Rays& rays) {
+    function(valid, scene, &rays, nullptr);
+  }
 #endif
+};
 
 // The columns are blocks of a packet's length already; only the storage type may differ.
-template <class S>
-void copy(const S* column, size_t first, float (&out)[kPacket]) {
-  for (size_t i = 0; i < kPacket; ++i) out[i] = static_cast<float>(column[first + i]);
+template <class S, size_t kWidth>
+void copy(const S* column, size_t first, float (&out)[kWidth]) {
+  for (size_t i = 0; i < kWidth; ++i) out[i] = static_cast<float>(column[first + i]);
 }
 
-void setValid(size_t remaining, int (&valid)[kPacket]) {
-  for (size_t i = 0; i < kPacket; ++i) valid[i] = i < remaining ? -1 : 0;
+template <size_t kWidth>
+void setValid(size_t remaining, int (&valid)[kWidth]) {
+  for (size_t i = 0; i < kWidth; ++i) valid[i] = i < remaining ? -1 : 0;
 }
 
 // The scalar form of addSplats (kernels/lane_support.h).
@@ -107,8 +121,10 @@ void splat(const StageContext<S>& context, const ShadowRays<S>& shadow, size_t i
   for (size_t c = 0; c < 3; ++c) sums[c] += static_cast<int64_t>(rgb[c] * kSplatScale + 0.5);
 }
 
-void setSegment(float tfar, RTCRay16& ray) {
-  for (size_t i = 0; i < kPacket; ++i) {
+template <class Ray>
+void setSegment(float tfar, Ray& ray) {
+  constexpr size_t kWidth = std::extent_v<decltype(ray.tnear)>;
+  for (size_t i = 0; i < kWidth; ++i) {
     ray.tnear[i] = 0;
     ray.time[i] = 0;
     ray.tfar[i] = tfar;
@@ -149,7 +165,7 @@ EmbreeScene::~EmbreeScene() {
   rtcReleaseDevice(static_cast<RTCDevice>(device_));
 }
 
-template <class S>
+template <class S, size_t kWidth>
 void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
   auto* const scene = static_cast<RTCScene>(context.scene->embree);
   const uint32_t* firstPrimitive = context.scene->firstPrimitive;
@@ -159,10 +175,10 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
   wave.hits.size = 0;
   wave.hits.claim(count);
 
-  QueryContext query;
-  alignas(64) int valid[kPacket];
-  RTCRayHit16 packet;
-  for (size_t i = 0; i < count; i += kPacket) {
+  Query query;
+  alignas(64) int valid[kWidth];
+  typename Packet<kWidth>::RayHit packet;
+  for (size_t i = 0; i < count; i += kWidth) {
     setValid(count - i, valid);
     setSegment(std::numeric_limits<float>::infinity(), packet.ray);
     copy<S>(rays.originX, i, packet.ray.org_x);
@@ -171,10 +187,10 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
     copy<S>(rays.directionX, i, packet.ray.dir_x);
     copy<S>(rays.directionY, i, packet.ray.dir_y);
     copy<S>(rays.directionZ, i, packet.ray.dir_z);
-    for (size_t k = 0; k < kPacket; ++k) packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-    for (size_t k = 0; k < kPacket; ++k) packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-    intersectPacket(valid, scene, query, packet);
-    for (size_t k = 0; k < kPacket; ++k) {
+    for (size_t k = 0; k < kWidth; ++k) packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    for (size_t k = 0; k < kWidth; ++k) packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    query(Packet<kWidth>::intersect, valid, scene, packet);
+    for (size_t k = 0; k < kWidth; ++k) {
       const unsigned geometry = packet.hit.geomID[k];
       const bool hit = geometry != RTC_INVALID_GEOMETRY_ID;
       wave.hits.primitive[i + k] = hit ? firstPrimitive[geometry] + packet.hit.primID[k] : kMiss;
@@ -183,20 +199,18 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
     }
   }
 }
-template void extendEmbree(const StageContext<float>&, Wave<float>&);
-template void extendEmbree(const StageContext<double>&, Wave<double>&);
 
-template <class S>
+template <class S, size_t kWidth>
 void occludeEmbree(const StageContext<S>& context, Wave<S>& wave) {
   auto* const scene = static_cast<RTCScene>(context.scene->embree);
   auto& shadow = wave.shadowRays;
   const size_t count = shadow.size;
   context.counters->raysShadow += count;
 
-  QueryContext query;
-  alignas(64) int valid[kPacket];
-  RTCRay16 packet;
-  for (size_t i = 0; i < count; i += kPacket) {
+  Query query;
+  alignas(64) int valid[kWidth];
+  typename Packet<kWidth>::Ray packet;
+  for (size_t i = 0; i < count; i += kWidth) {
     setValid(count - i, valid);
     // Just short of 1: nothing at the segment's end may block it.
     setSegment(std::nextafter(1.0f, 0.0f), packet);
@@ -206,8 +220,8 @@ void occludeEmbree(const StageContext<S>& context, Wave<S>& wave) {
     copy<float>(shadow.directionX, i, packet.dir_x);
     copy<float>(shadow.directionY, i, packet.dir_y);
     copy<float>(shadow.directionZ, i, packet.dir_z);
-    occludedPacket(valid, scene, query, packet);
-    for (size_t k = 0; k < std::min(kPacket, count - i); ++k) {
+    query(Packet<kWidth>::occluded, valid, scene, packet);
+    for (size_t k = 0; k < std::min(kWidth, count - i); ++k) {
       if (packet.tfar[k] < 0) continue;  // -infinity: blocked
       if (context.walk == Walk::camera) {
         const uint32_t target = shadow.target[i + k];
@@ -221,7 +235,16 @@ void occludeEmbree(const StageContext<S>& context, Wave<S>& wave) {
   }
   shadow.size = 0;
 }
-template void occludeEmbree(const StageContext<float>&, Wave<float>&);
-template void occludeEmbree(const StageContext<double>&, Wave<double>&);
+
+#define WAVECREST_INSTANTIATE_EMBREE(S, WIDTH)                            \
+  template void extendEmbree<S, WIDTH>(const StageContext<S>&, Wave<S>&); \
+  template void occludeEmbree<S, WIDTH>(const StageContext<S>&, Wave<S>&);
+WAVECREST_INSTANTIATE_EMBREE(float, 4)
+WAVECREST_INSTANTIATE_EMBREE(float, 8)
+WAVECREST_INSTANTIATE_EMBREE(float, 16)
+WAVECREST_INSTANTIATE_EMBREE(double, 4)
+WAVECREST_INSTANTIATE_EMBREE(double, 8)
+WAVECREST_INSTANTIATE_EMBREE(double, 16)
+#undef WAVECREST_INSTANTIATE_EMBREE
 
 }  // namespace wavecrest

@@ -10,6 +10,9 @@
 
 namespace wavecrest {
 
+// Rays per call of the renderer; bench/micro compares the widths.
+constexpr size_t kEmbreePacket = 16;
+
 class EmbreeScene {
  public:
   // records: quads, then triangles, then spheres. The hierarchy is built at once, by as many threads as the calling TBB
@@ -27,10 +30,10 @@ class EmbreeScene {
   void* scene_ = nullptr;
 };
 
-// extend and occlude, with the contracts of extend_small.cpp and occlude_small.cpp.
-template <class S>
+// extend and occlude, with the contracts of extend_small.cpp and occlude_small.cpp. kWidth: 4, 8 or 16 rays per call.
+template <class S, size_t kWidth = kEmbreePacket>
 void extendEmbree(const StageContext<S>& context, Wave<S>& wave);
-template <class S>
+template <class S, size_t kWidth = kEmbreePacket>
 void occludeEmbree(const StageContext<S>& context, Wave<S>& wave);
 
 }  // namespace wavecrest

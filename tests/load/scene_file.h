@@ -30,6 +30,7 @@ class Folder {
   std::filesystem::path write(const std::string& name, std::string_view content) const {
     const std::filesystem::path path = path_ / name;
     std::filesystem::create_directories(path.parent_path());
+    std::filesystem::remove(path);  // file systems may flush to the disk when a file is overwritten
     std::ofstream(path, std::ios::binary) << content;
     return path;
   }

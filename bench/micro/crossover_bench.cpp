@@ -1,0 +1,115 @@
+// The small-scene intersector against Embree over the number of primitives: where the lines cross is kSmallSceneLimit
+// (engine/compile/compiled_scene.h). Names read crossover/STAGE/INTERSECTOR/quads:N.
+//
+// The scene is a closed room with randomly placed parallelograms in it; the rays are those of real paths after their
+// second bounce, at the best instruction set in float. Both intersectors are checked against the scalar small-scene
+// one before they are timed.
+#include <benchmark/benchmark.h>
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <random>
+
+#include "bench/micro/registration.h"
+#include "bench/micro/wave_agreement.h"
+#include "bench/throughput/cpu_timer.h"
+#include "bench/throughput/wave_capture.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kAllowedDifference = 1e-2;  // at the many edges the intersectors may see either neighbour
+
+void addQuad(Scene& scene, const Double3& corner, const Double3& edgeU, const Double3& edgeV) {
+  Shape shape;
+  shape.kind = Rectangle{corner, edgeU, edgeV, false};
+  shape.material = 0;
+  scene.shapes.push_back(shape);
+}
+
+// The room is the cube [-1, 1]^3 with the camera in its middle; its ceiling is the light.
+Scene randomQuads(size_t count) {
+  Scene scene;
+  scene.name = fmt::format("{} random quads", count);
+  Material& grey = scene.materials.emplace_back();
+  grey.kind = Diffuse{{{0.7, 0.7, 0.7}}};
+  grey.twoSided = true;
+  addQuad(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 2});  // normal down
+  addQuad(scene, {-1, -1, -1}, {0, 0, 2}, {2, 0, 0});
+  addQuad(scene, {-1, -1, -1}, {0, 2, 0}, {0, 0, 2});
+  addQuad(scene, {1, -1, -1}, {0, 2, 0}, {0, 0, 2});
+  addQuad(scene, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
+  addQuad(scene, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0});
+
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(-0.9, 0.9), edge(-0.2, 0.2);
+  while (scene.shapes.size() < count) {
+    addQuad(scene, {place(random), place(random), place(random)}, {edge(random), edge(random), edge(random)},
+            {edge(random), edge(random), edge(random)});
+  }
+  scene.shapes.front().emitter = 0;
+  scene.emitters.push_back({.kind = AreaEmitter{.radiance = {{1, 1, 1}}, .shape = 0}, .source = {}});
+  for (size_t i = 0; i < 4; ++i) scene.sensor.toWorld[i][i] = 1;
+  scene.sensor.fovX = 90;
+  scene.film.width = scene.film.height = 128;
+  return scene;
+}
+
+struct Rays {
+  WaveCapture<float> small, embree;
+  explicit Rays(const Scene& scene) : small(scene, settings(Accel::small)), embree(scene, settings(Accel::embree)) {
+    small.plan().scene->view.embree = embree.plan().scene->view.embree;
+  }
+  static RenderSettings settings(Accel accel) {
+    RenderSettings settings;
+    settings.isa = bestIsa();
+    settings.accel = accel;
+    return settings;
+  }
+};
+
+void measure(benchmark::State& state, size_t quads, bool extend, bool useEmbree) {
+  Rays rays(randomQuads(quads));
+  const Wave<float> input = rays.small.before(extend ? "extend" : "occlude", 3);
+  const StageContext<float> context = rays.small.context(3);
+  const auto stagesOf = [](Isa isa) { return findStages<float>(isa, Precision::floating, Specialization::diffuse); };
+  const Stages<float> best = stagesOf(bestIsa()), twin = stagesOf(availableIsas().front());
+  const Stage<float> run = extend ? (useEmbree ? extendEmbree<float> : best.extendSmall)
+                                  : (useEmbree ? occludeEmbree<float> : best.occludeSmall);
+  Wave<float> expected = rays.small.makeWave(), wave = rays.small.makeWave();
+  expected.copyFrom(input);
+  wave.copyFrom(input);
+  (extend ? twin.extendSmall : twin.occludeSmall)(context, expected);
+  run(context, wave);
+  const Agreement agreement = compareWaves(expected, wave, 1e-2);
+  if (agreement.differingFraction() > kAllowedDifference) {
+    state.SkipWithError(fmt::format("{} of {} paths differ", agreement.differing, agreement.items).c_str());
+    return;
+  }
+
+  CpuTimer timer;
+  for (auto _ : state) {
+    wave.copyFrom(input);
+    timer.start();
+    run(context, wave);
+    state.SetIterationTime(timer.seconds());
+  }
+  reportItems(state, extend ? input.rays.size : input.shadowRays.size);
+}
+
+}  // namespace
+
+void registerCrossoverBenchmarks() {
+  for (const bool extend : {true, false}) {
+    for (const size_t quads : {8, 16, 32, 48, 64, 96, 128, 192, 256, 384, 512}) {
+      for (const bool useEmbree : {false, true}) {
+        registerBenchmark(fmt::format("crossover/{}/{}/quads:{}", extend ? "extend" : "occlude",
+                                      useEmbree ? "embree" : "small", quads),
+                          [=](benchmark::State& state) { measure(state, quads, extend, useEmbree); });
+      }
+    }
+  }
+}
+
+}  // namespace wavecrest

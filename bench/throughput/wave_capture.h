@@ -1,0 +1,42 @@
+// WaveCapture: real waves of a render, stopped at the stage one wants to look at.
+//
+// in: a scene and settings, as for a session. out: waves as they are right before a stage of the pipeline runs, and the
+// context to run stages on them. For microbenchmarks, and for recording the rays that a render traces.
+#pragma once
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "engine/render_plan.h"
+
+namespace wavecrest {
+
+template <class S>
+class WaveCapture {
+ public:
+  WaveCapture(const Scene& scene, const RenderSettings& settings);
+
+  // Called with the name of the stage that is about to run, its depth and the wave; returns whether to go on.
+  using Observer = std::function<bool(std::string_view stage, uint32_t depth, Wave<S>& wave)>;
+
+  // Traces the wave of the given index in iteration 0 until its paths have ended or the observer has seen enough.
+  void trace(Wave<S>& wave, size_t index, const Observer& observer);
+
+  // The middle wave of the film as it is right before `stage` runs at `depth` (0 for generate). Throws std::runtime_error if it never does.
+  Wave<S> before(std::string_view stage, uint32_t depth);
+
+  Wave<S> makeWave() const { return Wave<S>(settings_.waveSize, plan_.needs); }
+  StageContext<S> context(uint32_t depth);
+  size_t waveCount() const { return (pixels_.size() + settings_.waveSize - 1) / settings_.waveSize; }
+  RenderPlan<S>& plan() { return plan_; }
+  const StageCounters& counters() const { return counters_; }
+
+ private:
+  const RenderSettings settings_;
+  RenderPlan<S> plan_;
+  std::vector<uint32_t> pixels_;  // of the film, in wave order
+  StageCounters counters_;
+};
+
+}  // namespace wavecrest

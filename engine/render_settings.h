@@ -1,0 +1,32 @@
+// What a user may choose about a render, as plain data.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "engine/compile/compiled_scene.h"
+#include "engine/methods/method_list.h"
+
+namespace wavecrest {
+
+constexpr uint32_t kUnlimitedDepth = 64;  // edges; roulette ends paths long before
+
+struct RenderSettings {
+  Method method = Method::pt;
+  Precision precision = Precision::floating;
+  Isa isa = Isa::scalar;
+  Accel accel = Accel::automatic;
+  SamplerKind sampler = SamplerKind::independent;
+  uint64_t seed = 0;
+  uint32_t threads = 1;
+  uint32_t waveSize = 2048;  // paths
+  PathLimits limits;
+  double radius = 0.001;                         // of the first merges, relative to the bounding sphere's
+  double radiusAlpha = 0.75;                     // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
+  std::optional<uint64_t> iterations;            // stop after this many,
+  std::optional<double> seconds;                 // or after this much render time, whichever comes first
+  std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene
+  bool measureStages = false;
+};
+
+}  // namespace wavecrest

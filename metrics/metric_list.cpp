@@ -1,0 +1,159 @@
+#include "metrics/metric_list.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "metrics/image/srgb.h"
+#include "metrics/rmse.h"
+
+namespace wavecrest {
+namespace {
+
+// ---- errors of the numbers as read ----------------------------------------------------------------------------------
+
+// The two images as the error metrics see them: on one scale.
+struct ErrorPair {
+  const Image& reference;
+  const Image& test;
+};
+
+template <class Function>
+auto onOneScale(const PreparedReference& reference, const ComparedImage& test, Function function) {
+  const ImageFile &a = reference.image().file, &b = test.file;
+  const bool aLinear = a.encoding == Encoding::linear, bLinear = b.encoding == Encoding::linear;
+  if (aLinear == bLinear) return function(ErrorPair{a.image, b.image});
+  // One is coded: it is decoded. Codes are always finite, so linearLight changes nothing else.
+  const Image decoded = linearLight(aLinear ? b : a);
+  return aLinear ? function(ErrorPair{a.image, decoded}) : function(ErrorPair{decoded, b.image});
+}
+
+Image toUnitRange(const Image8& codes) {
+  Image image{codes.width, codes.height, 3, std::vector<float>(codes.pixels.size())};
+  std::transform(codes.pixels.begin(), codes.pixels.end(), image.pixels.begin(),
+                 [](uint8_t c) { return static_cast<float>(c) / 255.0f; });
+  return image;
+}
+
+// Root mean square difference of the channels of each pixel; relative divides by the squared reference.
+std::vector<float> errorMap(const ErrorPair& images, bool relative) {
+  std::vector<float> map(images.reference.pixelCount());
+  for (size_t i = 0; i < map.size(); ++i) {
+    double sum = 0;
+    for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
+      const double r = images.reference.pixels[c], d = images.test.pixels[c] - r;
+      sum += relative ? d * d / (r * r + RelmseSettings{}.epsilon) : d * d;
+    }
+    const double value = relative ? sum / 3 : std::sqrt(sum / 3);
+    map[i] = std::isfinite(value) ? static_cast<float>(value) : 0.0f;
+  }
+  return map;
+}
+
+Measurement measureRmse(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  const bool bothCodes = reference.image().file.encoding == Encoding::srgb8 && test.file.encoding == Encoding::srgb8;
+  Measurement result;
+  if (reference.settings().gammaCorrectedErrors || (bothCodes && reference.settings().exposure == 0)) {
+    const Image8 &a = reference.image().codes, &b = test.codes;
+    result.scores = {{"", rmse(a, b, CodeScale::gammaCorrected).rmse}};
+    if (withMap) result.map = errorMap({toUnitRange(a), toUnitRange(b)}, false);
+    return result;
+  }
+  onOneScale(reference, test, [&](const ErrorPair& images) {
+    result.scores = {{"", rmse(images.reference, images.test).rmse}};
+    if (withMap) result.map = errorMap(images, false);
+  });
+  return result;
+}
+
+Measurement measureRelmse(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  Measurement result;
+  const auto measure = [&](const ErrorPair& images) {
+    const RelmseResult errors = relmse(images.reference, images.test);
+    result.scores = {{"", errors.relmse}, {"trimmed", errors.trimmed}};
+    if (withMap) result.map = errorMap(images, true);
+  };
+  if (reference.settings().gammaCorrectedErrors) {
+    measure({toUnitRange(reference.image().codes), toUnitRange(test.codes)});
+  } else {
+    onOneScale(reference, test, measure);
+  }
+  return result;
+}
+
+// ---- perceptual metrics on 8-bit codes ------------------------------------------------------------------------------
+
+Measurement measureSsim(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  SsimResult ssim = reference.ssim().compare(test.codes, withMap);
+  for (float& v : ssim.map) v = 1 - v;
+  return {{{"mean", ssim.mean},
+           {"r", ssim.channels[0]},
+           {"g", ssim.channels[1]},
+           {"b", ssim.channels[2]},
+           {"luma", ssim.luma}},
+          std::move(ssim.map)};
+}
+
+Measurement measureHdrVdp2(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  HdrVdp2Result result = reference.hdrVdp2().compare(test.codes, withMap);
+  return {{{"q", result.q}, {"q_mos", result.qMos}}, std::move(result.probability)};
+}
+
+Measurement measureFlip(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  FlipResult result = reference.flip().compare(test.codes, withMap);
+  return {{{"", result.mean}}, std::move(result.map)};
+}
+
+Measurement measureHdrFlip(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  Image light = linearLight(test.file);
+  if (test.nonFinitePixels > 0) {
+    // Excluded pixels take the reference's light.
+    const Image &a = reference.image().file.image, &b = test.file.image;
+    const Image referenceLight = linearLight(reference.image().file);
+    for (size_t pixel = 0; pixel < light.pixelCount(); ++pixel) {
+      const size_t i = 3 * pixel;
+      if (finitePixel(a, pixel) && finitePixel(b, pixel)) continue;
+      std::copy_n(referenceLight.pixels.data() + i, 3, light.pixels.data() + i);
+    }
+  }
+  FlipResult result = reference.hdrFlip().compare(light, withMap);
+  return {{{"", result.mean}}, std::move(result.map)};
+}
+
+// clang-format off
+constexpr std::array kMetrics{
+    Metric{.name = "rmse", .title = "root mean square error", .score = "", .higherIsBetter = false,
+           .threshold = "max-rmse", .byDefault = true, .smallestSide = 1, .mapRange = 0, .measure = measureRmse},
+    Metric{.name = "relmse", .title = "relative mean square error", .score = "", .higherIsBetter = false,
+           .threshold = "max-relmse", .byDefault = true, .smallestSide = 1, .mapRange = 0, .measure = measureRelmse},
+    Metric{.name = "ssim", .title = "structural similarity", .score = "mean", .higherIsBetter = true,
+           .threshold = "min-ssim", .byDefault = true, .smallestSide = kSsimSmallestSide, .mapRange = 1,
+           .measure = measureSsim},
+    Metric{.name = "hdrvdp2", .title = "HDR-VDP-2.2 mean opinion score", .score = "q_mos", .higherIsBetter = true,
+           .threshold = "min-qmos", .byDefault = true, .smallestSide = kHdrVdp2SmallestSide, .mapRange = 1,
+           .measure = measureHdrVdp2},
+    Metric{.name = "flip", .title = "LDR-FLIP", .score = "", .higherIsBetter = false,
+           .threshold = "max-flip", .byDefault = true, .smallestSide = 1, .mapRange = 1, .measure = measureFlip},
+    Metric{.name = "hdrflip", .title = "HDR-FLIP", .score = "", .higherIsBetter = false,
+           .threshold = "max-hdrflip", .byDefault = false, .smallestSide = 1, .mapRange = 1,
+           .measure = measureHdrFlip},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const Metric> metricList() { return kMetrics; }
+
+const Metric* findMetric(std::string_view name) {
+  const auto found = std::find_if(kMetrics.begin(), kMetrics.end(), [&](const Metric& m) { return m.name == name; });
+  return found == kMetrics.end() ? nullptr : &*found;
+}
+
+double mainScore(const Metric& metric, const Measurement& measurement) {
+  for (const Score& score : measurement.scores)
+    if (score.name == metric.score) return score.value;
+  throw std::logic_error("metric without its main score");
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,45 @@
+// The metrics, in one list: how each is called, what it needs, which of its numbers counts and how it is computed.
+//
+// The command line, campaigns and reports read this list; a new metric is one entry in metric_list.cpp.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "metrics/prepared_reference.h"
+
+namespace wavecrest {
+
+struct Score {
+  std::string_view name;  // empty: the metric's only number
+  double value;
+};
+
+struct Measurement {
+  std::vector<Score> scores;
+  std::vector<float> map;  // badness of each pixel, 0 = none; empty unless asked for
+};
+
+struct Metric {
+  std::string_view name;   // "ssim": of --metrics and of JSON keys
+  std::string_view title;  // for people
+  std::string_view score;  // name of the score that curves and thresholds use; empty: the only one
+  bool higherIsBetter;
+  std::string_view threshold;  // its command-line option: "min-ssim"
+  bool byDefault;              // measured when no metric is named
+  uint32_t smallestSide;       // images with a shorter side are refused
+  double mapRange;             // value of the map that false colours show brightest; 0: its 99.9 % quantile
+  Measurement (*measure)(const PreparedReference& reference, const ComparedImage& test, bool withMap);
+};
+
+std::span<const Metric> metricList();
+
+// The entry of that name, or null.
+const Metric* findMetric(std::string_view name);
+
+// The score that counts.
+double mainScore(const Metric& metric, const Measurement& measurement);
+
+}  // namespace wavecrest

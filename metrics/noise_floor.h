@@ -1,0 +1,28 @@
+// What a reference's own noise does to the metrics measured against it.
+//
+// A reference is the mean M of two independent halves A and B. The error of M has the variance of (A - B) / 2, and
+// A = M + (A - B) / 2: so comparing a half with the mean shows exactly as much noise as M itself carries, for any
+// metric, and without assuming how a metric grows with noise. A perfect image scores about this floor against M.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "metrics/metric_list.h"
+
+namespace wavecrest {
+
+struct NoiseFloor {
+  std::string_view metric;
+  double score = 0;  // main score, the mean of both halves against the reference
+};
+
+// Halves of the same size in linear light. Metrics whose smallest size exceeds the image's are left out.
+std::vector<NoiseFloor> noiseFloors(const Image& halfA, const Image& halfB, std::span<const Metric> metrics);
+
+// Mean over samples of (test - A)(test - B): the mean square error of a test image without the reference's noise, as
+// the halves' errors are independent. May be slightly negative. Pixels that are not finite are left out.
+double unbiasedMeanSquareError(const Image& test, const Image& halfA, const Image& halfB);
+
+}  // namespace wavecrest
