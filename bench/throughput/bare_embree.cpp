@@ -124,7 +124,7 @@ class Comparison {
   }
 
   Stage<float> stageNamed(std::string_view name) {
-    for (const StageCall<float>& stage : used_.plan().pipeline.perDepth) {
+    for (const StageCall<float>& stage : used_.plan().pipeline.cameraPass.perDepth) {
       if (stage.name == name) return stage.run;
     }
     throw std::logic_error("the pipeline has no such stage");

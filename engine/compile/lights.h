@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/compile/primitives.h"
+#include "engine/compile/textures.h"
 
 namespace wavecrest {
 
@@ -11,6 +12,7 @@ template <class S>
 struct Lights {
   std::vector<LightRecord<S>> records;
   std::vector<AliasEntry> table;  // over records
+  Environment environment;        // of the envmap emitter, if there is one
   uint32_t infinite = kNoIndex;   // the constant or environment emitter
 };
 

@@ -7,7 +7,7 @@
 
 #include "kernels/sampling/warp_lanes.h"
 #include "kernels/shade/bsdf_interface.h"
-#include "kernels/simd/exp_log.h"
+#include "kernels/simd/math.h"
 
 WAVECREST_SIMD_BEGIN
 

@@ -73,7 +73,7 @@ template <class S>
 size_t allocationsPerWave(const std::string& sceneName, Precision precision, Accel accel, SamplerKind sampler) {
   const Scene scene = sceneFile(sceneName, 48, 36);
   const auto compiled = compileScene<S>(scene, accel);
-  const Specialization specialization = chooseSpecialization(sceneFeatures(scene));
+  const Specialization specialization = chooseSpecialization(sceneFeatures(scene), precision);
   const Stages<S>& stages = findStages<S>(bestIsa(), precision, specialization);
   const Intersector<S> intersector = accel == Accel::small ? Intersector<S>{stages.extendSmall, stages.occludeSmall}
                                                            : Intersector<S>{extendEmbree<S>, occludeEmbree<S>};

@@ -256,7 +256,8 @@ std::vector<Choice> allChoices() {
   for (const Isa isa : availableIsas()) {
     for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
       for (size_t i = 0; i < kSpecializationCount; ++i) {
-        choices.push_back({isa, precision, static_cast<Specialization>(i)});
+        const auto specialization = static_cast<Specialization>(i);
+        if (isCompiled(precision, specialization)) choices.push_back({isa, precision, specialization});
       }
     }
   }
