@@ -25,8 +25,8 @@ struct LoadContext {
   std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};  // by path and colour treatment
   std::map<std::string, std::shared_ptr<const TriangleSoup>> groupMeshes{};  // mesh files inside shape groups
   bool inShapeGroup = false;
-  uint32_t defaultMaterial[2] = {kNone, kNone};  // of surfaces, of lights
-  uint64_t instancedBytes = 0;                   // of shapes copied by instances
+  uint32_t defaultMaterial[2] = {kNone, kNone};      // of surfaces, of lights
+  uint64_t instancedShapes = 0, instancedBytes = 0;  // copies made by instances
 
   // Follows <ref>; any other element is itself.
   const XmlElement& resolve(const XmlElement& element) const;
