@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   addCompareCommand(app, exitCode);
   addRenderCommand(app, exitCode);
   addReportCommand(app, exitCode);
+  addBenchCommand(app, exitCode);
   addScenesCommand(app, exitCode);
 
   try {

@@ -136,6 +136,11 @@ class RecordLanes {
   WAVECREST_INLINE Float operator()(const float& field) const { return gather(&field, wordIndex_); }
   WAVECREST_INLINE UInt operator()(const uint32_t& field) const { return gather(&field, wordIndex_); }
   WAVECREST_INLINE Double operator()(const double& field) const { return gather(&field, longIndex_); }
+  // Each lane's own element of an array in its record.
+  template <size_t kSize>
+  WAVECREST_INLINE Float operator()(const float (&field)[kSize], UInt element) const {
+    return gather(field, wordIndex_ + element);
+  }
   template <class S>
   WAVECREST_INLINE auto operator()(const S (&field)[3]) const {
     return Vec3<decltype((*this)(field[0]))>{(*this)(field[0]), (*this)(field[1]), (*this)(field[2])};

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "engine/compile/rough_boundary.h"
 #include "engine/compile/vector_math.h"
 #include "kernels/stages.h"
 
@@ -145,7 +145,13 @@ class Compiler {
     const double diffuse = average(mean(plastic.diffuseReflectance, scene_));
     const double specular = average(mean(plastic.specularReflectance, scene_));
     record_.specularPick = specularShare(specular, diffuse);
-    record_.internalDiffuse = static_cast<float>(diffuseFresnelReflectance(1 / eta));
+    if (isSmooth(plastic.alpha)) {
+      record_.internalDiffuse = static_cast<float>(diffuseFresnelReflectance(1 / eta));
+    } else {
+      const RoughBoundary boundary{plastic.distribution, plastic.alpha.value, eta};
+      record_.internalDiffuse = static_cast<float>(internalReflectance(boundary));
+      std::ranges::copy(transmittanceTable(boundary), record_.roughTransmittance);
+    }
   }
 
   void operator()(const Phong& phong) {

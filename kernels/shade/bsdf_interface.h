@@ -48,7 +48,7 @@ struct BsdfInput {
   const MaterialRecord* materials;
   RecordLanes<MaterialRecord> at;
   UInt kind;
-  Walk walk = Walk::camera;
+  Walk walk = Walk::camera;  // from the eye, so that gen points to the light's side, or from a light
   Lobes lobes = Lobes::all;
 
   WAVECREST_INLINE BsdfInput(const MaterialRecord* base, UInt index) : materials(base), at(base, index) {

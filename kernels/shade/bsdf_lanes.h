@@ -35,21 +35,79 @@ WAVECREST_INLINE void forEachBsdf(const BsdfInput<P>& input, Mask active, Functi
 // A feature set with nothing but diffuse surfaces needs no dispatch.
 constexpr bool onlyDiffuse(uint32_t features) { return (features & (kSpecularBsdfs | kLayeredBsdfs)) == 0; }
 
+// ---- the BSDF without its opacity -----------------------------------------------------------------------------------
+
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE BsdfValue<typename P::Real> evalOpaque(const BsdfInput<P>& input, Mask active,
+                                                        Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
+  BsdfValue<typename P::Real> value = zeroBsdfValue<typename P::Real>();
+  forEachBsdf<kFeatures>(
+      input, active,
+      [&](auto bsdf, Mask mine)
+          HWY_ATTR { value = select(mine, decltype(bsdf)::template eval<P>(input, fix, gen), value); },
+      AllBsdfs{});
+  return value;
+}
+
+// Lanes whose BSDF has no lobe to choose from get weight 0.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE BsdfSample<typename P::Real> sampleOpaque(const BsdfInput<P>& input, Mask active,
+                                                           Vec3<typename P::Real> fix, const Uniform4& u) {
+  using Real = typename P::Real;
+  const Real zero(0), one(1);
+  BsdfSample<Real> sample{{zero, zero, one}, {zero, zero, zero}, one, one, one, noLanes()};
+  forEachBsdf<kFeatures>(
+      input, active,
+      [&](auto bsdf, Mask mine) HWY_ATTR {
+        if (input.lobes == Lobes::specularOnly && !decltype(bsdf)::kHasDelta) return;
+        sample = select(mine, decltype(bsdf)::template sample<P>(input, fix, u), sample);
+      },
+      AllBsdfs{});
+  return sample;
+}
+
+// Lanes with a delta lobe, opacity aside.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE Mask opaqueHasDelta(const BsdfInput<P>& input, Mask active) {
+  Mask delta = noLanes();
+  forEachBsdf<kFeatures>(
+      input, active,
+      [&](auto bsdf, Mask mine) HWY_ATTR {
+        if constexpr (decltype(bsdf)::kHasDelta) delta = delta | mine;
+      },
+      AllBsdfs{});
+  return delta;
+}
+
+// ---- what stages call -----------------------------------------------------------------------------------------------
+// Opacity o, as Mitsuba 3's `mask`: the surface is absent with probability 1 - o. That is one more delta lobe, which
+// passes straight on; the others are scaled by o. To a shadow ray the surface is solid: light that passes is found by
+// continuing the path.
+
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE BsdfValue<typename P::Real> evalBsdf(const BsdfInput<P>& input, Mask active,
                                                       Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
   using Real = typename P::Real;
   if constexpr (onlyDiffuse(kFeatures)) {
     return DiffuseBsdf::eval<P>(input, fix, gen);
+  } else if constexpr (!has(kFeatures, kLayeredBsdfs)) {
+    return evalOpaque<P, kFeatures>(input, active, fix, gen);
   } else {
-    BsdfValue<Real> value = zeroBsdfValue<Real>();
-    forEachBsdf<kFeatures>(
-        input, active,
-        [&](auto bsdf, Mask mine)
-            HWY_ATTR { value = select(mine, decltype(bsdf)::template eval<P>(input, fix, gen), value); },
-        AllBsdfs{});
-    return value;
+    const BsdfValue<Real> value = evalOpaque<P, kFeatures>(input, active, fix, gen);
+    const Real opacity = input.opacity();
+    return {value.f * opacity, value.pdf * opacity, value.pdfReverse * opacity};
   }
+}
+
+template <class P>
+WAVECREST_INLINE BsdfSample<typename P::Real> passThrough(Vec3<typename P::Real> fix, typename P::Real weight,
+                                                          typename P::Real pick) {
+  return {.gen = -fix,
+          .weight = {weight, weight, weight},
+          .pdf = pick,
+          .pdfReverse = pick,
+          .etaRatio = typename P::Real(1),
+          .specular = allLanes()};
 }
 
 template <class P, uint32_t kFeatures>
@@ -58,15 +116,26 @@ WAVECREST_INLINE BsdfSample<typename P::Real> sampleBsdf(const BsdfInput<P>& inp
   using Real = typename P::Real;
   if constexpr (onlyDiffuse(kFeatures)) {
     return DiffuseBsdf::sample<P>(input, fix, u);
+  } else if constexpr (!has(kFeatures, kLayeredBsdfs)) {
+    return sampleOpaque<P, kFeatures>(input, active, fix, u);
   } else {
-    const Real zero(0), one(1);
-    BsdfSample<Real> sample{{zero, zero, one}, {zero, zero, zero}, one, one, one, noLanes()};
-    forEachBsdf<kFeatures>(
-        input, active,
-        [&](auto bsdf, Mask mine)
-            HWY_ATTR { sample = select(mine, decltype(bsdf)::template sample<P>(input, fix, u), sample); },
-        AllBsdfs{});
-    return sample;
+    const Real one(1);
+    const Real opacity = input.opacity();
+    const Mask partial = active & (opacity < one);
+    if (none(partial)) return sampleOpaque<P, kFeatures>(input, active, fix, u);
+
+    // The probability that the surface is there; among delta lobes alone it counts only if the surface has one.
+    Real pick = opacity;
+    if (input.lobes == Lobes::specularOnly) pick = zeroUnless(opaqueHasDelta<P, kFeatures>(input, active), opacity);
+    const Mask passes = partial & (to<Real>(u.a) >= pick);
+    // What is left of u.a decides between the surface's lobes.
+    const Float rest = min(u.a / max(toFloat(pick), Float(0x1p-24f)), Float(0x1.fffffep-1f));
+    BsdfSample<Real> sample =
+        sampleOpaque<P, kFeatures>(input, active, fix, {select(partial, rest, u.a), u.b, u.c, u.d});
+    sample.pdf = select(partial, sample.pdf * pick, sample.pdf);
+    sample.pdfReverse = select(partial, sample.pdfReverse * pick, sample.pdfReverse);
+    const Real absent = one - pick;
+    return select(passes, passThrough<P>(fix, (one - opacity) / max(absent, Real(1e-30f)), absent), sample);
   }
 }
 

@@ -1,4 +1,4 @@
-// Rough metal: GGX microfacets that reflect like a conductor. As Mitsuba 3's `roughconductor` with sample_visible, its
+// Rough metal: microfacets that reflect like a conductor. As Mitsuba 3's `roughconductor` with sample_visible, its
 // separable shadowing included (see microfacet_lanes.h).
 //
 // With S of microfacet_lanes.h: f = F D / (S(fix) S(gen)), pdf = D / (2 S(fix)), f cos / pdf = F G1(gen).
@@ -9,21 +9,22 @@
 
 WAVECREST_SIMD_BEGIN
 
-struct RoughConductorBsdf {
-  static constexpr BsdfKind kKind = BsdfKind::roughConductor;
-  static constexpr uint32_t kFeature = kSpecularBsdfs;
+template <template <class> class Normals, BsdfKind kThisKind, uint32_t kThisFeature>
+struct RoughConductor {
+  static constexpr BsdfKind kKind = kThisKind;
+  static constexpr uint32_t kFeature = kThisFeature;
   static constexpr bool kHasDelta = false;
 
   template <class P>
   static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
                                                            Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
-    const auto ggx = Ggx<Real>::fromAlpha(input.alpha());
+    const auto normals = Normals<P>::fromAlpha(input.alpha());
     const Vec3<Real> h = fix + gen;
     const Real h2 = length2(h);
     const Mask front = (fix.z > Real(0)) & (gen.z > Real(0)) & (h2 > Real(kSmallestHalfVector2));
-    const Real density = ggxDensity<P>(ggx, h, h2);
-    const Real byFix = reciprocal<P>(ggx.masking(fix)), byGen = reciprocal<P>(ggx.masking(gen));
+    const Real density = normals.density(h, h2);
+    const Real byFix = reciprocal<P>(normals.masking(fix)), byGen = reciprocal<P>(normals.masking(gen));
     // fix . m = |h| / 2 for unit fix and gen.
     const Vec3<Real> reflectance = conductorReflectance(input, Real(0.5) * sqrt(h2));
     return {zeroUnless(front, reflectance * (density * byFix * byGen)), zeroUnless(front, Real(0.5) * density * byFix),
@@ -34,13 +35,13 @@ struct RoughConductorBsdf {
   static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
                                                               const Uniform4& u) {
     using Real = typename P::Real;
-    const auto ggx = Ggx<Real>::fromAlpha(input.alpha());
-    const Vec3<Real> m = sampleVisibleNormal<P>(ggx, fix, to<Real>(u.b), to<Real>(u.c));
+    const auto normals = Normals<P>::fromAlpha(input.alpha());
+    const Vec3<Real> m = normals.sampleVisible(fix, to<Real>(u.b), to<Real>(u.c));
     const Real cosine = dot(fix, m);
     const Vec3<Real> gen = mirror(fix, m, cosine);
     const Mask front = (fix.z > Real(0)) & (gen.z > Real(0));
-    const Real density = Real(0.5) * ggxDensity<P>(ggx, m, Real(1));
-    const Real byFix = reciprocal<P>(ggx.masking(fix)), byGen = reciprocal<P>(ggx.masking(gen));
+    const Real density = Real(0.5) * normals.density(m, Real(1));
+    const Real byFix = reciprocal<P>(normals.masking(fix)), byGen = reciprocal<P>(normals.masking(gen));
     const Real shadowing = Real(2) * gen.z * byGen;
     return {.gen = gen,
             .weight = zeroUnless(front, conductorReflectance(input, cosine) * shadowing),
@@ -50,5 +51,7 @@ struct RoughConductorBsdf {
             .specular = noLanes()};
   }
 };
+
+using RoughConductorBsdf = RoughConductor<GgxNormals, BsdfKind::roughConductor, kSpecularBsdfs>;
 
 WAVECREST_SIMD_END

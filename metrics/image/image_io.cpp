@@ -77,6 +77,14 @@ void checkSize(const std::string& path, uint64_t width, uint64_t height, uint64_
   }
 }
 
+std::string quoted(const std::string& text) {
+  constexpr size_t kLongest = 40;
+  std::string result = "'" + text.substr(0, kLongest) + (text.size() > kLongest ? "...'" : "'");
+  std::replace_if(
+      result.begin(), result.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  return result;
+}
+
 std::string HeaderReader::line() {
   constexpr size_t kLongest = 4096;
   std::string text;

@@ -186,9 +186,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::ValuesIn(allIntersectors()),
                      testing::Values(Mix{"quads", 8, 0, 0}, Mix{"triangles", 0, 8, 0}, Mix{"spheres", 0, 0, 6},
                                      Mix{"all", 5, 5, 4}, Mix{"crowded", 60, 60, 40})),
-    [](const auto& instance) {
-      return std::get<0>(instance.param).name + "_" + std::get<1>(instance.param).name;
-    });
+    [](const auto& instance) { return std::get<0>(instance.param).name + "_" + std::get<1>(instance.param).name; });
 
 // Rays that run within or parallel to the planes of axis-aligned faces have zeros and infinities in every formula.
 class AxisAlignedTest : public testing::TestWithParam<Intersector> {};

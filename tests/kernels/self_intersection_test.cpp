@@ -46,7 +46,9 @@ struct Fixture {
     context.counters = &counters;
     wave.pathCount = kPaths;
   }
-  static constexpr Precision precision() { return sizeof(S) == sizeof(double) ? Precision::doubled : Precision::floating; }
+  static constexpr Precision precision() {
+    return sizeof(S) == sizeof(double) ? Precision::doubled : Precision::floating;
+  }
 
   void begin(uint32_t iteration) {
     context.sampler.iteration = iteration;
@@ -59,7 +61,7 @@ struct Fixture {
   Stage<S> extend = nullptr;
   StageCounters counters;
   StageContext<S> context;
-  Wave<S> wave{kPaths, {.shadingNormals = true, .textures = false, .refraction = true, .connections = false}};
+  Wave<S> wave{kPaths, {.shadingNormals = true, .textures = false, .rouletteScale = true, .connections = false}};
 };
 
 class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersector, Placement>> {
@@ -156,8 +158,8 @@ TEST_P(SelfIntersectionTest, insideOfASphereInDouble) { bounceInSphere<double>()
 TEST_P(SelfIntersectionTest, outsideOfASphere) { leaveSolidSphere<float>(); }
 TEST_P(SelfIntersectionTest, outsideOfASphereInDouble) { leaveSolidSphere<double>(); }
 
-constexpr Placement kPlacements[] = {{"tiny", 1e-4, 0.1},   {"unit", 1, 0.1},        {"large", 1e4, 0.1},
-                                     {"huge", 1e6, 0.1},    {"far", 1, 100},         {"farther", 1, 1e4},
+constexpr Placement kPlacements[] = {{"tiny", 1e-4, 0.1},      {"unit", 1, 0.1}, {"large", 1e4, 0.1},
+                                     {"huge", 1e6, 0.1},       {"far", 1, 100},  {"farther", 1, 1e4},
                                      {"tinyAndFar", 1e-4, 1e3}};
 
 INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionTest,

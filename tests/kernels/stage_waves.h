@@ -24,6 +24,7 @@ void forEachQueue(Wave<S>& a, Wave<S>& b, Function&& function) {
   function("surfaces", a.surfaces, b.surfaces);
   function("paths", a.paths, b.paths);
   function("shadowRays", a.shadowRays, b.shadowRays);
+  function("pairs", a.pairs, b.pairs);
   function("radiance", a.radiance, b.radiance);
 }
 
@@ -37,7 +38,8 @@ void forEachColumn(Queue& a, Queue& b, Function&& function) {
       if (x.needed()) function(index, x, y);
     };
     (visit(kIndex, std::get<kIndex>(columnsA), std::get<kIndex>(columnsB)), ...);
-  }(std::make_index_sequence<std::tuple_size_v<decltype(columnsA)>>());
+  }
+  (std::make_index_sequence<std::tuple_size_v<decltype(columnsA)>>());
 }
 
 template <class T>
@@ -51,9 +53,8 @@ void copyWave(Wave<S>& from, Wave<S>& to) {
   to.pathCount = from.pathCount;
   forEachQueue(from, to, [](const char*, auto& source, auto& target) {
     target.size = source.size;
-    forEachColumn(source, target, [&](size_t, auto& x, auto& y) {
-      std::copy_n(items(x), paddedItems(source.capacity()), items(y));
-    });
+    forEachColumn(source, target,
+                  [&](size_t, auto& x, auto& y) { std::copy_n(items(x), paddedItems(source.capacity()), items(y)); });
   });
 }
 

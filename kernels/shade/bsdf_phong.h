@@ -1,0 +1,59 @@
+// The modified Phong model: a cosine-power lobe around the mirror direction and a diffuse lobe (Lafortune and Willems,
+// "Using the Modified Phong Reflectance Model for Physically Based Rendering", 1994). As Mitsuba 0.6's `phong`.
+//
+// f = k_d / pi + k_s (n+2) / (2 pi) cos^n a, with a the angle between gen and the mirror image of fix. k_s is the
+// lobe's albedo at normal incidence only: at grazing angles a part of it lies below the horizon and is lost.
+#pragma once
+
+#include "kernels/sampling/warp_lanes.h"
+#include "kernels/shade/bsdf_interface.h"
+#include "kernels/simd/exp_log.h"
+
+WAVECREST_SIMD_BEGIN
+
+struct PhongBsdf {
+  static constexpr BsdfKind kKind = BsdfKind::phong;
+  static constexpr uint32_t kFeature = kLayeredBsdfs;
+  static constexpr bool kHasDelta = false;
+
+  template <class P>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
+                                                           Vec3<typename P::Real> gen) {
+    using Real = typename P::Real;
+    const Real zero(0), one(1);
+    const Mask front = (fix.z > zero) & (gen.z > zero);
+    const Real exponent = input.alpha();
+    // 1 - cos a = |gen - mirror|^2 / 2 keeps its digits in narrow lobes.
+    const Real oneMinusCos = Real(0.5) * length2(Vec3<Real>{gen.x + fix.x, gen.y + fix.y, gen.z - fix.z});
+    const Real power = exp(exponent * log1p(-min(oneMinusCos, Real(0.999999f))));
+    const Real lobe = zeroUnless(oneMinusCos < one, power * Real(kInvPi / 2));
+    const Vec3<Real> f = mulAdd(input.specular(), (exponent + Real(2)) * lobe, input.reflectance() * Real(kInvPi));
+    const Real pick = to<Real>(input.at(input.materials->specularPick));
+    const Real fromLobe = pick * (exponent + one) * lobe, diffuse = (one - pick) * Real(kInvPi);
+    return {zeroUnless(front, f), zeroUnless(front, mulAdd(diffuse, gen.z, fromLobe)),
+            zeroUnless(front, mulAdd(diffuse, fix.z, fromLobe))};
+  }
+
+  template <class P>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
+                                                              const Uniform4& u) {
+    using Real = typename P::Real;
+    const Real one(1);
+    const Real u1 = to<Real>(u.b), u2 = to<Real>(u.c);
+    // cos a = u^(1 / (n+1))
+    const Real oneMinusCos = -expm1(log(one - u1) * reciprocal<P>(input.alpha() + one));
+    const Frame<Real> around = Frame<Real>::fromNormal({-fix.x, -fix.y, fix.z});
+    const Vec3<Real> inLobe = around.toWorld(uniformCone(one, u2, oneMinusCos));
+    const Mask specular = to<Real>(u.a) < to<Real>(input.at(input.materials->specularPick));
+    const Vec3<Real> gen = select(specular, inLobe, cosineHemisphere<Real>(u1, u2));
+    const auto value = eval(input, fix, gen);
+    return {.gen = gen,
+            .weight = value.f * (abs(gen.z) * reciprocal<P>(max(value.pdf, Real(1e-30f)))),
+            .pdf = value.pdf,
+            .pdfReverse = value.pdfReverse,
+            .etaRatio = one,
+            .specular = noLanes()};
+  }
+};
+
+WAVECREST_SIMD_END

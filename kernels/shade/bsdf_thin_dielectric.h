@@ -1,0 +1,41 @@
+// A thin pane, two parallel smooth boundaries as one surface: light is reflected, or passes straight on. As Mitsuba 3's
+// `thindielectric`.
+//
+// The reflections between the boundaries add up to R' = R + (1-R)^2 R / (1-R^2) = 2 R / (1 + R) (geometric series).
+#pragma once
+
+#include "kernels/shade/bsdf_interface.h"
+#include "kernels/shade/fresnel_lanes.h"
+
+WAVECREST_SIMD_BEGIN
+
+struct ThinDielectricBsdf {
+  static constexpr BsdfKind kKind = BsdfKind::thinDielectric;
+  static constexpr uint32_t kFeature = kLayeredBsdfs;
+  static constexpr bool kHasDelta = true;
+
+  template <class P>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>&, Vec3<typename P::Real>,
+                                                           Vec3<typename P::Real>) {
+    return zeroBsdfValue<typename P::Real>();
+  }
+
+  template <class P>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
+                                                              const Uniform4& u) {
+    using Real = typename P::Real;
+    const Real one(1);
+    const Real single = fresnelDielectric<P>(abs(fix.z), input.eta()).reflectance;
+    const Real reflectance = Real(2) * single * reciprocal<P>(one + single);
+    const Mask reflect = to<Real>(u.a) < reflectance;
+    const Real pick = select(reflect, reflectance, one - reflectance);
+    return {.gen = {-fix.x, -fix.y, select(reflect, fix.z, -fix.z)},
+            .weight = select(reflect, input.specular(), input.transmittance()),
+            .pdf = pick,
+            .pdfReverse = pick,
+            .etaRatio = one,
+            .specular = allLanes()};
+  }
+};
+
+WAVECREST_SIMD_END
