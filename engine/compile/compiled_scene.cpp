@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "engine/compile/materials.h"
 #include "engine/compile/vector_math.h"
+#include "engine/scene/scene_error.h"
 
 namespace wavecrest {
 namespace {
@@ -67,7 +67,10 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel) 
   auto compiled = std::make_unique<CompiledScene<S>>();
   const bool textured = (sceneFeatures(scene) & kTextures) != 0;
   auto& primitives = compiled->primitives = compilePrimitives<S>(scene, textured);
-  if (primitives.records.empty()) throw std::runtime_error(scene.name + ": the scene has no surface; expected a shape");
+  if (primitives.records.empty()) {
+    const SourceLocation where = scene.shapes.empty() ? SourceLocation{scene.name} : scene.shapes.front().source;
+    throw SceneError(where, "no shape of the scene has a surface; expected one of positive area");
+  }
   const BoundingSphere bounds = boundPrimitives(primitives.records);
   compiled->lights = compileLights(scene, bounds, primitives);
   for (const Material& material : scene.materials) compiled->materials.push_back(compileMaterial(material, scene));

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numbers>
 #include <numeric>
-#include <stdexcept>
 
 #include "engine/compile/vector_math.h"
+#include "engine/scene/scene_error.h"
 #include "kernels/extend/offset.h"
 
 namespace wavecrest {
@@ -115,8 +115,7 @@ class Collector {
   }
   void visit(const ConstantEmitter& constant) {
     if (lights_.infinite != kNoIndex) {
-      throw std::runtime_error(location_.file + ":" + std::to_string(location_.line) +
-                               ": a second environment emitter; expected at most one");
+      throw SceneError(location_, "a second environment emitter; expected at most one");
     }
     lights_.infinite = static_cast<uint32_t>(lights_.records.size());
     LightRecord<S> light{};
@@ -127,8 +126,7 @@ class Collector {
   }
   template <class Other>
   void visit(const Other&) {
-    throw std::runtime_error(location_.file + ":" + std::to_string(location_.line) +
-                             ": this kind of emitter is not supported; expected area, point or constant");
+    throw SceneError(location_, "this kind of emitter is not supported; expected area, point or constant");
   }
 
   const Scene& scene_;
