@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/scene/scene_error.h"
+
 namespace wavecrest {
 namespace {
 
@@ -33,8 +35,9 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   // t = 1 knows neither where a reconstruction filter spreads a splat nor which point of a lens to join.
   const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
   if (lens && (settings.method == Method::lt || settings.method == Method::bpt || settings.method == Method::vcm)) {
-    throw std::runtime_error(scene.name + ": method " + std::string(toString(settings.method)) +
-                             " needs a perspective sensor and the box filter; expected those, or pt, ppm or bpm");
+    throw SceneError({scene.name},
+                     "method " + std::string(toString(settings.method)) +
+                         " needs a perspective sensor and the box filter; expected those, or pt, ppm or bpm");
   }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);

@@ -12,7 +12,7 @@ StageTimes measureStageTimes(const Scene& scene, const RenderSettings& settings,
   const FlushToZero flushToZero;
   WaveCapture<float> capture(scene, settings);
   Wave<float> wave = capture.makeWave();
-  const size_t stages = capture.plan().pipeline.stageCount();
+  const size_t stages = capture.plan().pipeline.cameraPass.stageCount();
   StageTimes times{.paths = 0, .seconds = std::vector<double>(stages)};
 
   using Clock = std::chrono::steady_clock;

@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "engine/compile/materials.h"
 #include "engine/compile/vector_math.h"
+#include "engine/scene/scene_error.h"
 
 namespace wavecrest {
 namespace {
@@ -81,10 +81,12 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel) 
   const bool textured = (sceneFeatures(scene) & kTextures) != 0;
   auto& primitives = compiled->primitives = compilePrimitives<S>(scene, textured);
   if (scene.sensor.kind == Sensor::Kind::orthographic) {
-    throw std::runtime_error(scene.name +
-                             ": an orthographic sensor is not supported; expected perspective or thinlens");
+    throw SceneError({scene.name}, "an orthographic sensor is not supported; expected perspective or thinlens");
   }
-  if (primitives.records.empty()) throw std::runtime_error(scene.name + ": the scene has no surface; expected a shape");
+  if (primitives.records.empty()) {
+    const SourceLocation where = scene.shapes.empty() ? SourceLocation{scene.name} : scene.shapes.front().source;
+    throw SceneError(where, "no shape of the scene has a surface; expected one of positive area");
+  }
   const BoundingSphere bounds = boundPrimitives(primitives.records);
   compiled->lights = compileLights(scene, bounds, primitives);
   for (const Material& material : scene.materials) compiled->materials.push_back(compileMaterial(material, scene));

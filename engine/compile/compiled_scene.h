@@ -37,8 +37,7 @@ struct CompiledScene {
   CompiledScene& operator=(const CompiledScene&) = delete;
 };
 
-// Builds everything; threads bounds the hierarchy's build. Throws std::runtime_error where the scene cannot be
-// rendered.
+// Builds everything; threads bounds the hierarchy's build. Throws SceneError where the scene cannot be rendered.
 template <class S>
 std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel);
 

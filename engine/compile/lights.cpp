@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numbers>
 #include <numeric>
-#include <stdexcept>
 
 #include "engine/compile/vector_math.h"
+#include "engine/scene/scene_error.h"
 #include "kernels/extend/offset.h"
 
 namespace wavecrest {
@@ -151,8 +151,7 @@ class Collector {
 
   void addInfinite(const LightRecord<S>& light, double meanLuminance) {
     if (lights_.infinite != kNoIndex) {
-      throw std::runtime_error(location_.file + ":" + std::to_string(location_.line) +
-                               ": a second environment emitter; expected at most one");
+      throw SceneError(location_, "a second environment emitter; expected at most one");
     }
     lights_.infinite = static_cast<uint32_t>(lights_.records.size());
     add(light, 4 * std::numbers::pi * discArea() * meanLuminance);

@@ -17,7 +17,7 @@ struct Lights {
 };
 
 // Each emitting primitive becomes a light of its own, so that picking a light by power also picks the place on a mesh
-// by area. Sets `light` of the emitting primitives. Throws std::runtime_error, with the emitter's file and line, for
+// by area. Sets `light` of the emitting primitives. Throws SceneError, with the emitter's file and line, for
 // more than one infinite light.
 template <class S>
 Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives);

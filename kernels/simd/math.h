@@ -104,6 +104,7 @@ WAVECREST_HIGHWAY_FUNCTION(log, Log)      // positive, finite a. 1 ulp.
 WAVECREST_HIGHWAY_FUNCTION(log2, Log2)    // positive, finite a. 2 ulp.
 WAVECREST_HIGHWAY_FUNCTION(log1p, Log1p)  // log(1 + a), finite a > -1. 2.5 ulp.
 WAVECREST_HIGHWAY_FUNCTION(exp, Exp)      // a <= 88 and 706; 0 far below. 1 ulp.
+WAVECREST_HIGHWAY_FUNCTION(expm1, Expm1)  // exp(a) - 1, exact near 0. 4 ulp as Highway states.
 WAVECREST_HIGHWAY_FUNCTION(acos, Acos)    // a in [-1,1]. 1.5 ulp.
 WAVECREST_HIGHWAY_FUNCTION(atan, Atan)    // finite a. 2.5 ulp.
 #undef WAVECREST_HIGHWAY_FUNCTION

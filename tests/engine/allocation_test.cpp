@@ -5,12 +5,11 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
+#include <tuple>
+#include <vector>
 
-#include "engine/compile/compiled_scene.h"
-#include "engine/film.h"
-#include "engine/methods/method_list.h"
 #include "engine/pipeline.h"
-#include "kernels/columns/light_vertices.h"
+#include "engine/render_plan.h"
 #include "tests/engine/test_scenes.h"
 
 namespace {
@@ -70,26 +69,21 @@ TEST(Allocation, isCounted) {
 
 // Runs iterations of one wave; the first may let the light store grow to what the wave needs.
 template <class S>
-size_t allocationsPerWave(const std::string& sceneName, Precision precision, Accel accel, SamplerKind sampler) {
+size_t allocationsPerWave(const std::string& sceneName, const RenderSettings& settings) {
   const Scene scene = sceneFile(sceneName, 48, 36);
-  const auto compiled = compileScene<S>(scene, accel);
-  const Specialization specialization = chooseSpecialization(sceneFeatures(scene), precision);
-  const Stages<S>& stages = findStages<S>(bestIsa(), precision, specialization);
-  const Intersector<S> intersector = accel == Accel::small ? Intersector<S>{stages.extendSmall, stages.occludeSmall}
-                                                           : Intersector<S>{extendEmbree<S>, occludeEmbree<S>};
-  const Pipeline<S> pipeline = pathTracing(stages, intersector);
-  const FilmArea area = FilmArea::make(0, 0, 48, 36);
-  Wave<S> wave(1024, {});
+  const RenderPlan<S> plan = planRender<S>(scene, settings);
+  const FilmArea area = filmArea(scene.film);
+  Wave<S> wave(1024, plan.needs);
   StageCounters counters;
   StageContext<S> context;
-  context.scene = &compiled->view;
+  context.scene = &plan.scene->view;
   context.pixels = area.pixels.data();
-  context.sampler.kind = sampler;
+  context.sampler.kind = settings.sampler;
   context.counters = &counters;
-  context.mis = pipeline.cameraPass.strategies;
-  std::vector<StageTally> tallies(pipeline.cameraPass.stageCount());
+  context.mis = plan.pipeline.cameraPass.strategies;
+  std::vector<StageTally> tallies(plan.pipeline.cameraPass.stageCount());
   wave.pathCount = 1000;
-  const auto run = [&] { runPass(pipeline.cameraPass, context, wave, tallies.data()); };
+  const auto run = [&] { runPass(plan.pipeline.cameraPass, context, wave, tallies.data()); };
   run();
   const size_t count = allocationsOf([&] {
     for (context.sampler.iteration = 1; context.sampler.iteration <= 4; ++context.sampler.iteration) run();
@@ -102,11 +96,16 @@ size_t allocationsPerWave(const std::string& sceneName, Precision precision, Acc
 class WaveAllocationTest : public testing::TestWithParam<std::tuple<Accel, SamplerKind>> {};
 
 TEST_P(WaveAllocationTest, isNoneForAnyPrecision) {
-  const auto [accel, sampler] = GetParam();
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  std::tie(settings.accel, settings.sampler) = GetParam();
   for (const char* scene : {"cornell-diffuse", "cornell-mirror"}) {
-    EXPECT_EQ(allocationsPerWave<float>(scene, Precision::floating, accel, sampler), 0u) << scene;
-    EXPECT_EQ(allocationsPerWave<float>(scene, Precision::fast, accel, sampler), 0u) << scene;
-    EXPECT_EQ(allocationsPerWave<double>(scene, Precision::doubled, accel, sampler), 0u) << scene;
+    settings.precision = Precision::floating;
+    EXPECT_EQ(allocationsPerWave<float>(scene, settings), 0u) << scene;
+    settings.precision = Precision::fast;
+    EXPECT_EQ(allocationsPerWave<float>(scene, settings), 0u) << scene;
+    settings.precision = Precision::doubled;
+    EXPECT_EQ(allocationsPerWave<double>(scene, settings), 0u) << scene;
   }
 }
 

@@ -177,13 +177,13 @@ class TwinComparison {
     poisonTails(input);
     carryTo(stage, input);
     context_.depth = stage.depth;
-    copyWave(input, expected);
+    expected.copyFrom(input);
     run(twin_, stage, expected);
     const ColumnScales scales = columnScales(expected);
     for (size_t count = 0; count <= 2 * stages_.lanes + 1; ++count) {
       if (stage.depth == 0 && count == 0) continue;  // a wave has at least one path
       for (Wave<S>* wave : {&expected, &actual}) {
-        copyWave(input, *wave);
+        wave->copyFrom(input);
         stage.cut(*wave, count);
         poisonTails(*wave);
       }
@@ -197,7 +197,7 @@ class TwinComparison {
   }
 
  private:
-  // What the session gives to waves of these kernels (engine/session.cpp).
+  // What the session gives to waves of these kernels (engine/render_plan.cpp).
   static ColumnNeeds columnNeeds(Specialization specialization) {
     const uint32_t features = kSpecializationFeatures[static_cast<size_t>(specialization)];
     return {.shadingNormals = (features & kShadingNormals) != 0,
