@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "engine/load/load.h"
+#include "engine/scene/scene_error.h"
 #include "metrics/image/image.h"
 
 int main(int argc, char** argv) {
@@ -16,6 +17,8 @@ int main(int argc, char** argv) {
   int exitCode = kExitDone;
   addCompareCommand(app, exitCode);
   addRenderCommand(app, exitCode);
+  addReportCommand(app, exitCode);
+  addBenchCommand(app, exitCode);
   addScenesCommand(app, exitCode);
 
   try {
@@ -28,6 +31,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "wavecrest: error: {}\n", error.what());
     return kExitUsage;
   } catch (const LoadError& error) {
+    fmt::print(stderr, "wavecrest: error: {}\n", error.what());
+    return kExitInput;
+  } catch (const SceneError& error) {
     fmt::print(stderr, "wavecrest: error: {}\n", error.what());
     return kExitInput;
   } catch (const ImageError& error) {

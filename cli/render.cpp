@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <thread>
 
 #include "cli/commands.h"
@@ -158,10 +159,35 @@ class Outputs {
   std::vector<SnapshotRecord> snapshots_;
 };
 
-int runRender(const RenderOptions& options) {
+// A name that cannot be written is found before the render, not after it.
+void checkOutputs(const RenderOptions& options) {
   if (options.outputs.empty() && !options.snapshotEvery.empty()) {
     throw UsageError("--snapshot-every needs an output to name the snapshots after; expected -o FILE.exr");
   }
+  for (const std::string& output : options.outputs) {
+    try {
+      checkImageTarget(output);
+    } catch (const ImageError& error) {
+      throw UsageError(error.what());
+    }
+  }
+  const std::filesystem::path folder = std::filesystem::path(options.stats).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder)) {
+    throw UsageError(
+        fmt::format("--stats {}: there is no folder '{}'; expected one that exists", options.stats, folder.string()));
+  }
+}
+
+// Edges of the longest path: 1 to 64, or -1 for as many as roulette allows.
+std::string checkMaxDepth(const std::string& word) {
+  int depth = 0;
+  const bool valid = CLI::detail::lexical_cast(word, depth) &&
+                     (depth == -1 || (depth >= 1 && depth <= static_cast<int>(kUnlimitedDepth)));
+  return valid ? std::string() : fmt::format("'{}' is no depth; expected 1 to {}, or -1", word, kUnlimitedDepth);
+}
+
+int runRender(const RenderOptions& options) {
+  checkOutputs(options);
   SnapshotSchedule schedule(options.snapshotEvery);
   const auto begin = std::chrono::steady_clock::now();
   const Scene scene = load(options);
@@ -201,9 +227,12 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
   command->add_option("--spp", options->spp, "stop after N iterations: paths per pixel")->check(CLI::PositiveNumber);
   command->add_option("--size", options->size, "film size, WIDTHxHEIGHT");
   command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
-  command->add_option("--seed", options->seed, "seed of all random numbers")->capture_default_str();
+  command->add_option("--seed", options->seed, "seed of all random numbers")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--sampler", options->sampler, "independent or sobol")->capture_default_str();
-  command->add_option("--max-depth", options->maxDepth, "edges of the longest path; -1: unlimited");
+  command->add_option("--max-depth", options->maxDepth, "edges of the longest path; -1: unlimited")
+      ->check(checkMaxDepth);
   command->add_option("--rr-depth", options->rrDepth, "first vertex where roulette may end a path")
       ->check(CLI::PositiveNumber);
   command->add_option("--precision", options->precision, "float, double or fast")->capture_default_str();

@@ -3,11 +3,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/scene/scene_error.h"
+
 namespace wavecrest {
 namespace {
 
 ColumnNeeds columnNeeds(Specialization specialization) {
-  const uint32_t features = kSpecializationFeatures[static_cast<size_t>(specialization)];
+  const uint32_t features = featuresOf(specialization);
   return {.shadingNormals = (features & kShadingNormals) != 0,
           .textures = (features & kTextures) != 0,
           .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
@@ -16,13 +18,13 @@ ColumnNeeds columnNeeds(Specialization specialization) {
 
 Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
   const uint32_t features = sceneFeatures(scene) | (entryOf(settings.method).bidirectional ? kBidirectional : 0u);
-  const Specialization least = chooseSpecialization(features);
+  const Specialization least = chooseSpecialization(features, settings.precision);
   if (!settings.specialization) return least;
-  if ((features & ~kSpecializationFeatures[static_cast<size_t>(*settings.specialization)]) != 0) {
+  if ((features & ~featuresOf(*settings.specialization)) != 0) {
     throw std::runtime_error("scene and method need the '" +
                              std::string(kSpecializationNames[static_cast<size_t>(least)]) + "' kernels");
   }
-  return *settings.specialization;
+  return chooseSpecialization(featuresOf(*settings.specialization), settings.precision);
 }
 
 }  // namespace
@@ -30,6 +32,13 @@ Specialization specializationFor(const Scene& scene, const RenderSettings& setti
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   RenderPlan<S> plan;
+  // t = 1 knows neither where a reconstruction filter spreads a splat nor which point of a lens to join.
+  const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
+  if (lens && (settings.method == Method::lt || settings.method == Method::bpt || settings.method == Method::vcm)) {
+    throw SceneError({scene.name},
+                     "method " + std::string(toString(settings.method)) +
+                         " needs a perspective sensor and the box filter; expected those, or pt, ppm or bpm");
+  }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);
   plan.scene = compileScene<S>(scene, settings.accel);

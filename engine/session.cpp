@@ -6,14 +6,13 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
-#include <pmmintrin.h>
 #include <sys/resource.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "engine/flush_to_zero.h"
 #include "engine/render_plan.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
@@ -33,18 +32,6 @@ double processCpuSeconds() {
   };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
-
-// Denormal numbers count as zero while kernels run: they are far below anything an image can show, and slow.
-class FlushToZero {
- public:
-  FlushToZero() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON); }
-  ~FlushToZero() { _mm_setcsr(saved_); }
-  FlushToZero(const FlushToZero&) = delete;
-  FlushToZero& operator=(const FlushToZero&) = delete;
-
- private:
-  unsigned saved_;
-};
 
 // TBB gives an arena of more threads than the machine has cores no workers for the surplus unless it is told to. Only
 // while a session works: the least of all limits alive counts, and several sessions may be.

@@ -11,16 +11,19 @@ WAVECREST_SIMD_BEGIN
 struct FloatPrecision {
   using Real = Float;
   using Storage = float;
+  static constexpr Precision kPrecision = Precision::floating;
   static constexpr bool kApproximate = false;
 };
 struct DoublePrecision {
   using Real = Double;
   using Storage = double;
+  static constexpr Precision kPrecision = Precision::doubled;
   static constexpr bool kApproximate = false;
 };
 struct FastPrecision {
   using Real = Float;
   using Storage = float;
+  static constexpr Precision kPrecision = Precision::fast;
   static constexpr bool kApproximate = true;
 };
 
@@ -184,7 +187,8 @@ enum class Block : uint32_t {
   scatter = 0,  // lobe, direction (2), roulette; of a camera path's origin: raster (2), lens (2); of a light's: light,
                 // direction (2), choice within the light
   light = 1,    // next event: light, choice within the light, position (2); of a light path's origin: position (2)
-  opacity = 2   // second lobe choice
+  opacity = 2,  // second lobe choice
+  environment = 3  // texel of the environment map (2), place within (2)
 };
 template <class S>
 WAVECREST_INLINE Uniform4 draw(const StageContext<S>& context, UInt path, Block block) {
@@ -194,23 +198,26 @@ WAVECREST_INLINE Uniform4 draw(const StageContext<S>& context, UInt path, Block 
 
 WAVECREST_SIMD_END
 
-// Compiles STAGE<Precision, features> for every precision and specialisation.
-#define WAVECREST_INSTANTIATE_STAGE(STAGE)     \
-  WAVECREST_SIMD_BEGIN                         \
-  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 0) \
-  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 1) \
-  WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)   \
+// Compiles STAGE<Precision, features> for every precision and specialisation of isCompiled() (kernels/stages.h).
+#define WAVECREST_INSTANTIATE_STAGE(STAGE)              \
+  WAVECREST_SIMD_BEGIN                                  \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuse) \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smooth)  \
+  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuse)  \
+  WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)            \
   WAVECREST_SIMD_END
 // The same for a stage that only bidirectional methods have.
 #define WAVECREST_INSTANTIATE_BIDIRECTIONAL_STAGE(STAGE) \
   WAVECREST_SIMD_BEGIN                                   \
   WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)             \
   WAVECREST_SIMD_END
-#define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE) \
-  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 2)     \
-  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 3)     \
-  WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, 4)
-#define WAVECREST_INSTANTIATE_FOR_FEATURES(STAGE, INDEX)                                                            \
-  template void STAGE<FloatPrecision, kSpecializationFeatures[INDEX]>(const StageContext<float>&, Wave<float>&);    \
-  template void STAGE<DoublePrecision, kSpecializationFeatures[INDEX]>(const StageContext<double>&, Wave<double>&); \
-  template void STAGE<FastPrecision, kSpecializationFeatures[INDEX]>(const StageContext<float>&, Wave<float>&);
+#define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)                   \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuseBidirectional) \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smoothBidirectional)  \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, general)              \
+  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuseBidirectional)  \
+  WAVECREST_INSTANTIATE(STAGE, FastPrecision, general)               \
+  WAVECREST_INSTANTIATE(STAGE, DoublePrecision, general)
+#define WAVECREST_INSTANTIATE(STAGE, PRECISION, SPECIALIZATION)                                                       \
+  template void STAGE<PRECISION, featuresOf(Specialization::SPECIALIZATION)>(const StageContext<PRECISION::Storage>&, \
+                                                                             Wave<PRECISION::Storage>&);

@@ -78,6 +78,20 @@ struct alignas(128) MaterialRecord {
   float roughTransmittance[kTransmittanceSize];  // rough plastic: share of light that enters, shadowing included
 };
 
+enum class TextureKind : uint32_t { checkerboard, bitmap };
+enum class WrapMode : uint32_t { repeat, mirror, clamp };
+
+// Bitmaps are RGB floats from the top row, `offset` floats into SceneView::texels. toUv maps (u, v, 1) to texture
+// space.
+struct alignas(128) TextureRecord {
+  uint32_t kind;  // TextureKind
+  uint32_t width, height, offset;
+  uint32_t wrap;     // WrapMode
+  uint32_t nearest;  // 1: no interpolation
+  float toUv[6];
+  float color0[3], color1[3];
+};
+
 enum class LightKind : uint32_t { quad, triangle, sphere, point, spot, directional, constant, envmap };
 
 // quad, triangle: y = p0 + u e1 + v e2, normal; area in `area`. sphere: centre p0, radius. point, spot: p0. infinite
@@ -91,7 +105,8 @@ struct alignas(sizeof(S) * 32) LightRecord {
   S radius;
   S offset;  // bound on the error of a sampled point along the normal
   S cosTotal, cosFalloff;
-  uint32_t kind;  // LightKind
+  uint32_t kind;     // LightKind
+  uint32_t texture;  // factor of an area light's radiance, or kNoIndex
 };
 
 // Alias table: entry i is kept with probability `keep`, else replaced by `other` (Walker 1977, Vose 1991).
@@ -102,6 +117,8 @@ struct AliasEntry {
 
 // Raster (x, y) maps to the direction corner + x * du + y * dv, not normalised. METHODS: D is the distance in pixels at
 // which a pixel has area 1.
+enum class FilterKind : uint32_t { box, tent, gaussian };
+
 struct CameraView {
   double origin[3], corner[3], du[3], dv[3], axis[3];
   uint32_t width = 0, height = 0;  // of the full film
@@ -109,6 +126,19 @@ struct CameraView {
   double planeDepth = 0;                  // corner . axis
   double inverseDu2 = 0, inverseDv2 = 0;  // 1 / |du|^2, 1 / |dv|^2
   double lensRadius = 0, focusDistance = 0;
+  FilterKind filter = FilterKind::box;  // sampled by importance
+  double filterScale = 0;               // radius of the tent, standard deviation of the Gaussian, in pixels
+};
+
+// A latitude-longitude environment. Sampled by texel with probability[texel], then uniformly within; the texel of (u,
+// v) is (floor(u width), floor(v height)). Radiance is interpolated as Mitsuba does: columns by their centres and
+// around, rows from pole to pole.
+struct EnvironmentView {
+  const float* texels = nullptr;  // RGB, radiance scale included
+  const float* probability = nullptr;
+  const AliasEntry* table = nullptr;
+  uint32_t width = 0, height = 0;
+  float toLocal[3][3]{};  // rows: world to the map's frame, orthonormal
 };
 
 struct SmallSceneView;  // kernels/extend/small_scene.h
@@ -119,6 +149,9 @@ struct SceneView {
   const AttributeRecord* attributes = nullptr;
   const MaterialRecord* materials = nullptr;
   const LightRecord<S>* lights = nullptr;
+  const TextureRecord* textures = nullptr;
+  const float* texels = nullptr;
+  EnvironmentView environment;
   const AliasEntry* lightTable = nullptr;
   uint32_t lightCount = 0;
   uint32_t infiniteLight = kNoIndex;  // the constant or environment light that rays leaving the scene see

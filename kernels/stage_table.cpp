@@ -29,9 +29,19 @@ constexpr Stages<typename P::Storage> makeStages() {
   return stages;
 }
 
+// An empty entry for what is not instantiated.
+template <class P, Specialization kSpecialization>
+constexpr Stages<typename P::Storage> makeStagesIfCompiled() {
+  if constexpr (isCompiled(P::kPrecision, kSpecialization)) {
+    return makeStages<P, featuresOf(kSpecialization)>();
+  } else {
+    return {};
+  }
+}
+
 template <class P, size_t... kIndex>
 constexpr std::array<Stages<typename P::Storage>, kSpecializationCount> makeTable(std::index_sequence<kIndex...>) {
-  return {makeStages<P, kSpecializationFeatures[kIndex]>()...};
+  return {makeStagesIfCompiled<P, static_cast<Specialization>(kIndex)>()...};
 }
 
 template <class P>

@@ -1,5 +1,6 @@
 #include "kernels/stages.h"
 
+#include <cassert>
 #include <stdexcept>
 #include <string>
 
@@ -55,13 +56,16 @@ Tables tablesOf(Isa isa) {
 
 template <>
 const Stages<float>& findStages<float>(Isa isa, Precision precision, Specialization specialization) {
+  assert(isCompiled(precision, specialization));
   const Tables tables = tablesOf(isa);
   const Stages<float>* table = precision == Precision::fast ? tables.fast : tables.floating;
   return table[static_cast<size_t>(specialization)];
 }
 
 template <>
-const Stages<double>& findStages<double>(Isa isa, Precision, Specialization specialization) {
+const Stages<double>& findStages<double>(Isa isa, [[maybe_unused]] Precision precision,
+                                          Specialization specialization) {
+  assert(isCompiled(precision, specialization));
   return tablesOf(isa).doubled[static_cast<size_t>(specialization)];
 }
 

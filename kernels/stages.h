@@ -43,9 +43,30 @@ constexpr std::array<std::string_view, kSpecializationCount> kSpecializationName
 constexpr std::array<uint32_t, kSpecializationCount> kSpecializationFeatures{
     0, kSpecularBsdfs | kCurvedShapes, kBidirectional, kSpecularBsdfs | kCurvedShapes | kBidirectional, 255};
 
-constexpr Specialization chooseSpecialization(uint32_t sceneFeatures) {
-  for (size_t i = 0; i + 1 < kSpecializationFeatures.size(); ++i) {
-    if ((sceneFeatures & ~kSpecializationFeatures[i]) == 0) return static_cast<Specialization>(i);
+constexpr uint32_t featuresOf(Specialization specialization) {
+  return kSpecializationFeatures[static_cast<size_t>(specialization)];
+}
+
+// float is specialised for every feature set, fast for the plainest and the general ones, double for none: its users
+// wait for accuracy anyway, and each instantiation is paid for in compile time on every instruction set.
+constexpr bool isCompiled(Precision precision, Specialization specialization) {
+  switch (precision) {
+    case Precision::floating:
+      return true;
+    case Precision::fast:
+      return specialization == Specialization::diffuse || specialization == Specialization::diffuseBidirectional ||
+             specialization == Specialization::general;
+    case Precision::doubled:
+      return specialization == Specialization::general;
+  }
+  return false;
+}
+
+// The first specialisation compiled for the precision that covers these features.
+constexpr Specialization chooseSpecialization(uint32_t features, Precision precision) {
+  for (size_t i = 0; i < kSpecializationCount; ++i) {
+    const auto specialization = static_cast<Specialization>(i);
+    if (isCompiled(precision, specialization) && (features & ~featuresOf(specialization)) == 0) return specialization;
   }
   return Specialization::general;
 }
@@ -144,8 +165,8 @@ struct Stages {
   Stage<S> merge = nullptr;
 };
 
-// The stages compiled for these choices. The instruction set must be one of availableIsas(), and S must be the storage
-// type of the precision (double for `doubled`, float otherwise).
+// The stages compiled for these choices. The instruction set must be one of availableIsas(), S the storage type of the
+// precision (double for `doubled`, float otherwise), and isCompiled(precision, specialization) must hold.
 template <class S>
 const Stages<S>& findStages(Isa isa, Precision precision, Specialization specialization);
 

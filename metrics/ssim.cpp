@@ -105,7 +105,7 @@ void PreparedSsim::compareBand(const Image8& test, const Band& band) const {
   // Samples of the test image and their difference from the reference. The buffers stay with the thread: fresh pages
   // would cost more than the arithmetic.
   thread_local Plane values, difference, oneRow;
-  if (values.width() != width || values.height() < inputRows) {
+  if (values.width() != width || oneRow.width() != windows) {
     values = Plane(width, kBandRows + kSsimTaps - 1, kSsimSlack);
     difference = Plane(width, kBandRows + kSsimTaps - 1, kSsimSlack);
     oneRow = Plane(windows, 1, kSsimSlack);

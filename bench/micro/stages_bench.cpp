@@ -130,11 +130,11 @@ struct LaneStage {
 
 template <class S>
 void registerPrecision(Precision precision) {
-  const Stages<S>& twin = findStages<S>(availableIsas().front(), precision, Specialization::diffuse);
+  const Stages<S>& twin = findStages<S>(availableIsas().front(), precision, chooseSpecialization(0, precision));
   const double tolerance = precision == Precision::doubled ? 1e-6 : 1e-3;
   const auto add = [&](const char* name, const char* pipelineName, Stage<S> Stages<S>::*member) {
     for (const Isa isa : availableIsas()) {
-      const Stages<S>& stages = findStages<S>(isa, precision, Specialization::diffuse);
+      const Stages<S>& stages = findStages<S>(isa, precision, chooseSpecialization(0, precision));
       registerShapes<S>(
           {fmt::format("{}/{}", name, toString(isa)), pipelineName, stages.*member, twin.*member, tolerance},
           precision);

@@ -75,11 +75,11 @@ def table(rows):
     def cell(value, form):
         return "-" if value is None else format(value, form)
 
-    lines = [f"{'program':34} {'Mpaths/s/core':>13} {'CPU s':>8} {'cores':>6} {'rel.var':>9} {'eff':>8}"
+    lines = [f"{'program':42} {'Mpaths/s/core':>13} {'CPU s':>8} {'cores':>6} {'rel.var':>9} {'eff':>8}"
              f" {'mean':>8} {'speed x':>8} {'eff x':>8}"]
     for row in rows:
         lines.append(
-            f"{row.about:34} {row.paths_per_core_second / 1e6:13.3f} {row.cpu_seconds:8.3f} {row.cores_used:6.2f}"
+            f"{row.about:42} {row.paths_per_core_second / 1e6:13.3f} {row.cpu_seconds:8.3f} {row.cores_used:6.2f}"
             f" {cell(row.relative_variance, '9.4g'):>9} {cell(row.efficiency, '8.3g'):>8} {cell(row.mean, '8.5f'):>8}"
             f" {cell(row.speed_ratio, '8.2f'):>8} {cell(row.efficiency_ratio, '8.2f'):>8}"
         )

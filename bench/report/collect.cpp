@@ -23,7 +23,7 @@ constexpr const char* kEnvironmentKeys[] = {"version", "commit", "cpu", "isa", "
 constexpr const char* kSettingKeys[] = {
     "seed",           "sampler",      "precision",         "accel",         "specialization",   "wave", "scene_hash",
     "bytes_per_path", "load_seconds", "peak_memory_bytes", "build_seconds", "nonfinite_samples"};
-constexpr size_t kImagesOfASingleSeries = 3;
+constexpr size_t kRenderedImages = 4;  // of a scene, shared by its series; each shows at least its last
 
 struct SceneReference {
   MetricReference image;
@@ -184,7 +184,7 @@ ReportScene collectScene(const fs::path& folder, const std::string& name, const 
   scene.referenceOrigin = reference.origin;
   scene.noiseFloors = reference.noiseFloors;
   const auto groups = groupBySettings(runs);
-  const size_t images = groups.size() == 1 ? kImagesOfASingleSeries : 1;
+  const size_t images = std::max<size_t>(1, kRenderedImages / groups.size());
   for (const auto& group : groups) {
     scene.series.push_back(collectSeries(group, seriesLabel(groups, *group[0]), reference, images));
   }

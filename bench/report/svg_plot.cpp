@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 #include "bench/report/html_text.h"
 
@@ -144,8 +145,8 @@ void drawBand(std::string& svg, const PlotCurve& curve, const Frame& frame) {
     append(svg, "{}{:.1f} {:.1f}", command, frame.pixelX(point.x), frame.pixelY(point.high));
     command = 'L';
   }
-  for (auto point = curve.points.rbegin(); point != curve.points.rend(); ++point) {
-    append(svg, "L{:.1f} {:.1f}", frame.pixelX(point->x), frame.pixelY(point->low));
+  for (const PlotPoint& point : std::views::reverse(curve.points)) {
+    append(svg, "L{:.1f} {:.1f}", frame.pixelX(point.x), frame.pixelY(point.low));
   }
   svg += "z\"/>";
 }

@@ -10,7 +10,7 @@ namespace wavecrest {
 
 std::filesystem::path writeReport(const std::filesystem::path& folder) {
   const std::string page = renderReport(collectReport(folder));
-  const std::filesystem::path path = folder / "report.html";
+  std::filesystem::path path = folder / "report.html";
   writeFileAtomically(path.string(), {reinterpret_cast<const unsigned char*>(page.data()), page.size()});
   return path;
 }

@@ -16,7 +16,9 @@ StageContext<S> WaveCapture<S>::context(uint32_t depth) {
           .pixels = pixels_.data(),
           .sampler = {settings_.sampler, settings_.seed, 0},
           .limits = settings_.limits,
+          .mis = plan_.pipeline.cameraPass.strategies,
           .depth = depth,
+          .splats = {},
           .counters = &counters_};
 }
 

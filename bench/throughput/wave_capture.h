@@ -23,11 +23,14 @@ class WaveCapture {
   // Traces the wave of the given index in iteration 0 until its paths have ended or the observer has seen enough.
   void trace(Wave<S>& wave, size_t index, const Observer& observer);
 
-  // The middle wave of the film as it is right before `stage` runs at `depth` (0 for generate). Throws std::runtime_error if it never does.
+  // The middle wave of the film as it is right before `stage` runs at `depth` (0 for generate). Throws
+  // std::runtime_error if it never does.
   Wave<S> before(std::string_view stage, uint32_t depth);
 
   Wave<S> makeWave() const { return Wave<S>(settings_.waveSize, plan_.needs); }
   StageContext<S> context(uint32_t depth);
+  // The i-th index of a walk over all waves in large steps: any first few of them are spread over the film.
+  size_t waveFromAllOver(size_t i) const { return i * (waveCount() / 7 * 3 + 1) % waveCount(); }
   size_t waveCount() const { return (pixels_.size() + settings_.waveSize - 1) / settings_.waveSize; }
   RenderPlan<S>& plan() { return plan_; }
   const StageCounters& counters() const { return counters_; }

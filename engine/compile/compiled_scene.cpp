@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "engine/compile/materials.h"
 #include "engine/compile/vector_math.h"
+#include "engine/scene/scene_error.h"
 
 namespace wavecrest {
 namespace {
@@ -59,6 +59,19 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film) {
   camera.inverseDv2 = 1 / dot(vec(camera.dv), vec(camera.dv));
   camera.lensRadius = sensor.apertureRadius;
   camera.focusDistance = sensor.focusDistance;
+  switch (film.filter) {
+    case ReconstructionFilter::box:
+      camera.filter = FilterKind::box;
+      break;
+    case ReconstructionFilter::tent:
+      camera.filter = FilterKind::tent;
+      camera.filterScale = film.filterRadius;
+      break;
+    case ReconstructionFilter::gaussian:
+      camera.filter = FilterKind::gaussian;
+      camera.filterScale = film.gaussianStddev;
+      break;
+  }
   return camera;
 }
 
@@ -67,10 +80,18 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel) 
   auto compiled = std::make_unique<CompiledScene<S>>();
   const bool textured = (sceneFeatures(scene) & kTextures) != 0;
   auto& primitives = compiled->primitives = compilePrimitives<S>(scene, textured);
-  if (primitives.records.empty()) throw std::runtime_error(scene.name + ": the scene has no surface; expected a shape");
+  if (scene.sensor.kind == Sensor::Kind::orthographic) {
+    throw SceneError({scene.name}, "an orthographic sensor is not supported; expected perspective or thinlens");
+  }
+  if (primitives.records.empty()) {
+    const SourceLocation where = scene.shapes.empty() ? SourceLocation{scene.name} : scene.shapes.front().source;
+    throw SceneError(where, "no shape of the scene has a surface; expected one of positive area");
+  }
   const BoundingSphere bounds = boundPrimitives(primitives.records);
   compiled->lights = compileLights(scene, bounds, primitives);
   for (const Material& material : scene.materials) compiled->materials.push_back(compileMaterial(material, scene));
+
+  compiled->textures = compileTextures(scene);
 
   SceneView<S>& view = compiled->view;
   if (accel == Accel::small || (accel == Accel::automatic && primitives.counts.total() <= kSmallSceneLimit)) {
@@ -85,6 +106,9 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel) 
   view.primitives = primitives.records.data();
   view.attributes = primitives.attributes.data();
   view.materials = compiled->materials.data();
+  view.textures = compiled->textures.records.data();
+  view.texels = compiled->textures.texels.data();
+  view.environment = compiled->lights.environment.view;
   view.lights = compiled->lights.records.data();
   view.lightTable = compiled->lights.table.data();
   view.lightCount = static_cast<uint32_t>(compiled->lights.records.size());

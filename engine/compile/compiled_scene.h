@@ -6,6 +6,7 @@
 
 #include "engine/compile/lights.h"
 #include "engine/compile/primitives.h"
+#include "engine/compile/textures.h"
 #include "kernels/extend/embree_scene.h"
 #include "kernels/extend/small_scene.h"
 #include "kernels/stages.h"
@@ -25,6 +26,7 @@ template <class S>
 struct CompiledScene {
   Primitives<S> primitives;
   std::vector<MaterialRecord> materials;
+  Textures textures;
   Lights<S> lights;
   std::unique_ptr<SmallScene> small;    // either this
   std::unique_ptr<EmbreeScene> embree;  // or this
@@ -35,8 +37,7 @@ struct CompiledScene {
   CompiledScene& operator=(const CompiledScene&) = delete;
 };
 
-// Builds everything; threads bounds the hierarchy's build. Throws std::runtime_error where the scene cannot be
-// rendered.
+// Builds everything; threads bounds the hierarchy's build. Throws SceneError where the scene cannot be rendered.
 template <class S>
 std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel);
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numbers>
 #include <numeric>
-#include <stdexcept>
 
 #include "engine/compile/vector_math.h"
+#include "engine/scene/scene_error.h"
 #include "kernels/extend/offset.h"
 
 namespace wavecrest {
@@ -75,8 +75,12 @@ class Collector {
       const Emitter& emitter = scene_.emitters[scene_.shapes[shape].emitter];
       const Rgb& radiance = std::get<AreaEmitter>(emitter.kind).radiance.value;
       primitives.records[i].light = static_cast<uint32_t>(lights_.records.size());
-      add(areaLight(primitives.records[i], radiance),
-          std::numbers::pi * areaOf(primitives.records[i]) * luminance(radiance));
+      LightRecord<S> light = areaLight(primitives.records[i], radiance);
+      light.texture = std::get<AreaEmitter>(emitter.kind).radiance.texture;
+      // A texture only scales the power that picks go by; any positive value keeps the estimate right.
+      if (light.texture != kNone) assign(light.radiance, {1, 1, 1});
+      const double brightness = light.texture == kNone ? luminance(radiance) : 1.0;
+      add(light, std::numbers::pi * areaOf(primitives.records[i]) * brightness);
     }
   }
 
@@ -107,28 +111,56 @@ class Collector {
 
   void visit(const AreaEmitter&) {}  // by primitive
   void visit(const PointEmitter& point) {
-    LightRecord<S> light{};
+    LightRecord<S> light = blank();
     assign(light.p0, point.position);
     assign(light.radiance, point.intensity);
     light.kind = static_cast<uint32_t>(LightKind::point);
     add(light, 4 * std::numbers::pi * luminance(point.intensity));
   }
+  void visit(const SpotEmitter& spot) {
+    LightRecord<S> light = blank();
+    assign(light.p0, spot.position);
+    assign(light.normal, spot.direction);
+    assign(light.radiance, spot.intensity);
+    const double cosTotal = std::cos(spot.cutoffAngle * std::numbers::pi / 180);
+    const double cosFalloff = std::cos(spot.beamWidth * std::numbers::pi / 180);
+    light.cosTotal = static_cast<S>(cosTotal);
+    light.cosFalloff = static_cast<S>(cosFalloff);
+    light.kind = static_cast<uint32_t>(LightKind::spot);
+    add(light, 2 * std::numbers::pi * (1 - (cosTotal + cosFalloff) / 2) * luminance(spot.intensity));
+  }
+  void visit(const DirectionalEmitter& directional) {
+    LightRecord<S> light = blank();
+    assign(light.normal, directional.direction);
+    assign(light.radiance, directional.irradiance);
+    light.kind = static_cast<uint32_t>(LightKind::directional);
+    add(light, discArea() * luminance(directional.irradiance));
+  }
   void visit(const ConstantEmitter& constant) {
-    if (lights_.infinite != kNoIndex) {
-      throw std::runtime_error(location_.file + ":" + std::to_string(location_.line) +
-                               ": a second environment emitter; expected at most one");
-    }
-    lights_.infinite = static_cast<uint32_t>(lights_.records.size());
-    LightRecord<S> light{};
+    LightRecord<S> light = blank();
     assign(light.radiance, constant.radiance);
     light.kind = static_cast<uint32_t>(LightKind::constant);
-    const double area = std::numbers::pi * bounds_.radius * bounds_.radius;
-    add(light, 4 * std::numbers::pi * area * luminance(constant.radiance));
+    addInfinite(light, luminance(constant.radiance));
   }
-  template <class Other>
-  void visit(const Other&) {
-    throw std::runtime_error(location_.file + ":" + std::to_string(location_.line) +
-                             ": this kind of emitter is not supported; expected area, point or constant");
+  void visit(const EnvmapEmitter& envmap) {
+    LightRecord<S> light = blank();
+    light.kind = static_cast<uint32_t>(LightKind::envmap);
+    lights_.environment = compileEnvironment(envmap);
+    addInfinite(light, lights_.environment.meanLuminance);
+  }
+
+  void addInfinite(const LightRecord<S>& light, double meanLuminance) {
+    if (lights_.infinite != kNoIndex) {
+      throw SceneError(location_, "a second environment emitter; expected at most one");
+    }
+    lights_.infinite = static_cast<uint32_t>(lights_.records.size());
+    add(light, 4 * std::numbers::pi * discArea() * meanLuminance);
+  }
+  double discArea() const { return std::numbers::pi * bounds_.radius * bounds_.radius; }
+  static LightRecord<S> blank() {
+    LightRecord<S> light{};
+    light.texture = kNoIndex;
+    return light;
   }
 
   const Scene& scene_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/compile/primitives.h"
+#include "engine/compile/textures.h"
 
 namespace wavecrest {
 
@@ -11,11 +12,12 @@ template <class S>
 struct Lights {
   std::vector<LightRecord<S>> records;
   std::vector<AliasEntry> table;  // over records
+  Environment environment;        // of the envmap emitter, if there is one
   uint32_t infinite = kNoIndex;   // the constant or environment emitter
 };
 
 // Each emitting primitive becomes a light of its own, so that picking a light by power also picks the place on a mesh
-// by area. Sets `light` of the emitting primitives. Throws std::runtime_error, with the emitter's file and line, for
+// by area. Sets `light` of the emitting primitives. Throws SceneError, with the emitter's file and line, for
 // more than one infinite light.
 template <class S>
 Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives);

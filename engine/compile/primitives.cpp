@@ -227,7 +227,11 @@ class Collector {
   void visit(const Rectangle& r) {
     PrimitiveRecord<S>& record =
         add(PrimitiveKind::quad, r.corner, r.edgeU, r.edgeV, normalized(cross(r.edgeU, r.edgeV)));
-    if (textured_) addAttributes(record, Mesh{}, {0, 1, 2});
+    if (!textured_) return;
+    Mesh corners;
+    corners.uvs =
+        r.mirrored ? std::vector<Float2>{{1, 0}, {0, 0}, {1, 1}} : std::vector<Float2>{{0, 0}, {1, 0}, {0, 1}};
+    addAttributes(record, corners, {0, 1, 2});
   }
   void visit(const Disk& disk) { visit(tessellated(disk)); }
   void visit(const Cylinder& cylinder) { visit(tessellated(cylinder)); }

@@ -33,6 +33,11 @@ void LoadContext::unsupported(const SourceLocation& where, const std::string& me
 }
 
 ReadingGuard::ReadingGuard(LoadContext& context, const XmlElement& object) : context_(context), object_(object) {
+  constexpr size_t kDeepest = 64;
+  if (context.reading.size() >= kDeepest) {
+    throw LoadError(object.location(), "references nest deeper than " + std::to_string(kDeepest) +
+                                           "; expected a shorter chain of objects");
+  }
   if (!context.reading.insert(&object).second) {
     throw LoadError(object.location(),
                     "<" + object.tag + "> contains itself through a reference; expected references without a cycle");

@@ -25,8 +25,8 @@ struct LoadContext {
   std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};  // by path and colour treatment
   std::map<std::string, std::shared_ptr<const TriangleSoup>> groupMeshes{};  // mesh files inside shape groups
   bool inShapeGroup = false;
-  uint32_t defaultMaterial[2] = {kNone, kNone};  // of surfaces, of lights
-  uint64_t instancedTriangles = 0;
+  uint32_t defaultMaterial[2] = {kNone, kNone};      // of surfaces, of lights
+  uint64_t instancedShapes = 0, instancedBytes = 0;  // copies made by instances
 
   // Follows <ref>; any other element is itself.
   const XmlElement& resolve(const XmlElement& element) const;
@@ -39,7 +39,8 @@ struct LoadContext {
   void unsupported(const SourceLocation& where, const std::string& message);
 };
 
-// Marks an object as being read for its lifetime; throws if it already is, that is, if it contains itself.
+// Marks an object as being read for its lifetime; throws if it already is, that is, if it contains itself,
+// or if references chain too deep for the stack.
 class ReadingGuard {
  public:
   ReadingGuard(LoadContext& context, const XmlElement& object);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "engine/load/ior_table.h"
 #include "engine/load/transform.h"
@@ -30,6 +31,7 @@ void checkValueElement(const XmlElement& element) {
 
 Parameters::Parameters(LoadContext& context, const XmlElement& object) : context_(context), object_(object) {
   checkAttributes(object, {"type", "id", "name", "version"});
+  std::set<std::string_view> names;
   for (const XmlElement& child : object.children) {
     const bool isValue =
         !child.isObject() && std::find(kValueTags.begin(), kValueTags.end(), child.tag) != kValueTags.end();
@@ -44,8 +46,7 @@ Parameters::Parameters(LoadContext& context, const XmlElement& object) : context
     }
     if (child.tag == "ref") checkAttributes(child, {"id", "name"});
     const std::string_view name = child.get("name");
-    const auto sameName = [&](const Child& other) { return !name.empty() && other.name == name; };
-    if (std::any_of(children_.begin(), children_.end(), sameName)) {
+    if (!name.empty() && !names.insert(name).second) {
       throw LoadError(child.location(),
                       "parameter " + inQuotes(name) + " of " + describe() + " is given twice; expected it once");
     }

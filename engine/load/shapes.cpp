@@ -10,7 +10,7 @@ namespace wavecrest {
 
 namespace {
 
-// Parameters of shapes that only guide sampling, or say what is inside.
+// Parameters that only guide how Mitsuba samples.
 void ignoreCommonParameters(Parameters& parameters) { parameters.ignore({"silhouette_sampling_weight"}); }
 
 const XmlElement* singleChild(Parameters& parameters, std::string_view tag) {
@@ -51,13 +51,17 @@ void addInstance(LoadContext& context, Parameters& parameters) {
   context.inShapeGroup = false;
 }
 
-void countInstancedTriangles(LoadContext& context, const Geometry& geometry, const SourceLocation& where) {
-  constexpr uint64_t kMost = 20'000'000;  // about 1 GB of flattened copies
-  const Mesh* mesh = std::get_if<Mesh>(&geometry);
-  context.instancedTriangles += mesh ? mesh->triangles.size() : 1;
-  if (context.instancedTriangles > kMost) {
-    throw LoadError(where, "instances add up to more than " + std::to_string(kMost) +
-                               " triangles; expected fewer, since instances are flattened");
+// A few lines of XML can ask for any number of copies.
+void countCopy(LoadContext& context, const Geometry& geometry, const SourceLocation& where) {
+  constexpr uint64_t kMostBytes = uint64_t{1} << 30, kMostCopies = 100'000;
+  ++context.instancedShapes;
+  if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) {
+    context.instancedBytes += mesh->positions.size() * sizeof(Float3) + mesh->normals.size() * sizeof(Float3) +
+                              mesh->uvs.size() * sizeof(Float2) + mesh->triangles.size() * sizeof(mesh->triangles[0]);
+  }
+  if (context.instancedShapes > kMostCopies || context.instancedBytes > kMostBytes) {
+    throw LoadError(where, "instances add up to more than " + std::to_string(kMostCopies) +
+                               " shapes or 1 GiB; expected fewer, since each becomes a copy");
   }
 }
 
@@ -79,6 +83,7 @@ void addPlacedShape(LoadContext& context, const XmlElement& element, const Matri
   ignoreCommonParameters(parameters);
   parameters.finish();
 
+  if (context.inShapeGroup) countCopy(context, shape.kind, element.location());
   const double area = surfaceArea(shape.kind);
   if (!(area > 0) || !std::isfinite(area)) {
     const std::string message = parameters.describe() + (light ? ", a light," : "") +
@@ -87,9 +92,8 @@ void addPlacedShape(LoadContext& context, const XmlElement& element, const Matri
     context.unsupported(element.location(), message);
     return;
   }
-  if (context.inShapeGroup) {
-    if (light) throw LoadError(light->location(), "light inside a shapegroup; expected instances without lights");
-    countInstancedTriangles(context, shape.kind, element.location());
+  if (context.inShapeGroup && light) {
+    throw LoadError(light->location(), "light inside a shapegroup; expected instances without lights");
   }
   shape.material = bsdf ? materialOf(context, *bsdf) : defaultMaterial(context, light != nullptr);
   if (light) attachAreaLight(context, *light, static_cast<uint32_t>(context.scene.shapes.size()), shape);

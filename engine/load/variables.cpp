@@ -6,8 +6,9 @@ namespace wavecrest {
 
 namespace {
 
-// A chain of <default>s that each contain the previous one twice doubles at every step; no honest value is this long.
-constexpr size_t kLongestValue = 1 << 20;
+// A chain of <default>s that each contain the previous one twice doubles at every step. No honest scene comes near.
+constexpr size_t kMostSubstituted = 1 << 24;
+constexpr size_t kLongestName = 256;
 
 bool isNameCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -24,6 +25,10 @@ Variables::Variables(const std::map<std::string, std::string>& defines) {
 
 void Variables::setDefault(std::string_view name, std::string_view value, const SourceLocation& where) {
   if (name.empty()) throw LoadError(where, "<default> has an empty name; expected the name of a variable");
+  if (name.size() > kLongestName) {
+    throw LoadError(where,
+                    "name of a variable has " + std::to_string(name.size()) + " characters; expected at most 256");
+  }
   longestName_ = std::max(longestName_, name.size());
   variables_.try_emplace(std::string(name), Variable{.value = std::string(value)});
 }
@@ -55,8 +60,9 @@ std::string Variables::substitute(std::string_view text, const SourceLocation& w
     found->second.used = true;
     result += found->second.value;
     i += 1 + found->first.size();
-    if (result.size() > kLongestValue) {
-      throw LoadError(where, "value grows beyond 1 MiB by variable substitution; expected a shorter value");
+    substitutedBytes_ += found->second.value.size();
+    if (substitutedBytes_ > kMostSubstituted) {
+      throw LoadError(where, "variables expand to more than 16 MiB of text; expected fewer or shorter values");
     }
   }
   return result;

@@ -28,6 +28,7 @@ class Variables {
   };
   std::map<std::string, Variable, std::less<>> variables_;
   size_t longestName_ = 0;
+  size_t substitutedBytes_ = 0;  // of all values so far
 };
 
 }  // namespace wavecrest

@@ -18,7 +18,7 @@ namespace {
 
 // Bounds on what untrusted XML may ask for. Real scenes nest about 8 deep.
 constexpr int kDeepestNesting = 64, kDeepestInclude = 15;
-constexpr size_t kMostElements = 1'000'000;
+constexpr size_t kMostElements = 1'000'000, kMostAttributes = 16;
 constexpr size_t kLargestXml = 32 << 20;
 
 constexpr std::array<std::string_view, 14> kObjectTags = {"scene",  "bsdf",    "emitter", "film",    "integrator",
@@ -124,6 +124,10 @@ XmlElement XmlReader::readElement(const OpenFile& file, const pugi::xml_node& no
                     "more than " + std::to_string(kMostElements) + " elements; expected meshes to be in mesh files");
   }
   for (const pugi::xml_attribute& attribute : node.attributes()) {
+    if (element.attributes.size() >= kMostAttributes) {
+      throw LoadError(element.location(), "<" + element.tag + "> has more than " + std::to_string(kMostAttributes) +
+                                              " attributes; expected fewer");
+    }
     if (element.find(attribute.name())) {
       throw LoadError(element.location(), std::string("attribute \"") + attribute.name() + "\" of <" + element.tag +
                                               "> is given twice; expected it once");

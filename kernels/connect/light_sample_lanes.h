@@ -3,8 +3,11 @@
 
 #include "kernels/sampling/warp_lanes.h"
 #include "kernels/shade/light_lanes.h"
+#include "kernels/shade/texture_lanes.h"
 
 WAVECREST_SIMD_BEGIN
+
+WAVECREST_INLINE Mask select(Mask m, Mask yes, Mask no) { return (m & yes) | andNot(no, m); }
 
 template <class Real>
 struct LightSample {
@@ -56,9 +59,57 @@ WAVECREST_INLINE void sampleSphere(const RecordLanes<LightRecord<typename P::Sto
 
 }  // namespace
 
+// Spot, directional and environment lights, in the lanes that have them.
+template <class P>
+WAVECREST_INLINE void addRareLights(const SceneView<typename P::Storage>& scene,
+                                    const RecordLanes<LightRecord<typename P::Storage>>& at, UInt kind,
+                                    Vec3<typename P::Real> receiver, typename P::Real dist2, const Uniform4& more,
+                                    LightSample<typename P::Real>& sample) {
+  using Real = typename P::Real;
+  const auto& fields = *scene.lights;
+  const Real discPdf(kInvPi / (scene.radius * scene.radius));
+  const auto far = [&](Vec3<Real> direction) HWY_ATTR { return mulAdd(direction, Real(3 * scene.radius), receiver); };
+
+  const Mask spot = kind == lightKind(LightKind::spot);
+  if (any(spot)) {
+    const Real cosTotal = at(fields.cosTotal);
+    const Real falloff = spotFalloff(-dot(sample.direction, at(fields.normal)), cosTotal, at(fields.cosFalloff));
+    sample.radiance = select(spot, sample.radiance * falloff, sample.radiance);
+    sample.pdf = select(spot, dist2, sample.pdf);
+    const Real conePdf = Real(kInvPi / 2) / max(Real(1) - cosTotal, Real(1e-9f));
+    sample.emissionPdf = select(spot, conePdf, sample.emissionPdf);
+    sample.end = select(spot, at(fields.p0), sample.end);
+    sample.delta = sample.delta | spot;
+    sample.valid = select(spot, falloff > Real(0), sample.valid);
+  }
+  const Mask directional = kind == lightKind(LightKind::directional);
+  if (any(directional)) {
+    const Vec3<Real> direction = -at(fields.normal);
+    sample.direction = select(directional, direction, sample.direction);
+    sample.pdf = select(directional, Real(1), sample.pdf);
+    sample.emissionPdf = select(directional, discPdf, sample.emissionPdf);
+    sample.end = select(directional, far(direction), sample.end);
+    sample.delta = sample.delta | directional;
+    sample.valid = sample.valid | directional;
+  }
+  const Mask map = kind == lightKind(LightKind::envmap);
+  if (any(map)) {
+    const Vec3<Real> direction = sampleMap<Real>(scene.environment, more);
+    const MapPoint<Real> point = mapPoint(scene.environment, direction);
+    const Real pdf = mapPdfW(scene.environment, point);
+    sample.direction = select(map, direction, sample.direction);
+    sample.radiance = select(map, mapRadiance(scene.environment, point), sample.radiance);
+    sample.pdf = select(map, pdf, sample.pdf);
+    sample.emissionPdf = select(map, pdf * discPdf, sample.emissionPdf);
+    sample.end = select(map, far(direction), sample.end);
+    sample.valid = select(map, pdf > Real(0), sample.valid);
+  }
+}
+
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typename P::Storage>& scene, UInt light,
-                                                           Vec3<typename P::Real> receiver, const Uniform4& uniform) {
+                                                           Vec3<typename P::Real> receiver, const Uniform4& uniform,
+                                                           [[maybe_unused]] const Uniform4& more) {
   using Real = typename P::Real;
   const RecordLanes<LightRecord<typename P::Storage>> at(scene.lights, light);
   const auto& fields = *scene.lights;
@@ -123,6 +174,11 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
     const double emission = kInvPi / 4 * kInvPi / (scene.radius * scene.radius);
     sample.emissionPdf = select(constant, Real(emission), sample.emissionPdf);
   }
+  if constexpr (has(kFeatures, kTextures)) {
+    sample.radiance = sample.radiance * to<Real>(textureFactor(scene.textures, scene.texels, at(fields.texture),
+                                                               to<Float>(u), to<Float>(v)));
+  }
+  if constexpr (has(kFeatures, kRareLights)) addRareLights<P>(scene, at, kind, receiver, dist2, more, sample);
   sample.pdf = sample.pdf * pick;
   sample.emissionPdf = sample.emissionPdf * pick;
   return sample;

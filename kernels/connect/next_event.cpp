@@ -27,7 +27,11 @@ void nextEvent(const StageContext<typename P::Storage>& context, Wave<typename P
     const UInt lane = select(active, load(paths.lane, i), UInt(0u));
     const Uniform4 u = draw(context, pathOf(context, wave, lane), Block::light);
     const UInt light = pickLight(scene, u.a, u.b);
-    const auto sample = sampleLight<P, kFeatures>(scene, light, shading.position, u);
+    Uniform4 more = u;
+    if constexpr (has(kFeatures, kRareLights)) {
+      if (scene.environment.width != 0) more = draw(context, pathOf(context, wave, lane), Block::environment);
+    }
+    const auto sample = sampleLight<P, kFeatures>(scene, light, shading.position, u, more);
 
     const Vec3<Real> gen = shading.toLocal(sample.direction);
     const auto bsdf = evalBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, gen);

@@ -1,19 +1,12 @@
 #include "kernels/extend/embree_scene.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#define WAVECREST_EMBREE 4
-#else
-#include <embree3/rtcore.h>
-#define WAVECREST_EMBREE 3
-#endif
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
+
+#include "kernels/extend/embree_packets.h"
 
 namespace wavecrest {
 namespace {
@@ -62,53 +55,6 @@ void addSpheres(RTCDevice device, RTCScene scene, const PrimitiveRecord<S>* reco
   rtcReleaseGeometry(geometry);
 }
 
-// Embree's packet types and entry points by width.
-template <size_t kWidth>
-struct Packet;
-#define WAVECREST_PACKET(WIDTH)                            \
-  template <>                                              \
-  struct Packet<WIDTH> {                                   \
-    using Ray = RTCRay##WIDTH;                             \
-    using RayHit = RTCRayHit##WIDTH;                       \
-    static constexpr auto intersect = rtcIntersect##WIDTH; \
-    static constexpr auto occluded = rtcOccluded##WIDTH;   \
-  };
-WAVECREST_PACKET(4)
-WAVECREST_PACKET(8)
-WAVECREST_PACKET(16)
-#undef WAVECREST_PACKET
-
-// Embree 3 takes a context before the rays, Embree 4 optional arguments behind them.
-class Query {
- public:
-#if WAVECREST_EMBREE == 3
-  Query() { rtcInitIntersectContext(&context_); }
-  template <class Function, class Rays>
-  void operator()(Function function, const int* valid, RTCScene scene, Rays& rays) {
-    function(valid, scene, &context_, &rays);
-  }
-
- private:
-  RTCIntersectContext context_;
-#else
-  template <class Function, class Rays>
-  void operator()(Function function, const int* valid, RTCScene scene, Rays& rays) {
-    function(valid, scene, &rays, nullptr);
-  }
-#endif
-};
-
-// The columns are blocks of a packet's length already; only the storage type may differ.
-template <class S, size_t kWidth>
-void copy(const S* column, size_t first, float (&out)[kWidth]) {
-  for (size_t i = 0; i < kWidth; ++i) out[i] = static_cast<float>(column[first + i]);
-}
-
-template <size_t kWidth>
-void setValid(size_t remaining, int (&valid)[kWidth]) {
-  for (size_t i = 0; i < kWidth; ++i) valid[i] = i < remaining ? -1 : 0;
-}
-
 // The scalar form of addSplats (kernels/lane_support.h).
 template <class S>
 void splat(const StageContext<S>& context, const ShadowRays<S>& shadow, size_t i) {
@@ -119,19 +65,6 @@ void splat(const StageContext<S>& context, const ShadowRays<S>& shadow, size_t i
   }
   int64_t* const sums = context.splats.sums + 3 * size_t{shadow.target[i]};
   for (size_t c = 0; c < 3; ++c) sums[c] += static_cast<int64_t>(rgb[c] * kSplatScale + 0.5);
-}
-
-template <class Ray>
-void setSegment(float tfar, Ray& ray) {
-  constexpr size_t kWidth = std::extent_v<decltype(ray.tnear)>;
-  for (size_t i = 0; i < kWidth; ++i) {
-    ray.tnear[i] = 0;
-    ray.time[i] = 0;
-    ray.tfar[i] = tfar;
-    ray.mask[i] = ~0u;
-    ray.id[i] = static_cast<unsigned>(i);
-    ray.flags[i] = 0;
-  }
 }
 
 }  // namespace
@@ -181,14 +114,8 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
   for (size_t i = 0; i < count; i += kWidth) {
     setValid(count - i, valid);
     setSegment(std::numeric_limits<float>::infinity(), packet.ray);
-    copy<S>(rays.originX, i, packet.ray.org_x);
-    copy<S>(rays.originY, i, packet.ray.org_y);
-    copy<S>(rays.originZ, i, packet.ray.org_z);
-    copy<S>(rays.directionX, i, packet.ray.dir_x);
-    copy<S>(rays.directionY, i, packet.ray.dir_y);
-    copy<S>(rays.directionZ, i, packet.ray.dir_z);
-    for (size_t k = 0; k < kWidth; ++k) packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-    for (size_t k = 0; k < kWidth; ++k) packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    copyRays<S>(rays, i, packet.ray);
+    setNoHit(packet);
     query(Packet<kWidth>::intersect, valid, scene, packet);
     for (size_t k = 0; k < kWidth; ++k) {
       const unsigned geometry = packet.hit.geomID[k];
@@ -214,12 +141,7 @@ void occludeEmbree(const StageContext<S>& context, Wave<S>& wave) {
     setValid(count - i, valid);
     // Just short of 1: nothing at the segment's end may block it.
     setSegment(std::nextafter(1.0f, 0.0f), packet);
-    copy<float>(shadow.originX, i, packet.org_x);
-    copy<float>(shadow.originY, i, packet.org_y);
-    copy<float>(shadow.originZ, i, packet.org_z);
-    copy<float>(shadow.directionX, i, packet.dir_x);
-    copy<float>(shadow.directionY, i, packet.dir_y);
-    copy<float>(shadow.directionZ, i, packet.dir_z);
+    copyRays<float>(shadow, i, packet);
     query(Packet<kWidth>::occluded, valid, scene, packet);
     for (size_t k = 0; k < std::min(kWidth, count - i); ++k) {
       if (packet.tfar[k] < 0) continue;  // -infinity: blocked

@@ -30,6 +30,17 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromPoint(const RecordLanes<Li
   return {at(fields.p0), direction, at(fields.radiance) * inverse, {Real(4 * kPi), Real(0), Real(0)}};
 }
 
+// Origin of a ray that comes from outside the scene: on the disc of the bounding sphere that faces the direction.
+template <class P>
+WAVECREST_INLINE Vec3<typename P::Real> pointOnDisc(const SceneView<typename P::Storage>& scene,
+                                                    Vec3<typename P::Real> direction, const Uniform4& v) {
+  using Real = typename P::Real;
+  const Vec2<Real> disc = concentricDisc<Real>(to<Real>(v.a), to<Real>(v.b));
+  const Real radius(scene.radius);
+  return broadcast<Real>(scene.center) +
+         Frame<Real>::fromNormal(direction).toWorld({disc.x * radius, disc.y * radius, -radius});
+}
+
 // The constant environment: from the disc of the bounding sphere, against the direction to the light.
 template <class P>
 WAVECREST_INLINE EmittedRay<typename P::Real> emitFromConstant(const SceneView<typename P::Storage>& scene,
@@ -37,14 +48,10 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromConstant(const SceneView<t
                                                                const Uniform4& u, const Uniform4& v) {
   using Real = typename P::Real;
   const Vec3<Real> direction = uniformSphere<Real>(to<Real>(u.b), to<Real>(u.c));
-  const Vec2<Real> disc = concentricDisc<Real>(to<Real>(v.a), to<Real>(v.b));
-  const Frame<Real> frame = Frame<Real>::fromNormal(direction);
-  const Real radius(scene.radius);
-  const Vec3<Real> onDisc = frame.toWorld({disc.x * radius, disc.y * radius, -radius});
   const Real inversePick = reciprocal<P>(at(scene.lights->pick));
   const Real discArea(kPi * scene.radius * scene.radius);
   const Real inverseEmission = inversePick * discArea * Real(4 * kPi);
-  return {broadcast<Real>(scene.center) + onDisc,
+  return {pointOnDisc<P>(scene, direction, v),
           direction,
           at(scene.lights->radiance) * inverseEmission,
           {discArea, inverseEmission, Real(0)}};
@@ -79,7 +86,57 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromArea(const SceneView<typen
   // directPdf / emissionPdf = (1 / area) / (n_0 / (pi area)). A sphere's direct density depends on the receiver: arrive
   // supplies it, and here stands pick n_0 / emissionPdf = pi area.
   const Real dVCM = select(sphere, Real(kPi) * area, Real(kPi) * reciprocal<P>(local.z));
-  return {mulAdd(normal, at(fields.offset), point), direction, at(fields.radiance) * flux, {dVCM, flux, Real(0)}};
+  Vec3<Real> radiance = at(fields.radiance);
+  if constexpr (has(kFeatures, kTextures)) {
+    radiance = radiance *
+               to<Real>(textureFactor(scene.textures, scene.texels, at(fields.texture), to<Float>(a), to<Float>(b)));
+  }
+  return {mulAdd(normal, at(fields.offset), point), direction, radiance * flux, {dVCM, flux, Real(0)}};
+}
+
+template <class P>
+WAVECREST_INLINE EmittedRay<typename P::Real> emitFromSpot(const RecordLanes<LightRecord<typename P::Storage>>& at,
+                                                           const LightRecord<typename P::Storage>& fields,
+                                                           const Uniform4& u) {
+  using Real = typename P::Real;
+  const Real cosTotal = at(fields.cosTotal);
+  const Real height = max(Real(1) - cosTotal, Real(1e-9f));
+  const Vec3<Real> local = uniformCone<Real>(to<Real>(u.b), to<Real>(u.c), height);
+  const Real inverseCone = Real(2 * kPi) * height;
+  const Real falloff = spotFalloff(local.z, cosTotal, at(fields.cosFalloff));
+  return {at(fields.p0),
+          Frame<Real>::fromNormal(at(fields.normal)).toWorld(local),
+          at(fields.radiance) * (falloff * inverseCone * reciprocal<P>(at(fields.pick))),
+          {inverseCone, Real(0), Real(0)}};
+}
+
+template <class P>
+WAVECREST_INLINE EmittedRay<typename P::Real> emitDirectional(const SceneView<typename P::Storage>& scene,
+                                                              const RecordLanes<LightRecord<typename P::Storage>>& at,
+                                                              const Uniform4& v) {
+  using Real = typename P::Real;
+  const Vec3<Real> direction = at(scene.lights->normal);
+  const Real discArea(kPi * scene.radius * scene.radius);
+  return {pointOnDisc<P>(scene, direction, v),
+          direction,
+          at(scene.lights->radiance) * (discArea * reciprocal<P>(at(scene.lights->pick))),
+          {discArea, Real(0), Real(0)}};
+}
+
+template <class P>
+WAVECREST_INLINE EmittedRay<typename P::Real> emitFromMap(const SceneView<typename P::Storage>& scene,
+                                                          const RecordLanes<LightRecord<typename P::Storage>>& at,
+                                                          const Uniform4& v, const Uniform4& more) {
+  using Real = typename P::Real;
+  const Vec3<Real> toLight = sampleMap<Real>(scene.environment, more);
+  const MapPoint<Real> point = mapPoint(scene.environment, toLight);
+  const Real discArea(kPi * scene.radius * scene.radius);
+  const Real inverseEmission =
+      discArea / (max(mapPdfW(scene.environment, point), Real(1e-30f)) * at(scene.lights->pick));
+  return {pointOnDisc<P>(scene, -toLight, v),
+          -toLight,
+          mapRadiance(scene.environment, point) * inverseEmission,
+          {discArea, inverseEmission, Real(0)}};
 }
 
 template <class Real>
@@ -116,6 +173,15 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
     if (any(point)) ray = select(point, emitFromPoint<P>(at, *scene.lights, u), ray);
     const Mask constant = kind == lightKind(LightKind::constant);
     if (any(constant)) ray = select(constant, emitFromConstant<P>(scene, at, u, v), ray);
+
+    if constexpr (has(kFeatures, kRareLights)) {
+      const Mask spot = kind == lightKind(LightKind::spot);
+      if (any(spot)) ray = select(spot, emitFromSpot<P>(at, *scene.lights, u), ray);
+      const Mask directional = kind == lightKind(LightKind::directional);
+      if (any(directional)) ray = select(directional, emitDirectional<P>(scene, at, v), ray);
+      const Mask map = kind == lightKind(LightKind::envmap);
+      if (any(map)) ray = select(map, emitFromMap<P>(scene, at, v, draw(context, path, Block::environment)), ray);
+    }
 
     const Real zero(0);
     if (!context.mis.nextEvent) ray.mis.dVCM = zero;

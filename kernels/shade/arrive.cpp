@@ -6,6 +6,7 @@
 // Per path: position and normal; the arrival step of the MIS recursion (METHODS 5.3, 5.4); on camera paths emission of
 // strategy s = 0 with its weight (5.6), which needs the distance and cosine of this edge.
 #include "kernels/mis_lanes.h"
+#include "kernels/shade/interpolation_lanes.h"
 #include "kernels/shade/light_lanes.h"
 #include "kernels/shade/surface_lanes.h"
 #include "kernels/stage_declarations.h"
@@ -18,17 +19,26 @@ namespace {
 // those before arrival: the light has no area measure.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE Vec3<typename P::Real> missedRadiance(const StageContext<typename P::Storage>& context,
+                                                       [[maybe_unused]] Vec3<typename P::Real> direction,
                                                        const MisSums<typename P::Real>& mis, bool alone) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
   const auto& light = scene.lights[scene.infiniteLight];
-  const Vec3<Real> radiance{Real(light.radiance[0]), Real(light.radiance[1]), Real(light.radiance[2])};
+  Vec3<Real> radiance{Real(light.radiance[0]), Real(light.radiance[1]), Real(light.radiance[2])};
+  Real pdfW(kInvPi / 4);
+  if constexpr (has(kFeatures, kRareLights)) {
+    if (scene.environment.width != 0) {
+      const MapPoint<Real> point = mapPoint(scene.environment, direction);
+      radiance = mapRadiance(scene.environment, point);
+      pdfW = mapPdfW(scene.environment, point);
+    }
+  }
   if (alone) return radiance;
-  const Real directPdf = Real(light.pick) * Real(context.mis.nextEvent ? kInvPi / 4 : 0.0);
-  Real wCamera = directPdf * mis.dVCM;
+  const Real pick(light.pick);
+  Real wCamera(0);
+  if (context.mis.nextEvent) wCamera = pick * pdfW * mis.dVCM;
   if constexpr (has(kFeatures, kBidirectional)) {
-    const Real emissionPdf = Real(light.pick) * Real(kInvPi / 4 * kInvPi / (scene.radius * scene.radius));
-    wCamera = mulAdd(emissionPdf, mis.dVC, wCamera);
+    wCamera = mulAdd(pick * pdfW * Real(kInvPi / (scene.radius * scene.radius)), mis.dVC, wCamera);
   }
   return radiance * reciprocal<P>(Real(1) + wCamera);
 }
@@ -38,11 +48,14 @@ template <class P, uint32_t kFeatures>
 WAVECREST_INLINE Vec3<typename P::Real> metRadiance(const StageContext<typename P::Storage>& context, UInt light,
                                                     Vec3<typename P::Real> receiver, typename P::Real n0,
                                                     typename P::Real dist2, const MisSums<typename P::Real>& mis,
-                                                    bool alone) {
+                                                    bool alone, [[maybe_unused]] Float u, [[maybe_unused]] Float v) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
   const RecordLanes<LightRecord<typename P::Storage>> at(scene.lights, light);
-  const Vec3<Real> radiance = at(scene.lights->radiance);
+  Vec3<Real> radiance = at(scene.lights->radiance);
+  if constexpr (has(kFeatures, kTextures)) {
+    radiance = radiance * to<Real>(textureFactor(scene.textures, scene.texels, at(scene.lights->texture), u, v));
+  }
   if (alone) return radiance;
   Real wCamera(0);
   if (context.mis.nextEvent) wCamera = directPdfA<P, kFeatures>(scene, at, receiver, n0, dist2) * mis.dVCM;
@@ -116,7 +129,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     if (any(missed)) {
       misses += countTrue(missed);
       if (camera && scene.infiniteLight != kNoIndex) {
-        const Vec3<Real> radiance = throughput * missedRadiance<P, kFeatures>(context, mis, alone);
+        const Vec3<Real> radiance = throughput * missedRadiance<P, kFeatures>(context, direction, mis, alone);
         addRadiance(wave.radiance, lane, missed & unmergeable, radiance);
       }
       if (none(hit)) continue;
@@ -139,12 +152,17 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     }
     mis.dVCM = mis.dVCM * toArea * inverseCosine;
 
+    Interpolated<Real> shading{surface.normal, Float(0), Float(0)};
+    if constexpr (has(kFeatures, kShadingNormals | kTextures)) {
+      shading = interpolate<P, kFeatures>(scene, at, hit, surface);
+    }
+
     if (camera) {
       const UInt light = at(scene.primitives->light);
       const Mask emits = andNot(hit & (cosine > Real(0)), light == UInt(kNoIndex));
       if (any(emits)) {
-        const Vec3<Real> radiance =
-            metRadiance<P, kFeatures>(context, select(emits, light, UInt(0u)), origin, cosine, dist2, mis, alone);
+        const Vec3<Real> radiance = metRadiance<P, kFeatures>(context, select(emits, light, UInt(0u)), origin, cosine,
+                                                              dist2, mis, alone, shading.u, shading.v);
         addRadiance(wave.radiance, lane, emits & unmergeable, throughput * radiance);
       }
     }
@@ -154,6 +172,11 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     appendVec3(direction, hit, rays.directionX, rays.directionY, rays.directionZ, out);
     appendVec3(surface.normal, hit, surfaces.normalX, surfaces.normalY, surfaces.normalZ, out);
     append(surface.offset, hit, surfaces.offset, out);
+    if constexpr (has(kFeatures, kShadingNormals | kTextures)) {
+      appendVec3(shading.normal, hit, surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, out);
+      append(shading.u, hit, surfaces.uvU, out);
+      append(shading.v, hit, surfaces.uvV, out);
+    }
     appendVec3(throughput, hit, paths.throughputR, paths.throughputG, paths.throughputB, out);
     appendMis<kFeatures>(mis, hit, paths, out);
     append(lane, hit, paths.lane, out);

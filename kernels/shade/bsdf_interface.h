@@ -50,17 +50,25 @@ struct BsdfInput {
   UInt kind;
   Walk walk = Walk::camera;  // from the eye, so that gen points to the light's side, or from a light
   Lobes lobes = Lobes::all;
+  // Values of the textures in the slots: 1 without textures, which costs nothing.
+  Vec3<Real> reflectanceFactor, specularFactor, transmittanceFactor;
+  Real alphaFactor, opacityFactor;
 
   WAVECREST_INLINE BsdfInput(const MaterialRecord* base, UInt index) : materials(base), at(base, index) {
     kind = at(base->kind);
+    const Real one(1);
+    reflectanceFactor = specularFactor = transmittanceFactor = {one, one, one};
+    alphaFactor = opacityFactor = one;
   }
-  WAVECREST_INLINE Vec3<Real> reflectance() const { return to<Real>(at(materials->reflectance)); }
-  WAVECREST_INLINE Vec3<Real> specular() const { return to<Real>(at(materials->specular)); }
-  WAVECREST_INLINE Vec3<Real> transmittance() const { return to<Real>(at(materials->transmittance)); }
-  WAVECREST_INLINE Real alpha() const { return to<Real>(at(materials->alpha)); }
+  WAVECREST_INLINE Vec3<Real> reflectance() const { return to<Real>(at(materials->reflectance)) * reflectanceFactor; }
+  WAVECREST_INLINE Vec3<Real> specular() const { return to<Real>(at(materials->specular)) * specularFactor; }
+  WAVECREST_INLINE Vec3<Real> transmittance() const {
+    return to<Real>(at(materials->transmittance)) * transmittanceFactor;
+  }
+  WAVECREST_INLINE Real alpha() const { return to<Real>(at(materials->alpha)) * alphaFactor; }
   // Interior over exterior index of a dielectric boundary.
   WAVECREST_INLINE Real eta() const { return to<Real>(at(materials->eta[0])); }
-  WAVECREST_INLINE Real opacity() const { return to<Real>(at(materials->opacity)); }
+  WAVECREST_INLINE Real opacity() const { return to<Real>(at(materials->opacity)) * opacityFactor; }
 };
 
 // Vertices whose BSDF has more than delta lobes: only those can be joined by next event, connections and merges.

@@ -80,62 +80,38 @@ WAVECREST_INLINE Mask opaqueHasDelta(const BsdfInput<P>& input, Mask active) {
 }
 
 // ---- what stages call -----------------------------------------------------------------------------------------------
-// Opacity o, as Mitsuba 3's `mask`: the surface is absent with probability 1 - o. That is one more delta lobe, which
-// passes straight on; the others are scaled by o. To a shadow ray the surface is solid: light that passes is found by
-// continuing the path.
+
+// The general set's evaluation and sampling, opacity included. Every stage shares one copy of them, in
+// bsdf_general.cpp: a dozen BSDFs inlined into each stage would cost minutes of compile time for a few per cent of
+// speed.
+template <class P>
+BsdfValue<typename P::Real> evalGeneral(const BsdfInput<P>& input, Mask active, const Vec3<typename P::Real>& fix,
+                                        const Vec3<typename P::Real>& gen);
+template <class P>
+BsdfSample<typename P::Real> sampleGeneral(const BsdfInput<P>& input, Mask active, const Vec3<typename P::Real>& fix,
+                                           const Uniform4& u);
 
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE BsdfValue<typename P::Real> evalBsdf(const BsdfInput<P>& input, Mask active,
                                                       Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
-  using Real = typename P::Real;
   if constexpr (onlyDiffuse(kFeatures)) {
     return DiffuseBsdf::eval<P>(input, fix, gen);
   } else if constexpr (!has(kFeatures, kLayeredBsdfs)) {
     return evalOpaque<P, kFeatures>(input, active, fix, gen);
   } else {
-    const BsdfValue<Real> value = evalOpaque<P, kFeatures>(input, active, fix, gen);
-    const Real opacity = input.opacity();
-    return {value.f * opacity, value.pdf * opacity, value.pdfReverse * opacity};
+    return evalGeneral<P>(input, active, fix, gen);
   }
-}
-
-template <class P>
-WAVECREST_INLINE BsdfSample<typename P::Real> passThrough(Vec3<typename P::Real> fix, typename P::Real weight,
-                                                          typename P::Real pick) {
-  return {.gen = -fix,
-          .weight = {weight, weight, weight},
-          .pdf = pick,
-          .pdfReverse = pick,
-          .etaRatio = typename P::Real(1),
-          .specular = allLanes()};
 }
 
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE BsdfSample<typename P::Real> sampleBsdf(const BsdfInput<P>& input, Mask active,
                                                          Vec3<typename P::Real> fix, const Uniform4& u) {
-  using Real = typename P::Real;
   if constexpr (onlyDiffuse(kFeatures)) {
     return DiffuseBsdf::sample<P>(input, fix, u);
   } else if constexpr (!has(kFeatures, kLayeredBsdfs)) {
     return sampleOpaque<P, kFeatures>(input, active, fix, u);
   } else {
-    const Real one(1);
-    const Real opacity = input.opacity();
-    const Mask partial = active & (opacity < one);
-    if (none(partial)) return sampleOpaque<P, kFeatures>(input, active, fix, u);
-
-    // The probability that the surface is there; among delta lobes alone it counts only if the surface has one.
-    Real pick = opacity;
-    if (input.lobes == Lobes::specularOnly) pick = zeroUnless(opaqueHasDelta<P, kFeatures>(input, active), opacity);
-    const Mask passes = partial & (to<Real>(u.a) >= pick);
-    // What is left of u.a decides between the surface's lobes.
-    const Float rest = min(u.a / max(toFloat(pick), Float(0x1p-24f)), Float(0x1.fffffep-1f));
-    BsdfSample<Real> sample =
-        sampleOpaque<P, kFeatures>(input, active, fix, {select(partial, rest, u.a), u.b, u.c, u.d});
-    sample.pdf = select(partial, sample.pdf * pick, sample.pdf);
-    sample.pdfReverse = select(partial, sample.pdfReverse * pick, sample.pdfReverse);
-    const Real absent = one - pick;
-    return select(passes, passThrough<P>(fix, (one - opacity) / max(absent, Real(1e-30f)), absent), sample);
+    return sampleGeneral<P>(input, active, fix, u);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "kernels/lane_support.h"
 #include "kernels/sampling/warp_lanes.h"
 #include "kernels/shade/surface_lanes.h"
+#include "kernels/simd/math.h"
 
 WAVECREST_SIMD_BEGIN
 
@@ -14,6 +15,91 @@ WAVECREST_INLINE Mask isInfinite(UInt kind) {
   return (kind == lightKind(LightKind::constant)) | (kind == lightKind(LightKind::envmap)) |
          (kind == lightKind(LightKind::directional));
 }
+
+// ---- environment map ------------------------------------------------------------------------------------------------
+
+// Longitude and colatitude of unit directions in the map's frame, as fractions of the map (Mitsuba's convention: +y up,
+// -z in the middle of the left and right edge's seam turned by half).
+template <class Real>
+struct MapPoint {
+  Float u, v;
+  Real sinTheta;
+};
+template <class Real>
+WAVECREST_INLINE MapPoint<Real> mapPoint(const EnvironmentView& map, Vec3<Real> direction) {
+  const auto row = [&](size_t i) HWY_ATTR {
+    return dot(direction, Vec3<Real>{Real(map.toLocal[i][0]), Real(map.toLocal[i][1]), Real(map.toLocal[i][2])});
+  };
+  const Real x = row(0), y = row(1), z = row(2);
+  const Float turn = to<Float>(atan2(x, -z)) * Float(0.5f * static_cast<float>(kInvPi));
+  return {turn - floor(turn), to<Float>(acos(min(max(y, Real(-1)), Real(1)))) * Float(static_cast<float>(kInvPi)),
+          sqrt(max(Real(1) - y * y, Real(0)))};
+}
+
+// Radiance of the map: bilinear, columns by their centres and around, rows from pole to pole.
+template <class Real>
+WAVECREST_INLINE Vec3<Real> mapRadiance(const EnvironmentView& map, const MapPoint<Real>& point) {
+  const UInt width(map.width), height(map.height);
+  const Float x = point.u * toFloat(width) - Float(0.5f);
+  const Float y = min(max(point.v, Float(0)), Float(1)) * Float(static_cast<float>(map.height - 1));
+  const Float x0 = floor(x), y0 = floor(y), fx = x - x0, fy = y - y0;
+  const UInt left = select(x0 < Float(0), width - UInt(1u), toUInt(max(x0, Float(0))));
+  const UInt column0 = min(left, width - UInt(1u));
+  const UInt column1 = select(column0 == width - UInt(1u), UInt(0u), column0 + UInt(1u));
+  const UInt row0 = min(toUInt(y0), height - UInt(1u)), row1 = min(row0 + UInt(1u), height - UInt(1u));
+  const auto texel = [&](UInt column, UInt row) HWY_ATTR {
+    const UInt at = (row * width + column) * UInt(3u);
+    return Vec3<Float>{gather(map.texels, at), gather(map.texels + 1, at), gather(map.texels + 2, at)};
+  };
+  const Vec3<Float> upper = texel(column0, row0) * (Float(1) - fx) + texel(column1, row0) * fx;
+  const Vec3<Float> lower = texel(column0, row1) * (Float(1) - fx) + texel(column1, row1) * fx;
+  return to<Real>(upper * (Float(1) - fy) + lower * fy);
+}
+
+// Density per solid angle with which a direction is sampled from the map, light selection excluded.
+template <class Real>
+WAVECREST_INLINE Real mapPdfW(const EnvironmentView& map, const MapPoint<Real>& point) {
+  const UInt width(map.width), height(map.height);
+  const UInt column = min(toUInt(point.u * toFloat(width)), width - UInt(1u));
+  const UInt row = min(toUInt(point.v * toFloat(height)), height - UInt(1u));
+  const Real probability = to<Real>(gather(map.probability, row * width + column));
+  const double perTexel = static_cast<double>(map.width) * map.height * kInvPi * kInvPi / 2;
+  return probability * Real(perTexel) / max(point.sinTheta, Real(1e-9f));
+}
+
+// A direction towards the environment: alias table over texels, then uniform within the texel.
+template <class Real>
+WAVECREST_INLINE Vec3<Real> sampleMap(const EnvironmentView& map, const Uniform4& u) {
+  const uint32_t count = map.width * map.height;
+  const UInt entry = min(toUInt(u.a * Float(static_cast<float>(count))), UInt(count - 1));
+  const RecordLanes<AliasEntry> at(map.table, entry);
+  const UInt texel = select(u.b < at(map.table->keep), entry, at(map.table->other));
+  // Below 2^24 the quotient is exact in float.
+  const UInt row = toUInt((toFloat(texel) + Float(0.5f)) / Float(static_cast<float>(map.width)));
+  const UInt column = texel - row * UInt(map.width);
+  const Real phi = (to<Real>(toFloat(column)) + to<Real>(u.c)) * Real(2 * kPi / map.width);
+  const Real theta = (to<Real>(toFloat(row)) + to<Real>(u.d)) * Real(kPi / map.height);
+  const auto azimuth = sinCos(phi), polar = sinCos(theta);
+  const Vec3<Real> local{azimuth.sin * polar.sin, polar.cos, -azimuth.cos * polar.sin};
+  const auto column3 = [&](size_t i) HWY_ATTR {  // the inverse of a rotation is its transpose
+    return Real(map.toLocal[0][i]) * local.x + Real(map.toLocal[1][i]) * local.y + Real(map.toLocal[2][i]) * local.z;
+  };
+  return {column3(0), column3(1), column3(2)};
+}
+
+// ---- spot light -----------------------------------------------------------------------------------------------------
+
+// Share of the intensity in directions at this cosine from the axis: 1 within the beam, 0 outside the cutoff, linear in
+// the angle between, as Mitsuba's spot.
+template <class Real>
+WAVECREST_INLINE Real spotFalloff(Real cosine, Real cosTotal, Real cosFalloff) {
+  const Real angle = acos(min(max(cosine, Real(-1)), Real(1)));
+  const Real total = acos(cosTotal), beam = acos(cosFalloff);
+  const Real ramp = (total - angle) / max(total - beam, Real(1e-6f));
+  return zeroUnless(cosine > cosTotal, select(cosine >= cosFalloff, Real(1), ramp));
+}
+
+// ---- area lights ----------------------------------------------------------------------------------------------------
 
 // 1 - cos of the half angle under which a sphere of squared radius r2 is seen from squared distance d2.
 template <class Real>

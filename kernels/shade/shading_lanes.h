@@ -3,6 +3,7 @@
 
 #include "kernels/shade/bsdf_lanes.h"
 #include "kernels/shade/surface_lanes.h"
+#include "kernels/shade/texture_lanes.h"
 
 WAVECREST_SIMD_BEGIN
 
@@ -59,6 +60,17 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
                                .side = Real(1),
                                .fixCosine = dot(vertex.fix, vertex.normal),
                                .bsdf = BsdfInput<P>(scene.materials, at(scene.primitives->material))};
+  if constexpr (has(kFeatures, kTextures)) {
+    const MaterialRecord& slots = *scene.materials;
+    const auto factor = [&](const uint32_t& slot) HWY_ATTR {
+      return to<Real>(textureFactor(scene.textures, scene.texels, s.bsdf.at(slot), vertex.u, vertex.v));
+    };
+    s.bsdf.reflectanceFactor = factor(slots.reflectanceTexture);
+    s.bsdf.specularFactor = factor(slots.specularTexture);
+    s.bsdf.transmittanceFactor = factor(slots.transmittanceTexture);
+    s.bsdf.alphaFactor = factor(slots.alphaTexture).x;
+    s.bsdf.opacityFactor = factor(slots.opacityTexture).x;
+  }
   s.fix = s.frame.toLocal(vertex.fix);
   const Mask twoSided = (s.bsdf.at(scene.materials->flags) & UInt(kTwoSided)) == UInt(kTwoSided);
   s.side = select(twoSided & (s.fix.z < Real(0)), Real(-1), Real(1));

@@ -14,6 +14,7 @@ template <class Real>
 struct SurfacePoint {
   Vec3<Real> position, normal;
   Real offset;
+  Real u, v;  // coordinates in the primitive
 };
 
 template <class P, uint32_t kFeatures>
@@ -37,6 +38,8 @@ WAVECREST_INLINE SurfacePoint<typename P::Real> surfacePoint(
     u = inside(dot(s, h) * inverse);
     v = inside(dot(rayDirection, cross(s, e1)) * inverse);
   }
+  surface.u = u;
+  surface.v = v;
   const Vec3<Real> a = e1 * u, b = e2 * v;
   surface.position = p0 + a + b;
   Vec3<Real> extent = abs(p0) + abs(a) + abs(b);

@@ -67,8 +67,6 @@ struct Workspace {
 }  // namespace
 }  // namespace vdp
 
-using vdp::Band;
-
 struct PreparedHdrVdp2::State {
   State(const Image8& reference, Isa isa);
 
@@ -76,8 +74,10 @@ struct PreparedHdrVdp2::State {
   void compareImages(const Image8& test, vdp::Workspace& workspace) const;
   void makeMutualMasks(vdp::Workspace& workspace) const;
   using BandErrors = std::array<double, steerable::kOrientations>;
-  BandErrors poolBand(size_t band, const vdp::Workspace& workspace) const;
-  BandErrors poolRow(size_t band, size_t y, const vdp::Workspace& workspace) const;
+  // differences, if given, receives the bands of visible differences.
+  BandErrors poolBand(size_t band, const vdp::Workspace& workspace, std::vector<vdp::Band>* differences) const;
+  BandErrors poolRow(size_t band, size_t y, const vdp::Workspace& workspace, std::vector<vdp::Band>* differences) const;
+  std::vector<float> detectionProbability(const std::vector<vdp::Band>& differences) const;
 
   Isa isa;
   Image8 image;
@@ -173,8 +173,8 @@ void PreparedHdrVdp2::State::makeMutualMasks(vdp::Workspace& workspace) const {
 }
 
 // Sum of squared differences of one row of a band, for each orientation.
-PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolRow(size_t b, size_t y,
-                                                                   const vdp::Workspace& workspace) const {
+PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolRow(size_t b, size_t y, const vdp::Workspace& workspace,
+                                                                   std::vector<vdp::Band>* differences) const {
   const MetricKernels& kernels = metricKernels(isa);
   const vdp::BandSettings& band = settings[b];
   const size_t width = band.size.width, rowFloats = roundUpToLanes(image.width) + kPlaneLanes;
@@ -219,16 +219,18 @@ PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolRow(size_t b, siz
     row.test = workspace.test.bands[b].planes[o].row(y);
     row.reference = reference.bands[b].planes[o].row(y);
     row.self = workspace.masks[b].planes[o].row(y);
+    row.difference = differences ? (*differences)[b].planes[o].row(y) : nullptr;
     sums[o] = kernels.differenceRow(row);
   }
   return sums;
 }
 
-PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolBand(size_t b, const vdp::Workspace& workspace) const {
+PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolBand(size_t b, const vdp::Workspace& workspace,
+                                                                    std::vector<vdp::Band>* differences) const {
   const auto [width, height] = settings[b].size;
   std::vector<BandErrors> rows(height);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, height, 4), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t y = range.begin(); y < range.end(); ++y) rows[y] = poolRow(b, y, workspace);
+    for (size_t y = range.begin(); y < range.end(); ++y) rows[y] = poolRow(b, y, workspace, differences);
   });
   BandErrors errors{};
   for (size_t o = 0; o < errors.size(); ++o) {
@@ -237,6 +239,18 @@ PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolBand(size_t b, co
     errors[o] = std::sqrt(errors[o]) / static_cast<double>(width * height);
   }
   return errors;
+}
+
+// The psychometric function of the reconstructed difference: 1 is the threshold, seen with probability one half.
+// Local probabilities, without the original's pooling over the image. The original raises bands to the power
+// 3.5 / p before reconstruction, which is 1 to seven digits.
+std::vector<float> PreparedHdrVdp2::State::detectionProbability(const std::vector<vdp::Band>& differences) const {
+  const Plane visible = analyzer.pyramid().reconstruct(differences);
+  std::vector<float> probability;
+  probability.reserve(visible.pixelCount());
+  for (size_t y = 0; y < visible.height(); ++y)
+    for (size_t x = 0; x < visible.width(); ++x) probability.push_back(1 - std::exp2(-std::abs(visible.row(y)[x])));
+  return probability;
 }
 
 namespace {
@@ -257,16 +271,19 @@ PreparedHdrVdp2::~PreparedHdrVdp2() = default;
 PreparedHdrVdp2::PreparedHdrVdp2(PreparedHdrVdp2&&) noexcept = default;
 PreparedHdrVdp2& PreparedHdrVdp2::operator=(PreparedHdrVdp2&&) noexcept = default;
 
-HdrVdp2Result PreparedHdrVdp2::compare(const Image8& test, bool, std::vector<HdrVdp2Band>* bands) const {
+HdrVdp2Result PreparedHdrVdp2::compare(const Image8& test, bool withProbability,
+                                       std::vector<HdrVdp2Band>* bands) const {
   auto workspace = state_->takeWorkspace();
   state_->compareImages(test, *workspace);
   state_->makeMutualMasks(*workspace);
 
   HdrVdp2Result result;
+  std::vector<vdp::Band> differences;
+  if (withProbability) differences = state_->analyzer.pyramid().makeBands();
   size_t count = 0;
   for (size_t b = 0; b < state_->settings.size(); ++b) {
     const vdp::BandSettings& band = state_->settings[b];
-    const State::BandErrors errors = state_->poolBand(b, *workspace);
+    const State::BandErrors errors = state_->poolBand(b, *workspace, withProbability ? &differences : nullptr);
     for (size_t o = 0; o < band.orientations; ++o, ++count) {
       result.q += band.weight * std::log(errors[o] + vdp::kPoolingEpsilon);
       if (bands) bands->push_back({b, o, band.weight, errors[o]});
@@ -274,6 +291,7 @@ HdrVdp2Result PreparedHdrVdp2::compare(const Image8& test, bool, std::vector<Hdr
   }
   result.q /= static_cast<double>(count);
   result.qMos = vdp::meanOpinionScore(result.q);
+  if (withProbability) result.probability = state_->detectionProbability(differences);
   const std::lock_guard lock(state_->poolMutex);
   state_->pool.push_back(std::move(workspace));
   return result;

@@ -1,59 +1,14 @@
 #include "metrics/hdrvdp2/steerable_pyramid.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "metrics/hdrvdp2/correlation.h"
 #include "metrics/kernels/metric_kernels.h"
 
 namespace wavecrest::vdp {
 namespace {
 
 constexpr size_t kSmallestLevel = 17;
-
-// Reflection about the edge sample, which is not repeated.
-size_t mirrored(std::ptrdiff_t index, size_t length) {
-  const auto last = static_cast<std::ptrdiff_t>(length) - 1;
-  if (index < 0) index = -index;
-  if (index > last) index = 2 * last - index;
-  return static_cast<size_t>(index);
-}
-
-void mirrorBorders(Plane& plane, size_t y) {
-  float* row = plane.row(y);
-  const auto width = static_cast<std::ptrdiff_t>(plane.width());
-  for (std::ptrdiff_t i = 1; i <= static_cast<std::ptrdiff_t>(SteerablePyramid::kInputBorder); ++i) {
-    row[-i] = row[mirrored(-i, plane.width())];
-    row[width - 1 + i] = row[mirrored(width - 1 + i, plane.width())];
-  }
-}
-
-template <size_t kCount>
-std::array<float, kCount> toFloat(const std::array<double, kCount>& taps) {
-  std::array<float, kCount> result{};
-  std::transform(taps.begin(), taps.end(), result.begin(), [](double t) { return static_cast<float>(t); });
-  return result;
-}
-
-// The pointers that make row y of a correlation with a size x size kernel: one for each tap.
-template <size_t kSize>
-std::array<const float*, kSize * kSize> tapRows(const Plane& in, size_t y) {
-  constexpr auto kCentre = static_cast<std::ptrdiff_t>(kSize / 2);
-  std::array<const float*, kSize * kSize> rows{};
-  for (size_t i = 0; i < kSize; ++i) {
-    const float* row = in.row(mirrored(static_cast<std::ptrdiff_t>(y + i) - kCentre, in.height())) - kCentre;
-    for (size_t j = 0; j < kSize; ++j) rows[i * kSize + j] = row + j;
-  }
-  return rows;
-}
-
-template <class Function>
-void forEachRow(size_t rows, Function function) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, rows, 4), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t y = range.begin(); y < range.end(); ++y) function(y);
-  });
-}
 
 }  // namespace
 
@@ -129,7 +84,7 @@ void SteerablePyramid::subsample(const Plane& even, const Plane& odd, size_t inp
   forEachRow(out.height(), [&](size_t y) {
     std::array<const float*, kSize * kSize> sources{};
     for (size_t i = 0; i < kSize; ++i) {
-      const size_t row = mirrored(static_cast<std::ptrdiff_t>(2 * y + i) - kCentre, inputHeight);
+      const size_t row = mirroredIndex(static_cast<std::ptrdiff_t>(2 * y + i) - kCentre, inputHeight);
       for (size_t j = 0; j < kSize; ++j) {
         // Column 2x + j - 8 is column x + (j - 8) / 2 of the even plane, or x + (j - 9) / 2 of the odd one.
         const Plane& half = j % 2 == 0 ? even : odd;
@@ -143,7 +98,7 @@ void SteerablePyramid::subsample(const Plane& even, const Plane& odd, size_t inp
 }
 
 void SteerablePyramid::decompose(Plane& input, std::vector<Band>& bands, Workspace& workspace) const {
-  forEachRow(input.height(), [&](size_t y) { mirrorBorders(input, y); });
+  forEachRow(input.height(), [&](size_t y) { mirrorBorders(input, y, kInputBorder); });
   // Without levels the first low-pass is the base itself.
   filterInput(input, bands[0].planes[0], levels_ > 0 ? workspace.lowPass[0] : bands.back().planes[0]);
   for (size_t level = 0; level < levels_; ++level) {
@@ -151,7 +106,7 @@ void SteerablePyramid::decompose(Plane& input, std::vector<Band>& bands, Workspa
     Plane& even = workspace.even[level];
     Plane& odd = workspace.odd[level];
     forEachRow(in.height(), [&](size_t y) {
-      mirrorBorders(in, y);
+      mirrorBorders(in, y, kInputBorder);
       constexpr auto kHalfBorder = static_cast<std::ptrdiff_t>(kInputBorder / 2);
       const float* row = in.row(y);
       float *evenRow = even.row(y), *oddRow = odd.row(y);

@@ -42,6 +42,10 @@ class SteerablePyramid {
   static constexpr size_t kInputBorder = 8;
   void decompose(Plane& input, std::vector<Band>& bands, Workspace& workspace) const;
 
+  // The plane that such bands belong to, to about 1 % of its amplitude (decompose and reconstruct are adjoint, and the
+  // filters only nearly orthogonal).
+  Plane reconstruct(const std::vector<Band>& bands) const;
+
  private:
   void filterInput(const Plane& input, Plane& highPass, Plane& lowPass) const;
   void filterLevel(const Plane& in, Band& band) const;

@@ -27,6 +27,9 @@ constexpr uint64_t kMaxPixels = uint64_t{1} << 27;
 // of that size would take.
 void checkSize(const std::string& path, uint64_t width, uint64_t height, uint64_t leastBytes, uint64_t fileBytes);
 
+// Text from a file as it may stand in an error message: short and printable.
+std::string quoted(const std::string& text);
+
 // A cursor over the text header of PFM and HDR files.
 class HeaderReader {
  public:

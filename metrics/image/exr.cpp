@@ -102,7 +102,7 @@ std::string listChannels(const Imf::ChannelList& channels) {
   int count = 0;
   for (auto it = channels.begin(); it != channels.end(); ++it) {
     if (++count > 16) return list + " ...";
-    list += (list.empty() ? "" : " ") + std::string(it.name());
+    list += (list.empty() ? "" : " ") + codecs::quoted(it.name());
   }
   return list.empty() ? "none" : list;
 }

@@ -44,7 +44,15 @@ class ImageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   ImageError(const std::string& path, const std::string& wrong, const std::string& expected)
-      : std::runtime_error(path + ": " + wrong + "; " + expected) {}
+      : std::runtime_error(path + ": " + oneLine(wrong) + "; " + expected) {}
+
+ private:
+  // What is wrong may quote a damaged file.
+  static std::string oneLine(std::string text) {
+    for (char& c : text)
+      if (static_cast<unsigned char>(c) < 32) c = '?';
+    return text;
+  }
 };
 
 }  // namespace wavecrest

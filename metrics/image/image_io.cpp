@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <filesystem>
 #include <string_view>
 
 #include "metrics/image/atomic_file.h"
@@ -39,6 +40,26 @@ std::string extensionOf(const std::string& path) {
   throw ImageError(path, wrong, expected);
 }
 
+// The list of formats that can be written.
+struct Writer {
+  std::string_view extension;
+  void (*write)(const std::string& path, const Image& linear, const Metadata& metadata);
+};
+constexpr std::array kWriters{
+    Writer{".exr", [](const std::string& path, const Image& image,
+                      const Metadata& metadata) { writeExr(path, image, metadata); }},
+    Writer{".pfm", [](const std::string& path, const Image& image, const Metadata&) { writePfm(path, image); }},
+    Writer{".png", [](const std::string& path, const Image& image, const Metadata&) { writePng(path, image); }},
+};
+
+const Writer& writerOf(const std::string& path) {
+  const std::string extension = extensionOf(path);
+  for (const Writer& writer : kWriters) {
+    if (writer.extension == extension) return writer;
+  }
+  failFormat(path, extension, "expected .exr, .pfm or .png for writing");
+}
+
 }  // namespace
 
 ImageFile readImage(const std::string& path) {
@@ -54,12 +75,17 @@ Image readExrLayer(const std::string& path, const std::string& layer) {
 
 void writePng(const std::string& path, const Image& linear) { writePng(path, encodeSrgb8(linear)); }
 
+void checkImageTarget(const std::string& path) {
+  writerOf(path);
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code ignored;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
+    throw ImageError(path, "there is no folder '" + folder.string() + "'", "expected one that exists");
+  }
+}
+
 void writeImage(const std::string& path, const Image& linear, const Metadata& metadata) {
-  const std::string extension = extensionOf(path);
-  if (extension == ".exr") return writeExr(path, linear, metadata);
-  if (extension == ".pfm") return writePfm(path, linear);
-  if (extension == ".png") return writePng(path, linear);
-  failFormat(path, extension, "expected .exr, .pfm or .png for writing");
+  writerOf(path).write(path, linear, metadata);
 }
 
 namespace codecs {
@@ -75,6 +101,14 @@ void checkSize(const std::string& path, uint64_t width, uint64_t height, uint64_
     throw ImageError(path, "file of " + std::to_string(fileBytes) + " bytes ends before its " + size + " pixels",
                      "expected at least " + std::to_string(leastBytes) + " bytes");
   }
+}
+
+std::string quoted(const std::string& text) {
+  constexpr size_t kLongest = 40;
+  std::string result = "'" + text.substr(0, kLongest) + (text.size() > kLongest ? "...'" : "'");
+  std::replace_if(
+      result.begin(), result.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  return result;
 }
 
 std::string HeaderReader::line() {

@@ -17,7 +17,7 @@ uint64_t parseExtent(const std::string& path, const std::string& text) {
   uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || value > UINT32_MAX) {
-    throw ImageError(path, "bad extent '" + text + "' in the PFM header", "expected a positive whole number");
+    throw ImageError(path, "bad extent " + quoted(text) + " in the PFM header", "expected a positive whole number");
   }
   return value;
 }
@@ -26,7 +26,7 @@ double parseScale(const std::string& path, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) || value == 0) {
-    throw ImageError(path, "bad scale '" + text + "' in the PFM header", "expected a number other than zero");
+    throw ImageError(path, "bad scale " + quoted(text) + " in the PFM header", "expected a number other than zero");
   }
   return value;
 }

@@ -29,12 +29,12 @@ RadianceHeader readHeader(const std::string& path, HeaderReader& reader) {
     const std::string line = reader.line();
     if (line.empty()) break;
     if (line.rfind("FORMAT=", 0) == 0 && line != "FORMAT=32-bit_rle_rgbe")
-      throw ImageError(path, "pixel format '" + line.substr(7) + "'", "expected 32-bit_rle_rgbe");
+      throw ImageError(path, "pixel format " + quoted(line.substr(7)), "expected 32-bit_rle_rgbe");
     if (line.rfind("EXPOSURE=", 0) == 0) {
       std::istringstream text(line.substr(9));
       double factor = 0;
       if (!(text >> factor) || !(factor > 0) || !std::isfinite(factor))
-        throw ImageError(path, "bad header line '" + line + "'", "expected EXPOSURE= and a positive number");
+        throw ImageError(path, "bad header line " + quoted(line), "expected EXPOSURE= and a positive number");
       header.exposure *= factor;
     }
   }

@@ -93,11 +93,13 @@ double differenceRow(const DifferenceRow& row) {
     mask = Float(row.scale) * loadUnaligned(row.sensitivityToQ + x) * mask;
 
     // D^2 rather than D: only squares are pooled.
-    const Float difference = abs(loadUnaligned(row.test + x) - loadUnaligned(row.reference + x));
-    const Float excitation = pow(difference * Float(1.0f / row.scale), Float(row.twoP));
-    const Float weight = Float(row.scale) * loadUnaligned(row.pixelMask + x);
+    const Float difference = loadUnaligned(row.test + x) - loadUnaligned(row.reference + x);
+    const Float excitation = pow(abs(difference) * Float(1.0f / row.scale), Float(row.twoP));
     const Float noise = mulAdd(mask, mask, loadUnaligned(row.sensitivityToMinusTwoP + x));
-    total = total + zeroUnless(firstLanes(row.width - x), excitation * weight * weight / noise);
+    const Float visible = Float(row.scale * row.scale) * excitation / noise;
+    if (row.difference) storeUnaligned(copySign(sqrt(visible), difference), row.difference + x);
+    const Float pixelMask = loadUnaligned(row.pixelMask + x);
+    total = total + zeroUnless(firstLanes(row.width - x), visible * pixelMask * pixelMask);
   }
   float lanes[kLanes];
   storeUnaligned(total, lanes);

@@ -55,6 +55,7 @@ struct DifferenceRow {
   float twoP, q;
   float scale;            // n_b = 2^(b-1)
   float kSelf, kXo, kXn;  // kSelf and kXo are divided by n_b^q beforehand
+  float* difference;      // out: signed, not squared, without the pixel mask; or null
 };
 
 }  // namespace wavecrest

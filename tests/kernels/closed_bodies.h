@@ -16,7 +16,7 @@ struct ClosedBody {
   double reach = 0;            // a cube of this half side around the centre lies inside
   std::vector<Point> corners;  // of polyhedra
   std::vector<std::array<size_t, 2>> edges;
-  double size = 1;             // largest extent, for tolerances
+  double size = 1;  // largest extent, for tolerances
 };
 
 inline Point roundedToFloat(const Point& p) {
@@ -41,8 +41,8 @@ inline ClosedBody cornellShell() {
   pair(b, a, e, h);  // front
   body.walls.push_back(quadPrimitive(b, h, c));
   body.corners = {a, b, c, d, e, f, g, h};
-  body.edges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 7}, {2, 6}, {3, 5}, {0, 2},
-                {4, 6}, {3, 6}, {0, 5}, {1, 4}};  // the last five: diagonals
+  body.edges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4},
+                {1, 7}, {2, 6}, {3, 5}, {0, 2}, {4, 6}, {3, 6}, {0, 5}, {1, 4}};  // the last five: diagonals
   return body;
 }
 

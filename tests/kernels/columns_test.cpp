@@ -132,7 +132,8 @@ TEST(Columns, droppedColumnsCostNothing) {
 
 // ---- the wave -------------------------------------------------------------------------------------------------------
 
-constexpr ColumnNeeds kPlainest{.shadingNormals = false, .textures = false, .refraction = false, .connections = false};
+constexpr ColumnNeeds kPlainest{
+    .shadingNormals = false, .textures = false, .rouletteScale = false, .connections = false};
 
 // Every queue of a wave has the wave's capacity and columns of its own.
 template <class Queue>
@@ -156,13 +157,14 @@ TYPED_TEST(WaveTest, bindsEveryQueueForEveryNeed) {
     for (const size_t capacity : {1u, 15u, 16u, 17u, 2048u}) {
       Wave<TypeParam> wave(capacity, {.shadingNormals = (needs & 1) != 0,
                                       .textures = (needs & 2) != 0,
-                                      .refraction = (needs & 4) != 0,
+                                      .rouletteScale = (needs & 4) != 0,
                                       .connections = (needs & 8) != 0});
       expectBound(wave.rays, capacity);
       expectBound(wave.hits, capacity);
       expectBound(wave.surfaces, capacity);
       expectBound(wave.paths, capacity);
       expectBound(wave.shadowRays, capacity);
+      expectBound(wave.pairs, capacity);
       expectBound(wave.radiance, capacity);
     }
   }
@@ -178,8 +180,8 @@ TYPED_TEST(WaveTest, eachNeedCostsItsColumns) {
   };
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.shadingNormals = true; }), 3 * kReal);
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.textures = true; }), 2 * sizeof(float));
-  EXPECT_EQ(extra([](ColumnNeeds& n) { n.refraction = true; }), kReal);
-  EXPECT_EQ(extra([](ColumnNeeds& n) { n.connections = true; }), 2 * kReal);
+  EXPECT_EQ(extra([](ColumnNeeds& n) { n.rouletteScale = true; }), kReal);
+  EXPECT_EQ(extra([](ColumnNeeds& n) { n.connections = true; }), 2 * kReal + 3 * sizeof(uint32_t));
 }
 
 // The bound that makes a wave of 2048 paths leave most of a core's L2 to the scene.

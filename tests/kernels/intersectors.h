@@ -77,7 +77,8 @@ class RayBatch {
  public:
   static constexpr size_t kCapacity = 2048;
 
-  RayBatch() : wave(kCapacity, {.shadingNormals = false, .textures = false, .refraction = false, .connections = false}) {}
+  RayBatch()
+      : wave(kCapacity, {.shadingNormals = false, .textures = false, .rouletteScale = false, .connections = false}) {}
 
   bool full() const { return wave.rays.size == kCapacity; }
   void clear() { wave.rays.size = 0; }

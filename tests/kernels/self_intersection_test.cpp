@@ -61,7 +61,7 @@ struct Fixture {
   Stage<S> extend = nullptr;
   StageCounters counters;
   StageContext<S> context;
-  Wave<S> wave{kPaths, {.shadingNormals = true, .textures = false, .refraction = true, .connections = false}};
+  Wave<S> wave{kPaths, {.shadingNormals = true, .textures = false, .rouletteScale = true, .connections = false}};
 };
 
 class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersector, Placement>> {

@@ -62,7 +62,8 @@ inline PrimitiveRecord<double> spherePrimitive(const Point& center, double radiu
 }
 
 inline Point corner(const PrimitiveRecord<double>& r, double u, double v) {
-  return {r.p0[0] + u * r.e1[0] + v * r.e2[0], r.p0[1] + u * r.e1[1] + v * r.e2[1], r.p0[2] + u * r.e1[2] + v * r.e2[2]};
+  return {r.p0[0] + u * r.e1[0] + v * r.e2[0], r.p0[1] + u * r.e1[1] + v * r.e2[1],
+          r.p0[2] + u * r.e1[2] + v * r.e2[2]};
 }
 
 // A rotation about no axis in particular, so that no coordinate of a direction or normal stays zero.
@@ -79,7 +80,8 @@ class StageScene {
  public:
   // Sorts the primitives by kind, keeping their order otherwise.
   explicit StageScene(std::vector<PrimitiveRecord<double>> primitives) : precise(std::move(primitives)) {
-    std::stable_sort(precise.begin(), precise.end(), [](const auto& a, const auto& b) { return a.kind == b.kind ? false : order(a) < order(b); });
+    std::stable_sort(precise.begin(), precise.end(),
+                     [](const auto& a, const auto& b) { return a.kind == b.kind ? false : order(a) < order(b); });
     uint32_t counts[3]{};
     for (const auto& record : precise) {
       records.push_back(rounded(record));

@@ -1,4 +1,4 @@
-// Waves for the tests of stages: copies, poisoned tails and comparison column by column.
+// Waves for the tests of stages: poisoned tails and comparison column by column.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,6 +24,7 @@ void forEachQueue(Wave<S>& a, Wave<S>& b, Function&& function) {
   function("surfaces", a.surfaces, b.surfaces);
   function("paths", a.paths, b.paths);
   function("shadowRays", a.shadowRays, b.shadowRays);
+  function("pairs", a.pairs, b.pairs);
   function("radiance", a.radiance, b.radiance);
 }
 
@@ -37,24 +38,13 @@ void forEachColumn(Queue& a, Queue& b, Function&& function) {
       if (x.needed()) function(index, x, y);
     };
     (visit(kIndex, std::get<kIndex>(columnsA), std::get<kIndex>(columnsB)), ...);
-  }(std::make_index_sequence<std::tuple_size_v<decltype(columnsA)>>());
+  }
+  (std::make_index_sequence<std::tuple_size_v<decltype(columnsA)>>());
 }
 
 template <class T>
 T* items(Column<T>& column) {
   return column;
-}
-
-template <class S>
-void copyWave(Wave<S>& from, Wave<S>& to) {
-  to.firstPath = from.firstPath;
-  to.pathCount = from.pathCount;
-  forEachQueue(from, to, [](const char*, auto& source, auto& target) {
-    target.size = source.size;
-    forEachColumn(source, target, [&](size_t, auto& x, auto& y) {
-      std::copy_n(items(x), paddedItems(source.capacity()), items(y));
-    });
-  });
 }
 
 // Fills everything past the size of each queue with values that show when they are used: NaN, and indices that lead

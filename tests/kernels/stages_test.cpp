@@ -17,8 +17,33 @@ namespace {
 constexpr size_t kPaths = 384;
 constexpr PathLimits kLimits{.maxDepth = 6, .rouletteDepth = 4};
 
-bool curved(Specialization specialization) {
-  return (kSpecializationFeatures[static_cast<size_t>(specialization)] & kCurvedShapes) != 0;
+bool covers(Specialization specialization, uint32_t feature) {
+  return (kSpecializationFeatures[static_cast<size_t>(specialization)] & feature) != 0;
+}
+
+enum RoomMaterial : uint32_t { kWhite, kTwoSidedRed, kMetal, kGlass, kRoughMetal };
+
+std::vector<MaterialRecord> roomMaterials() {
+  std::vector<MaterialRecord> list(5);
+  for (MaterialRecord& m : list) {
+    std::fill_n(m.reflectance, 3, 0.8f);
+    std::fill_n(m.specular, 3, 0.9f);
+    std::fill_n(m.transmittance, 3, 0.95f);
+    std::fill_n(m.eta, 3, 0.3f);
+    std::fill_n(m.k, 3, 3.5f);
+    m.opacity = 1;
+    m.flags = kHasFinite;
+  }
+  list[kTwoSidedRed].reflectance[1] = list[kTwoSidedRed].reflectance[2] = 0.1f;
+  list[kTwoSidedRed].flags |= kTwoSided;
+  list[kMetal].kind = static_cast<uint32_t>(BsdfKind::conductor);
+  list[kMetal].flags = kHasDelta;
+  list[kGlass].kind = static_cast<uint32_t>(BsdfKind::dielectric);
+  list[kGlass].flags = kHasDelta;
+  list[kGlass].eta[0] = 1.5f;
+  list[kRoughMetal].kind = static_cast<uint32_t>(BsdfKind::roughConductor);
+  list[kRoughMetal].alpha = 0.3f;
+  return list;
 }
 
 template <class S>
@@ -39,9 +64,9 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& r, LightKind kind, double are
 }
 
 // A turned room of quads, open towards the camera; two triangles in it, and two spheres where the feature set has them.
-// Lights: a quad, a triangle, a sphere, a point and the environment.
+// Lights: a quad, a triangle, a sphere, a point and the environment. Diffuse unless `specular`.
 template <class S>
-StageScene<S> makeRoom(bool spheres) {
+StageScene<S> makeRoom(bool spheres, bool specular) {
   const auto p = [](double x, double y, double z) { return turned({x, y, z}); };
   std::vector<PrimitiveRecord<double>> list{
       quadPrimitive(p(-1, -1, 1), p(1, -1, 1), p(-1, -1, -1)),                     // floor
@@ -60,12 +85,15 @@ StageScene<S> makeRoom(bool spheres) {
     list.push_back(spherePrimitive(p(-0.5, 0.3, -0.4), 0.15));
     list[9].light = 4;
   }
-  for (size_t i = 0; i < list.size(); ++i) list[i].material = i % 2;
+  for (uint32_t i = 0; i < list.size(); ++i) list[i].material = i % 2;
+  if (specular) {
+    list[2].material = kRoughMetal;
+    list[4].material = kMetal;
+    list[8].material = kGlass;
+    list[9].material = kRoughMetal;
+  }
   StageScene<S> scene(std::move(list));
-  scene.materials.resize(2);
-  std::fill_n(scene.materials[1].reflectance, 3, 0.6f);
-  scene.materials[1].reflectance[2] = 0.1f;
-  scene.materials[1].flags = kTwoSided;
+  scene.materials = roomMaterials();
   scene.view.materials = scene.materials.data();
 
   LightRecord<S> point{}, sky{};
@@ -131,14 +159,15 @@ std::vector<StageCase<S>> allStages() {
           {"occlude 1", 1, &T::occludeSmall, shadow, 8},
           {"occlude 2", 2, &T::occludeSmall, shadow, 8},
           {"scatter 1", 1, &T::scatter, paths, 64},
-          {"scatter 4", 4, &T::scatter, paths, 64}};
+          {"scatter 4", 4, &T::scatter, paths, 64},
+          {"scatter specular 1", 1, &T::scatterSpecular, paths, 64}};
 }
 
 template <class S>
 class TwinComparison {
  public:
   TwinComparison(Isa isa, Precision precision, Specialization specialization)
-      : scene_(makeRoom<S>(curved(specialization))),
+      : scene_(makeRoom<S>(covers(specialization, kCurvedShapes), covers(specialization, kSpecularBsdfs))),
         twin_(findStages<S>(Isa::scalar, precision, specialization)),
         stages_(findStages<S>(isa, precision, specialization)),
         needs_(columnNeeds(specialization)) {}
@@ -148,13 +177,13 @@ class TwinComparison {
     poisonTails(input);
     carryTo(stage, input);
     context_.depth = stage.depth;
-    copyWave(input, expected);
+    expected.copyFrom(input);
     run(twin_, stage, expected);
     const ColumnScales scales = columnScales(expected);
     for (size_t count = 0; count <= 2 * stages_.lanes + 1; ++count) {
       if (stage.depth == 0 && count == 0) continue;  // a wave has at least one path
       for (Wave<S>* wave : {&expected, &actual}) {
-        copyWave(input, *wave);
+        wave->copyFrom(input);
         stage.cut(*wave, count);
         poisonTails(*wave);
       }
@@ -168,13 +197,13 @@ class TwinComparison {
   }
 
  private:
-  // What the session gives to path tracing with these kernels (engine/session.cpp).
+  // What the session gives to waves of these kernels (engine/render_plan.cpp).
   static ColumnNeeds columnNeeds(Specialization specialization) {
     const uint32_t features = kSpecializationFeatures[static_cast<size_t>(specialization)];
     return {.shadingNormals = (features & kShadingNormals) != 0,
             .textures = (features & kTextures) != 0,
-            .refraction = (features & kSpecularBsdfs) != 0,
-            .connections = false};
+            .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
+            .connections = (features & kBidirectional) != 0};
   }
 
   // The twin's wave just before the stage.
@@ -185,9 +214,10 @@ class TwinComparison {
     if (stage.depth == 0) return;
     context_.depth = 0;
     run(twin_.generateCameraPaths, wave);
+    const auto last = stage.stage == &T::scatterSpecular ? &T::scatter : stage.stage;
     for (context_.depth = 1;; ++context_.depth) {
       for (const auto member : {&T::extendSmall, &T::arrive, &T::nextEvent, &T::occludeSmall, &T::scatter}) {
-        if (context_.depth == stage.depth && member == stage.stage) return;
+        if (context_.depth == stage.depth && member == last) return;
         run(twin_.*member, wave);
       }
     }
@@ -225,16 +255,20 @@ std::vector<Choice> allChoices() {
   std::vector<Choice> choices;
   for (const Isa isa : availableIsas()) {
     for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
-      for (const auto specialization : {Specialization::diffuse, Specialization::smooth, Specialization::general}) {
-        choices.push_back({isa, precision, specialization});
+      for (size_t i = 0; i < kSpecializationCount; ++i) {
+        const auto specialization = static_cast<Specialization>(i);
+        if (isCompiled(precision, specialization)) choices.push_back({isa, precision, specialization});
       }
     }
   }
   return choices;
 }
 std::string nameOf(const Choice& choice) {
-  return std::string(toString(choice.isa)) + "_" + std::string(kPrecisionNames[static_cast<size_t>(choice.precision)]) +
-         "_" + std::string(kSpecializationNames[static_cast<size_t>(choice.specialization)]);
+  std::string name = std::string(toString(choice.isa)) + "_" +
+                     std::string(kPrecisionNames[static_cast<size_t>(choice.precision)]) + "_" +
+                     std::string(kSpecializationNames[static_cast<size_t>(choice.specialization)]);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
 }
 
 class StageTest : public testing::TestWithParam<Choice> {

@@ -181,6 +181,15 @@ TEST(Instance, LightsInAGroupAreRefused) {
               2, "light inside a shapegroup");
 }
 
+TEST(Instance, NumberIsBounded) {
+  std::string group = "<shape type=\"shapegroup\" id=\"g\">", instances;
+  for (int i = 0; i < 400; ++i) {
+    group += "<shape type=\"sphere\"/>";
+    instances += "<shape type=\"instance\"><ref id=\"g\"/></shape>";
+  }
+  expectErrorOnLine2(group + "</shape>" + instances, "instances add up to more than 100000 shapes");
+}
+
 TEST(Instance, MustReferToAGroup) {
   expectErrorOnLine2(R"(<shape type="sphere" id="s"/><shape type="instance"><ref id="s"/></shape>)",
                      "expected a shapegroup");

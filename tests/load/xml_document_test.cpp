@@ -1,4 +1,6 @@
 // Structure of scene files: variables, includes, references, versions, unknown things.
+#include <chrono>
+
 #include "tests/load/scene_file.h"
 
 namespace wavecrest::testing {
@@ -66,7 +68,7 @@ TEST(Variables, DoublingChainIsStopped) {
     body += "<default name=\"v" + std::to_string(i) + "\" value=\"$v" + std::to_string(i - 1) + "$v" +
             std::to_string(i - 1) + "\"/>";
   }
-  expectErrorOnLine2(body, "beyond 1 MiB");
+  expectErrorOnLine2(body, "more than 16 MiB of text");
 }
 
 TEST(Include, ChildrenOfAnIncludedSceneTakeItsPlace) {
@@ -242,6 +244,29 @@ TEST(Structure, DeepNestingIsAnError) {
     close += "</bsdf>";
   }
   expectErrorOnLine2(open + close, "elements nest deeper than 64");
+}
+
+TEST(Structure, LongChainOfReferencesIsAnError) {
+  std::string body = "<bsdf type=\"diffuse\" id=\"m0\"/>";
+  for (int i = 1; i < 1000; ++i) {
+    body += "<bsdf type=\"mask\" id=\"m" + std::to_string(i) + "\"><ref id=\"m" + std::to_string(i - 1) + "\"/></bsdf>";
+  }
+  expectErrorOnLine2(body + "<shape type=\"sphere\"><ref id=\"m999\"/></shape>", "references nest deeper than 64");
+}
+
+TEST(Structure, TooManyAttributesAreAnError) {
+  std::string attributes;
+  for (int i = 0; i < 100; ++i) attributes += " a" + std::to_string(i) + "=\"\"";
+  expectErrorOnLine2("<shape" + attributes + "/>", "more than 16 attributes");
+}
+
+TEST(Structure, ManyChildrenAreReadInLinearTime) {
+  std::string body(kSensor);
+  for (int i = 0; i < 200000; ++i) body += "<texture type=\"checkerboard\"/>\n";
+  const auto start = std::chrono::steady_clock::now();
+  load(sceneXml(body + std::string(kSphere)));
+  // About half a second; a quadratic step anywhere would take minutes.
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20);
 }
 
 TEST(Structure, LineNumbersCountEveryKindOfLine) {

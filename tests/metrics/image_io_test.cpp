@@ -4,27 +4,18 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include "metrics/image/srgb.h"
 #include "tests/metrics/golden.h"
+#include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {
 namespace {
 
-namespace fs = std::filesystem;
-
 class ImageFiles : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) / ("wavecrest_images_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  void writeText(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
-  }
+  std::string path(const std::string& name) const { return files_.path(name); }
+  void writeText(const std::string& name, const std::string& bytes) const { files_.write(name, bytes); }
   // What reading the file complains about; empty when it succeeds.
   std::string complaint(const std::string& name) const {
     try {
@@ -35,7 +26,7 @@ class ImageFiles : public ::testing::Test {
     }
   }
 
-  fs::path folder_;
+  test::TemporaryFolder files_;
 };
 
 Image testImage(uint32_t channels = 3) {
@@ -145,7 +136,7 @@ TEST_F(ImageFiles, WritingLeavesNoTemporaryFilesAndReportsUnwritablePlaces) {
   writeImage(path("a.exr"), testImage());
   writeImage(path("a.png"), testImage());
   size_t files = 0;
-  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder_)) ++files;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(files_.folder())) ++files;
   EXPECT_EQ(files, 2u);
   EXPECT_THROW(writeImage(path("missing/a.exr"), testImage()), ImageError);
   EXPECT_THROW(writeImage(path("a.tiff"), testImage()), ImageError);

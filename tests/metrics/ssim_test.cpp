@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
+
 #include "tests/metrics/golden.h"
 
 namespace wavecrest {
@@ -80,6 +82,60 @@ TEST(Ssim, MapHasTheImagesSizeAndTheScoreAsItsInnerMean) {
   for (size_t y = 5; y < height - 5; ++y)
     for (size_t x = 5; x < width - 5; ++x) sum += double{result.map[y * width + x]};
   EXPECT_NEAR(sum / double((width - 10) * (height - 10)), result.mean, 1e-6);
+}
+
+// The definition, window by window in double.
+double ssimByDefinition(const Image8& x, const Image8& y, size_t channel) {
+  double weights[11], total = 0, sum = 0;
+  for (int i = 0; i < 11; ++i) total += weights[i] = std::exp(-(i - 5) * (i - 5) / (2 * 1.5 * 1.5));
+  for (size_t top = 0; top + 11 <= x.height; ++top) {
+    for (size_t left = 0; left + 11 <= x.width; ++left) {
+      double mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
+      for (size_t i = 0; i < 121; ++i) {
+        const size_t at = ((top + i / 11) * x.width + left + i % 11) * 3 + channel;
+        const double w = weights[i / 11] * weights[i % 11] / (total * total), a = x.pixels[at], b = y.pixels[at];
+        mx += w * a;
+        my += w * b;
+        xx += w * a * a;
+        yy += w * b * b;
+        xy += w * a * b;
+      }
+      const double vx = xx - mx * mx, vy = yy - my * my, cxy = xy - mx * my;
+      sum += (2 * mx * my + 6.5025) * (2 * cxy + 58.5225) / ((mx * mx + my * my + 6.5025) * (vx + vy + 58.5225));
+    }
+  }
+  return sum / static_cast<double>((x.width - 10) * (x.height - 10));
+}
+
+// Sizes whose rows have equal lengths as colour or luma follow each other, as work space is kept between comparisons.
+TEST(Ssim, MatchesTheDefinitionAtOddSizes) {
+  for (const Isa isa : availableIsas()) {
+    for (const auto& [width, height] :
+         {std::pair{11u, 11u}, {33u, 12u}, {12u, 40u}, {99u, 13u}, {33u, 50u}, {43u, 11u}}) {
+      const Image8 image = test::patternImage(width, height), noisy = test::withNoise(image, 50);
+      const SsimResult result = PreparedSsim(image, isa).compare(noisy);
+      for (size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(result.channels[c], ssimByDefinition(image, noisy, c), 1e-6)
+            << toString(isa) << " " << width << "x" << height << " channel " << c;
+      }
+    }
+  }
+}
+
+TEST(Ssim, FallsWithAShiftOfTheImage) {
+  const Image8 image = test::patternImage(80, 40);
+  const auto window = [&](uint32_t shift) {
+    Image8 part{60, 40, {}};
+    for (uint32_t y = 0; y < 40; ++y) {
+      const auto row = image.pixels.begin() + 3 * (80 * y + shift);
+      part.pixels.insert(part.pixels.end(), row, row + 180);
+    }
+    return part;
+  };
+  const PreparedSsim prepared(window(0));
+  const double one = prepared.compare(window(1)).mean, three = prepared.compare(window(3)).mean;
+  EXPECT_LT(one, 1.0);
+  EXPECT_LT(three, one);
 }
 
 }  // namespace

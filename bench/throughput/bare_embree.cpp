@@ -1,0 +1,157 @@
+#include "bench/throughput/bare_embree.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "bench/throughput/cpu_timer.h"
+#include "bench/throughput/turns.h"
+#include "bench/throughput/wave_capture.h"
+#include "engine/flush_to_zero.h"
+#include "kernels/extend/embree_packets.h"
+
+namespace wavecrest {
+namespace {
+
+using RayHits = Packet<kEmbreePacket>::RayHit;
+using Segments = Packet<kEmbreePacket>::Ray;
+
+constexpr size_t kRepeats = 3;  // of each timing; the median counts
+
+struct Total {
+  uint64_t rays = 0;
+  double bare = 0, embreeStage = 0, usedStage = 0;  // seconds
+  RayRates rates() const {
+    const auto rate = [&](double seconds) { return rays == 0 ? 0 : static_cast<double>(rays) / seconds; };
+    return {rays, rate(bare), rate(embreeStage), rate(usedStage)};
+  }
+};
+
+// Median CPU time of run(), prepared anew by prepare() each time.
+template <class Prepare, class Run>
+double secondsOf(Prepare&& prepare, Run&& run) {
+  std::vector<double> seconds(kRepeats);
+  for (double& s : seconds) {
+    prepare();
+    CpuTimer timer;
+    timer.start();
+    run();
+    s = timer.seconds();
+  }
+  return median(std::move(seconds));
+}
+
+class Comparison {
+ public:
+  Comparison(const Scene& scene, const RenderSettings& settings)
+      : used_(scene, settings),
+        embree_(scene, onEmbree(settings)),
+        wave_(used_.makeWave()),
+        scratch_(used_.makeWave()) {
+    used_.plan().scene->view.embree = scene_ = embree_.plan().scene->view.embree;
+  }
+
+  void addWave(size_t index) {
+    used_.trace(wave_, used_.waveFromAllOver(index), [&](std::string_view stage, uint32_t depth, Wave<float>& wave) {
+      if (stage == "extend") addExtend(depth, wave);
+      if (stage == "occlude" && wave.shadowRays.size != 0) addOcclude(depth, wave);
+      return true;
+    });
+  }
+  size_t waveCount() const { return used_.waveCount(); }
+  BareEmbree result() const { return {closest_.rates(), anyHit_.rates()}; }
+
+ private:
+  static RenderSettings onEmbree(RenderSettings settings) {
+    settings.accel = Accel::embree;
+    return settings;
+  }
+
+  double stageSeconds(Stage<float> stage, uint32_t depth, const Wave<float>& wave) {
+    const StageContext<float> context = used_.context(depth);
+    return secondsOf([&] { scratch_.copyFrom(wave); }, [&] { stage(context, scratch_); });
+  }
+
+  // Packets of one stage call: fill(packet, first ray) for each, then call(valid, packet) on all, timed.
+  template <class Record, class Fill, class Call>
+  double bareSeconds(std::vector<Record>& packets, size_t count, Fill&& fill, Call&& call) {
+    packets.resize((count + kEmbreePacket - 1) / kEmbreePacket);
+    alignas(64) int all[kEmbreePacket], last[kEmbreePacket];
+    setValid(kEmbreePacket, all);
+    setValid(count - (packets.size() - 1) * kEmbreePacket, last);
+    return secondsOf(
+        [&] {
+          for (size_t i = 0; i < packets.size(); ++i) fill(packets[i], i * kEmbreePacket);
+        },
+        [&] {
+          for (size_t i = 0; i + 1 < packets.size(); ++i) call(all, packets[i]);
+          call(last, packets.back());
+        });
+  }
+
+  void addExtend(uint32_t depth, const Wave<float>& wave) {
+    Query query;
+    closest_.rays += wave.rays.size;
+    closest_.bare += bareSeconds(
+        rayHits_, wave.rays.size,
+        [&](RayHits& packet, size_t first) {
+          setSegment(std::numeric_limits<float>::infinity(), packet.ray);
+          copyRays<float>(wave.rays, first, packet.ray);
+          setNoHit(packet);
+        },
+        [&](const int* valid, RayHits& packet) {
+          query(Packet<kEmbreePacket>::intersect, valid, static_cast<RTCScene>(scene_), packet);
+        });
+    closest_.embreeStage += stageSeconds(extendEmbree<float>, depth, wave);
+    closest_.usedStage += stageSeconds(stageNamed("extend"), depth, wave);
+  }
+
+  void addOcclude(uint32_t depth, const Wave<float>& wave) {
+    Query query;
+    anyHit_.rays += wave.shadowRays.size;
+    anyHit_.bare += bareSeconds(
+        segments_, wave.shadowRays.size,
+        [&](Segments& packet, size_t first) {
+          setSegment(std::nextafter(1.0f, 0.0f), packet);
+          copyRays<float>(wave.shadowRays, first, packet);
+        },
+        [&](const int* valid, Segments& packet) {
+          query(Packet<kEmbreePacket>::occluded, valid, static_cast<RTCScene>(scene_), packet);
+        });
+    anyHit_.embreeStage += stageSeconds(occludeEmbree<float>, depth, wave);
+    anyHit_.usedStage += stageSeconds(stageNamed("occlude"), depth, wave);
+  }
+
+  Stage<float> stageNamed(std::string_view name) {
+    for (const StageCall<float>& stage : used_.plan().pipeline.cameraPass.perDepth) {
+      if (stage.name == name) return stage.run;
+    }
+    throw std::logic_error("the pipeline has no such stage");
+  }
+
+  WaveCapture<float> used_, embree_;
+  Wave<float> wave_, scratch_;
+  void* scene_ = nullptr;
+  std::vector<RayHits> rayHits_;
+  std::vector<Segments> segments_;
+  Total closest_, anyHit_;
+};
+
+}  // namespace
+
+BareEmbree measureBareEmbree(const Scene& scene, const RenderSettings& settings, double seconds) {
+  RenderSettings own = settings;
+  own.precision = Precision::floating;
+  const FlushToZero flushToZero;
+  Comparison comparison(scene, own);
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  size_t wave = 0;
+  do {
+    comparison.addWave(wave);
+  } while (++wave < comparison.waveCount() && Clock::now() < end);
+  return comparison.result();
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,36 @@
+// The intersection stages against bare Embree on the same rays.
+//
+// Rays of real waves, of every depth, are put into Embree's packets beforehand; what is timed is the calls of
+// rtcIntersect16 and rtcOccluded16 and nothing else. Our stages are timed on the same rays where they are in the wave,
+// reading and writing columns included. Both in CPU time, in turn at each depth of each wave.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/render_settings.h"
+
+namespace wavecrest {
+
+struct RayRates {
+  uint64_t rays = 0;
+  double bare = 0;         // rays per second of bare Embree on one core
+  double embreeStage = 0;  // of our stage on Embree
+  double usedStage = 0;    // of the stage that renders this scene: the same, or the small-scene intersector's
+};
+
+struct BareEmbree {
+  RayRates closest, anyHit;
+  // Rays of both kinds as a render mixes them, per CPU second of Embree alone.
+  double raysPerSecond() const {
+    const double seconds = static_cast<double>(closest.rays) / closest.bare + secondsAnyHit();
+    return static_cast<double>(closest.rays + anyHit.rays) / seconds;
+  }
+
+ private:
+  double secondsAnyHit() const { return anyHit.rays == 0 ? 0 : static_cast<double>(anyHit.rays) / anyHit.bare; }
+};
+
+// Takes waves from all over the film until `seconds` have passed, at least one. Precision is float: Embree's.
+BareEmbree measureBareEmbree(const Scene& scene, const RenderSettings& settings, double seconds);
+
+}  // namespace wavecrest

@@ -1,0 +1,78 @@
+#include "bench/throughput/policies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/throughput/turns.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr size_t kRounds = 5;
+constexpr uint64_t kMostIterations = 16;
+
+struct Sums {
+  double value = 0, square = 0, difference = 0, differenceSquare = 0;
+};
+
+Sums sumsOf(const std::vector<float>& image, const std::vector<float>& reference) {
+  Sums sums;
+  for (size_t i = 0; i < image.size(); ++i) {
+    const double r = reference[i], d = static_cast<double>(image[i]) - r;
+    sums.value += r;
+    sums.square += r * r;
+    sums.difference += d;
+    sums.differenceSquare += d * d;
+  }
+  return sums;
+}
+
+// One thread each: CPU time of threads that share caches would blur the comparison.
+std::vector<std::unique_ptr<Session>> makeSessions(const Scene& scene, RenderSettings settings,
+                                                   std::vector<PolicyRow>& rows) {
+  std::vector<std::unique_ptr<Session>> sessions;
+  settings.threads = 1;
+  for (auto isa = availableIsas().rbegin(); isa != availableIsas().rend(); ++isa) {
+    for (const Precision precision : {Precision::doubled, Precision::floating, Precision::fast}) {
+      settings.isa = *isa;
+      settings.precision = precision;
+      sessions.push_back(Session::create(scene, settings));
+      PolicyRow& row = rows.emplace_back();
+      row.precision = precision;
+      row.isa = *isa;
+    }
+  }
+  return sessions;
+}
+
+}  // namespace
+
+PolicyTable measurePolicies(const Scene& scene, const RenderSettings& settings, double seconds) {
+  PolicyTable table;
+  const auto sessions = makeSessions(scene, settings, table.rows);
+
+  // The same whole iterations by all, as many as the slowest can do in half of its share of the time.
+  const double share = seconds / static_cast<double>(sessions.size());
+  double slowest = 0;
+  for (const auto& session : sessions) {
+    session->renderUntil(1, std::nullopt);
+    slowest = std::max(slowest, session->statistics().renderSeconds);
+  }
+  table.iterations = std::clamp<uint64_t>(static_cast<uint64_t>(0.5 * share / slowest), 1, kMostIterations);
+  for (const auto& session : sessions) session->renderUntil(table.iterations, std::nullopt);
+  const std::vector<float> reference = sessions.front()->film().resolve();
+
+  for (size_t i = 0; i < sessions.size(); ++i) {
+    const Sums sums = sumsOf(sessions[i]->film().resolve(), reference);
+    table.rows[i].meanDifference = sums.value > 0 ? sums.difference / sums.value : 0;
+    table.rows[i].pixelDifference = sums.square > 0 ? std::sqrt(sums.differenceSquare / sums.square) : 0;
+  }
+  const auto slices = renderInTurn(sessions, 0.5 * share / (kRounds + 1), kRounds);
+  for (size_t i = 0; i < sessions.size(); ++i) {
+    table.rows[i].pathsPerCpuSecond = medianOf(slices[i], [](const Slice& s) { return s.pathsPerCpuSecond(); });
+    table.rows[i].bytesPerPath = sessions[i]->statistics().bytesPerPath;
+  }
+  return table;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,112 @@
+#include "engine/compile/textures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "engine/compile/lights.h"
+#include "engine/compile/vector_math.h"
+
+namespace wavecrest {
+namespace {
+
+void appendRgb(const Bitmap& bitmap, double scale, std::vector<float>& out) {
+  const size_t pixels = size_t{bitmap.width} * bitmap.height;
+  out.reserve(out.size() + 3 * pixels);
+  for (size_t i = 0; i < pixels; ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      const float value = bitmap.pixels[i * bitmap.channels + (bitmap.channels == 3 ? c : 0)];
+      out.push_back(static_cast<float>(value * scale));
+    }
+  }
+}
+
+void assign(float (&out)[3], const Rgb& colour) {
+  for (size_t i = 0; i < 3; ++i) out[i] = static_cast<float>(colour[i]);
+}
+
+double luminanceAt(const std::vector<float>& texels, uint32_t width, uint32_t column, uint32_t row) {
+  const float* rgb = &texels[3 * (size_t{row} * width + column)];
+  return luminance({rgb[0], rgb[1], rgb[2]});
+}
+
+}  // namespace
+
+Textures compileTextures(const Scene& scene) {
+  Textures out;
+  std::map<const Bitmap*, uint32_t> offsets;
+  for (const Texture& texture : scene.textures) {
+    TextureRecord& record = out.records.emplace_back();
+    for (size_t row = 0; row < 2; ++row) {
+      record.toUv[3 * row] = static_cast<float>(texture.toUv[row][0]);
+      record.toUv[3 * row + 1] = static_cast<float>(texture.toUv[row][1]);
+      record.toUv[3 * row + 2] = static_cast<float>(texture.toUv[row][3]);
+    }
+    if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {
+      record.kind = static_cast<uint32_t>(TextureKind::checkerboard);
+      assign(record.color0, checkerboard->color0);
+      assign(record.color1, checkerboard->color1);
+      continue;
+    }
+    const auto& bitmap = std::get<BitmapTexture>(texture.kind);
+    record.kind = static_cast<uint32_t>(TextureKind::bitmap);
+    record.width = bitmap.bitmap->width;
+    record.height = bitmap.bitmap->height;
+    record.nearest = bitmap.filter == Filter::nearest ? 1 : 0;
+    record.wrap = static_cast<uint32_t>(bitmap.wrap == Wrap::repeat   ? WrapMode::repeat
+                                        : bitmap.wrap == Wrap::mirror ? WrapMode::mirror
+                                                                      : WrapMode::clamp);
+    const auto [place, added] = offsets.try_emplace(bitmap.bitmap.get(), static_cast<uint32_t>(out.texels.size()));
+    if (added) appendRgb(*bitmap.bitmap, 1, out.texels);
+    record.offset = place->second;
+  }
+  return out;
+}
+
+Environment compileEnvironment(const EnvmapEmitter& emitter) {
+  Environment out;
+  const uint32_t width = emitter.bitmap->width, height = emitter.bitmap->height;
+  appendRgb(*emitter.bitmap, emitter.scale, out.texels);
+
+  std::vector<double> weights(size_t{width} * height);
+  double total = 0, solidAngle = 0;
+  for (uint32_t row = 0; row < height; ++row) {
+    const double sinTheta = std::sin(std::numbers::pi * (row + 0.5) / height);
+    for (uint32_t column = 0; column < width; ++column) {
+      // Interpolation reaches the neighbours on every side.
+      double around = 0;
+      for (const uint32_t y : {row == 0 ? 0 : row - 1, row, std::min(row + 1, height - 1)}) {
+        for (const uint32_t x : {(column + width - 1) % width, column, (column + 1) % width}) {
+          around += luminanceAt(out.texels, width, x, y) / 9;
+        }
+      }
+      weights[size_t{row} * width + column] = around * sinTheta;
+      total += around * sinTheta;
+      out.meanLuminance += luminanceAt(out.texels, width, column, row) * sinTheta;
+      solidAngle += sinTheta;
+    }
+  }
+  out.meanLuminance /= solidAngle;
+  if (!(total > 0)) {  // black: sampled evenly, to no effect
+    std::fill(weights.begin(), weights.end(), 1.0);
+    total = static_cast<double>(weights.size());
+  }
+  out.table = makeAliasTable(weights);
+  for (const double weight : weights) out.probability.push_back(static_cast<float>(weight / total));
+
+  out.view = {.texels = out.texels.data(),
+              .probability = out.probability.data(),
+              .table = out.table.data(),
+              .width = width,
+              .height = height};
+  // Rows of the inverse of a rotation: its columns, normalised in case the transform scales.
+  for (size_t column = 0; column < 3; ++column) {
+    const Double3 axis =
+        normalized({emitter.toWorld[0][column], emitter.toWorld[1][column], emitter.toWorld[2][column]});
+    for (size_t i = 0; i < 3; ++i) out.view.toLocal[column][i] = static_cast<float>(axis[i]);
+  }
+  return out;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,181 @@
+"""What a render leaves behind: images in every format, statistics, snapshots, and what remains after Ctrl-C."""
+
+import math
+import signal
+import subprocess
+import time
+import unittest
+
+from harness import (
+    INTERRUPTED,
+    TIMEOUT_SECONDS,
+    WAVECREST,
+    CommandTest,
+    png_size,
+    read_exr_header,
+    read_json,
+    read_pfm,
+)
+
+NUMBER = (int, float)
+STATS = {
+    "version": str, "commit": str, "scene": str, "scene_hash": str, "method": str, "seed": int, "sampler": str,
+    "width": int, "height": int, "threads": int, "isa": str, "precision": str, "accel": str, "wave": int,
+    "specialization": str, "iterations": int, "camera_paths": int, "light_paths": int, "mutations": int,
+    "rays_closest": int, "rays_shadow": int, "connections": int, "merges": int, "load_seconds": NUMBER,
+    "build_seconds": NUMBER, "render_seconds": NUMBER, "wall_seconds": NUMBER, "cpu_seconds": NUMBER,
+    "paths_per_second": NUMBER, "rays_per_second": NUMBER, "bytes_per_path": int, "peak_memory_bytes": int,
+    "nonfinite_samples": int, "stages": list, "snapshots": list,
+}  # fmt: skip
+
+
+class Outputs(CommandTest):
+    def test_every_requested_file_is_written_with_the_same_image(self):
+        names = ["image.exr", "image.png", "image.pfm", "again.pfm"]
+        self.render("--spp", "2", *(word for name in names for word in ("-o", self.path(name))))
+        self.assertEqual(read_exr_header(self.path("image.exr"))["dataWindow"], (0, 0, 31, 23))
+        self.assertEqual(png_size(self.path("image.png")), (32, 24))
+        width, height, values = read_pfm(self.path("image.pfm"))
+        self.assertEqual((width, height), (32, 24))
+        self.assertTrue(all(math.isfinite(v) and v >= 0 for v in values))
+        self.assertGreater(max(values), 0.5)
+        self.assertEqual(values, read_pfm(self.path("again.pfm"))[2])
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), sorted(names), "no temporary files are left")
+
+    def test_the_same_command_gives_the_same_image(self):
+        for name, extra in (("a", ["--threads", "1"]), ("b", ["--threads", "3"]), ("c", ["--seed", "1"])):
+            self.run_wavecrest("render", "cornell-diffuse", "--size", "32x24", "--spp", "2", *extra, "-o", name + ".pfm")
+        a, b, c = (read_pfm(self.path(name + ".pfm"))[2] for name in "abc")
+        self.assertEqual(a, b)
+        self.assertNotEqual(a, c)
+
+    def test_definitions_reach_the_scene(self):
+        self.render("-D", "spp=3", "--stats", "stats.json")
+        self.assertEqual(read_json(self.path("stats.json"))["iterations"], 3)
+
+    def test_an_exr_says_how_it_was_made(self):
+        self.render("--spp", "2", "--seed", "9", "-o", "image.exr", "--stats", "stats.json")
+        header, stats = read_exr_header(self.path("image.exr")), read_json(self.path("stats.json"))
+        self.assertEqual(header["wavecrest:seed"], "9")
+        for key in ("scene", "scene_hash", "method", "commit", "version", "precision", "isa", "threads", "iterations"):
+            self.assertEqual(header["wavecrest:" + key], str(stats[key]))
+
+
+class Statistics(CommandTest):
+    def stats(self, *arguments):
+        self.render("--stats", "stats.json", *arguments)
+        return read_json(self.path("stats.json"))
+
+    def test_every_field_is_there_with_its_type(self):
+        stats = self.stats("--spp", "4", "--method", "pt")
+        for key, kind in STATS.items():
+            self.assertIn(key, stats)
+            self.assertIsInstance(stats[key], kind, key)
+            self.assertNotIsInstance(stats[key], bool, key)
+        for stage in stats["stages"]:
+            self.assertEqual(set(stage), {"name", "items", "seconds"})
+            self.assertGreaterEqual(stage["seconds"], 0)
+        self.assertGreater(len(stats["stages"]), 3)
+
+    def test_counts_are_of_this_render(self):
+        stats = self.stats("--spp", "4", "--wave", "64", "--seed", "3", "--sampler", "sobol", "--precision", "double")
+        self.assertEqual((stats["width"], stats["height"], stats["iterations"]), (32, 24, 4))
+        self.assertEqual(stats["camera_paths"], 4 * 32 * 24)
+        self.assertEqual((stats["seed"], stats["sampler"], stats["precision"], stats["wave"]), (3, "sobol", "double", 64))
+        self.assertEqual((stats["threads"], stats["method"], stats["scene"]), (2, "pt", "cornell-diffuse"))
+        self.assertGreater(stats["rays_closest"], stats["camera_paths"])
+        self.assertGreater(stats["rays_shadow"], 0)
+        self.assertEqual((stats["light_paths"], stats["mutations"], stats["merges"], stats["nonfinite_samples"]), (0,) * 4)
+        self.assertEqual(sum(s["items"] for s in stats["stages"] if s["name"] == "extend"), stats["rays_closest"])
+        self.assertAlmostEqual(stats["paths_per_second"] * stats["render_seconds"], stats["camera_paths"], delta=1)
+
+    def test_clocks_are_consistent(self):
+        stats = self.stats("--time", "0.3s")
+        clocks = stats["load_seconds"] + stats["build_seconds"] + stats["render_seconds"]
+        self.assertLessEqual(clocks, stats["wall_seconds"] + stats["load_seconds"] + stats["build_seconds"] + 0.05)
+        self.assertLessEqual(stats["cpu_seconds"], 2 * stats["render_seconds"] + 0.1)
+        self.assertGreater(stats["cpu_seconds"], 0)
+        busy = sum(s["seconds"] for s in stats["stages"])
+        self.assertLessEqual(busy, 2 * stats["render_seconds"] * 1.05 + 0.05)
+
+    def test_isa_and_intersector_are_those_that_were_asked_for(self):
+        for accel in ("embree", "small"):
+            stats = self.stats("--spp", "1", "--isa", "scalar", "--accel", accel)
+            self.assertEqual((stats["isa"], stats["accel"]), ("scalar", accel))
+        self.assertEqual(self.stats("--spp", "1")["specialization"], "diffuse")
+
+    def test_a_large_diffuse_render_stays_under_300_megabytes(self):
+        self.run_wavecrest("render", "cornell-diffuse", "--size", "1024x768", "--spp", "1", "--stats", "stats.json",
+                           "-o", "image.exr", "-o", "image.png")
+        stats = read_json(self.path("stats.json"))
+        self.assertEqual((stats["width"], stats["height"]), (1024, 768))
+        self.assertLess(stats["peak_memory_bytes"], 300e6)
+        self.assertGreater(stats["peak_memory_bytes"], 1024 * 768 * 3 * 8, "at least the film")
+        self.assertLessEqual(stats["bytes_per_path"], 128)
+
+
+class Clock(CommandTest):
+    # A loaded machine may keep a wave of a few milliseconds waiting; a render that ignores the clock takes minutes.
+    OVERSHOOT_SECONDS = 0.5
+
+    def test_time_is_kept(self):
+        self.render("--time", "0.5s", "--stats", "stats.json")
+        seconds = read_json(self.path("stats.json"))["render_seconds"]
+        self.assertGreaterEqual(seconds, 0.5)
+        self.assertLess(seconds, 0.5 + self.OVERSHOOT_SECONDS)
+
+    def test_whichever_limit_comes_first_ends_the_render(self):
+        self.render("--time", "60s", "--spp", "2", "--stats", "stats.json")
+        self.assertEqual(read_json(self.path("stats.json"))["iterations"], 2)
+
+    def test_snapshots_are_written_on_time_with_their_own_metadata(self):
+        self.render("--time", "1s", "--snapshot-every", "0.3s", "-o", "image.exr", "--stats", "stats.json")
+        stats = read_json(self.path("stats.json"))
+        self.assertEqual([s["index"] for s in stats["snapshots"]], [0, 1, 2])
+        previous = 0
+        for snapshot in stats["snapshots"]:
+            due = 0.3 * (snapshot["index"] + 1)
+            self.assertGreaterEqual(snapshot["render_seconds"], due)
+            self.assertLess(snapshot["render_seconds"], due + self.OVERSHOOT_SECONDS)
+            self.assertGreaterEqual(snapshot["iterations"], previous)
+            previous = snapshot["iterations"]
+            self.assertEqual(snapshot["file"], f"image.{snapshot['index']:04}.exr")
+            header = read_exr_header(self.path(snapshot["file"]))
+            self.assertEqual(header["wavecrest:iterations"], str(snapshot["iterations"]))
+            self.assertAlmostEqual(float(header["wavecrest:render_seconds"]), snapshot["render_seconds"], places=6)
+        self.assertTrue((self.folder / "image.exr").exists())
+
+    def test_logarithmic_snapshots_grow_by_a_fixed_ratio(self):
+        self.render("--time", "0.5s", "--snapshot-every", "log", "-o", "image.exr", "--stats", "stats.json")
+        seconds = [s["render_seconds"] for s in read_json(self.path("stats.json"))["snapshots"]]
+        self.assertEqual(len(seconds), 5)  # 0.1 * 10^(i/6) <= 0.5
+        for i, value in enumerate(seconds):
+            self.assertGreaterEqual(value, 0.1 * 10 ** (i / 6))
+
+
+class Interrupt(CommandTest):
+    def test_control_c_saves_what_there_is(self):
+        process = subprocess.Popen(
+            [WAVECREST, "render", "cornell-diffuse", "--size", "32x24", "--threads", "2", "--time", "10m", "--progress",
+             "jsonl", "-o", "image.exr", "-o", "image.pfm", "--stats", "stats.json"],
+            cwd=self.folder, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        try:
+            for line in process.stderr:  # until paths are traced
+                if '"paths":' in line and not line.rstrip().endswith('"paths":0}'):
+                    break
+            time.sleep(0.1)
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=TIMEOUT_SECONDS)
+        finally:
+            process.kill()
+        self.assertEqual(process.returncode, INTERRUPTED)
+        stats = read_json(self.path("stats.json"))
+        self.assertGreater(stats["iterations"], 0)
+        self.assertLess(stats["render_seconds"], 60)
+        self.assertEqual(read_exr_header(self.path("image.exr"))["wavecrest:iterations"], str(stats["iterations"]))
+        self.assertGreater(max(read_pfm(self.path("image.pfm"))[2]), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

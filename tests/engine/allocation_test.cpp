@@ -1,0 +1,121 @@
+// No heap allocation while a wave runs. An executable of its own, because it replaces the global operator new by one
+// that counts.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <tuple>
+#include <vector>
+
+#include "engine/pipeline.h"
+#include "engine/render_plan.h"
+#include "tests/engine/test_scenes.h"
+
+namespace {
+
+std::atomic<bool> counting{false};
+std::atomic<size_t> allocations{0};
+
+void* allocate(size_t bytes, size_t alignment) {
+  if (counting.load(std::memory_order_relaxed)) allocations.fetch_add(1, std::memory_order_relaxed);
+  void* memory =
+      std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment + (bytes == 0 ? alignment : 0));
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
+void* operator new[](size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
+void* operator new(size_t bytes, std::align_val_t alignment) { return allocate(bytes, static_cast<size_t>(alignment)); }
+void* operator new[](size_t bytes, std::align_val_t alignment) {
+  return allocate(bytes, static_cast<size_t>(alignment));
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, size_t) noexcept { std::free(p); }
+void operator delete[](void* p, size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, size_t, std::align_val_t) noexcept { std::free(p); }
+
+namespace wavecrest {
+namespace {
+
+// Allocations during the call.
+template <class Function>
+size_t allocationsOf(Function&& function) {
+  allocations = 0;
+  counting = true;
+  function();
+  counting = false;
+  return allocations;
+}
+
+TEST(Allocation, isCounted) {
+  EXPECT_EQ(allocationsOf([] { std::vector<int> some(10); }), 1u);
+  EXPECT_EQ(allocationsOf([] {
+              struct alignas(64) Wide {
+                char c[64];
+              };
+              delete new Wide;
+            }),
+            1u);
+  EXPECT_EQ(allocationsOf([] {}), 0u);
+}
+
+// Runs iterations of one wave; the first may let the light store grow to what the wave needs.
+template <class S>
+size_t allocationsPerWave(const std::string& sceneName, const RenderSettings& settings) {
+  const Scene scene = sceneFile(sceneName, 48, 36);
+  const RenderPlan<S> plan = planRender<S>(scene, settings);
+  const FilmArea area = filmArea(scene.film);
+  Wave<S> wave(1024, plan.needs);
+  StageCounters counters;
+  StageContext<S> context;
+  context.scene = &plan.scene->view;
+  context.pixels = area.pixels.data();
+  context.sampler.kind = settings.sampler;
+  context.counters = &counters;
+  context.mis = plan.pipeline.cameraPass.strategies;
+  std::vector<StageTally> tallies(plan.pipeline.cameraPass.stageCount());
+  wave.pathCount = 1000;
+  const auto run = [&] { runPass(plan.pipeline.cameraPass, context, wave, tallies.data()); };
+  run();
+  const size_t count = allocationsOf([&] {
+    for (context.sampler.iteration = 1; context.sampler.iteration <= 4; ++context.sampler.iteration) run();
+  });
+  EXPECT_GT(counters.raysClosest, 10'000u);
+  EXPECT_GT(counters.raysShadow, 1'000u);
+  return count;
+}
+
+class WaveAllocationTest : public testing::TestWithParam<std::tuple<Accel, SamplerKind>> {};
+
+TEST_P(WaveAllocationTest, isNoneForAnyPrecision) {
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  std::tie(settings.accel, settings.sampler) = GetParam();
+  for (const char* scene : {"cornell-diffuse", "cornell-mirror"}) {
+    settings.precision = Precision::floating;
+    EXPECT_EQ(allocationsPerWave<float>(scene, settings), 0u) << scene;
+    settings.precision = Precision::fast;
+    EXPECT_EQ(allocationsPerWave<float>(scene, settings), 0u) << scene;
+    settings.precision = Precision::doubled;
+    EXPECT_EQ(allocationsPerWave<double>(scene, settings), 0u) << scene;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(PathTracing, WaveAllocationTest,
+                         testing::Combine(testing::Values(Accel::embree, Accel::small),
+                                          testing::ValuesIn(kAllSamplerKinds)),
+                         [](const auto& instance) {
+                           return std::string(kAccelNames[static_cast<size_t>(std::get<0>(instance.param))]) + "_" +
+                                  std::string(toString(std::get<1>(instance.param)));
+                         });
+
+}  // namespace
+}  // namespace wavecrest

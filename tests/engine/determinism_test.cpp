@@ -1,0 +1,107 @@
+// The same image bit for bit, whatever the number of threads, the size of the waves and the way the iterations are cut
+// into calls; and another image for another seed.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/engine/render_statistics.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr uint32_t kWidth = 40, kHeight = 27;  // 1080 pixels: no multiple of any wave size below
+constexpr uint64_t kIterations = 3;
+
+bool sameBits(const RgbImage& a, const RgbImage& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+size_t differentPixels(const RgbImage& a, const RgbImage& b) {
+  size_t count = 0;
+  for (size_t i = 0; i < a.size(); i += 3) count += std::memcmp(&a[i], &b[i], 3 * sizeof(float)) != 0 ? 1 : 0;
+  return count;
+}
+
+struct MethodVariant {
+  Method method;
+  Variant variant;
+};
+
+std::string nameOf(const MethodVariant& v) { return std::string(toString(v.method)) + "_" + nameOf(v.variant); }
+
+// Path tracing in all variants, the other methods in the default one.
+std::vector<MethodVariant> methodVariants() {
+  std::vector<MethodVariant> list;
+  for (const Variant& variant : allVariants()) list.push_back({Method::pt, variant});
+  for (const MethodEntry& entry : kMethods) {
+    if (entry.method == Method::pt) continue;
+    list.push_back({entry.method, {Precision::floating, SamplerKind::independent, Accel::small}});
+  }
+  return list;
+}
+
+class DeterminismTest : public testing::TestWithParam<MethodVariant> {
+ protected:
+  DeterminismTest() : scene_(sceneFile("cornell-diffuse", kWidth, kHeight)) {}
+
+  RenderSettings settings() const {
+    RenderSettings settings = settingsFor(GetParam().variant);
+    settings.method = GetParam().method;
+    settings.threads = 1;
+    settings.waveSize = 256;
+    settings.seed = 5;
+    return settings;
+  }
+
+  const Scene scene_;
+};
+
+TEST_P(DeterminismTest, anyNumberOfThreadsGivesTheSameImage) {
+  RenderSettings chosen = settings();
+  const RgbImage one = render(scene_, chosen, kIterations);
+  for (const uint32_t threads : {2u, 3u}) {
+    chosen.threads = threads;
+    EXPECT_TRUE(sameBits(one, render(scene_, chosen, kIterations))) << threads << " threads";
+  }
+}
+
+TEST_P(DeterminismTest, anySizeOfWavesGivesTheSameImage) {
+  RenderSettings chosen = settings();
+  const RgbImage expected = render(scene_, chosen, kIterations);
+  for (const uint32_t waveSize : {64u, 1000u, 2048u}) {
+    chosen.waveSize = waveSize;
+    EXPECT_TRUE(sameBits(expected, render(scene_, chosen, kIterations))) << "waves of " << waveSize;
+  }
+}
+
+TEST_P(DeterminismTest, iterationsInSeveralCallsGiveTheImageOfOne) {
+  const auto session = Session::create(scene_, settings());
+  for (uint64_t iterations = 1; iterations <= kIterations; ++iterations) {
+    session->renderUntil(iterations, std::nullopt);
+    EXPECT_EQ(session->statistics().iterations, iterations);
+  }
+  session->renderUntil(kIterations, std::nullopt);  // nothing left to do
+  EXPECT_TRUE(sameBits(render(scene_, settings(), kIterations), session->film().resolve()));
+}
+
+// A stop by the clock falls anywhere; what has been done is not done again.
+TEST_P(DeterminismTest, stopsByTheClockChangeNothing) {
+  const auto session = Session::create(scene_, settings());
+  for (int stop = 1; stop <= 5; ++stop) session->renderUntil(kIterations, 1e-3 * stop);
+  session->renderUntil(kIterations, std::nullopt);
+  EXPECT_TRUE(sameBits(render(scene_, settings(), kIterations), session->film().resolve()));
+}
+
+TEST_P(DeterminismTest, seedsDiffer) {
+  RenderSettings chosen = settings();
+  const RgbImage first = render(scene_, chosen, kIterations);
+  chosen.seed = 6;
+  EXPECT_GT(differentPixels(first, render(scene_, chosen, kIterations)), kWidth * kHeight / 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Engine, DeterminismTest, testing::ValuesIn(methodVariants()),
+                         [](const auto& instance) { return nameOf(instance.param); });
+
+}  // namespace
+}  // namespace wavecrest

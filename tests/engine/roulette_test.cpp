@@ -1,0 +1,81 @@
+// Russian roulette and the depth limit: where they may end paths, and that they change no mean.
+#include <gtest/gtest.h>
+
+#include "tests/engine/render_statistics.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr uint32_t kWidth = 32, kHeight = 24;
+
+RenderSettings defaults() { return settingsFor({Precision::floating, SamplerKind::independent, Accel::small}); }
+
+TEST(Roulette, changesNoMeanWhereverItBegins) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings settings = defaults();
+  settings.limits.rouletteDepth = 20;
+  const SeedMeans latest = renderSeeds(scene, settings, 48);
+  for (const uint32_t depth : {1u, 5u}) {
+    settings.limits.rouletteDepth = depth;
+    const SeedMeans earlier = renderSeeds(scene, settings, 48, 2000);  // independent of the others
+    expectSameTruth(latest, earlier, "roulette from vertex " + std::to_string(depth));
+  }
+}
+
+TEST(Roulette, shortensPaths) {
+  const Scene scene = sceneFile("validation/closed-box", kWidth, kHeight);
+  RenderSettings settings = defaults();
+  uint64_t previous = UINT64_MAX;
+  for (const uint32_t depth : {kUnlimitedDepth, 20u, 5u, 1u}) {
+    settings.limits.rouletteDepth = depth;
+    const auto session = Session::create(scene, settings);
+    session->renderUntil(1, std::nullopt);
+    const uint64_t rays = session->statistics().counters.raysClosest;
+    EXPECT_LT(rays, previous) << "roulette from vertex " << depth;
+    previous = rays;
+  }
+}
+
+// METHODS 1.1: K counts edges. K = 1 shows emitters alone and asks for no shadow; K = 2 adds direct light.
+TEST(MaxDepth, oneShowsOnlyEmitters) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings settings = defaults();
+  settings.limits.maxDepth = 1;
+  const auto session = Session::create(scene, settings);
+  session->renderUntil(4, std::nullopt);
+  const RgbImage image = session->film().resolve();
+  size_t lit = 0;
+  for (size_t i = 0; i < image.size(); i += 3) {
+    if (image[i] == 0.0f) continue;
+    ++lit;
+    // The lamp's radiance is 51, 36, 12; its border covers pixels in quarters.
+    EXPECT_NEAR(image[i + 1] / image[i], 36.0 / 51, 1e-5);
+    EXPECT_NEAR(std::remainder(image[i], 51.0 / 4), 0, 1e-4);
+  }
+  EXPECT_GT(lit, 3u);
+  EXPECT_LT(lit, kWidth * kHeight / 10);
+  EXPECT_EQ(session->statistics().counters.raysShadow, 0u);
+  EXPECT_EQ(session->statistics().counters.raysClosest, 4u * kWidth * kHeight);
+}
+
+TEST(MaxDepth, eachEdgeMoreAddsLight) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings settings = defaults();
+  settings.limits.rouletteDepth = kUnlimitedDepth;  // so that all runs trace the same paths
+  RgbImage previous(3 * kWidth * kHeight, 0.0f);
+  for (uint32_t maxDepth = 1; maxDepth <= 6; ++maxDepth) {
+    settings.limits.maxDepth = maxDepth;
+    const RgbImage image = render(scene, settings, 4);
+    size_t brighter = 0;
+    for (size_t i = 0; i < image.size(); ++i) {
+      ASSERT_GE(image[i], previous[i] * (1 - 1e-6f)) << "K = " << maxDepth << ", value " << i;
+      brighter += image[i] > previous[i] ? 1 : 0;
+    }
+    EXPECT_GT(brighter, maxDepth == 1 ? 0 : image.size() / 4) << "K = " << maxDepth;
+    previous = image;
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest

@@ -1,0 +1,78 @@
+// Specialised kernels give the image of the general ones: what a feature set lacks must cost nothing and change
+// nothing.
+#include <gtest/gtest.h>
+
+#include "tests/engine/render_statistics.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr uint32_t kWidth = 48, kHeight = 36;
+constexpr uint64_t kIterations = 2;
+
+class SpecializationTest : public testing::TestWithParam<Variant> {
+ protected:
+  // Renders with each specialisation that covers the scene and compares with `general`. The same paths are traced, so
+  // pixels differ by rounding only; a path whose roulette or edge is decided by rounding may differ, at most one pixel
+  // in a thousand.
+  void expectSameImages(const Scene& scene, std::initializer_list<Specialization> list) {
+    RenderSettings settings = settingsFor(GetParam());
+    settings.specialization = Specialization::general;
+    const RgbImage general = render(scene, settings, kIterations);
+    for (const Specialization specialization : list) {
+      settings.specialization = specialization;
+      const auto session = Session::create(scene, settings);
+      session->renderUntil(kIterations, std::nullopt);
+      EXPECT_EQ(session->statistics().specialization, specialization) << "the forced kernels ran";
+      const RgbImage image = session->film().resolve();
+      size_t different = 0;
+      for (size_t i = 0; i < image.size(); ++i) {
+        different += std::abs(image[i] - general[i]) > 1e-5f + 1e-4f * std::abs(general[i]) ? 1 : 0;
+      }
+      EXPECT_LE(different, image.size() / 1000) << kSpecializationNames[static_cast<size_t>(specialization)];
+    }
+  }
+};
+
+TEST_P(SpecializationTest, diffuseSceneByEveryKernel) {
+  expectSameImages(sceneFile("cornell-diffuse", kWidth, kHeight), {Specialization::diffuse, Specialization::smooth});
+}
+
+TEST_P(SpecializationTest, specularSceneByTheKernelsThatCoverIt) {
+  expectSameImages(sceneFile("cornell-mirror", kWidth, kHeight), {Specialization::smooth});
+  expectSameImages(sceneFile("validation/furnace-glass", kWidth, kHeight), {Specialization::smooth});
+}
+
+INSTANTIATE_TEST_SUITE_P(PathTracing, SpecializationTest, testing::ValuesIn(allVariants()),
+                         [](const auto& instance) { return nameOf(instance.param); });
+
+TEST(Specialization, isTheFirstThatCoversTheScene) {
+  const auto chosen = [](const std::string& scene) {
+    return Session::create(sceneFile(scene, 8, 8), {})->statistics().specialization;
+  };
+  EXPECT_EQ(chosen("cornell-diffuse"), Specialization::diffuse);
+  EXPECT_EQ(chosen("cornell-mirror"), Specialization::smooth);
+  EXPECT_EQ(chosen("validation/furnace-sphere"), Specialization::smooth);
+}
+
+TEST(Specialization, thatDoesNotCoverTheSceneIsRefused) {
+  RenderSettings settings;
+  settings.specialization = Specialization::diffuse;
+  EXPECT_THROW(Session::create(sceneFile("cornell-mirror", 8, 8), settings), std::runtime_error);
+  EXPECT_THROW(Session::create(sceneFile("validation/closed-sphere", 8, 8), settings), std::runtime_error);
+}
+
+// A wave of the plainest kernels, as the session runs it: 2048 paths in 256 kB.
+TEST(Specialization, diffuseWaveTakesAtMost128BytesPerPath) {
+  const Scene scene = sceneFile("cornell-diffuse", 16, 16);
+  const auto session = Session::create(scene, {});
+  session->renderUntil(1, std::nullopt);
+  const RenderStatistics statistics = session->statistics();
+  EXPECT_EQ(statistics.specialization, Specialization::diffuse);
+  EXPECT_GT(statistics.bytesPerPath, 0u);
+  EXPECT_LE(statistics.bytesPerPath, 128u);
+}
+
+}  // namespace
+}  // namespace wavecrest
