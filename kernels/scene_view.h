@@ -94,7 +94,7 @@ struct alignas(128) TextureRecord {
 
 enum class LightKind : uint32_t { quad, triangle, sphere, point, spot, directional, constant, envmap };
 
-// quad, triangle: y = p0 + u e1 + v e2, normal; area in `area`. sphere: centre p0, radius. point, spot: p0. infinite
+// quad, triangle: y = p0 + u e1 + v e2, normal. sphere: centre p0, radius, e1.y as in its primitive. point, spot: p0. infinite
 // lights: direction of travel in `normal` (directional).
 template <class S>
 struct alignas(sizeof(S) * 32) LightRecord {

@@ -138,7 +138,7 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
                       coneHeight, cone);
       cone = cone & sphere;
       point = select(sphere, spherePoint, point);
-      normal = select(sphere, sphereNormal, normal);
+      normal = select(sphere, sphereNormal * at(fields.e1).y, normal);  // inward where the sphere is turned inside out
     }
   }
 

@@ -1,5 +1,7 @@
 #include "kernels/extend/embree_scene.h"
 
+#include "kernels/extend/offset.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -121,8 +123,17 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
       const unsigned geometry = packet.hit.geomID[k];
       const bool hit = geometry != RTC_INVALID_GEOMETRY_ID;
       wave.hits.primitive[i + k] = hit ? firstPrimitive[geometry] + packet.hit.primID[k] : kMiss;
-      wave.hits.u[i + k] = geometry == kSpheres ? packet.ray.tfar[k] : packet.hit.u[k];
-      wave.hits.v[i + k] = packet.hit.v[k];
+      if (geometry == kSpheres) {
+        wave.hits.u[i + k] = packet.ray.tfar[k];
+        wave.hits.v[i + k] = 0;
+        continue;
+      }
+      // Off the edges, see kInset.
+      const float u = std::clamp(packet.hit.u[k], kInset, 1 - kInset),
+                  v = std::clamp(packet.hit.v[k], kInset, 1 - kInset);
+      const float scale = geometry == kTriangles ? std::min(1.0f, (1 - kInset) / (u + v)) : 1.0f;
+      wave.hits.u[i + k] = u * scale;
+      wave.hits.v[i + k] = v * scale;
     }
   }
 }

@@ -2,6 +2,7 @@
 //
 // in: Rays [n]. out: Hits [n], in ray order. Rays are in float under every precision policy. The order of the tests
 // decides ties, so the result does not depend on the width of a block.
+#include "kernels/extend/offset.h"
 #include "kernels/extend/small_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -30,7 +31,7 @@ WAVECREST_INLINE Closest closestHit(const SmallSceneView& scene, Vec3<Float> ori
     const PlaneHit hit = intersectPlane(scene.planes[index], origin, direction);
     best.take(insideQuad(hit) & nearer(hit.t), hit, index);
   }
-  if (index > 0) {  // from [-1, 1] with margin to [0, 1]; beyond the edge by less than the margin counts as the edge
+  if (index > 0) {  // from [-1, 1] with margin to [0, 1], kept off the edge
     const UInt quad = min(best.primitive, UInt(index - 1));
     const RecordLanes<PlaneLimits> at(scene.limits, quad);
     const auto uncentred = [](Float x, Float scale)
@@ -41,6 +42,13 @@ WAVECREST_INLINE Closest closestHit(const SmallSceneView& scene, Vec3<Float> ori
   for (const uint32_t end = index + scene.triangleCount; index < end; ++index) {
     const PlaneHit hit = intersectPlane(scene.planes[index], origin, direction);
     best.take(insideTriangle(hit, scene.limits[index]) & nearer(hit.t), hit, index);
+  }
+  if (scene.triangleCount > 0) {
+    const Mask triangle = (best.primitive < UInt(index)) & !(best.primitive < UInt(index - scene.triangleCount));
+    const Float u = max(best.u, Float(kInset)), v = max(best.v, Float(kInset));
+    const Float scale = min(Float(1), Float(1 - kInset) / (u + v));
+    best.u = select(triangle, u * scale, best.u);
+    best.v = select(triangle, v * scale, best.v);
   }
   for (uint32_t i = 0; i < scene.sphereCount; ++i, ++index) {
     const Float t = intersectSphere(scene.spheres[i], origin, direction);

@@ -10,4 +10,8 @@ constexpr double kUnitRoundoff = 0x1p-24;
 // 7 roundings in p0 + u e1 + v e2, 5 in the plane equation at either end, and margin for a unit normal that is not.
 constexpr double kOffsetGamma = 16 * kUnitRoundoff;
 
+// Hits are moved this far (relative to the edge) inside their quad or triangle. Rounding then cannot put a path's
+// vertex beyond a neighbouring wall, from where it would leave a closed scene.
+constexpr float kInset = 0x1p-20f;
+
 }  // namespace wavecrest

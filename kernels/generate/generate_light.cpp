@@ -74,7 +74,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromArea(const SceneView<typen
     sphere = kind == lightKind(LightKind::sphere);
     if (any(sphere)) {
       const Vec3<Real> outward = uniformSphere<Real>(to<Real>(v.a), to<Real>(v.b));
-      normal = select(sphere, outward, normal);
+      normal = select(sphere, outward * at(fields.e1).y, normal);
       point = select(sphere, mulAdd(outward, at(fields.radius), at(fields.p0)), point);
     }
   }

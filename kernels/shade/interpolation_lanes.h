@@ -62,7 +62,7 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
   const Real b1 = surface.u, b2 = surface.v, b0 = Real(1) - b1 - b2;
   Tangents<Real> tangents{at(scene.primitives->e1), at(scene.primitives->e2)};
 
-  if (any(attributed)) {
+  if (scene.attributes != nullptr && any(attributed)) {
     const AttributeRecord& fields = *scene.attributes;
     const RecordLanes<AttributeRecord> corner(scene.attributes, select(attributed, index, UInt(0u)));
     const Vec3<Real> smooth = to<Real>(corner(fields.normal[0])) * b0 + to<Real>(corner(fields.normal[1])) * b1 +
@@ -86,7 +86,7 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
     tangents.dpDv = select(spans, (e2 * u1 - e1 * u2) * inverse, e2);
   }
 
-  if constexpr (has(kFeatures, kTextures)) {
+  if (has(kFeatures, kTextures) && scene.textures != nullptr) {
     const RecordLanes<MaterialRecord> material(scene.materials, at(scene.primitives->material));
     const UInt bumpMap = material(scene.materials->bumpTexture), normalMap = material(scene.materials->normalTexture);
     const Mask bump = andNot(hit, bumpMap == UInt(kNoIndex)), map = andNot(hit, normalMap == UInt(kNoIndex));

@@ -54,12 +54,12 @@ WAVECREST_NOINLINE inline Vec3<Float> evalTexture(const TextureRecord* textures,
   return select(bitmap, upper * (Float(1) - fy) + lower * fy, value);
 }
 
-// The texture in one slot of each lane's material: 1 where the slot has none.
+// The texture in one slot of each lane's material: 1 where the slot, or the whole scene (textures null), has none.
 WAVECREST_INLINE Vec3<Float> textureFactor(const TextureRecord* textures, const float* texels, UInt id, Float u,
                                            Float v) {
   const Float one(1);
   const Mask textured = id != UInt(kNoIndex);
-  if (none(textured)) return {one, one, one};
+  if (textures == nullptr || none(textured)) return {one, one, one};
   const Vec3<Float> value = evalTexture(textures, texels, select(textured, id, UInt(0u)), u, v);
   return select(textured, value, {one, one, one});
 }

@@ -79,7 +79,9 @@ TEST(Invariants, raysAreConservedFromStageToStage) {
     EXPECT_EQ(d.vertices, i + 1 < limits.maxDepth ? d.hits : 0) << "depth " << i + 1;
     EXPECT_LE(d.shadowRays, d.vertices) << "depth " << i + 1;
     EXPECT_LE(d.survivors, d.vertices) << "depth " << i + 1;
-    if (i + 1 < walk.depths.size()) EXPECT_EQ(walk.depths[i + 1].rays, d.survivors) << "depth " << i + 1;
+    if (i + 1 < walk.depths.size()) {
+      EXPECT_EQ(walk.depths[i + 1].rays, d.survivors) << "depth " << i + 1;
+    }
   }
   EXPECT_EQ(walk.depths.back().survivors, 0u);
 }
