@@ -126,7 +126,7 @@ Mesh readScan(const std::filesystem::path& file) {
   return mesh;
 }
 
-Mesh prepareDragon(Mesh scan) {
+Mesh prepareDragon(const Mesh& scan) {
   constexpr Vec3 kUnderFeet{-0.0059, 0.0527, -0.0046};  // of the scan: centre in x and z, lowest point in y
   constexpr double kScale = 10;
   constexpr Vec3 kLift{0, 0.002, 0};  // so that feet and floor do not touch

@@ -15,6 +15,6 @@ namespace wavecrest::generate {
 Mesh readScan(const std::filesystem::path& file);
 
 // Drops unused vertices, moves and scales the scan as described above and computes its vertex normals.
-Mesh prepareDragon(Mesh scan);
+Mesh prepareDragon(const Mesh& scan);
 
 }  // namespace wavecrest::generate

@@ -21,10 +21,9 @@ int main(int argc, char** argv) {
   app.add_flag("--list", list, "print the names of all assets and exit");
   CLI11_PARSE(app, argc, argv);
 
-  using namespace wavecrest::generate;
   try {
     if (list) {
-      for (const Asset& asset : assetList()) std::printf("%s\n", asset.file);
+      for (const wavecrest::generate::Asset& asset : wavecrest::generate::assetList()) std::printf("%s\n", asset.file);
       return 0;
     }
     if (output.empty() || names.empty()) {
@@ -32,7 +31,7 @@ int main(int argc, char** argv) {
       return 2;
     }
     std::filesystem::create_directories(output);
-    for (const std::string& name : names) findAsset(name).write(output / name);
+    for (const std::string& name : names) wavecrest::generate::findAsset(name).write(output / name);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "wavecrest_generate_scenes: error: %s\n", error.what());
     return 1;
