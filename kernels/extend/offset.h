@@ -12,6 +12,6 @@ constexpr double kOffsetGamma = 16 * kUnitRoundoff;
 
 // Hits are moved this far (relative to the edge) inside their quad or triangle. Rounding then cannot put a path's
 // vertex beyond a neighbouring wall, from where it would leave a closed scene.
-constexpr float kInset = 0x1p-20f;
+constexpr float kInset = 0x1p-18f;
 
 }  // namespace wavecrest

@@ -150,7 +150,10 @@ struct LeakCase {
 class PathLeakTest : public testing::TestWithParam<LeakCase> {
  protected:
   void expectNoLeak(Scene scene) {
-    for (Material& material : scene.materials) material.kind = Diffuse{{{1, 1, 1}}};
+    for (Material& material : scene.materials) {
+      material.kind = Diffuse{{{1, 1, 1}}};
+      material.twoSided = true;  // the back of a lamp absorbs nothing
+    }
     RenderSettings settings = settingsFor({GetParam().precision, SamplerKind::independent, GetParam().accel});
     settings.limits = {.maxDepth = 64, .rouletteDepth = 64};
     const auto session = Session::create(scene, settings);

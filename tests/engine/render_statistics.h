@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -59,58 +61,95 @@ inline SeedMeans renderSeeds(const Scene& scene, RenderSettings settings, uint64
 // What value c of pixel (x, y) should be; nothing where no answer is known.
 using Truth = std::function<std::optional<double>(uint32_t x, uint32_t y, size_t c)>;
 
+// Differences of one image per seed, as t values: of the whole image, and of tiles of 8x8 pixels. Single pixels would
+// not do: a few samples of a skewed distribution are far from normal, and their t values with them.
+struct TileStatistics {
+  double imageT = 0;    // |t| of the mean over all values
+  double meanT2 = 0;    // mean of t^2 over tiles
+  double largestT = 0;  // largest |t| of a tile
+  size_t tiles = 0;
+  std::string describe() const {
+    return "image |t| " + std::to_string(imageT) + ", mean t^2 of tiles " + std::to_string(meanT2) + ", largest |t| " +
+           std::to_string(largestT);
+  }
+};
+
+// difference(seed, i): of value i, or nothing where it is not known. rounding: what an exact estimator may be off by.
+inline TileStatistics tileStatistics(uint32_t width, size_t values,
+                                     const std::function<std::optional<double>(size_t seed, size_t i)>& difference,
+                                     double rounding) {
+  constexpr uint32_t kTile = 8;
+  const uint32_t across = (width + kTile - 1) / kTile;
+  const size_t rows = values / 3 / width;
+  const size_t tileCount = size_t{across} * ((rows + kTile - 1) / kTile);
+  std::vector<std::array<double, kSeeds>> sums(tileCount + 1, std::array<double, kSeeds>{});  // the last: all tiles
+  std::vector<size_t> counts(tileCount + 1, 0);
+  for (size_t i = 0; i < values; ++i) {
+    const size_t x = i / 3 % width, y = i / 3 / width;
+    const size_t tile = y / kTile * across + x / kTile;
+    if (!difference(0, i)) continue;
+    ++counts[tile];
+    ++counts[tileCount];
+    for (size_t s = 0; s < kSeeds; ++s) {
+      const double d = *difference(s, i);
+      sums[tile][s] += d;
+      sums[tileCount][s] += d;
+    }
+  }
+  const auto t = [&](size_t tile) {
+    const auto n = static_cast<double>(counts[tile]);
+    double mean = 0, squares = 0;
+    for (const double sum : sums[tile]) mean += sum / n / kSeeds;
+    for (const double sum : sums[tile]) squares += (sum / n - mean) * (sum / n - mean);
+    const double error = std::hypot(std::sqrt(squares / (kSeeds - 1) / kSeeds), rounding);
+    return mean == 0 ? 0.0 : mean / error;  // both exactly known: equal, or infinitely far apart
+  };
+  TileStatistics out;
+  out.imageT = counts[tileCount] == 0 ? 0 : std::abs(t(tileCount));
+  for (size_t tile = 0; tile < tileCount; ++tile) {
+    if (counts[tile] == 0) continue;
+    const double value = std::abs(t(tile));
+    out.meanT2 += value * value;
+    out.largestT = std::max(out.largestT, value);
+    ++out.tiles;
+  }
+  out.meanT2 /= std::max<double>(1, static_cast<double>(out.tiles));
+  return out;
+}
+
+// With 15 degrees of freedom |t| > 7 has probability 4e-6. t^2 has mean 15/13 and standard deviation 1.84, so its mean
+// over the tiles exceeds the bound with a probability below 1e-6 where tiles are independent.
+inline void expectWithinNoise(const TileStatistics& statistics, const std::string& where) {
+  ASSERT_GT(statistics.tiles, 0u) << where;
+  constexpr double kNu = kSeeds - 1;
+  EXPECT_LE(statistics.imageT, 7) << where << ": " << statistics.describe();
+  EXPECT_LE(statistics.meanT2, kNu / (kNu - 2) + 6 * 1.84 / std::sqrt(static_cast<double>(statistics.tiles)))
+      << where << ": " << statistics.describe();
+}
+
 // relativeRounding: what an exact estimator may still be off by.
 inline void expectTruth(const SeedMeans& seeds, const Truth& truth, const std::string& where,
                         double relativeRounding = 2e-6) {
-  double sumT2 = 0, truthMean = 0, largest = 0;
-  std::vector<double> seedMeans(kSeeds, 0.0);
-  size_t count = 0, largestAt = 0;
-  for (size_t i = 0; i < seeds.mean.size(); ++i) {
+  double largest = 0;
+  const auto wanted = [&](size_t i) {
     const auto pixel = static_cast<uint32_t>(i / 3);
-    const std::optional<double> want = truth(pixel % seeds.width, pixel / seeds.width, i % 3);
-    if (!want) continue;
-    const double rounding = relativeRounding * std::abs(*want);
-    const double error = std::hypot(seeds.error[i], rounding);
-    const double t = error > 0 ? (seeds.mean[i] - *want) / error : seeds.mean[i] == *want ? 0 : HUGE_VAL;
-    sumT2 += t * t;
-    if (std::abs(t) > largest) {
-      largest = std::abs(t);
-      largestAt = i;
-    }
-    truthMean += *want;
-    for (size_t s = 0; s < kSeeds; ++s) seedMeans[s] += seeds.images[s][i];
-    ++count;
-  }
-  ASSERT_GT(count, 0u) << where;
-  const auto n = static_cast<double>(count);
-  truthMean /= n;
-  double mean = 0, squares = 0;
-  for (double& m : seedMeans) mean += (m /= n) / kSeeds;
-  for (const double m : seedMeans) squares += (m - mean) * (m - mean);
-  const double error = std::hypot(std::sqrt(squares / (kSeeds - 1) / kSeeds), relativeRounding * std::abs(truthMean));
-  EXPECT_LE(std::abs(mean - truthMean), 7 * error) << where << ": mean " << mean << ", known " << truthMean;
-  constexpr double kNu = kSeeds - 1;
-  const double bound = kNu / (kNu - 2) + 6 * 1.84 / std::sqrt(n);
-  EXPECT_LE(sumT2 / n, bound) << where << ": largest |t| " << largest << " at value " << largestAt << ", "
-                              << seeds.mean[largestAt] << " +- " << seeds.error[largestAt];
+    return truth(pixel % seeds.width, pixel / seeds.width, i % 3);
+  };
+  for (size_t i = 0; i < seeds.mean.size(); ++i) largest = std::max(largest, std::abs(wanted(i).value_or(0)));
+  const auto difference = [&](size_t s, size_t i) -> std::optional<double> {
+    const std::optional<double> want = wanted(i);
+    if (!want) return std::nullopt;
+    return seeds.images[s][i] - *want;
+  };
+  expectWithinNoise(tileStatistics(seeds.width, seeds.mean.size(), difference, relativeRounding * largest), where);
 }
 
-// Two images of the same truth, value by value: t of the difference with at least 15 degrees of freedom, same bounds.
+// Two estimates of the same truth.
 inline void expectSameTruth(const SeedMeans& a, const SeedMeans& b, const std::string& where) {
-  double sumT2 = 0;
-  std::vector<double> differences(kSeeds, 0.0);
-  for (size_t i = 0; i < a.mean.size(); ++i) {
-    const double error = std::hypot(a.error[i], b.error[i], 2e-6 * std::abs(a.mean[i]));
-    if (error > 0) sumT2 += std::pow((a.mean[i] - b.mean[i]) / error, 2);
-    for (size_t s = 0; s < kSeeds; ++s) differences[s] += a.images[s][i] - b.images[s][i];
-  }
-  const auto n = static_cast<double>(a.mean.size());
-  double mean = 0, squares = 0;
-  for (double& d : differences) mean += (d /= n) / kSeeds;
-  for (const double d : differences) squares += (d - mean) * (d - mean);
-  EXPECT_LE(std::abs(mean), 7 * std::sqrt(squares / (kSeeds - 1) / kSeeds) + 1e-12) << where;
-  constexpr double kNu = kSeeds - 1;
-  EXPECT_LE(sumT2 / n, kNu / (kNu - 2) + 6 * 1.84 / std::sqrt(n)) << where;
+  double largest = 0;
+  for (const double mean : a.mean) largest = std::max(largest, std::abs(mean));
+  const auto difference = [&](size_t s, size_t i) -> std::optional<double> { return a.images[s][i] - b.images[s][i]; };
+  expectWithinNoise(tileStatistics(a.width, a.mean.size(), difference, 2e-6 * largest), where);
 }
 
 // ---- what a path tracer may be asked to run with --------------------------------------------------------------------

