@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <thread>
@@ -186,6 +187,13 @@ std::string checkMaxDepth(const std::string& word) {
   return valid ? std::string() : fmt::format("'{}' is no depth; expected 1 to {}, or -1", word, kUnlimitedDepth);
 }
 
+// CLI11's ranges let NaN through.
+std::string checkFinite(const std::string& word) {
+  double number = 0;
+  const bool valid = CLI::detail::lexical_cast(word, number) && std::isfinite(number);
+  return valid ? std::string() : fmt::format("'{}' is no finite number", word);
+}
+
 int runRender(const RenderOptions& options) {
   checkOutputs(options);
   SnapshotSchedule schedule(options.snapshotEvery);
@@ -243,9 +251,11 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
       ->add_option("--radius", options->radius,
                    "first merge radius of ppm, bpm and vcm, relative to the bounding sphere")
       ->capture_default_str()
+      ->check(checkFinite)
       ->check(CLI::Range(1e-9, 10.0));
   command->add_option("--radius-alpha", options->radiusAlpha, "how slowly the radius shrinks, 0 to 1")
       ->capture_default_str()
+      ->check(checkFinite)
       ->check(CLI::Range(0.0, 1.0));
   command->add_option("-D", options->defines, "value of a scene's $name: NAME=VALUE")->allow_extra_args(false);
   command->add_flag("--lenient", options->lenient, "skip what a scene asks and wavecrest lacks, with a warning");

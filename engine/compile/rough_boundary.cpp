@@ -80,7 +80,8 @@ double RoughBoundary::reflectance(double mu) const {
 
 std::array<float, kTransmittanceSize> transmittanceTable(const RoughBoundary& boundary) {
   std::array<float, kTransmittanceSize> table{};
-  for (size_t i = 0; i < table.size(); ++i) table[i] = static_cast<float>(boundary.transmittance(nodeOf(i)));
+  for (size_t i = 0; i < table.size(); ++i)
+    table[i] = static_cast<float>(std::min(boundary.transmittance(nodeOf(i)), 1.0));
   return table;
 }
 

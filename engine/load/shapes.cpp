@@ -1,6 +1,7 @@
 #include "engine/load/shapes.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "engine/load/emitters.h"
 #include "engine/load/materials.h"
@@ -113,9 +114,9 @@ struct Area {
     return sum;
   }
   double operator()(const Rectangle& r) const { return length(cross(r.edgeU, r.edgeV)); }
-  double operator()(const Disk& d) const { return M_PI * length(cross(d.axisU, d.axisV)); }
-  double operator()(const Sphere& s) const { return 4 * M_PI * s.radius * s.radius; }
-  double operator()(const Cylinder& c) const { return 2 * M_PI * c.radius * length(c.p1 - c.p0); }
+  double operator()(const Disk& d) const { return std::numbers::pi * length(cross(d.axisU, d.axisV)); }
+  double operator()(const Sphere& s) const { return 4 * std::numbers::pi * s.radius * s.radius; }
+  double operator()(const Cylinder& c) const { return 2 * std::numbers::pi * c.radius * length(c.p1 - c.p0); }
 };
 
 }  // namespace

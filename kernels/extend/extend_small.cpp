@@ -29,7 +29,7 @@ WAVECREST_INLINE Closest closestHit(const SmallSceneView& scene, Vec3<Float> ori
   uint32_t index = 0;
   for (; index < scene.quadCount; ++index) {
     const PlaneHit hit = intersectPlane(scene.planes[index], origin, direction);
-    best.take(insideQuad(hit) & nearer(hit.t), hit, index);
+    best.take(insideQuad(hit, scene.limits[index]) & nearer(hit.t), hit, index);
   }
   if (index > 0) {  // from [-1, 1] with margin to [0, 1], kept off the edge
     const UInt quad = min(best.primitive, UInt(index - 1));
@@ -52,7 +52,7 @@ WAVECREST_INLINE Closest closestHit(const SmallSceneView& scene, Vec3<Float> ori
   }
   for (uint32_t i = 0; i < scene.sphereCount; ++i, ++index) {
     const Float t = intersectSphere(scene.spheres[i], origin, direction);
-    best.take(nearer(t), {t, t, Float(0)}, index);
+    best.take(nearer(t), {t, t, Float(0), Float(0)}, index);
   }
   return best;
 }

@@ -14,7 +14,7 @@ WAVECREST_INLINE Mask blocked(const SmallSceneView& scene, Vec3<Float> origin, V
   uint32_t index = 0;
   for (; index < scene.quadCount; ++index) {
     const PlaneHit at = intersectPlane(scene.planes[index], origin, direction);
-    hit = hit | (insideQuad(at) & within(at.t));
+    hit = hit | (insideQuad(at, scene.limits[index]) & within(at.t));
   }
   for (const uint32_t end = index + scene.triangleCount; index < end; ++index) {
     const PlaneHit at = intersectPlane(scene.planes[index], origin, direction);

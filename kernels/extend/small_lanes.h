@@ -12,6 +12,7 @@ WAVECREST_INLINE Float dotForm(const float (&a)[3], Vec3<Float> b) {
 
 struct PlaneHit {
   Float t, u, v;
+  Float slowness;  // 1 / |speed towards the plane|
 };
 
 // Where the rays meet the plane, in its centred coordinates. A ray within the plane gives NaN or infinity, which fails
@@ -20,15 +21,20 @@ WAVECREST_INLINE PlaneHit intersectPlane(const PlaneForm& plane, Vec3<Float> ori
   const Float speed = dotForm(plane.normal, direction);
   const Float gap = Float(plane.distance) - dotForm(plane.normal, origin);
   PlaneHit hit;
-  hit.t = gap * approximateReciprocal(speed);
+  const Float inverseSpeed = approximateReciprocal(speed);
+  hit.slowness = abs(inverseSpeed);
+  hit.t = gap * inverseSpeed;
   const Vec3<Float> point = mulAdd(direction, hit.t, origin);
   hit.u = dotForm(plane.uAxis, point) + Float(plane.uOffset);
   hit.v = dotForm(plane.vAxis, point) + Float(plane.vOffset);
   return hit;
 }
-WAVECREST_INLINE Mask insideQuad(const PlaneHit& hit) { return max(abs(hit.u), abs(hit.v)) <= Float(1); }
+WAVECREST_INLINE Mask insideQuad(const PlaneHit& hit, const PlaneLimits& limits) {
+  return max(abs(hit.u), abs(hit.v)) <= mulAdd(hit.slowness, Float(limits.grazing), Float(1));
+}
 WAVECREST_INLINE Mask insideTriangle(const PlaneHit& hit, const PlaneLimits& limits) {
-  return min(min(hit.u, hit.v), Float(1) - hit.u - hit.v) >= Float(-limits.margin);
+  const Float margin = mulAdd(hit.slowness, Float(limits.grazing), Float(limits.margin));
+  return min(min(hit.u, hit.v), Float(1) - hit.u - hit.v) >= -margin;
 }
 
 // The nearest t > 0 at which the rays meet the sphere, or a negative number. The discriminant is taken from the point

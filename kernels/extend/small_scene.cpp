@@ -71,7 +71,10 @@ void SmallScene::addPlane(const PrimitiveRecord<double>& primitive, double reach
   double uOffset = -dot(uAxis, p0), vOffset = -dot(vAxis, p0);
   const double uError = coordinateError(uAxis, uOffset, reach), vError = coordinateError(vAxis, vOffset, reach);
 
+  const double gapError = 4 * 0x1p-24 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2])) * reach;
   PlaneLimits& limits = limits_.emplace_back();
+  limits.grazing =
+      static_cast<float>(4 * gapError * std::max(std::sqrt(dot(uAxis, uAxis)), std::sqrt(dot(vAxis, vAxis))));
   limits.margin = static_cast<float>(2 * std::max(uError, vError));
   if (static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::quad) {
     const double uHalf = 0.5 + uError, vHalf = 0.5 + vError;

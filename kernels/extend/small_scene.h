@@ -23,8 +23,11 @@ struct PlaneForm {
 };
 // Quad: the widened inside is max(|u|, |v|) <= 1, and hits report u * uScale + 0.5.
 // Triangle: u, v as they are; the inside is min(u, v, 1 - u - v) >= -margin.
+// grazing: how much either inside widens per 1 / |speed|, speed being the ray's speed towards the plane. The error of
+// the plane equation moves the hit of a grazing ray along the ray; where two faces meet at almost 180 degrees both
+// would otherwise miss it.
 struct PlaneLimits {
-  float uScale, vScale, margin, unused;
+  float uScale, vScale, margin, grazing;
 };
 struct SphereForm {
   float center[3], radius;

@@ -1,7 +1,8 @@
 // Beckmann's distribution of microfacet normals, with the interface of microfacet_lanes.h: slopes are normally
 // distributed, D(m) = exp(-tan^2 / alpha^2) / (pi alpha^2 m_z^4).
 //
-// G1 is Walter's rational fit (2007, within 0.35 %), which Mitsuba 3 uses too, in f and in the density alike.
+// f has Walter's rational fit of G1 (2007, within 0.35 %), as Mitsuba 3; densities have the exact G1, since that is
+// what sampling follows.
 #pragma once
 
 #include "kernels/shade/microfacet_lanes.h"
@@ -67,13 +68,15 @@ struct BeckmannNormals {
 
   // With a = cot(theta) / alpha: G1 = (3.535 a + 2.181 a^2) / (1 + 2.276 a + 2.577 a^2) below a = 1.6, else 1.
   WAVECREST_INLINE Real masking(Vec3<Real> v) const {
-    const Real z = abs(v.z);
-    const Real width = alpha * sqrt(mulAdd(v.x, v.x, v.y * v.y));
+    const Real z = abs(v.z), width = widthOf(v);
     const Real a = z * reciprocal<P>(max(width, Real(1e-20f)));
     const Real below = mulAdd(mulAdd(Real(2.577f), a, Real(2.276f)), a, Real(1)) *
                        reciprocal<P>(mulAdd(Real(2.181f), a, Real(3.535f)));
     return Real(2) * select(a < Real(1.6f), width * below, z);
   }
+
+  WAVECREST_INLINE Real densityFactor(Vec3<Real> v) const { return masking(v) * reciprocal<P>(exactMasking(v)); }
+  WAVECREST_INLINE Real weightFactor(Vec3<Real> v) const { return exactMasking(v) * reciprocal<P>(masking(v)); }
 
   WAVECREST_INLINE Real density(Vec3<Real> h, Real h2) const {
     const Real tangential2 = mulAdd(h.x, h.x, h.y * h.y);
@@ -97,6 +100,17 @@ struct BeckmannNormals {
     const Real cosine = select(pole, Real(1), x * inverseAcross), sine = select(pole, Real(0), y * inverseAcross);
     return normalizeFast<P>(Vec3<Real>{-alpha * mulSub(cosine, along, sine * across),
                                        -alpha * mulAdd(sine, along, cosine * across), Real(1)});
+  }
+
+ private:
+  // alpha sin(theta)
+  WAVECREST_INLINE Real widthOf(Vec3<Real> v) const { return alpha * sqrt(mulAdd(v.x, v.x, v.y * v.y)); }
+
+  // S of G1 = 2 / (1 + erf(a) + exp(-a^2) / (a sqrt(pi))).
+  WAVECREST_INLINE Real exactMasking(Vec3<Real> v) const {
+    const Real z = abs(v.z), width = widthOf(v);
+    const Real a = min(z * reciprocal<P>(max(width, Real(1e-20f))), Real(8));
+    return mulAdd(z, Real(1) + to<Real>(erf(toFloat(a))), width * Real(0.56418958354775629) * exp(-(a * a)));
   }
 };
 

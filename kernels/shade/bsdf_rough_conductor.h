@@ -27,8 +27,9 @@ struct RoughConductor {
     const Real byFix = reciprocal<P>(normals.masking(fix)), byGen = reciprocal<P>(normals.masking(gen));
     // fix . m = |h| / 2 for unit fix and gen.
     const Vec3<Real> reflectance = conductorReflectance(input, Real(0.5) * sqrt(h2));
-    return {zeroUnless(front, reflectance * (density * byFix * byGen)), zeroUnless(front, Real(0.5) * density * byFix),
-            zeroUnless(front, Real(0.5) * density * byGen)};
+    return {zeroUnless(front, reflectance * (density * byFix * byGen)),
+            zeroUnless(front, Real(0.5) * density * byFix * normals.densityFactor(fix)),
+            zeroUnless(front, Real(0.5) * density * byGen * normals.densityFactor(gen))};
   }
 
   template <class P>
@@ -42,11 +43,11 @@ struct RoughConductor {
     const Mask front = (fix.z > Real(0)) & (gen.z > Real(0));
     const Real density = Real(0.5) * normals.density(m, Real(1));
     const Real byFix = reciprocal<P>(normals.masking(fix)), byGen = reciprocal<P>(normals.masking(gen));
-    const Real shadowing = Real(2) * gen.z * byGen;
+    const Real shadowing = Real(2) * gen.z * byGen * normals.weightFactor(fix);
     return {.gen = gen,
             .weight = zeroUnless(front, conductorReflectance(input, cosine) * shadowing),
-            .pdf = density * byFix,
-            .pdfReverse = density * byGen,
+            .pdf = density * byFix * normals.densityFactor(fix),
+            .pdfReverse = density * byGen * normals.densityFactor(gen),
             .etaRatio = Real(1),
             .specular = noLanes()};
   }

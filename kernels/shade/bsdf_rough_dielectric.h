@@ -48,7 +48,8 @@ struct RoughDielectric {
     const Real scale = input.walk == Walk::camera ? one : stretch * stretch;
     const Vec3<Real> tint = select(reflect, input.specular(), input.transmittance());
     return {zeroUnless(possible, tint * (Real(4) * k * byFix * byGen * scale)),
-            zeroUnless(possible, Real(2) * k * stretch * stretch * byFix), zeroUnless(possible, Real(2) * k * byGen)};
+            zeroUnless(possible, Real(2) * k * stretch * stretch * byFix * normals.densityFactor(fix)),
+            zeroUnless(possible, Real(2) * k * byGen * normals.densityFactor(gen))};
   }
 
   template <class P>
@@ -78,13 +79,13 @@ struct RoughDielectric {
     const Real twoK = Real(2) * share * normals.density(m, one) * cosine * genCosine *
                       reciprocal<P>(max(q * q, Real(kSmallestHalfVector2)));
     const Real byFix = reciprocal<P>(normals.masking(near)), byGen = reciprocal<P>(normals.masking(gen));
-    const Real shadowing = Real(2) * abs(gen.z) * byGen;
+    const Real shadowing = Real(2) * abs(gen.z) * byGen * normals.weightFactor(fix);
     const Vec3<Real> tint = select(reflect, input.specular(), input.transmittance());
     gen.z = gen.z * copySign(one, fix.z);
     return {.gen = gen,
             .weight = zeroUnless(possible, tint * (shadowing * radianceScale(input, inverseStretch))),
-            .pdf = twoK * stretch * stretch * byFix,
-            .pdfReverse = twoK * byGen,
+            .pdf = twoK * stretch * stretch * byFix * normals.densityFactor(fix),
+            .pdfReverse = twoK * byGen * normals.densityFactor(gen),
             .etaRatio = inverseStretch,
             .specular = noLanes()};
   }

@@ -79,8 +79,10 @@ struct RoughPlastic {
     const Real fresnel = fresnelDielectric<P>(half * sqrt(h2), input.eta()).reflectance;
     const Vec3<Real> f = mulAdd(baseAlbedo(input), fixSide.transmittance * genSide.transmittance * Real(kInvPi),
                                 input.specular() * (fresnel * density * byFix * byGen));
-    const Real pdf = fixSide.pick * half * density * byFix + (one - fixSide.pick) * gen.z * Real(kInvPi);
-    const Real pdfReverse = genSide.pick * half * density * byGen + (one - genSide.pick) * fix.z * Real(kInvPi);
+    const Real pdf = fixSide.pick * half * density * byFix * normals.densityFactor(fix) +
+                     (one - fixSide.pick) * gen.z * Real(kInvPi);
+    const Real pdfReverse = genSide.pick * half * density * byGen * normals.densityFactor(gen) +
+                            (one - genSide.pick) * fix.z * Real(kInvPi);
     return {zeroUnless(front, f), zeroUnless(front, pdf), zeroUnless(front, pdfReverse)};
   }
 };

@@ -10,7 +10,8 @@
 //   D G / (4 |fix_z| |gen_z|)                                   =  D / (S(fix) S(gen))
 //
 // A distribution is a template over the precision policy with
-//   static fromAlpha(alpha), masking(v) = S(v), density(h, h2) = D, sampleVisible(v, u1, u2).
+//   static fromAlpha(alpha), masking(v) = S(v), density(h, h2) = D, sampleVisible(v, u1, u2),
+// and, where G1 of f is an approximation, densityFactor(v) = exact G1 / G1 and weightFactor(v), its inverse.
 #pragma once
 
 #include "kernels/lane_support.h"
@@ -37,6 +38,9 @@ struct GgxNormals {
     const Real tangential2 = mulAdd(v.x, v.x, v.y * v.y);
     return abs(v.z) + sqrt(mulAdd(v.z, v.z, alpha2 * tangential2));
   }
+
+  WAVECREST_INLINE Real densityFactor(Vec3<Real>) const { return Real(1); }
+  WAVECREST_INLINE Real weightFactor(Vec3<Real>) const { return Real(1); }
 
   // D of the normal along h, which need not be a unit vector; h2 = |h|^2.
   WAVECREST_INLINE Real density(Vec3<Real> h, Real h2) const {

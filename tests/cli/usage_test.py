@@ -59,11 +59,13 @@ class Usage(CommandTest):
             ("--radius", "-1"),
             ("--radius", "nan"),
             ("--radius-alpha", "2"),
+            ("--radius-alpha", "nan"),
         ]:
             with self.subTest(option=option, value=value):
+                wrong = f"{option}={value}" if option.startswith("--") else f"{option}{value}"
+                small = ["-D", "width=8", "-D", "height=8", "-D", "spp=1"]  # ends soon if it is not refused
                 result = self.run_wavecrest(
-                    "render", "cornell-diffuse", "-o", self.path("image.exr"), f"{option}={value}"
-                    if option.startswith("--") else f"{option}{value}", expect=USAGE
+                    "render", "cornell-diffuse", *small, "-o", self.path("image.exr"), wrong, expect=USAGE
                 )
                 self.assertNotEqual(result.stderr, "")
                 self.assertFalse((self.folder / "image.exr").exists())
