@@ -94,14 +94,17 @@ TEST_P(BsdfSymmetryTest, everyInstructionSetAgreesWithTheScalarTwin) {
     for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
       SCOPED_TRACE(bsdf.name + std::to_string(static_cast<int>(precision)));
       const BsdfQuery query{.material = &bsdf.record, .precision = precision};
-      const double ulp = precision == Precision::doubled ? 0x1p-52 : 0x1p-23;
+      // Beckmann's exact masking takes its error function in float, whatever the precision.
+      const bool inFloat = precision != Precision::doubled || bsdf.name.starts_with("beckmann");
+      const Precision rounding = inFloat && precision == Precision::doubled ? Precision::floating : precision;
+      const double ulp = inFloat ? 0x1p-23 : 0x1p-52;
       const auto fix = randomDirections(kPairs, 5), gen = randomDirections(kPairs, 6);
       const auto values = evaluate(entries<BsdfEntries>(), query, fix, gen);
       const auto expected = evaluate(twin<BsdfEntries>(), query, fix, gen);
       double sum = 0;
       for (size_t i = 0; i < kPairs; ++i) {
-        ASSERT_NEAR(values[i].pdf, expected[i].pdf, tolerated(precision, expected[i].pdf)) << i;
-        ASSERT_NEAR(values[i].f[0], expected[i].f[0], tolerated(precision, expected[i].f[0])) << i;
+        ASSERT_NEAR(values[i].pdf, expected[i].pdf, tolerated(rounding, expected[i].pdf)) << i;
+        ASSERT_NEAR(values[i].f[0], expected[i].f[0], tolerated(rounding, expected[i].f[0])) << i;
         sum += std::abs(values[i].pdf - expected[i].pdf) / std::max(expected[i].pdf, 1e-3);
       }
       EXPECT_LE(sum / kPairs, 16 * ulp);

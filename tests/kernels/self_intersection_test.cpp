@@ -25,6 +25,7 @@ struct Fixture {
       : scene(std::move(primitives)),
         stages(findStages<S>(bestIsa(), precision(), chooseSpecialization(kCurvedShapes, precision()))) {
     std::fill_n(scene.materials[0].reflectance, 3, 1.0f);
+    scene.materials[0].opacity = 1;
     scene.view.materials = scene.materials.data();
     CameraView camera{};
     camera.width = camera.height = 32;
