@@ -94,8 +94,8 @@ struct alignas(128) TextureRecord {
 
 enum class LightKind : uint32_t { quad, triangle, sphere, point, spot, directional, constant, envmap };
 
-// quad, triangle: y = p0 + u e1 + v e2, normal. sphere: centre p0, radius, e1.y as in its primitive. point, spot: p0. infinite
-// lights: direction of travel in `normal` (directional).
+// quad, triangle: y = p0 + u e1 + v e2, normal. sphere: centre p0, radius, e1.y as in its primitive. point, spot: p0.
+// infinite lights: direction of travel in `normal` (directional).
 template <class S>
 struct alignas(sizeof(S) * 32) LightRecord {
   S p0[3], e1[3], e2[3], normal[3];

@@ -63,8 +63,7 @@ const Stages<float>& findStages<float>(Isa isa, Precision precision, Specializat
 }
 
 template <>
-const Stages<double>& findStages<double>(Isa isa, [[maybe_unused]] Precision precision,
-                                          Specialization specialization) {
+const Stages<double>& findStages<double>(Isa isa, [[maybe_unused]] Precision precision, Specialization specialization) {
   assert(isCompiled(precision, specialization));
   return tablesOf(isa).doubled[static_cast<size_t>(specialization)];
 }
