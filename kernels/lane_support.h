@@ -129,7 +129,7 @@ WAVECREST_INLINE void addSplats(const StageContext<S>& context, UInt pixel, Mask
 
 // ---- scene records --------------------------------------------------------------------------------------------------
 
-// One record per lane: `RecordLanes prims(base, index); prims(base->p0[0])` gathers that field of each lane's record.
+// One record per lane: `RecordLanes prims(base, index); prims(base->p0)` gathers that field of each lane's record.
 template <class Record>
 class RecordLanes {
  public:
@@ -151,6 +151,17 @@ class RecordLanes {
 
  private:
   UInt wordIndex_, longIndex_;
+};
+
+// The same face for a record that all lanes share: `OneRecord()(base->p0)` broadcasts that field.
+struct OneRecord {
+  WAVECREST_INLINE Float operator()(const float& field) const { return Float(field); }
+  WAVECREST_INLINE UInt operator()(const uint32_t& field) const { return UInt(field); }
+  WAVECREST_INLINE Double operator()(const double& field) const { return Double(field); }
+  template <class S>
+  WAVECREST_INLINE auto operator()(const S (&field)[3]) const {
+    return Vec3<decltype((*this)(field[0]))>{(*this)(field[0]), (*this)(field[1]), (*this)(field[2])};
+  }
 };
 
 template <class Real>
