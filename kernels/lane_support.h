@@ -210,25 +210,35 @@ WAVECREST_INLINE Uniform4 draw(const StageContext<S>& context, UInt path, Block 
 WAVECREST_SIMD_END
 
 // Compiles STAGE<Precision, features> for every precision and specialisation of isCompiled() (kernels/stages.h).
-#define WAVECREST_INSTANTIATE_STAGE(STAGE)              \
-  WAVECREST_SIMD_BEGIN                                  \
+#ifdef WAVECREST_ONLY_GENERAL_KERNELS
+#define WAVECREST_INSTANTIATE_PLAIN(STAGE)
+#define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)
+#else
+#define WAVECREST_INSTANTIATE_PLAIN(STAGE)              \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuse) \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smooth)  \
-  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuse)  \
-  WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)            \
+  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuse)
+#define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)                   \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuseBidirectional) \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smoothBidirectional)  \
+  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuseBidirectional)
+#endif
+#define WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)       \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, general) \
+  WAVECREST_INSTANTIATE(STAGE, FastPrecision, general)  \
+  WAVECREST_INSTANTIATE(STAGE, DoublePrecision, general)
+#define WAVECREST_INSTANTIATE_STAGE(STAGE)   \
+  WAVECREST_SIMD_BEGIN                       \
+  WAVECREST_INSTANTIATE_PLAIN(STAGE)         \
+  WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE) \
+  WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)  \
   WAVECREST_SIMD_END
 // The same for a stage that only bidirectional methods have.
 #define WAVECREST_INSTANTIATE_BIDIRECTIONAL_STAGE(STAGE) \
   WAVECREST_SIMD_BEGIN                                   \
   WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)             \
+  WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)              \
   WAVECREST_SIMD_END
-#define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)                   \
-  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuseBidirectional) \
-  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smoothBidirectional)  \
-  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, general)              \
-  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuseBidirectional)  \
-  WAVECREST_INSTANTIATE(STAGE, FastPrecision, general)               \
-  WAVECREST_INSTANTIATE(STAGE, DoublePrecision, general)
 #define WAVECREST_INSTANTIATE(STAGE, PRECISION, SPECIALIZATION)                                                       \
   template void STAGE<PRECISION, featuresOf(Specialization::SPECIALIZATION)>(const StageContext<PRECISION::Storage>&, \
                                                                              Wave<PRECISION::Storage>&);
