@@ -43,8 +43,10 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radianc
   assign(light.radiance, radiance);
   light.inverseArea = static_cast<S>(1 / areaOf(primitive));
   Double3 extent{};
+  const bool sphere = static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere;
   for (size_t i = 0; i < 3; ++i) {
-    extent[i] = std::abs(primitive.p0[i]) + std::abs(primitive.e1[i]) + std::abs(primitive.e2[i]);
+    const S reach = sphere ? primitive.e1[0] : std::abs(primitive.e1[i]) + std::abs(primitive.e2[i]);
+    extent[i] = std::abs(primitive.p0[i]) + reach;
   }
   light.offset = static_cast<S>(kOffsetGamma * (extent[0] + extent[1] + extent[2]));
   switch (static_cast<PrimitiveKind>(primitive.kind)) {

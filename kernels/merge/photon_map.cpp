@@ -14,6 +14,10 @@ namespace {
 constexpr uint32_t kPartitions = 256;
 constexpr uint32_t kMinBuckets = 1u << 12;
 
+// Room for later iterations, whose light paths may have some more vertices.
+size_t withReserve(size_t vertices) { return vertices + vertices / 8; }
+uint32_t bucketsFor(size_t vertices) { return std::max(std::bit_ceil(static_cast<uint32_t>(vertices)), kMinBuckets); }
+
 template <class S>
 struct Bounds {
   std::array<S, 3> low, high;
@@ -63,7 +67,7 @@ void PhotonMap<S>::placeGrid(std::span<LightStore<S>* const> stores, double radi
     cell = std::max(cell, (static_cast<double>(high) - low) / (1 << 21));
   }
   grid.inverseCell = static_cast<S>(1 / cell);
-  grid.bucketMask = std::max(std::bit_ceil(static_cast<uint32_t>(total)), kMinBuckets) - 1;
+  grid.bucketMask = bucketsFor(total) - 1;
 }
 
 template <class S>
@@ -143,8 +147,8 @@ void PhotonMap<S>::build(std::span<LightStore<S>* const> stores, double radius, 
   size_t total = 0;
   for (const LightStore<S>* store : stores) total += store->vertices.size;
   if (total > photons.capacity()) {
-    arena_ = Arena(photons.bytes(total + total / 8));
-    photons.bind(arena_, total + total / 8);
+    arena_ = Arena(photons.bytes(withReserve(total)));
+    photons.bind(arena_, withReserve(total));
   }
   photons.size = total;
   if (total == 0) {
@@ -160,6 +164,12 @@ template <class S>
 size_t PhotonMap<S>::bytes() const {
   return photons.bytes(photons.capacity()) + bucketStart.capacity() * sizeof(uint32_t) +
          (entries_.capacity() + sorted_.capacity()) * sizeof(Entry);
+}
+
+template <class S>
+size_t PhotonMap<S>::bytesFor(size_t vertices) {
+  return Photons<S>().bytes(withReserve(vertices)) + (size_t{bucketsFor(vertices)} + 1) * sizeof(uint32_t) +
+         2 * vertices * sizeof(Entry);
 }
 
 template struct PhotonMap<float>;
