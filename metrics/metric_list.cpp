@@ -123,20 +123,20 @@ Measurement measureHdrFlip(const PreparedReference& reference, const ComparedIma
 
 // clang-format off
 constexpr std::array kMetrics{
-    Metric{.name = "rmse", .title = "root mean square error", .score = "", .scorePrefix = "rmse_",
-           .higherIsBetter = false, .threshold = "max-rmse", .byDefault = true, .smallestSide = 1, .mapRange = 0, .measure = measureRmse},
-    Metric{.name = "relmse", .title = "relative mean square error", .score = "", .scorePrefix = "relmse_",
-           .higherIsBetter = false, .threshold = "max-relmse", .byDefault = true, .smallestSide = 1, .mapRange = 0, .measure = measureRelmse},
-    Metric{.name = "ssim", .title = "structural similarity", .score = "mean", .scorePrefix = "ssim_",
-           .higherIsBetter = true, .threshold = "min-ssim", .byDefault = true, .smallestSide = kSsimSmallestSide, .mapRange = 1,
+    Metric{.name = "rmse", .title = "root mean square error", .score = "", .higherIsBetter = false,
+           .threshold = "max-rmse", .byDefault = true, .smallestSide = 1, .mapRange = 0, .measure = measureRmse},
+    Metric{.name = "relmse", .title = "relative mean square error", .score = "", .higherIsBetter = false,
+           .threshold = "max-relmse", .byDefault = true, .smallestSide = 1, .mapRange = 0, .measure = measureRelmse},
+    Metric{.name = "ssim", .title = "structural similarity", .score = "mean", .higherIsBetter = true,
+           .threshold = "min-ssim", .byDefault = true, .smallestSide = kSsimSmallestSide, .mapRange = 1,
            .measure = measureSsim},
-    Metric{.name = "hdrvdp2", .title = "HDR-VDP-2.2 mean opinion score", .score = "q_mos", .scorePrefix = "",
-           .higherIsBetter = true, .threshold = "min-qmos", .byDefault = true, .smallestSide = kHdrVdp2SmallestSide, .mapRange = 1,
+    Metric{.name = "hdrvdp2", .title = "HDR-VDP-2.2 mean opinion score", .score = "q_mos", .higherIsBetter = true,
+           .threshold = "min-qmos", .byDefault = true, .smallestSide = kHdrVdp2SmallestSide, .mapRange = 1,
            .measure = measureHdrVdp2},
-    Metric{.name = "flip", .title = "LDR-FLIP", .score = "", .scorePrefix = "flip_",
-           .higherIsBetter = false, .threshold = "max-flip", .byDefault = true, .smallestSide = 1, .mapRange = 1, .measure = measureFlip},
-    Metric{.name = "hdrflip", .title = "HDR-FLIP", .score = "", .scorePrefix = "hdrflip_",
-           .higherIsBetter = false, .threshold = "max-hdrflip", .byDefault = false, .smallestSide = 1, .mapRange = 1,
+    Metric{.name = "flip", .title = "LDR-FLIP", .score = "", .higherIsBetter = false,
+           .threshold = "max-flip", .byDefault = true, .smallestSide = 1, .mapRange = 1, .measure = measureFlip},
+    Metric{.name = "hdrflip", .title = "HDR-FLIP", .score = "", .higherIsBetter = false,
+           .threshold = "max-hdrflip", .byDefault = false, .smallestSide = 1, .mapRange = 1,
            .measure = measureHdrFlip},
 };
 // clang-format on
@@ -151,8 +151,9 @@ const Metric* findMetric(std::string_view name) {
 }
 
 std::string scoreName(const Metric& metric, std::string_view score) {
-  if (score.empty() || score == "mean") return std::string(metric.name);
-  return std::string(metric.scorePrefix) + std::string(score);
+  const auto isMain = [](std::string_view name) { return name.empty() || name == "mean"; };
+  if (isMain(score)) return std::string(metric.name);
+  return (isMain(metric.score) ? std::string(metric.name) + "_" : std::string()) + std::string(score);
 }
 
 double mainScore(const Metric& metric, const Measurement& measurement) {

@@ -24,10 +24,9 @@ struct Measurement {
 };
 
 struct Metric {
-  std::string_view name;         // "ssim": of --metrics and of JSON keys
-  std::string_view title;        // for people
-  std::string_view score;        // name of the score that curves and thresholds use; empty: the only one
-  std::string_view scorePrefix;  // of the names of its other scores in tables, see scoreName
+  std::string_view name;   // "ssim": of --metrics and of JSON keys
+  std::string_view title;  // for people
+  std::string_view score;  // name of the score that curves and thresholds use; empty: the only one
   bool higherIsBetter;
   std::string_view threshold;  // its command-line option: "min-ssim"
   bool byDefault;              // measured when no metric is named
@@ -42,7 +41,7 @@ std::span<const Metric> metricList();
 const Metric* findMetric(std::string_view name);
 
 // What a score is called where scores of all metrics lie side by side: "rmse", "relmse_trimmed", "ssim" (its mean),
-// "ssim_r", "q_mos", "q".
+// "ssim_r", "q_mos", "q". Scores of a metric whose main score has a name of its own stand under their names alone.
 std::string scoreName(const Metric& metric, std::string_view score);
 
 // The score that counts.
