@@ -3,16 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <thread>
 
+#include "bench/campaign/render_stats.h"
+#include "bench/film_image.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
+<<<<<<< HEAD
 #include "cli/render_stats.h"
 #include "cli/scene_options.h"
 #include "cli/snapshots.h"
+=======
+#include "engine/load/load.h"
+>>>>>>> campaign
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image_io.h"
 
@@ -33,6 +39,7 @@ struct RenderOptions {
   std::vector<std::string> outputs;
 };
 
+<<<<<<< HEAD
 Session* interruptible = nullptr;
 void onInterrupt(int) {
   if (interruptible != nullptr) interruptible->interrupt();
@@ -65,6 +72,22 @@ Isa chosenIsa(const std::string& word) {
     throw UsageError(fmt::format("--isa {}: this machine or build does not have it", word));
   }
   return *isa;
+=======
+Scene load(const RenderOptions& options) {
+  LoadOptions load;
+  load.lenient = options.lenient;
+  if (!options.size.empty()) load.filmSize = parseSize(options.size);
+  for (const std::string& define : options.defines) {
+    const size_t equals = define.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw UsageError(fmt::format("-D {}: expected NAME=VALUE", define));
+    }
+    load.defines[define.substr(0, equals)] = define.substr(equals + 1);
+  }
+  Scene scene = loadScene(findScene(options.scene), load);
+  for (const std::string& warning : scene.warnings) fmt::print(stderr, "wavecrest: warning: {}\n", warning);
+  return scene;
+>>>>>>> campaign
 }
 
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
@@ -78,21 +101,25 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   settings.sampler = *sampler;
   settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
   settings.accel = static_cast<Accel>(parseChoice("--accel", options.accel, kAccelNames));
-  settings.isa = chosenIsa(options.isa);
+  settings.isa = parseIsaOption(options.isa);
   settings.seed = options.seed;
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
   settings.radius = options.radius;
   settings.radiusAlpha = options.radiusAlpha;
-  const int maxDepth = options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth;
-  const int rrDepth = options.rrDepth != 0 ? options.rrDepth : scene.defaults.rrDepth;
-  if (maxDepth > 0) settings.limits.maxDepth = std::min(static_cast<uint32_t>(maxDepth), kUnlimitedDepth);
-  settings.limits.rouletteDepth = static_cast<uint32_t>(rrDepth);
+  settings.limits = pathLimits(options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth,
+                               options.rrDepth != 0 ? options.rrDepth : scene.defaults.rrDepth);
   if (options.spp != 0) settings.iterations = options.spp;
   if (!options.time.empty()) settings.seconds = parseDuration(options.time);
   if (!settings.iterations && !settings.seconds) settings.iterations = scene.defaults.sampleCount;
   settings.measureStages = !options.stats.empty();
   return settings;
+}
+
+// NAME.0007.exr beside the output NAME.exr.
+std::string snapshotPath(const std::string& output, unsigned number) {
+  const std::filesystem::path path(output);
+  return (path.parent_path() / fmt::format("{}.{:04}.exr", path.stem().string(), number)).string();
 }
 
 // Files of one render: the image under each requested name, snapshots beside the first, the statistics.
@@ -104,13 +131,16 @@ class Outputs {
   void writeSnapshot(const Session& session, unsigned index) {
     const std::string path = snapshotPath(options_.outputs.front(), index);
     const RenderStatistics statistics = session.statistics();
-    snapshots_.push_back({index, statistics.renderSeconds, statistics.iterations, path});
-    writeExr(path, image(session), metadata(stats(statistics)));
+    snapshots_.push_back({.number = index,
+                          .renderSeconds = statistics.renderSeconds,
+                          .iterations = statistics.iterations,
+                          .file = path});
+    writeExr(path, filmImage(session), statsMetadata(stats(statistics)));
   }
 
   void writeFinal(const Session& session) {
     const nlohmann::ordered_json all = stats(session.statistics());
-    for (const std::string& output : options_.outputs) writeImage(output, image(session), metadata(all));
+    for (const std::string& output : options_.outputs) writeImage(output, filmImage(session), statsMetadata(all));
     if (!options_.stats.empty()) {
       const std::string text = all.dump(2) + "\n";
       writeFileAtomically(options_.stats, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
@@ -118,21 +148,9 @@ class Outputs {
   }
 
  private:
-  Image image(const Session& session) const {
-    const FilmArea& area = session.film().area();
-    return {.width = area.width, .height = area.height, .channels = 3, .pixels = session.film().resolve()};
-  }
   nlohmann::ordered_json stats(const RenderStatistics& statistics) const {
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     return renderStats(scene_, settings_, statistics, loadSeconds_, wall, snapshots_);
-  }
-  // Every scalar of the stats as a string attribute.
-  static Metadata metadata(const nlohmann::ordered_json& stats) {
-    Metadata out;
-    for (const auto& [key, value] : stats.items()) {
-      if (value.is_primitive()) out["wavecrest:" + key] = value.is_string() ? value.get<std::string>() : value.dump();
-    }
-    return out;
   }
 
   const RenderOptions& options_;
@@ -179,7 +197,7 @@ std::string checkFinite(const std::string& word) {
 
 int runRender(const RenderOptions& options) {
   checkOutputs(options);
-  SnapshotSchedule schedule(options.snapshotEvery);
+  const SnapshotSchedule schedule = parseSnapshotSchedule(options.snapshotEvery);
   const auto begin = std::chrono::steady_clock::now();
   const Scene scene = loadScene(options.scene);
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -188,20 +206,14 @@ int runRender(const RenderOptions& options) {
   Outputs outputs(options, scene, settings, loadSeconds);
 
   {
-    const InterruptGuard guard(*session);
+    InterruptGuard guard;
+    guard.watch(session.get());
     std::optional<uint64_t> goalPaths;
     if (settings.iterations) goalPaths = *settings.iterations * session->film().area().pixels.size();
     const Progress progress(static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)),
                             *session, settings.seconds, goalPaths);
-    for (;;) {
-      const std::optional<double> snapshotAt = schedule.next();
-      const bool snapshotFirst = snapshotAt && (!settings.seconds || *snapshotAt <= *settings.seconds);
-      session->renderUntil(settings.iterations, snapshotFirst ? snapshotAt : settings.seconds);
-      const bool reachedSnapshot = snapshotFirst && session->progressSeconds() >= *snapshotAt;
-      if (session->interrupted() || !reachedSnapshot) break;
-      outputs.writeSnapshot(*session, schedule.index());
-      schedule.advance();
-    }
+    renderWithSnapshots(*session, settings, schedule,
+                        [&](unsigned number) { outputs.writeSnapshot(*session, number); });
   }
   outputs.writeFinal(*session);
   return session->interrupted() ? kExitInterrupted : kExitDone;

@@ -150,6 +150,12 @@ const Metric* findMetric(std::string_view name) {
   return found == kMetrics.end() ? nullptr : &*found;
 }
 
+std::string scoreName(const Metric& metric, std::string_view score) {
+  const auto isMain = [](std::string_view name) { return name.empty() || name == "mean"; };
+  if (isMain(score)) return std::string(metric.name);
+  return (isMain(metric.score) ? std::string(metric.name) + "_" : std::string()) + std::string(score);
+}
+
 double mainScore(const Metric& metric, const Measurement& measurement) {
   for (const Score& score : measurement.scores)
     if (score.name == metric.score) return score.value;

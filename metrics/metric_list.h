@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,6 +39,10 @@ std::span<const Metric> metricList();
 
 // The entry of that name, or null.
 const Metric* findMetric(std::string_view name);
+
+// What a score is called where scores of all metrics lie side by side: "rmse", "relmse_trimmed", "ssim" (its mean),
+// "ssim_r", "q_mos", "q". Scores of a metric whose main score has a name of its own stand under their names alone.
+std::string scoreName(const Metric& metric, std::string_view score);
 
 // The score that counts.
 double mainScore(const Metric& metric, const Measurement& measurement);

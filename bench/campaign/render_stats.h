@@ -5,21 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "bench/results/results.h"
 #include "engine/scene/scene.h"
 #include "engine/session.h"
+#include "metrics/image/image_io.h"
 
 namespace wavecrest {
-
-struct SnapshotRecord {
-  unsigned index = 0;
-  double renderSeconds = 0;
-  uint64_t iterations = 0;
-  std::string file;
-};
 
 // Field names are fixed by the interface that scripts rely on; times in seconds, counts since the session began.
 nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& settings,
                                    const RenderStatistics& statistics, double loadSeconds, double wallSeconds,
                                    const std::vector<SnapshotRecord>& snapshots);
+
+// Every scalar of a stats object as a string attribute of an image, its key after "wavecrest:".
+Metadata statsMetadata(const nlohmann::ordered_json& stats);
 
 }  // namespace wavecrest
