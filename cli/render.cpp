@@ -23,7 +23,7 @@ namespace {
 // As written on the command line; resolved() turns words into settings.
 struct RenderOptions {
   std::string scene, method = "pt", time, size, sampler = "independent", precision = "float", isa = "auto",
-                     accel = "auto", snapshotEvery, stats, progress = "auto";
+                     accel = "auto", memory, snapshotEvery, stats, progress = "auto";
   uint64_t spp = 0;
   uint32_t threads = 0;
   uint64_t seed = 0;
@@ -108,6 +108,7 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   if (options.spp != 0) settings.iterations = options.spp;
   if (!options.time.empty()) settings.seconds = parseDuration(options.time);
   if (!settings.iterations && !settings.seconds) settings.iterations = scene.defaults.sampleCount;
+  if (!options.memory.empty()) settings.memoryBytes = parseMemory(options.memory);
   settings.measureStages = !options.stats.empty();
   return settings;
 }
@@ -194,6 +195,14 @@ std::string checkFinite(const std::string& word) {
   return valid ? std::string() : fmt::format("'{}' is no finite number", word);
 }
 
+std::unique_ptr<Session> createSession(const Scene& scene, const RenderSettings& settings) {
+  try {
+    return Session::create(scene, settings);
+  } catch (const MemoryBudgetError& error) {
+    throw UsageError(fmt::format("--memory: {}", error.what()));
+  }
+}
+
 int runRender(const RenderOptions& options) {
   checkOutputs(options);
   SnapshotSchedule schedule(options.snapshotEvery);
@@ -201,15 +210,21 @@ int runRender(const RenderOptions& options) {
   const Scene scene = load(options);
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const RenderSettings settings = resolved(options, scene);
-  const std::unique_ptr<Session> session = Session::create(scene, settings);
+  const ProgressKind progressKind =
+      static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  const std::unique_ptr<Session> session = createSession(scene, settings);
+  // What is kept beyond a wave, before it is: on request, and where light paths fill the memory.
+  const MemoryPlan& memory = session->memoryPlan();
+  if (settings.memoryBytes || (memory.verticesPerLightPath > 0 && progressKind != ProgressKind::none)) {
+    fmt::print(stderr, "wavecrest: memory: {}\n", memory.describe());
+  }
   Outputs outputs(options, scene, settings, loadSeconds);
 
   {
     const InterruptGuard guard(*session);
     std::optional<uint64_t> goalPaths;
     if (settings.iterations) goalPaths = *settings.iterations * session->film().area().pixels.size();
-    const Progress progress(static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)),
-                            *session, settings.seconds, goalPaths);
+    const Progress progress(progressKind, *session, settings.seconds, goalPaths);
     for (;;) {
       const std::optional<double> snapshotAt = schedule.next();
       const bool snapshotFirst = snapshotAt && (!settings.seconds || *snapshotAt <= *settings.seconds);
@@ -257,6 +272,8 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
       ->capture_default_str()
       ->check(checkFinite)
       ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--memory", options->memory,
+                      "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
   command->add_option("-D", options->defines, "value of a scene's $name: NAME=VALUE")->allow_extra_args(false);
   command->add_flag("--lenient", options->lenient, "skip what a scene asks and wavecrest lacks, with a warning");
   command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");

@@ -3,8 +3,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "engine/scene/scene_error.h"
-
 namespace wavecrest {
 namespace {
 
@@ -32,13 +30,6 @@ Specialization specializationFor(const Scene& scene, const RenderSettings& setti
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   RenderPlan<S> plan;
-  // t = 1 knows neither where a reconstruction filter spreads a splat nor which point of a lens to join.
-  const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
-  if (lens && (settings.method == Method::lt || settings.method == Method::bpt || settings.method == Method::vcm)) {
-    throw SceneError({scene.name},
-                     "method " + std::string(toString(settings.method)) +
-                         " needs a perspective sensor and the box filter; expected those, or pt, ppm or bpm");
-  }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);
   plan.scene = compileScene<S>(scene, settings.accel);
