@@ -12,8 +12,9 @@
 
 namespace wavecrest {
 
-enum class RoomLight { quad, mesh, sphere, point, spot, directional, constant, envmap };
-constexpr std::array<const char*, 8> kRoomLightNames{"quad", "mesh",        "sphere",   "point",
+// shell: a sphere around everything that shines inwards.
+enum class RoomLight { quad, mesh, sphere, shell, point, spot, directional, constant, envmap };
+constexpr std::array<const char*, 9> kRoomLightNames{"quad", "mesh",        "sphere",   "shell", "point",
                                                      "spot", "directional", "constant", "envmap"};
 
 // diffuse: all walls. mixed: a mirror, a glass and a plastic ball, a glossy and a Phong wall.
@@ -61,12 +62,16 @@ inline void addRoomLight(Scene& scene, RoomLight light) {
       addShape(scene, Sphere{.center = {0.2, 0.55, 0.1}, .radius = 0.15}, black);
       makeLight(scene, {9, 8, 6});
       break;
+    case RoomLight::shell:
+      addShape(scene, Sphere{.center = {0.1, 0, 0.2}, .radius = 4, .flipNormals = true}, black);
+      makeLight(scene, {1, 0.9, 0.8});
+      break;
     case RoomLight::point:
       addEmitter(scene, PointEmitter{{0.1, 0.5, 0.2}, {1, 0.8, 0.6}});
       break;
     case RoomLight::spot:
       addEmitter(scene, SpotEmitter{.position = {0.2, 0.8, 0.3},
-                                    .direction = {-0.2 / 1.1, -1.06 / 1.1, -0.21563858 / 1.1},
+                                    .direction = {-0.2 / 1.1, -1.06 / 1.1, -0.21540659 / 1.1},
                                     .intensity = {3, 3, 2},
                                     .cutoffAngle = 50,
                                     .beamWidth = 30});

@@ -47,6 +47,7 @@ class PathDensity {
   StrategyDensities of(const FullPath& path) const {
     const size_t k = path.edges();
     const auto& x = path.x;
+    if (k == 1) return {{1.0, 0.0}, {0.0, 0.0}};  // a light that the camera sees: s = 0 alone
     // fromLight[i], fromCamera[i]: density of x_i when it is sampled from its neighbour on that side.
     std::vector<double> fromLight(k + 1, 0), fromCamera(k + 1, 0);
     const LightDensity light = lightDensity(path);
@@ -73,7 +74,6 @@ class PathDensity {
       return p;
     };
     if (mis_.emission && !light.delta) out.connect[0] = product(0, 0);
-    if (k < 2) return out;
     if (mis_.nextEvent && joinable(1)) out.connect[1] = light.direct * product(0, 1);
     for (size_t s = 2; s < k && mis_.connect; ++s) {
       if (joinable(s - 1) && joinable(s)) out.connect[s] = product(s, s);
@@ -125,8 +125,7 @@ class PathDensity {
     const auto& light = scene_.lights[path.light];
     const PathVertex &y0 = path.x[0], &y1 = path.x[1];
     const double pick = light.pick, n0 = cosineToCamera(path, 0);
-    // The camera itself has no normal: a light that it sees directly has one strategy.
-    const double toArea = path.edges() == 1 ? 0 : cosine(y1.toLight, y1.normal) / toCamera2(path, 0);
+    const double toArea = cosine(y1.toLight, y1.normal) / toCamera2(path, 0);
     const double disc = cosine(y1.toLight, y1.normal) / (std::numbers::pi * scene_.radius * scene_.radius);
     LightDensity out;
     switch (static_cast<LightKind>(light.kind)) {
@@ -176,7 +175,8 @@ class PathDensity {
     const double theta = std::acos(std::clamp(d[1], -1.0, 1.0));
     const auto column = std::min(static_cast<uint32_t>(u * map.width), map.width - 1);
     const auto row = std::min(static_cast<uint32_t>(theta / std::numbers::pi * map.height), map.height - 1);
-    return map.probability[row * map.width + column] * map.width * map.height /
+    const double texels = static_cast<double>(map.width) * map.height;
+    return double{map.probability[row * map.width + column]} * texels /
            (2 * std::numbers::pi * std::numbers::pi * std::sin(theta));
   }
 

@@ -1,4 +1,7 @@
 // Records the whole paths of a walk and each contribution with the path that it belongs to.
+//
+// A ray starts a little off the vertex that it leaves, so that it does not meet it again. An edge is as long as the ray
+// that walked it; edges of connections run between the vertices themselves.
 #pragma once
 
 #include <array>
@@ -44,8 +47,9 @@ class PathRecorder : public WalkVisitor<S> {
 
   void leaving(Walk kind, uint32_t depth, const Wave<S>& wave) override {
     for (size_t i = 0; i < wave.rays.size; ++i) {
-      pathsOf(kind)[wave.paths.lane[i]][depth - 1].direction =
-          at(wave.rays.directionX, wave.rays.directionY, wave.rays.directionZ, i);
+      Vertex& vertex = pathsOf(kind)[wave.paths.lane[i]][depth - 1];
+      vertex.direction = at(wave.rays.directionX, wave.rays.directionY, wave.rays.directionZ, i);
+      vertex.departure = at(wave.rays.originX, wave.rays.originY, wave.rays.originZ, i);
     }
   }
 
@@ -70,7 +74,9 @@ class PathRecorder : public WalkVisitor<S> {
       while (length(at(wave.rays.originX, wave.rays.originY, wave.rays.originZ, vertex) - origin) > 1e-4) ++vertex;
       const uint32_t lane = wave.paths.lane[vertex++];
       FullPath path = lightSide(lane, depth);
-      append(path, origin + shadowSegment(wave, i));
+      const Vertex& last = light_[lane][depth];
+      const Double3 lens = origin + shadowSegment(wave, i);
+      append(path, {.position = lens}, lens, normalized(lens - last.position));
       push(depth + 1, false, path, shadowValue(wave, i));
     }
   }
@@ -91,7 +97,7 @@ class PathRecorder : public WalkVisitor<S> {
       } else {
         path = startAtInfinity(walk_.scene().infiniteLight, camera[depth - 1].direction);
       }
-      appendCameraSide(path, lane, depth - 1);
+      appendWalkedCameraSide(path, lane, depth - 1);
       push(0, false, path, value);
     }
   }
@@ -102,7 +108,7 @@ class PathRecorder : public WalkVisitor<S> {
       const Double3 segment = shadowSegment(wave, i), end = shadowOrigin(wave, i) + segment;
       FullPath path = length(segment) > 2.5 * walk_.scene().radius
                           ? startAtInfinity(onlyInfiniteLight(), normalized(segment))
-                          : startOn(lightAt(end), end);
+                          : startOn(lightAt(end), withoutOffset(end));
       appendCameraSide(path, lane, depth);
       push(1, false, path, shadowValue(wave, i));
     }
@@ -133,7 +139,8 @@ class PathRecorder : public WalkVisitor<S> {
 
  private:
   struct Vertex {
-    Double3 position{}, direction{}, normal{}, shading{};  // direction: of the ray that leaves it
+    Double3 position{}, normal{}, shading{};
+    Double3 departure{}, direction{};  // of the ray that leaves it
     uint32_t material = kNoIndex, light = kNoIndex;
     bool specular = false;
   };
@@ -151,10 +158,11 @@ class PathRecorder : public WalkVisitor<S> {
     const Double3 normal = at(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
     const Double3 shading = at(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i);
     return {.position = at(wave.rays.originX, wave.rays.originY, wave.rays.originZ, i),
-            .direction = {},
             .normal = normal,
             // Kernels for scenes without shading normals do not write that column.
             .shading = length(shading) > 0.5 ? shading : normal,
+            .departure = {},
+            .direction = {},
             .material = walk_.scene().primitives[wave.hits.primitive[i]].material};
   }
   static Double3 shadowOrigin(const Wave<S>& wave, size_t i) {
@@ -175,7 +183,7 @@ class PathRecorder : public WalkVisitor<S> {
   Double3 lightNormal(uint32_t index, const Double3& point) const {
     const auto& light = walk_.scene().lights[index];
     if (static_cast<LightKind>(light.kind) == LightKind::sphere) {
-      return normalized(point - Double3{light.p0[0], light.p0[1], light.p0[2]});
+      return normalized(point - Double3{light.p0[0], light.p0[1], light.p0[2]}) * double{light.e1[1]};
     }
     return {light.normal[0], light.normal[1], light.normal[2]};
   }
@@ -201,6 +209,11 @@ class PathRecorder : public WalkVisitor<S> {
       }
     }
     return best;
+  }
+  // Shadow rays end a little off an area light.
+  Double3 withoutOffset(const Double3& end) const {
+    const uint32_t light = lightAt(end);
+    return end - lightNormal(light, end) * double{walk_.scene().lights[light].offset};
   }
   uint32_t onlyInfiniteLight() const {
     for (uint32_t i = 0; i < walk_.scene().lightCount; ++i) {
@@ -229,29 +242,44 @@ class PathRecorder : public WalkVisitor<S> {
     const bool infinite = kind == LightKind::directional || kind == LightKind::constant || kind == LightKind::envmap;
     FullPath path =
         infinite ? startAtInfinity(light, vertices[0].direction * -1.0) : startOn(light, vertices[0].position);
-    for (uint32_t i = 1; i <= depth; ++i) append(path, vertices[i]);
+    for (uint32_t i = 1; i <= depth; ++i) {
+      const Vertex& before = vertices[i - 1];
+      if (i > 1) path.x.back().positionToCamera = before.departure;
+      append(path, vertices[i], vertices[i].position, before.direction);
+    }
     path.x[depth].specular = false;
     return path;
   }
+
+  // Joined with the vertex at `depth`.
   void appendCameraSide(FullPath& path, uint32_t lane, uint32_t depth) {
-    for (uint32_t i = depth; i >= 1; --i) append(path, camera_[lane][i]);
-    append(path, camera_[lane][0].position);
+    const Vertex& z = camera_[lane][depth];
+    const PathVertex& before = path.x.back();
+    const bool fromInfinity = path.x.size() == 1 && length(before.toCamera) > 0;
+    append(path, z, z.position, fromInfinity ? before.toCamera : normalized(z.position - before.positionToCamera));
+    appendWalkedCameraSide(path, lane, depth - 1);
+  }
+  // Walked from the vertex at `depth` to the one that the path has now.
+  void appendWalkedCameraSide(FullPath& path, uint32_t lane, uint32_t depth) {
+    for (uint32_t i = depth; i >= 1; --i) {
+      const Vertex& z = camera_[lane][i];
+      append(path, z, z.departure, z.direction * -1.0);
+    }
+    const Vertex& lens = camera_[lane][0];
+    append(path, lens, lens.position, lens.direction * -1.0);
   }
 
-  void append(FullPath& path, const Vertex& v) const {
-    append(path, v.position);
-    PathVertex& x = path.x.back();
-    x.normal = x.normalToCamera = v.normal;
-    x.shading = v.shading;
-    x.material = v.material;
-    x.specular = v.specular;
-  }
-  void append(FullPath& path, const Double3& position) const {
-    PathVertex& before = path.x.back();
-    const bool fromInfinity = path.x.size() == 1 && length(before.toCamera) > 0;
-    const Double3 direction = fromInfinity ? before.toCamera : normalized(position - before.positionToCamera);
-    before.toCamera = direction;
-    path.x.push_back({.position = position, .positionToCamera = position, .toLight = direction * -1.0});
+  // position: where the edge to the vertex before ends; direction: of that edge, towards the camera.
+  void append(FullPath& path, const Vertex& v, const Double3& position, const Double3& direction) const {
+    path.x.back().toCamera = direction;
+    path.x.push_back({.position = position,
+                      .positionToCamera = v.position,
+                      .normal = v.normal,
+                      .normalToCamera = v.normal,
+                      .shading = v.shading,
+                      .toLight = direction * -1.0,
+                      .material = v.material,
+                      .specular = v.specular});
   }
 
   void push(size_t strategy, bool merge, const FullPath& path, double value) {
@@ -286,7 +314,7 @@ class PathRecorder : public WalkVisitor<S> {
       joint.normalToCamera = z.normal;
       joint.shading = z.shading;
       joint.material = z.material;
-      appendCameraSide(path, lane, depth - 1);
+      appendWalkedCameraSide(path, lane, depth - 1);
       push(lightDepth, true, path, value);
     }
   }
