@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   int exitCode = kExitDone;
   addCompareCommand(app, exitCode);
   addRenderCommand(app, exitCode);
+  addInspectCommand(app, exitCode);
   addReportCommand(app, exitCode);
   addBenchCommand(app, exitCode);
   addScenesCommand(app, exitCode);

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <stdexcept>
+#include <string>
 
 #include "engine/flush_to_zero.h"
 #include "kernels/columns/light_vertices.h"
@@ -11,121 +12,107 @@
 namespace wavecrest {
 namespace {
 
-constexpr double kMegabyte = 1e6;
+template <class T>
+size_t bytesOf(const std::vector<T>& items) {
+  return items.size() * sizeof(T);
+}
 
-// Waves of light paths on which stored vertices are counted.
+// Waves of light paths that are walked.
 constexpr size_t kPilotWaves = 4;
 
-// Iterations differ in how many vertices they store; the plan leaves room for this much more than the mean.
+// Later waves and iterations may need some more room than the first ones.
 constexpr double kSpread = 1.05;
 
-template <class T>
-uint64_t bytesOf(const std::vector<T>& list) {
-  return list.size() * sizeof(T);
-}
-
-template <class S>
-uint64_t sceneBytes(const CompiledScene<S>& scene) {
-  const auto& environment = scene.lights.environment;
-  uint64_t bytes = bytesOf(scene.primitives.records) + bytesOf(scene.primitives.attributes) + bytesOf(scene.materials) +
-                   bytesOf(scene.lights.records) + bytesOf(scene.lights.table) + bytesOf(scene.textures.records) +
-                   bytesOf(scene.textures.texels) + bytesOf(environment.texels) + bytesOf(environment.probability) +
-                   bytesOf(environment.table);
-  if (scene.embree) bytes += scene.embree->bytes();
-  return bytes;
-}
-
-// How many vertices the light paths of the first iteration store.
+// What the first waves of light paths of iteration 0 left behind.
 struct Pilot {
-  double verticesPerPath = 0;
-  size_t longest = 0;  // vertices of the longest
+  size_t paths = 0, stored = 0;
+  size_t room = 0;    // of the largest store: of all vertices, and of those that it might have stored at last
+  size_t depths = 0;  // of the longest path
 };
+
 template <class S>
-Pilot tracePilot(const RenderPlan<S>& plan, const RenderSettings& settings, size_t lightPaths) {
+Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
+                     size_t lightPaths) {
   const FlushToZero flushToZero;
   Wave<S> wave(settings.waveSize, plan.needs);
   LightStore<S> store(settings.waveSize, plan.needs);
+  std::vector<int64_t> splats(plan.pipeline.splats() ? 3 * area.pixels.size() : 0);
   StageCounters counters;
   StageContext<S> context;
   context.scene = &plan.scene->view;
+  context.pixels = area.pixels.data();
   context.sampler = {settings.sampler, settings.seed, 0};
   context.limits = settings.limits;
+  context.mis = misSettings(plan.pipeline.lightPass->strategies, settings, plan.scene->view.radius, lightPaths, 0);
   context.light = &store;
+  context.splats = {splats.data(), area.x0, area.y0, area.width, area.height};
   context.counters = &counters;
-  Pass<S> pass = *plan.pipeline.lightPass;
-  context.mis = pass.strategies;
-  // Only what stores: splats have nowhere to go yet.
-  std::erase_if(pass.perDepth, [](const StageCall<S>& call) { return call.items == shadowItems<S>; });
-  size_t paths = 0, longest = 0;
-  for (size_t i = 0; i < kPilotWaves && paths < lightPaths; ++i) {
-    wave.firstPath = paths;
-    wave.pathCount = std::min<size_t>(settings.waveSize, lightPaths - paths);
-    runPass(pass, context, wave, nullptr);
-    paths += wave.pathCount;
-    longest = std::max<size_t>(longest, store.depths());
+  Pilot pilot;
+  for (size_t i = 0; i < kPilotWaves && pilot.paths < lightPaths; ++i) {
+    wave.firstPath = pilot.paths;
+    wave.pathCount = std::min<size_t>(settings.waveSize, lightPaths - pilot.paths);
+    runPass<S>(*plan.pipeline.lightPass, context, wave, nullptr);
+    pilot.paths += wave.pathCount;
+    pilot.stored += store.vertices.size;
+    pilot.room = std::max(pilot.room, store.roomUsed());
+    pilot.depths = std::max<size_t>(pilot.depths, store.depths());
   }
-  return {static_cast<double>(counters.lightVertices) / static_cast<double>(std::max<size_t>(paths, 1)), longest};
+  return pilot;
 }
 
 template <class S>
 class Planner {
  public:
-  Planner(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels)
-      : plan_(plan), settings_(settings), pixels_(pixels) {
+  Planner(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
+      : plan_(plan), settings_(settings), area_(area), emptyStore_(settings.waveSize, plan.needs) {
     if (settings.lightPaths && !plan.pipeline.photonMap) {
       throw std::invalid_argument("planMemory: a number of light paths for " + std::string(toString(settings.method)));
-    }
-    memory_.lightPaths = plan.pipeline.bidirectional() ? settings.lightPaths.value_or(pixels) : 0;
-    if (plan.pipeline.photonMap) {
-      pilot_ = tracePilot(plan, settings, static_cast<size_t>(memory_.lightPaths));
-      memory_.verticesPerLightPath = pilot_.verticesPerPath;
     }
   }
 
   MemoryPlan run() {
-    addFixedItems();
-    if (plan_.pipeline.photonMap) {
-      if (settings_.memoryBytes) fitLightPaths(*settings_.memoryBytes);
-      memory_.items.push_back({"light vertices", vertexBytes(memory_.lightPaths)});
-      memory_.items.push_back({"photon map", photonBytes(memory_.lightPaths)});
-    }
-    if (settings_.memoryBytes && memory_.total() > *settings_.memoryBytes) refuse(memory_.total());
+    const size_t pixels = area_.pixels.size();
+    MemoryUse& use = memory_.use;
+    use.scene = sceneBytes(*plan_.scene);
+    memory_.bytesPerPath = Wave<S>(1, plan_.needs).bytesPerPath();
+    use.waves = settings_.threads * waveBytes(memory_.bytesPerPath, settings_.waveSize);
+    use.film = filmBytes(pixels);
+    if (plan_.pipeline.splats()) use.splats = (settings_.threads + 1) * splatBytes(pixels);
+    if (plan_.pipeline.lightPass) addLightPaths(static_cast<size_t>(settings_.lightPaths.value_or(pixels)));
+    if (settings_.memoryBytes && use.total() > *settings_.memoryBytes) refuse(use.total());
     return memory_;
   }
 
  private:
-  void addFixedItems() {
-    const uint64_t threads = settings_.threads;
-    memory_.items.push_back({"scene", sceneBytes(*plan_.scene)});
-    memory_.items.push_back({"film", pixels_ * (3 * sizeof(double) + 2 * sizeof(uint32_t))});
-    // One sum for each thread, and the total.
-    if (plan_.pipeline.splats()) memory_.items.push_back({"splats", (threads + 1) * pixels_ * 3 * sizeof(int64_t)});
-    Wave<S> wave(1, plan_.needs);
-    LightStore<S> store(1, plan_.needs);
-    uint64_t perPath = wave.bytesPerPath();
-    // A wave's own light vertices: some 8 per path at most, or none where a photon map gathers all.
-    if (plan_.pipeline.bidirectional()) perPath += 8 * store.vertices.bytesPerItem();
-    memory_.items.push_back({"waves", threads * settings_.waveSize * perPath});
+  void addLightPaths(size_t asked) {
+    pilot_ = walkLightPaths(plan_, settings_, area_, asked);
+    const double spread = pilot_.paths < asked ? kSpread : 1;
+    memory_.verticesPerWave = static_cast<size_t>(spread * static_cast<double>(pilot_.room));
+    memory_.lightPaths = asked;
+    if (plan_.pipeline.photonMap && settings_.memoryBytes) fitLightPaths(*settings_.memoryBytes);
+    memory_.use.lightVertices = vertexBytes(memory_.lightPaths);
+    if (plan_.pipeline.photonMap) memory_.use.photonMap = photonBytes(memory_.lightPaths);
   }
 
-  uint64_t vertexBytes(uint64_t lightPaths) const {
-    const uint64_t waves = (lightPaths + settings_.waveSize - 1) / settings_.waveSize;
-    const LightStore<S> store(settings_.waveSize, plan_.needs);
-    return waves * store.bytesFor(memory_.verticesOf(settings_.waveSize), pilot_.longest + pilot_.longest / 4);
+  // Of a wave per thread, or with a photon map of all waves.
+  size_t vertexBytes(size_t lightPaths) const {
+    const size_t waves = (lightPaths + settings_.waveSize - 1) / settings_.waveSize;
+    return (plan_.pipeline.photonMap ? waves : settings_.threads) *
+           emptyStore_.bytesFor(memory_.verticesPerWave, pilot_.depths);
   }
-  uint64_t photonBytes(uint64_t lightPaths) const {
-    return PhotonMap<S>::bytesFor(memory_.verticesOf(static_cast<size_t>(lightPaths)));
+  size_t photonBytes(size_t lightPaths) const {
+    const double perPath = static_cast<double>(pilot_.stored) / static_cast<double>(std::max<size_t>(pilot_.paths, 1));
+    return PhotonMap<S>::bytesFor(static_cast<size_t>(std::llround(perPath * static_cast<double>(lightPaths))));
   }
 
   // The most light paths, up to those asked for, that leave the plan within the budget.
-  void fitLightPaths(uint64_t budget) {
-    const uint64_t fixed = memory_.total();
-    const auto needed = [&](uint64_t paths) { return fixed + vertexBytes(paths) + photonBytes(paths); };
-    const uint64_t least = std::min<uint64_t>(settings_.waveSize, memory_.lightPaths);
-    if (needed(least) > budget) refuse(needed(least));
-    uint64_t fits = least, most = memory_.lightPaths;
+  void fitLightPaths(size_t budget) {
+    const size_t fixed = memory_.use.total();
+    const auto needed = [&](size_t paths) { return fixed + vertexBytes(paths) + photonBytes(paths); };
+    size_t most = memory_.lightPaths, fits = std::min<size_t>(settings_.waveSize, most);
+    if (needed(fits) > budget) refuse(needed(fits));
     while (fits < most) {
-      const uint64_t middle = fits + (most - fits + 1) / 2;
+      const size_t middle = fits + (most - fits + 1) / 2;
       if (needed(middle) <= budget) {
         fits = middle;
       } else {
@@ -135,65 +122,48 @@ class Planner {
     memory_.lightPaths = fits;
   }
 
-  [[noreturn]] void refuse(uint64_t needed) const {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "%s needs %.1f MB for this scene; expected a memory budget of at least that, not %.1f MB",
-                  std::string(toString(settings_.method)).c_str(), std::ceil(static_cast<double>(needed) / 1e5) / 10,
-                  static_cast<double>(*settings_.memoryBytes) / kMegabyte);
-    throw MemoryBudgetError(text);
+  [[noreturn]] void refuse(size_t needed) const {
+    const auto megabytes = [](double bytes) { return std::to_string(static_cast<uint64_t>(std::ceil(bytes / 1e6))); };
+    throw MemoryBudgetError("this scene needs " + megabytes(static_cast<double>(needed)) + " MB at least by " +
+                            std::string(toString(settings_.method)) + "; expected a budget of that or more");
   }
 
   const RenderPlan<S>& plan_;
   const RenderSettings& settings_;
-  const size_t pixels_;
+  const FilmArea& area_;
+  const LightStore<S> emptyStore_;
   Pilot pilot_;
   MemoryPlan memory_;
 };
 
 }  // namespace
 
-uint64_t MemoryPlan::total() const {
-  uint64_t sum = 0;
-  for (const Item& item : items) sum += item.bytes;
-  return sum;
+template <class S>
+size_t sceneBytes(const CompiledScene<S>& scene) {
+  return bytesOf(scene.primitives.records) + bytesOf(scene.primitives.attributes) + bytesOf(scene.materials) +
+         bytesOf(scene.textures.records) + bytesOf(scene.textures.texels) + bytesOf(scene.lights.records) +
+         bytesOf(scene.lights.table) + bytesOf(scene.lights.environment.texels) +
+         bytesOf(scene.lights.environment.probability) + bytesOf(scene.lights.environment.table) +
+         (scene.embree ? scene.embree->bytes() : 0);
 }
+template size_t sceneBytes(const CompiledScene<float>&);
+template size_t sceneBytes(const CompiledScene<double>&);
 
-size_t MemoryPlan::verticesOf(size_t paths) const {
-  return static_cast<size_t>(std::ceil(verticesPerLightPath * kSpread * static_cast<double>(paths)));
-}
-
-std::string MemoryPlan::describe() const {
-  std::string text;
-  char part[96];
-  const auto megabytes = [](uint64_t bytes) { return static_cast<double>(bytes) / kMegabyte; };
-  for (const Item& item : items) {
-    std::snprintf(part, sizeof part, "%s%s %.1f MB", text.empty() ? "" : ", ", std::string(item.name).c_str(),
-                  megabytes(item.bytes));
-    text += part;
-  }
-  std::snprintf(part, sizeof part, "; together %.1f MB", megabytes(total()));
-  text += part;
-  if (lightPaths != 0) text += "; " + std::to_string(lightPaths) + " light paths in each iteration";
-  if (verticesPerLightPath > 0) {
-    std::snprintf(part, sizeof part, " of %.2f vertices", verticesPerLightPath);
-    text += part;
-  }
-  return text;
-}
+size_t filmBytes(size_t pixels) { return pixels * (3 * sizeof(double) + sizeof(uint32_t)); }
+size_t splatBytes(size_t pixels) { return pixels * 3 * sizeof(int64_t); }
+size_t waveBytes(size_t bytesPerPath, size_t waveSize) { return bytesPerPath * paddedItems(waveSize); }
 
 template <class S>
-MemoryPlan planMemory(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels) {
-  return Planner<S>(plan, settings, pixels).run();
+MemoryPlan planMemory(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
+  return Planner<S>(plan, settings, area).run();
 }
-template MemoryPlan planMemory(const RenderPlan<float>&, const RenderSettings&, size_t);
-template MemoryPlan planMemory(const RenderPlan<double>&, const RenderSettings&, size_t);
+template MemoryPlan planMemory(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);
+template MemoryPlan planMemory(const RenderPlan<double>&, const RenderSettings&, const FilmArea&);
 
 MemoryPlan planMemory(const Scene& scene, const RenderSettings& settings) {
-  const size_t pixels = filmArea(scene.film).pixels.size();
-  if (settings.precision == Precision::doubled)
-    return planMemory(planRender<double>(scene, settings), settings, pixels);
-  return planMemory(planRender<float>(scene, settings), settings, pixels);
+  const FilmArea area = filmArea(scene.film);
+  return settings.precision == Precision::doubled ? planMemory(planRender<double>(scene, settings), settings, area)
+                                                  : planMemory(planRender<float>(scene, settings), settings, area);
 }
 
 }  // namespace wavecrest

@@ -9,8 +9,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "engine/flush_to_zero.h"
 #include "engine/render_plan.h"
@@ -114,14 +112,14 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
   const WorkerLimit limit(settings.threads);
   const size_t pixels = film_.area().pixels.size();
   arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
-  memory_ = planMemory(plan_, settings, pixels);
+  memory_ = planMemory(plan_, settings, film_.area());
   const auto waves = [&](size_t paths) { return (paths + settings.waveSize - 1) / settings.waveSize; };
   lightDone_.resize(waves(memory_.lightPaths));
   cameraDone_.resize(waves(pixels));
   if (plan_.pipeline.photonMap) {
     for (size_t i = 0; i < lightDone_.size(); ++i) {
       stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs));
-      stores_.back()->reserve(memory_.verticesOf(settings.waveSize));
+      stores_.back()->reserve(memory_.verticesPerWave);
     }
   }
   buildSeconds_ = secondsSince(begin);
@@ -137,22 +135,6 @@ typename TypedSession<S>::Worker& TypedSession<S>::worker() {
     if (plan_.pipeline.splats()) mine->splats.resize(3 * film_.area().pixels.size());
   }
   return *mine;
-}
-
-// Constants of an iteration's densities (METHODS 5.1, 6.1), with one camera path per pixel.
-MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, uint64_t count,
-                        uint64_t iteration) {
-  const auto lightPaths = static_cast<double>(count);
-  strategies.lightPaths = lightPaths;
-  strategies.camN = lightPaths;
-  const double shrink = std::pow(static_cast<double>(iteration + 1), (settings.radiusAlpha - 1) / 2);
-  // Below the precision of positions nothing could be merged.
-  strategies.radius = std::max(settings.radius * shrink, 16 * 0x1p-24) * sceneRadius;
-  const double density = std::numbers::pi * strategies.radius * strategies.radius * lightPaths;
-  strategies.mergeNorm = 1 / density;
-  strategies.kVM = strategies.merge ? density : 0;
-  strategies.kVC = strategies.merge && strategies.connect ? 1 / density : 0;
-  return strategies;
 }
 
 template <class S>
@@ -309,6 +291,9 @@ RenderStatistics TypedSession<S>::statistics() const {
   out.isa = plan_.isa;
   out.specialization = plan_.specialization;
   out.accel = plan_.accel();
+  out.memory.scene = sceneBytes(*plan_.scene);
+  out.memory.film = filmBytes(film_.area().pixels.size());
+  if (plan_.pipeline.splats()) out.memory.splats = splatBytes(film_.area().pixels.size());
   if (plan_.pipeline.lightPass) addRows(*plan_.pipeline.lightPass, out.stages);
   const size_t cameraRow = out.stages.size();
   addRows(plan_.pipeline.cameraPass, out.stages);
@@ -317,15 +302,17 @@ RenderStatistics TypedSession<S>::statistics() const {
     out.lightPaths += worker->lightPaths;
     out.counters += worker->counters;
     out.bytesPerPath = worker->wave.bytesPerPath();
-    out.lightBytes += worker->light.bytes();
+    out.memory.waves += waveBytes(out.bytesPerPath, settings_.waveSize);
+    out.memory.splats += worker->splats.size() * sizeof(worker->splats[0]);
+    if (!plan_.pipeline.photonMap) out.memory.lightVertices += worker->light.bytes();
     addTallies(worker->lightTallies, 0, out.stages);
     addTallies(worker->cameraTallies, cameraRow, out.stages);
   }
   if (plan_.pipeline.photonMap) {
     out.stages.push_back({"photon map"});
     addTallies({photonTally_}, out.stages.size() - 1, out.stages);
-    for (const auto& store : stores_) out.lightBytes += store->bytes();
-    out.lightBytes += photons_.bytes();
+    for (const auto& store : stores_) out.memory.lightVertices += store->bytes();
+    out.memory.photonMap = photons_.bytes();
   }
   return out;
 }

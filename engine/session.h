@@ -34,7 +34,7 @@ struct RenderStatistics {
   Specialization specialization{};
   Accel accel{};
   size_t bytesPerPath = 0;  // of a wave's columns
-  size_t lightBytes = 0;    // light vertices and photon map
+  MemoryUse memory;         // of all threads that have worked
 };
 
 class Session {

@@ -280,7 +280,11 @@ BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<S>>& records) {
     }
   }
   BoundingSphere bounds;
-  for (size_t axis = 0; axis < 3; ++axis) bounds.center[axis] = (low[axis] + high[axis]) / 2;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    bounds.low[axis] = low[axis];
+    bounds.high[axis] = high[axis];
+    bounds.center[axis] = (low[axis] + high[axis]) / 2;
+  }
   bounds.radius = length(high - low) / 2 * 1.0001;
   return bounds;
 }

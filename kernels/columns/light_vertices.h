@@ -51,6 +51,7 @@ class LightStore {
   void clear() {
     vertices.size = 0;
     depths_ = 0;
+    roomUsed_ = 0;
   }
 
   // Begins the vertices of the next depth (1, 2, ...), with room for `count` of them.
@@ -59,6 +60,7 @@ class LightStore {
     if (partners_.size() < depths_ * lanes_) partners_.resize(depths_ * lanes_);
     std::fill_n(partners_.begin() + static_cast<std::ptrdiff_t>((depths_ - 1) * lanes_), lanes_, kNoIndex);
     const size_t needed = vertices.size + count;
+    roomUsed_ = std::max(roomUsed_, needed);
     if (needed > vertices.capacity()) grow(std::max(needed, vertices.capacity() + vertices.capacity() / 4));
   }
 
@@ -96,6 +98,9 @@ class LightStore {
   const uint32_t* partners(uint32_t depth) const { return partners_.data() + (depth - 1) * lanes_; }
   uint32_t* partners(uint32_t depth) { return partners_.data() + (depth - 1) * lanes_; }
 
+  // The capacity that the depths begun since clear() have asked for.
+  size_t roomUsed() const { return roomUsed_; }
+
   size_t bytes() const { return vertices.bytes(vertices.capacity()) + partners_.size() * sizeof(uint32_t); }
   // The same for a store of this capacity whose longest path has so many vertices.
   size_t bytesFor(size_t capacity, size_t depths) const {
@@ -127,7 +132,7 @@ class LightStore {
   }
 
   size_t lanes_;
-  size_t depths_ = 0;
+  size_t depths_ = 0, roomUsed_ = 0;
   std::vector<uint32_t> partners_;
   Arena arena_;
 };

@@ -17,8 +17,9 @@ enum class RoomLight { quad, mesh, sphere, shell, point, spot, directional, cons
 constexpr std::array<const char*, 9> kRoomLightNames{"quad", "mesh",        "sphere",   "shell", "point",
                                                      "spot", "directional", "constant", "envmap"};
 
-// diffuse: all walls. mixed: a mirror, a glass and a plastic ball, a glossy and a Phong wall.
-enum class RoomMaterials { diffuse, mixed };
+// diffuse: all walls. mixed: a mirror, a glass and a plastic ball, a glossy and a Phong wall. rough: the same room
+// without delta lobes, so that every method makes all of its paths whatever the light.
+enum class RoomMaterials { diffuse, mixed, rough };
 
 struct Room {
   RoomLight light = RoomLight::quad;
@@ -100,7 +101,8 @@ inline void addRoomLight(Scene& scene, RoomLight light) {
 inline Scene roomScene(const Room& room) {
   Scene scene;
   scene.name = "room";
-  const bool mixed = room.materials == RoomMaterials::mixed;
+  const bool mixed = room.materials != RoomMaterials::diffuse, rough = room.materials == RoomMaterials::rough;
+  const TexturedFloat alpha{rough ? 0.3 : 0.0};
   const uint32_t white = addDiffuse(scene, 0.7, 0.7, 0.7), red = addDiffuse(scene, 0.7, 0.2, 0.2);
   const uint32_t glossy = addMaterial(scene, Conductor{.eta = {0.2, 0.9, 1.1}, .k = {3.9, 2.4, 2.2}, .alpha = {0.3}});
   const uint32_t phong = addMaterial(scene, Phong{.exponent = 8});
@@ -121,10 +123,10 @@ inline Scene roomScene(const Room& room) {
   addShape(scene, Rectangle{{1, -1, -1}, {0, 0, 2}, {0, 2, 0}}, mixed ? glossy : white);  // right, facing -x
   addShape(scene, Rectangle{{-1, 1, -1}, {2, 0, 0}, {0, 0, 2}}, white);                   // ceiling, facing -y
   const uint32_t mirror =
-      addMaterial(scene, Conductor{.perfectMirror = true, .specularReflectance = {{0.9, 0.9, 0.9}}});
-  const uint32_t glass = addMaterial(scene, Dielectric{.intIor = 1.5, .extIor = 1});
+      addMaterial(scene, Conductor{.perfectMirror = true, .specularReflectance = {{0.9, 0.9, 0.9}}, .alpha = alpha});
+  const uint32_t glass = addMaterial(scene, Dielectric{.intIor = 1.5, .extIor = 1, .alpha = alpha});
   const uint32_t plastic =
-      addMaterial(scene, Plastic{.intIor = 1.5, .extIor = 1, .diffuseReflectance = {{0.3, 0.4, 0.7}}});
+      addMaterial(scene, Plastic{.intIor = 1.5, .extIor = 1, .diffuseReflectance = {{0.3, 0.4, 0.7}}, .alpha = alpha});
   addShape(scene, Sphere{.center = {-0.5, -0.65, -0.4}, .radius = 0.35}, mixed ? mirror : red);
   if (mixed) {
     addShape(scene, Sphere{.center = {0.3, -0.7, 0.2}, .radius = 0.3}, glass);
