@@ -12,13 +12,8 @@
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
-<<<<<<< HEAD
-#include "cli/render_stats.h"
-#include "cli/scene_options.h"
-#include "cli/snapshots.h"
-=======
-#include "engine/load/load.h"
->>>>>>> campaign
+const Progress progress(progressKind, *session, settings.seconds, goalPaths);
+renderWithSnapshots(*session, settings, schedule, [&](unsigned number) { outputs.writeSnapshot(*session, number); });
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image_io.h"
 
@@ -28,7 +23,7 @@ namespace {
 // As written on the command line; resolved() turns words into settings.
 struct RenderOptions {
   SceneOptions scene;
-  std::string method = "pt", time, sampler = "independent", precision = "float", isa = "auto", accel = "auto",
+  std::string method = "pt", time, sampler = "independent", precision = "float", isa = "auto", accel = "auto", memory,
               snapshotEvery, stats, progress = "auto";
   uint64_t spp = 0;
   uint32_t threads = 0;
@@ -112,6 +107,7 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   if (options.spp != 0) settings.iterations = options.spp;
   if (!options.time.empty()) settings.seconds = parseDuration(options.time);
   if (!settings.iterations && !settings.seconds) settings.iterations = scene.defaults.sampleCount;
+  if (!options.memory.empty()) settings.memoryBytes = parseMemory(options.memory);
   settings.measureStages = !options.stats.empty();
   return settings;
 }
@@ -195,6 +191,32 @@ std::string checkFinite(const std::string& word) {
   return valid ? std::string() : fmt::format("'{}' is no finite number", word);
 }
 
+std::unique_ptr<Session> createSession(const Scene& scene, const RenderSettings& settings) {
+  try {
+    return Session::create(scene, settings);
+  } catch (const MemoryBudgetError& error) {
+    throw UsageError(fmt::format("--memory: {}", error.what()));
+  }
+}
+
+// One line: the parts in MB, their sum, and the light paths where there are any.
+std::string describe(const MemoryPlan& plan) {
+  const MemoryUse& use = plan.use;
+  std::string text;
+  const auto add = [&](const char* name, size_t bytes) {
+    if (bytes != 0) text += fmt::format("{} {:.1f} MB, ", name, static_cast<double>(bytes) / 1e6);
+  };
+  add("scene", use.scene);
+  add("waves", use.waves);
+  add("film", use.film);
+  add("splats", use.splats);
+  add("light vertices", use.lightVertices);
+  add("photon map", use.photonMap);
+  text += fmt::format("together {:.1f} MB", static_cast<double>(use.total()) / 1e6);
+  if (plan.lightPaths != 0) text += fmt::format("; {} light paths in each iteration", plan.lightPaths);
+  return text;
+}
+
 int runRender(const RenderOptions& options) {
   checkOutputs(options);
   const SnapshotSchedule schedule = parseSnapshotSchedule(options.snapshotEvery);
@@ -202,7 +224,13 @@ int runRender(const RenderOptions& options) {
   const Scene scene = loadScene(options.scene);
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const RenderSettings settings = resolved(options, scene);
-  const std::unique_ptr<Session> session = Session::create(scene, settings);
+  const ProgressKind progressKind =
+      static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  const std::unique_ptr<Session> session = createSession(scene, settings);
+  // On request, and where light paths fill the memory.
+  if (settings.memoryBytes || (session->memoryPlan().use.photonMap > 0 && progressKind != ProgressKind::none)) {
+    fmt::print(stderr, "wavecrest: memory: {}\n", describe(session->memoryPlan()));
+  }
   Outputs outputs(options, scene, settings, loadSeconds);
 
   {
@@ -210,10 +238,23 @@ int runRender(const RenderOptions& options) {
     guard.watch(session.get());
     std::optional<uint64_t> goalPaths;
     if (settings.iterations) goalPaths = *settings.iterations * session->film().area().pixels.size();
+<<<<<<< HEAD
     const Progress progress(static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)),
                             *session, settings.seconds, goalPaths);
     renderWithSnapshots(*session, settings, schedule,
                         [&](unsigned number) { outputs.writeSnapshot(*session, number); });
+=======
+    const Progress progress(progressKind, *session, settings.seconds, goalPaths);
+    for (;;) {
+      const std::optional<double> snapshotAt = schedule.next();
+      const bool snapshotFirst = snapshotAt && (!settings.seconds || *snapshotAt <= *settings.seconds);
+      session->renderUntil(settings.iterations, snapshotFirst ? snapshotAt : settings.seconds);
+      const bool reachedSnapshot = snapshotFirst && session->progressSeconds() >= *snapshotAt;
+      if (session->interrupted() || !reachedSnapshot) break;
+      outputs.writeSnapshot(*session, schedule.index());
+      schedule.advance();
+    }
+>>>>>>> bidir
   }
   outputs.writeFinal(*session);
   return session->interrupted() ? kExitInterrupted : kExitDone;
@@ -251,6 +292,8 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
       ->capture_default_str()
       ->check(checkFinite)
       ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--memory", options->memory,
+                      "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
   command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");
   command->add_option("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable")
       ->allow_extra_args(false);

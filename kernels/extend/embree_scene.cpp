@@ -77,6 +77,11 @@ EmbreeScene::EmbreeScene(const PrimitiveRecord<S>* records, uint32_t quads, uint
   if (device == nullptr) {
     throw std::runtime_error("Embree: no device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
   }
+  const auto countBytes = [](void* counter, ssize_t bytes, bool) {
+    static_cast<std::atomic<int64_t>*>(counter)->fetch_add(bytes);
+    return true;
+  };
+  rtcSetDeviceMemoryMonitorFunction(device, countBytes, &bytes_);
   RTCScene scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   addFaces(device, scene, records, quads, true, kQuads);

@@ -14,9 +14,10 @@ namespace {
 constexpr uint32_t kPartitions = 256;
 constexpr uint32_t kMinBuckets = 1u << 12;
 
-// Room for later iterations, whose light paths may have some more vertices.
-size_t withReserve(size_t vertices) { return vertices + vertices / 8; }
-uint32_t bucketsFor(size_t vertices) { return std::max(std::bit_ceil(static_cast<uint32_t>(vertices)), kMinBuckets); }
+// Iterations differ a little in how many photons they have: some room, so that memory is allocated once.
+constexpr size_t withRoom(size_t count) { return count + count / 16; }
+
+constexpr size_t bucketCount(size_t photons) { return std::max<size_t>(std::bit_ceil(photons), kMinBuckets); }
 
 template <class S>
 struct Bounds {
@@ -67,7 +68,7 @@ void PhotonMap<S>::placeGrid(std::span<LightStore<S>* const> stores, double radi
     cell = std::max(cell, (static_cast<double>(high) - low) / (1 << 21));
   }
   grid.inverseCell = static_cast<S>(1 / cell);
-  grid.bucketMask = bucketsFor(total) - 1;
+  grid.bucketMask = static_cast<uint32_t>(bucketCount(total)) - 1;
 }
 
 template <class S>
@@ -147,8 +148,13 @@ void PhotonMap<S>::build(std::span<LightStore<S>* const> stores, double radius, 
   size_t total = 0;
   for (const LightStore<S>* store : stores) total += store->vertices.size;
   if (total > photons.capacity()) {
-    arena_ = Arena(photons.bytes(withReserve(total)));
-    photons.bind(arena_, withReserve(total));
+    arena_ = Arena();  // first, so that the old and the new are not there at once
+    arena_ = Arena(photons.bytes(withRoom(total)));
+    photons.bind(arena_, withRoom(total));
+    for (std::vector<Entry>* list : {&entries_, &sorted_}) {
+      *list = {};
+      list->reserve(withRoom(total));
+    }
   }
   photons.size = total;
   if (total == 0) {
@@ -161,15 +167,15 @@ void PhotonMap<S>::build(std::span<LightStore<S>* const> stores, double radius, 
 }
 
 template <class S>
-size_t PhotonMap<S>::bytes() const {
-  return photons.bytes(photons.capacity()) + bucketStart.capacity() * sizeof(uint32_t) +
-         (entries_.capacity() + sorted_.capacity()) * sizeof(Entry);
+size_t PhotonMap<S>::bytesFor(size_t count) {
+  const size_t room = withRoom(count);
+  return Photons<S>().bytes(room) + (bucketCount(count) + 1) * sizeof(uint32_t) + 2 * room * sizeof(Entry);
 }
 
 template <class S>
-size_t PhotonMap<S>::bytesFor(size_t vertices) {
-  return Photons<S>().bytes(withReserve(vertices)) + (size_t{bucketsFor(vertices)} + 1) * sizeof(uint32_t) +
-         2 * vertices * sizeof(Entry);
+size_t PhotonMap<S>::bytes() const {
+  return photons.bytes(photons.capacity()) + bucketStart.capacity() * sizeof(uint32_t) +
+         (entries_.capacity() + sorted_.capacity()) * sizeof(Entry);
 }
 
 template struct PhotonMap<float>;

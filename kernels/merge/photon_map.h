@@ -59,8 +59,8 @@ struct PhotonMap {
   void build(std::span<LightStore<S>* const> stores, double radius, const ForEach& forEach);
 
   size_t bytes() const;
-  // Of a map built for the first time from this many vertices.
-  static size_t bytesFor(size_t vertices);
+  // The same for a map of so many photons.
+  static size_t bytesFor(size_t count);
 
  private:
   struct Entry {

@@ -70,6 +70,7 @@ WAVECREST_INLINE Vec3<typename P::Real> metRadiance(const StageContext<typename 
 // the density of next event estimation depends on the receiver and is only known here (METHODS 5.3).
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE typename P::Real firstLightEdge(const SceneView<typename P::Storage>& scene, UInt index,
+                                                 Vec3<typename P::Real> origin, Vec3<typename P::Real> direction,
                                                  Vec3<typename P::Real> receiver, typename P::Real dist2) {
   using Real = typename P::Real;
   const LightLanes<Real> light = loadLight(scene, index);
@@ -83,9 +84,11 @@ WAVECREST_INLINE typename P::Real firstLightEdge(const SceneView<typename P::Sto
       const Real d2 = length2(light.p0 - receiver);
       const Mask outside = d2 > r2 * Real(kInsideSphere);
       const Real conePdf = Real(kInvPi / 2) * reciprocal<P>(sphereConeHeight(r2, d2));
-      // generateLightPaths put n_0 / emissionPdf into dVCM: times the cone's density this is directPdfA d^2 over it.
-      // From inside the sphere, 1 / area d^2 / n_0 takes its place; n_0 is 1 / (pi area times what it put there).
-      factor = select(sphere & outside, conePdf, factor);
+      // generateLightPaths put n_0 / emissionPdf into dVCM: times the direct density per solid angle this is directPdfA
+      // d^2 over emissionPdf. That density is the cone's, or from inside the sphere d^2 / (area n_0).
+      const Real n0 = abs(dot(origin - light.p0, direction)) * reciprocal<P>(light.radius);
+      const Real areaPdf = light.inverseArea * dist2 * reciprocal<P>(max(n0, Real(1e-12f)));
+      factor = select(sphere, select(outside, conePdf, areaPdf), factor);
     }
   }
   return factor;
@@ -144,7 +147,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     if constexpr (has(kFeatures, kBidirectional)) {
       if (firstLightVertex) {
         const UInt from = select(hit, load(paths.light, i), UInt(0u));
-        toArea = firstLightEdge<P, kFeatures>(scene, from, surface.position, dist2);
+        toArea = firstLightEdge<P, kFeatures>(scene, from, origin, direction, surface.position, dist2);
       }
       mis.dVC = mis.dVC * inverseCosine;
       mis.dVM = mis.dVM * inverseCosine;
