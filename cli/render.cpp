@@ -121,7 +121,10 @@ class Outputs {
   void writeSnapshot(const Session& session, unsigned index) {
     const std::string path = snapshotPath(options_.outputs.front(), index);
     const RenderStatistics statistics = session.statistics();
-    snapshots_.push_back({index, statistics.renderSeconds, statistics.iterations, path});
+    snapshots_.push_back({.number = index,
+                          .renderSeconds = statistics.renderSeconds,
+                          .iterations = statistics.iterations,
+                          .file = path});
     writeExr(path, image(session), metadata(stats(statistics)));
   }
 

@@ -33,7 +33,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
   }
   nlohmann::ordered_json snapshotRows = nlohmann::ordered_json::array();
   for (const SnapshotRecord& snapshot : snapshots) {
-    snapshotRows.push_back({{"index", snapshot.index},
+    snapshotRows.push_back({{"index", snapshot.number},
                             {"render_seconds", snapshot.renderSeconds},
                             {"iterations", snapshot.iterations},
                             {"file", snapshot.file}});

@@ -5,17 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "bench/results/results.h"
 #include "engine/scene/scene.h"
 #include "engine/session.h"
 
 namespace wavecrest {
-
-struct SnapshotRecord {
-  unsigned index = 0;
-  double renderSeconds = 0;
-  uint64_t iterations = 0;
-  std::string file;
-};
 
 // Field names are fixed by the interface that scripts rely on; times in seconds, counts since the session began.
 nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& settings,
