@@ -1,12 +1,42 @@
-#include "bench/report/png_embedding.h"
+#include "bench/report/embedded_images.h"
 
 #include <fmt/format.h>
-#include <png.h>
 
-#include <stdexcept>
-#include <vector>
+#include <array>
+#include <limits>
 
 namespace wavecrest {
+namespace {
+
+// From the best to the smallest. Below a quarter of the size a picture shows nothing any more.
+constexpr std::array<ImageCoding, 9> kCodings = {{
+    {0, 1},
+    {92, 1},
+    {85, 1},
+    {75, 1},
+    {85, 2},
+    {75, 2},
+    {80, 3},
+    {80, 4},
+    {60, 4},
+}};
+
+std::vector<const ReportImage*> imagesOf(const ConvergenceReport& report) {
+  std::vector<const ReportImage*> images;
+  const auto add = [&](const ReportImage& image) {
+    if (!image.rgb.empty()) images.push_back(&image);
+  };
+  for (const ReportScene& scene : report.scenes) {
+    add(scene.reference);
+    for (const ReportSeries& series : scene.series) {
+      add(series.finalImage);
+      add(series.errorMap);
+    }
+  }
+  return images;
+}
+
+}  // namespace
 
 std::string base64(std::span<const uint8_t> bytes) {
   static constexpr char kAlphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -22,27 +52,42 @@ std::string base64(std::span<const uint8_t> bytes) {
   return text;
 }
 
-std::string pngDataUri(const ReportImage& image) {
-  if (image.width == 0 || image.height == 0 || image.rgb.size() != size_t{3} * image.width * image.height) {
-    throw std::invalid_argument(fmt::format("report image '{}': {} bytes; expected 3 x {} x {}", image.label,
-                                            image.rgb.size(), image.width, image.height));
+EmbeddedImages::EmbeddedImages(const ConvergenceReport& report, size_t budget) {
+  const std::vector<const ReportImage*> images = imagesOf(report);
+  for (const ImageCoding& coding : kCodings) {
+    const bool last = coding == kCodings.back();
+    if (encodeAll(images, coding, last ? std::numeric_limits<size_t>::max() : budget)) return;
   }
-  png_image header = {};
-  header.version = PNG_IMAGE_VERSION;
-  header.width = image.width;
-  header.height = image.height;
-  header.format = PNG_FORMAT_RGB;
+}
 
-  // First call asks for the size, second writes.
-  png_alloc_size_t size = 0;
-  if (png_image_write_to_memory(&header, nullptr, &size, 0, image.rgb.data(), 0, nullptr) == 0) {
-    throw std::runtime_error(fmt::format("report image '{}': {}", image.label, header.message));
+// False, as soon as it is known, if the images exceed the budget.
+bool EmbeddedImages::encodeAll(const std::vector<const ReportImage*>& images, const ImageCoding& coding,
+                               size_t budget) {
+  uris_.clear();
+  coding_ = coding;
+  size_t used = 0;
+  for (const ReportImage* image : images) {
+    std::string uri = fmt::format("data:image/{};base64,", coding.jpegQuality == 0 ? "png" : "jpeg") +
+                      base64(encodeImage(*image, coding));
+    used += uri.size();
+    if (used > budget) return false;
+    uris_.emplace(image, std::move(uri));
   }
-  std::vector<uint8_t> bytes(size);
-  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr) == 0) {
-    throw std::runtime_error(fmt::format("report image '{}': {}", image.label, header.message));
-  }
-  return "data:image/png;base64," + base64(std::span(bytes).first(size));
+  return true;
+}
+
+const std::string& EmbeddedImages::uri(const ReportImage& image) const {
+  static const std::string none;
+  const auto found = uris_.find(&image);
+  return found == uris_.end() ? none : found->second;
+}
+
+std::string EmbeddedImages::remark() const {
+  if (coding_.jpegQuality == 0) return "";
+  const std::string size =
+      coding_.reduction == 1 ? "" : fmt::format(" at 1/{} of their width and height", coding_.reduction);
+  return fmt::format("Pictures on this page are JPEG of quality {}{}; measurements were made on the rendered images.",
+                     coding_.jpegQuality, size);
 }
 
 }  // namespace wavecrest
