@@ -68,7 +68,7 @@ class TypedSession final : public Session {
     Worker(size_t waveSize, const ColumnNeeds& needs) : wave(waveSize, needs), light(waveSize, needs) {}
   };
   // Whether a wave that has done so many iterations is to stop.
-  using Finished = std::function<bool(uint64_t done)>;
+  using Finished = std::function<bool(uint64_t next)>;
 
   Worker& worker();
   void tracePass(const Pass<S>& pass, size_t waveIndex, size_t paths, uint64_t iteration, LightStore<S>* light,
