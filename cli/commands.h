@@ -30,11 +30,8 @@ struct InputError : std::runtime_error {
 
 void addCompareCommand(CLI::App& app, int& exitCode);
 void addBenchCommand(CLI::App& app, int& exitCode);
-<<<<<<< HEAD
 void addInspectCommand(CLI::App& app, int& exitCode);
-=======
 void addReferenceCommand(CLI::App& app, int& exitCode);
->>>>>>> campaign
 void addRenderCommand(CLI::App& app, int& exitCode);
 void addReportCommand(CLI::App& app, int& exitCode);
 void addScenesCommand(CLI::App& app, int& exitCode);

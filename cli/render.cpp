@@ -12,8 +12,10 @@
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
-const Progress progress(progressKind, *session, settings.seconds, goalPaths);
-renderWithSnapshots(*session, settings, schedule, [&](unsigned number) { outputs.writeSnapshot(*session, number); });
+#include "cli/scene_options.h"
+#include "engine/load/load.h"
+#include "engine/session.h"
+#include "engine/snapshots.h"
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image_io.h"
 
@@ -33,57 +35,6 @@ struct RenderOptions {
   double radius = 0.001, radiusAlpha = 0.75;
   std::vector<std::string> outputs;
 };
-
-<<<<<<< HEAD
-Session* interruptible = nullptr;
-void onInterrupt(int) {
-  if (interruptible != nullptr) interruptible->interrupt();
-}
-
-// For as long as a session renders, Ctrl-C asks it to stop instead of ending the program.
-class InterruptGuard {
- public:
-  explicit InterruptGuard(Session& session) {
-    interruptible = &session;
-    previous_ = std::signal(SIGINT, onInterrupt);
-  }
-  ~InterruptGuard() {
-    std::signal(SIGINT, previous_);
-    interruptible = nullptr;
-  }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  void (*previous_)(int);
-};
-
-Isa chosenIsa(const std::string& word) {
-  if (word == "auto") return bestIsa();
-  const std::optional<Isa> isa = parseIsa(word);
-  if (!isa) throw UsageError(fmt::format("--isa {}: expected auto, scalar, sse4, avx2 or avx512", word));
-  const auto& available = availableIsas();
-  if (std::find(available.begin(), available.end(), *isa) == available.end()) {
-    throw UsageError(fmt::format("--isa {}: this machine or build does not have it", word));
-  }
-  return *isa;
-=======
-Scene load(const RenderOptions& options) {
-  LoadOptions load;
-  load.lenient = options.lenient;
-  if (!options.size.empty()) load.filmSize = parseSize(options.size);
-  for (const std::string& define : options.defines) {
-    const size_t equals = define.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      throw UsageError(fmt::format("-D {}: expected NAME=VALUE", define));
-    }
-    load.defines[define.substr(0, equals)] = define.substr(equals + 1);
-  }
-  Scene scene = loadScene(findScene(options.scene), load);
-  for (const std::string& warning : scene.warnings) fmt::print(stderr, "wavecrest: warning: {}\n", warning);
-  return scene;
->>>>>>> campaign
-}
 
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   RenderSettings settings;
@@ -238,23 +189,9 @@ int runRender(const RenderOptions& options) {
     guard.watch(session.get());
     std::optional<uint64_t> goalPaths;
     if (settings.iterations) goalPaths = *settings.iterations * session->film().area().pixels.size();
-<<<<<<< HEAD
-    const Progress progress(static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)),
-                            *session, settings.seconds, goalPaths);
+    const Progress progress(progressKind, *session, settings.seconds, goalPaths);
     renderWithSnapshots(*session, settings, schedule,
                         [&](unsigned number) { outputs.writeSnapshot(*session, number); });
-=======
-    const Progress progress(progressKind, *session, settings.seconds, goalPaths);
-    for (;;) {
-      const std::optional<double> snapshotAt = schedule.next();
-      const bool snapshotFirst = snapshotAt && (!settings.seconds || *snapshotAt <= *settings.seconds);
-      session->renderUntil(settings.iterations, snapshotFirst ? snapshotAt : settings.seconds);
-      const bool reachedSnapshot = snapshotFirst && session->progressSeconds() >= *snapshotAt;
-      if (session->interrupted() || !reachedSnapshot) break;
-      outputs.writeSnapshot(*session, schedule.index());
-      schedule.advance();
-    }
->>>>>>> bidir
   }
   outputs.writeFinal(*session);
   return session->interrupted() ? kExitInterrupted : kExitDone;
