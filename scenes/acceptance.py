@@ -7,6 +7,7 @@ the same statements serve wavecrest's renders and Mitsuba's.
 import dataclasses
 import json
 import pathlib
+import re
 
 import numpy as np
 
@@ -44,6 +45,16 @@ def shots(scene, statement):
     if (over := statement.get("over")) is None:
         return [own]
     return [own, dataclasses.replace(own, **{key: over[key] for key in over if key != "region"})]
+
+
+def read_pfm(path):
+    """(height, width, 3) from the top row of a little-endian colour PFM."""
+    data = pathlib.Path(path).read_bytes()
+    header = re.match(rb"PF\s+(\d+)\s+(\d+)\s+-[\d.]+\s", data)
+    if header is None:
+        raise ValueError(f"{path}: no little-endian colour PFM")
+    width, height = int(header[1]), int(header[2])
+    return np.frombuffer(data, "<f4", 3 * width * height, header.end()).reshape(height, width, 3)[::-1].astype(float)
 
 
 def crop(image, region):

@@ -163,8 +163,9 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
       const UInt light = at(scene.primitives->light);
       const Mask emits = andNot(hit & (cosine > Real(0)), light == UInt(kNoIndex));
       if (any(emits)) {
-        const Vec3<Real> radiance = metRadiance<P, kFeatures>(context, select(emits, light, UInt(0u)), origin, cosine,
-                                                              dist2, mis, alone, shading.u, shading.v);
+        const Vec3<Real> radiance =
+            metRadiance<P, kFeatures>(context, select(emits, light, UInt(0u)), origin, cosine, dist2, mis, alone,
+                                      to<Float>(surface.u), to<Float>(surface.v));
         addRadiance(wave.radiance, lane, emits & unmergeable, throughput * radiance);
       }
     }

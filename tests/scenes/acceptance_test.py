@@ -8,7 +8,6 @@ not hold.
 
 import argparse
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
@@ -16,19 +15,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "scenes"))
 
-import numpy as np  # noqa: E402
-
 import acceptance  # noqa: E402
-
-
-def read_pfm(path):
-    """(height, width, 3) from the top row of a little-endian colour PFM."""
-    data = pathlib.Path(path).read_bytes()
-    header = re.match(rb"PF\s+(\d+)\s+(\d+)\s+-[\d.]+\s", data)
-    if header is None:
-        raise ValueError(f"{path}: no little-endian colour PFM")
-    width, height = int(header[1]), int(header[2])
-    return np.frombuffer(data, "<f4", 3 * width * height, header.end()).reshape(height, width, 3)[::-1].astype(float)
 
 
 class Studio:
@@ -44,7 +31,7 @@ class Studio:
             command = [self.program, "render", shot.scene, "--method", shot.method, "--max-depth", shot.max_depth]
             command += ["--size", self.size, "--spp", self.spp, "--progress", "none", "-o", path]
             subprocess.run([str(word) for word in command], check=True)
-            self.images[shot] = read_pfm(path)
+            self.images[shot] = acceptance.read_pfm(path)
         return self.images[shot]
 
 
