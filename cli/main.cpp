@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exitCode = kExitDone;
   addCompareCommand(app, exitCode);
+  addConvergeCommand(app, exitCode);
   addReferenceCommand(app, exitCode);
   addRenderCommand(app, exitCode);
   addReportCommand(app, exitCode);
