@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exitCode = kExitDone;
   addCompareCommand(app, exitCode);
+  addConvergeCommand(app, exitCode);
   addReferenceCommand(app, exitCode);
   addRenderCommand(app, exitCode);
   addInspectCommand(app, exitCode);
