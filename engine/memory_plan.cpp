@@ -26,8 +26,7 @@ constexpr double kSpread = 1.05;
 // What the first waves of light paths of iteration 0 left behind.
 struct Pilot {
   size_t paths = 0, stored = 0;
-  size_t room = 0;    // of the largest store: of all vertices, and of those that it might have stored at last
-  size_t depths = 0;  // of the longest path
+  size_t room = 0;  // of the largest store: of all vertices, and of those that it might have stored at last
 };
 
 template <class S>
@@ -55,7 +54,6 @@ Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, 
     pilot.paths += wave.pathCount;
     pilot.stored += store.vertices.size;
     pilot.room = std::max(pilot.room, store.roomUsed());
-    pilot.depths = std::max<size_t>(pilot.depths, store.depths());
   }
   return pilot;
 }
@@ -97,8 +95,7 @@ class Planner {
   // Of a wave per thread, or with a photon map of all waves.
   size_t vertexBytes(size_t lightPaths) const {
     const size_t waves = (lightPaths + settings_.waveSize - 1) / settings_.waveSize;
-    return (plan_.pipeline.photonMap ? waves : settings_.threads) *
-           emptyStore_.bytesFor(memory_.verticesPerWave, pilot_.depths);
+    return (plan_.pipeline.photonMap ? waves : settings_.threads) * emptyStore_.bytesFor(memory_.verticesPerWave);
   }
   size_t photonBytes(size_t lightPaths) const {
     const double perPath = static_cast<double>(pilot_.stored) / static_cast<double>(std::max<size_t>(pilot_.paths, 1));

@@ -216,7 +216,7 @@ void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
                                       memory_.lightPaths, iteration);
   photons_.build(stores, mis.radius, forEach);
   photonTally_.ticks += readTicks() - begin;
-  photonTally_.items += photons_.photons.size;
+  photonTally_.items += photons_.size;
   photonIteration_ = iteration;
 }
 

@@ -99,6 +99,7 @@ class BidirectionalWalk {
   const FilmArea& area() const { return area_; }
   const LightStore<S>& light() const { return light_; }
   const MisSettings& mis() const { return context_.mis; }
+  const PathLimits& limits() const { return settings_.limits; }
   std::vector<int64_t>& splats() { return splats_; }
   const Stages<S>& stages() const { return stages_; }
   static constexpr ColumnNeeds kNeeds{

@@ -126,10 +126,10 @@ class PathRecorder : public WalkVisitor<S> {
   // Photons one by one, so that each pair's contribution is seen; a few of each depth are enough.
   void merging(uint32_t depth, Wave<S>& wave, StageContext<S>& context) override {
     for (uint32_t lightDepth = 1; lightDepth <= std::min(walk_.light().depths(), 3u); ++lightDepth) {
-      const uint32_t* partners = walk_.light().partners(lightDepth);
-      for (uint32_t lane = 0; lane < wave.pathCount; lane += 7) {
-        if (partners[lane] == kNoIndex) continue;
-        const PhotonMap<S> map = singlePhoton(partners[lane]);
+      const LightStore<S>& light = walk_.light();
+      for (size_t i = light.firstOf(lightDepth); i < light.firstOf(lightDepth + 1); i += 7) {
+        const uint32_t lane = light.vertices.lane[i];
+        const PhotonMap<S> map = singlePhoton(static_cast<uint32_t>(i));
         context.photons = &map;
         walk_.stages().merge(context, wave);
         recordMerges(lightDepth, depth, lane, wave);

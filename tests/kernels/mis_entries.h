@@ -1,4 +1,5 @@
-// Entry points of mis_entries.cpp: the steps of the MIS recursion (kernels/mis_lanes.h) on columns, in float and double.
+// Entry points of mis_entries.cpp: the steps of the MIS recursion (kernels/mis_lanes.h) on columns, in float and
+// double.
 #pragma once
 
 #include <cstddef>
