@@ -89,7 +89,7 @@ class TypedSession final : public Session {
   oneapi::tbb::task_arena arena_;
   Film film_;
   RenderPlan<S> plan_;
-  std::vector<uint64_t> lightDone_, cameraDone_;        // iterations done by each wave
+  std::vector<uint64_t> lightDone_, cameraDone_;        // next iteration of each wave
   std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each wave, where a photon map gathers them
   PhotonMap<S> photons_;
   std::optional<uint64_t> photonIteration_;  // which iteration the map is of
@@ -107,8 +107,8 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
   const WorkerLimit limit(settings.threads);
   arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
   const size_t waves = (film_.area().pixels.size() + settings.waveSize - 1) / settings.waveSize;
-  lightDone_.resize(waves);
-  cameraDone_.resize(waves);
+  lightDone_.resize(waves, settings.firstIteration);
+  cameraDone_.resize(waves, settings.firstIteration);
   if (plan_.pipeline.photonMap) {
     for (size_t i = 0; i < waves; ++i)
       stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs));
@@ -251,7 +251,7 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   const double cpuBegin = processCpuSeconds();
   const WorkerLimit limit(settings_.threads);
   const Finished finished = [&](size_t wave) {
-    if (iterations && cameraDone_[wave] >= *iterations) return true;
+    if (iterations && cameraDone_[wave] - settings_.firstIteration >= *iterations) return true;
     const double now = renderSeconds_ + secondsSince(begin);
     progressSeconds_.store(now, std::memory_order_relaxed);
     return (seconds && now >= *seconds) || interrupted();

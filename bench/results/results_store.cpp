@@ -84,6 +84,12 @@ void ResultsStore::putClaims(const std::vector<ClaimRecord>& claims) {
   transaction.commit();
 }
 
+std::optional<std::string> ResultsStore::sceneHash(const std::string& scene) {
+  Statement query(database_, "SELECT scene_hash FROM scene WHERE name = ?");
+  if (!query.bind(scene).step()) return std::nullopt;
+  return query.text(0);
+}
+
 bool ResultsStore::hasRun(const std::string& scene, const std::string& method, uint64_t seed) {
   Statement query(database_, "SELECT 1 FROM run WHERE scene = ? AND method = ? AND seed = ?");
   return query.bind(scene, method, seed).step();

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ class ResultsStore {
   // Replaces all claims.
   void putClaims(const std::vector<ClaimRecord>& claims);
 
+  // The hash under which a scene was put; nothing if it was not.
+  std::optional<std::string> sceneHash(const std::string& scene);
   bool hasRun(const std::string& scene, const std::string& method, uint64_t seed);
 
  private:

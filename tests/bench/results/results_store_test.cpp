@@ -139,10 +139,22 @@ TEST(ResultsStore, openingAgainGoesOn) {
   EXPECT_EQ(results.runs.size(), 2u);
 }
 
-TEST(ResultsStore, aFinishedFileHasNoJournalBesideIt) {
+TEST(ResultsStore, aFinishedFileNeedsNoJournalBesideIt) {
   const TemporaryFolder folder;
-  { ResultsStore(folder.path("results.sqlite")).putCampaign({{"a", "b"}}); }
+  const std::string path = folder.path("results.sqlite");
+  const auto journalMode = [&] {
+    Database database(path, OpenFor::reading);
+    Statement mode(database, "PRAGMA journal_mode");
+    mode.step();
+    return mode.text(0);
+  };
+  {
+    ResultsStore store(path);
+    store.putCampaign({{"a", "b"}});
+    EXPECT_EQ(journalMode(), "wal");
+  }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.folder()), {}), 1);
+  EXPECT_EQ(journalMode(), "delete") << "a file in WAL mode cannot be read in a folder that is read-only";
 }
 
 TEST(ReadResults, otherFilesAreRefused) {

@@ -1,4 +1,4 @@
-#include "cli/render_stats.h"
+#include "bench/campaign/render_stats.h"
 
 #include <fmt/core.h>
 #include <sys/resource.h>
@@ -76,6 +76,14 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"stages", stages},
       {"snapshots", snapshotRows},
   };
+}
+
+Metadata statsMetadata(const nlohmann::ordered_json& stats) {
+  Metadata out;
+  for (const auto& [key, value] : stats.items()) {
+    if (value.is_primitive()) out["wavecrest:" + key] = value.is_string() ? value.get<std::string>() : value.dump();
+  }
+  return out;
 }
 
 }  // namespace wavecrest

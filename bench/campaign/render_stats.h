@@ -8,6 +8,7 @@
 #include "bench/results/results.h"
 #include "engine/scene/scene.h"
 #include "engine/session.h"
+#include "metrics/image/image_io.h"
 
 namespace wavecrest {
 
@@ -15,5 +16,8 @@ namespace wavecrest {
 nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& settings,
                                    const RenderStatistics& statistics, double loadSeconds, double wallSeconds,
                                    const std::vector<SnapshotRecord>& snapshots);
+
+// Every scalar of a stats object as a string attribute of an image, its key after "wavecrest:".
+Metadata statsMetadata(const nlohmann::ordered_json& stats);
 
 }  // namespace wavecrest
