@@ -1,19 +1,35 @@
 #include "bench/report/collect.h"
 
+#include <algorithm>
+
 #include "bench/report/collect_campaign.h"
 #include "bench/report/collect_renders.h"
+#include "bench/report/method_style.h"
 #include "bench/report/results_folder.h"
 #include "bench/results/read_results.h"
 
 namespace wavecrest {
 
-ConvergenceReport collectReport(std::span<const std::filesystem::path> paths) {
-  namespace fs = std::filesystem;
+namespace {
+
+namespace fs = std::filesystem;
+
+ConvergenceReport collect(std::span<const fs::path> paths) {
   const bool renders = paths.size() == 1 && !fs::is_regular_file(paths[0]) && !fs::exists(paths[0] / kResultsFile);
-  if (renders) return collectRenders(paths[0]);
-  ConvergenceReport report = collectCampaign(readResults(paths));
+  return renders ? collectRenders(paths[0]) : collectCampaign(readResults(paths));
+}
+
+}  // namespace
+
+ConvergenceReport collectReport(std::span<const fs::path> paths) {
+  ConvergenceReport report = collect(paths);
   if (report.metrics.empty())
     throw ResultsError(paths[0].string() + ": holds no measured snapshot; expected those of at least one run");
+  for (ReportScene& scene : report.scenes) {
+    std::stable_sort(scene.series.begin(), scene.series.end(), [](const ReportSeries& a, const ReportSeries& b) {
+      return methodRank(a.method) < methodRank(b.method);
+    });
+  }
   return report;
 }
 

@@ -14,6 +14,8 @@ namespace {
 // A study's run has hundreds of snapshots; a curve needs no more than this, and the page must stay small.
 constexpr size_t kMostPoints = 40;
 
+constexpr const char* kTimeLabel = "render time in seconds";
+
 // The curve itself if it is short, else points of it at even distances in the logarithm of time, both ends among them.
 template <class Point>
 std::vector<Point> thinned(const std::vector<Point>& curve) {
@@ -48,10 +50,11 @@ ScenePlot metricPlot(const ReportScene& scene, const ReportMetric& metric, size_
   ScenePlot result{.key = metric.key, .heading = metric.name, .explanation = metric.explanation, .plot = {}};
   Plot& plot = result.plot;
   plot.title = metric.name + " over render time, " + scene.name;
-  plot.xLabel = "render time in seconds";
+  plot.xLabel = kTimeLabel;
   plot.yScale = metric.logarithmic ? AxisScale::kLogarithmic : AxisScale::kLinear;
   if (scene.noiseFloors[metricIndex]) plot.floor = {*scene.noiseFloors[metricIndex], "noise of the reference"};
-  if (metric.target) plot.target = {*metric.target, formatSignificant(*metric.target)};
+  plot.target = metric.target;
+  if (metric.target) result.explanation += fmt::format("; line at {}", *metric.target);
   plot.guideSlope = metric.idealSlope;
   if (metric.idealSlope) plot.guideLabel = guideLabel(*metric.idealSlope);
   for (const ReportSeries& series : scene.series) {
@@ -70,26 +73,26 @@ ScenePlot metricPlot(const ReportScene& scene, const ReportMetric& metric, size_
   return result;
 }
 
+// The share rather than bias itself: bias of an unbiased method comes out as noise of either sign, which no logarithmic
+// axis could show.
 ScenePlot biasPlot(const ReportScene& scene) {
-  ScenePlot result{
-      .key = "bias",
-      .heading = "Bias",
-      .explanation = "root of bias², over several seeds; falls only if a method becomes right, not quieter",
-      .plot = {}};
-  result.plot.title = "bias over render time, " + scene.name;
-  result.plot.xLabel = "render time in seconds";
+  ScenePlot result{.key = "bias",
+                   .heading = "Share of bias",
+                   .explanation = "bias² over mean square error; scatters around 0 for an unbiased method",
+                   .plot = {}};
+  result.plot.title = "share of bias over render time, " + scene.name;
+  result.plot.xLabel = kTimeLabel;
+  result.plot.yScale = AxisScale::kLinear;
   for (const ReportSeries& series : scene.series) {
     PlotCurve curve = emptyCurve(scene, series);
     for (const ReportBias& bias : thinned(series.bias)) {
-      if (!(bias.bias2 > 0)) continue;  // none that could be told from noise
-      const double rms = std::sqrt(bias.bias2);
-      curve.points.push_back(
-          {.x = bias.seconds,
-           .y = rms,
-           .low = rms,
-           .high = rms,
-           .tooltip = fmt::format("{}: bias {} after {}, {:.0f} % of the error", series.label, formatSignificant(rms),
-                                  formatSeconds(bias.seconds), 100 * bias.bias2 / bias.meanSquareError)});
+      const double share = bias.bias2 / bias.meanSquareError;
+      curve.points.push_back({.x = bias.seconds,
+                              .y = share,
+                              .low = share,
+                              .high = share,
+                              .tooltip = fmt::format("{}: bias² is {:.0f} % of the error after {}", series.label,
+                                                     100 * share, formatSeconds(bias.seconds))});
     }
     result.plot.curves.push_back(std::move(curve));
   }

@@ -88,13 +88,8 @@ std::vector<std::string> methodsOf(const ConvergenceReport& report) {
       if (std::find(methods.begin(), methods.end(), series.method) == methods.end()) methods.push_back(series.method);
     }
   }
-  const auto rank = [](const std::string& method) {
-    return std::find_if(kMethodStyles.begin(), kMethodStyles.end(),
-                        [&](const MethodStyle& style) { return style.id == method; }) -
-           kMethodStyles.begin();
-  };
   std::stable_sort(methods.begin(), methods.end(),
-                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+                   [](const std::string& a, const std::string& b) { return methodRank(a) < methodRank(b); });
   return methods;
 }
 

@@ -150,7 +150,8 @@ std::string renderHeatMaps(const ConvergenceReport& report) {
   for (size_t m = 0; m < report.metrics.size(); ++m) {
     if (report.metrics[m].target) html += renderHeatMap(report, targetMap(report.metrics[m], m));
   }
-  return html + "</div><p class=\"facts\">Darker is further behind the best of its row, which is bold.</p>\n";
+  return html +
+         "</div><p class=\"facts\">The stronger the tint, the further behind the best of its row, which is bold.</p>\n";
 }
 
 std::string renderRanking(const ConvergenceReport& report) {

@@ -18,8 +18,7 @@ namespace {
 constexpr double kWidth = 460, kHeight = 320;
 constexpr double kLeft = 50, kTop = 12, kBottom = kHeight - 46;
 constexpr double kMarkRoom = 18;                            // between the plot and the text of an end label
-constexpr double kCharacterWidth = 7.4;                     // of the bold end labels, rounded up
-constexpr double kLeastMargin = 44, kGreatestMargin = 170;  // at the right
+constexpr double kLeastMargin = 44, kGreatestMargin = 190;  // at the right
 constexpr double kLabelSpacing = 15;
 constexpr double kTitleHeight = 26;  // above the plot in a file
 constexpr size_t kDensePoints = 24;  // from here on marks shrink to dots
@@ -50,6 +49,13 @@ std::vector<PlotCurve> showableCurves(const Plot& plot) {
   return curves;
 }
 
+// What an end label needs at most: bold letters of a wide font, at the size that phones get (assets/report.css).
+double labelWidth(const std::string& label) {
+  double width = 0;
+  for (const char letter : label) width += letter == 'm' || letter == 'w' ? 15 : 10.5;
+  return width;
+}
+
 Frame frameAround(const Plot& plot, const std::vector<PlotCurve>& curves) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double left = kInfinity, right = -kInfinity, low = kInfinity, high = -kInfinity;
@@ -66,9 +72,9 @@ Frame frameAround(const Plot& plot, const std::vector<PlotCurve>& curves) {
     high = std::max(high, plot.floor->y);
   }
   // The right margin takes the longest label.
-  size_t longest = 0;
-  for (const PlotCurve& curve : curves) longest = std::max(longest, curve.label.size());
-  const double margin = kMarkRoom + kCharacterWidth * static_cast<double>(longest);
+  double longest = 0;
+  for (const PlotCurve& curve : curves) longest = std::max(longest, labelWidth(curve.label));
+  const double margin = kMarkRoom + longest;
   return {Axis(plot.xScale, left, right), Axis(plot.yScale, low, high),
           kWidth - std::clamp(margin, kLeastMargin, kGreatestMargin)};
 }
@@ -102,6 +108,7 @@ void drawLine(std::string& svg, const PlotLine& line, const char* cssClass, Axis
   const double y = frame.pixelY(line.y);
   append(svg, "<line class=\"{}\" x1=\"{}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", cssClass, kLeft, y,
          frame.right, y);
+  if (line.label.empty()) return;
   // Above the line, or below it where there is no room.
   append(svg, "<text class=\"note\" x=\"{}\" y=\"{:.1f}\">{}</text>", kLeft + 6, y - kTop < 18 ? y + 14 : y - 5,
          escapeHtml(line.label));
@@ -234,10 +241,10 @@ std::string drawPlot(const Plot& plot) {
   }
   const Frame frame = frameAround(plot, curves);
   drawGrid(svg, plot, frame);
-  drawGuide(svg, plot, frame, curves);
-  if (plot.target) drawLine(svg, *plot.target, "target", plot.yScale, frame);
+  if (plot.target) drawLine(svg, {*plot.target, ""}, "target", plot.yScale, frame);
   if (plot.floor) drawLine(svg, *plot.floor, "floor", plot.yScale, frame);
   for (const PlotCurve& curve : curves) drawCurve(svg, curve, frame);
+  drawGuide(svg, plot, frame, curves);
   drawEndLabels(svg, curves, frame);
   return svg;
 }

@@ -36,7 +36,7 @@ struct Plot {
   AxisScale xScale = AxisScale::kLogarithmic, yScale = AxisScale::kLogarithmic;
   std::vector<PlotCurve> curves;
   std::optional<PlotLine> floor;     ///< what cannot be passed; the axis is extended to show it
-  std::optional<PlotLine> target;    ///< what is to be reached; shown where it lies within the curves' range
+  std::optional<double> target;      ///< line at what is to be reached, where it lies within the curves' range
   std::optional<double> guideSlope;  ///< dashed line y ~ x^slope beside the lowest curve; logarithmic axes only
   std::string guideLabel;
 };

@@ -214,3 +214,7 @@ function addHeatMapTools(root) {
 document.querySelectorAll(".heatmaps").forEach(addHeatMapTools);
 document.querySelectorAll("svg.plot").forEach(addTooltips);
 document.querySelectorAll(".viewer").forEach((root) => new Viewer(root));
+// Print shows what was measured; settings stay on the screen.
+addEventListener("beforeprint", () => {
+  for (const stages of document.querySelectorAll(".stages")) stages.closest("details").open = true;
+});
