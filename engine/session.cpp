@@ -225,7 +225,10 @@ void TypedSession<S>::renderPhases(const Finished& finished) {
       if (lightDone_[wave] == iteration && !finished(wave)) traceLight(wave, worker());
     });
     if (*std::min_element(lightDone_.begin(), lightDone_.end()) == iteration) return;  // time ran out
-    if (photonIteration_ != iteration) buildPhotonMap(iteration);
+    if (photonIteration_ != iteration) {
+      if (finished(0)) return;
+      buildPhotonMap(iteration);
+    }
     forEach(stores_.size(), [&](size_t wave) {
       if (cameraDone_[wave] == iteration && !finished(wave)) traceCamera(wave, worker());
     });
