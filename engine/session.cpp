@@ -228,7 +228,10 @@ void TypedSession<S>::renderPhases(const Finished& finished) {
       if (lightDone_[wave] == iteration && !finished(iteration)) traceLight(wave, worker());
     });
     if (*std::min_element(lightDone_.begin(), lightDone_.end()) == iteration) return;  // time ran out
-    if (photonIteration_ != iteration) buildPhotonMap(iteration);
+    if (photonIteration_ != iteration) {
+      if (finished(iteration)) return;
+      buildPhotonMap(iteration);
+    }
     forEach(cameraDone_.size(), [&](size_t wave) {
       if (cameraDone_[wave] == iteration && !finished(iteration)) traceCamera(wave, worker());
     });
