@@ -33,7 +33,8 @@ class CollectCampaign : public testing::Test {
     folder = fs::path(testing::TempDir()) / (std::string("wavecrest_campaign_") + info->name());
     fs::remove_all(folder);
     fs::create_directories(folder / "images");
-    writeExr((folder / "images/box.exr").string(), grey(0.5F), {{"method", "bpt"}});
+    writeExr((folder / "images/box.exr").string(), grey(0.5F),
+             {{"wavecrest:method", "bpt"}, {"wavecrest:relative_error", "0.0123"}});
     writeExr((folder / "images/last.exr").string(), grey(0.6F));
   }
   void TearDown() override { fs::remove_all(folder); }
@@ -122,7 +123,7 @@ TEST_F(CollectCampaign, showsMainScoresInTheOrderOfTheMetricListAndKeepsTheOther
 TEST_F(CollectCampaign, readsTheLastImagesAndTheReferencesOrigin) {
   writeStore("results.sqlite", {run("pt", 1, 0.2)});
   const ReportScene scene = collect().scenes[0];
-  EXPECT_EQ(scene.referenceOrigin, "box.exr, made by bpt");
+  EXPECT_EQ(scene.referenceOrigin, "box.exr, two halves by bpt, off by about 1.2 % of a sample's value");
   EXPECT_EQ(scene.reference.rgb.size(), 3U * kSide * kSide);
   EXPECT_EQ(scene.series[0].finalImage.label, "pt, 4.1 s");
   EXPECT_FALSE(scene.series[0].errorMap.rgb.empty());
