@@ -8,7 +8,9 @@
 
 #include "bench/campaign/run_campaign.h"
 #include "bench/campaign/scene_reference.h"
+#include "bench/claims/judge_claims.h"
 #include "bench/results/read_results.h"
+#include "bench/results/results_store.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
@@ -145,6 +147,9 @@ CampaignSettings campaignSettings(const ConvergeOptions& options) {
   settings.keepImages = parseChoice("--images", options.get("--images", "all"), kImageChoices) == 0;
   settings.referenceRequired = !options.reference.empty();
   settings.referenceFolder = options.reference.empty() ? sceneFolder() / "references" : fs::path(options.reference);
+  if (options.check && settings.iterations) {
+    throw UsageError("--check: the study's findings are about equal time; expected no --spp beside it");
+  }
   if (options.check && settings.shard.count > 1) {
     throw UsageError("--check needs all methods of a scene; expected no --shard beside it");
   }
@@ -244,6 +249,23 @@ void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& pr
              durationText(progress.secondsLeft), run.scene, run.method, run.seed, outcome);
 }
 
+std::vector<ClaimRecord> storeClaims(const fs::path& results) {
+  std::vector<ClaimRecord> claims = judgeStudyClaims(readResults(results));
+  ResultsStore(results).putClaims(claims);
+  return claims;
+}
+
+int showCheck(const std::vector<ClaimRecord>& claims) {
+  bool held = true;
+  for (const ClaimRecord& claim : claims) {
+    fmt::print("{:13} {}: {} ({})\n", claim.verdict, claim.scene, claim.statement, claim.evidence);
+    if (claim.verdict != toString(ClaimVerdict::fails)) continue;
+    fmt::print(stderr, "wavecrest: check failed: {}: {}\n", claim.scene, claim.statement);
+    held = false;
+  }
+  return held ? kExitDone : kExitCheck;
+}
+
 int runConverge(ConvergeOptions options) {
   CampaignSettings settings = campaignSettings(options);
   const fs::path results = resultsFile(settings);
@@ -266,7 +288,10 @@ int runConverge(ConvergeOptions options) {
             if (kind != ProgressKind::none) fmt::print(stderr, "{}\n", line);
           }};
   try {
-    if (!runCampaign(settings, campaignKeys(options, settings), hooks)) return kExitInterrupted;
+    if (!runCampaign(settings, campaignKeys(options, settings), hooks)) {
+      fmt::print(stderr, "stopped; `wavecrest converge --out {} --resume` goes on\n", options.out);
+      return kExitInterrupted;
+    }
   } catch (const ReferenceError& error) {
     throw InputError(error.what());
   } catch (const ReferenceMismatch& error) {
@@ -275,7 +300,9 @@ int runConverge(ConvergeOptions options) {
     throw InputError(error.what());
   }
   fmt::print("{}\n", results.string());
-  return kExitDone;
+  if (settings.shard.count > 1) return kExitDone;  // the whole is judged where all parts are read
+  const std::vector<ClaimRecord> claims = storeClaims(results);
+  return options.check ? showCheck(claims) : kExitDone;
 }
 
 }  // namespace

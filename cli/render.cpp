@@ -12,43 +12,29 @@
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
+#include "cli/scene_options.h"
 #include "engine/load/load.h"
+#include "engine/session.h"
+#include "engine/snapshots.h"
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image_io.h"
-#include "scenes/scene_list.h"
 
 namespace wavecrest {
 namespace {
 
 // As written on the command line; resolved() turns words into settings.
 struct RenderOptions {
-  std::string scene, method = "pt", time, size, sampler = "independent", precision = "float", isa = "auto",
-                     accel = "auto", snapshotEvery, stats, progress = "auto";
+  SceneOptions scene;
+  std::string method = "pt", time, sampler = "independent", precision = "float", isa = "auto", accel = "auto", memory,
+              snapshotEvery, stats, progress = "auto";
   uint64_t spp = 0;
   uint32_t threads = 0;
   uint64_t seed = 0;
   int maxDepth = 0, rrDepth = 0;  // 0: what the scene says
   uint32_t wave = 2048;
   double radius = 0.001, radiusAlpha = 0.75;
-  std::vector<std::string> defines, outputs;
-  bool lenient = false;
+  std::vector<std::string> outputs;
 };
-
-Scene load(const RenderOptions& options) {
-  LoadOptions load;
-  load.lenient = options.lenient;
-  if (!options.size.empty()) load.filmSize = parseSize(options.size);
-  for (const std::string& define : options.defines) {
-    const size_t equals = define.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      throw UsageError(fmt::format("-D {}: expected NAME=VALUE", define));
-    }
-    load.defines[define.substr(0, equals)] = define.substr(equals + 1);
-  }
-  Scene scene = loadScene(findScene(options.scene), load);
-  for (const std::string& warning : scene.warnings) fmt::print(stderr, "wavecrest: warning: {}\n", warning);
-  return scene;
-}
 
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   RenderSettings settings;
@@ -72,6 +58,7 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   if (options.spp != 0) settings.iterations = options.spp;
   if (!options.time.empty()) settings.seconds = parseDuration(options.time);
   if (!settings.iterations && !settings.seconds) settings.iterations = scene.defaults.sampleCount;
+  if (!options.memory.empty()) settings.memoryBytes = parseMemory(options.memory);
   settings.measureStages = !options.stats.empty();
   return settings;
 }
@@ -155,14 +142,46 @@ std::string checkFinite(const std::string& word) {
   return valid ? std::string() : fmt::format("'{}' is no finite number", word);
 }
 
+std::unique_ptr<Session> createSession(const Scene& scene, const RenderSettings& settings) {
+  try {
+    return Session::create(scene, settings);
+  } catch (const MemoryBudgetError& error) {
+    throw UsageError(fmt::format("--memory: {}", error.what()));
+  }
+}
+
+// One line: the parts in MB, their sum, and the light paths where there are any.
+std::string describe(const MemoryPlan& plan) {
+  const MemoryUse& use = plan.use;
+  std::string text;
+  const auto add = [&](const char* name, size_t bytes) {
+    if (bytes != 0) text += fmt::format("{} {:.1f} MB, ", name, static_cast<double>(bytes) / 1e6);
+  };
+  add("scene", use.scene);
+  add("waves", use.waves);
+  add("film", use.film);
+  add("splats", use.splats);
+  add("light vertices", use.lightVertices);
+  add("photon map", use.photonMap);
+  text += fmt::format("together {:.1f} MB", static_cast<double>(use.total()) / 1e6);
+  if (plan.lightPaths != 0) text += fmt::format("; {} light paths in each iteration", plan.lightPaths);
+  return text;
+}
+
 int runRender(const RenderOptions& options) {
   checkOutputs(options);
   const SnapshotSchedule schedule = parseSnapshotSchedule(options.snapshotEvery);
   const auto begin = std::chrono::steady_clock::now();
-  const Scene scene = load(options);
+  const Scene scene = loadScene(options.scene);
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const RenderSettings settings = resolved(options, scene);
-  const std::unique_ptr<Session> session = Session::create(scene, settings);
+  const ProgressKind progressKind =
+      static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  const std::unique_ptr<Session> session = createSession(scene, settings);
+  // On request, and where light paths fill the memory.
+  if (settings.memoryBytes || (session->memoryPlan().use.photonMap > 0 && progressKind != ProgressKind::none)) {
+    fmt::print(stderr, "wavecrest: memory: {}\n", describe(session->memoryPlan()));
+  }
   Outputs outputs(options, scene, settings, loadSeconds);
 
   {
@@ -170,8 +189,7 @@ int runRender(const RenderOptions& options) {
     guard.watch(session.get());
     std::optional<uint64_t> goalPaths;
     if (settings.iterations) goalPaths = *settings.iterations * session->film().area().pixels.size();
-    const Progress progress(static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)),
-                            *session, settings.seconds, goalPaths);
+    const Progress progress(progressKind, *session, settings.seconds, goalPaths);
     renderWithSnapshots(*session, settings, schedule,
                         [&](unsigned number) { outputs.writeSnapshot(*session, number); });
   }
@@ -184,11 +202,10 @@ int runRender(const RenderOptions& options) {
 void addRenderCommand(CLI::App& app, int& exitCode) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = app.add_subcommand("render", "render a scene by one method");
-  command->add_option("scene", options->scene, "built-in scene or path of an XML file")->required();
+  addSceneOptions(*command, options->scene);
   command->add_option("-m,--method", options->method, "light-transport method")->capture_default_str();
   command->add_option("--time", options->time, "stop after this much render time: 6s, 2m, 1h30m");
   command->add_option("--spp", options->spp, "stop after N iterations: paths per pixel")->check(CLI::PositiveNumber);
-  command->add_option("--size", options->size, "film size, WIDTHxHEIGHT");
   command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
   command->add_option("--seed", options->seed, "seed of all random numbers")
       ->capture_default_str()
@@ -212,8 +229,8 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
       ->capture_default_str()
       ->check(checkFinite)
       ->check(CLI::Range(0.0, 1.0));
-  command->add_option("-D", options->defines, "value of a scene's $name: NAME=VALUE")->allow_extra_args(false);
-  command->add_flag("--lenient", options->lenient, "skip what a scene asks and wavecrest lacks, with a warning");
+  command->add_option("--memory", options->memory,
+                      "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
   command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");
   command->add_option("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable")
       ->allow_extra_args(false);

@@ -1,9 +1,10 @@
 #include "engine/render_plan.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
-
-#include "engine/scene/scene_error.h"
 
 namespace wavecrest {
 namespace {
@@ -16,6 +17,8 @@ ColumnNeeds columnNeeds(Specialization specialization) {
           .connections = (features & kBidirectional) != 0};
 }
 
+}  // namespace
+
 Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
   const uint32_t features = sceneFeatures(scene) | (entryOf(settings.method).bidirectional ? kBidirectional : 0u);
   const Specialization least = chooseSpecialization(features, settings.precision);
@@ -27,31 +30,42 @@ Specialization specializationFor(const Scene& scene, const RenderSettings& setti
   return chooseSpecialization(featuresOf(*settings.specialization), settings.precision);
 }
 
-}  // namespace
+template <class S>
+Intersector<S> chooseIntersector(const Stages<S>& stages, Accel accel) {
+  if (accel == Accel::small) return {stages.extendSmall, stages.occludeSmall, stages.lanes};
+  return {extendEmbree<S>, occludeEmbree<S>, kEmbreePacket};
+}
+template Intersector<float> chooseIntersector(const Stages<float>&, Accel);
+template Intersector<double> chooseIntersector(const Stages<double>&, Accel);
 
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   RenderPlan<S> plan;
-  // t = 1 knows neither where a reconstruction filter spreads a splat nor which point of a lens to join.
-  const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
-  if (lens && (settings.method == Method::lt || settings.method == Method::bpt || settings.method == Method::vcm)) {
-    throw SceneError({scene.name},
-                     "method " + std::string(toString(settings.method)) +
-                         " needs a perspective sensor and the box filter; expected those, or pt, ppm or bpm");
-  }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);
   plan.scene = compileScene<S>(scene, settings.accel);
   const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, plan.specialization);
   plan.isa = stages.isa;
-  const Intersector<S> intersector = plan.accel() == Accel::small
-                                         ? Intersector<S>{stages.extendSmall, stages.occludeSmall, stages.lanes}
-                                         : Intersector<S>{extendEmbree<S>, occludeEmbree<S>, kEmbreePacket};
-  plan.pipeline = makePipeline(settings.method, stages, intersector);
+  plan.pipeline = makePipeline(settings.method, stages, chooseIntersector(stages, plan.accel()));
   return plan;
 }
 template RenderPlan<float> planRender(const Scene&, const RenderSettings&);
 template RenderPlan<double> planRender(const Scene&, const RenderSettings&);
+
+MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t count,
+                        uint64_t iteration) {
+  const auto lightPaths = static_cast<double>(count);
+  strategies.lightPaths = lightPaths;
+  strategies.camN = lightPaths;
+  const double shrink = std::pow(static_cast<double>(iteration + 1), (settings.radiusAlpha - 1) / 2);
+  // Below the precision of positions nothing could be merged.
+  strategies.radius = std::max(settings.radius * shrink, 16 * 0x1p-24) * sceneRadius;
+  const double density = std::numbers::pi * strategies.radius * strategies.radius * lightPaths;
+  strategies.mergeNorm = 1 / density;
+  strategies.kVM = strategies.merge ? density : 0;
+  strategies.kVC = strategies.merge && strategies.connect ? 1 / density : 0;
+  return strategies;
+}
 
 FilmArea filmArea(const FilmSettings& film) {
   if (film.cropWidth == 0 || film.cropHeight == 0) return FilmArea::make(0, 0, film.width, film.height);

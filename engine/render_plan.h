@@ -27,6 +27,19 @@ struct RenderPlan {
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings);
 
+// The kernels that the settings' own choice, or else the scene and method, lead to. Throws std::runtime_error where the
+// choice does not cover the scene.
+Specialization specializationFor(const Scene& scene, const RenderSettings& settings);
+
+// The intersector of a scene that was compiled for this structure.
+template <class S>
+Intersector<S> chooseIntersector(const Stages<S>& stages, Accel accel);
+
+// A pass's switches with the constants of an iteration's densities (METHODS 5.1, 6.1): N_L light paths, and one camera
+// path per pixel.
+MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t lightPaths,
+                        uint64_t iteration);
+
 // The rectangle of the film that is rendered: its crop window, or all of it.
 FilmArea filmArea(const FilmSettings& film);
 

@@ -135,7 +135,9 @@ Reference readReference(const std::filesystem::path& path) {
       from.parse(name, text, reference.noiseFloors[name.substr(std::string_view(kFloorPrefix).size())]);
     }
   }
-  if (reference.info.iterations > 0) reference.difference = readExrLayer(path.string(), kDifference);
+  // A plain render has iterations too; the relative error is a reference's alone.
+  if (file.metadata.contains(std::string(kPrefix) + "relative_error"))
+    reference.difference = readExrLayer(path.string(), kDifference);
   return reference;
 }
 

@@ -70,7 +70,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"paths_per_second", perSecond(settings.method == Method::lt ? statistics.lightPaths : statistics.paths)},
       {"rays_per_second", perSecond(rays)},
       {"bytes_per_path", statistics.bytesPerPath},
-      {"light_bytes", statistics.lightBytes},
+      {"light_bytes", statistics.memory.lightVertices + statistics.memory.photonMap},
       {"peak_memory_bytes", peakMemoryBytes()},
       {"nonfinite_samples", statistics.counters.nonFinite},
       {"stages", stages},

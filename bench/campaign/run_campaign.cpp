@@ -69,7 +69,7 @@ class Campaign {
 
   void putKeys(const std::map<std::string, std::string>& keys) {
     store_.putCampaign(keys);
-    store_.putCampaign(environment(settings_.render));
+    store_.addEnvironment(environment(settings_.render));
   }
 
   bool run() {

@@ -122,7 +122,7 @@ void mergeCampaign(CampaignResults& all, const CampaignResults& part, const fs::
     if (!kEnvironmentKeys.contains(key)) {
       fail(path, "its " + key + " is '" + value + "', not '" + known->second + "'", first);
     }
-    if ((", " + known->second + ", ").find(", " + value + ", ") == std::string::npos) known->second += ", " + value;
+    addDistinct(known->second, value);
   }
 }
 
@@ -160,10 +160,26 @@ void sortParts(CampaignResults& all) {
   });
 }
 
+// results.1-of-4.sqlite, ...
+std::vector<fs::path> shardFiles(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("results.") && name.ends_with(".sqlite") && name.find("-of-") != std::string::npos) {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 }  // namespace
 
 CampaignResults readResults(const fs::path& path) {
   const fs::path file = fs::is_directory(path) ? path / kResultsFile : path;
+  if (fs::is_directory(path) && !fs::exists(file)) {
+    if (const std::vector<fs::path> shards = shardFiles(path); !shards.empty()) return readResults(shards);
+  }
   if (!fs::is_regular_file(file)) throw ResultsFileError(file.string() + ": does not exist; expected a results file");
   Database database(file, OpenFor::reading);
   requireSchema(database);

@@ -12,7 +12,8 @@ namespace wavecrest {
 
 constexpr std::string_view kResultsFile = "results.sqlite";  // in a campaign's folder
 
-// The content of a results file; a folder stands for the results file in it. Throws ResultsFileError.
+// The content of a results file; a folder stands for the results file in it, or if there is none for those of the
+// shards in it. Throws ResultsFileError.
 CampaignResults readResults(const std::filesystem::path& path);
 
 // Several files as one campaign. Throws ResultsFileError where they are not parts of the same: settings or scenes that

@@ -79,6 +79,9 @@ struct ClaimRecord {
   std::string evidence;  // values and bands, for people
 };
 
+// Appends a value to a list "a, b" that lacks it: how facts of the environment that differ are told.
+void addDistinct(std::string& list, const std::string& value);
+
 struct CampaignResults {
   std::map<std::string, std::string> campaign;  // settings and environment; keys in bench/results/README.md
   std::vector<SceneRecord> scenes;              // in the order they were added

@@ -32,6 +32,16 @@ void ResultsStore::putCampaign(const std::map<std::string, std::string>& values)
   transaction.commit();
 }
 
+void ResultsStore::addEnvironment(const std::map<std::string, std::string>& values) {
+  std::map<std::string, std::string> lists;
+  Statement known(database_, "SELECT value FROM campaign WHERE key = ?");
+  for (const auto& [key, value] : values) {
+    if (known.bind(key).step()) lists[key] = known.text(0);
+    addDistinct(lists[key], value);
+  }
+  putCampaign(lists);
+}
+
 void ResultsStore::putScene(const SceneRecord& scene) {
   Transaction transaction(database_);
   Statement(database_,

@@ -24,6 +24,8 @@ class ResultsStore {
 
   // Settings and environment; a key that is already there gets the new value.
   void putCampaign(const std::map<std::string, std::string>& values);
+  // Values that earlier processes put under the same keys stay, before the new ones: "old, new".
+  void addEnvironment(const std::map<std::string, std::string>& values);
   // Replaces what was known of this scene, but for its runs.
   void putScene(const SceneRecord& scene);
   // Throws ResultsFileError if the run is there already: nothing is ever counted twice.

@@ -30,6 +30,7 @@ Primitives<S> compilePrimitives(const Scene& scene, bool textured);
 // Bounding sphere of all primitives: centre and half diagonal of the bounding box, times 1.0001.
 struct BoundingSphere {
   double center[3]{}, radius = 0;
+  double low[3]{}, high[3]{};  // corners of the box
 };
 template <class S>
 BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<S>>& records);

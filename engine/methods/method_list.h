@@ -12,20 +12,54 @@ namespace wavecrest {
 
 enum class Method { pt, lt, bpt, ppm, bpm, vcm };
 
+// The ways in which a method joins s light vertices and t camera vertices. engine/path_classes.h derives from them
+// which paths the method can make.
+struct PathStrategies {
+  bool emission = false;            // s = 0: a camera path meets a light
+  bool nextEvent = false;           // s = 1
+  bool connect = false;             // s >= 2, t >= 2
+  bool camera = false;              // t = 1
+  bool merge = false;               // without nextEvent, emission then serves the paths that have no vertex to merge at
+  bool specularViewsOnly = false;   // emission and nextEvent serve only what a delta lobe, or nothing, shows to the eye
+  bool mergeAtFirstVertex = false;  // merges where a camera path first has more than delta lobes, and nowhere else
+};
+
 struct MethodEntry {
   Method method;
   std::string_view name;         // spelling of --method
   std::string_view description;  // one line
   bool bidirectional;            // needs kernels with the whole MIS recursion
+  PathStrategies strategies;
 };
 
 constexpr std::array kMethods{
-    MethodEntry{Method::pt, "pt", "path tracing with next event estimation", false},
-    MethodEntry{Method::lt, "lt", "light tracing, and path tracing of directly visible specular surfaces", true},
-    MethodEntry{Method::bpt, "bpt", "bidirectional path tracing", true},
-    MethodEntry{Method::ppm, "ppm", "progressive photon mapping", true},
-    MethodEntry{Method::bpm, "bpm", "bidirectional photon mapping: merging at every vertex", true},
-    MethodEntry{Method::vcm, "vcm", "vertex connection and merging", true},
+    MethodEntry{
+        Method::pt, "pt", "path tracing with next event estimation", false, {.emission = true, .nextEvent = true}},
+    MethodEntry{Method::lt,
+                "lt",
+                "light tracing, and path tracing of directly visible specular surfaces",
+                true,
+                {.emission = true, .nextEvent = true, .camera = true, .specularViewsOnly = true}},
+    MethodEntry{Method::bpt,
+                "bpt",
+                "bidirectional path tracing",
+                true,
+                {.emission = true, .nextEvent = true, .connect = true, .camera = true}},
+    MethodEntry{Method::ppm,
+                "ppm",
+                "progressive photon mapping",
+                true,
+                {.emission = true, .merge = true, .mergeAtFirstVertex = true}},
+    MethodEntry{Method::bpm,
+                "bpm",
+                "bidirectional photon mapping: merging at every vertex",
+                true,
+                {.emission = true, .merge = true}},
+    MethodEntry{Method::vcm,
+                "vcm",
+                "vertex connection and merging",
+                true,
+                {.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true}},
 };
 
 constexpr std::optional<Method> parseMethod(std::string_view word) {

@@ -204,6 +204,15 @@ TEST(ReadResults, shardsComeBackAsOneCampaign) {
   EXPECT_TRUE(results.claims.empty()) << "no shard can judge the whole";
 }
 
+TEST(ReadResults, aFolderStandsForItsFileOrItsShards) {
+  const TemporaryFolder folder;
+  shard(folder, "results.1-of-2.sqlite", sampleRun("box", "pt", 1), {{"spp", "4"}}, sampleScene());
+  shard(folder, "results.2-of-2.sqlite", sampleRun("box", "lt", 1), {{"spp", "4"}}, sampleScene());
+  EXPECT_EQ(readResults(folder.folder()).runs.size(), 2u);
+  shard(folder, "results.sqlite", sampleRun("box", "vcm", 1), {{"spp", "4"}}, sampleScene());
+  EXPECT_EQ(readResults(folder.folder()).runs.size(), 1u);
+}
+
 TEST(ReadResults, whatIsNoPartOfTheSameCampaignIsRefused) {
   const TemporaryFolder folder;
   SceneRecord changed = sampleScene(), noisier = sampleScene();

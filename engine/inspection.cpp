@@ -1,0 +1,121 @@
+#include "engine/inspection.h"
+
+#include <utility>
+
+#include "engine/scene/scene_error.h"
+
+namespace wavecrest {
+namespace {
+
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+
+bool isRough(const TexturedFloat& alpha) { return alpha.texture != kNone || alpha.value >= double{kSmallestAlpha}; }
+
+std::string nameOf(const Material& material) {
+  return std::visit(
+      Overloaded{[](const Diffuse&) -> std::string { return "diffuse"; },
+                 [](const Conductor& c) -> std::string { return isRough(c.alpha) ? "roughconductor" : "conductor"; },
+                 [](const Dielectric& d) -> std::string {
+                   return d.thin ? "thindielectric" : isRough(d.alpha) ? "roughdielectric" : "dielectric";
+                 },
+                 [](const Plastic& p) -> std::string { return isRough(p.alpha) ? "roughplastic" : "plastic"; },
+                 [](const Phong&) -> std::string { return "phong"; }},
+      material.kind);
+}
+
+std::string nameOf(const Emitter& emitter) {
+  return std::visit(Overloaded{[](const AreaEmitter&) -> std::string { return "area"; },
+                               [](const PointEmitter&) -> std::string { return "point"; },
+                               [](const SpotEmitter&) -> std::string { return "spot"; },
+                               [](const DirectionalEmitter&) -> std::string { return "directional"; },
+                               [](const ConstantEmitter&) -> std::string { return "constant"; },
+                               [](const EnvmapEmitter&) -> std::string { return "envmap"; }},
+                    emitter.kind);
+}
+
+std::string nameOf(Sensor::Kind kind) {
+  switch (kind) {
+    case Sensor::Kind::perspective:
+      return "perspective";
+    case Sensor::Kind::thinlens:
+      return "thinlens";
+    case Sensor::Kind::orthographic:
+      return "orthographic";
+  }
+  return "";
+}
+
+std::string nameOf(ReconstructionFilter filter) {
+  switch (filter) {
+    case ReconstructionFilter::box:
+      return "box";
+    case ReconstructionFilter::tent:
+      return "tent";
+    case ReconstructionFilter::gaussian:
+      return "gaussian";
+  }
+  return "";
+}
+
+std::vector<std::string> needsOf(const Scene& scene) {
+  constexpr std::pair<uint32_t, const char*> kWords[] = {{kSpecularBsdfs, "specular BSDFs"},
+                                                         {kLayeredBsdfs, "layered BSDFs"},
+                                                         {kTextures, "textures"},
+                                                         {kShadingNormals, "shading normals"},
+                                                         {kCurvedShapes, "analytic spheres"},
+                                                         {kRareLights, "spot, directional or environment lights"},
+                                                         {kLens, "a lens or filter beyond pinhole and box"}};
+  const uint32_t features = sceneFeatures(scene);
+  std::vector<std::string> needs;
+  for (const auto& [bit, words] : kWords) {
+    if ((features & bit) != 0) needs.emplace_back(words);
+  }
+  return needs;
+}
+
+void countKinds(const Scene& scene, SceneInspection& out) {
+  for (const Material& material : scene.materials) {
+    ++out.bsdfs[nameOf(material)];
+    if (material.twoSided) ++out.bsdfs["twosided"];
+    if (material.opacity) ++out.bsdfs["mask"];
+    if (material.bumpTexture != kNone) ++out.bsdfs["bumpmap"];
+    if (material.normalTexture != kNone) ++out.bsdfs["normalmap"];
+  }
+  for (const Emitter& emitter : scene.emitters) ++out.lights[nameOf(emitter)];
+  for (const Texture& texture : scene.textures) {
+    ++out.textures[std::holds_alternative<BitmapTexture>(texture.kind) ? "bitmap" : "checkerboard"];
+  }
+}
+
+}  // namespace
+
+SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
+  SceneInspection out;
+  countKinds(scene, out);
+  out.sensor = nameOf(scene.sensor.kind);
+  out.filter = nameOf(scene.film.filter);
+  out.needs = needsOf(scene);
+
+  const auto compiled = compileScene<float>(scene, settings.accel);
+  out.primitives = compiled->primitives.counts;
+  out.bounds = boundPrimitives(compiled->primitives.records);
+  out.accel = compiled->small != nullptr ? Accel::small : Accel::embree;
+
+  for (const MethodEntry& entry : kMethods) {
+    MethodInspection& row = out.methods.emplace_back();
+    row.method = settings.method = entry.method;
+    row.specialization = specializationFor(scene, settings);
+    try {
+      row.memory = planMemory(scene, settings);
+    } catch (const SceneError& error) {
+      row.refusal = error.what();
+    }
+  }
+  out.paths = classifyPaths(scene);
+  return out;
+}
+
+}  // namespace wavecrest

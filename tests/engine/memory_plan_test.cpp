@@ -1,0 +1,131 @@
+// The memory plan is what a session then holds.
+#include "engine/memory_plan.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/session.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+RenderSettings settingsFor(Method method) {
+  RenderSettings settings;
+  settings.method = method;
+  settings.isa = bestIsa();
+  return settings;
+}
+
+RenderStatistics statisticsOf(const Scene& scene, const RenderSettings& settings, uint64_t iterations) {
+  const auto session = Session::create(scene, settings);
+  session->renderUntil(iterations, std::nullopt);
+  return session->statistics();
+}
+
+class MemoryPlanTest : public testing::TestWithParam<Method> {};
+
+TEST_P(MemoryPlanTest, isExactForOneWave) {
+  for (const char* name : {"cornell-diffuse", "cornell-mirror", "features/checkerboard", "features/envmap"}) {
+    const Scene scene = sceneFile(name, 40, 30);
+    for (const Precision precision : {Precision::floating, Precision::doubled}) {
+      RenderSettings settings = settingsFor(GetParam());
+      settings.precision = precision;
+      const MemoryPlan plan = planMemory(scene, settings);
+      const RenderStatistics held = statisticsOf(scene, settings, 1);
+      EXPECT_EQ(plan.bytesPerPath, held.bytesPerPath) << name;
+      EXPECT_EQ(plan.use.scene, held.memory.scene) << name;
+      EXPECT_EQ(plan.use.waves, held.memory.waves) << name;
+      EXPECT_EQ(plan.use.film, held.memory.film) << name;
+      EXPECT_EQ(plan.use.splats, held.memory.splats) << name;
+      EXPECT_EQ(plan.use.lightVertices, held.memory.lightVertices) << name;
+      EXPECT_EQ(plan.use.photonMap, held.memory.photonMap) << name;
+    }
+  }
+}
+
+// Other waves and iterations walk other light paths: their stores may be some larger.
+TEST_P(MemoryPlanTest, isNearForManyWavesAndIterations) {
+  const Scene scene = sceneFile("cornell-mirror", 160, 120);
+  RenderSettings settings = settingsFor(GetParam());
+  settings.waveSize = 1024;
+  const MemoryUse plan = planMemory(scene, settings).use;
+  const MemoryUse held = statisticsOf(scene, settings, 4).memory;
+  EXPECT_EQ(plan.waves, held.waves);
+  EXPECT_EQ(plan.film, held.film);
+  EXPECT_EQ(plan.splats, held.splats);
+  const auto planned = static_cast<double>(plan.total()), total = static_cast<double>(held.total());
+  EXPECT_GT(planned, 0.75 * total);
+  EXPECT_LT(planned, 1.33 * total);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, MemoryPlanTest, testing::ValuesIn([] {
+                           std::vector<Method> methods;
+                           for (const MethodEntry& entry : kMethods) methods.push_back(entry.method);
+                           return methods;
+                         }()),
+                         [](const auto& instance) { return std::string(toString(instance.param)); });
+
+TEST(MemoryPlan, growsWithThreads) {
+  const Scene scene = sceneFile("cornell-diffuse", 40, 30);
+  RenderSettings settings = settingsFor(Method::lt);
+  const MemoryUse one = planMemory(scene, settings).use;
+  settings.threads = 3;
+  const MemoryUse three = planMemory(scene, settings).use;
+  EXPECT_EQ(three.waves, 3 * one.waves);
+  EXPECT_EQ(three.splats, 2 * one.splats) << "one for each thread, and their sum";
+  EXPECT_EQ(three.film, one.film);
+}
+
+// ---- budget ---------------------------------------------------------------------------------------------------------
+
+// A quarter of the light paths' memory: their number shrinks, the session holds no more than it may, and its film has
+// seen that many light paths.
+TEST(MemoryBudget, lowersTheNumberOfLightPathsAndIsKept) {
+  const Scene scene = sceneFile("cornell-mirror", 160, 120);
+  for (const Method method : {Method::ppm, Method::bpm, Method::vcm}) {
+    RenderSettings settings = settingsFor(method);
+    settings.waveSize = 512;
+    const MemoryPlan whole = planMemory(scene, settings);
+    EXPECT_EQ(whole.lightPaths, 160u * 120);
+    const size_t lightBytes = whole.use.lightVertices + whole.use.photonMap;
+    settings.memoryBytes = whole.use.total() - lightBytes * 3 / 4;
+    const MemoryPlan plan = planMemory(scene, settings);
+    EXPECT_LE(plan.use.total(), *settings.memoryBytes);
+    EXPECT_LT(plan.lightPaths, whole.lightPaths / 3);
+    EXPECT_GT(plan.lightPaths, whole.lightPaths / 6);
+    const RenderStatistics held = statisticsOf(scene, settings, 3);
+    EXPECT_LE(held.memory.total(), *settings.memoryBytes * 101 / 100) << toString(method);
+    EXPECT_EQ(held.lightPaths, 3 * plan.lightPaths);
+    EXPECT_EQ(held.paths, 3u * 160 * 120);
+  }
+}
+
+TEST(MemoryBudget, thatSufficesChangesNothing) {
+  const Scene scene = sceneFile("cornell-diffuse", 80, 60);
+  for (const MethodEntry& entry : kMethods) {
+    RenderSettings settings = settingsFor(entry.method);
+    const MemoryPlan whole = planMemory(scene, settings);
+    settings.memoryBytes = whole.use.total();
+    EXPECT_EQ(planMemory(scene, settings).lightPaths, whole.lightPaths) << entry.name;
+  }
+}
+
+TEST(MemoryBudget, thatIsTooSmallIsRefused) {
+  const Scene scene = sceneFile("cornell-diffuse", 80, 60);
+  for (const MethodEntry& entry : kMethods) {
+    RenderSettings settings = settingsFor(entry.method);
+    settings.memoryBytes = 100'000;  // less than the film
+    EXPECT_THROW(planMemory(scene, settings), MemoryBudgetError) << entry.name;
+    EXPECT_THROW(Session::create(scene, settings), MemoryBudgetError) << entry.name;
+  }
+}
+
+TEST(MemoryBudget, ofMethodsWithoutAPhotonMapLeavesTheirLightPathsAlone) {
+  const Scene scene = sceneFile("cornell-diffuse", 80, 60);
+  RenderSettings settings = settingsFor(Method::bpt);
+  settings.lightPaths = 1000;
+  EXPECT_THROW(planMemory(scene, settings), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace wavecrest

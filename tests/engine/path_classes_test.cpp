@@ -1,0 +1,254 @@
+// Verdicts on path classes: by the rules, by the study's choices of reference, and by what rendering shows.
+#include "engine/path_classes.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/engine/render_statistics.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+// ---- rules ----------------------------------------------------------------------------------------------------------
+
+TEST(PathStrategies, areThoseOfThePipelines) {
+  for (const MethodEntry& entry : kMethods) {
+    const Pipeline<float> pipeline = makePipeline<float>(entry.method, {}, {});
+    const MisSettings& camera = pipeline.cameraPass.strategies;
+    const PathStrategies& listed = entry.strategies;
+    EXPECT_EQ(listed.nextEvent, camera.nextEvent) << entry.name;
+    EXPECT_EQ(listed.connect, camera.connect) << entry.name;
+    EXPECT_EQ(listed.merge, camera.merge) << entry.name;
+    EXPECT_EQ(listed.camera, pipeline.splats()) << entry.name;
+    EXPECT_EQ(listed.specularViewsOnly, !pipeline.cameraPass.firstDepth.empty()) << entry.name;
+    EXPECT_EQ(listed.mergeAtFirstVertex, camera.merge && !camera.mergeWeights) << entry.name;
+    EXPECT_TRUE(listed.emission) << entry.name << " shows lights in view";
+  }
+}
+
+// A scene in which everything sees everything, and nothing is hard.
+SceneLinks allLinks() {
+  SceneLinks links;
+  links.fromLight = links.between = {{{true, true}, {true, true}}};
+  links.fromEye = {true, true};
+  links.eyeMeetsLight = true;
+  links.lightSolidAngle = 1;
+  links.lightCoverage = links.cameraCoverage = 1;
+  return links;
+}
+
+const PathClass* find(const PathClassTable& table, const std::string& signature) {
+  for (const PathClass& pathClass : table.classes) {
+    if (pathClass.signature == signature) return &pathClass;
+  }
+  return nullptr;
+}
+
+// "pt lt ..." of the methods with this verdict.
+std::string methodsWith(const PathClassTable& table, const std::string& signature, Verdict verdict) {
+  const PathClass* const pathClass = find(table, signature);
+  if (pathClass == nullptr) return "no such class";
+  std::string names;
+  for (const Method method : table.methods) {
+    if (table.verdict(*pathClass, method) == verdict) {
+      names += (names.empty() ? "" : " ") + std::string(toString(method));
+    }
+  }
+  return names;
+}
+
+TEST(PathClasses, areEighteenWhereEverythingIsLinked) {
+  const PathClassTable table = classifyPaths(allLinks());
+  EXPECT_EQ(table.classes.size(), 18u);  // ten of extended lights, eight of delta lights
+  for (const PathClass& a : table.classes) {
+    EXPECT_EQ(a.verdicts.size(), kMethods.size());
+    EXPECT_EQ(find(table, a.signature), &a) << a.signature << " stands for one class";
+  }
+}
+
+// The examples of METHODS 8.1.
+TEST(PathClasses, impossibleOnesAreThoseNoStrategyMakes) {
+  const PathClassTable table = classifyPaths(allLinks());
+  EXPECT_EQ(methodsWith(table, "A D E", Verdict::impossible), "");
+  EXPECT_EQ(methodsWith(table, "A S+ E", Verdict::impossible), "");
+  EXPECT_EQ(methodsWith(table, "A S+ D E", Verdict::impossible), "");
+  EXPECT_EQ(methodsWith(table, "P D E", Verdict::impossible), "");
+  EXPECT_EQ(methodsWith(table, "P S+ D E", Verdict::impossible), "pt");
+  EXPECT_EQ(methodsWith(table, "P S+ D S+ E", Verdict::impossible), "pt lt bpt");
+  EXPECT_EQ(methodsWith(table, "P S+ D D S+ E", Verdict::impossible), "pt lt");
+  EXPECT_EQ(find(table, "P S+ E"), nullptr) << "no method shows it";
+}
+
+TEST(PathClasses, smallLightsMakeEmissionInefficient) {
+  SceneLinks links = allLinks();
+  links.lightSolidAngle = 0.01;
+  const PathClassTable table = classifyPaths(links);
+  EXPECT_EQ(methodsWith(table, "A S+ D E", Verdict::inefficient), "pt");
+  EXPECT_EQ(methodsWith(table, "A S+ D S+ E", Verdict::inefficient), "pt lt bpt");
+  EXPECT_EQ(methodsWith(table, "A S+ E", Verdict::inefficient), "") << "delta lobes lead there for certain";
+  EXPECT_EQ(methodsWith(table, "A D E", Verdict::inefficient), "") << "next event estimation finds it";
+}
+
+TEST(PathClasses, glossySurfacesInViewAreInefficientByLightTracingAndFirstMerges) {
+  SceneLinks links = allLinks();
+  links.eyeSeesGlossy = true;
+  EXPECT_EQ(methodsWith(classifyPaths(links), "A D E", Verdict::inefficient), "lt ppm");
+}
+
+TEST(PathClasses, lightTracingIsInefficientWhereTheCameraSeesLittleOfTheLight) {
+  SceneLinks links = allLinks();
+  links.cameraCoverage = 0.001;
+  EXPECT_EQ(methodsWith(classifyPaths(links), "A D D E", Verdict::inefficient), "lt");
+}
+
+TEST(PathClasses, nextEventIsInefficientForIndirectLightWhereFewPlacesSeeALamp) {
+  SceneLinks links = allLinks();
+  links.lightCoverage = 0.01;
+  links.lightSolidAngle = 0.01;
+  const PathClassTable table = classifyPaths(links);
+  EXPECT_EQ(methodsWith(table, "A D D E", Verdict::inefficient), "pt");
+  EXPECT_EQ(methodsWith(table, "A D E", Verdict::inefficient), "");
+}
+
+TEST(PathClasses, connectionsBetweenGlossySurfacesAloneAreInefficient) {
+  SceneLinks links = allLinks();
+  links.onlyGlossyPairs = true;
+  EXPECT_EQ(methodsWith(classifyPaths(links), "P S+ D D S+ E", Verdict::inefficient), "bpt");
+}
+
+TEST(PathClasses, areThoseThatLinksAllow) {
+  SceneLinks links;
+  links.fromLight[1] = {false, true};  // a sun behind water
+  links.between = {{{false, true}, {true, false}}};
+  links.fromEye = {true, false};
+  const PathClassTable table = classifyPaths(links);
+  ASSERT_EQ(table.classes.size(), 1u);
+  EXPECT_EQ(table.classes[0].signature, "P S+ D E");
+}
+
+// ---- reference methods ----------------------------------------------------------------------------------------------
+
+// What the study rendered its references by; merging needs a choice between vcm and ppm.
+TEST(ReferenceMethod, isTheStudysForItsScenes) {
+  const auto reference = [](const std::string& scene) { return classifyPaths(sceneFile(scene, 64, 48)).reference; };
+  EXPECT_EQ(reference("cornell-diffuse").method, Method::pt);
+  EXPECT_EQ(reference("cornell-mirror").method, Method::bpt);
+  EXPECT_EQ(reference("cornell-glossy").method, Method::pt);
+  EXPECT_EQ(reference("cornell-spheres").method, Method::vcm);
+  EXPECT_TRUE(reference("cornell-spheres").biased);
+  EXPECT_EQ(reference("lafortune-room").method, Method::bpt);
+  EXPECT_EQ(reference("pool-interior").method, Method::lt);
+  EXPECT_EQ(reference("veach-door").method, Method::bpt);
+}
+
+TEST(ReferenceMethod, saysWhy) {
+  const ReferenceChoice choice = classifyPaths(sceneFile("cornell-mirror", 64, 48)).reference;
+  EXPECT_FALSE(choice.biased);
+  EXPECT_NE(choice.reason.find("A S+ D E"), std::string::npos) << choice.reason;
+}
+
+// ---- what rendering shows -------------------------------------------------------------------------------------------
+
+// A point light between a white floor at z = 0 and a mirror at z = 2, with a black screen that keeps its direct light
+// from the floor: all light is a caustic, as from a second light at z = 3. The camera looks at the floor (S = false) or
+// at the mirror, which shows the floor.
+constexpr double kAlbedo = 0.6, kIntensity = 10;
+Scene causticScene(bool throughMirror) {
+  Scene scene;
+  const uint32_t white = addDiffuse(scene, kAlbedo, kAlbedo, kAlbedo), black = addDiffuse(scene, 0, 0, 0);
+  addShape(scene, Rectangle{{-5, -5, 0}, {10, 0, 0}, {0, 10, 0}}, white);
+  addShape(scene, Rectangle{{-0.5, -0.5, 0.9}, {1, 0, 0}, {0, 1, 0}}, black);
+  Material mirror;
+  mirror.kind = Conductor{.perfectMirror = true};
+  scene.materials.push_back(mirror);
+  addShape(scene, Rectangle{{-5, -5, 2}, {0, 10, 0}, {10, 0, 0}}, 2);  // facing -z
+  Emitter light;
+  light.kind = PointEmitter{{0, 0, 1}, {kIntensity, kIntensity, kIntensity}};
+  scene.emitters.push_back(light);
+  setCamera(scene, {2, 0, 1.5}, 40, 24, 24);
+  if (throughMirror) {
+    scene.sensor.toWorld[0][0] = 1;
+    scene.sensor.toWorld[2][2] = 1;
+  }
+  return scene;
+}
+
+// Mean over the image by the formula of the mirrored light, at the centres of a fine grid.
+double causticMean(bool throughMirror) {
+  const double height = throughMirror ? 2.5 : 1.5;  // of the eye above the floor, on the path of light
+  const double half = height * std::tan(20 * std::numbers::pi / 180);
+  constexpr int kGrid = 200;
+  double sum = 0;
+  for (int i = 0; i < kGrid; ++i) {
+    for (int k = 0; k < kGrid; ++k) {
+      const double x = 2 + half * (2 * (i + 0.5) / kGrid - 1), y = half * (2 * (k + 0.5) / kGrid - 1);
+      const double dist2 = x * x + y * y + 9;
+      sum += kAlbedo / std::numbers::pi * kIntensity * 3 / (dist2 * std::sqrt(dist2));
+    }
+  }
+  return sum / (kGrid * kGrid);
+}
+
+double meanOf(const RgbImage& image) {
+  double sum = 0;
+  for (const float value : image) sum += value;
+  return sum / static_cast<double>(image.size());
+}
+
+class CausticTest : public testing::TestWithParam<bool> {};
+
+TEST_P(CausticTest, isMadeBySampledMethodsAndByNoOther) {
+  const Scene scene = causticScene(GetParam());
+  const PathClassTable table = classifyPaths(scene);
+  ASSERT_EQ(table.classes.size(), 1u);
+  EXPECT_EQ(table.classes[0].signature, GetParam() ? "P S+ D S+ E" : "P S+ D E");
+  const double truth = causticMean(GetParam());
+  for (const MethodEntry& entry : kMethods) {
+    RenderSettings settings;
+    settings.isa = bestIsa();
+    settings.method = entry.method;
+    settings.radius = 0.01;
+    settings.limits.maxDepth = GetParam() ? 4 : 3;  // the floor is seen again in the mirror's light
+    const RgbImage image = render(scene, settings, 400);
+    if (table.verdict(table.classes[0], entry.method) == Verdict::impossible) {
+      EXPECT_EQ(*std::max_element(image.begin(), image.end()), 0.0f) << entry.name;
+    } else {
+      // 230,000 light paths, of which a twentieth arrives in view: 1 %; merging blurs a smooth image by less.
+      EXPECT_NEAR(meanOf(image) / truth, 1, 0.05) << entry.name;
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(PathClasses, CausticTest, testing::Bool(),
+                         [](const auto& instance) { return instance.param ? "inMirror" : "inView"; });
+
+// cornell-mirror's patch on the ceiling is inefficient by pt and sampled by bpt: both converge, pt with more noise.
+TEST(PathClasses, inefficientOnesConvergeWithMoreNoise) {
+  const Scene scene = sceneFile("cornell-mirror", 96, 72);
+  const PathClassTable table = classifyPaths(scene);
+  EXPECT_EQ(methodsWith(table, "A S+ D E", Verdict::inefficient), "pt");
+  const auto patch = [&](Method method) {
+    RenderSettings settings;
+    settings.isa = bestIsa();
+    settings.method = method;
+    SeedMeans seeds = renderSeeds(scene, settings, 16);
+    std::vector<double> sums(kSeeds, 0.0);
+    for (size_t s = 0; s < kSeeds; ++s) {
+      for (uint32_t y = 8; y < 12; ++y) {
+        for (uint32_t x = 27; x < 40; ++x) sums[s] += seeds.images[s][3 * (y * 96 + x) + 1];
+      }
+    }
+    double mean = 0, squares = 0;
+    for (const double sum : sums) mean += sum / kSeeds;
+    for (const double sum : sums) squares += (sum - mean) * (sum - mean) / (kSeeds - 1);
+    return std::array{mean, std::sqrt(squares / kSeeds)};
+  };
+  const auto [ptMean, ptError] = patch(Method::pt);
+  const auto [bptMean, bptError] = patch(Method::bpt);
+  EXPECT_NEAR(ptMean, bptMean, 6 * std::hypot(ptError, bptError));
+  EXPECT_GT(ptError, 2 * bptError);
+}
+
+}  // namespace
+}  // namespace wavecrest
