@@ -169,6 +169,22 @@ TEST_F(CollectCampaign, severalFilesAreThePartsOfOneCampaign) {
   EXPECT_EQ(scene.series[0].runs.size(), 2U);
 }
 
+// No shard could judge the study's findings; the report over all of them does.
+TEST_F(CollectCampaign, findingsAreJudgedOverAllParts) {
+  const std::vector<fs::path> parts{folder / "a.sqlite", folder / "b.sqlite"};
+  for (size_t part = 0; part < parts.size(); ++part) {
+    ResultsStore store(parts[part]);
+    store.putCampaign({{"time", "4"}});
+    store.putScene({.name = "cornell-diffuse", .hash = "1", .referenceFile = "", .width = kSide, .height = kSide});
+    RunRecord record = run("pt", 1 + part, 0.2);
+    record.scene = "cornell-diffuse";
+    store.putRun(record);
+  }
+  const ConvergenceReport report = collectReport(parts);
+  EXPECT_GT(report.claims.size(), 1U);
+  for (const ReportClaim& claim : report.claims) EXPECT_EQ(claim.scene, "cornell-diffuse");
+}
+
 TEST_F(CollectCampaign, refusesResultsWithoutAMeasurement) {
   writeStore("results.sqlite", {});
   EXPECT_THROW(collect(), ResultsError);
