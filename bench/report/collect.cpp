@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bench/claims/judge_claims.h"
 #include "bench/report/collect_campaign.h"
 #include "bench/report/collect_renders.h"
 #include "bench/report/method_style.h"
@@ -15,8 +16,11 @@ namespace {
 namespace fs = std::filesystem;
 
 ConvergenceReport collect(std::span<const fs::path> paths) {
-  const bool renders = paths.size() == 1 && !fs::is_regular_file(paths[0]) && !fs::exists(paths[0] / kResultsFile);
-  return renders ? collectRenders(paths[0]) : collectCampaign(readResults(paths));
+  const bool renders = paths.size() == 1 && !fs::is_regular_file(paths[0]) && !holdsResults(paths[0]);
+  if (renders) return collectRenders(paths[0]);
+  CampaignResults results = readResults(paths);
+  if (results.claims.empty()) results.claims = judgeStudyClaims(results);  // of shards, or of a campaign under way
+  return collectCampaign(results);
 }
 
 }  // namespace
