@@ -16,11 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 ConvergenceReport collect(std::span<const fs::path> paths) {
-  const bool renders = paths.size() == 1 && !fs::is_regular_file(paths[0]) && !fs::exists(paths[0] / kResultsFile);
+  const bool renders = paths.size() == 1 && !fs::is_regular_file(paths[0]) && !holdsResults(paths[0]);
   if (renders) return collectRenders(paths[0]);
   CampaignResults results = readResults(paths);
-  // No part could judge the whole.
-  if (paths.size() > 1) results.claims = judgeStudyClaims(results);
+  if (results.claims.empty()) results.claims = judgeStudyClaims(results);  // of shards, or of a campaign under way
   return collectCampaign(results);
 }
 
