@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bench/report/final_images.h"
+#include "bench/report/html_text.h"
 #include "bench/report/series_facts.h"
 #include "bench/report/shown_metrics.h"
 #include "metrics/image/image_io.h"
@@ -142,6 +144,19 @@ void addRefusals(ReportScene& scene, const CampaignResults& results) {
   }
 }
 
+// What a reference says of itself, as bench/campaign/reference_file.h writes it: ", two halves by bpt, off by 0.8 %".
+std::string originOf(const Metadata& metadata) {
+  const auto value = [&](const char* key) {
+    const auto found = metadata.find(std::string("wavecrest:") + key);
+    return found == metadata.end() ? std::string() : found->second;
+  };
+  std::string text;
+  if (!value("method").empty()) text += fmt::format(", two halves by {}", value("method"));
+  const double error = std::strtod(value("relative_error").c_str(), nullptr);
+  if (error > 0) text += fmt::format(", off by about {} % of a sample's value", formatSignificant(100 * error, 2));
+  return text;
+}
+
 ReportScene collectScene(const CampaignResults& results, const SceneRecord& record, ConvergenceReport& report) {
   ReportScene scene;
   scene.name = record.name;
@@ -164,9 +179,7 @@ ReportScene collectScene(const CampaignResults& results, const SceneRecord& reco
     return scene;
   }
   const PreparedReference reference(record.referenceFile, readImage(record.referenceFile));
-  const auto& metadata = reference.image().file.metadata;
-  if (const auto method = metadata.find("method"); method != metadata.end())
-    scene.referenceOrigin += ", made by " + method->second;
+  scene.referenceOrigin += originOf(reference.image().file.metadata);
   addFinalImages(scene, reference, lastImages);
   const auto missing = std::count(lastImages.begin(), lastImages.end(), fs::path());
   if (missing > 0)

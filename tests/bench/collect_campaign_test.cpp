@@ -33,7 +33,8 @@ class CollectCampaign : public testing::Test {
     folder = fs::path(testing::TempDir()) / (std::string("wavecrest_campaign_") + info->name());
     fs::remove_all(folder);
     fs::create_directories(folder / "images");
-    writeExr((folder / "images/box.exr").string(), grey(0.5F), {{"method", "bpt"}});
+    writeExr((folder / "images/box.exr").string(), grey(0.5F),
+             {{"wavecrest:method", "bpt"}, {"wavecrest:relative_error", "0.0123"}});
     writeExr((folder / "images/last.exr").string(), grey(0.6F));
   }
   void TearDown() override { fs::remove_all(folder); }
@@ -122,7 +123,7 @@ TEST_F(CollectCampaign, showsMainScoresInTheOrderOfTheMetricListAndKeepsTheOther
 TEST_F(CollectCampaign, readsTheLastImagesAndTheReferencesOrigin) {
   writeStore("results.sqlite", {run("pt", 1, 0.2)});
   const ReportScene scene = collect().scenes[0];
-  EXPECT_EQ(scene.referenceOrigin, "box.exr, made by bpt");
+  EXPECT_EQ(scene.referenceOrigin, "box.exr, two halves by bpt, off by about 1.2 % of a sample's value");
   EXPECT_EQ(scene.reference.rgb.size(), 3U * kSide * kSide);
   EXPECT_EQ(scene.series[0].finalImage.label, "pt, 4.1 s");
   EXPECT_FALSE(scene.series[0].errorMap.rgb.empty());
@@ -166,6 +167,22 @@ TEST_F(CollectCampaign, severalFilesAreThePartsOfOneCampaign) {
   const ReportScene scene = collectReport(parts).scenes.at(0);
   ASSERT_EQ(scene.series.size(), 2U);
   EXPECT_EQ(scene.series[0].runs.size(), 2U);
+}
+
+// No shard could judge the study's findings; the report over all of them does.
+TEST_F(CollectCampaign, findingsAreJudgedOverAllParts) {
+  const std::vector<fs::path> parts{folder / "a.sqlite", folder / "b.sqlite"};
+  for (size_t part = 0; part < parts.size(); ++part) {
+    ResultsStore store(parts[part]);
+    store.putCampaign({{"time", "4"}});
+    store.putScene({.name = "cornell-diffuse", .hash = "1", .referenceFile = "", .width = kSide, .height = kSide});
+    RunRecord record = run("pt", 1 + part, 0.2);
+    record.scene = "cornell-diffuse";
+    store.putRun(record);
+  }
+  const ConvergenceReport report = collectReport(parts);
+  EXPECT_GT(report.claims.size(), 1U);
+  for (const ReportClaim& claim : report.claims) EXPECT_EQ(claim.scene, "cornell-diffuse");
 }
 
 TEST_F(CollectCampaign, refusesResultsWithoutAMeasurement) {
