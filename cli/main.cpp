@@ -8,6 +8,7 @@
 #include "engine/load/load.h"
 #include "engine/scene/scene_error.h"
 #include "metrics/image/image.h"
+#include "scenes/scene_list.h"
 
 int main(int argc, char** argv) {
   using namespace wavecrest;
@@ -16,6 +17,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exitCode = kExitDone;
   addCompareCommand(app, exitCode);
+  addConvergeCommand(app, exitCode);
+  addReferenceCommand(app, exitCode);
   addRenderCommand(app, exitCode);
   addInspectCommand(app, exitCode);
   addReportCommand(app, exitCode);
@@ -31,6 +34,10 @@ int main(int argc, char** argv) {
   } catch (const UsageError& error) {
     fmt::print(stderr, "wavecrest: error: {}\n", error.what());
     return kExitUsage;
+  } catch (const MissingFileError& error) {
+    const std::string hint = missingAssetHint(error.file);
+    fmt::print(stderr, "wavecrest: error: {}{}\n", error.what(), hint.empty() ? "" : ": " + hint);
+    return kExitInput;
   } catch (const LoadError& error) {
     fmt::print(stderr, "wavecrest: error: {}\n", error.what());
     return kExitInput;

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -29,6 +30,22 @@ double parseDuration(const std::string& text) {
     if (scale == 0) return fail();
   }
   return std::isfinite(total) && total > 0 ? total : fail();
+}
+
+SnapshotSchedule parseSnapshotSchedule(const std::string& text) {
+  if (text.empty()) return SnapshotSchedule::none();
+  return text == "log" ? SnapshotSchedule::logarithmic() : SnapshotSchedule::every(parseDuration(text));
+}
+
+Isa parseIsaOption(const std::string& word) {
+  if (word == "auto") return bestIsa();
+  const std::optional<Isa> isa = parseIsa(word);
+  if (!isa) throw UsageError(fmt::format("--isa {}: expected auto, scalar, sse4, avx2 or avx512", word));
+  const auto& available = availableIsas();
+  if (std::find(available.begin(), available.end(), *isa) == available.end()) {
+    throw UsageError(fmt::format("--isa {}: this machine or build does not have it", word));
+  }
+  return *isa;
 }
 
 std::array<uint32_t, 2> parseSize(const std::string& text) {

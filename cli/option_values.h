@@ -5,10 +5,18 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/snapshots.h"
+
 namespace wavecrest {
 
 // "6s", "2m", "1h30m", "0.5s", or plain seconds. Positive and finite, or UsageError.
 double parseDuration(const std::string& text);
+
+// "" for no snapshots, "log" for render times that grow by a fixed ratio, else a duration between snapshots.
+SnapshotSchedule parseSnapshotSchedule(const std::string& text);
+
+// "auto" for the best there is, or the name of one that this machine and build have; UsageError otherwise.
+Isa parseIsaOption(const std::string& word);
 
 // "1024x768": both 1 to 65535, or UsageError.
 std::array<uint32_t, 2> parseSize(const std::string& text);

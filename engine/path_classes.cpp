@@ -108,7 +108,8 @@ struct Judge {
     const bool inView = !method.specularViewsOnly || !path.lastD;
     const bool mergingAlone = method.merge && !method.nextEvent;
     offer(method.emission && inView && !path.deltaLight && !(mergingAlone && path.hasD), emissionIsEfficient(path));
-    offer(method.nextEvent && inView && path.firstD, true);
+    // Indirect light has to be looked for where light falls.
+    offer(method.nextEvent && inView && path.firstD, !path.hasDD || links.lightCoverage >= limits.lightCoverage);
     offer(method.connect && path.hasDD, !links.onlyGlossyPairs);
     offer(method.camera && path.lastD, links.cameraCoverage >= limits.cameraCoverage && !links.eyeSeesGlossy);
     offer(method.merge && path.hasD, !(method.mergeAtFirstVertex && path.lastD && links.eyeSeesGlossy));

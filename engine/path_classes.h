@@ -57,6 +57,7 @@ struct PathClassTable {
 struct EfficiencyLimits {
   double lightSolidAngle = 0.1;  // sr: s = 0 behind a diffuse event
   double cameraCoverage = 0.01;  // share of light vertices that the lens sees: t = 1
+  double lightCoverage = 0.1;    // share of camera vertices that see a light: s = 1 on indirect light
 };
 
 // The table of a scene with these links, for some methods.

@@ -124,8 +124,8 @@ class Walker {
       walkFrom(Walk::camera, iteration);
     }
     links_.onlyGlossyPairs = links_.between[0][0] && !roughPairs_;
-    links_.cameraCoverage = diffuseVertices_ == 0 ? 0 : seenVertices_ / static_cast<double>(diffuseVertices_);
-    links_.lightVerticesPerPath = static_cast<double>(diffuseVertices_) / (kPaths * kIterations);
+    links_.cameraCoverage = lightVertices_.share();
+    links_.lightCoverage = cameraVertices_.share();
     return links_;
   }
 
@@ -156,6 +156,7 @@ class Walker {
       if (walk == Walk::camera && context.depth == 1) noteMisses();
       stages_.arrive(context, wave_);
       noteEvents(walk, context.depth);
+      if (walk == Walk::camera) countLit(context);
       if (walk == Walk::light && splatting_) countSeen(context);
       stages_.scatter(context, wave_);
     }
@@ -179,7 +180,7 @@ class Walker {
       const auto& primitive = plan_.scene->view.primitives[wave_.hits.primitive[i]];
       const uint32_t lane = wave_.paths.lane[i];
       const uint8_t here = events_[primitive.material], before = previous_[lane];
-      if (walk == Walk::light && (here & kDiffuse) != 0) ++diffuseVertices_;
+      if ((here & kDiffuse) != 0) ++(walk == Walk::light ? lightVertices_ : cameraVertices_).all;
       if (depth > 1) {
         for (size_t a = 0; a < 2; ++a) {
           for (size_t b = 0; b < 2; ++b) {
@@ -201,19 +202,34 @@ class Walker {
     }
   }
 
-  // How many of the vertices under the light paths a shadow ray joins with the lens: each is made to carry 1.
-  void countSeen(StageContext<float>& context) {
-    stages_.connectToCamera(context, wave_);
+  // How many of the vertices under the camera paths next event estimation joins with a light: each shadow ray is made
+  // to carry 1.
+  void countLit(StageContext<float>& context) {
+    if (context.scene->lightCount == 0) return;
+    stages_.nextEvent(context, wave_);
+    carryOne();
+    std::fill_n(&wave_.radiance.red[0], kPaths, 0.0f);
+    intersector_.occlude(context, wave_);
+    for (size_t i = 0; i < kPaths; ++i) cameraVertices_.joined += static_cast<double>(wave_.radiance.red[i]);
+  }
+
+  void carryOne() {
     auto& rays = wave_.shadowRays;
     for (size_t i = 0; i < rays.size; ++i) {
       rays.red[i] = 1;
       rays.green[i] = rays.blue[i] = 0;
-      splats_[3 * rays.target[i]] = 0;
     }
+  }
+
+  // The same for the vertices under the light paths and the lens.
+  void countSeen(StageContext<float>& context) {
+    stages_.connectToCamera(context, wave_);
+    carryOne();
+    auto& rays = wave_.shadowRays;
     const std::vector<uint32_t> targets(&rays.target[0], &rays.target[0] + rays.size);
     intersector_.occlude(context, wave_);
     for (const uint32_t target : targets) {
-      seenVertices_ += static_cast<double>(splats_[3 * target]) / kSplatScale;
+      lightVertices_.joined += static_cast<double>(splats_[3 * target]) / kSplatScale;
       splats_[3 * target] = 0;
     }
   }
@@ -232,8 +248,12 @@ class Walker {
   StageCounters counters_;
   SceneLinks links_;
   bool roughPairs_ = false;
-  uint64_t diffuseVertices_ = 0;
-  double seenVertices_ = 0;
+  // Diffuse vertices, and those that a shadow ray joined with what the other walk begins at.
+  struct Joined {
+    uint64_t all = 0;
+    double joined = 0;
+    double share() const { return all == 0 ? 0 : joined / static_cast<double>(all); }
+  } lightVertices_, cameraVertices_;
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ struct SceneLinks {
   bool onlyGlossyPairs = false;        // two diffuse events in a row are glossy ones, always
   double lightSolidAngle = 0;          // of the smallest extended light from a distance of the scene's radius, sr
   double cameraCoverage = 0;           // share of the vertices of light paths that the lens sees; 0 with a finite lens
-  double lightVerticesPerPath = 0;     // mean number of diffuse vertices of a light path
+  double lightCoverage = 0;            // share of the vertices of camera paths that a sampled light reaches
 };
 
 // Roughness below which a surface without a wider lobe counts as glossy.

@@ -68,7 +68,7 @@ class TypedSession final : public Session {
     Worker(size_t waveSize, const ColumnNeeds& needs) : wave(waveSize, needs), light(waveSize, needs) {}
   };
   // Whether a wave that has done so many iterations is to stop.
-  using Finished = std::function<bool(uint64_t done)>;
+  using Finished = std::function<bool(uint64_t next)>;
 
   Worker& worker();
   void tracePass(const Pass<S>& pass, size_t waveIndex, size_t paths, uint64_t iteration, LightStore<S>* light,
@@ -94,7 +94,7 @@ class TypedSession final : public Session {
   Film film_;
   RenderPlan<S> plan_;
   MemoryPlan memory_;
-  std::vector<uint64_t> lightDone_, cameraDone_;        // iterations done by each wave
+  std::vector<uint64_t> lightDone_, cameraDone_;        // next iteration of each wave
   std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each light wave, where a photon map gathers them
   PhotonMap<S> photons_;
   std::optional<uint64_t> photonIteration_;  // which iteration the map is of
@@ -114,8 +114,8 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
   arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
   memory_ = planMemory(plan_, settings, film_.area());
   const auto waves = [&](size_t paths) { return (paths + settings.waveSize - 1) / settings.waveSize; };
-  lightDone_.resize(waves(memory_.lightPaths));
-  cameraDone_.resize(waves(pixels));
+  lightDone_.resize(waves(memory_.lightPaths), settings.firstIteration);
+  cameraDone_.resize(waves(pixels), settings.firstIteration);
   if (plan_.pipeline.photonMap) {
     for (size_t i = 0; i < lightDone_.size(); ++i) {
       stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs));
@@ -231,7 +231,10 @@ void TypedSession<S>::renderPhases(const Finished& finished) {
       if (lightDone_[wave] == iteration && !finished(iteration)) traceLight(wave, worker());
     });
     if (*std::min_element(lightDone_.begin(), lightDone_.end()) == iteration) return;  // time ran out
-    if (photonIteration_ != iteration) buildPhotonMap(iteration);
+    if (photonIteration_ != iteration) {
+      if (finished(iteration)) return;
+      buildPhotonMap(iteration);
+    }
     forEach(cameraDone_.size(), [&](size_t wave) {
       if (cameraDone_[wave] == iteration && !finished(iteration)) traceCamera(wave, worker());
     });
@@ -256,8 +259,9 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
   const WorkerLimit limit(settings_.threads);
-  const Finished finished = [&](uint64_t done) {
-    if (iterations && done >= *iterations) return true;
+  // next: the iteration that the wave would trace.
+  const Finished finished = [&](uint64_t next) {
+    if (iterations && next - settings_.firstIteration >= *iterations) return true;
     const double now = renderSeconds_ + secondsSince(begin);
     progressSeconds_.store(now, std::memory_order_relaxed);
     return (seconds && now >= *seconds) || interrupted();

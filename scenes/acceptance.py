@@ -7,6 +7,7 @@ the same statements serve wavecrest's renders and Mitsuba's.
 import dataclasses
 import json
 import pathlib
+import re
 
 import numpy as np
 
@@ -46,6 +47,16 @@ def shots(scene, statement):
     return [own, dataclasses.replace(own, **{key: over[key] for key in over if key != "region"})]
 
 
+def read_pfm(path):
+    """(height, width, 3) from the top row of a little-endian colour PFM."""
+    data = pathlib.Path(path).read_bytes()
+    header = re.match(rb"PF\s+(\d+)\s+(\d+)\s+-[\d.]+\s", data)
+    if header is None:
+        raise ValueError(f"{path}: no little-endian colour PFM")
+    width, height = int(header[1]), int(header[2])
+    return np.frombuffer(data, "<f4", 3 * width * height, header.end()).reshape(height, width, 3)[::-1].astype(float)
+
+
 def crop(image, region):
     height, width = image.shape[:2]
     x0, x1, y0, y1 = region
@@ -72,6 +83,32 @@ def statistic(kind, pixels):
         case "max":
             return pixels.max()
     raise ValueError(f"acceptance.json: unknown statistic '{kind}'")
+
+
+# What shows the whole scene where path tracing does not.
+BEST_FOR_EXPOSURE = {"pool-interior": "lt", "cornell-spheres": "lt", "lafortune-room": "lt"}
+EXPOSURE_BOUNDS = (0.25, 0.6)
+MOST_CLIPPED = 0.02
+
+
+def srgb(linear):
+    clipped = np.clip(linear, 0, 1)
+    return np.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * np.maximum(clipped, 1e-9) ** (1 / 2.4) - 0.055)
+
+
+def evaluate_exposure(scene, render):
+    """Verdict on the plain sRGB picture: neither dark nor pale, and hardly anything burnt out but lamps in view."""
+    method = BEST_FOR_EXPOSURE.get(scene, "pt")
+    image = render(Shot(scene, method))
+    mean = srgb(image).mean()
+    # A lamp in view is all that lies above 1 at depth 1; noise above 1 is smoothed away in blocks of 4 x 4.
+    height, width = (size // 4 * 4 for size in image.shape[:2])
+    blocks = image[:height, :width].reshape(height // 4, 4, width // 4, 4, 3).mean((1, 3))
+    lamps = render(Shot(scene, "pt", 1))[:height, :width].reshape(height // 4, 4, width // 4, 4, 3).max((1, 3))
+    clipped = np.mean((blocks.max(-1) > 1) & (lamps.max(-1) <= 1))
+    holds = EXPOSURE_BOUNDS[0] <= mean <= EXPOSURE_BOUNDS[1] and clipped <= MOST_CLIPPED
+    text = f"well exposed: mean of sRGB {mean:.3f} by {method} (bounds {EXPOSURE_BOUNDS[0]} .. {EXPOSURE_BOUNDS[1]})"
+    return Verdict(bool(holds), mean, f"{text}, {100 * clipped:.2f} % clipped (at most {100 * MOST_CLIPPED:.0f})")
 
 
 def evaluate(scene, statement, render):

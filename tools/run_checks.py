@@ -92,9 +92,14 @@ def step_release(tally):
         return
     if os.environ.get("CHECK_OFFLINE") == "1":
         print("CHECK_OFFLINE=1: the tests against Mitsuba (label oracle) are left out")
-        test(tally, "release", "--label-exclude", "oracle")
+        test(tally, "release", "--label-exclude", "^(oracle|long)$")
     else:
-        test(tally, "release")
+        test(tally, "release", "--label-exclude", "^long$")
+
+
+def step_long(tally):
+    if build(tally, "release"):
+        test(tally, "release", "--label-regex", "^long$")
 
 
 def step_sanitizers(tally):
@@ -110,8 +115,9 @@ def step_tidy(tally):
     run(tally, "tidy", [sys.executable, "tools/lint.py", "tidy", "--build", "build/release"])
 
 
-STEPS = {"release": step_release, "sanitizers": step_sanitizers, "lint": step_lint, "tidy": step_tidy}
-# The sanitizers and clang-tidy over the whole tree take longer than all else together: steps to ask for.
+STEPS = {"release": step_release, "long": step_long, "sanitizers": step_sanitizers, "lint": step_lint, "tidy": step_tidy}
+# Pictures of all scenes, the sanitizers, and clang-tidy over the whole tree take longer than all else together: steps to
+# ask for.
 DEFAULT_STEPS = ("release", "lint")
 
 

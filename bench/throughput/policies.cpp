@@ -32,14 +32,21 @@ std::vector<std::unique_ptr<Session>> makeSessions(const Scene& scene, RenderSet
                                                    std::vector<PolicyRow>& rows) {
   std::vector<std::unique_ptr<Session>> sessions;
   settings.threads = 1;
+  const auto add = [&] {
+    sessions.push_back(Session::create(scene, settings));
+    rows.push_back({.precision = settings.precision,
+                    .isa = settings.isa,
+                    .specialization = sessions.back()->statistics().specialization});
+  };
   for (auto isa = availableIsas().rbegin(); isa != availableIsas().rend(); ++isa) {
     for (const Precision precision : {Precision::doubled, Precision::floating, Precision::fast}) {
       settings.isa = *isa;
       settings.precision = precision;
-      sessions.push_back(Session::create(scene, settings));
-      PolicyRow& row = rows.emplace_back();
-      row.precision = precision;
-      row.isa = *isa;
+      add();
+      if (precision != Precision::floating || rows.back().specialization == Specialization::general) continue;
+      settings.specialization = Specialization::general;
+      add();
+      settings.specialization.reset();
     }
   }
   return sessions;

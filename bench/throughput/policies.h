@@ -1,4 +1,5 @@
-// What accuracy costs: speed, difference from double and memory of every precision policy on every instruction set.
+// What accuracy costs: speed, difference from double and memory of every precision policy on every instruction set; and
+// what specialisation saves: the general kernels, as far as others were chosen.
 //
 // All render the same iterations with the same random numbers, so the difference of two images is rounding and what
 // follows from it (a path that takes another turn), not Monte Carlo noise.
@@ -13,6 +14,7 @@ namespace wavecrest {
 struct PolicyRow {
   Precision precision{};
   Isa isa{};
+  Specialization specialization{};
   double pathsPerCpuSecond = 0;
   double meanDifference = 0;   // (mean - mean of double) / mean of double: a bias
   double pixelDifference = 0;  // root mean square over pixels, relative to that of double's image

@@ -57,6 +57,7 @@ Json policiesJson(const PolicyTable& table) {
   for (const PolicyRow& row : table.rows) {
     rows.push_back({{"precision", nameOf(kPrecisionNames, row.precision)},
                     {"isa", std::string(toString(row.isa))},
+                    {"specialization", nameOf(kSpecializationNames, row.specialization)},
                     {"paths_per_cpu_second", row.pathsPerCpuSecond},
                     {"mean_difference", row.meanDifference},
                     {"pixel_difference", row.pixelDifference},

@@ -63,11 +63,12 @@ void addBareEmbree(Text& text, const BareEmbree& embree, const Speed& speed) {
 void addPolicies(Text& text, const PolicyTable& table) {
   line(text, "\n  precision policies and instruction sets; differences after {} iterations of the same random numbers",
        table.iterations);
-  line(text, "  {:<9} {:<8} {:>16} {:>15} {:>16} {:>11}", "precision", "isa", "M paths/s core", "mean vs double",
-       "pixels vs double", "bytes/path");
+  line(text, "  {:<9} {:<8} {:<21} {:>16} {:>15} {:>16} {:>11}", "precision", "isa", "kernels", "M paths/s core",
+       "mean vs double", "pixels vs double", "bytes/path");
   for (const PolicyRow& row : table.rows) {
-    line(text, "  {:<9} {:<8} {:>16.3f} {:>15.1e} {:>16.1e} {:>11}", nameOf(kPrecisionNames, row.precision),
-         toString(row.isa), millions(row.pathsPerCpuSecond), row.meanDifference, row.pixelDifference, row.bytesPerPath);
+    line(text, "  {:<9} {:<8} {:<21} {:>16.3f} {:>15.1e} {:>16.1e} {:>11}", nameOf(kPrecisionNames, row.precision),
+         toString(row.isa), nameOf(kSpecializationNames, row.specialization), millions(row.pathsPerCpuSecond),
+         row.meanDifference, row.pixelDifference, row.bytesPerPath);
   }
 }
 

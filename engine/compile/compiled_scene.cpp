@@ -92,6 +92,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel) 
   for (const Material& material : scene.materials) compiled->materials.push_back(compileMaterial(material, scene));
 
   compiled->textures = compileTextures(scene);
+  bindLightTextures(scene, primitives, compiled->lights, compiled->textures);
 
   SceneView<S>& view = compiled->view;
   if (accel == Accel::small || (accel == Accel::automatic && primitives.counts.total() <= kSmallSceneLimit)) {

@@ -43,8 +43,10 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radianc
   assign(light.radiance, radiance);
   light.inverseArea = static_cast<S>(1 / areaOf(primitive));
   Double3 extent{};
+  const bool sphere = static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere;
   for (size_t i = 0; i < 3; ++i) {
-    extent[i] = std::abs(primitive.p0[i]) + std::abs(primitive.e1[i]) + std::abs(primitive.e2[i]);
+    const S reach = sphere ? primitive.e1[0] : std::abs(primitive.e1[i]) + std::abs(primitive.e2[i]);
+    extent[i] = std::abs(primitive.p0[i]) + reach;
   }
   light.offset = static_cast<S>(kOffsetGamma * (extent[0] + extent[1] + extent[2]));
   switch (static_cast<PrimitiveKind>(primitive.kind)) {
@@ -171,6 +173,44 @@ class Collector {
 };
 
 }  // namespace
+
+namespace {
+
+// toUv after the affine map of a primitive's (u, v) to the texture coordinates at its corners.
+template <class S>
+void composeWithCorners(const PrimitiveRecord<S>& primitive, const std::vector<AttributeRecord>& attributes,
+                        float (&toUv)[6]) {
+  if (primitive.attributes == kNoIndex) return;
+  const auto& uv = attributes[primitive.attributes].uv;
+  for (size_t row = 0; row < 2; ++row) {
+    float* const m = toUv + 3 * row;
+    const float s = m[0], t = m[1];
+    m[0] = s * (uv[1][0] - uv[0][0]) + t * (uv[1][1] - uv[0][1]);
+    m[1] = s * (uv[2][0] - uv[0][0]) + t * (uv[2][1] - uv[0][1]);
+    m[2] += s * uv[0][0] + t * uv[0][1];
+  }
+}
+
+}  // namespace
+
+template <class S>
+void bindLightTextures(const Scene& scene, const Primitives<S>& primitives, Lights<S>& lights, Textures& textures) {
+  for (size_t i = 0; i < primitives.shapeOf.size(); ++i) {
+    const PrimitiveRecord<S>& primitive = primitives.records[i];
+    if (primitive.light == kNoIndex || lights.records[primitive.light].texture == kNoIndex) continue;
+    if (static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere) {
+      throw SceneError(scene.shapes[primitives.shapeOf[i]].source,
+                       "textured radiance on a sphere is not supported; expected a rectangle, a disk or a mesh");
+    }
+    uint32_t& texture = lights.records[primitive.light].texture;
+    TextureRecord record = textures.records[texture];
+    composeWithCorners(primitive, primitives.attributes, record.toUv);
+    texture = static_cast<uint32_t>(textures.records.size());
+    textures.records.push_back(record);
+  }
+}
+template void bindLightTextures(const Scene&, const Primitives<float>&, Lights<float>&, Textures&);
+template void bindLightTextures(const Scene&, const Primitives<double>&, Lights<double>&, Textures&);
 
 template <class S>
 Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives) {

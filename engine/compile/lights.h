@@ -22,6 +22,11 @@ struct Lights {
 template <class S>
 Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives);
 
+// Gives each textured light a texture of its own in the coordinates of its primitive, which is what sampling a light
+// knows; appended to the textures. Throws SceneError for a textured sphere.
+template <class S>
+void bindLightTextures(const Scene& scene, const Primitives<S>& primitives, Lights<S>& lights, Textures& textures);
+
 // Entries such that picking one uniformly and keeping it with its probability, else taking its alias, yields each index
 // in proportion to its weight (Vose 1991). Weights must be >= 0 with a positive sum.
 std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights);

@@ -112,9 +112,8 @@ Mesh tessellated(const Disk& disk) {
 
 Mesh tessellated(const Cylinder& cylinder) {
   Mesh mesh;
-  const Double3 axis = cylinder.p1 - cylinder.p0, z = normalized(axis);
-  const Double3 helper = std::abs(z[0]) < 0.7 ? Double3{1, 0, 0} : Double3{0, 1, 0};
-  const Double3 x = normalized(cross(helper, z)), y = cross(z, x);
+  const Double3 axis = cylinder.p1 - cylinder.p0, x = cylinder.phi0, y = cylinder.phi90;
+  const bool mirrored = dot(cross(x, y), axis) < 0;
   const double side = cylinder.flipNormals ? -1 : 1;
   for (uint32_t i = 0; i <= kSegments; ++i) {
     const double angle = 2 * std::numbers::pi * i / kSegments;
@@ -129,7 +128,7 @@ Mesh tessellated(const Cylinder& cylinder) {
   }
   for (uint32_t i = 0; i < kSegments; ++i) {
     const uint32_t a = 2 * i, b = a + 1, c = a + 2, d = a + 3;
-    if (cylinder.flipNormals) {
+    if (cylinder.flipNormals != mirrored) {
       mesh.triangles.push_back({a, b, c});
       mesh.triangles.push_back({d, c, b});
     } else {
@@ -236,7 +235,13 @@ class Collector {
   void visit(const Disk& disk) { visit(tessellated(disk)); }
   void visit(const Cylinder& cylinder) { visit(tessellated(cylinder)); }
   void visit(const Sphere& sphere) {
-    add(PrimitiveKind::sphere, sphere.center, {sphere.radius, sphere.flipNormals ? -1.0 : 1.0, 0}, {}, {});
+    const auto axis = [&](size_t j) {
+      const Matrix4& m = sphere.toWorld;
+      return normalized(Double3{m[0][j], m[1][j], m[2][j]});
+    };
+    const Double3 x = axis(0), z = axis(2);
+    const double handedness = dot(cross(z, x), axis(1)) < 0 ? -1 : 1;
+    add(PrimitiveKind::sphere, sphere.center, {sphere.radius, sphere.flipNormals ? -1.0 : 1.0, handedness}, z, x);
   }
 
   const Scene& scene_;

@@ -94,7 +94,9 @@ Geometry readCylinder(LoadContext& context, Parameters& parameters, const Matrix
   return Cylinder{.p0 = transformPoint(toWorld, p0),
                   .p1 = transformPoint(toWorld, p1),
                   .radius = radius * length(u),
-                  .flipNormals = mirrored != parameters.boolean("flip_normals", false)};
+                  .flipNormals = mirrored != parameters.boolean("flip_normals", false),
+                  .phi0 = normalize(u),
+                  .phi90 = normalize(v)};
 }
 
 // Four vertices per face, so that each has its own texture coordinates; faces in Mitsuba's order -y +y +x +z -x -z.

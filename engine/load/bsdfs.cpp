@@ -179,9 +179,20 @@ void readMask(LoadContext& context, Parameters& parameters, Material& material) 
   material.opacity = opacity;
 }
 
+// Bump and normal maps are Blinn's (1978): normals that face away stay as they are, and nothing softens the terminator.
+// Newer versions of Mitsuba do both unless told otherwise; a file that asks for them by name is refused.
+void requireClassicalPerturbation(LoadContext& context, Parameters& parameters) {
+  for (const char* name : {"flip_invalid_normals", "use_shadowing_function"}) {
+    if (parameters.boolean(name, false)) {
+      context.unsupported(parameters.locationOf(name), std::string(name) + " is not supported; expected false");
+    }
+  }
+}
+
 void readBumpMap(LoadContext& context, Parameters& parameters, Material& material) {
-  const uint32_t texture = textureOf(context, parameters.onlyObject("texture"));
+  const uint32_t texture = scalarTextureOf(context, textureOf(context, parameters.onlyObject("texture")));
   const double scale = parameters.real("scale", 1);
+  requireClassicalPerturbation(context, parameters);
   readBsdf(context, parameters.onlyObject("bsdf"), material);
   if (material.bumpTexture != kNone || material.normalTexture != kNone) failTwice(parameters);
   material.bumpTexture = texture;
@@ -193,6 +204,7 @@ void readNormalMap(LoadContext& context, Parameters& parameters, Material& mater
   if (!parameters.has("normalmap")) {
     throw LoadError(parameters.location(), "normalmap has no texture; expected one with name=\"normalmap\"");
   }
+  requireClassicalPerturbation(context, parameters);
   readBsdf(context, parameters.onlyObject("bsdf"), material);
   if (material.bumpTexture != kNone || material.normalTexture != kNone) failTwice(parameters);
   material.normalTexture = texture;

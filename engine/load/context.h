@@ -21,8 +21,9 @@ struct LoadContext {
   // An object that is referenced many times is read once.
   std::map<const XmlElement*, uint32_t> materials{};
   std::map<const XmlElement*, uint32_t> textures{};
-  std::set<const XmlElement*> reading{};                           // objects being read, to find reference cycles
-  std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};  // by path and colour treatment
+  std::map<uint32_t, uint32_t> scalarTextures{};  // what stands in for a texture where a number is asked for
+  std::set<const XmlElement*> reading{};          // objects being read, to find reference cycles
+  std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};            // by path and colour treatment
   std::map<std::string, std::shared_ptr<const TriangleSoup>> groupMeshes{};  // mesh files inside shape groups
   bool inShapeGroup = false;
   uint32_t defaultMaterial[2] = {kNone, kNone};      // of surfaces, of lights

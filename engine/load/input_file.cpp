@@ -74,7 +74,7 @@ std::vector<char> readInputFile(const std::filesystem::path& path, const SourceL
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    throw LoadError(where, "file \"" + name + "\" not found; expected an existing file");
+    throw MissingFileError(where, path);
   }
   if (!std::filesystem::is_regular_file(status)) {
     throw LoadError(where, "\"" + name + "\" is not a regular file; expected a file, not a directory or a device");

@@ -29,6 +29,15 @@ class LoadError : public std::runtime_error {
   std::string text;  // without the location
 };
 
+// A file that is named somewhere and does not exist.
+class MissingFileError : public LoadError {
+ public:
+  MissingFileError(const SourceLocation& where, const std::filesystem::path& missing)
+      : LoadError(where, "file \"" + missing.string() + "\" not found; expected an existing file"), file(missing) {}
+
+  std::filesystem::path file;
+};
+
 struct LoadOptions {
   // Values of $name, stronger than the file's <default>. A name that the scene never uses is an error.
   std::map<std::string, std::string> defines{};

@@ -81,10 +81,46 @@ TexturedRgb readTexturedEmission(LoadContext& context, Parameters& parameters, s
   return readTextured(context, parameters, name, 1, ColorRole::emission);
 }
 
+namespace {
+
+// Of linear Rec. 709, by the weights that Mitsuba has.
+double luminance(double r, double g, double b) { return 0.212671 * r + 0.715160 * g + 0.072169 * b; }
+
+Bitmap luminanceOf(const Bitmap& colour) {
+  Bitmap grey{.width = colour.width, .height = colour.height, .channels = 1, .pixels = {}};
+  grey.pixels.reserve(colour.pixels.size() / 3);
+  for (size_t i = 0; i + 2 < colour.pixels.size(); i += 3) {
+    grey.pixels.push_back(static_cast<float>(luminance(colour.pixels[i], colour.pixels[i + 1], colour.pixels[i + 2])));
+  }
+  return grey;
+}
+
+}  // namespace
+
+// Where a number is asked for, Mitsuba reads a colour bitmap's luminance, and swaps the colours of a checkerboard (3.9,
+// seen in its images).
+uint32_t scalarTextureOf(LoadContext& context, uint32_t index) {
+  if (const auto known = context.scalarTextures.find(index); known != context.scalarTextures.end()) {
+    return known->second;
+  }
+  Texture texture = context.scene.textures[index];
+  if (auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
+    std::swap(board->color0, board->color1);
+  } else {
+    auto& bitmap = std::get<BitmapTexture>(texture.kind).bitmap;
+    if (bitmap->channels == 1) return index;
+    bitmap = std::make_shared<Bitmap>(luminanceOf(*bitmap));
+  }
+  const uint32_t scalar = static_cast<uint32_t>(context.scene.textures.size());
+  context.scene.textures.push_back(std::move(texture));
+  context.scalarTextures.emplace(index, scalar);
+  return scalar;
+}
+
 TexturedFloat readTexturedFloat(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
-  const TexturedRgb color = readTextured(context, parameters, name, fallback, ColorRole::unbounded);
-  // Luminance of linear Rec. 709.
-  const double value = 0.212671 * color.value[0] + 0.715160 * color.value[1] + 0.072169 * color.value[2];
+  TexturedRgb color = readTextured(context, parameters, name, fallback, ColorRole::unbounded);
+  if (color.texture != kNone) color.texture = scalarTextureOf(context, color.texture);
+  const double value = luminance(color.value[0], color.value[1], color.value[2]);
   const bool grey = color.value[0] == color.value[1] && color.value[1] == color.value[2];
   return {.value = grey ? color.value[0] : value, .texture = color.texture};
 }

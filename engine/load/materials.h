@@ -15,6 +15,9 @@ uint32_t textureOf(LoadContext& context, const XmlElement& texture);
 // A parameter that is a colour or a texture; TexturedRgb::texture says which.
 TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);
 TexturedRgb readTexturedEmission(LoadContext& context, Parameters& parameters, std::string_view name);
+// The texture that stands in for another where a number is asked for instead of a colour.
+uint32_t scalarTextureOf(LoadContext& context, uint32_t index);
+
 TexturedFloat readTexturedFloat(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);
 // A parameter that must be one colour everywhere.
 Rgb readConstantEmission(LoadContext& context, Parameters& parameters, std::string_view name);

@@ -84,7 +84,7 @@ class Hasher {
   void add(const Rectangle& s) { all(s.corner, s.edgeU, s.edgeV, s.mirrored); }
   void add(const Disk& s) { all(s.center, s.axisU, s.axisV, s.mirrored); }
   void add(const Sphere& s) { all(s.center, s.radius, s.flipNormals, s.toWorld); }
-  void add(const Cylinder& s) { all(s.p0, s.p1, s.radius, s.flipNormals); }
+  void add(const Cylinder& s) { all(s.p0, s.p1, s.radius, s.flipNormals, s.phi0, s.phi90); }
   void add(const Shape& s) { all(s.kind, s.material, s.emitter); }
 
   void add(const AreaEmitter& e) { all(e.radiance, e.shape); }

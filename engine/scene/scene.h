@@ -132,12 +132,13 @@ struct Sphere {
   Double3 center{};
   double radius = 1;
   bool flipNormals = false;
-  Matrix4 toWorld{};  // rotation part orients the (u, v) parameterisation
+  Matrix4 toWorld{};  // rotation part orients (u, v) = (phi / 2 pi, theta / pi) about the local z axis
 };
-struct Cylinder {  // side wall only, from p0 to p1
+struct Cylinder {  // side wall only, from p0 to p1; (u, v) = (phi / 2 pi, share of the way from p0 to p1)
   Double3 p0{}, p1{};
   double radius = 1;
   bool flipNormals = false;
+  Double3 phi0{1, 0, 0}, phi90{0, 1, 0};  // unit directions from the axis where phi is 0 and pi / 2
 };
 
 struct Shape {

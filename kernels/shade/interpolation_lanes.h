@@ -3,6 +3,7 @@
 
 #include "kernels/shade/surface_lanes.h"
 #include "kernels/shade/texture_lanes.h"
+#include "kernels/simd/math.h"
 
 WAVECREST_SIMD_BEGIN
 
@@ -51,6 +52,30 @@ WAVECREST_INLINE Vec3<Real> mapped(const TextureRecord* textures, const float* t
 
 }  // namespace
 
+namespace {
+
+// Texture coordinates of a sphere and their tangents (Mitsuba's `sphere`): the angles of the outward direction about
+// the axis that its record has in e2, from the direction in `normal`, turning to e1.z (+1 or -1) times their product.
+template <class P>
+WAVECREST_INLINE void mapSphere(const PrimitiveRecord<typename P::Storage>& fields,
+                                const RecordLanes<PrimitiveRecord<typename P::Storage>>& at, Mask sphere,
+                                Vec3<typename P::Real> normal, Interpolated<typename P::Real>& out,
+                                Tangents<typename P::Real>& tangents) {
+  using Real = typename P::Real;
+  const Vec3<Real> e1 = at(fields.e1), axis = at(fields.e2), phi0 = at(fields.normal);
+  const Vec3<Real> outward = normal * e1.y, phi90 = cross(axis, phi0) * e1.z;
+  const Real x = dot(outward, phi0), y = dot(outward, phi90), z = min(max(dot(outward, axis), Real(-1)), Real(1));
+  const Real turn = atan2(y, x) * Real(kInvPi / 2);
+  const Real sine = sqrt(max(Real(1) - z * z, Real(1e-12f)));
+  const Vec3<Real> outOfAxis = (phi0 * x + phi90 * y) * (Real(1) / sine);
+  out.u = select(sphere, to<Float>(turn - floor(turn)), out.u);
+  out.v = select(sphere, to<Float>(acos(z) * Real(kInvPi)), out.v);
+  tangents.dpDu = select(sphere, (phi90 * x - phi0 * y) * (e1.x * Real(2 * kPi)), tangents.dpDu);
+  tangents.dpDv = select(sphere, (outOfAxis * z - axis * sine) * (e1.x * Real(kPi)), tangents.dpDv);
+}
+
+}  // namespace
+
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<typename P::Storage>& scene,
                                                             const RecordLanes<PrimitiveRecord<typename P::Storage>>& at,
@@ -84,6 +109,13 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
     const Vec3<Real> e1 = tangents.dpDu, e2 = tangents.dpDv;
     tangents.dpDu = select(spans, (e1 * v2 - e2 * v1) * inverse, e1);
     tangents.dpDv = select(spans, (e2 * u1 - e1 * u2) * inverse, e2);
+  }
+
+  if constexpr (has(kFeatures, kTextures) && has(kFeatures, kCurvedShapes)) {
+    if (scene.spheres) {
+      const Mask sphere = hit & (at(scene.primitives->kind) == UInt(static_cast<uint32_t>(PrimitiveKind::sphere)));
+      if (any(sphere)) mapSphere<P>(*scene.primitives, at, sphere, surface.normal, out, tangents);
+    }
   }
 
   if (has(kFeatures, kTextures) && scene.textures != nullptr) {

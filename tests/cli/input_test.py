@@ -63,6 +63,11 @@ class BadInput(CommandTest):
             text = scene(SENSOR, f'<shape type="{kind}">', f'<string name="filename" value="absent.{kind}"/>', "</shape>")
             self.assert_refused(text, r"[34]", f"absent\\.{kind}")
 
+    def test_a_missing_asset_of_the_scenes_says_how_to_get_it(self):
+        for name, way in (("assets/dragon_res2.ply", "fetch-dragon"), ("assets/other.ply", "wavecrest_scene_assets")):
+            text = scene(SENSOR, '<shape type="ply">', f'<string name="filename" value="{name}"/>', "</shape>")
+            self.assert_refused(text, r"[34]", f"{name}.*{way}")
+
     def test_vertices_that_are_not_finite(self):
         text = scene(SENSOR, '<shape type="ply">', '<string name="filename" value="bad.ply"/>', "</shape>", CONSTANT)
         for x in (float("nan"), float("inf")):

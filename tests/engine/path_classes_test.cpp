@@ -35,7 +35,7 @@ SceneLinks allLinks() {
   links.fromEye = {true, true};
   links.eyeMeetsLight = true;
   links.lightSolidAngle = 1;
-  links.cameraCoverage = 1;
+  links.lightCoverage = links.cameraCoverage = 1;
   return links;
 }
 
@@ -101,6 +101,15 @@ TEST(PathClasses, lightTracingIsInefficientWhereTheCameraSeesLittleOfTheLight) {
   SceneLinks links = allLinks();
   links.cameraCoverage = 0.001;
   EXPECT_EQ(methodsWith(classifyPaths(links), "A D D E", Verdict::inefficient), "lt");
+}
+
+TEST(PathClasses, nextEventIsInefficientForIndirectLightWhereFewPlacesSeeALamp) {
+  SceneLinks links = allLinks();
+  links.lightCoverage = 0.01;
+  links.lightSolidAngle = 0.01;
+  const PathClassTable table = classifyPaths(links);
+  EXPECT_EQ(methodsWith(table, "A D D E", Verdict::inefficient), "pt");
+  EXPECT_EQ(methodsWith(table, "A D E", Verdict::inefficient), "");
 }
 
 TEST(PathClasses, connectionsBetweenGlossySurfacesAloneAreInefficient) {
@@ -201,6 +210,7 @@ TEST_P(CausticTest, isMadeBySampledMethodsAndByNoOther) {
     settings.isa = bestIsa();
     settings.method = entry.method;
     settings.radius = 0.01;
+    settings.limits.maxDepth = GetParam() ? 4 : 3;  // the floor is seen again in the mirror's light
     const RgbImage image = render(scene, settings, 400);
     if (table.verdict(table.classes[0], entry.method) == Verdict::impossible) {
       EXPECT_EQ(*std::max_element(image.begin(), image.end()), 0.0f) << entry.name;

@@ -84,7 +84,7 @@ TEST(Bsdf, EqualAlphaUAndAlphaVAreAlpha) {
 TEST(Bsdf, RoughnessCanBeATexture) {
   EXPECT_EQ(kindOf<Conductor>(R"(<bsdf type="roughconductor"><texture type="checkerboard" name="alpha"/></bsdf>)")
                 .alpha.texture,
-            0u);
+            1u);
 }
 
 TEST(Bsdf, DielectricDefaults) {
@@ -158,8 +158,17 @@ TEST(Bsdf, MaskAroundTwoSidedKeepsBoth) {
 TEST(Bsdf, BumpMapTakesTextureAndScale) {
   const Material material = materialOf(R"(<bsdf type="bumpmap"><float name="scale" value="3"/>
       <texture type="checkerboard"/><bsdf type="diffuse"/></bsdf>)");
-  EXPECT_EQ(material.bumpTexture, 0u);
+  EXPECT_EQ(material.bumpTexture, 1u);
   EXPECT_EQ(material.bumpScale, 3);
+}
+
+TEST(Bsdf, BumpAndNormalMapsAreClassical) {
+  const auto bumpmap = [](const std::string& parameter) {
+    return R"(<bsdf type="bumpmap">)" + parameter + R"(<texture type="checkerboard"/><bsdf type="diffuse"/></bsdf>)";
+  };
+  EXPECT_EQ(materialOf(bumpmap(R"(<boolean name="use_shadowing_function" value="false"/>)")).bumpTexture, 1u);
+  expectBsdfError(bumpmap(R"(<boolean name="use_shadowing_function" value="true"/>)"), "expected false");
+  expectBsdfError(bumpmap(R"(<boolean name="flip_invalid_normals" value="true"/>)"), "expected false");
 }
 
 TEST(Bsdf, NormalMapTakesItsTexture) {

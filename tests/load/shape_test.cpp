@@ -121,6 +121,13 @@ TEST(Cylinder, ScaleAcrossTheAxisChangesTheRadiusOnly) {
   EXPECT_EQ(c.p1, (Double3{0, 0, 5}));
 }
 
+TEST(Cylinder, AngleTurnsWithTheTransform) {
+  const Cylinder c =
+      shapeOf<Cylinder>("cylinder", R"(<transform name="to_world"><rotate z="1" angle="90"/></transform>)");
+  EXPECT_NEAR(c.phi0[1], 1, 1e-15);
+  EXPECT_NEAR(c.phi90[0], -1, 1e-15);
+}
+
 TEST(Cylinder, MirroringTransformTurnsItInsideOut) { EXPECT_TRUE(shapeOf<Cylinder>("cylinder", kMirror).flipNormals); }
 
 TEST(Cylinder, MistakesAreErrors) {

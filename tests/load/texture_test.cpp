@@ -145,6 +145,17 @@ TEST(Checkerboard, Defaults) {
   EXPECT_EQ(board.color1, (Rgb{0.2, 0.2, 0.2}));
 }
 
+// What Mitsuba 3.9 renders, whatever its documentation says.
+TEST(Checkerboard, SwapsItsColoursWhereANumberIsAskedFor) {
+  const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"/><shape type="sphere"><bsdf type="mask">
+    <ref id="t" name="opacity"/><bsdf type="diffuse"><ref id="t" name="reflectance"/></bsdf></bsdf></shape>)");
+  const auto firstColour = [&](uint32_t texture) {
+    return std::get<CheckerboardTexture>(scene.textures.at(texture).kind).color0[0];
+  };
+  EXPECT_EQ(firstColour(std::get<Diffuse>(scene.materials.at(0).kind).reflectance.texture), 0.4);
+  EXPECT_EQ(firstColour(scene.materials.at(0).opacity->texture), 0.2);
+}
+
 TEST(Texture, ToUvActsOnTextureCoordinates) {
   const Scene scene = loadBody(material(
       R"(<texture name="reflectance" type="checkerboard"><transform name="to_uv"><translate x="0.1"/><scale x="2" y="3"/></transform></texture>)"));

@@ -1,9 +1,10 @@
-"""One oracle test: wavecrest and Mitsuba 3 must show the same picture of a scene of cases.json, but for noise.
+"""Oracle tests: wavecrest and Mitsuba 3 must show the same pictures of scenes of cases.json, but for noise.
 
-    oracle_test.py --wavecrest PROGRAM --case NAME --method METHOD --out FOLDER
+    oracle_test.py --wavecrest PROGRAM (--group NAME | --case NAME) --method METHOD --out FOLDER
 
-Status 0 if they do. Otherwise 1, and FOLDER holds wavecrest.exr, mitsuba.exr (means over all renders) and z.exr
-(per 8 x 8 tile and channel, how many standard deviations wavecrest is too bright).
+A group is one process, because starting Mitsuba takes longer than a small picture. Status 0 if all are the same.
+Otherwise 1, and FOLDER/NAME-METHOD of each scene that differs holds wavecrest.exr, mitsuba.exr (means over all renders)
+and z.exr (per 8 x 8 tile and channel, how many standard deviations wavecrest is too bright).
 """
 
 import argparse
@@ -32,16 +33,26 @@ class Case:
     size: tuple = (96, 96)
     max_depth: int = -1
     options: tuple = ()  # further arguments for wavecrest
+    filters: bool = False  # the scene is about a reconstruction filter other than the box
 
 
-def read_case(name):
+def read_cases(method, group=None, name=None):
+    """The cases of a group, or the one of this name, that are rendered by the method."""
     with open(pathlib.Path(__file__).with_name("cases.json"), encoding="utf-8") as file:
-        entries = {entry["name"]: entry for entry in json.load(file)["cases"]}
-    if name not in entries:
-        sys.exit(f"oracle_test: no case '{name}'; expected one of {', '.join(entries)}")
-    case = Case(**entries[name])
-    case.scene = renderers.ROOT / case.scene
-    return case
+        groups = json.load(file)["groups"]
+    cases = []
+    for entry in groups:
+        if group not in (None, entry["name"]):
+            continue
+        shared = {key: value for key, value in entry.items() if key not in ("name", "labels", "folder", "cases")}
+        for own in entry["cases"]:
+            case = Case(**{**shared, "scene": f"{entry['folder']}/{own['name']}.xml", **own})
+            case.scene = renderers.ROOT / case.scene
+            if name in (None, case.name) and method in case.methods:
+                cases.append(case)
+    if not cases:
+        sys.exit(f"oracle_test: nothing in cases.json for --group {group} --case {name} --method {method}")
+    return cases
 
 
 def leave_evidence(mitsuba, folder, ours, theirs, verdict):
@@ -52,32 +63,42 @@ def leave_evidence(mitsuba, folder, ours, theirs, verdict):
     print(f"oracle_test: see wavecrest.exr, mitsuba.exr and z.exr in {folder}")
 
 
+def same_picture(wavecrest, case, method, out):
+    """Renders the case by both programs and says whether they agree; what they showed is kept if they do not."""
+    folder = out / f"{case.name}-{method}"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+
+    mitsuba = renderers.MitsubaScene(case.scene, case.size, case.max_depth, any_filter=case.filters)
+    seeds = range(1, RENDERS + 1)
+    theirs = mitsuba.render(case.spp, seeds)
+    ours = renderers.render_wavecrest(wavecrest, case, method, seeds, folder, mitsuba.read_exr)
+    if np.array_equal(ours[0], ours[1]):
+        sys.exit(f"oracle_test: {case.name}: wavecrest gave the same image for two seeds; expected independent ones")
+
+    verdict = image_statistics.compare(ours, theirs)
+    print(f"oracle_test: {case.name} by {method}: {verdict.summary()}", flush=True)
+    if verdict.equal:
+        shutil.rmtree(folder)
+    else:
+        leave_evidence(mitsuba, folder, ours, theirs, verdict)
+    return verdict.equal
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--wavecrest", required=True, type=pathlib.Path)
-    parser.add_argument("--case", required=True)
+    parser.add_argument("--group")
+    parser.add_argument("--case")
     parser.add_argument("--method", default="pt")
     parser.add_argument("--out", required=True, type=pathlib.Path)
     arguments = parser.parse_args()
 
-    case = read_case(arguments.case)
-    folder = arguments.out / f"{case.name}-{arguments.method}"
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-
-    mitsuba = renderers.MitsubaScene(case.scene, case.size, case.max_depth)
-    seeds = range(1, RENDERS + 1)
-    theirs = mitsuba.render(case.spp, seeds)
-    ours = renderers.render_wavecrest(arguments.wavecrest, case, arguments.method, seeds, folder, mitsuba.read_exr)
-    if np.array_equal(ours[0], ours[1]):
-        sys.exit("oracle_test: wavecrest gave the same image for two seeds; expected independent ones")
-
-    verdict = image_statistics.compare(ours, theirs)
-    print(f"oracle_test: {case.name} by {arguments.method}: {verdict.summary()}")
-    if not verdict.equal:
-        leave_evidence(mitsuba, folder, ours, theirs, verdict)
-        sys.exit(1)
-    shutil.rmtree(folder)
+    equal = [
+        same_picture(arguments.wavecrest, case, arguments.method, arguments.out)
+        for case in read_cases(arguments.method, arguments.group, arguments.case)
+    ]
+    sys.exit(0 if all(equal) else 1)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,58 @@
+"""wavecrest inspect: the keys that scripts rely on, the words of the table, and that it tells what a render then does."""
+
+import json
+import unittest
+
+from harness import INPUT, CommandTest, read_json
+
+KEYS = ["features", "primitives", "bounds", "specialization", "accel", "memory", "path_classes", "reference_method"]
+METHODS = {"pt", "lt", "bpt", "ppm", "bpm", "vcm"}
+
+
+class Inspect(CommandTest):
+    def inspect(self, scene, *arguments):
+        return json.loads(self.run_wavecrest("inspect", scene, "--json", "--size", "32x24", *arguments).stdout)
+
+    def test_json_has_the_promised_keys(self):
+        facts = self.inspect("cornell-mirror")
+        for key in KEYS:
+            self.assertIn(key, facts)
+        self.assertEqual(facts["primitives"]["total"], 21)
+        self.assertEqual(facts["features"]["bsdfs"], {"conductor": 1, "diffuse": 4})
+        self.assertEqual(facts["features"]["lights"], {"area": 1})
+        self.assertAlmostEqual(facts["bounds"]["max"][1], 548.8, places=2)
+
+    def test_verdicts_are_of_three_words_for_every_method(self):
+        classes = self.inspect("cornell-spheres")["path_classes"]
+        for entry in classes:
+            self.assertLessEqual(METHODS, set(entry["methods"]))
+            self.assertLessEqual(set(entry["methods"].values()), {"sampled", "inefficient", "impossible"})
+        caustic = next(entry for entry in classes if entry["class"] == "P S+ D S+ E")
+        self.assertEqual(caustic["methods"]["bpt"], "impossible")
+        self.assertEqual(caustic["methods"]["vcm"], "sampled")
+
+    def test_the_reference_method_is_the_studys(self):
+        for scene, method in (("cornell-diffuse", "pt"), ("cornell-mirror", "bpt"), ("cornell-glossy", "pt")):
+            self.assertEqual(self.inspect(scene)["reference_method"], method, scene)
+
+    def test_a_render_takes_the_kernels_and_the_intersector_that_inspect_names(self):
+        for scene in ("cornell-diffuse", "cornell-mirror", "cornell-spheres", "veach-door"):
+            facts = self.inspect(scene)
+            for method in ("pt", "bpt"):
+                stats = self.path("stats.json")
+                self.render("-m", method, "--spp", "1", "--stats", stats, "-o", self.path("a.pfm"), scene=scene)
+                self.assertEqual(read_json(stats)["specialization"], facts["specializations"][method], scene)
+                self.assertEqual(read_json(stats)["accel"], facts["accel"], scene)
+                self.assertEqual(read_json(stats)["bytes_per_path"], facts["memory"][method]["bytes_per_path"], scene)
+
+    def test_text_shows_the_table_and_the_reason(self):
+        text = self.run_wavecrest("inspect", "cornell-mirror", "--size", "32x24").stdout
+        self.assertRegex(text, r"A S\+ D E +inefficient +sampled")
+        self.assertRegex(text, r"reference +bpt: path tracing is inefficient")
+
+    def test_a_scene_that_cannot_be_read_is_bad_input(self):
+        self.assert_one_error_line(self.run_wavecrest("inspect", "absent.xml", expect=INPUT), ".*absent.xml")
+
+
+if __name__ == "__main__":
+    unittest.main()
