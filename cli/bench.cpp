@@ -46,10 +46,7 @@ RenderSettings settingsFor(const Scene& scene, const BenchOptions& options) {
   RenderSettings settings;
   settings.isa = bestIsa();
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-  if (scene.defaults.maxDepth > 0) {
-    settings.limits.maxDepth = std::min(static_cast<uint32_t>(scene.defaults.maxDepth), kUnlimitedDepth);
-  }
-  settings.limits.rouletteDepth = static_cast<uint32_t>(scene.defaults.rrDepth);
+  settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   return settings;
 }
 

@@ -31,6 +31,8 @@ struct InputError : std::runtime_error {
 void addCompareCommand(CLI::App& app, int& exitCode);
 void addBenchCommand(CLI::App& app, int& exitCode);
 void addInspectCommand(CLI::App& app, int& exitCode);
+void addConvergeCommand(CLI::App& app, int& exitCode);
+void addReferenceCommand(CLI::App& app, int& exitCode);
 void addRenderCommand(CLI::App& app, int& exitCode);
 void addReportCommand(CLI::App& app, int& exitCode);
 void addScenesCommand(CLI::App& app, int& exitCode);

@@ -115,7 +115,7 @@ void printFacts(const Scene& scene, const SceneInspection& facts) {
 }
 
 void printMemory(const SceneInspection& facts) {
-  fmt::print("memory, MB (light vertices and photon map from one wave of light paths)\n");
+  fmt::print("memory, MB (light vertices and photon map from a few waves of light paths)\n");
   fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>9}\n", "method", "kernels", "bytes/path",
              "scene", "waves", "film", "splats", "vertices", "photons", "total");
   for (const MethodInspection& row : facts.methods) {

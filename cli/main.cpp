@@ -17,6 +17,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exitCode = kExitDone;
   addCompareCommand(app, exitCode);
+  addConvergeCommand(app, exitCode);
+  addReferenceCommand(app, exitCode);
   addRenderCommand(app, exitCode);
   addInspectCommand(app, exitCode);
   addReportCommand(app, exitCode);

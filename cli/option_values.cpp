@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -31,6 +32,22 @@ double parseDuration(const std::string& text) {
   return std::isfinite(total) && total > 0 ? total : fail();
 }
 
+SnapshotSchedule parseSnapshotSchedule(const std::string& text) {
+  if (text.empty()) return SnapshotSchedule::none();
+  return text == "log" ? SnapshotSchedule::logarithmic() : SnapshotSchedule::every(parseDuration(text));
+}
+
+Isa parseIsaOption(const std::string& word) {
+  if (word == "auto") return bestIsa();
+  const std::optional<Isa> isa = parseIsa(word);
+  if (!isa) throw UsageError(fmt::format("--isa {}: expected auto, scalar, sse4, avx2 or avx512", word));
+  const auto& available = availableIsas();
+  if (std::find(available.begin(), available.end(), *isa) == available.end()) {
+    throw UsageError(fmt::format("--isa {}: this machine or build does not have it", word));
+  }
+  return *isa;
+}
+
 std::array<uint32_t, 2> parseSize(const std::string& text) {
   std::array<uint32_t, 2> size{};
   const char* const end = text.data() + text.size();
@@ -41,6 +58,23 @@ std::array<uint32_t, 2> parseSize(const std::string& text) {
     if (heightError == std::errc() && rest == end && valid(size[0]) && valid(size[1])) return size;
   }
   throw UsageError(fmt::format("'{}' is no size; expected WIDTHxHEIGHT, each 1 to 65535", text));
+}
+
+uint64_t parseMemory(const std::string& text) {
+  const auto fail = [&]() -> uint64_t {
+    throw UsageError(fmt::format("'{}' is no memory size; expected one like 800M, 1.5G or 512MiB", text));
+  };
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || next == text.data() || next == end) return fail();
+  const std::string_view unit(next, static_cast<size_t>(end - next));
+  const bool binary = unit.size() > 1 && unit[1] == 'i';
+  if (unit.substr(1) != "" && unit.substr(1) != "B" && unit.substr(1) != "iB") return fail();
+  const size_t power = std::string_view("KMGT").find(unit[0]);
+  if (power == std::string_view::npos) return fail();
+  const double bytes = number * std::pow(binary ? 1024.0 : 1000.0, static_cast<double>(power + 1));
+  return bytes >= 1e6 && bytes <= 1e15 ? static_cast<uint64_t>(bytes) : fail();
 }
 
 size_t parseChoice(const std::string& option, const std::string& word, const std::string_view* names, size_t count) {

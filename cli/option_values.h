@@ -5,13 +5,24 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/snapshots.h"
+
 namespace wavecrest {
 
 // "6s", "2m", "1h30m", "0.5s", or plain seconds. Positive and finite, or UsageError.
 double parseDuration(const std::string& text);
 
+// "" for no snapshots, "log" for render times that grow by a fixed ratio, else a duration between snapshots.
+SnapshotSchedule parseSnapshotSchedule(const std::string& text);
+
+// "auto" for the best there is, or the name of one that this machine and build have; UsageError otherwise.
+Isa parseIsaOption(const std::string& word);
+
 // "1024x768": both 1 to 65535, or UsageError.
 std::array<uint32_t, 2> parseSize(const std::string& text);
+
+// "800M", "1.5G", "512MiB": bytes, by powers of 1000, or of 1024 with an i. At least 1 MB, or UsageError.
+uint64_t parseMemory(const std::string& text);
 
 // The position of a word in a list of names; UsageError naming the option and the choices for any other.
 size_t parseChoice(const std::string& option, const std::string& word, const std::string_view* names, size_t count);

@@ -3,16 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <thread>
 
+#include "bench/campaign/render_stats.h"
+#include "bench/film_image.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
-#include "cli/render_stats.h"
 #include "cli/scene_options.h"
-#include "cli/snapshots.h"
+#include "engine/load/load.h"
+#include "engine/session.h"
+#include "engine/snapshots.h"
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image_io.h"
 
@@ -22,7 +25,7 @@ namespace {
 // As written on the command line; resolved() turns words into settings.
 struct RenderOptions {
   SceneOptions scene;
-  std::string method = "pt", time, sampler = "independent", precision = "float", isa = "auto", accel = "auto",
+  std::string method = "pt", time, sampler = "independent", precision = "float", isa = "auto", accel = "auto", memory,
               snapshotEvery, stats, progress = "auto";
   uint64_t spp = 0;
   uint32_t threads = 0;
@@ -32,40 +35,6 @@ struct RenderOptions {
   double radius = 0.001, radiusAlpha = 0.75;
   std::vector<std::string> outputs;
 };
-
-Session* interruptible = nullptr;
-void onInterrupt(int) {
-  if (interruptible != nullptr) interruptible->interrupt();
-}
-
-// For as long as a session renders, Ctrl-C asks it to stop instead of ending the program.
-class InterruptGuard {
- public:
-  explicit InterruptGuard(Session& session) {
-    interruptible = &session;
-    previous_ = std::signal(SIGINT, onInterrupt);
-  }
-  ~InterruptGuard() {
-    std::signal(SIGINT, previous_);
-    interruptible = nullptr;
-  }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  void (*previous_)(int);
-};
-
-Isa chosenIsa(const std::string& word) {
-  if (word == "auto") return bestIsa();
-  const std::optional<Isa> isa = parseIsa(word);
-  if (!isa) throw UsageError(fmt::format("--isa {}: expected auto, scalar, sse4, avx2 or avx512", word));
-  const auto& available = availableIsas();
-  if (std::find(available.begin(), available.end(), *isa) == available.end()) {
-    throw UsageError(fmt::format("--isa {}: this machine or build does not have it", word));
-  }
-  return *isa;
-}
 
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   RenderSettings settings;
@@ -78,21 +47,26 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   settings.sampler = *sampler;
   settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
   settings.accel = static_cast<Accel>(parseChoice("--accel", options.accel, kAccelNames));
-  settings.isa = chosenIsa(options.isa);
+  settings.isa = parseIsaOption(options.isa);
   settings.seed = options.seed;
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
   settings.radius = options.radius;
   settings.radiusAlpha = options.radiusAlpha;
-  const int maxDepth = options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth;
-  const int rrDepth = options.rrDepth != 0 ? options.rrDepth : scene.defaults.rrDepth;
-  if (maxDepth > 0) settings.limits.maxDepth = std::min(static_cast<uint32_t>(maxDepth), kUnlimitedDepth);
-  settings.limits.rouletteDepth = static_cast<uint32_t>(rrDepth);
+  settings.limits = pathLimits(options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth,
+                               options.rrDepth != 0 ? options.rrDepth : scene.defaults.rrDepth);
   if (options.spp != 0) settings.iterations = options.spp;
   if (!options.time.empty()) settings.seconds = parseDuration(options.time);
   if (!settings.iterations && !settings.seconds) settings.iterations = scene.defaults.sampleCount;
+  if (!options.memory.empty()) settings.memoryBytes = parseMemory(options.memory);
   settings.measureStages = !options.stats.empty();
   return settings;
+}
+
+// NAME.0007.exr beside the output NAME.exr.
+std::string snapshotPath(const std::string& output, unsigned number) {
+  const std::filesystem::path path(output);
+  return (path.parent_path() / fmt::format("{}.{:04}.exr", path.stem().string(), number)).string();
 }
 
 // Files of one render: the image under each requested name, snapshots beside the first, the statistics.
@@ -104,13 +78,16 @@ class Outputs {
   void writeSnapshot(const Session& session, unsigned index) {
     const std::string path = snapshotPath(options_.outputs.front(), index);
     const RenderStatistics statistics = session.statistics();
-    snapshots_.push_back({index, statistics.renderSeconds, statistics.iterations, path});
-    writeExr(path, image(session), metadata(stats(statistics)));
+    snapshots_.push_back({.number = index,
+                          .renderSeconds = statistics.renderSeconds,
+                          .iterations = statistics.iterations,
+                          .file = path});
+    writeExr(path, filmImage(session), statsMetadata(stats(statistics)));
   }
 
   void writeFinal(const Session& session) {
     const nlohmann::ordered_json all = stats(session.statistics());
-    for (const std::string& output : options_.outputs) writeImage(output, image(session), metadata(all));
+    for (const std::string& output : options_.outputs) writeImage(output, filmImage(session), statsMetadata(all));
     if (!options_.stats.empty()) {
       const std::string text = all.dump(2) + "\n";
       writeFileAtomically(options_.stats, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
@@ -118,21 +95,9 @@ class Outputs {
   }
 
  private:
-  Image image(const Session& session) const {
-    const FilmArea& area = session.film().area();
-    return {.width = area.width, .height = area.height, .channels = 3, .pixels = session.film().resolve()};
-  }
   nlohmann::ordered_json stats(const RenderStatistics& statistics) const {
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     return renderStats(scene_, settings_, statistics, loadSeconds_, wall, snapshots_);
-  }
-  // Every scalar of the stats as a string attribute.
-  static Metadata metadata(const nlohmann::ordered_json& stats) {
-    Metadata out;
-    for (const auto& [key, value] : stats.items()) {
-      if (value.is_primitive()) out["wavecrest:" + key] = value.is_string() ? value.get<std::string>() : value.dump();
-    }
-    return out;
   }
 
   const RenderOptions& options_;
@@ -177,31 +142,56 @@ std::string checkFinite(const std::string& word) {
   return valid ? std::string() : fmt::format("'{}' is no finite number", word);
 }
 
+std::unique_ptr<Session> createSession(const Scene& scene, const RenderSettings& settings) {
+  try {
+    return Session::create(scene, settings);
+  } catch (const MemoryBudgetError& error) {
+    throw UsageError(fmt::format("--memory: {}", error.what()));
+  }
+}
+
+// One line: the parts in MB, their sum, and the light paths where there are any.
+std::string describe(const MemoryPlan& plan) {
+  const MemoryUse& use = plan.use;
+  std::string text;
+  const auto add = [&](const char* name, size_t bytes) {
+    if (bytes != 0) text += fmt::format("{} {:.1f} MB, ", name, static_cast<double>(bytes) / 1e6);
+  };
+  add("scene", use.scene);
+  add("waves", use.waves);
+  add("film", use.film);
+  add("splats", use.splats);
+  add("light vertices", use.lightVertices);
+  add("photon map", use.photonMap);
+  text += fmt::format("together {:.1f} MB", static_cast<double>(use.total()) / 1e6);
+  if (plan.lightPaths != 0) text += fmt::format("; {} light paths in each iteration", plan.lightPaths);
+  return text;
+}
+
 int runRender(const RenderOptions& options) {
   checkOutputs(options);
-  SnapshotSchedule schedule(options.snapshotEvery);
+  const SnapshotSchedule schedule = parseSnapshotSchedule(options.snapshotEvery);
   const auto begin = std::chrono::steady_clock::now();
   const Scene scene = loadScene(options.scene);
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const RenderSettings settings = resolved(options, scene);
-  const std::unique_ptr<Session> session = Session::create(scene, settings);
+  const ProgressKind progressKind =
+      static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  const std::unique_ptr<Session> session = createSession(scene, settings);
+  // On request, and where light paths fill the memory.
+  if (settings.memoryBytes || (session->memoryPlan().use.photonMap > 0 && progressKind != ProgressKind::none)) {
+    fmt::print(stderr, "wavecrest: memory: {}\n", describe(session->memoryPlan()));
+  }
   Outputs outputs(options, scene, settings, loadSeconds);
 
   {
-    const InterruptGuard guard(*session);
+    InterruptGuard guard;
+    guard.watch(session.get());
     std::optional<uint64_t> goalPaths;
     if (settings.iterations) goalPaths = *settings.iterations * session->film().area().pixels.size();
-    const Progress progress(static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)),
-                            *session, settings.seconds, goalPaths);
-    for (;;) {
-      const std::optional<double> snapshotAt = schedule.next();
-      const bool snapshotFirst = snapshotAt && (!settings.seconds || *snapshotAt <= *settings.seconds);
-      session->renderUntil(settings.iterations, snapshotFirst ? snapshotAt : settings.seconds);
-      const bool reachedSnapshot = snapshotFirst && session->progressSeconds() >= *snapshotAt;
-      if (session->interrupted() || !reachedSnapshot) break;
-      outputs.writeSnapshot(*session, schedule.index());
-      schedule.advance();
-    }
+    const Progress progress(progressKind, *session, settings.seconds, goalPaths);
+    renderWithSnapshots(*session, settings, schedule,
+                        [&](unsigned number) { outputs.writeSnapshot(*session, number); });
   }
   outputs.writeFinal(*session);
   return session->interrupted() ? kExitInterrupted : kExitDone;
@@ -239,6 +229,8 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
       ->capture_default_str()
       ->check(checkFinite)
       ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--memory", options->memory,
+                      "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
   command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");
   command->add_option("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable")
       ->allow_extra_args(false);

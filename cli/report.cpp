@@ -1,25 +1,44 @@
-// wavecrest report DIR: rebuilds DIR/report.html from the images and stats in DIR.
+// wavecrest report DIR...: rebuilds DIR/report.html from the results in DIR.
 #include <fmt/core.h>
 
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bench/report/results_folder.h"
 #include "bench/report/write_report.h"
+#include "bench/results/results_error.h"
 #include "cli/commands.h"
 #include "metrics/image/image.h"
 
 namespace wavecrest {
+namespace {
+
+struct ReportOptions {
+  std::vector<std::string> paths;
+  ReportFiles files;
+};
+
+}  // namespace
 
 void addReportCommand(CLI::App& app, int& exitCode) {
   CLI::App* command = app.add_subcommand("report", "rebuild DIR/report.html from the results in DIR");
-  auto folder = std::make_shared<std::string>();
-  command->add_option("DIR", *folder, "folder with images, stats and a reference per scene")->required();
-  command->callback([folder, &exitCode] {
+  auto options = std::make_shared<ReportOptions>();
+  command
+      ->add_option("DIR", options->paths,
+                   "folder of a campaign, or of renders with stats and a reference per scene; several folders or "
+                   "results files are the parts of one campaign, reported in the first")
+      ->required();
+  command->add_flag("--csv", options->files.csv, "also write DIR/measurements.csv: every score of every snapshot");
+  command->add_flag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");
+  command->callback([options, &exitCode] {
+    const std::vector<std::filesystem::path> paths(options->paths.begin(), options->paths.end());
     try {
-      fmt::print("{}\n", writeReport(std::filesystem::path(*folder)).string());
+      for (const auto& file : writeReport(paths, options->files)) fmt::print("{}\n", file.string());
     } catch (const ResultsError& error) {
+      throw InputError(error.what());
+    } catch (const ResultsFileError& error) {
       throw InputError(error.what());
     } catch (const ImageError& error) {
       throw InputError(error.what());

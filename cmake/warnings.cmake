@@ -7,6 +7,9 @@ target_compile_options(wavecrest_options INTERFACE
 # g++ 12 reports false positives from inlined intrinsics and std::string at -O2; they would drown real findings.
 target_compile_options(wavecrest_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-restrict>)
+if(WAVECREST_ONLY_GENERAL_KERNELS)
+  target_compile_definitions(wavecrest_options INTERFACE WAVECREST_ONLY_GENERAL_KERNELS)
+endif()
 if(WAVECREST_SANITIZE)
   target_compile_options(wavecrest_options INTERFACE
     -fsanitize=${WAVECREST_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -O1)

@@ -1,6 +1,9 @@
 #include "engine/memory_plan.h"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "engine/flush_to_zero.h"
 #include "kernels/columns/light_vertices.h"
@@ -14,13 +17,24 @@ size_t bytesOf(const std::vector<T>& items) {
   return items.size() * sizeof(T);
 }
 
-// Walks the light paths of the iteration's first wave into a store of their own.
+// Waves of light paths that are walked.
+constexpr size_t kPilotWaves = 4;
+
+// Later waves and iterations may need some more room than the first ones.
+constexpr double kSpread = 1.05;
+
+// What the first waves of light paths of iteration 0 left behind.
+struct Pilot {
+  size_t paths = 0, stored = 0;
+  size_t room = 0;  // of the largest store: of all vertices, and of those that it might have stored at last
+};
+
 template <class S>
-size_t walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
-                      LightStore<S>& store) {
+Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
+                     size_t lightPaths) {
   const FlushToZero flushToZero;
   Wave<S> wave(settings.waveSize, plan.needs);
-  wave.pathCount = std::min<size_t>(settings.waveSize, area.pixels.size());
+  LightStore<S> store(settings.waveSize, plan.needs);
   std::vector<int64_t> splats(plan.pipeline.splats() ? 3 * area.pixels.size() : 0);
   StageCounters counters;
   StageContext<S> context;
@@ -28,39 +42,96 @@ size_t walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings,
   context.pixels = area.pixels.data();
   context.sampler = {settings.sampler, settings.seed, 0};
   context.limits = settings.limits;
-  context.mis =
-      misSettings(plan.pipeline.lightPass->strategies, settings, plan.scene->view.radius, area.pixels.size(), 0);
+  context.mis = misSettings(plan.pipeline.lightPass->strategies, settings, plan.scene->view.radius, lightPaths, 0);
   context.light = &store;
   context.splats = {splats.data(), area.x0, area.y0, area.width, area.height};
   context.counters = &counters;
-  runPass<S>(*plan.pipeline.lightPass, context, wave, nullptr);
-  return store.vertices.size;
+  Pilot pilot;
+  for (size_t i = 0; i < kPilotWaves && pilot.paths < lightPaths; ++i) {
+    wave.firstPath = pilot.paths;
+    wave.pathCount = std::min<size_t>(settings.waveSize, lightPaths - pilot.paths);
+    runPass<S>(*plan.pipeline.lightPass, context, wave, nullptr);
+    pilot.paths += wave.pathCount;
+    pilot.stored += store.vertices.size;
+    pilot.room = std::max(pilot.room, store.roomUsed());
+  }
+  return pilot;
 }
 
 template <class S>
-MemoryPlan plannedFor(const Scene& scene, const RenderSettings& settings) {
-  const RenderPlan<S> plan = planRender<S>(scene, settings);
-  const FilmArea area = filmArea(scene.film);
-  const size_t pixels = area.pixels.size();
-  MemoryPlan memory;
-  MemoryUse& use = memory.use;
-  use.scene = sceneBytes(*plan.scene);
-  memory.bytesPerPath = Wave<S>(1, plan.needs).bytesPerPath();
-  use.waves = settings.threads * waveBytes(memory.bytesPerPath, settings.waveSize);
-  use.film = filmBytes(pixels);
-  if (plan.pipeline.splats()) use.splats = settings.threads * splatBytes(pixels);
-  if (!plan.pipeline.lightPass) return memory;
-
-  LightStore<S> store(settings.waveSize, plan.needs);
-  const size_t vertices = walkLightPaths(plan, settings, area, store);
-  const size_t waves = (pixels + settings.waveSize - 1) / settings.waveSize;
-  use.lightVertices = (plan.pipeline.photonMap ? waves : settings.threads) * store.bytes();
-  if (plan.pipeline.photonMap) {
-    const size_t walked = std::min<size_t>(settings.waveSize, pixels);
-    use.photonMap = PhotonMap<S>::bytesFor(vertices * pixels / walked);
+class Planner {
+ public:
+  Planner(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
+      : plan_(plan), settings_(settings), area_(area), emptyStore_(settings.waveSize, plan.needs) {
+    if (settings.lightPaths && !plan.pipeline.photonMap) {
+      throw std::invalid_argument("planMemory: a number of light paths for " + std::string(toString(settings.method)));
+    }
   }
-  return memory;
-}
+
+  MemoryPlan run() {
+    const size_t pixels = area_.pixels.size();
+    MemoryUse& use = memory_.use;
+    use.scene = sceneBytes(*plan_.scene);
+    memory_.bytesPerPath = Wave<S>(1, plan_.needs).bytesPerPath();
+    use.waves = settings_.threads * waveBytes(memory_.bytesPerPath, settings_.waveSize);
+    use.film = filmBytes(pixels);
+    if (plan_.pipeline.splats()) use.splats = (settings_.threads + 1) * splatBytes(pixels);
+    if (plan_.pipeline.lightPass) addLightPaths(static_cast<size_t>(settings_.lightPaths.value_or(pixels)));
+    if (settings_.memoryBytes && use.total() > *settings_.memoryBytes) refuse(use.total());
+    return memory_;
+  }
+
+ private:
+  void addLightPaths(size_t asked) {
+    pilot_ = walkLightPaths(plan_, settings_, area_, asked);
+    const double spread = pilot_.paths < asked ? kSpread : 1;
+    memory_.verticesPerWave = static_cast<size_t>(spread * static_cast<double>(pilot_.room));
+    memory_.lightPaths = asked;
+    if (plan_.pipeline.photonMap && settings_.memoryBytes) fitLightPaths(*settings_.memoryBytes);
+    memory_.use.lightVertices = vertexBytes(memory_.lightPaths);
+    if (plan_.pipeline.photonMap) memory_.use.photonMap = photonBytes(memory_.lightPaths);
+  }
+
+  // Of a wave per thread, or with a photon map of all waves.
+  size_t vertexBytes(size_t lightPaths) const {
+    const size_t waves = (lightPaths + settings_.waveSize - 1) / settings_.waveSize;
+    return (plan_.pipeline.photonMap ? waves : settings_.threads) * emptyStore_.bytesFor(memory_.verticesPerWave);
+  }
+  size_t photonBytes(size_t lightPaths) const {
+    const double perPath = static_cast<double>(pilot_.stored) / static_cast<double>(std::max<size_t>(pilot_.paths, 1));
+    return PhotonMap<S>::bytesFor(static_cast<size_t>(std::llround(perPath * static_cast<double>(lightPaths))));
+  }
+
+  // The most light paths, up to those asked for, that leave the plan within the budget.
+  void fitLightPaths(size_t budget) {
+    const size_t fixed = memory_.use.total();
+    const auto needed = [&](size_t paths) { return fixed + vertexBytes(paths) + photonBytes(paths); };
+    size_t most = memory_.lightPaths, fits = std::min<size_t>(settings_.waveSize, most);
+    if (needed(fits) > budget) refuse(needed(fits));
+    while (fits < most) {
+      const size_t middle = fits + (most - fits + 1) / 2;
+      if (needed(middle) <= budget) {
+        fits = middle;
+      } else {
+        most = middle - 1;
+      }
+    }
+    memory_.lightPaths = fits;
+  }
+
+  [[noreturn]] void refuse(size_t needed) const {
+    const auto megabytes = [](double bytes) { return std::to_string(static_cast<uint64_t>(std::ceil(bytes / 1e6))); };
+    throw MemoryBudgetError("this scene needs " + megabytes(static_cast<double>(needed)) + " MB at least by " +
+                            std::string(toString(settings_.method)) + "; expected a budget of that or more");
+  }
+
+  const RenderPlan<S>& plan_;
+  const RenderSettings& settings_;
+  const FilmArea& area_;
+  const LightStore<S> emptyStore_;
+  Pilot pilot_;
+  MemoryPlan memory_;
+};
 
 }  // namespace
 
@@ -69,7 +140,8 @@ size_t sceneBytes(const CompiledScene<S>& scene) {
   return bytesOf(scene.primitives.records) + bytesOf(scene.primitives.attributes) + bytesOf(scene.materials) +
          bytesOf(scene.textures.records) + bytesOf(scene.textures.texels) + bytesOf(scene.lights.records) +
          bytesOf(scene.lights.table) + bytesOf(scene.lights.environment.texels) +
-         bytesOf(scene.lights.environment.probability) + bytesOf(scene.lights.environment.table);
+         bytesOf(scene.lights.environment.probability) + bytesOf(scene.lights.environment.table) +
+         (scene.embree ? scene.embree->bytes() : 0);
 }
 template size_t sceneBytes(const CompiledScene<float>&);
 template size_t sceneBytes(const CompiledScene<double>&);
@@ -78,9 +150,17 @@ size_t filmBytes(size_t pixels) { return pixels * (3 * sizeof(double) + sizeof(u
 size_t splatBytes(size_t pixels) { return pixels * 3 * sizeof(int64_t); }
 size_t waveBytes(size_t bytesPerPath, size_t waveSize) { return bytesPerPath * paddedItems(waveSize); }
 
+template <class S>
+MemoryPlan planMemory(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
+  return Planner<S>(plan, settings, area).run();
+}
+template MemoryPlan planMemory(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);
+template MemoryPlan planMemory(const RenderPlan<double>&, const RenderSettings&, const FilmArea&);
+
 MemoryPlan planMemory(const Scene& scene, const RenderSettings& settings) {
-  return settings.precision == Precision::doubled ? plannedFor<double>(scene, settings)
-                                                  : plannedFor<float>(scene, settings);
+  const FilmArea area = filmArea(scene.film);
+  return settings.precision == Precision::doubled ? planMemory(planRender<double>(scene, settings), settings, area)
+                                                  : planMemory(planRender<float>(scene, settings), settings, area);
 }
 
 }  // namespace wavecrest

@@ -1,21 +1,24 @@
 // The memory that a render will take, before it is taken.
 //
-// in: a scene and settings. out: bytes by what they are for. Waves, film, splats and the compiled scene are known
-// exactly. Light vertices depend on where light paths go: the first wave's are made and counted, and stand for all.
-// What a session really holds is reported in the same form (Session::statistics), so the two can be compared.
+// in: a scene and settings. out: bytes by what they are for, and how many light paths an iteration may have so that all
+// of it fits the settings' budget. Waves, film, splats and the compiled scene are known exactly. Light vertices depend
+// on where light paths go: those of a few waves are made and counted, and stand for all. Fewer light paths leave
+// nothing out of the image: weights, densities and splats follow their number (METHODS 5.1). What a session really
+// holds is reported in the same form (Session::statistics), so the two can be compared.
 #pragma once
 
 #include <cstddef>
+#include <stdexcept>
 
 #include "engine/render_plan.h"
 
 namespace wavecrest {
 
 struct MemoryUse {
-  size_t scene = 0;          // primitives, attributes, materials, textures and lights, without the intersector
+  size_t scene = 0;          // primitives, attributes, materials, textures, lights, and Embree's hierarchy
   size_t waves = 0;          // columns of one wave per thread
   size_t film = 0;           // sums of the pixels
-  size_t splats = 0;         // sums of t = 1, per thread
+  size_t splats = 0;         // sums of t = 1: one per thread, and the image's
   size_t lightVertices = 0;  // of a wave per thread, or with a photon map of all waves
   size_t photonMap = 0;
 
@@ -33,10 +36,20 @@ size_t waveBytes(size_t bytesPerPath, size_t waveSize);
 struct MemoryPlan {
   size_t bytesPerPath = 0;  // of the columns of a wave
   MemoryUse use;
+  size_t lightPaths = 0;       // N_L: of each iteration
+  size_t verticesPerWave = 0;  // room that the light vertices of a wave need
 };
 
-// What a session with these settings will hold. Compiles the scene and walks one wave of light paths. Throws
-// std::runtime_error where the method cannot render the scene.
+// The budget is too small even for the least that a render can do with.
+struct MemoryBudgetError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// What a session with these settings will hold. Compiles the scene and walks a few waves of light paths. Throws
+// std::runtime_error where the method cannot render the scene, MemoryBudgetError where it does not fit the budget.
 MemoryPlan planMemory(const Scene& scene, const RenderSettings& settings);
+// The same of a plan that has been made.
+template <class S>
+MemoryPlan planMemory(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
 
 }  // namespace wavecrest

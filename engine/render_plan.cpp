@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "engine/scene/scene_error.h"
-
 namespace wavecrest {
 namespace {
 
@@ -43,13 +41,6 @@ template Intersector<double> chooseIntersector(const Stages<double>&, Accel);
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   RenderPlan<S> plan;
-  // t = 1 knows neither where a reconstruction filter spreads a splat nor which point of a lens to join.
-  const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
-  if (lens && (settings.method == Method::lt || settings.method == Method::bpt || settings.method == Method::vcm)) {
-    throw SceneError({scene.name},
-                     "method " + std::string(toString(settings.method)) +
-                         " needs a perspective sensor and the box filter; expected those, or pt, ppm or bpm");
-  }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);
   plan.scene = compileScene<S>(scene, settings.accel);
@@ -61,9 +52,9 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
 template RenderPlan<float> planRender(const Scene&, const RenderSettings&);
 template RenderPlan<double> planRender(const Scene&, const RenderSettings&);
 
-MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t pixels,
+MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t count,
                         uint64_t iteration) {
-  const auto lightPaths = static_cast<double>(pixels);
+  const auto lightPaths = static_cast<double>(count);
   strategies.lightPaths = lightPaths;
   strategies.camN = lightPaths;
   const double shrink = std::pow(static_cast<double>(iteration + 1), (settings.radiusAlpha - 1) / 2);

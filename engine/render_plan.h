@@ -35,9 +35,9 @@ Specialization specializationFor(const Scene& scene, const RenderSettings& setti
 template <class S>
 Intersector<S> chooseIntersector(const Stages<S>& stages, Accel accel);
 
-// A pass's switches with the constants of an iteration's densities (METHODS 5.1, 6.1): one light path per pixel of the
-// rendered rectangle.
-MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t pixels,
+// A pass's switches with the constants of an iteration's densities (METHODS 5.1, 6.1): N_L light paths, and one camera
+// path per pixel.
+MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t lightPaths,
                         uint64_t iteration);
 
 // The rectangle of the film that is rendered: its crop window, or all of it.

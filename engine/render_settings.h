@@ -1,6 +1,7 @@
 // What a user may choose about a render, as plain data.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -10,6 +11,15 @@
 namespace wavecrest {
 
 constexpr uint32_t kUnlimitedDepth = 64;  // edges; roulette ends paths long before
+
+// Limits of paths from what a scene file or a user says: depth in edges, -1 for as many as roulette allows; the first
+// vertex where roulette may end a path.
+inline PathLimits pathLimits(int maxDepth, int rouletteDepth) {
+  PathLimits limits;
+  if (maxDepth > 0) limits.maxDepth = std::min(static_cast<uint32_t>(maxDepth), kUnlimitedDepth);
+  limits.rouletteDepth = static_cast<uint32_t>(rouletteDepth);
+  return limits;
+}
 
 struct RenderSettings {
   Method method = Method::pt;
@@ -21,8 +31,13 @@ struct RenderSettings {
   uint32_t threads = 1;
   uint32_t waveSize = 2048;  // paths
   PathLimits limits;
-  double radius = 0.001;                         // of the first merges, relative to the bounding sphere's
-  double radiusAlpha = 0.75;                     // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
+  double radius = 0.001;        // of the first merges, relative to the bounding sphere's
+  double radiusAlpha = 0.75;    // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
+  uint64_t firstIteration = 0;  // of this session: what came before was rendered by another
+  // N_L, the light paths of an iteration: one per pixel unless stated. Only methods with a photon map may have another
+  // number; the others join each light path with its own camera path.
+  std::optional<uint64_t> lightPaths;
+  std::optional<uint64_t> memoryBytes;           // budget; lowers N_L where that is what fills the memory
   std::optional<uint64_t> iterations;            // stop after this many,
   std::optional<double> seconds;                 // or after this much render time, whichever comes first
   std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene

@@ -40,9 +40,10 @@ struct WorkerLimit {
 
 // The part of a session that depends on the storage type of its precision.
 //
-// An iteration is one light path and one camera path per pixel. Without a photon map a wave's light and camera pass
-// follow each other and waves are independent; with one, all light passes come first, then the map, then all camera
-// passes. Where time runs out in between, what is done stays done and the next renderUntil goes on from there.
+// An iteration is one camera path per pixel and one light path for each, or with a photon map as many light paths as
+// the memory plan says. Without a photon map a wave's light and camera pass follow each other and waves are
+// independent; with one, all light passes come first, then the map, then all camera passes. Where time runs out in
+// between, what is done stays done and the next renderUntil goes on from there.
 template <class S>
 class TypedSession final : public Session {
  public:
@@ -51,6 +52,7 @@ class TypedSession final : public Session {
   void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) override;
   RenderStatistics statistics() const override;
   const Film& film() const override { return film_; }
+  const MemoryPlan& memoryPlan() const override { return memory_; }
   double progressSeconds() const override { return progressSeconds_.load(std::memory_order_relaxed); }
   uint64_t progressPaths() const override { return progressPaths_.load(std::memory_order_relaxed); }
 
@@ -65,10 +67,12 @@ class TypedSession final : public Session {
     uint64_t paths = 0, lightPaths = 0;
     Worker(size_t waveSize, const ColumnNeeds& needs) : wave(waveSize, needs), light(waveSize, needs) {}
   };
-  using Finished = std::function<bool(size_t wave)>;
+  // Whether a wave that has done so many iterations is to stop.
+  using Finished = std::function<bool(uint64_t next)>;
 
   Worker& worker();
-  void tracePass(const Pass<S>& pass, size_t waveIndex, uint64_t iteration, LightStore<S>* light, Worker& worker);
+  void tracePass(const Pass<S>& pass, size_t waveIndex, size_t paths, uint64_t iteration, LightStore<S>* light,
+                 Worker& worker);
   void traceLight(size_t waveIndex, Worker& worker);
   void traceCamera(size_t waveIndex, Worker& worker);
   // Iterations of a method whose waves are independent.
@@ -76,6 +80,8 @@ class TypedSession final : public Session {
   // Iterations of a method with a photon map.
   void renderPhases(const Finished& finished);
   void buildPhotonMap(uint64_t iteration);
+  // Light vertices that the camera paths of a wave are joined with.
+  LightStore<S>* partnersOf(size_t waveIndex, Worker& worker);
   void collectSplats();
 
   // Runs body(i) for i in [0, count) on the session's threads.
@@ -87,8 +93,9 @@ class TypedSession final : public Session {
   oneapi::tbb::task_arena arena_;
   Film film_;
   RenderPlan<S> plan_;
-  std::vector<uint64_t> lightDone_, cameraDone_;        // iterations done by each wave
-  std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each wave, where a photon map gathers them
+  MemoryPlan memory_;
+  std::vector<uint64_t> lightDone_, cameraDone_;        // next iteration of each wave
+  std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each light wave, where a photon map gathers them
   PhotonMap<S> photons_;
   std::optional<uint64_t> photonIteration_;  // which iteration the map is of
   StageTally photonTally_;
@@ -103,13 +110,17 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
     : settings_(settings), arena_(static_cast<int>(settings.threads)), film_(filmArea(scene.film)) {
   const auto begin = Clock::now();
   const WorkerLimit limit(settings.threads);
+  const size_t pixels = film_.area().pixels.size();
   arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
-  const size_t waves = (film_.area().pixels.size() + settings.waveSize - 1) / settings.waveSize;
-  lightDone_.resize(waves);
-  cameraDone_.resize(waves);
+  memory_ = planMemory(plan_, settings, film_.area());
+  const auto waves = [&](size_t paths) { return (paths + settings.waveSize - 1) / settings.waveSize; };
+  lightDone_.resize(waves(memory_.lightPaths), settings.firstIteration);
+  cameraDone_.resize(waves(pixels), settings.firstIteration);
   if (plan_.pipeline.photonMap) {
-    for (size_t i = 0; i < waves; ++i)
+    for (size_t i = 0; i < lightDone_.size(); ++i) {
       stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs));
+      stores_.back()->reserve(memory_.verticesPerWave);
+    }
   }
   buildSeconds_ = secondsSince(begin);
 }
@@ -127,19 +138,19 @@ typename TypedSession<S>::Worker& TypedSession<S>::worker() {
 }
 
 template <class S>
-void TypedSession<S>::tracePass(const Pass<S>& pass, size_t waveIndex, uint64_t iteration, LightStore<S>* light,
-                                Worker& worker) {
+void TypedSession<S>::tracePass(const Pass<S>& pass, size_t waveIndex, size_t paths, uint64_t iteration,
+                                LightStore<S>* light, Worker& worker) {
   const FlushToZero flushToZero;
   const FilmArea& area = film_.area();
   Wave<S>& wave = worker.wave;
   wave.firstPath = waveIndex * settings_.waveSize;
-  wave.pathCount = std::min<size_t>(settings_.waveSize, area.pixels.size() - wave.firstPath);
+  wave.pathCount = std::min<size_t>(settings_.waveSize, paths - wave.firstPath);
   StageContext<S> context{
       .scene = &plan_.scene->view,
       .pixels = area.pixels.data(),
       .sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(iteration)},
       .limits = settings_.limits,
-      .mis = misSettings(pass.strategies, settings_, plan_.scene->view.radius, area.pixels.size(), iteration),
+      .mis = misSettings(pass.strategies, settings_, plan_.scene->view.radius, memory_.lightPaths, iteration),
       .light = light,
       .photons = &photons_,
       .splats = {worker.splats.data(), area.x0, area.y0, area.width, area.height},
@@ -151,15 +162,25 @@ void TypedSession<S>::tracePass(const Pass<S>& pass, size_t waveIndex, uint64_t 
 template <class S>
 void TypedSession<S>::traceLight(size_t waveIndex, Worker& worker) {
   LightStore<S>* const store = plan_.pipeline.photonMap ? stores_[waveIndex].get() : &worker.light;
-  tracePass(*plan_.pipeline.lightPass, waveIndex, lightDone_[waveIndex], store, worker);
+  tracePass(*plan_.pipeline.lightPass, waveIndex, memory_.lightPaths, lightDone_[waveIndex], store, worker);
   worker.lightPaths += worker.wave.pathCount;
   ++lightDone_[waveIndex];
 }
 
 template <class S>
+LightStore<S>* TypedSession<S>::partnersOf(size_t waveIndex, Worker& worker) {
+  if (!plan_.pipeline.photonMap) return &worker.light;
+  if (!plan_.pipeline.cameraPass.strategies.connect) return nullptr;
+  const size_t pixels = film_.area().pixels.size(), first = waveIndex * settings_.waveSize;
+  if (memory_.lightPaths == pixels) return stores_[waveIndex].get();
+  worker.light.collect(stores_, memory_.lightPaths, first, std::min<size_t>(settings_.waveSize, pixels - first));
+  return &worker.light;
+}
+
+template <class S>
 void TypedSession<S>::traceCamera(size_t waveIndex, Worker& worker) {
-  LightStore<S>* const store = plan_.pipeline.photonMap ? stores_[waveIndex].get() : &worker.light;
-  tracePass(plan_.pipeline.cameraPass, waveIndex, cameraDone_[waveIndex], store, worker);
+  tracePass(plan_.pipeline.cameraPass, waveIndex, film_.area().pixels.size(), cameraDone_[waveIndex],
+            partnersOf(waveIndex, worker), worker);
   worker.counters.nonFinite += film_.add(worker.wave);
   worker.paths += worker.wave.pathCount;
   progressPaths_.fetch_add(worker.wave.pathCount, std::memory_order_relaxed);
@@ -174,11 +195,11 @@ void TypedSession<S>::renderWaves(const Finished& finished) {
   flow::graph graph;
   flow::queue_node<size_t> ready(graph);
   flow::function_node<size_t, flow::continue_msg, flow::rejecting> tracing(graph, settings_.threads, [&](size_t wave) {
-    if (finished(wave)) return flow::continue_msg();
+    if (finished(cameraDone_[wave])) return flow::continue_msg();
     Worker& mine = worker();
     if (plan_.pipeline.lightPass) traceLight(wave, mine);
     traceCamera(wave, mine);
-    if (!finished(wave)) ready.try_put(wave);
+    if (!finished(cameraDone_[wave])) ready.try_put(wave);
     return flow::continue_msg();
   });
   flow::make_edge(ready, tracing);
@@ -192,10 +213,10 @@ void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
   for (const auto& store : stores_) stores.push_back(store.get());
   const uint64_t begin = readTicks();
   const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
-                                      film_.area().pixels.size(), iteration);
+                                      memory_.lightPaths, iteration);
   photons_.build(stores, mis.radius, forEach);
   photonTally_.ticks += readTicks() - begin;
-  photonTally_.items += photons_.photons.size;
+  photonTally_.items += photons_.size;
   photonIteration_ = iteration;
 }
 
@@ -204,12 +225,15 @@ void TypedSession<S>::renderPhases(const Finished& finished) {
   for (;;) {
     const uint64_t iteration = *std::min_element(cameraDone_.begin(), cameraDone_.end());
     forEach(stores_.size(), [&](size_t wave) {
-      if (lightDone_[wave] == iteration && !finished(wave)) traceLight(wave, worker());
+      if (lightDone_[wave] == iteration && !finished(iteration)) traceLight(wave, worker());
     });
     if (*std::min_element(lightDone_.begin(), lightDone_.end()) == iteration) return;  // time ran out
-    if (photonIteration_ != iteration) buildPhotonMap(iteration);
-    forEach(stores_.size(), [&](size_t wave) {
-      if (cameraDone_[wave] == iteration && !finished(wave)) traceCamera(wave, worker());
+    if (photonIteration_ != iteration) {
+      if (finished(iteration)) return;
+      buildPhotonMap(iteration);
+    }
+    forEach(cameraDone_.size(), [&](size_t wave) {
+      if (cameraDone_[wave] == iteration && !finished(iteration)) traceCamera(wave, worker());
     });
     if (*std::min_element(cameraDone_.begin(), cameraDone_.end()) == iteration) return;
   }
@@ -232,8 +256,9 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
   const WorkerLimit limit(settings_.threads);
-  const Finished finished = [&](size_t wave) {
-    if (iterations && cameraDone_[wave] >= *iterations) return true;
+  // next: the iteration that the wave would trace.
+  const Finished finished = [&](uint64_t next) {
+    if (iterations && next - settings_.firstIteration >= *iterations) return true;
     const double now = renderSeconds_ + secondsSince(begin);
     progressSeconds_.store(now, std::memory_order_relaxed);
     return (seconds && now >= *seconds) || interrupted();
@@ -272,6 +297,7 @@ RenderStatistics TypedSession<S>::statistics() const {
   out.accel = plan_.accel();
   out.memory.scene = sceneBytes(*plan_.scene);
   out.memory.film = filmBytes(film_.area().pixels.size());
+  if (plan_.pipeline.splats()) out.memory.splats = splatBytes(film_.area().pixels.size());
   if (plan_.pipeline.lightPass) addRows(*plan_.pipeline.lightPass, out.stages);
   const size_t cameraRow = out.stages.size();
   addRows(plan_.pipeline.cameraPass, out.stages);

@@ -51,11 +51,13 @@ class Session {
 
   virtual RenderStatistics statistics() const = 0;
   virtual const Film& film() const = 0;
+  virtual const MemoryPlan& memoryPlan() const = 0;
   // Iterations of the slowest wave and seconds so far, for progress shown from another thread.
   virtual double progressSeconds() const = 0;
   virtual uint64_t progressPaths() const = 0;
 
-  // Compiles the scene and prepares one wave per thread. Throws std::runtime_error where the scene cannot be rendered.
+  // Compiles the scene and plans the memory. Throws std::runtime_error where the scene cannot be rendered, and
+  // MemoryBudgetError where it does not fit the settings' budget.
   static std::unique_ptr<Session> create(const Scene& scene, const RenderSettings& settings);
 
  private:

@@ -129,7 +129,7 @@ WAVECREST_INLINE void addSplats(const StageContext<S>& context, UInt pixel, Mask
 
 // ---- scene records --------------------------------------------------------------------------------------------------
 
-// One record per lane: `RecordLanes prims(base, index); prims(base->p0[0])` gathers that field of each lane's record.
+// One record per lane: `RecordLanes prims(base, index); prims(base->p0)` gathers that field of each lane's record.
 template <class Record>
 class RecordLanes {
  public:
@@ -151,6 +151,17 @@ class RecordLanes {
 
  private:
   UInt wordIndex_, longIndex_;
+};
+
+// The same face for a record that all lanes share: `OneRecord()(base->p0)` broadcasts that field.
+struct OneRecord {
+  WAVECREST_INLINE Float operator()(const float& field) const { return Float(field); }
+  WAVECREST_INLINE UInt operator()(const uint32_t& field) const { return UInt(field); }
+  WAVECREST_INLINE Double operator()(const double& field) const { return Double(field); }
+  template <class S>
+  WAVECREST_INLINE auto operator()(const S (&field)[3]) const {
+    return Vec3<decltype((*this)(field[0]))>{(*this)(field[0]), (*this)(field[1]), (*this)(field[2])};
+  }
 };
 
 template <class Real>
@@ -199,25 +210,35 @@ WAVECREST_INLINE Uniform4 draw(const StageContext<S>& context, UInt path, Block 
 WAVECREST_SIMD_END
 
 // Compiles STAGE<Precision, features> for every precision and specialisation of isCompiled() (kernels/stages.h).
-#define WAVECREST_INSTANTIATE_STAGE(STAGE)              \
-  WAVECREST_SIMD_BEGIN                                  \
+#ifdef WAVECREST_ONLY_GENERAL_KERNELS
+#define WAVECREST_INSTANTIATE_PLAIN(STAGE)
+#define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)
+#else
+#define WAVECREST_INSTANTIATE_PLAIN(STAGE)              \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuse) \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smooth)  \
-  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuse)  \
-  WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)            \
+  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuse)
+#define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)                   \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuseBidirectional) \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smoothBidirectional)  \
+  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuseBidirectional)
+#endif
+#define WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)       \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, general) \
+  WAVECREST_INSTANTIATE(STAGE, FastPrecision, general)  \
+  WAVECREST_INSTANTIATE(STAGE, DoublePrecision, general)
+#define WAVECREST_INSTANTIATE_STAGE(STAGE)   \
+  WAVECREST_SIMD_BEGIN                       \
+  WAVECREST_INSTANTIATE_PLAIN(STAGE)         \
+  WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE) \
+  WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)  \
   WAVECREST_SIMD_END
 // The same for a stage that only bidirectional methods have.
 #define WAVECREST_INSTANTIATE_BIDIRECTIONAL_STAGE(STAGE) \
   WAVECREST_SIMD_BEGIN                                   \
   WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)             \
+  WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)              \
   WAVECREST_SIMD_END
-#define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)                   \
-  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuseBidirectional) \
-  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smoothBidirectional)  \
-  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, general)              \
-  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuseBidirectional)  \
-  WAVECREST_INSTANTIATE(STAGE, FastPrecision, general)               \
-  WAVECREST_INSTANTIATE(STAGE, DoublePrecision, general)
 #define WAVECREST_INSTANTIATE(STAGE, PRECISION, SPECIALIZATION)                                                       \
   template void STAGE<PRECISION, featuresOf(Specialization::SPECIALIZATION)>(const StageContext<PRECISION::Storage>&, \
                                                                              Wave<PRECISION::Storage>&);

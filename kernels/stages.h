@@ -49,7 +49,11 @@ constexpr uint32_t featuresOf(Specialization specialization) {
 
 // float is specialised for every feature set, fast for the plainest and the general ones, double for none: its users
 // wait for accuracy anyway, and each instantiation is paid for in compile time on every instruction set.
+// With WAVECREST_ONLY_GENERAL_KERNELS (CMakeLists.txt) every scene and method runs on the general ones.
 constexpr bool isCompiled(Precision precision, Specialization specialization) {
+#ifdef WAVECREST_ONLY_GENERAL_KERNELS
+  return specialization == Specialization::general;
+#endif
   switch (precision) {
     case Precision::floating:
       return true;

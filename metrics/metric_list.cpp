@@ -123,19 +123,28 @@ Measurement measureHdrFlip(const PreparedReference& reference, const ComparedIma
 
 // clang-format off
 constexpr std::array kMetrics{
-    Metric{.name = "rmse", .title = "root mean square error", .score = "", .higherIsBetter = false,
-           .threshold = "max-rmse", .byDefault = true, .smallestSide = 1, .mapRange = 0, .measure = measureRmse},
-    Metric{.name = "relmse", .title = "relative mean square error", .score = "", .higherIsBetter = false,
-           .threshold = "max-relmse", .byDefault = true, .smallestSide = 1, .mapRange = 0, .measure = measureRelmse},
-    Metric{.name = "ssim", .title = "structural similarity", .score = "mean", .higherIsBetter = true,
+    Metric{.name = "rmse", .symbol = "RMSE", .title = "root mean square error",
+           .basis = "linear radiance", .score = "", .higherIsBetter = false, .sampleExponent = -0.5,
+           .threshold = "max-rmse", .byDefault = true, .smallestSide = 1, .mapRange = 0,
+           .measure = measureRmse},
+    Metric{.name = "relmse", .symbol = "relMSE", .title = "relative mean square error",
+           .basis = "squared error over squared radiance", .score = "", .higherIsBetter = false, .sampleExponent = -1,
+           .threshold = "max-relmse", .byDefault = true, .smallestSide = 1, .mapRange = 0,
+           .measure = measureRelmse},
+    Metric{.name = "ssim", .symbol = "SSIM", .title = "structural similarity",
+           .basis = "structure of 8-bit sRGB", .score = "mean", .higherIsBetter = true, .sampleExponent = 0,
            .threshold = "min-ssim", .byDefault = true, .smallestSide = kSsimSmallestSide, .mapRange = 1,
            .measure = measureSsim},
-    Metric{.name = "hdrvdp2", .title = "HDR-VDP-2.2 mean opinion score", .score = "q_mos", .higherIsBetter = true,
+    Metric{.name = "hdrvdp2", .symbol = "Q_MOS", .title = "HDR-VDP-2.2 mean opinion score",
+           .basis = "predicted opinion of viewers, 8-bit sRGB", .score = "q_mos", .higherIsBetter = true, .sampleExponent = 0,
            .threshold = "min-qmos", .byDefault = true, .smallestSide = kHdrVdp2SmallestSide, .mapRange = 1,
            .measure = measureHdrVdp2},
-    Metric{.name = "flip", .title = "LDR-FLIP", .score = "", .higherIsBetter = false,
-           .threshold = "max-flip", .byDefault = true, .smallestSide = 1, .mapRange = 1, .measure = measureFlip},
-    Metric{.name = "hdrflip", .title = "HDR-FLIP", .score = "", .higherIsBetter = false,
+    Metric{.name = "flip", .symbol = "FLIP", .title = "LDR-FLIP",
+           .basis = "visible difference when flipping, 8-bit sRGB", .score = "", .higherIsBetter = false, .sampleExponent = 0,
+           .threshold = "max-flip", .byDefault = true, .smallestSide = 1, .mapRange = 1,
+           .measure = measureFlip},
+    Metric{.name = "hdrflip", .symbol = "HDR-FLIP", .title = "HDR-FLIP",
+           .basis = "FLIP over a series of exposures", .score = "", .higherIsBetter = false, .sampleExponent = 0,
            .threshold = "max-hdrflip", .byDefault = false, .smallestSide = 1, .mapRange = 1,
            .measure = measureHdrFlip},
 };
@@ -148,6 +157,12 @@ std::span<const Metric> metricList() { return kMetrics; }
 const Metric* findMetric(std::string_view name) {
   const auto found = std::find_if(kMetrics.begin(), kMetrics.end(), [&](const Metric& m) { return m.name == name; });
   return found == kMetrics.end() ? nullptr : &*found;
+}
+
+std::string scoreName(const Metric& metric, std::string_view score) {
+  const auto isMain = [](std::string_view name) { return name.empty() || name == "mean"; };
+  if (isMain(score)) return std::string(metric.name);
+  return (isMain(metric.score) ? std::string(metric.name) + "_" : std::string()) + std::string(score);
 }
 
 double mainScore(const Metric& metric, const Measurement& measurement) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,10 +24,13 @@ struct Measurement {
 };
 
 struct Metric {
-  std::string_view name;   // "ssim": of --metrics and of JSON keys
-  std::string_view title;  // for people
-  std::string_view score;  // name of the score that curves and thresholds use; empty: the only one
+  std::string_view name;    // "ssim": of --metrics and of JSON keys
+  std::string_view symbol;  // for axes and table heads: "SSIM"
+  std::string_view title;   // for people
+  std::string_view basis;   // what it looks at, for people
+  std::string_view score;   // name of the score that curves and thresholds use; empty: the only one
   bool higherIsBetter;
+  double sampleExponent;       // the score of a mean of n independent images goes as n to this; 0: by no power law
   std::string_view threshold;  // its command-line option: "min-ssim"
   bool byDefault;              // measured when no metric is named
   uint32_t smallestSide;       // images with a shorter side are refused
@@ -38,6 +42,10 @@ std::span<const Metric> metricList();
 
 // The entry of that name, or null.
 const Metric* findMetric(std::string_view name);
+
+// What a score is called where scores of all metrics lie side by side: "rmse", "relmse_trimmed", "ssim" (its mean),
+// "ssim_r", "q_mos", "q". Scores of a metric whose main score has a name of its own stand under their names alone.
+std::string scoreName(const Metric& metric, std::string_view score);
 
 // The score that counts.
 double mainScore(const Metric& metric, const Measurement& measurement);

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   _mm_setcsr(_mm_getcsr() | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);  // as in a session
   wavecrest::registerStageBenchmarks();
   wavecrest::registerCrossoverBenchmarks();
+  wavecrest::registerBidirectionalBenchmarks();
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
   benchmark::RunSpecifiedBenchmarks();

@@ -8,8 +8,9 @@
 
 namespace wavecrest {
 
-void registerStageBenchmarks();      // stages_bench.cpp
-void registerCrossoverBenchmarks();  // crossover_bench.cpp
+void registerStageBenchmarks();          // stages_bench.cpp
+void registerCrossoverBenchmarks();      // crossover_bench.cpp
+void registerBidirectionalBenchmarks();  // bidirectional_bench.cpp
 
 // Times are set by the benchmark itself (SetIterationTime). The minimum over repetitions is the figure that other
 // programs on the machine disturb least.

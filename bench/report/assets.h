@@ -1,4 +1,4 @@
-// The page's style sheet and script. They are ordinary files (assets/report.css, assets/report.js), turned into these
+// The page's style sheet and script. They are ordinary files (assets/*.css, assets/report.js), turned into these
 // strings at build time by cmake/embed_text.cmake.
 #pragma once
 
@@ -6,6 +6,7 @@
 
 namespace wavecrest {
 
+extern const std::string_view kPlotCss;  ///< plots alone: also inside plots that are files of their own
 extern const std::string_view kReportCss;
 extern const std::string_view kReportJs;
 

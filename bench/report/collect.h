@@ -1,14 +1,16 @@
-// Makes a report's data from a results folder (results_folder.h): measures every snapshot of every run against its
-// scene's reference, and gathers runs that differ by nothing but the seed.
+// Makes a report's data from whatever holds results: a campaign's results file, the results files of its shards, or a
+// folder of renders.
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include "bench/report/report_data.h"
 
 namespace wavecrest {
 
-/// Throws ResultsError if the folder lacks something or sizes do not match, ImageError if an image cannot be read.
-ConvergenceReport collectReport(const std::filesystem::path& folder);
+/// Folders stand for the results file in them; a single folder without one is a folder of renders. Throws
+/// ResultsFileError, ResultsError or ImageError if there is something that no report can be made of.
+ConvergenceReport collectReport(std::span<const std::filesystem::path> paths);
 
 }  // namespace wavecrest

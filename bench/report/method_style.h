@@ -34,4 +34,11 @@ constexpr MethodStyle methodStyle(std::string_view id) {
   return {id, id, CurveMark::kCircle};
 }
 
+/// Where a method stands in the list: the order of tables and pictures. Methods that are not listed come last.
+constexpr size_t methodRank(std::string_view id) {
+  size_t rank = 0;
+  while (rank < kMethodStyles.size() && kMethodStyles[rank].id != id) ++rank;
+  return rank;
+}
+
 }  // namespace wavecrest

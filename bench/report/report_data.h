@@ -1,6 +1,7 @@
 // What a convergence report says, as plain data: scenes x methods x seeds x snapshots, every snapshot with every
-// metric. Filled by collect.h from a results folder, turned into a page by html_page.h; neither knows the other.
-// Everything that is indexed by metric is parallel to ConvergenceReport::metrics.
+// metric. Filled by collect.h from results, turned into a page by html_page.h, into a table by csv.h and into plot
+// files by plot_files.h; none of them knows where the data came from. Everything that is indexed by metric is parallel
+// to ConvergenceReport::metrics.
 #pragma once
 
 #include <cstdint>
@@ -12,72 +13,108 @@ namespace wavecrest {
 
 /// A quality measure, and how its axis is drawn.
 struct ReportMetric {
-  std::string key;          ///< as in `compare --metrics`, e.g. "rmse"
-  std::string name;         ///< heading, e.g. "RMSE"
-  std::string explanation;  ///< one line under the heading
+  std::string key = {};          ///< as in `compare --metrics`, e.g. "rmse"
+  std::string name = {};         ///< heading, e.g. "RMSE"
+  std::string explanation = {};  ///< one line under the heading
   bool higherIsBetter = false;
   bool logarithmic = true;
   /// Exponent of time at which the error of an unbiased method falls; drawn as a guide.
-  std::optional<double> idealSlope;
+  std::optional<double> idealSlope = {};
+  /// A score that people ask "how long until" about; drawn as a line.
+  std::optional<double> target = {};
 };
 
 struct NamedValue {
   std::string name, value;
 };
 
+struct NamedNumber {
+  std::string name = {};
+  double value;
+};
+
 /// One measured snapshot.
 struct ReportPoint {
   double seconds = 0;  ///< render clock
   uint64_t iterations = 0;
-  std::vector<double> values;  ///< per metric
+  std::vector<double> values = {};        ///< per metric; NaN where it was not measured
+  std::vector<NamedNumber> further = {};  ///< other scores, for exports: those of single channels, for example
 };
 
 /// One run from start to end; points in order of time.
 struct ReportRun {
   uint64_t seed = 0;
-  std::vector<ReportPoint> points;
+  std::vector<ReportPoint> points = {};
 };
 
 /// Work of one pipeline stage, summed over threads.
 struct ReportStage {
-  std::string name;
+  std::string name = {};
   uint64_t items = 0;
   double seconds = 0;
 };
 
 /// 8-bit sRGB pixels, row by row from the top left, three bytes each.
 struct ReportImage {
-  std::string label;
+  std::string label = {};
   uint32_t width = 0, height = 0;
-  std::vector<uint8_t> rgb;
+  std::vector<uint8_t> rgb = {};
+};
+
+/// Where the error of a snapshot comes from, known where several seeds were rendered: mean squares over pixels, without
+/// the reference's own noise. bias2 may come out slightly negative.
+struct ReportBias {
+  double seconds = 0;
+  size_t seeds = 0;
+  double meanSquareError = 0, variance = 0, bias2 = 0;
 };
 
 /// One method with one choice of settings on one scene: its runs (one per seed) and what they cost.
 struct ReportSeries {
-  std::string method;
-  std::string label;  ///< the method, and what tells two series of one method apart
-  std::vector<ReportRun> runs;
-  double pathsPerSecond = 0;           ///< mean over runs
-  double cpuSeconds = 0;               ///< sum over runs
-  std::vector<ReportStage> stages;     ///< sum over runs
-  std::vector<NamedValue> settings;    ///< sampler, precision, radius, ...
-  std::vector<ReportImage> snapshots;  ///< of the first run, at least its last one
+  std::string method = {};
+  std::string label = {};  ///< the method, and what tells two series of one method apart
+  std::vector<ReportRun> runs = {};
+  double pathsPerSecond = 0;              ///< mean over runs
+  double cpuSeconds = 0;                  ///< sum over runs
+  std::vector<ReportStage> stages = {};   ///< sum over runs
+  std::vector<NamedValue> settings = {};  ///< sampler, precision, radius, ...
+  ReportImage finalImage = {};            ///< of the first run that ended with one; without pixels if none did
+  ReportImage errorMap = {};              ///< of that image against the reference, in false colours
+  std::vector<ReportBias> bias = {};      ///< in order of time; empty with a single seed
+};
+
+/// What a scene asks of methods: a class of paths, and what each method makes of it ("sampled", "impossible", ...).
+struct ReportPathClass {
+  std::string name = {};
+  std::vector<NamedValue> verdicts = {};  ///< by method
 };
 
 struct ReportScene {
-  std::string name;
+  std::string name = {};
   uint32_t width = 0, height = 0;
-  ReportImage reference;
-  std::string referenceOrigin;                     ///< how the reference was made, one line
-  std::vector<std::optional<double>> noiseFloors;  ///< per metric: error of the reference itself, where known
-  std::vector<ReportSeries> series;
+  ReportImage reference = {};
+  std::string referenceOrigin = {};                     ///< how the reference was made, one line
+  std::vector<std::optional<double>> noiseFloors = {};  ///< per metric: score of a perfect image, where known
+  std::string errorMapScale = {};                       ///< what the colours of the error maps mean, one line
+  std::vector<ReportSeries> series = {};
+  std::vector<ReportPathClass> pathClasses = {};
+  std::vector<NamedValue> refusals = {};  ///< methods that cannot render this scene, and why
+};
+
+/// A statement of the study and whether it holds here.
+struct ReportClaim {
+  std::string scene, statement;
+  std::string verdict = {};  ///< "holds", "does not hold" or "undecided"
+  std::string evidence = {};
 };
 
 struct ConvergenceReport {
-  std::string title;
-  std::vector<ReportMetric> metrics;
-  std::vector<ReportScene> scenes;
-  std::vector<NamedValue> environment;
+  std::string title = {};
+  std::vector<std::string> remarks = {};  ///< what a reader must know first: runs that are missing, mixed environments
+  std::vector<ReportMetric> metrics = {};
+  std::vector<ReportScene> scenes = {};
+  std::vector<ReportClaim> claims = {};
+  std::vector<NamedValue> environment = {};
 };
 
 }  // namespace wavecrest

@@ -6,21 +6,27 @@
 #include <cmath>
 #include <limits>
 #include <ranges>
+#include <regex>
 
+#include "bench/report/assets.h"
 #include "bench/report/html_text.h"
 
 namespace wavecrest {
 namespace {
 
-// Small in user units, so that text stays readable when a phone shows the plot 350 pixels wide.
-constexpr double kWidth = 520, kHeight = 340;
-constexpr double kLeft = 52, kRight = kWidth - 52, kTop = 12, kBottom = kHeight - 46;
+// Small in user units, so that text stays readable when a phone shows the plot 330 pixels wide.
+constexpr double kWidth = 460, kHeight = 320;
+constexpr double kLeft = 50, kTop = 12, kBottom = kHeight - 46;
+constexpr double kMarkRoom = 18;                            // between the plot and the text of an end label
+constexpr double kLeastMargin = 44, kGreatestMargin = 190;  // at the right
 constexpr double kLabelSpacing = 15;
-constexpr size_t kDensePoints = 40;  // from here on marks shrink to dots
+constexpr double kTitleHeight = 26;  // above the plot in a file
+constexpr size_t kDensePoints = 24;  // from here on marks shrink to dots
 
 struct Frame {
   Axis x, y;
-  double pixelX(double value) const { return kLeft + x.position(value) * (kRight - kLeft); }
+  double right;
+  double pixelX(double value) const { return kLeft + x.position(value) * (right - kLeft); }
   double pixelY(double value) const { return kBottom - y.position(value) * (kBottom - kTop); }
 };
 
@@ -43,6 +49,13 @@ std::vector<PlotCurve> showableCurves(const Plot& plot) {
   return curves;
 }
 
+// What an end label needs at most: bold letters of a wide font, at the size that phones get (assets/report.css).
+double labelWidth(const std::string& label) {
+  double width = 0;
+  for (const char letter : label) width += letter == 'm' || letter == 'w' ? 15 : 10.5;
+  return width;
+}
+
 Frame frameAround(const Plot& plot, const std::vector<PlotCurve>& curves) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double left = kInfinity, right = -kInfinity, low = kInfinity, high = -kInfinity;
@@ -54,11 +67,16 @@ Frame frameAround(const Plot& plot, const std::vector<PlotCurve>& curves) {
       high = std::max({high, point.y, point.high});
     }
   }
-  if (plot.floor && showable(plot.yScale, *plot.floor)) {
-    low = std::min(low, *plot.floor);
-    high = std::max(high, *plot.floor);
+  if (plot.floor && showable(plot.yScale, plot.floor->y)) {
+    low = std::min(low, plot.floor->y);
+    high = std::max(high, plot.floor->y);
   }
-  return {Axis(plot.xScale, left, right), Axis(plot.yScale, low, high)};
+  // The right margin takes the longest label.
+  double longest = 0;
+  for (const PlotCurve& curve : curves) longest = std::max(longest, labelWidth(curve.label));
+  const double margin = kMarkRoom + longest;
+  return {Axis(plot.xScale, left, right), Axis(plot.yScale, low, high),
+          kWidth - std::clamp(margin, kLeastMargin, kGreatestMargin)};
 }
 
 void drawGrid(std::string& svg, const Plot& plot, const Frame& frame) {
@@ -73,23 +91,27 @@ void drawGrid(std::string& svg, const Plot& plot, const Frame& frame) {
   }
   for (const AxisTick& tick : frame.y.ticks()) {
     const double y = frame.pixelY(tick.value);
-    append(svg, "<line class=\"{}\" x1=\"{}\" y1=\"{:.1f}\" x2=\"{}\" y2=\"{:.1f}\"/>",
-           tick.label.empty() ? "minor" : "major", kLeft, y, kRight, y);
+    append(svg, "<line class=\"{}\" x1=\"{}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>",
+           tick.label.empty() ? "minor" : "major", kLeft, y, frame.right, y);
     if (!tick.label.empty()) {
       append(svg, "<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", kLeft - 7, y + 4,
              tick.label);
     }
   }
-  append(svg, "<path class=\"axis\" d=\"M{} {}V{}H{}\"/>", kLeft, kTop, kBottom, kRight);
-  append(svg, "<text class=\"axis-label\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", 0.5 * (kLeft + kRight),
-         kHeight - 8, escapeHtml(plot.xLabel));
+  append(svg, "<path class=\"axis\" d=\"M{} {}V{}H{:.1f}\"/>", kLeft, kTop, kBottom, frame.right);
+  append(svg, "<text class=\"axis-label\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+         0.5 * (kLeft + frame.right), kHeight - 8, escapeHtml(plot.xLabel));
 }
 
-void drawFloor(std::string& svg, const Plot& plot, const Frame& frame) {
-  if (!plot.floor || !showable(plot.yScale, *plot.floor)) return;
-  const double y = frame.pixelY(*plot.floor);
-  append(svg, "<line class=\"floor\" x1=\"{}\" y1=\"{:.1f}\" x2=\"{}\" y2=\"{:.1f}\"/>", kLeft, y, kRight, y);
-  append(svg, "<text class=\"note\" x=\"{}\" y=\"{:.1f}\">{}</text>", kLeft + 6, y - 5, escapeHtml(plot.floorLabel));
+void drawLine(std::string& svg, const PlotLine& line, const char* cssClass, AxisScale scale, const Frame& frame) {
+  if (!showable(scale, line.y) || frame.y.position(line.y) < 0 || frame.y.position(line.y) > 1) return;
+  const double y = frame.pixelY(line.y);
+  append(svg, "<line class=\"{}\" x1=\"{}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", cssClass, kLeft, y,
+         frame.right, y);
+  if (line.label.empty()) return;
+  // Above the line, or below it where there is no room.
+  append(svg, "<text class=\"note\" x=\"{}\" y=\"{:.1f}\">{}</text>", kLeft + 6, y - kTop < 18 ? y + 14 : y - 5,
+         escapeHtml(line.label));
 }
 
 // A straight line on two logarithmic axes, a little above the curve that ends lowest, cut off at the lower edge.
@@ -189,31 +211,59 @@ void drawEndLabels(std::string& svg, const std::vector<PlotCurve>& curves, const
   }
   for (const Label& label : labels) {
     append(svg, "<g class=\"curve {}\"><path class=\"mark\" d=\"{}\"/>", label.curve->cssClass,
-           markPath(label.curve->mark, kRight + 10, label.y, 3.2));
-    append(svg, "<text class=\"end-label\" x=\"{}\" y=\"{:.1f}\">{}</text></g>", kRight + 18, label.y + 4,
-           escapeHtml(label.curve->label));
+           markPath(label.curve->mark, frame.right + 10, label.y, 3.2));
+    append(svg, "<text class=\"end-label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text></g>", frame.right + kMarkRoom,
+           label.y + 4, escapeHtml(label.curve->label));
   }
+}
+
+// A style sheet with the values of its first block in place of its variables.
+std::string withoutVariables(std::string_view css) {
+  std::string result(css);
+  const std::string block = result.substr(0, result.find('}'));
+  const std::regex declaration("(--\\w+): ([^;]+);");
+  for (std::sregex_iterator match(block.begin(), block.end(), declaration), end; match != end; ++match) {
+    const std::string use = fmt::format("var({})", (*match)[1].str());
+    for (size_t at = result.find(use); at != std::string::npos; at = result.find(use, at))
+      result.replace(at, use.size(), (*match)[2].str());
+  }
+  return result.substr(result.find('}') + 1);
+}
+
+// Everything inside the <svg> element.
+std::string drawPlot(const Plot& plot) {
+  const std::vector<PlotCurve> curves = showableCurves(plot);
+  std::string svg;
+  if (curves.empty()) {
+    append(svg, "<text class=\"note\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">no data that these axes can show</text>",
+           kWidth / 2, kHeight / 2);
+    return svg;
+  }
+  const Frame frame = frameAround(plot, curves);
+  drawGrid(svg, plot, frame);
+  if (plot.target) drawLine(svg, {*plot.target, ""}, "target", plot.yScale, frame);
+  if (plot.floor) drawLine(svg, *plot.floor, "floor", plot.yScale, frame);
+  for (const PlotCurve& curve : curves) drawCurve(svg, curve, frame);
+  drawGuide(svg, plot, frame, curves);
+  drawEndLabels(svg, curves, frame);
+  return svg;
 }
 
 }  // namespace
 
 std::string renderPlot(const Plot& plot) {
-  const std::vector<PlotCurve> curves = showableCurves(plot);
-  std::string svg = fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth,
-                                kHeight, escapeHtml(plot.title));
-  if (curves.empty()) {
-    append(svg, "<text class=\"note\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">no data that these axes can show</text>",
-           kWidth / 2, kHeight / 2);
-  } else {
-    const Frame frame = frameAround(plot, curves);
-    drawGrid(svg, plot, frame);
-    drawGuide(svg, plot, frame, curves);
-    drawFloor(svg, plot, frame);
-    for (const PlotCurve& curve : curves) drawCurve(svg, curve, frame);
-    drawEndLabels(svg, curves, frame);
-  }
-  svg += "</svg>\n";
-  return svg;
+  return fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">{}</svg>\n", kWidth,
+                     kHeight, escapeHtml(plot.title), drawPlot(plot));
+}
+
+std::string renderPlotFile(const Plot& plot) {
+  const double height = kHeight + kTitleHeight;
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" viewBox=\"0 {} {} {}\" width=\"{}\" height=\"{}\">\n"
+      "<title>{}</title>\n<style>\n{}svg {{ background: #fff; font-family: sans-serif; }}\n</style>\n"
+      "<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n{}</svg>\n",
+      -kTitleHeight, kWidth, height, 1.5 * kWidth, 1.5 * height, escapeHtml(plot.title), withoutVariables(kPlotCss),
+      kLeft, -8, escapeHtml(plot.title), drawPlot(plot));
 }
 
 }  // namespace wavecrest

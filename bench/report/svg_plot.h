@@ -1,5 +1,5 @@
 // A line plot as SVG text: curves with marks, bands and end labels over a grid. Carries class names and no colours: the
-// page's style sheet decides those, for light, dark and print alike.
+// style sheet assets/plot.css decides those, for light, dark and print alike.
 #pragma once
 
 #include <optional>
@@ -24,19 +24,28 @@ struct PlotCurve {
   std::vector<PlotPoint> points;  ///< in order of x, at least one
 };
 
+/// A horizontal line across the plot.
+struct PlotLine {
+  double y = 0;
+  std::string label;
+};
+
 struct Plot {
   std::string title;  ///< for screen readers
   std::string xLabel;
   AxisScale xScale = AxisScale::kLogarithmic, yScale = AxisScale::kLogarithmic;
   std::vector<PlotCurve> curves;
-  std::optional<double> floor;  ///< horizontal line with the label floorLabel
-  std::string floorLabel;
+  std::optional<PlotLine> floor;     ///< what cannot be passed; the axis is extended to show it
+  std::optional<double> target;      ///< line at what is to be reached, where it lies within the curves' range
   std::optional<double> guideSlope;  ///< dashed line y ~ x^slope beside the lowest curve; logarithmic axes only
   std::string guideLabel;
 };
 
-/// The `<svg>` element. Points that an axis cannot show (non-finite, or not positive on a logarithmic axis) are left
-/// out; a plot without any point says so instead of drawing axes.
+/// The `<svg>` element, for a page that has the style sheet. Points that an axis cannot show (non-finite, or not
+/// positive on a logarithmic axis) are left out; a plot without any point says so instead of drawing axes.
 std::string renderPlot(const Plot& plot);
+
+/// The plot as an SVG file of its own, with its title above it and the style sheet inside.
+std::string renderPlotFile(const Plot& plot);
 
 }  // namespace wavecrest

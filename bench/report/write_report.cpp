@@ -3,16 +3,36 @@
 #include <string>
 
 #include "bench/report/collect.h"
+#include "bench/report/csv.h"
 #include "bench/report/html_page.h"
+#include "bench/report/plot_files.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
+namespace {
 
-std::filesystem::path writeReport(const std::filesystem::path& folder) {
-  const std::string page = renderReport(collectReport(folder));
-  std::filesystem::path path = folder / "report.html";
-  writeFileAtomically(path.string(), {reinterpret_cast<const unsigned char*>(page.data()), page.size()});
-  return path;
+namespace fs = std::filesystem;
+
+void write(const fs::path& path, const std::string& text) {
+  writeFileAtomically(path.string(), {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+}  // namespace
+
+std::vector<fs::path> writeReport(std::span<const fs::path> paths, const ReportFiles& files) {
+  const ConvergenceReport report = collectReport(paths);
+  const fs::path folder = fs::is_directory(paths[0]) ? paths[0] : paths[0].parent_path();
+  std::vector<fs::path> written{folder / "report.html"};
+  write(written[0], renderReport(report));
+  if (files.csv) {
+    written.push_back(folder / "measurements.csv");
+    write(written.back(), measurementsAsCsv(report));
+  }
+  if (files.plots) {
+    const std::vector<fs::path> plots = writePlotFiles(report, folder / "plots");
+    written.insert(written.end(), plots.begin(), plots.end());
+  }
+  return written;
 }
 
 }  // namespace wavecrest

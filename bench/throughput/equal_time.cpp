@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bench/film_image.h"
 #include "metrics/rmse.h"
 
 namespace wavecrest {
@@ -9,18 +10,13 @@ namespace {
 
 constexpr uint64_t kReferenceSeeds[] = {0x9e3779b97f4a7c15u, 0xbf58476d1ce4e5b9u};  // unlike any a user picks
 
-Image imageOf(const Session& session) {
-  const FilmArea& area = session.film().area();
-  return {.width = area.width, .height = area.height, .channels = 3, .pixels = session.film().resolve()};
-}
-
 ErrorAtTime errorNow(const Session& session, const NoisyReference& reference) {
   const RenderStatistics statistics = session.statistics();
   ErrorAtTime point{.seconds = statistics.renderSeconds,
                     .cpuSeconds = statistics.cpuSeconds,
                     .samplesPerPixel = static_cast<double>(statistics.paths) /
                                        static_cast<double>(session.film().area().pixels.size())};
-  point.relmse = std::max(relmse(reference.image, imageOf(session)).relmse - reference.noise, 0.0);
+  point.relmse = std::max(relmse(reference.image, filmImage(session)).relmse - reference.noise, 0.0);
   if (point.relmse > 0) point.efficiency = 1 / (point.relmse * point.cpuSeconds);
   return point;
 }
@@ -35,7 +31,7 @@ NoisyReference renderReference(const Scene& scene, const RenderSettings& setting
     own.seed = kReferenceSeeds[i];
     const auto session = Session::create(scene, own);
     session->renderUntil(std::nullopt, seconds / 2);
-    halves[i] = imageOf(*session);
+    halves[i] = filmImage(*session);
   }
   NoisyReference reference{.image = halves[0], .noise = 0, .seconds = seconds};
   for (size_t i = 0; i < reference.image.pixels.size(); ++i) {

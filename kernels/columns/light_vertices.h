@@ -21,22 +21,24 @@ struct LightVertices : Columns<LightVertices<S>> {
   Column<float> uvU, uvV;  // dropped where the scene has no textures
   Column<uint32_t> primitive;
   Column<uint32_t> depth;  // edges from the light
+  Column<uint32_t> lane;   // of the path, in its wave
   auto all() {
     return std::tie(positionX, positionY, positionZ, fixX, fixY, fixZ, normalX, normalY, normalZ, shadingX, shadingY,
-                    shadingZ, offset, throughputR, throughputG, throughputB, dVCM, dVC, dVM, uvU, uvV, primitive,
-                    depth);
+                    shadingZ, offset, throughputR, throughputG, throughputB, dVCM, dVC, dVM, uvU, uvV, primitive, depth,
+                    lane);
   }
 };
 
-// The light vertices of one wave, in the order (depth, lane), and where each lane's are.
+// The light vertices of one wave, in the order (depth, lane).
 //
 // Grows between stages to what a wave needs and keeps that memory, so a steady state allocates nothing.
+// Path i of an iteration is lane i % lanes of store i / lanes.
 template <class S>
 class LightStore {
  public:
   LightVertices<S> vertices;
 
-  LightStore(size_t lanes, const ColumnNeeds& needs) : lanes_(lanes) {
+  LightStore(size_t lanes, const ColumnNeeds& needs) : lanes_(lanes), rayOfLane_(lanes) {
     if (!needs.shadingNormals) {
       for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ}) column->drop();
     }
@@ -50,22 +52,56 @@ class LightStore {
   void clear() {
     vertices.size = 0;
     depths_ = 0;
+    roomUsed_ = 0;
   }
 
   // Begins the vertices of the next depth (1, 2, ...), with room for `count` of them.
   void beginDepth(size_t count) {
     ++depths_;
-    if (partners_.size() < depths_ * lanes_) partners_.resize(depths_ * lanes_);
-    std::fill_n(partners_.begin() + static_cast<std::ptrdiff_t>((depths_ - 1) * lanes_), lanes_, kNoIndex);
-    if (vertices.size + count > vertices.capacity()) grow(std::max(vertices.size + count, 2 * vertices.capacity()));
+    if (firstOfDepth_.size() <= depths_) firstOfDepth_.resize(depths_ + 8);
+    firstOfDepth_[depths_] = vertices.size;
+    const size_t needed = vertices.size + count;
+    roomUsed_ = std::max(roomUsed_, needed);
+    if (needed > vertices.capacity()) grow(std::max(needed, vertices.capacity() + vertices.capacity() / 4));
+  }
+
+  // Room for so many vertices, as a plan of memory foresees them.
+  void reserve(size_t capacity) {
+    if (capacity > vertices.capacity()) grow(capacity);
+  }
+
+  // Becomes the vertices of paths first, first + 1, ... of an iteration, `used` of them, counted around after the last
+  // of its lightPaths: what camera paths are joined with where there are not as many of them.
+  template <class Stores>
+  void collect(const Stores& stores, size_t lightPaths, size_t first, size_t used) {
+    clear();
+    bool deeper = true;
+    for (uint32_t depth = 1; deeper; ++depth) {
+      deeper = false;
+      beginDepth(used);
+      for (size_t lane = 0; lane < used;) {
+        // The paths up to the end of a store, or of the iteration.
+        const size_t path = (first + lane) % lightPaths;
+        const size_t count = std::min({used - lane, lightPaths - path, lanes_ - path % lanes_});
+        deeper |= copyLanes(*stores[path / lanes_], depth, path % lanes_, count, lane);
+        lane += count;
+      }
+    }
   }
 
   uint32_t depths() const { return static_cast<uint32_t>(depths_); }
-  // Index of each lane's vertex at this depth (1 .. depths()), or kNoIndex.
-  const uint32_t* partners(uint32_t depth) const { return partners_.data() + (depth - 1) * lanes_; }
-  uint32_t* partners(uint32_t depth) { return partners_.data() + (depth - 1) * lanes_; }
+  // The vertices of a depth (1 .. depths()) are those from firstOf(depth) up to firstOf(depth + 1), by lane.
+  size_t firstOf(uint32_t depth) const { return depth > depths_ ? vertices.size : firstOfDepth_[depth]; }
+  // Scratch of connectVertices, one entry per lane: where the camera path of the lane is now.
+  uint32_t* rayOfLane() { return rayOfLane_.data(); }
+  size_t lanes() const { return lanes_; }
 
-  size_t bytes() const { return vertices.bytes(vertices.capacity()) + partners_.size() * sizeof(uint32_t); }
+  // The capacity that the depths begun since clear() have asked for.
+  size_t roomUsed() const { return roomUsed_; }
+
+  size_t bytes() const { return bytesFor(vertices.capacity()); }
+  // The same for a store of this capacity.
+  size_t bytesFor(size_t capacity) const { return vertices.bytes(capacity) + lanes_ * sizeof(uint32_t); }
 
  private:
   void grow(size_t capacity) {
@@ -73,24 +109,47 @@ class LightStore {
     Arena arena(larger.bytes(capacity));
     const size_t size = vertices.size;
     larger.bind(arena, capacity);
-    copyColumns(vertices.all(), larger.all(), size, std::make_index_sequence<std::tuple_size_v<Tuple>>());
+    copyColumns(vertices.all(), larger.all(), 0, 0, size, Indices());
     vertices = larger;
     vertices.size = size;
     arena_ = std::move(arena);
   }
 
+  // Appends what the lanes [begin, begin + count) of another store have at a depth, as lanes from `target` on; whether
+  // any path there is that long.
+  bool copyLanes(const LightStore& from, uint32_t depth, size_t begin, size_t count, size_t target) {
+    if (depth > from.depths()) return false;
+    const uint32_t* const lane = from.vertices.lane;
+    const auto place = [&](size_t first) {
+      return static_cast<size_t>(std::lower_bound(lane + from.firstOf(depth), lane + from.firstOf(depth + 1), first) -
+                                 lane);
+    };
+    const size_t source = place(begin), copied = place(begin + count) - source;
+    const size_t at = vertices.claim(copied);
+    LightVertices<S> origin = from.vertices;  // pointers only: all() has one form, for writing
+    copyColumns(origin.all(), vertices.all(), source, at, copied, Indices());
+    for (size_t i = at; i < at + copied; ++i) {
+      vertices.lane[i] = static_cast<uint32_t>(vertices.lane[i] - begin + target);
+    }
+    return true;
+  }
+
   using Tuple = decltype(std::declval<LightVertices<S>&>().all());
+  using Indices = std::make_index_sequence<std::tuple_size_v<Tuple>>;
+  // Items [source, source + count) of one set of columns to [target, ...) of another.
   template <size_t... kIndex>
-  static void copyColumns(Tuple from, Tuple to, size_t size, std::index_sequence<kIndex...>) {
-    const auto copy = [size](auto& source, auto& target) {
-      if (source.needed() && size != 0) std::memcpy(&target[0], &source[0], size * sizeof(source[0]));
+  static void copyColumns(Tuple from, Tuple to, size_t source, size_t target, size_t count,
+                          std::index_sequence<kIndex...>) {
+    const auto copy = [=](auto& a, auto& b) {
+      if (a.needed() && count != 0) std::memcpy(&b[target], &a[source], count * sizeof(a[0]));
     };
     (copy(std::get<kIndex>(from), std::get<kIndex>(to)), ...);
   }
 
   size_t lanes_;
-  size_t depths_ = 0;
-  std::vector<uint32_t> partners_;
+  size_t depths_ = 0, roomUsed_ = 0;
+  std::vector<size_t> firstOfDepth_;  // by depth
+  std::vector<uint32_t> rayOfLane_;
   Arena arena_;
 };
 

@@ -3,7 +3,8 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: ShadowRays [<= n] whose targets are
 // pixels of the splat sink, in lane order. METHODS 4.3, 5.6. The contribution leaves out 1/N_L: the film divides by the
-// number of light paths, as the average over passes does.
+// number of light paths, as the average over passes does. Densities are per pixel whatever the reconstruction filter,
+// so weights do not depend on it.
 #include "kernels/generate/camera_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/shading_lanes.h"
@@ -27,10 +28,20 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
     const Mask active = firstLanes(count - i);
     auto shading = loadShading<P, kFeatures>(scene, wave, active, i);
     shading.bsdf.walk = Walk::light;
-    const auto view = project<P>(scene.camera, shading.position);
+    Uniform4 u{};  // place on the lens, choice of the pixel
+    if constexpr (has(kFeatures, kLens)) {
+      const UInt lane = select(active, load(paths.lane, i), UInt(0u));
+      u = draw(context, pathOf(context, wave, lane), Block::light);
+    }
+    const auto view = project<P, kFeatures>(scene.camera, shading.position, u);
+    SplatPixel<Real> column{floor(view.rasterX), Real(1)}, row{floor(view.rasterY), Real(1)};
+    if constexpr (has(kFeatures, kLens)) {
+      column = splatPixel(scene.camera, view.rasterX, to<Real>(u.c));
+      row = splatPixel(scene.camera, view.rasterY, to<Real>(u.d));
+    }
     // Relative to the rendered rectangle; outside of it nothing is seen.
-    const Real x = floor(view.rasterX) - Real(static_cast<float>(splats.x0)),
-               y = floor(view.rasterY) - Real(static_cast<float>(splats.y0));
+    const Real x = column.pixel - Real(static_cast<float>(splats.x0)),
+               y = row.pixel - Real(static_cast<float>(splats.y0));
     const Mask onFilm = view.inFront & (x >= Real(0)) & (y >= Real(0)) & (x < Real(static_cast<float>(splats.width))) &
                         (y < Real(static_cast<float>(splats.height)));
     if (none(active & onFilm)) continue;
@@ -45,7 +56,8 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
     const Real wLight = pdfA * Real(context.mis.camN > 0 ? 1 / context.mis.camN : 0.0) *
                         behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
     // f c(omega_l) / n(omega_l): omega_l is fix, the light's side.
-    const Real scale = pdfA * abs(shading.fix.z) * reciprocal<P>(max(fixCosine, Real(1e-6f)) * (Real(1) + wLight));
+    Real scale = pdfA * abs(shading.fix.z) * reciprocal<P>(max(fixCosine, Real(1e-6f)) * (Real(1) + wLight));
+    if constexpr (has(kFeatures, kLens)) scale = scale * (column.weight * row.weight);
     const Vec3<Real> contribution =
         loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * bsdf.f * scale;
     const Mask lit = active & onFilm & (fixCosine > Real(1e-6f)) & shading.sidesAgree(view.direction, gen) &

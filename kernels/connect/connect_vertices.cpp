@@ -4,7 +4,10 @@
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the light store of the wave's light paths. out: ShadowRays
 // [<= n], in lane order. METHODS 5.6 (40)-(41).
 //
-// Deep light vertices are rare, so the pairs are first packed: 16 lanes then work on 16 pairs, whatever the depth.
+// Deep light vertices are rare, so the pairs are first packed: 16 lanes then work on 16 pairs, whatever the depth. The
+// packing begins at the light vertices, which get fewer from depth to depth. Depths are called in order from 1.
+#include <algorithm>
+
 #include "kernels/shade/light_vertex_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -12,19 +15,27 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Packs (camera vertex, light vertex) pairs into the first two integer columns that nothing else uses at this stage.
+// Where each lane's camera path is in the wave; kNoIndex where it has ended. Holds for all depths of light vertices.
 template <class S>
-WAVECREST_INLINE size_t packPairs(const StageContext<S>& context, Wave<S>& wave, uint32_t* camera, uint32_t* light) {
-  const uint32_t* const partners = context.light->partners(context.lightDepth);
-  const size_t count = wave.rays.size;
+WAVECREST_INLINE void placeLanes(const StageContext<S>& context, const Wave<S>& wave) {
+  uint32_t* const rayOfLane = context.light->rayOfLane();
+  const uint32_t* const lane = wave.paths.lane;
+  std::fill_n(rayOfLane, wave.pathCount, kNoIndex);
+  for (uint32_t i = 0; i < wave.rays.size; ++i) rayOfLane[lane[i]] = i;
+}
+
+// The pairs of light vertices of this depth and the camera vertices of their lanes, in the order of lanes.
+template <class S>
+WAVECREST_INLINE size_t packPairs(const StageContext<S>& context, Wave<S>& wave) {
+  const size_t first = context.light->firstOf(context.lightDepth), end = context.light->firstOf(context.lightDepth + 1);
   size_t out = 0;
-  for (size_t i = 0; i < count; i += kLanes) {
-    const Mask active = firstLanes(count - i);
-    const UInt lane = select(active, load(wave.paths.lane, i), UInt(0u));
-    const UInt partner = gather(partners, lane);
-    const Mask paired = andNot(active, partner == UInt(kNoIndex));
-    storeUnaligned(compress(laneIndex(static_cast<uint32_t>(i)), paired), camera + out);
-    storeUnaligned(compress(partner, paired), light + out);
+  for (size_t i = first; i < end; i += kLanes) {
+    const Mask active = firstLanes(end - i);
+    const UInt lane = select(active, loadUnaligned(context.light->vertices.lane + i), UInt(0u));
+    const UInt camera = gather(static_cast<const uint32_t*>(context.light->rayOfLane()), lane);
+    const Mask paired = andNot(active, camera == UInt(kNoIndex));
+    append(camera, paired, wave.pairs.camera, out);
+    append(laneIndex(static_cast<uint32_t>(i)), paired, wave.pairs.light, out);
     out += countTrue(paired);
   }
   return out;
@@ -41,17 +52,16 @@ void connectVertices(const StageContext<typename P::Storage>& context, Wave<type
   shadow.size = 0;
   // k = len_L + 1 + len_C
   if (context.depth + context.lightDepth + 1 > context.limits.maxDepth) return;
-  uint32_t* const cameraIndex = wave.pairs.camera;
-  uint32_t* const lightIndex = wave.pairs.light;
-  const size_t count = packPairs(context, wave, cameraIndex, lightIndex);
+  if (context.lightDepth == 1) placeLanes(context, wave);
+  const size_t count = packPairs(context, wave);
   context.counters->connections += count;
   shadow.claim(count);
   size_t out = 0;
 
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
-    const UInt camera = select(active, load(cameraIndex + i), UInt(0u));
-    const UInt light = select(active, load(lightIndex + i), UInt(0u));
+    const UInt camera = select(active, load(wave.pairs.camera, i), UInt(0u));
+    const UInt light = select(active, load(wave.pairs.light, i), UInt(0u));
     const auto z = gatherShading<P, kFeatures>(scene, wave, camera);
     const auto y = gatherLightShading<P, kFeatures>(scene, vertices, light);
 

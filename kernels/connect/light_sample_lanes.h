@@ -33,15 +33,12 @@ namespace {
 
 // The part of a sphere light that the receiver sees: uniform in the cone it fills, uniform over its area from inside.
 template <class P>
-WAVECREST_INLINE void sampleSphere(const RecordLanes<LightRecord<typename P::Storage>>& at,
-                                   const LightRecord<typename P::Storage>& fields, Vec3<typename P::Real> receiver,
+WAVECREST_INLINE void sampleSphere(const LightLanes<typename P::Real>& light, Vec3<typename P::Real> receiver,
                                    typename P::Real u, typename P::Real v, Vec3<typename P::Real>& point,
                                    Vec3<typename P::Real>& normal, typename P::Real& coneHeight, Mask& outside) {
   using Real = typename P::Real;
-  const Vec3<Real> center = at(fields.p0);
-  const Real radius = at(fields.radius);
-  const Real r2 = radius * radius;
-  const Vec3<Real> toCenter = center - receiver;
+  const Real r2 = light.radius * light.radius;
+  const Vec3<Real> toCenter = light.p0 - receiver;
   const Real d2 = length2(toCenter);
   outside = d2 > r2 * Real(kInsideSphere);
   coneHeight = sphereConeHeight(r2, d2);
@@ -51,10 +48,10 @@ WAVECREST_INLINE void sampleSphere(const RecordLanes<LightRecord<typename P::Sto
   const Vec3<Real> direction = frame.toWorld(local);
   const Real cosine = local.z, sin2 = local.x * local.x + local.y * local.y;
   const Real near = distance * cosine - sqrt(max(r2 - d2 * sin2, Real(0)));
-  const Vec3<Real> fromCone = normalize(mulAdd(direction, near, receiver) - center);
+  const Vec3<Real> fromCone = normalize(mulAdd(direction, near, receiver) - light.p0);
   const Vec3<Real> fromArea = uniformSphere<Real>(u, v);
   normal = select(outside, fromCone, fromArea);
-  point = mulAdd(normal, radius, center);
+  point = mulAdd(normal, light.radius, light.p0);
 }
 
 }  // namespace
@@ -62,29 +59,28 @@ WAVECREST_INLINE void sampleSphere(const RecordLanes<LightRecord<typename P::Sto
 // Spot, directional and environment lights, in the lanes that have them.
 template <class P>
 WAVECREST_INLINE void addRareLights(const SceneView<typename P::Storage>& scene,
-                                    const RecordLanes<LightRecord<typename P::Storage>>& at, UInt kind,
-                                    Vec3<typename P::Real> receiver, typename P::Real dist2, const Uniform4& more,
+                                    const LightLanes<typename P::Real>& light, Vec3<typename P::Real> receiver,
+                                    typename P::Real dist2, const Uniform4& more,
                                     LightSample<typename P::Real>& sample) {
   using Real = typename P::Real;
-  const auto& fields = *scene.lights;
   const Real discPdf(kInvPi / (scene.radius * scene.radius));
   const auto far = [&](Vec3<Real> direction) HWY_ATTR { return mulAdd(direction, Real(3 * scene.radius), receiver); };
 
-  const Mask spot = kind == lightKind(LightKind::spot);
+  const Mask spot = light.kind == lightKind(LightKind::spot);
   if (any(spot)) {
-    const Real cosTotal = at(fields.cosTotal);
-    const Real falloff = spotFalloff(-dot(sample.direction, at(fields.normal)), cosTotal, at(fields.cosFalloff));
+    const Real cosTotal = light.cosTotal;
+    const Real falloff = spotFalloff(-dot(sample.direction, light.normal), cosTotal, light.cosFalloff);
     sample.radiance = select(spot, sample.radiance * falloff, sample.radiance);
     sample.pdf = select(spot, dist2, sample.pdf);
     const Real conePdf = Real(kInvPi / 2) / max(Real(1) - cosTotal, Real(1e-9f));
     sample.emissionPdf = select(spot, conePdf, sample.emissionPdf);
-    sample.end = select(spot, at(fields.p0), sample.end);
+    sample.end = select(spot, light.p0, sample.end);
     sample.delta = sample.delta | spot;
     sample.valid = select(spot, falloff > Real(0), sample.valid);
   }
-  const Mask directional = kind == lightKind(LightKind::directional);
+  const Mask directional = light.kind == lightKind(LightKind::directional);
   if (any(directional)) {
-    const Vec3<Real> direction = -at(fields.normal);
+    const Vec3<Real> direction = -light.normal;
     sample.direction = select(directional, direction, sample.direction);
     sample.pdf = select(directional, Real(1), sample.pdf);
     sample.emissionPdf = select(directional, discPdf, sample.emissionPdf);
@@ -92,7 +88,7 @@ WAVECREST_INLINE void addRareLights(const SceneView<typename P::Storage>& scene,
     sample.delta = sample.delta | directional;
     sample.valid = sample.valid | directional;
   }
-  const Mask map = kind == lightKind(LightKind::envmap);
+  const Mask map = light.kind == lightKind(LightKind::envmap);
   if (any(map)) {
     const Vec3<Real> direction = sampleMap<Real>(scene.environment, more);
     const MapPoint<Real> point = mapPoint(scene.environment, direction);
@@ -107,38 +103,36 @@ WAVECREST_INLINE void addRareLights(const SceneView<typename P::Storage>& scene,
 }
 
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typename P::Storage>& scene, UInt light,
+WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typename P::Storage>& scene, UInt index,
                                                            Vec3<typename P::Real> receiver, const Uniform4& uniform,
                                                            [[maybe_unused]] const Uniform4& more) {
   using Real = typename P::Real;
-  const RecordLanes<LightRecord<typename P::Storage>> at(scene.lights, light);
-  const auto& fields = *scene.lights;
-  const UInt kind = at(fields.kind);
+  const LightLanes<Real> light = loadLight(scene, index);
   Real u = to<Real>(uniform.c), v = to<Real>(uniform.d);
   LightSample<Real> sample;
-  sample.radiance = at(fields.radiance);
-  const Real pick = at(fields.pick);
+  sample.radiance = light.radiance;
+  const Real pick = light.pick;
 
   // Quads and triangles: uniform over the area. A triangle folds the square's far half back.
-  const Mask triangle = kind == lightKind(LightKind::triangle);
+  const Mask triangle = light.kind == lightKind(LightKind::triangle);
   const Mask fold = triangle & (u + v > Real(1));
   u = select(fold, Real(1) - u, u);
   v = select(fold, Real(1) - v, v);
-  Vec3<Real> point = mulAdd(at(fields.e1), u, mulAdd(at(fields.e2), v, at(fields.p0)));
-  Vec3<Real> normal = at(fields.normal);
-  Real pdfA = at(fields.inverseArea);
+  Vec3<Real> point = mulAdd(light.e1, u, mulAdd(light.e2, v, light.p0));
+  Vec3<Real> normal = light.normal;
+  Real pdfA = light.inverseArea;
 
   Mask cone = noLanes();
   Real coneHeight(1);
   if constexpr (has(kFeatures, kCurvedShapes)) {
-    const Mask sphere = kind == lightKind(LightKind::sphere);
+    const Mask sphere = light.kind == lightKind(LightKind::sphere);
     if (any(sphere)) {
       Vec3<Real> spherePoint, sphereNormal;
-      sampleSphere<P>(at, fields, receiver, to<Real>(uniform.c), to<Real>(uniform.d), spherePoint, sphereNormal,
-                      coneHeight, cone);
+      sampleSphere<P>(light, receiver, to<Real>(uniform.c), to<Real>(uniform.d), spherePoint, sphereNormal, coneHeight,
+                      cone);
       cone = cone & sphere;
       point = select(sphere, spherePoint, point);
-      normal = select(sphere, sphereNormal * at(fields.e1).y, normal);  // inward where the sphere is turned inside out
+      normal = select(sphere, sphereNormal * light.e1.y, normal);  // inward where the sphere is turned inside out
     }
   }
 
@@ -151,12 +145,12 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   sample.valid = n0 > Real(1e-6f);
   sample.emissionPdf = pdfA * Real(kInvPi);  // cosine-distributed around a uniform point
   sample.delta = noLanes();
-  sample.end = mulAdd(normal, at(fields.offset), point);
+  sample.end = mulAdd(normal, light.offset, point);
   if constexpr (has(kFeatures, kCurvedShapes)) {
     sample.pdf = select(cone, Real(kInvPi / 2) * reciprocal<P>(coneHeight), sample.pdf);
   }
 
-  const Mask pointLike = kind == lightKind(LightKind::point);
+  const Mask pointLike = light.kind == lightKind(LightKind::point);
   if (any(pointLike)) {  // d^2 turns intensity into irradiance
     sample.pdf = select(pointLike, dist2, sample.pdf);
     sample.delta = pointLike;
@@ -164,7 +158,7 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
     sample.valid = sample.valid | pointLike;
     sample.end = select(pointLike, point, sample.end);
   }
-  const Mask constant = kind == lightKind(LightKind::constant);
+  const Mask constant = light.kind == lightKind(LightKind::constant);
   if (any(constant)) {
     const Vec3<Real> direction = uniformSphere<Real>(to<Real>(uniform.c), to<Real>(uniform.d));
     sample.direction = select(constant, direction, sample.direction);
@@ -175,10 +169,10 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
     sample.emissionPdf = select(constant, Real(emission), sample.emissionPdf);
   }
   if constexpr (has(kFeatures, kTextures)) {
-    sample.radiance = sample.radiance * to<Real>(textureFactor(scene.textures, scene.texels, at(fields.texture),
-                                                               to<Float>(u), to<Float>(v)));
+    sample.radiance = sample.radiance *
+                      to<Real>(textureFactor(scene.textures, scene.texels, light.texture, to<Float>(u), to<Float>(v)));
   }
-  if constexpr (has(kFeatures, kRareLights)) addRareLights<P>(scene, at, kind, receiver, dist2, more, sample);
+  if constexpr (has(kFeatures, kRareLights)) addRareLights<P>(scene, light, receiver, dist2, more, sample);
   sample.pdf = sample.pdf * pick;
   sample.emissionPdf = sample.emissionPdf * pick;
   return sample;

@@ -17,7 +17,6 @@ void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<t
   const auto& surfaces = wave.surfaces;
   const auto& paths = wave.paths;
   auto& vertices = context.light->vertices;
-  uint32_t* const partners = context.light->partners(context.depth);
   const size_t count = rays.size;
   size_t out = vertices.size;
 
@@ -53,12 +52,8 @@ void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<t
     append(mis.dVM, joinable, vertices.dVM, out);
     append(primitive, joinable, vertices.primitive, out);
     append(UInt(context.depth), joinable, vertices.depth, out);
-
-    HWY_ALIGN uint32_t lanes[kLanes];
-    const size_t stored = countTrue(joinable);
-    store(compress(load(paths.lane, i), joinable), lanes);
-    for (size_t k = 0; k < stored; ++k) partners[lanes[k]] = static_cast<uint32_t>(out + k);
-    out += stored;
+    append(load(paths.lane, i), joinable, vertices.lane, out);
+    out += countTrue(joinable);
   }
   context.counters->lightVertices += out - vertices.size;
   vertices.claim(out - vertices.size);

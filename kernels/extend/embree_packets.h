@@ -31,11 +31,15 @@ WAVECREST_PACKET(8)
 WAVECREST_PACKET(16)
 #undef WAVECREST_PACKET
 
-// Embree 3 takes a context before the rays, Embree 4 optional arguments behind them.
+// Embree 3 takes a context before the rays, Embree 4 optional arguments behind them. coherent: the rays of a packet stay
+// together, so that the hierarchy is walked once for all; rays that do not are slowed down by it.
 class Query {
  public:
 #if WAVECREST_EMBREE == 3
-  Query() { rtcInitIntersectContext(&context_); }
+  explicit Query(bool coherent = false) {
+    rtcInitIntersectContext(&context_);
+    if (coherent) context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  }
   template <class Function, class Rays>
   void operator()(Function function, const int* valid, RTCScene scene, Rays& rays) {
     function(valid, scene, &context_, &rays);
@@ -44,10 +48,20 @@ class Query {
  private:
   RTCIntersectContext context_;
 #else
-  template <class Function, class Rays>
-  void operator()(Function function, const int* valid, RTCScene scene, Rays& rays) {
-    function(valid, scene, &rays, nullptr);
+  explicit Query(bool coherent = false)
+      : flags_(coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT) {}
+  // Arguments: RTCIntersectArguments or RTCOccludedArguments, as the function takes.
+  template <class Rays, class Arguments>
+  void operator()(void (*function)(const int*, RTCScene, Rays*, Arguments*), const int* valid, RTCScene scene,
+                  Rays& rays) {
+    Arguments arguments{};
+    arguments.flags = flags_;
+    arguments.feature_mask = RTC_FEATURE_FLAG_ALL;
+    function(valid, scene, &rays, &arguments);
   }
+
+ private:
+  RTCRayQueryFlags flags_;
 #endif
 };
 

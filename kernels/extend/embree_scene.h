@@ -4,6 +4,7 @@
 // SceneView::primitives by one addition. Rays go in packets; Embree's stream interface is not used (gone in Embree 4).
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "kernels/stages.h"
@@ -24,8 +25,11 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
   void* handle() const { return scene_; }  // RTCScene
+  // Memory of the geometry and its hierarchy, as Embree counts it.
+  size_t bytes() const { return static_cast<size_t>(bytes_.load()); }
 
  private:
+  std::atomic<int64_t> bytes_{0};
   void* device_ = nullptr;  // RTCDevice
   void* scene_ = nullptr;
 };

@@ -34,8 +34,9 @@ WAVECREST_INLINE Closest closestHit(const SmallSceneView& scene, Vec3<Float> ori
   if (index > 0) {  // from [-1, 1] with margin to [0, 1], kept off the edge
     const UInt quad = min(best.primitive, UInt(index - 1));
     const RecordLanes<PlaneLimits> at(scene.limits, quad);
-    const auto uncentred = [](Float x, Float scale)
-                               HWY_ATTR { return min(max(mulAdd(x, scale, Float(0.5f)), Float(0)), Float(1)); };
+    const auto uncentred = [](Float x, Float scale) HWY_ATTR {
+      return min(max(mulAdd(x, scale, Float(0.5f)), Float(kInset)), Float(1 - kInset));
+    };
     best.u = uncentred(best.u, at(scene.limits->uScale));
     best.v = uncentred(best.v, at(scene.limits->vScale));
   }

@@ -33,6 +33,15 @@ WAVECREST_INLINE void filterOffset(const CameraView& camera, Real& x, Real& y) {
   }
 }
 
+// Uniform on the lens, relative to its centre.
+template <class Real>
+WAVECREST_INLINE Vec3<Real> lensOffset(const CameraView& camera, Real u, Real v) {
+  const Vec2<Real> lens = concentricDisc<Real>(u, v);
+  const double scaleU = camera.lensRadius * std::sqrt(camera.inverseDu2);
+  const double scaleV = camera.lensRadius * std::sqrt(camera.inverseDv2);
+  return broadcast<Real>(camera.du) * (lens.x * Real(scaleU)) + broadcast<Real>(camera.dv) * (lens.y * Real(scaleV));
+}
+
 // u.a, u.b: place in the pixel; u.c, u.d: place on the lens.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE RayLanes<typename P::Real> cameraRay(const CameraView& camera, const PixelLanes& pixel,
@@ -47,11 +56,7 @@ WAVECREST_INLINE RayLanes<typename P::Real> cameraRay(const CameraView& camera, 
   if constexpr (has(kFeatures, kLens)) {
     if (camera.lensRadius > 0) {
       // Through the point of the plane in focus that the ray by the lens's centre would meet.
-      const Vec2<Real> lens = concentricDisc<Real>(to<Real>(u.c), to<Real>(u.d));
-      const double scaleU = camera.lensRadius * std::sqrt(camera.inverseDu2);
-      const double scaleV = camera.lensRadius * std::sqrt(camera.inverseDv2);
-      const Vec3<Real> onLens =
-          broadcast<Real>(camera.du) * (lens.x * Real(scaleU)) + broadcast<Real>(camera.dv) * (lens.y * Real(scaleV));
+      const Vec3<Real> onLens = lensOffset(camera, to<Real>(u.c), to<Real>(u.d));
       const Vec3<Real> inFocus = onPlane * Real(camera.focusDistance / camera.planeDepth);
       return {origin + onLens, normalizeFast<P>(inFocus - onLens)};
     }
@@ -68,8 +73,9 @@ WAVECREST_INLINE typename P::Real cameraPdfW(const CameraView& camera, Vec3<type
   return Real(camera.pixelDistance * camera.pixelDistance) / (cosine * cosine * cosine);
 }
 
-// Where a point is seen: raster position, distance to the lens and density per area of the pixel's rays at the point,
-// without the cosine there.
+// Where a point is seen from a point of the lens: raster position, and density per area of the pixel's rays at the
+// point, without the cosine there. A thin lens's own density cancels between the lens point's and the filter's (METHODS
+// 4.2): the density is the pinhole's.
 template <class Real>
 struct Projection {
   Real rasterX, rasterY;
@@ -78,25 +84,72 @@ struct Projection {
   Real pdf;              // D^2 / (cos^3 d^2)
   Mask inFront;
 };
-template <class P>
-WAVECREST_INLINE Projection<typename P::Real> project(const CameraView& camera, Vec3<typename P::Real> point) {
+// u.a, u.b: place on the lens.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE Projection<typename P::Real> project(const CameraView& camera, Vec3<typename P::Real> point,
+                                                      [[maybe_unused]] const Uniform4& u) {
   using Real = typename P::Real;
   Projection<Real> out;
   out.lens = broadcast<Real>(camera.origin);
+  Vec3<Real> onLens{Real(0), Real(0), Real(0)};
+  // The image plane, corner + x du + y dv, is at planeDepth along the axis; where the ray meets the plane in focus,
+  // seen from the lens's centre, is the raster position. A pinhole has every plane in focus.
+  double focus = camera.planeDepth;
+  if constexpr (has(kFeatures, kLens)) {
+    if (camera.lensRadius > 0) {
+      onLens = lensOffset(camera, to<Real>(u.a), to<Real>(u.b));
+      out.lens = out.lens + onLens;
+      focus = camera.focusDistance;
+    }
+  }
   const Vec3<Real> fromLens = point - out.lens;
   const Real dist2 = length2(fromLens);
   const Real inverseDistance = reciprocalSqrt<P>(max(dist2, Real(1e-37f)));
   out.direction = fromLens * -inverseDistance;
   const Real along = dot(fromLens, broadcast<Real>(camera.axis));
   out.inFront = along > Real(0);
-  // The image plane: corner + x du + y dv, at depth planeDepth along the axis.
-  const Vec3<Real> onPlane = fromLens * (Real(camera.planeDepth) / along) - broadcast<Real>(camera.corner);
+  const Vec3<Real> inFocus = onLens + fromLens * (Real(focus) / along);
+  const Vec3<Real> onPlane = inFocus * Real(camera.planeDepth / focus) - broadcast<Real>(camera.corner);
   out.rasterX = dot(onPlane, broadcast<Real>(camera.du)) * Real(camera.inverseDu2);
   out.rasterY = dot(onPlane, broadcast<Real>(camera.dv)) * Real(camera.inverseDv2);
   const Real inverseCosine = reciprocal<P>(along * inverseDistance);
   out.pdf = Real(camera.pixelDistance * camera.pixelDistance) * inverseCosine * inverseCosine * inverseCosine *
             inverseDistance * inverseDistance;
   return out;
+}
+
+// The pixel that a splat goes to, along one axis, and what its value is multiplied by.
+//
+// A filter h spreads a contribution at raster r over all pixels j with h(r - centre_j) > 0. One of them is taken with
+// that probability, so a splat stays one value and one shadow ray; the weight is the sum over pixels, which differs
+// from 1 only as far as the filter's samples on the raster do. generate draws its rays from the same h.
+template <class Real>
+struct SplatPixel {
+  Real pixel, weight;
+};
+template <class Real>
+WAVECREST_INLINE SplatPixel<Real> splatPixel(const CameraView& camera, Real raster, Real u) {
+  const Real nearest = floor(raster), one(1);
+  if (camera.filter == FilterKind::box) return {nearest, one};
+  const Real fromNearest = raster - nearest - Real(0.5f);
+  const double inverseScale = 1 / camera.filterScale;
+  const auto filter = [&](int step) HWY_ATTR {
+    const Real x = (fromNearest - Real(static_cast<float>(step))) * Real(inverseScale);
+    if (camera.filter == FilterKind::tent) return max(one - abs(x), Real(0)) * Real(inverseScale);
+    return exp(x * x * Real(-0.5)) * Real(inverseScale / std::sqrt(2 * kPi));
+  };
+  // A Gaussian's rest beyond four and a half deviations is below 1e-5.
+  const double radius = camera.filter == FilterKind::tent ? camera.filterScale : 4.5 * camera.filterScale;
+  const int reach = static_cast<int>(radius + 0.5);
+  Real sum(0);
+  for (int step = -reach; step <= reach; ++step) sum = sum + filter(step);
+  const Real wanted = u * sum;
+  Real below(0), chosen(static_cast<float>(-reach));
+  for (int step = -reach; step < reach; ++step) {
+    below = below + filter(step);
+    chosen = select(below <= wanted, Real(static_cast<float>(step + 1)), chosen);
+  }
+  return {nearest + chosen, sum};
 }
 
 WAVECREST_SIMD_END

@@ -33,7 +33,7 @@ class Merger {
   void run() {
     const auto& grid = map_.grid;
     const uint32_t* const start = map_.bucketStart.data();
-    HWY_ALIGN uint32_t buckets[4][kLanes];
+    const UInt bucketMask(grid.bucketMask);
     for (size_t i = 0; i < wave_.rays.size; i += kLanes) {
       const Mask querying = queries(i);
       if (none(querying)) continue;
@@ -41,19 +41,19 @@ class Merger {
       const UInt x = cellOf(load(wave_.rays.originX, i) - radius, Real(grid.origin[0]), inverse);
       const UInt y = cellOf(load(wave_.rays.originY, i) - radius, Real(grid.origin[1]), inverse);
       const UInt z = cellOf(load(wave_.rays.originZ, i) - radius, Real(grid.origin[2]), inverse);
+      // All look-ups before the first that is used: buckets are all over memory.
+      UInt bucket[4]{x, x, x, x}, first[4]{x, x, x, x}, last[4]{x, x, x, x};
       for (uint32_t run = 0; run < 4; ++run) {
-        store((hash(y + UInt(run & 1), z + UInt(run >> 1)) + x) & UInt(grid.bucketMask), buckets[run]);
+        bucket[run] = select(querying, (hash(y + UInt(run & 1), z + UInt(run >> 1)) + x) & bucketMask, UInt(0u));
+        first[run] = gather(start, bucket[run]);
+        last[run] = gather(start + 2, bucket[run]);
       }
-      HWY_ALIGN uint32_t lanes[kLanes];
-      store(compress(laneIndex(), querying), lanes);
-      for (size_t k = 0, count = countTrue(querying); k < count; ++k) {
-        const uint32_t lane = lanes[k];
-        const auto vertex = static_cast<uint32_t>(i + lane);
-        for (uint32_t run = 0; run < 4; ++run) {
-          const uint32_t bucket = buckets[run][lane], next = (bucket + 1) & grid.bucketMask;
-          list(vertex | run << kRunShift, start[bucket], start[bucket + 1]);
-          list(vertex | run << kRunShift, start[next], start[next + 1]);
-        }
+      for (uint32_t run = 0; run < 4; ++run) {
+        const UInt vertex = laneIndex(static_cast<uint32_t>(i)) | UInt(run << kRunShift);
+        list(vertex, first[run], last[run], querying & (first[run] < last[run]));
+        // After the last bucket comes the first.
+        const Mask wraps = querying & (bucket[run] == bucketMask);
+        if (any(wraps)) list(vertex, UInt(start[0]), UInt(start[1]), wraps);
       }
     }
     shade();
@@ -86,19 +86,28 @@ class Merger {
     return querying;
   }
 
-  void list(uint32_t vertexAndRun, uint32_t first, uint32_t last) {
-    for (uint32_t photon = first; photon < last; ++photon) {
-      if (count_ == capacity_) shade();
-      wave_.pairs.camera[count_] = vertexAndRun;
-      wave_.pairs.light[count_] = photon;
-      ++count_;
+  // The candidates [first, last) of each lane in m.
+  void list(UInt vertexAndRun, UInt first, UInt last, Mask m) {
+    if (none(m)) return;
+    HWY_ALIGN uint32_t vertices[kLanes], begin[kLanes], end[kLanes];
+    store(compress(vertexAndRun, m), vertices);
+    store(compress(first, m), begin);
+    store(compress(last, m), end);
+    for (size_t k = 0, count = countTrue(m); k < count; ++k) {
+      for (uint32_t photon = begin[k]; photon < end[k]; ++photon) {
+        if (count_ == capacity_) shade();
+        __builtin_prefetch(map_.photons + photon);
+        wave_.pairs.camera[count_] = vertices[k];
+        wave_.pairs.light[count_] = photon;
+        ++count_;
+      }
     }
   }
 
   // Of the listed candidates keeps those within the radius, each found through its own cell, on the same side of the
   // surface and not beyond the path length; packs them to the front of the list.
   size_t selectNear() {
-    const auto& photons = map_.photons;
+    const PhotonRecord<S>* const photons = map_.photons;
     const auto& grid = map_.grid;
     const auto& rays = wave_.rays;
     const auto& surfaces = wave_.surfaces;
@@ -109,7 +118,8 @@ class Merger {
       const UInt camera = select(active, load(wave_.pairs.camera, i), UInt(0u));
       const UInt vertex = camera & UInt(kIndexMask), run = shiftRight<kRunShift>(camera);
       const UInt photon = select(active, load(wave_.pairs.light, i), UInt(0u));
-      const auto p = gatherVec3(photons.positionX, photons.positionY, photons.positionZ, photon);
+      const RecordLanes<PhotonRecord<S>> at(photons, photon);
+      const Vec3<Real> p = at(photons->position);
       const auto z = gatherVec3(rays.originX, rays.originY, rays.originZ, vertex);
       const Vec3<Real> between = p - z;
       Mask near = active & (length2(between) <= radius * radius);
@@ -121,10 +131,10 @@ class Merger {
       near = near & ((px == x0) | (px == x0 + UInt(1u))) & (cellOf(p.y, Real(grid.origin[1]), inverse) == y0) &
              (cellOf(p.z, Real(grid.origin[2]), inverse) == z0);
       const auto normal = gatherVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, vertex);
-      const auto photonNormal = gatherVec3(photons.normalX, photons.normalY, photons.normalZ, photon);
+      const Vec3<Real> photonNormal = at(photons->normal);
       near = near & (dot(normal, photonNormal) > Real(0.1f)) & (abs(dot(between, normal)) <= radius * Real(0.5f));
       // k = len_L + len_C
-      near = near & (gather(photons.depth, photon) < UInt(context_.limits.maxDepth - context_.depth + 1));
+      near = near & (at(photons->depth) < UInt(context_.limits.maxDepth - context_.depth + 1));
       append(vertex, near, wave_.pairs.camera, out);
       append(photon, near, wave_.pairs.light, out);
       out += countTrue(near);
@@ -137,19 +147,20 @@ class Merger {
     count_ = 0;
     context_.counters->merges += accepted;
     const auto& scene = *context_.scene;
-    const auto& photons = map_.photons;
+    const PhotonRecord<S>* const photons = map_.photons;
     const auto& paths = wave_.paths;
     for (size_t i = 0; i < accepted; i += kLanes) {
       const Mask active = firstLanes(accepted - i);
       const UInt vertex = select(active, load(wave_.pairs.camera, i), UInt(0u));
       const UInt photon = select(active, load(wave_.pairs.light, i), UInt(0u));
       const auto shading = gatherShading<P, kFeatures>(scene, wave_, vertex);
-      const auto direction = gatherVec3(photons.directionX, photons.directionY, photons.directionZ, photon);
+      const RecordLanes<PhotonRecord<S>> at(photons, photon);
+      const Vec3<Real> direction = at(photons->direction);
       const Vec3<Real> gen = shading.toLocal(direction);
       const auto bsdf = evalBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, gen);
       Real weight(1);
       if (context_.mis.mergeWeights) {
-        const MisSums<Real> light{gather(photons.dVCM, photon), Real(0), gather(photons.dVM, photon)};
+        const MisSums<Real> light{at(photons->dVCM), Real(0), at(photons->dVM)};
         const MisSums<Real> camera{gather(paths.dVCM, vertex), Real(0), gather(paths.dVM, vertex)};
         // Where connections compete (kVC > 0) every edge may be one; else kVC is 0 and the switch does not matter.
         const Real wLight = behindMerge(context_.mis, 1, light, bsdf.pdf);
@@ -158,7 +169,7 @@ class Merger {
       }
       const Real scale = Real(context_.mis.mergeNorm) * weight * abs(gen.z);
       const Vec3<Real> contribution = gatherVec3(paths.throughputR, paths.throughputG, paths.throughputB, vertex) *
-                                      bsdf.f * gatherVec3(photons.red, photons.green, photons.blue, photon) * scale;
+                                      bsdf.f * at(photons->power) * scale;
       const Mask lit = active & shading.sidesAgree(direction, gen);
       addRadiance(wave_.radiance, gather(paths.lane, vertex), lit, contribution);
     }
@@ -175,7 +186,7 @@ class Merger {
 
 template <class P, uint32_t kFeatures>
 void merge(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  if (context.depth + 1 > context.limits.maxDepth || context.photons->photons.size == 0) return;
+  if (context.depth + 1 > context.limits.maxDepth || context.photons->size == 0) return;
   Merger<P, kFeatures>(context, wave).run();
 }
 

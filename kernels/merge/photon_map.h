@@ -14,20 +14,19 @@
 
 namespace wavecrest {
 
-// What merging reads of a light vertex, in the order of buckets and within a bucket of (wave, depth, lane).
+// What merging reads of a light vertex. A record, not columns: searches come to photons in no order, and in float one
+// photon is one cache line.
 template <class S>
-struct Photons : Columns<Photons<S>> {
-  Column<S> positionX, positionY, positionZ;
-  Column<S> directionX, directionY, directionZ;  // back along the light path
-  Column<S> normalX, normalY, normalZ;
-  Column<S> red, green, blue;  // throughput over the cosine to the normal of the direction
-  Column<S> dVCM, dVM;
-  Column<uint32_t> depth;
-  auto all() {
-    return std::tie(positionX, positionY, positionZ, directionX, directionY, directionZ, normalX, normalY, normalZ, red,
-                    green, blue, dVCM, dVM, depth);
-  }
+struct alignas(64) PhotonRecord {
+  S position[3];
+  S direction[3];  // back along the light path
+  S normal[3];
+  S power[3];  // throughput over the cosine to the normal of the direction
+  S dVCM, dVM;
+  uint32_t depth;
+  uint32_t bucket;
 };
+static_assert(sizeof(PhotonRecord<float>) == 64);
 
 // The grid that cells are counted in. cell = floor((position - origin) * inverseCell), in S without contraction, so
 // that build and search agree to the bit.
@@ -47,9 +46,12 @@ struct PhotonGrid {
 
 template <class S>
 struct PhotonMap {
-  Photons<S> photons;
+  const PhotonRecord<S>* photons = nullptr;  // by bucket, within a bucket by (wave, depth, lane)
+  size_t size = 0;
   PhotonGrid<S> grid;
-  std::vector<uint32_t> bucketStart;  // buckets + 1 entries
+  // The photons of buckets b and b + 1 are those from bucketStart[b] up to bucketStart[b + 2]; after the last bucket
+  // there is an empty one.
+  std::vector<uint32_t> bucketStart;
 
   // Runs body(i) for i in [0, count), in any order and on any threads.
   using ForEach = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
@@ -59,20 +61,21 @@ struct PhotonMap {
   void build(std::span<LightStore<S>* const> stores, double radius, const ForEach& forEach);
 
   size_t bytes() const;
-  // Of a map built for the first time from this many vertices.
-  static size_t bytesFor(size_t vertices);
+  // The same for a map of so many photons.
+  static size_t bytesFor(size_t count);
 
  private:
-  struct Entry {
-    uint32_t bucket, store, vertex;
-  };
+  using Stores = std::span<LightStore<S>* const>;
+  void placeGrid(Stores stores, double radius, const ForEach& forEach);
+  void countBuckets(Stores stores, const ForEach& forEach);
+  void dealToPartitions(Stores stores, const ForEach& forEach);
+  void sortPartition(size_t partition, size_t storeCount);
 
-  void placeGrid(std::span<LightStore<S>* const> stores, double radius, size_t total, const ForEach& forEach);
-  void sortEntries(std::span<LightStore<S>* const> stores, size_t total, const ForEach& forEach);
-  void copyPhotons(std::span<LightStore<S>* const> stores, size_t first, size_t last);
-
-  std::vector<Entry> entries_, sorted_;
-  std::vector<uint32_t> offsets_;  // of each (partition, store)
+  size_t capacity_ = 0;
+  PhotonRecord<S>* records_ = nullptr;
+  std::vector<uint32_t> buckets_;    // of each light vertex, store by store
+  std::vector<uint32_t> offsets_;    // of each (partition, store)
+  std::vector<size_t> firstVertex_;  // of each store
   Arena arena_;
 };
 

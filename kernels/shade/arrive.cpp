@@ -45,22 +45,22 @@ WAVECREST_INLINE Vec3<typename P::Real> missedRadiance(const StageContext<typena
 
 // Radiance of area lights that lanes arrived at, weighted likewise with the sums after arrival (METHODS 5.6, s = 0).
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE Vec3<typename P::Real> metRadiance(const StageContext<typename P::Storage>& context, UInt light,
+WAVECREST_INLINE Vec3<typename P::Real> metRadiance(const StageContext<typename P::Storage>& context, UInt index,
                                                     Vec3<typename P::Real> receiver, typename P::Real n0,
                                                     typename P::Real dist2, const MisSums<typename P::Real>& mis,
                                                     bool alone, [[maybe_unused]] Float u, [[maybe_unused]] Float v) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
-  const RecordLanes<LightRecord<typename P::Storage>> at(scene.lights, light);
-  Vec3<Real> radiance = at(scene.lights->radiance);
+  const LightLanes<Real> light = loadLight(scene, index);
+  Vec3<Real> radiance = light.radiance;
   if constexpr (has(kFeatures, kTextures)) {
-    radiance = radiance * to<Real>(textureFactor(scene.textures, scene.texels, at(scene.lights->texture), u, v));
+    radiance = radiance * to<Real>(textureFactor(scene.textures, scene.texels, light.texture, u, v));
   }
   if (alone) return radiance;
   Real wCamera(0);
-  if (context.mis.nextEvent) wCamera = directPdfA<P, kFeatures>(scene, at, receiver, n0, dist2) * mis.dVCM;
+  if (context.mis.nextEvent) wCamera = directPdfA<P, kFeatures>(light, receiver, n0, dist2) * mis.dVCM;
   if constexpr (has(kFeatures, kBidirectional)) {
-    const Real emissionPdf = at(scene.lights->pick) * at(scene.lights->inverseArea) * n0 * Real(kInvPi);
+    const Real emissionPdf = light.pick * light.inverseArea * n0 * Real(kInvPi);
     wCamera = mulAdd(emissionPdf, mis.dVC, wCamera);
   }
   return radiance * reciprocal<P>(Real(1) + wCamera);
@@ -69,24 +69,26 @@ WAVECREST_INLINE Vec3<typename P::Real> metRadiance(const StageContext<typename 
 // What turns dVCM of a light path's first edge into area measure at y_1: d^2 for a light that has a place. For spheres
 // the density of next event estimation depends on the receiver and is only known here (METHODS 5.3).
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE typename P::Real firstLightEdge(const SceneView<typename P::Storage>& scene, UInt light,
+WAVECREST_INLINE typename P::Real firstLightEdge(const SceneView<typename P::Storage>& scene, UInt index,
+                                                 Vec3<typename P::Real> origin, Vec3<typename P::Real> direction,
                                                  Vec3<typename P::Real> receiver, typename P::Real dist2) {
   using Real = typename P::Real;
-  const RecordLanes<LightRecord<typename P::Storage>> at(scene.lights, light);
-  const UInt kind = at(scene.lights->kind);
+  const LightLanes<Real> light = loadLight(scene, index);
   Real factor = dist2;
-  const Mask infinite = isInfinite(kind);
+  const Mask infinite = isInfinite(light.kind);
   if (any(infinite)) factor = select(infinite, Real(1), factor);
   if constexpr (has(kFeatures, kCurvedShapes)) {
-    const Mask sphere = kind == lightKind(LightKind::sphere);
+    const Mask sphere = light.kind == lightKind(LightKind::sphere);
     if (any(sphere)) {
-      const Real radius = at(scene.lights->radius);
-      const Real d2 = length2(at(scene.lights->p0) - receiver);
-      const Mask outside = d2 > radius * radius * Real(kInsideSphere);
-      const Real conePdf = Real(kInvPi / 2) * reciprocal<P>(sphereConeHeight(radius * radius, d2));
-      // generateLightPaths put n_0 / emissionPdf into dVCM: times the cone's density this is directPdfA d^2 over it.
-      // From inside the sphere, 1 / area d^2 / n_0 takes its place; n_0 is 1 / (pi area times what it put there).
-      factor = select(sphere & outside, conePdf, factor);
+      const Real r2 = light.radius * light.radius;
+      const Real d2 = length2(light.p0 - receiver);
+      const Mask outside = d2 > r2 * Real(kInsideSphere);
+      const Real conePdf = Real(kInvPi / 2) * reciprocal<P>(sphereConeHeight(r2, d2));
+      // generateLightPaths put n_0 / emissionPdf into dVCM: times the direct density per solid angle this is directPdfA
+      // d^2 over emissionPdf. That density is the cone's, or from inside the sphere d^2 / (area n_0).
+      const Real n0 = abs(dot(origin - light.p0, direction)) * reciprocal<P>(light.radius);
+      const Real areaPdf = light.inverseArea * dist2 * reciprocal<P>(max(n0, Real(1e-12f)));
+      factor = select(sphere, select(outside, conePdf, areaPdf), factor);
     }
   }
   return factor;
@@ -145,7 +147,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     if constexpr (has(kFeatures, kBidirectional)) {
       if (firstLightVertex) {
         const UInt from = select(hit, load(paths.light, i), UInt(0u));
-        toArea = firstLightEdge<P, kFeatures>(scene, from, surface.position, dist2);
+        toArea = firstLightEdge<P, kFeatures>(scene, from, origin, direction, surface.position, dist2);
       }
       mis.dVC = mis.dVC * inverseCosine;
       mis.dVM = mis.dVM * inverseCosine;

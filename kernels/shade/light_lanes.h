@@ -16,6 +16,28 @@ WAVECREST_INLINE Mask isInfinite(UInt kind) {
          (kind == lightKind(LightKind::directional));
 }
 
+// The light of each lane.
+template <class Real>
+struct LightLanes {
+  Vec3<Real> p0, e1, e2, normal, radiance;
+  Real pick, inverseArea, radius, offset, cosTotal, cosFalloff;
+  UInt kind, texture;
+};
+// Where the scene has one light its fields are broadcast: a lane's gather costs as much as all broadcasts.
+template <class S>
+WAVECREST_INLINE auto loadLight(const SceneView<S>& scene, UInt index) {
+  const LightRecord<S>& fields = *scene.lights;
+  const auto load = [&](auto at) HWY_ATTR {
+    using Real = decltype(at(fields.pick));
+    return LightLanes<Real>{at(fields.p0),       at(fields.e1),       at(fields.e2),          at(fields.normal),
+                            at(fields.radiance), at(fields.pick),     at(fields.inverseArea), at(fields.radius),
+                            at(fields.offset),   at(fields.cosTotal), at(fields.cosFalloff),  at(fields.kind),
+                            at(fields.texture)};
+  };
+  if (scene.lightCount == 1) return load(OneRecord());
+  return load(RecordLanes<LightRecord<S>>(scene.lights, index));
+}
+
 // ---- environment map ------------------------------------------------------------------------------------------------
 
 // Longitude and colatitude of unit directions in the map's frame, as fractions of the map (Mitsuba's convention: +y up,
@@ -113,25 +135,21 @@ constexpr double kInsideSphere = 1.0002;
 // Density over the light's area, light selection included, with which nextEvent at `receiver` samples `point` on an
 // area light; n0 is the cosine at the light and dist2 the squared distance.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE typename P::Real directPdfA(const SceneView<typename P::Storage>& scene,
-                                             const RecordLanes<LightRecord<typename P::Storage>>& at,
-                                             Vec3<typename P::Real> receiver, typename P::Real n0,
-                                             typename P::Real dist2) {
+WAVECREST_INLINE typename P::Real directPdfA(const LightLanes<typename P::Real>& light, Vec3<typename P::Real> receiver,
+                                             typename P::Real n0, typename P::Real dist2) {
   using Real = typename P::Real;
-  const auto& fields = *scene.lights;
-  Real pdfA = at(fields.inverseArea);
+  Real pdfA = light.inverseArea;
   if constexpr (has(kFeatures, kCurvedShapes)) {
-    const Mask sphere = at(fields.kind) == lightKind(LightKind::sphere);
+    const Mask sphere = light.kind == lightKind(LightKind::sphere);
     if (any(sphere)) {
-      const Real radius = at(fields.radius);
-      const Real r2 = radius * radius;
-      const Real d2 = length2(at(fields.p0) - receiver);
+      const Real r2 = light.radius * light.radius;
+      const Real d2 = length2(light.p0 - receiver);
       const Mask outside = sphere & (d2 > r2 * Real(kInsideSphere));
       const Real pdfW = Real(kInvPi / 2) / sphereConeHeight(r2, d2);
       pdfA = select(outside, pdfW * n0 / dist2, pdfA);
     }
   }
-  return pdfA * at(fields.pick);
+  return pdfA * light.pick;
 }
 
 WAVECREST_SIMD_END

@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
+#include "bench/report/embedded_images.h"
 #include "bench/report/html_text.h"
 #include "bench/report/scene_section.h"
+#include "bench/report/summary_section.h"
 #include "tests/bench/sample_report.h"
 
 namespace wavecrest {
@@ -48,27 +52,83 @@ TEST(HtmlPage, escapesTextFromResults) {
 }
 
 TEST(HtmlPage, ranksByTheFirstMetric) {
-  const std::string section = renderScene(sampleReport(), 0);
+  const std::string section = renderScene(sampleReport(), 0, EmbeddedImages());
   const size_t table = section.find("At the end");
-  const size_t bpt = section.find(">bpt <", table), pt = section.find(">pt <", table),
-               vcm = section.find(">vcm <", table);
+  const size_t bpt = section.find("</i>bpt<", table), pt = section.find("</i>pt<", table),
+               vcm = section.find("</i>vcm<", table);
   EXPECT_LT(table, bpt);
   EXPECT_LT(bpt, pt);
   EXPECT_LT(pt, vcm);
+  EXPECT_LT(vcm, section.size());
 }
 
 TEST(HtmlPage, summaryIsForSeveralScenesOnly) {
   ConvergenceReport report = sampleReport();
   EXPECT_TRUE(contains(renderReport(report), "<h2>Summary</h2>"));
+  EXPECT_TRUE(contains(renderReport(report), "<h3>Ranking</h3>"));
   report.scenes.resize(1);
   EXPECT_FALSE(contains(renderReport(report), "<h2>Summary</h2>"));
+  EXPECT_FALSE(contains(renderReport(report), "<nav>"));
 }
 
-TEST(HtmlPage, finalValueIsTheMeanOverSeeds) {
-  const ReportSeries series = sampleReport().scenes[0].series[0];
-  const double first = series.runs[0].points.back().values[0], second = series.runs[1].points.back().values[0];
-  ASSERT_NE(first, second);
-  EXPECT_DOUBLE_EQ(finalValue(series, 0), 0.5 * (first + second));
+// The second scene has only pt: first by every metric there, second of three in the first scene by RMSE.
+TEST(Summary, ranksMethodsByTheirMeanRankOverScenes) {
+  const std::string ranking = renderRanking(sampleReport());
+  const std::regex row("</i>(\\w+) <small>[^<]*</small><td class=\"n\">[0-9.]+<td class=\"n\">([0-9.]+)");
+  std::vector<std::pair<std::string, std::string>> found;
+  for (std::sregex_iterator match(ranking.begin(), ranking.end(), row), end; match != end; ++match)
+    found.emplace_back((*match)[1], (*match)[2]);
+  EXPECT_EQ(found, (std::vector<std::pair<std::string, std::string>>{{"bpt", "1"}, {"pt", "1.5"}, {"vcm", "3"}}));
+}
+
+TEST(Summary, heatMapsShadeByTheDistanceToTheBestOfTheRow) {
+  ConvergenceReport report = sampleReport();
+  for (ReportSeries& series : report.scenes[0].series)
+    for (ReportRun& run : series.runs) run.points.back().values[0] = series.method == "bpt" ? 0.01 : 0.04;
+  const std::string maps = renderHeatMaps(report);
+  // Four times the best: two factors of two of the four that are the full shade.
+  EXPECT_TRUE(
+      contains(maps, "<td class=\"n\" style=\"--behind:0.50\">0.04<td class=\"n best\" style=\"--behind:0.00\">0.01"));
+  EXPECT_TRUE(contains(maps, "data-name=\"time to SSIM 0.9\""));
+  EXPECT_TRUE(contains(maps, "<td class=\"n none\">–")) << "the second scene has one method";
+}
+
+TEST(Summary, aPerfectScoreIsNotBehindItself) {
+  ConvergenceReport report = sampleReport();
+  for (ReportSeries& series : report.scenes[0].series)
+    for (ReportRun& run : series.runs) run.points.back().values[0] = series.method == "bpt" ? 0 : 0.04;
+  const std::string maps = renderHeatMaps(report);
+  EXPECT_TRUE(
+      contains(maps, "<td class=\"n\" style=\"--behind:1.00\">0.04<td class=\"n best\" style=\"--behind:0.00\">0<"));
+}
+
+TEST(Summary, claimsCarryTheirVerdicts) {
+  const std::string claims = renderClaims(sampleReport());
+  EXPECT_TRUE(contains(claims, "0 hold, 1 do not, 1 are undecided"));
+  EXPECT_TRUE(contains(claims, "<td>pt &lt; bpt<td><span class=\"verdict fails\">does not hold</span>"));
+  ConvergenceReport report = sampleReport();
+  report.claims.clear();
+  EXPECT_EQ(renderClaims(report), "");
+}
+
+TEST(SceneSection, showsWhatIsKnownAndNothingElse) {
+  ConvergenceReport report = sampleReport();
+  const std::string full = renderScene(report, 0, EmbeddedImages());
+  EXPECT_TRUE(contains(full, "Bias and variance"));
+  EXPECT_TRUE(contains(full, "<td class=\"v-impossible\">impossible"));
+  EXPECT_TRUE(contains(full, "<b>ppm</b> was refused: has no &lt;light&gt;"));
+  EXPECT_TRUE(contains(full, "data-kind=\"Error maps\""));
+  for (ReportSeries& series : report.scenes[0].series) {
+    series.bias.clear();
+    series.stages.clear();
+    series.errorMap = {};
+  }
+  report.scenes[0].reference = {};  // results travel without their images
+  report.scenes[0].pathClasses.clear();
+  report.scenes[0].refusals.clear();
+  const std::string bare = renderScene(report, 0, EmbeddedImages());
+  for (const char* absent : {"Pictures", "<img", "Bias", "Which paths", "refused", "Error maps", "Where the time went"})
+    EXPECT_FALSE(contains(bare, absent)) << absent;
 }
 
 TEST(HtmlPage, refusesValuesThatDoNotMatchTheMetrics) {

@@ -1,6 +1,7 @@
 #include "tests/bench/sample_report.h"
 
 #include <cmath>
+#include <random>
 
 namespace wavecrest {
 namespace {
@@ -33,8 +34,10 @@ ReportSeries sampleSeries(const std::string& method, double start, double bias) 
       const double seconds = 0.1 * std::pow(10, k / 3.0);
       const double scatter = seed == 1 ? 0.94 : 1.06;
       const double rmse = std::hypot(scatter * start / std::sqrt(seconds), bias);
-      run.points.push_back(
-          {.seconds = seconds, .iterations = static_cast<uint64_t>(30 * seconds), .values = {rmse, 20 * rmse * rmse}});
+      run.points.push_back({.seconds = seconds,
+                            .iterations = static_cast<uint64_t>(30 * seconds),
+                            .values = {rmse, 20 * rmse * rmse, 1 / (1 + 4 * rmse)},
+                            .further = {{"ssim_r", 0.5}}});
     }
     series.runs.push_back(run);
   }
@@ -46,7 +49,10 @@ ReportSeries sampleSeries(const std::string& method, double start, double bias) 
                    {"occlude", 170000000, 4.6},
                    {"splat", 41000000, 0.3}};
   series.settings = {{"sampler", "independent"}, {"precision", "float"}, {"max_depth", "-1"}};
-  series.snapshots = {sampleImage(method + ", 46 s", 300 * start)};
+  series.finalImage = sampleImage(method + ", 46 s", 300 * start);
+  series.errorMap = sampleImage(method + ", FLIP 0.2", 900 * start);
+  series.bias = {{.seconds = 1, .seeds = 2, .meanSquareError = 0.02, .variance = 0.02, .bias2 = -1e-5},
+                 {.seconds = 46, .seeds = 2, .meanSquareError = 0.004, .variance = 0.003, .bias2 = 0.001}};
   return series;
 }
 
@@ -57,23 +63,43 @@ ConvergenceReport sampleReport() {
   report.title = "Convergence of <three> methods";
   report.metrics = {
       {.key = "rmse", .name = "RMSE", .explanation = "linear radiance, all pixels", .idealSlope = -0.5},
-      {.key = "relmse", .name = "relMSE", .explanation = "squared error over squared value", .idealSlope = -1.0}};
+      {.key = "relmse", .name = "relMSE", .explanation = "squared error over squared value", .idealSlope = -1.0},
+      {.key = "ssim",
+       .name = "SSIM",
+       .explanation = "structure",
+       .higherIsBetter = true,
+       .logarithmic = false,
+       .target = 0.9}};
   ReportScene first;
   first.name = "cornell-spheres";
   first.width = 96;
   first.height = 72;
   first.reference = sampleImage("reference", 0);
   first.referenceOrigin = "bpt, two halves of 3 min 20 s";
-  first.noiseFloors = {0.004, std::nullopt};
+  first.noiseFloors = {0.004, std::nullopt, 0.99};
+  first.errorMapScale = "Error maps: FLIP";
   first.series = {sampleSeries("pt", 0.21, 0), sampleSeries("bpt", 0.12, 0), sampleSeries("vcm", 0.1, 0.03)};
   // The first snapshot of one run came out black: nothing a logarithmic axis could show.
   first.series[0].runs[0].points[0].values[1] = 0;
+  first.pathClasses = {
+      {.name = "LDE", .verdicts = {{"pt", "sampled"}, {"bpt", "sampled"}, {"vcm", "sampled"}}},
+      {.name = "LSDSE", .verdicts = {{"pt", "impossible"}, {"bpt", "inefficient"}, {"vcm", "sampled"}}}};
+  first.refusals = {{"ppm", "has no <light>"}};
   ReportScene second = first;
   second.name = "veach-door & co";
   second.series.resize(1);
   report.scenes = {first, second};
   report.environment = {{"cpu", "AMD EPYC"}, {"isa", "avx512"}, {"threads", "2"}, {"commit", "0123abc"}};
+  report.claims = {{.scene = "cornell-spheres", .statement = "pt < bpt", .verdict = "does not hold", .evidence = "0.1"},
+                   {.scene = "veach-door & co", .statement = "equal", .verdict = "undecided", .evidence = "0.2"}};
   return report;
+}
+
+ReportImage noiseImage(const std::string& label, uint32_t width, uint32_t height, uint32_t seed) {
+  ReportImage image{.label = label, .width = width, .height = height, .rgb = {}};
+  std::mt19937 random(seed);
+  for (size_t i = 0; i < size_t{3} * width * height; ++i) image.rgb.push_back(static_cast<uint8_t>(random() >> 24));
+  return image;
 }
 
 }  // namespace wavecrest

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <regex>
@@ -88,8 +89,7 @@ TEST(SvgPlot, keepsEndLabelsApartAndInsideThePlot) {
 
 TEST(SvgPlot, noiseFloorBelowAllCurvesExtendsTheAxis) {
   Plot plot = plotOf({curveOf("pt", {{1, 1}, {10, 0.3}})});
-  plot.floor = 1e-3;
-  plot.floorLabel = "noise";
+  plot.floor = {1e-3, "noise"};
   const std::string svg = renderPlot(plot);
   const std::vector<double> floor = numbers(svg, "class=\"floor\" x1=\"[0-9.]+\" y1=\"([0-9.]+)\"");
   const double lowerEdge = numbers(svg, "class=\"axis\" d=\"M[0-9.]+ [0-9.]+V([0-9.]+)").front();
@@ -116,6 +116,38 @@ TEST(SvgPlot, guideRunsParallelToACurveOfTheIdealSlope) {
   const std::vector<double> y = numbers(svg, "data-y=\"([0-9.]+)\"");
   const double slopeOfGuide = (std::stod(guide[4]) - std::stod(guide[2])) / (std::stod(guide[3]) - std::stod(guide[1]));
   EXPECT_NEAR(slopeOfGuide, (y[1] - y[0]) / (x[1] - x[0]), 2e-3);
+}
+
+// Bold letters of common fonts are up to 8.7 units wide at the page's size, an m 13; phones get 1.16 times that.
+TEST(SvgPlot, longEndLabelsHaveRoomAtTheRight) {
+  for (const std::string label : {"pt", "pt independent", "vcm sobol fast"}) {
+    const std::string svg = renderPlot(plotOf({curveOf(label, {{1, 1}, {10, 0.1}})}));
+    const double x = numbers(svg, "class=\"end-label\" x=\"([0-9.]+)\"").front();
+    const double width = numbers(svg, "viewBox=\"0 0 ([0-9.]+) ").front();
+    const double wide = static_cast<double>(std::count(label.begin(), label.end(), 'm'));
+    EXPECT_LE(x + 1.16 * (8.7 * static_cast<double>(label.size()) + 4.3 * wide), width) << label;
+    EXPECT_GT(numbers(svg, "data-x=\"([0-9.]+)\"").back(), 0.4 * width) << "the curves keep most of the plot";
+  }
+}
+
+TEST(SvgPlot, targetIsDrawnWhereItLiesWithinTheCurves) {
+  Plot plot = plotOf({curveOf("pt", {{1, 1}, {10, 0.3}})});
+  plot.target = 0.5;
+  EXPECT_EQ(count(renderPlot(plot), "class=\"target\""), 1U);
+  plot.target = 0.01;
+  EXPECT_EQ(count(renderPlot(plot), "class=\"target\""), 0U) << "it must not stretch the axis";
+}
+
+// Drawing programs know no CSS variables: a file states its colours.
+TEST(SvgPlotFile, standsAloneWithColoursInPlaceOfVariables) {
+  Plot plot = plotOf({curveOf("pt", {{1, 1}, {10, 0.3}})});
+  plot.title = "a < b";
+  const std::string svg = renderPlotFile(plot);
+  EXPECT_EQ(svg.find("<svg xmlns=\"http://www.w3.org/2000/svg\""), 0U);
+  EXPECT_EQ(svg.find("var("), std::string::npos);
+  EXPECT_NE(svg.find(".m-pt { color: #"), std::string::npos);
+  EXPECT_NE(svg.find("a &lt; b</text>"), std::string::npos);
+  EXPECT_EQ(count(svg, "data-x"), 2U);
 }
 
 TEST(SvgPlot, escapesLabels) {

@@ -1,6 +1,7 @@
 """What a render leaves behind: images in every format, statistics, snapshots, and what remains after Ctrl-C."""
 
 import math
+import re
 import signal
 import subprocess
 import time
@@ -9,6 +10,7 @@ import unittest
 from harness import (
     INTERRUPTED,
     TIMEOUT_SECONDS,
+    USAGE,
     WAVECREST,
     CommandTest,
     png_size,
@@ -52,6 +54,23 @@ class Outputs(CommandTest):
     def test_definitions_reach_the_scene(self):
         self.render("-D", "spp=3", "--stats", "stats.json")
         self.assertEqual(read_json(self.path("stats.json"))["iterations"], 3)
+
+    def test_a_memory_budget_is_printed_and_lowers_the_light_paths(self):
+        arguments = ["cornell-mirror", "-m", "vcm", "--size", "96x72", "--spp", "2", "--threads", "1", "--wave", "256"]
+        whole = self.run_wavecrest("render", *arguments, "--stats", "whole.json")
+        self.assertIn("6912 light paths in each iteration", whole.stderr)
+        some = self.run_wavecrest("render", *arguments, "--memory", "2M", "--stats", "some.json")
+        planned = int(re.search(r"(\d+) light paths in each iteration", some.stderr).group(1))
+        self.assertLess(planned, 6912)
+        self.assertEqual(read_json(self.path("whole.json"))["light_paths"], 2 * 6912)
+        self.assertEqual(read_json(self.path("some.json"))["light_paths"], 2 * planned)
+        self.assertEqual(read_json(self.path("some.json"))["camera_paths"], 2 * 6912)
+
+    def test_a_plan_that_exceeds_the_budget_is_refused(self):
+        result = self.run_wavecrest(
+            "render", "cornell-mirror", "-m", "vcm", "--size", "960x720", "--time", "60s", "--memory", "5M", expect=USAGE
+        )
+        self.assert_one_error_line(result, r"--memory: this scene needs \d+ MB")
 
     def test_an_exr_says_how_it_was_made(self):
         self.render("--spp", "2", "--seed", "9", "-o", "image.exr", "--stats", "stats.json")

@@ -58,6 +58,11 @@ class Usage(CommandTest):
             ("--progress", "loud"),
             ("--radius", "-1"),
             ("--radius", "nan"),
+            ("--memory", "lots"),
+            ("--memory", "12"),
+            ("--memory", "-3G"),
+            ("--memory", "1GX"),
+            ("--memory", "nanG"),
             ("--radius-alpha", "2"),
             ("--radius-alpha", "nan"),
         ]:

@@ -159,11 +159,8 @@ class PathLeakTest : public testing::TestWithParam<LeakCase> {
     const auto session = Session::create(scene, settings);
     session->renderUntil(effort(100, 4), std::nullopt);
     const RenderStatistics s = session->statistics();
-    // Known: among the unequal corners of the measured Cornell room the small-scene intersector loses about one grazing
-    // ray in 10^7; Embree loses none.
-    const uint64_t mayMiss = GetParam().accel == Accel::small ? s.counters.raysClosest / 5'000'000 : 0;
-    EXPECT_LE(s.counters.misses, mayMiss) << "of " << s.counters.raysClosest << " rays";
-    EXPECT_GE(s.counters.raysClosest + 64 * s.counters.misses, s.paths * 64) << "paths were lost on the way";
+    EXPECT_EQ(s.counters.misses, 0u) << "of " << s.counters.raysClosest << " rays";
+    EXPECT_EQ(s.counters.raysClosest, s.paths * 64) << "paths were lost on the way";
     EXPECT_EQ(s.counters.nonFinite, 0u);
   }
 };

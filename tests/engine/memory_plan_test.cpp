@@ -72,8 +72,59 @@ TEST(MemoryPlan, growsWithThreads) {
   settings.threads = 3;
   const MemoryUse three = planMemory(scene, settings).use;
   EXPECT_EQ(three.waves, 3 * one.waves);
-  EXPECT_EQ(three.splats, 3 * one.splats);
+  EXPECT_EQ(three.splats, 2 * one.splats) << "one for each thread, and their sum";
   EXPECT_EQ(three.film, one.film);
+}
+
+// ---- budget ---------------------------------------------------------------------------------------------------------
+
+// A quarter of the light paths' memory: their number shrinks, the session holds no more than it may, and its film has
+// seen that many light paths.
+TEST(MemoryBudget, lowersTheNumberOfLightPathsAndIsKept) {
+  const Scene scene = sceneFile("cornell-mirror", 160, 120);
+  for (const Method method : {Method::ppm, Method::bpm, Method::vcm}) {
+    RenderSettings settings = settingsFor(method);
+    settings.waveSize = 512;
+    const MemoryPlan whole = planMemory(scene, settings);
+    EXPECT_EQ(whole.lightPaths, 160u * 120);
+    const size_t lightBytes = whole.use.lightVertices + whole.use.photonMap;
+    settings.memoryBytes = whole.use.total() - lightBytes * 3 / 4;
+    const MemoryPlan plan = planMemory(scene, settings);
+    EXPECT_LE(plan.use.total(), *settings.memoryBytes);
+    EXPECT_LT(plan.lightPaths, whole.lightPaths / 3);
+    EXPECT_GT(plan.lightPaths, whole.lightPaths / 6);
+    const RenderStatistics held = statisticsOf(scene, settings, 3);
+    EXPECT_LE(held.memory.total(), *settings.memoryBytes * 101 / 100) << toString(method);
+    EXPECT_EQ(held.lightPaths, 3 * plan.lightPaths);
+    EXPECT_EQ(held.paths, 3u * 160 * 120);
+  }
+}
+
+TEST(MemoryBudget, thatSufficesChangesNothing) {
+  const Scene scene = sceneFile("cornell-diffuse", 80, 60);
+  for (const MethodEntry& entry : kMethods) {
+    RenderSettings settings = settingsFor(entry.method);
+    const MemoryPlan whole = planMemory(scene, settings);
+    settings.memoryBytes = whole.use.total();
+    EXPECT_EQ(planMemory(scene, settings).lightPaths, whole.lightPaths) << entry.name;
+  }
+}
+
+TEST(MemoryBudget, thatIsTooSmallIsRefused) {
+  const Scene scene = sceneFile("cornell-diffuse", 80, 60);
+  for (const MethodEntry& entry : kMethods) {
+    RenderSettings settings = settingsFor(entry.method);
+    settings.memoryBytes = 100'000;  // less than the film
+    EXPECT_THROW(planMemory(scene, settings), MemoryBudgetError) << entry.name;
+    EXPECT_THROW(Session::create(scene, settings), MemoryBudgetError) << entry.name;
+  }
+}
+
+TEST(MemoryBudget, ofMethodsWithoutAPhotonMapLeavesTheirLightPathsAlone) {
+  const Scene scene = sceneFile("cornell-diffuse", 80, 60);
+  RenderSettings settings = settingsFor(Method::bpt);
+  settings.lightPaths = 1000;
+  EXPECT_THROW(planMemory(scene, settings), std::invalid_argument);
 }
 
 }  // namespace

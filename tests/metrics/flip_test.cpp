@@ -48,6 +48,36 @@ TEST(Flip, RisesWithAddedNoise) {
   }
 }
 
+TEST(Flip, RisesWithAShiftOfTheImage) {
+  const Image8 image = test::patternImage(80, 40);
+  const auto window = [&](uint32_t shift) {
+    Image8 part{60, 40, {}};
+    for (uint32_t y = 0; y < 40; ++y) {
+      const auto row = image.pixels.begin() + 3 * (80 * y + shift);
+      part.pixels.insert(part.pixels.end(), row, row + 180);
+    }
+    return part;
+  };
+  const PreparedFlip prepared(window(0));
+  const double one = prepared.compare(window(1)).mean;
+  EXPECT_GT(one, 0.0);
+  EXPECT_GT(prepared.compare(window(3)).mean, one);
+}
+
+TEST(Flip, OfBlackAndOtherConstantImagesRisesWithTheirDistance) {
+  const auto constant = [](uint8_t code) { return Image8{9, 7, std::vector<uint8_t>(9 * 7 * 3, code)}; };
+  const PreparedFlip black(constant(0));
+  double last = black.compare(constant(0)).mean;
+  EXPECT_EQ(last, 0.0);
+  for (const int level : {20, 80, 160, 255}) {
+    const auto code = static_cast<uint8_t>(level);
+    const FlipResult result = black.compare(constant(code), true);
+    EXPECT_GT(result.mean, last);
+    EXPECT_NEAR(result.map[0], result.map[31], 1e-6) << "edges are no different from the middle";
+    last = result.mean;
+  }
+}
+
 TEST(Flip, OfTheFarthestColoursIsOne) {
   Image8 green{8, 8, {}}, blue = green;
   for (int i = 0; i < 64; ++i) {

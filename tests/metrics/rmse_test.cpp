@@ -53,6 +53,12 @@ TEST(Relmse, DividesByTheSquaredReferencePlusEpsilon) {
   EXPECT_NEAR(relmse(a, b, {.epsilon = 1}).relmse, (0.25 + 1.0 / 5) / 3, 1e-12);
 }
 
+TEST(Relmse, OfBlackReferencesIsTheSquaredErrorOverEpsilon) {
+  const Image black{2, 2, 3, std::vector<float>(12, 0.0f)}, grey{2, 2, 3, std::vector<float>(12, 0.1f)};
+  EXPECT_EQ(relmse(black, black).relmse, 0.0);
+  EXPECT_NEAR(relmse(black, grey).relmse, 1.0, 1e-7);  // 0.1 as a float
+}
+
 TEST(Relmse, TrimmedVariantIgnoresOneFireflyInAThousandPixels) {
   Image a{1000, 1, 3, std::vector<float>(3000, 1.0f)}, b = a;
   for (float& v : b.pixels) v += 0.1f;

@@ -56,6 +56,9 @@ def _read(path, scene_folder):
     for entry in root.iter("string"):
         if entry.get("name") == "filename":
             entry.set("value", _absolute(entry.get("value"), path.parent, scene_folder))
+    for entry in root.iter("default"):  # of a variable that stands for a file name
+        if any((folder / entry.get("value")).is_file() for folder in (path.parent, scene_folder)):
+            entry.set("value", _absolute(entry.get("value"), path.parent, scene_folder))
     _inline_includes(root, path, scene_folder)
     return root
 

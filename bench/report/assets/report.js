@@ -40,44 +40,67 @@ function addTooltips(plot) {
 }
 
 // Images: all panes of a scene share one view {zoom, x, y}: x and y are the image point, in 0..1, at the pane's corner.
+// A viewer has groups of panes (pictures, error maps), one of which is on show; panes of one name belong together.
 class Viewer {
   constructor(root) {
     this.root = root;
-    this.panes = [...root.querySelectorAll(".pane")];
+    this.groups = [...root.querySelectorAll(".panes")];
     this.view = { zoom: 1, x: 0, y: 0 };
+    this.group = 0;
     this.shown = 0;
     root.classList.add("ready");
     root.tabIndex = -1;
     this.addTools();
-    for (const pane of this.panes) this.addGestures(pane.querySelector(".frame"));
+    for (const frame of root.querySelectorAll(".frame")) this.addGestures(frame);
     root.addEventListener("keydown", (event) => this.onKey(event));
-    this.show(this.panes.length - 1);
+    this.showGroup(0);
+    this.flip(false);
   }
+
+  get panes() { return [...this.groups[this.group].querySelectorAll(".pane")]; }
 
   addTools() {
     const tools = document.createElement("div");
     tools.className = "tools";
-    const button = (text, action) => {
+    const button = (text, action, parent = tools) => {
       const element = document.createElement("button");
       element.type = "button";
       element.textContent = text;
       element.addEventListener("click", action);
-      tools.append(element);
+      parent.append(element);
       return element;
     };
+    const gap = () => tools.append(Object.assign(document.createElement("span"), { className: "gap" }));
+    this.groupButtons = this.groups.length < 2 ? []
+      : this.groups.map((group, index) => button(group.dataset.kind, () => this.showGroup(index)));
+    if (this.groupButtons.length) gap();
     this.sideButton = button("Side by side", () => this.flip(false));
     this.flipButton = button("Flip", () => this.flip(true));
-    tools.append(Object.assign(document.createElement("span"), { className: "gap" }));
+    gap();
     for (const zoom of [1, 2, 4, 8]) button(zoom + "×", () => this.zoomTo(zoom, 0.5, 0.5));
-    tools.append(Object.assign(document.createElement("span"), { className: "gap" }));
-    this.paneButtons = this.panes.map((pane, index) =>
-      button(index + 1 + " " + pane.querySelector("figcaption").textContent, () => { this.flip(true); this.show(index); }));
+    gap();
+    this.names = document.createElement("span");
+    this.names.className = "names";
+    tools.append(this.names);
+    this.makeButton = button;
     const hint = document.createElement("span");
     hint.className = "hint";
-    hint.textContent = "click an image: wheel zooms, drag moves, keys 1–9 and arrows flip";
+    hint.textContent = "click an image: wheel zooms, drag moves, keys 1–9 and arrows flip, m maps";
     tools.append(hint);
     this.root.prepend(tools);
-    this.flip(false);
+  }
+
+  // Pictures or error maps; in flip mode the pane of the same name stays on show.
+  showGroup(index) {
+    const name = this.panes[this.shown]?.dataset.name;
+    this.group = index;
+    this.groups.forEach((group, i) => group.classList.toggle("away", i !== index));
+    this.groupButtons.forEach((element, i) => element.setAttribute("aria-pressed", i === index));
+    this.root.classList.toggle("on-maps", index > 0);
+    this.names.replaceChildren();
+    this.paneButtons = this.panes.map((pane, i) =>
+      this.makeButton(i + 1 + " " + pane.dataset.name, () => { this.flip(true); this.show(i); }, this.names));
+    this.show(Math.max(0, this.panes.findIndex((pane) => pane.dataset.name === name)));
   }
 
   flip(on) {
@@ -88,15 +111,17 @@ class Viewer {
   }
 
   show(index) {
-    this.shown = (index + this.panes.length) % this.panes.length;
+    const panes = this.panes;
+    this.shown = (index + panes.length) % panes.length;
     const flipping = this.root.classList.contains("flip");
-    this.panes.forEach((pane, i) => pane.classList.toggle("shown", i === this.shown));
+    panes.forEach((pane, i) => pane.classList.toggle("shown", i === this.shown));
     this.paneButtons.forEach((button, i) => button.setAttribute("aria-pressed", flipping && i === this.shown));
   }
 
   onKey(event) {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     const digit = Number(event.key);
+    if (event.key === "m" && this.groups.length > 1) return this.showGroup((this.group + 1) % this.groups.length);
     if (step) this.show(this.shown + step);
     else if (digit >= 1 && digit <= this.panes.length) this.show(digit - 1);
     else return;
@@ -119,8 +144,8 @@ class Viewer {
     this.view.y = Math.min(Math.max(this.view.y, 0), room);
     const { zoom, x, y } = this.view;
     this.root.classList.toggle("zoomed", zoom > 1);
-    for (const pane of this.panes) {
-      pane.querySelector("img").style.transform = `scale(${zoom}) translate(${-100 * x}%, ${-100 * y}%)`;
+    for (const image of this.root.querySelectorAll(".frame img")) {
+      image.style.transform = `scale(${zoom}) translate(${-100 * x}%, ${-100 * y}%)`;
     }
   }
 
@@ -166,5 +191,30 @@ class Viewer {
   }
 }
 
+// Heat maps: one at a time, chosen by buttons. In print and without scripts all of them are there.
+function addHeatMapTools(root) {
+  const maps = [...root.querySelectorAll(".heatmap")];
+  const tools = document.createElement("div");
+  tools.className = "tools";
+  const show = (index) => {
+    maps.forEach((map, i) => map.classList.toggle("away", i !== index));
+    [...tools.children].forEach((button, i) => button.setAttribute("aria-pressed", i === index));
+  };
+  maps.forEach((map, index) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = map.dataset.name;
+    button.addEventListener("click", () => show(index));
+    tools.append(button);
+  });
+  root.prepend(tools);
+  show(0);
+}
+
+document.querySelectorAll(".heatmaps").forEach(addHeatMapTools);
 document.querySelectorAll("svg.plot").forEach(addTooltips);
 document.querySelectorAll(".viewer").forEach((root) => new Viewer(root));
+// Print shows what was measured; settings stay on the screen.
+addEventListener("beforeprint", () => {
+  for (const stages of document.querySelectorAll(".stages")) stages.closest("details").open = true;
+});

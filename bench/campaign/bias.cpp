@@ -1,0 +1,56 @@
+#include "bench/campaign/bias.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace wavecrest {
+
+ErrorParts errorParts(std::span<const Image> images, const Reference& reference) {
+  if (images.size() < 2) throw std::invalid_argument("errorParts: fewer than two images");
+  const Image a = reference.difference ? reference.halfA() : reference.mean;
+  const Image b = reference.difference ? reference.halfB() : reference.mean;
+  const auto count = static_cast<double>(images.size());
+  double same = 0, across = 0;  // sums over samples of the mean over equal and over different seeds
+  size_t samples = 0;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    double sumA = 0, sumB = 0, diagonal = 0;
+    for (const Image& image : images) {
+      const double errorA = double{image.pixels.at(i)} - a.pixels[i], errorB = double{image.pixels[i]} - b.pixels[i];
+      sumA += errorA;
+      sumB += errorB;
+      diagonal += errorA * errorB;
+    }
+    const double offDiagonal = (sumA * sumB - diagonal) / (count * (count - 1));
+    if (!std::isfinite(offDiagonal) || !std::isfinite(diagonal)) continue;
+    same += diagonal / count;
+    across += offDiagonal;
+    ++samples;
+  }
+  const double n = static_cast<double>(samples);
+  return {.meanSquareError = same / n, .variance = (same - across) / n, .biasSquared = across / n};
+}
+
+std::vector<BiasRecord> measureBiases(std::span<const RunRecord* const> runs, const Reference& reference) {
+  std::vector<BiasRecord> biases;
+  if (runs.size() < 2) return biases;
+  for (size_t k = 0;; ++k) {
+    if (std::any_of(runs.begin(), runs.end(), [&](const RunRecord* run) { return k >= run->snapshots.size(); })) break;
+    std::vector<Image> images;
+    for (const RunRecord* run : runs) {
+      if (!run->snapshots[k].file.empty()) images.push_back(readImage(run->snapshots[k].file).image);
+    }
+    if (images.size() < runs.size()) continue;  // images of intermediate snapshots were not kept
+    const ErrorParts parts = errorParts(images, reference);
+    biases.push_back({.scene = runs[0]->scene,
+                      .method = runs[0]->method,
+                      .number = runs[0]->snapshots[k].number,
+                      .seeds = static_cast<unsigned>(runs.size()),
+                      .meanSquareError = parts.meanSquareError,
+                      .variance = parts.variance,
+                      .biasSquared = parts.biasSquared});
+  }
+  return biases;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,27 @@
+// Error taken apart: what of a method's mean square error is bias, and what is noise that more time removes.
+//
+// Images of independent seeds share the bias but not the noise, and the reference's halves share neither: products of
+// errors of different seeds against different halves are unbiased estimates of the squared bias (METHODS 8.4). The
+// variance is the difference, mean square error - bias^2.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bench/campaign/reference_file.h"
+#include "bench/results/results.h"
+
+namespace wavecrest {
+
+struct ErrorParts {
+  double meanSquareError = 0, variance = 0, biasSquared = 0;
+};
+
+// At least two images of the reference's size. Samples that are not finite anywhere are left out. Of a reference
+// without halves the noise stays in mean square error and squared bias.
+ErrorParts errorParts(std::span<const Image> images, const Reference& reference);
+
+// For every snapshot that all these runs of one scene and method have an image of; empty for fewer than two runs.
+std::vector<BiasRecord> measureBiases(std::span<const RunRecord* const> runs, const Reference& reference);
+
+}  // namespace wavecrest

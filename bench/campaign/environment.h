@@ -1,0 +1,16 @@
+// The machine and the program that results come from.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "engine/render_settings.h"
+
+namespace wavecrest {
+
+std::string cpuName();
+
+// version, commit, cpu, host, isa, threads: keys of the results file's campaign table.
+std::map<std::string, std::string> environment(const RenderSettings& settings);
+
+}  // namespace wavecrest

@@ -1,0 +1,108 @@
+#include "bench/campaign/measured_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "bench/campaign/environment.h"
+#include "bench/campaign/render_stats.h"
+#include "bench/film_image.h"
+#include "engine/scene/scene_error.h"
+#include "metrics/image/image_io.h"
+#include "metrics/metric_list.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+// Takes the snapshots of one session into a record.
+class SnapshotTaker {
+ public:
+  SnapshotTaker(const RunRequest& request, RunRecord& run, const Session& session)
+      : request_(request), run_(run), session_(session) {}
+
+  void take(unsigned number) {
+    const RenderStatistics statistics = session_.statistics();
+    paths_ = session_.progressPaths();
+    const std::string stem = fmt::format("{}.{}.{}", run_.scene, run_.method, run_.seed);
+    SnapshotRecord& snapshot = run_.snapshots.emplace_back();
+    snapshot.number = number;
+    snapshot.renderSeconds = statistics.renderSeconds;
+    snapshot.iterations = statistics.iterations;
+    snapshot.file = (fs::path("images") / fmt::format("{}.{:04}.exr", stem, number)).string();
+    const Image image = filmImage(session_);
+    nlohmann::ordered_json stats = this->stats(statistics);
+    writeExr((request_.out / snapshot.file).string(), image, statsMetadata(stats));
+    if (!request_.keepImages && run_.snapshots.size() > 1) {
+      SnapshotRecord& before = run_.snapshots[run_.snapshots.size() - 2];
+      fs::remove(request_.out / before.file);
+      before.file.clear();
+    }
+    snapshot.values = measureImage(request_.reference, snapshot.file, image);
+  }
+
+  // Whether anything was rendered since the last snapshot.
+  bool outdated() const { return run_.snapshots.empty() || session_.progressPaths() != paths_; }
+
+  nlohmann::ordered_json stats(const RenderStatistics& statistics) const {
+    const double wall = std::chrono::duration<double>(Clock::now() - begin_).count();
+    nlohmann::ordered_json all =
+        renderStats(request_.scene, request_.settings, statistics, request_.loadSeconds, wall, {});
+    all.erase("stages");
+    all.erase("snapshots");
+    all["cpu"] = cpuName();
+    return all;
+  }
+
+ private:
+  const RunRequest& request_;
+  RunRecord& run_;
+  const Session& session_;
+  const Clock::time_point begin_ = Clock::now();
+  uint64_t paths_ = 0;
+};
+
+}  // namespace
+
+MetricValues measureImage(const PreparedReference& reference, const std::string& name, Image image) {
+  const uint32_t side = std::min(image.width, image.height);
+  const ComparedImage test = reference.prepareTest(name, {std::move(image), Encoding::linear, {}});
+  MetricValues values;
+  for (const Metric& metric : metricList()) {
+    if (!metric.byDefault || side < metric.smallestSide) continue;
+    for (const Score& score : metric.measure(reference, test, false).scores) {
+      values[scoreName(metric, score.name)] = score.value;
+    }
+  }
+  return values;
+}
+
+std::optional<RunRecord> measuredRun(const RunRequest& request, const std::function<void(Session*)>& watch) {
+  RunRecord run{.scene = request.scene.name,
+                .method = std::string(toString(request.settings.method)),
+                .seed = request.settings.seed};
+  std::unique_ptr<Session> session;
+  try {
+    session = Session::create(request.scene, request.settings);
+  } catch (const SceneError& error) {
+    run.state = RunState::refused;
+    run.reason = error.what();
+    return run;
+  }
+  SnapshotTaker taker(request, run, *session);
+  if (watch) watch(session.get());
+  const auto takeSnapshot = [&](unsigned number) { taker.take(number); };
+  const unsigned count = renderWithSnapshots(*session, request.settings, request.schedule, takeSnapshot);
+  if (watch) watch(nullptr);
+  if (session->interrupted()) return std::nullopt;
+  if (taker.outdated()) taker.take(count);
+  const RenderStatistics statistics = session->statistics();
+  run.stats = taker.stats(statistics).dump();
+  for (const auto& stage : statistics.stages) run.stages.push_back({stage.name, stage.items, stage.seconds});
+  return run;
+}
+
+}  // namespace wavecrest

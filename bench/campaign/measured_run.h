@@ -1,0 +1,34 @@
+// One run of a campaign: a scene by a method with a seed, every snapshot measured against the reference.
+//
+// The render clock stands still while an image is resolved, written and measured. Nothing is left to chance but time:
+// with counted iterations images and values repeat to the bit.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "bench/results/results.h"
+#include "engine/snapshots.h"
+#include "metrics/prepared_reference.h"
+
+namespace wavecrest {
+
+struct RunRequest {
+  const Scene& scene;
+  RenderSettings settings;  // with method, seed and the end of the run
+  SnapshotSchedule schedule;
+  const PreparedReference& reference;
+  std::filesystem::path out;  // images go to out/images/SCENE.METHOD.SEED.NUMBER.exr
+  bool keepImages = true;     // of all snapshots, else of the last
+  double loadSeconds = 0;     // of the scene, for the record
+};
+
+// Nothing if the run was interrupted; its images are of no use then and the next attempt overwrites them. A method that
+// cannot render the scene gives a run that is refused.
+std::optional<RunRecord> measuredRun(const RunRequest& request, const std::function<void(Session*)>& watch);
+
+// All scores of all metrics that are measured by default and that the image is large enough for, by scoreName.
+MetricValues measureImage(const PreparedReference& reference, const std::string& name, Image image);
+
+}  // namespace wavecrest

@@ -1,0 +1,144 @@
+#include "bench/campaign/reference_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+
+#include "metrics/metric_list.h"
+#include "metrics/noise_floor.h"
+#include "metrics/rmse.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr const char* kPrefix = "wavecrest:";
+constexpr const char* kFloorPrefix = "wavecrest:noise_floor.";
+constexpr const char *kDifference = "difference", *kVariance = "variance";
+
+Image roundedTo12Bits(Image image) {
+  for (float& sample : image.pixels) {
+    if (!std::isfinite(sample)) continue;
+    sample = std::bit_cast<float>((std::bit_cast<uint32_t>(sample) + 0x800u) & ~0xfffu);
+  }
+  return image;
+}
+
+Image squared(Image image) {
+  for (float& sample : image.pixels) sample *= sample;
+  return image;
+}
+
+// ---- attributes -----------------------------------------------------------------------------------------------------
+
+// Calls visit(name, value) for every field, in either direction.
+template <class Info, class Visit>
+void visitInfo(Info& info, Visit visit) {
+  visit("scene", info.scene);
+  visit("scene_hash", info.sceneHash);
+  visit("method", info.method);
+  visit("sampler", info.sampler);
+  visit("precision", info.precision);
+  visit("seed", info.seed);
+  visit("max_depth", info.maxDepth);
+  visit("roulette_depth", info.rouletteDepth);
+  visit("radius", info.radius);
+  visit("radius_alpha", info.radiusAlpha);
+  visit("method_reason", info.methodReason);
+  visit("iterations", info.iterations);
+  visit("render_seconds", info.renderSeconds);
+  visit("relative_error", info.relativeError);
+  visit("version", info.version);
+  visit("commit", info.commit);
+}
+
+template <class Number>
+bool parseNumber(const std::string& text, Number& number) {
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && rest == text.data() + text.size();
+}
+
+Metadata toMetadata(const Reference& reference) {
+  Metadata metadata;
+  visitInfo(reference.info, [&](const char* name, const auto& value) {
+    metadata[std::string(kPrefix) + name] = fmt::format("{}", value);
+  });
+  for (const auto& [name, value] : reference.noiseFloors) metadata[kFloorPrefix + name] = fmt::format("{}", value);
+  return metadata;
+}
+
+struct FromMetadata {
+  const std::filesystem::path& path;
+  const Metadata& metadata;
+
+  void operator()(const char* name, std::string& value) const {
+    const auto entry = metadata.find(std::string(kPrefix) + name);
+    if (entry != metadata.end()) value = entry->second;
+  }
+  template <class Number>
+  void operator()(const char* name, Number& value) const {
+    const auto entry = metadata.find(std::string(kPrefix) + name);
+    if (entry != metadata.end()) parse(entry->first, entry->second, value);
+  }
+  template <class Number>
+  void parse(const std::string& name, const std::string& text, Number& value) const {
+    if (!parseNumber(text, value)) {
+      throw ImageError(path.string(), fmt::format("attribute {} is '{}'", name, text), "expected a number");
+    }
+  }
+};
+
+}  // namespace
+
+Image Reference::half(float sign) const {
+  Image image = mean;
+  for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += sign * difference.value().pixels[i];
+  return image;
+}
+
+double relativeError(const Image& mean, const Image& difference) {
+  Image half = mean;
+  for (size_t i = 0; i < half.pixels.size(); ++i) half.pixels[i] += difference.pixels[i];
+  return std::sqrt(relmse(mean, half).relmse);
+}
+
+void measureNoiseFloors(Reference& reference) {
+  reference.noiseFloors.clear();
+  if (!reference.difference) return;
+  for (const NoiseFloor& floor : noiseFloors(reference.halfA(), reference.halfB(), metricList())) {
+    const Metric& metric = *findMetric(floor.metric);
+    if (metric.byDefault) reference.noiseFloors[scoreName(metric, metric.score)] = floor.score;
+  }
+}
+
+void writeReference(const std::filesystem::path& path, const Reference& reference) {
+  std::vector<ExrLayer> layers;
+  if (reference.difference) {
+    layers.push_back({kDifference, roundedTo12Bits(*reference.difference)});
+    layers.push_back({kVariance, roundedTo12Bits(squared(*reference.difference))});
+  }
+  writeExr(path.string(), reference.mean, toMetadata(reference), layers);
+}
+
+Reference readReference(const std::filesystem::path& path) {
+  ImageFile file = readImage(path.string());
+  if (file.encoding != Encoding::linear) {
+    throw ImageError(path.string(), "is not in linear light", "expected a reference as EXR");
+  }
+  Reference reference{.mean = std::move(file.image), .difference = {}, .info = {}, .noiseFloors = {}};
+  const FromMetadata from{path, file.metadata};
+  visitInfo(reference.info, from);
+  for (const auto& [name, text] : file.metadata) {
+    if (name.starts_with(kFloorPrefix)) {
+      from.parse(name, text, reference.noiseFloors[name.substr(std::string_view(kFloorPrefix).size())]);
+    }
+  }
+  // A plain render has iterations too; the relative error is a reference's alone.
+  if (file.metadata.contains(std::string(kPrefix) + "relative_error"))
+    reference.difference = readExrLayer(path.string(), kDifference);
+  return reference;
+}
+
+}  // namespace wavecrest

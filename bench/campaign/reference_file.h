@@ -1,0 +1,57 @@
+// A reference image as a file: the mean of two independent halves A and B, and what they say about its own noise.
+//
+// EXR, single part, fp32. R G B: the mean M = (A + B) / 2. Layer `difference`: D = (A - B) / 2, so that A = M + D and
+// B = M - D. Layer `variance`: the variance of M, D squared (METHODS 8.4). Both layers are rounded to 12 significant
+// bits: they are noise, and the zeros compress. String attributes say how the image was made (ReferenceInfo) and the
+// noise floor of every metric, as "wavecrest:noise_floor.NAME". An EXR without the layers is a reference too, of
+// unknown noise.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "bench/results/results.h"
+#include "metrics/image/image_io.h"
+
+namespace wavecrest {
+
+// How a reference was made. The first part decides its value in the limit: rendering may go on only where it agrees.
+struct ReferenceInfo {
+  std::string scene, sceneHash, method, sampler, precision;
+  uint64_t seed = 0;
+  uint32_t maxDepth = 0, rouletteDepth = 0;
+  double radius = 0, radiusAlpha = 0;  // of methods that merge, else 0
+
+  std::string methodReason;
+  uint64_t iterations = 0;   // of each half
+  double renderSeconds = 0;  // of both halves
+  double relativeError = 0;  // root of the mean relative variance, see relativeError()
+  std::string version, commit;
+};
+
+struct Reference {
+  Image mean;
+  std::optional<Image> difference;
+  ReferenceInfo info;
+  MetricValues noiseFloors;
+
+  Image halfA() const { return half(1); }
+  Image halfB() const { return half(-1); }
+
+ private:
+  Image half(float sign) const;
+};
+
+// Root of the mean over samples of D^2 / (M^2 + epsilon), with epsilon as in relMSE: what share of its value a sample
+// is off by, about.
+double relativeError(const Image& mean, const Image& difference);
+
+// Fills the noise floor of every metric that the image is large enough for, under its scoreName.
+void measureNoiseFloors(Reference& reference);
+
+// Throws ImageError.
+void writeReference(const std::filesystem::path& path, const Reference& reference);
+Reference readReference(const std::filesystem::path& path);
+
+}  // namespace wavecrest

@@ -1,0 +1,182 @@
+#include "bench/campaign/render_reference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "bench/film_image.h"
+#include "wavecrest_version.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kSaveSeconds = 30;                       // of render time that a crash may cost
+constexpr double kShortestLook = 0.2, kLongestLook = 10;  // seconds between looks at the goal,
+constexpr double kLookFraction = 0.1;                     // a part of the time so far
+
+using Halves = std::array<Image, 2>;
+
+// Unlike the seed of any other render: campaigns and users count from 0. A continuation has numbers of its own.
+uint64_t halfSeed(uint64_t seed, size_t half, uint64_t firstIteration) {
+  uint64_t mixed = firstIteration * 0x9e3779b97f4a7c15u;
+  mixed = (mixed ^ (mixed >> 29)) * 0xbf58476d1ce4e5b9u;
+  return (static_cast<uint64_t>(half + 1) << 32) | static_cast<uint32_t>(seed ^ (mixed >> 32));
+}
+
+ReferenceInfo describe(const Scene& scene, const RenderSettings& settings, const std::string& methodReason) {
+  const bool merges = entryOf(settings.method).strategies.merge;
+  return {.scene = scene.name,
+          .sceneHash = fmt::format("{:016x}", scene.hash),
+          .method = std::string(toString(settings.method)),
+          .sampler = std::string(toString(settings.sampler)),
+          .precision = std::string(kPrecisionNames[static_cast<size_t>(settings.precision)]),
+          .seed = settings.seed,
+          .maxDepth = settings.limits.maxDepth,
+          .rouletteDepth = settings.limits.rouletteDepth,
+          .radius = merges ? settings.radius : 0,
+          .radiusAlpha = merges ? settings.radiusAlpha : 0,
+          .methodReason = methodReason,
+          .version = kVersion,
+          .commit = kCommit};
+}
+
+void requireSame(const std::filesystem::path& file, const ReferenceInfo& found, const ReferenceInfo& wanted) {
+  const auto require = [&](const char* what, const auto& a, const auto& b) {
+    if (a == b) return;
+    throw ReferenceMismatch(fmt::format("{}: its {} is '{}', not '{}'; expected a reference to go on with, or no file",
+                                        file.string(), what, a, b));
+  };
+  require("scene_hash", found.sceneHash, wanted.sceneHash);
+  require("method", found.method, wanted.method);
+  require("sampler", found.sampler, wanted.sampler);
+  require("precision", found.precision, wanted.precision);
+  require("seed", found.seed, wanted.seed);
+  require("max_depth", found.maxDepth, wanted.maxDepth);
+  require("roulette_depth", found.rouletteDepth, wanted.rouletteDepth);
+  require("radius", found.radius, wanted.radius);
+  require("radius_alpha", found.radiusAlpha, wanted.radiusAlpha);
+}
+
+// The mean of `before` after n0 iterations and `now` after n more.
+Image joined(const Image& before, uint64_t n0, const Image& now, uint64_t n) {
+  if (n0 == 0) return now;
+  Image all = now;
+  const double part = static_cast<double>(n) / static_cast<double>(n0 + n);
+  for (size_t i = 0; i < all.pixels.size(); ++i) {
+    all.pixels[i] = static_cast<float>((1 - part) * before.pixels[i] + part * now.pixels[i]);
+  }
+  return all;
+}
+
+// Mean and half difference of two images.
+void setHalves(Reference& reference, const Image& a, const Image& b) {
+  reference.mean = a;
+  reference.difference = a;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    reference.mean.pixels[i] = 0.5f * (a.pixels[i] + b.pixels[i]);
+    reference.difference->pixels[i] = 0.5f * (a.pixels[i] - b.pixels[i]);
+  }
+  reference.info.relativeError = relativeError(reference.mean, *reference.difference);
+}
+
+bool reached(const ReferenceGoal& goal, const ReferenceInfo& info) {
+  if (info.iterations == 0) return false;
+  return (goal.relativeError && info.relativeError <= *goal.relativeError) ||
+         (goal.seconds && info.renderSeconds >= *goal.seconds) ||
+         (goal.iterations && info.iterations >= *goal.iterations);
+}
+
+// How many iterations until the next look at the goal: short of it, and not so many that Ctrl-C waits.
+uint64_t nextIterations(const ReferenceGoal& goal, const ReferenceInfo& info, uint64_t done, double seconds) {
+  uint64_t most = std::numeric_limits<uint64_t>::max();
+  if (goal.iterations) most = *goal.iterations - info.iterations;
+  if (done == 0) return 1;
+  double look = std::clamp(kLookFraction * seconds, kShortestLook, kLongestLook);
+  if (goal.seconds) look = std::min(look, *goal.seconds - info.renderSeconds);
+  const double fitting = look * static_cast<double>(done) / std::max(seconds, 1e-6);
+  return std::min(most, static_cast<uint64_t>(std::max(1.0, std::round(fitting))));
+}
+
+// Two sessions that carry on from what a reference holds.
+class HalfSessions {
+ public:
+  HalfSessions(const Scene& scene, const RenderSettings& settings, const Reference& before)
+      : firstIteration_(before.info.iterations), firstSeconds_(before.info.renderSeconds) {
+    if (firstIteration_ > 0) before_ = {before.halfA(), before.halfB()};
+    for (size_t half = 0; half < 2; ++half) {
+      RenderSettings own = settings;
+      own.seed = halfSeed(settings.seed, half, firstIteration_);
+      own.firstIteration = firstIteration_;
+      sessions_[half] = Session::create(scene, own);
+    }
+  }
+
+  // False, and nothing is to be taken from the sessions any more, when a hook asked to stop.
+  bool render(uint64_t iterations, const ReferenceHooks& hooks) {
+    const uint64_t goal = done_ + iterations;
+    for (const auto& session : sessions_) {
+      if (hooks.watch) hooks.watch(session.get());
+      session->renderUntil(goal, std::nullopt);
+      if (hooks.watch) hooks.watch(nullptr);
+      if (session->interrupted() || (hooks.stopped && hooks.stopped())) return false;
+    }
+    done_ = goal;
+    return true;
+  }
+
+  void collect(Reference& reference) const {
+    Halves halves;
+    for (size_t half = 0; half < 2; ++half) {
+      halves[half] = joined(before_[half], firstIteration_, filmImage(*sessions_[half]), done_);
+    }
+    reference.info.iterations = firstIteration_ + done_;
+    reference.info.renderSeconds = firstSeconds_ + seconds();
+    setHalves(reference, halves[0], halves[1]);
+  }
+
+  uint64_t done() const { return done_; }
+  double seconds() const { return sessions_[0]->progressSeconds() + sessions_[1]->progressSeconds(); }
+
+ private:
+  const uint64_t firstIteration_;
+  const double firstSeconds_;
+  Halves before_;
+  std::array<std::unique_ptr<Session>, 2> sessions_;
+  uint64_t done_ = 0;
+};
+
+}  // namespace
+
+Reference renderReference(const Scene& scene, const RenderSettings& settings, const std::string& methodReason,
+                          const ReferenceGoal& goal, const std::filesystem::path& file, const ReferenceHooks& hooks) {
+  const ReferenceInfo wanted = describe(scene, settings, methodReason);
+  Reference reference{.mean = {}, .difference = {}, .info = wanted, .noiseFloors = {}};
+  if (std::filesystem::exists(file)) {
+    reference = readReference(file);
+    requireSame(file, reference.info, wanted);
+    if (reached(goal, reference.info)) return reference;
+    reference.info.version = wanted.version;
+    reference.info.commit = wanted.commit;
+  }
+  HalfSessions halves(scene, settings, reference);
+  double savedSeconds = reference.info.renderSeconds;
+  const auto save = [&] {
+    measureNoiseFloors(reference);
+    writeReference(file, reference);
+    savedSeconds = reference.info.renderSeconds;
+  };
+  while (!reached(goal, reference.info)) {
+    if (!halves.render(nextIterations(goal, reference.info, halves.done(), halves.seconds()), hooks)) break;
+    halves.collect(reference);
+    if (hooks.advance) hooks.advance(reference.info);
+    if (reference.info.renderSeconds - savedSeconds >= kSaveSeconds) save();
+  }
+  if (reference.info.iterations > 0 && reference.info.renderSeconds > savedSeconds) save();
+  return reference;
+}
+
+}  // namespace wavecrest

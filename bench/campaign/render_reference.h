@@ -1,0 +1,40 @@
+// Renders a scene's reference: two independent halves of equal iterations, side by side, until good enough.
+//
+// The file is written every now and then and at the end, whole, so whatever ends the process leaves a reference that
+// the next call continues: sample sequences and merge radii go on where they were, and no random number comes twice.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+
+#include "bench/campaign/reference_file.h"
+#include "engine/session.h"
+
+namespace wavecrest {
+
+// Counted from the beginning of the reference, over all calls that worked on it; the first that is reached counts.
+struct ReferenceGoal {
+  std::optional<double> relativeError;
+  std::optional<double> seconds;       // of render time, both halves together
+  std::optional<uint64_t> iterations;  // of each half
+};
+
+struct ReferenceHooks {
+  std::function<void(Session*)> watch;                // the session about to render; null: none
+  std::function<bool()> stopped;                      // true: save and return
+  std::function<void(const ReferenceInfo&)> advance;  // after every few iterations
+};
+
+// The file holds another reference than the one asked for. The text is complete.
+struct ReferenceMismatch : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// settings.seed is the seed of both halves, which differ in its high word. Renders nothing if the file has reached the
+// goal. Throws ReferenceMismatch, ImageError, and what Session::create throws.
+Reference renderReference(const Scene& scene, const RenderSettings& settings, const std::string& methodReason,
+                          const ReferenceGoal& goal, const std::filesystem::path& file, const ReferenceHooks& hooks);
+
+}  // namespace wavecrest

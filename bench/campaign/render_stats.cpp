@@ -1,0 +1,89 @@
+#include "bench/campaign/render_stats.h"
+
+#include <fmt/core.h>
+#include <sys/resource.h>
+
+#include "wavecrest_version.h"
+
+namespace wavecrest {
+namespace {
+
+uint64_t peakMemoryBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+template <size_t kCount, class Enum>
+std::string nameOf(const std::array<std::string_view, kCount>& names, Enum value) {
+  return std::string(names[static_cast<size_t>(value)]);
+}
+
+}  // namespace
+
+nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& settings,
+                                   const RenderStatistics& statistics, double loadSeconds, double wallSeconds,
+                                   const std::vector<SnapshotRecord>& snapshots) {
+  const double seconds = statistics.renderSeconds;
+  const uint64_t rays = statistics.counters.raysClosest + statistics.counters.raysShadow;
+  const auto perSecond = [&](uint64_t count) { return seconds > 0 ? static_cast<double>(count) / seconds : 0.0; };
+  nlohmann::ordered_json stages = nlohmann::ordered_json::array();
+  for (const auto& stage : statistics.stages) {
+    stages.push_back({{"name", stage.name}, {"items", stage.items}, {"seconds", stage.seconds}});
+  }
+  nlohmann::ordered_json snapshotRows = nlohmann::ordered_json::array();
+  for (const SnapshotRecord& snapshot : snapshots) {
+    snapshotRows.push_back({{"index", snapshot.number},
+                            {"render_seconds", snapshot.renderSeconds},
+                            {"iterations", snapshot.iterations},
+                            {"file", snapshot.file}});
+  }
+  return {
+      {"version", kVersion},
+      {"commit", kCommit},
+      {"scene", scene.name},
+      {"scene_hash", fmt::format("{:016x}", scene.hash)},
+      {"method", std::string(toString(settings.method))},
+      {"seed", settings.seed},
+      {"sampler", std::string(toString(settings.sampler))},
+      {"width", scene.film.cropWidth != 0 ? scene.film.cropWidth : scene.film.width},
+      {"height", scene.film.cropHeight != 0 ? scene.film.cropHeight : scene.film.height},
+      {"threads", settings.threads},
+      {"isa", std::string(toString(statistics.isa))},
+      {"precision", nameOf(kPrecisionNames, settings.precision)},
+      {"accel", nameOf(kAccelNames, statistics.accel)},
+      {"wave", settings.waveSize},
+      {"specialization", nameOf(kSpecializationNames, statistics.specialization)},
+      {"iterations", statistics.iterations},
+      {"camera_paths", statistics.paths},
+      {"light_paths", statistics.lightPaths},
+      {"mutations", 0},
+      {"rays_closest", statistics.counters.raysClosest},
+      {"rays_shadow", statistics.counters.raysShadow},
+      {"connections", statistics.counters.connections},
+      {"merges", statistics.counters.merges},
+      {"load_seconds", loadSeconds},
+      {"build_seconds", statistics.buildSeconds},
+      {"render_seconds", seconds},
+      {"wall_seconds", wallSeconds},
+      {"cpu_seconds", statistics.cpuSeconds},
+      {"paths_per_second", perSecond(settings.method == Method::lt ? statistics.lightPaths : statistics.paths)},
+      {"rays_per_second", perSecond(rays)},
+      {"bytes_per_path", statistics.bytesPerPath},
+      {"light_bytes", statistics.memory.lightVertices + statistics.memory.photonMap},
+      {"peak_memory_bytes", peakMemoryBytes()},
+      {"nonfinite_samples", statistics.counters.nonFinite},
+      {"stages", stages},
+      {"snapshots", snapshotRows},
+  };
+}
+
+Metadata statsMetadata(const nlohmann::ordered_json& stats) {
+  Metadata out;
+  for (const auto& [key, value] : stats.items()) {
+    if (value.is_primitive()) out["wavecrest:" + key] = value.is_string() ? value.get<std::string>() : value.dump();
+  }
+  return out;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,35 @@
+// A campaign from start to end, or from wherever an earlier process stopped.
+//
+// Scene by scene: load it, get its reference, then seed by seed every method, one run at a time with the machine to
+// itself; seeds are the outer loop so that a machine that warms up or is shared does so for all methods alike. Each run
+// is written into the results file as a whole once it is over. What is there already is not rendered again.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "bench/campaign/campaign_settings.h"
+#include "bench/results/results.h"
+
+namespace wavecrest {
+
+class Session;
+
+struct CampaignProgress {
+  size_t done = 0, total = 0;  // runs of this shard, those of earlier processes included
+  double secondsLeft = 0;      // about
+};
+
+struct CampaignHooks {
+  std::function<void(Session*)> watch;  // the session about to render; null: none
+  std::function<bool()> stopped;        // true: return at once, without the run under way
+  std::function<void(const RunRecord&, const CampaignProgress&)> finished;
+  std::function<void(const std::string&)> say;  // what people should know, a line at a time
+};
+
+// keys: what is stored in the results file's campaign table besides the environment. True: all runs of the shard are in
+// the file; false: it was stopped. Throws LoadError, ReferenceError, ResultsFileError, ImageError.
+bool runCampaign(const CampaignSettings& settings, const std::map<std::string, std::string>& keys,
+                 const CampaignHooks& hooks);
+
+}  // namespace wavecrest

@@ -1,0 +1,82 @@
+#include "bench/campaign/scene_reference.h"
+
+#include <fmt/format.h>
+
+#include "engine/path_classes.h"
+#include "metrics/image/atomic_file.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A reference's noise must be far below the errors it measures: variance below a tenth (METHODS 8.4), as a method that
+// suits the scene is as good after a tenth of the reference's time.
+constexpr double kReferenceEffort = 12;
+
+// Of merging methods in a reference: their bias goes with the square.
+constexpr double kReferenceRadius = 1e-4;
+
+// Why an image cannot be the reference of this scene; empty if it can.
+std::string misfit(const Reference& reference, const Scene& scene, const CampaignSettings& settings) {
+  if (reference.mean.width != settings.size[0] || reference.mean.height != settings.size[1]) {
+    return fmt::format("is {}x{} pixels; expected {}x{}", reference.mean.width, reference.mean.height, settings.size[0],
+                       settings.size[1]);
+  }
+  const std::string hash = fmt::format("{:016x}", scene.hash);
+  if (!reference.info.sceneHash.empty() && reference.info.sceneHash != hash) {
+    return fmt::format("is of scene_hash {}; expected {} of this {}", reference.info.sceneHash, hash, scene.name);
+  }
+  return "";
+}
+
+Reference renderOwn(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings,
+                    const fs::path& file, const ReferenceHooks& hooks) {
+  const ReferenceChoice choice = classifyPaths(scene).reference;
+  RenderSettings render = settings.render;
+  render.method = choice.method;
+  render.seed = 0;
+  render.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
+  render.radius = kReferenceRadius;
+  ReferenceGoal goal;
+  if (settings.iterations) {
+    goal.iterations = static_cast<uint64_t>(kReferenceEffort) * *settings.iterations;
+  } else {
+    goal.seconds = kReferenceEffort * entry.effort.seconds;
+  }
+  return renderReference(scene, render, choice.reason, goal, file, hooks);
+}
+
+}  // namespace
+
+fs::path referenceFile(const std::string& scene) { return fs::path("references") / (scene + ".exr"); }
+
+Reference sceneReference(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings,
+                         const ReferenceHooks& hooks, const std::function<void(const std::string&)>& say) {
+  const fs::path file = settings.out / referenceFile(entry.name);
+  const fs::path given = settings.referenceFolder / (entry.name + ".exr");
+  std::string wrong = "does not exist";
+  if (fs::is_regular_file(given)) {
+    Reference reference = readReference(given);
+    wrong = misfit(reference, scene, settings);
+    if (wrong.empty()) {
+      writeFileAtomically(file.string(), readFileBytes(given.string()));
+      return reference;
+    }
+  }
+  if (settings.referenceRequired) {
+    throw ReferenceError(
+        fmt::format("{}: {}; make it by `wavecrest reference`", given.string(),
+                    wrong == "does not exist" ? wrong + "; expected the reference of " + entry.name : wrong));
+  }
+  if (settings.shard.count > 1 && !settings.iterations) {
+    throw ReferenceError(
+        fmt::format("{}: {}; expected --reference with a folder of references, or every shard would "
+                    "render another",
+                    given.string(), wrong));
+  }
+  say(fmt::format("{}: rendering its reference ({} {})", entry.name, given.string(), wrong));
+  return renderOwn(scene, entry, settings, file, hooks);
+}
+
+}  // namespace wavecrest

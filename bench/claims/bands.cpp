@@ -1,0 +1,54 @@
+#include "bench/claims/bands.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace wavecrest {
+namespace {
+
+struct Sample {
+  double mean = 0;
+  double meanVariance = 0;  // of the mean
+  double degreesOfFreedom = 0;
+};
+
+Sample sampleOf(std::span<const double> values) {
+  Sample sample;
+  const auto n = static_cast<double>(values.size());
+  for (const double value : values) sample.mean += value / n;
+  double squares = 0;
+  for (const double value : values) squares += (value - sample.mean) * (value - sample.mean);
+  sample.degreesOfFreedom = n - 1;
+  sample.meanVariance = n > 1 ? squares / (n - 1) / n : std::numeric_limits<double>::infinity();
+  return sample;
+}
+
+}  // namespace
+
+double studentQuantile(double degreesOfFreedom) {
+  static constexpr std::array kTable{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
+                                     2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086};
+  const double last = kTable.size();
+  if (degreesOfFreedom > last) return 1.960 + (kTable.back() - 1.960) * last / degreesOfFreedom;  // to 0.5 %
+  return kTable[static_cast<size_t>(std::max(degreesOfFreedom, 1.0)) - 1];
+}
+
+Band meanBand(std::span<const double> values) {
+  const Sample sample = sampleOf(values);
+  return {sample.mean, std::sqrt(sample.meanVariance) * studentQuantile(sample.degreesOfFreedom)};
+}
+
+Band differenceBand(std::span<const double> a, std::span<const double> b) {
+  const Sample x = sampleOf(a), y = sampleOf(b);
+  const double variance = x.meanVariance + y.meanVariance;
+  const Band band{x.mean - y.mean, std::sqrt(variance)};
+  if (variance == 0 || std::isinf(variance)) return band;
+  const double degrees =
+      variance * variance /
+      (x.meanVariance * x.meanVariance / x.degreesOfFreedom + y.meanVariance * y.meanVariance / y.degreesOfFreedom);
+  return {band.mean, band.halfWidth * studentQuantile(degrees)};
+}
+
+}  // namespace wavecrest

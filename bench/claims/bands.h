@@ -1,0 +1,21 @@
+// Values with bands from a few seeds: mean, and the half width of its 95 % confidence interval (Student's t; of
+// differences Welch's, 1947). One value alone has no band.
+#pragma once
+
+#include <span>
+
+namespace wavecrest {
+
+struct Band {
+  double mean = 0;
+  double halfWidth = 0;  // infinite where there is none
+};
+
+// Two-sided 95 % quantile of Student's distribution; degrees of freedom are rounded down, to 1 at least.
+double studentQuantile(double degreesOfFreedom);
+
+Band meanBand(std::span<const double> values);
+// mean(a) - mean(b).
+Band differenceBand(std::span<const double> a, std::span<const double> b);
+
+}  // namespace wavecrest

@@ -1,0 +1,73 @@
+#include "bench/claims/claim_list.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "bench/claims/claims_json.h"
+
+namespace wavecrest {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<std::pair<std::string_view, ConditionKind>, 8> kKinds{{{"better", ConditionKind::better},
+                                                                            {"good", ConditionKind::good},
+                                                                            {"poor", ConditionKind::poor},
+                                                                            {"equal", ConditionKind::equal},
+                                                                            {"reaches", ConditionKind::reaches},
+                                                                            {"misses", ConditionKind::misses},
+                                                                            {"stalls", ConditionKind::stalls},
+                                                                            {"biased", ConditionKind::biased}}};
+
+ConditionKind parseKind(const std::string& id, const std::string& word) {
+  const auto found = std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& kind) { return kind.first == word; });
+  if (found == kKinds.end()) throw ClaimListError("claim " + id + ": unknown kind '" + word + "'");
+  return found->second;
+}
+
+Condition parseCondition(const std::string& id, const json& object) {
+  static const std::set<std::string> kKeys{"kind", "metrics", "methods", "than", "factor", "score", "slope", "share"};
+  for (const auto& [key, value] : object.items()) {
+    if (!kKeys.contains(key)) throw ClaimListError("claim " + id + ": unknown key '" + key + "'");
+  }
+  Condition condition;
+  condition.kind = parseKind(id, object.at("kind").get<std::string>());
+  object.at("metrics").get_to(condition.metrics);
+  object.at("methods").get_to(condition.methods);
+  if (object.contains("than")) object.at("than").get_to(condition.than);
+  condition.factor = object.value("factor", condition.factor);
+  condition.score = object.value("score", condition.score);
+  condition.slope = object.value("slope", condition.slope);
+  condition.share = object.value("share", condition.share);
+  return condition;
+}
+
+}  // namespace
+
+std::vector<Claim> parseClaims(std::string_view text) {
+  std::vector<Claim> claims;
+  std::set<std::string> ids;
+  try {
+    for (const json& object : json::parse(text)) {
+      Claim claim{
+          .id = object.at("id"), .scene = object.at("scene"), .statement = object.at("statement"), .conditions = {}};
+      if (!ids.insert(claim.id).second) throw ClaimListError("claim " + claim.id + ": a second one of this id");
+      for (const json& condition : object.at("all")) claim.conditions.push_back(parseCondition(claim.id, condition));
+      if (claim.conditions.empty()) throw ClaimListError("claim " + claim.id + ": has no condition");
+      claims.push_back(std::move(claim));
+    }
+  } catch (const json::exception& error) {
+    throw ClaimListError(std::string("list of claims: ") + error.what());
+  }
+  return claims;
+}
+
+const std::vector<Claim>& studyClaims() {
+  static const std::vector<Claim> claims = parseClaims(kClaimsJson);
+  return claims;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,213 @@
+#include "bench/report/collect_campaign.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "bench/report/final_images.h"
+#include "bench/report/html_text.h"
+#include "bench/report/series_facts.h"
+#include "bench/report/shown_metrics.h"
+#include "metrics/image/image_io.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Runs of one scene and method: one for each seed.
+using Group = std::vector<const RunRecord*>;
+
+// The metrics that any snapshot was measured by, in the order of the metric list.
+std::vector<const Metric*> measuredMetrics(const CampaignResults& results) {
+  std::vector<const Metric*> metrics;
+  for (const Metric& metric : metricList()) {
+    const std::string key = scoreName(metric, metric.score);
+    const bool occurs = std::any_of(results.runs.begin(), results.runs.end(), [&](const RunRecord& run) {
+      return std::any_of(run.snapshots.begin(), run.snapshots.end(),
+                         [&](const SnapshotRecord& snapshot) { return snapshot.values.contains(key); });
+    });
+    if (occurs) metrics.push_back(&metric);
+  }
+  return metrics;
+}
+
+double valueOf(const MetricValues& values, const std::string& key) {
+  const auto found = values.find(key);
+  return found == values.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+}
+
+ReportPoint pointOf(const SnapshotRecord& snapshot, const std::vector<ReportMetric>& metrics) {
+  ReportPoint point{.seconds = snapshot.renderSeconds, .iterations = snapshot.iterations, .values = {}};
+  for (const ReportMetric& metric : metrics) point.values.push_back(valueOf(snapshot.values, metric.key));
+  for (const auto& [name, value] : snapshot.values) {
+    const bool shown = std::any_of(metrics.begin(), metrics.end(),
+                                   [&name = name](const ReportMetric& metric) { return metric.key == name; });
+    if (!shown) point.further.push_back({name, value});
+  }
+  return point;
+}
+
+// The bias rows of a method, at the mean time of the snapshots that they are about.
+std::vector<ReportBias> biasOf(const CampaignResults& results, const Group& group) {
+  std::vector<ReportBias> biases;
+  for (const BiasRecord& record : results.biases) {
+    if (record.scene != group[0]->scene || record.method != group[0]->method) continue;
+    double seconds = 0, count = 0;
+    for (const RunRecord* run : group) {
+      for (const SnapshotRecord& snapshot : run->snapshots) {
+        if (snapshot.number != record.number) continue;
+        seconds += snapshot.renderSeconds;
+        ++count;
+      }
+    }
+    if (count == 0) continue;
+    biases.push_back({.seconds = seconds / count,
+                      .seeds = record.seeds,
+                      .meanSquareError = record.meanSquareError,
+                      .variance = record.variance,
+                      .bias2 = record.biasSquared});
+  }
+  std::sort(biases.begin(), biases.end(),
+            [](const ReportBias& a, const ReportBias& b) { return a.seconds < b.seconds; });
+  return biases;
+}
+
+ReportSeries seriesOf(const CampaignResults& results, const Group& group, const std::vector<ReportMetric>& metrics) {
+  ReportSeries series;
+  series.method = series.label = group[0]->method;
+  std::vector<nlohmann::json> stats;
+  for (const RunRecord* run : group) {
+    ReportRun shown{.seed = run->seed, .points = {}};
+    for (const SnapshotRecord& snapshot : run->snapshots) shown.points.push_back(pointOf(snapshot, metrics));
+    series.runs.push_back(std::move(shown));
+    for (const StageRecord& stage : run->stages)
+      addStage(series.stages, {.name = stage.name, .items = stage.items, .seconds = stage.seconds});
+    // Stats that are no object tell nothing; the measurements are what counts.
+    nlohmann::json object = nlohmann::json::parse(run->stats, nullptr, false);
+    if (object.is_object()) stats.push_back(std::move(object));
+  }
+  std::vector<const nlohmann::json*> objects;
+  for (const nlohmann::json& object : stats) objects.push_back(&object);
+  if (!objects.empty()) addSeriesFacts(series, objects);
+  series.bias = biasOf(results, group);
+  return series;
+}
+
+// In the order of the first run of each.
+std::vector<Group> groupByMethod(const CampaignResults& results, const std::string& scene) {
+  std::vector<Group> groups;
+  for (const RunRecord& run : results.runs) {
+    if (run.scene != scene || run.state != RunState::done) continue;
+    const auto group =
+        std::find_if(groups.begin(), groups.end(), [&](const Group& known) { return known[0]->method == run.method; });
+    if (group == groups.end()) {
+      groups.push_back({&run});
+    } else {
+      group->push_back(&run);
+    }
+  }
+  return groups;
+}
+
+// One row for each class, one column for each method, both in the order of the records.
+std::vector<ReportPathClass> pathClassesOf(const SceneRecord& scene) {
+  std::vector<ReportPathClass> classes;
+  for (const PathClassRecord& record : scene.pathClasses) {
+    auto row = std::find_if(classes.begin(), classes.end(),
+                            [&](const ReportPathClass& known) { return known.name == record.pathClass; });
+    if (row == classes.end()) row = classes.insert(classes.end(), {.name = record.pathClass, .verdicts = {}});
+    row->verdicts.push_back({record.method, record.verdict});
+  }
+  return classes;
+}
+
+// The last image of a series: of the first run that has one and whose file is there; empty if there is none.
+fs::path lastImage(const Group& group) {
+  for (const RunRecord* run : group) {
+    if (!run->snapshots.empty() && fs::is_regular_file(run->snapshots.back().file)) return run->snapshots.back().file;
+  }
+  return {};
+}
+
+void addRefusals(ReportScene& scene, const CampaignResults& results) {
+  for (const RunRecord& run : results.runs) {
+    if (run.scene != scene.name || run.state != RunState::refused) continue;
+    const bool known = std::any_of(scene.refusals.begin(), scene.refusals.end(),
+                                   [&](const NamedValue& refusal) { return refusal.name == run.method; });
+    if (!known) scene.refusals.push_back({run.method, run.reason});
+  }
+}
+
+// What a reference says of itself, as bench/campaign/reference_file.h writes it: ", two halves by bpt, off by 0.8 %".
+std::string originOf(const Metadata& metadata) {
+  const auto value = [&](const char* key) {
+    const auto found = metadata.find(std::string("wavecrest:") + key);
+    return found == metadata.end() ? std::string() : found->second;
+  };
+  std::string text;
+  if (!value("method").empty()) text += fmt::format(", two halves by {}", value("method"));
+  const double error = std::strtod(value("relative_error").c_str(), nullptr);
+  if (error > 0) text += fmt::format(", off by about {} % of a sample's value", formatSignificant(100 * error, 2));
+  return text;
+}
+
+ReportScene collectScene(const CampaignResults& results, const SceneRecord& record, ConvergenceReport& report) {
+  ReportScene scene;
+  scene.name = record.name;
+  scene.width = record.width;
+  scene.height = record.height;
+  scene.referenceOrigin = fs::path(record.referenceFile).filename().string();
+  for (const ReportMetric& metric : report.metrics) {
+    const double floor = valueOf(record.noiseFloors, metric.key);
+    scene.noiseFloors.push_back(std::isfinite(floor) ? std::optional(floor) : std::nullopt);
+  }
+  std::vector<fs::path> lastImages;
+  for (const Group& group : groupByMethod(results, record.name)) {
+    scene.series.push_back(seriesOf(results, group, report.metrics));
+    lastImages.push_back(lastImage(group));
+  }
+  scene.pathClasses = pathClassesOf(record);
+  addRefusals(scene, results);
+  if (!fs::is_regular_file(record.referenceFile)) {
+    report.remarks.push_back(fmt::format("{}: no pictures, as {} is not there.", record.name, record.referenceFile));
+    return scene;
+  }
+  const PreparedReference reference(record.referenceFile, readImage(record.referenceFile));
+  scene.referenceOrigin += originOf(reference.image().file.metadata);
+  addFinalImages(scene, reference, lastImages);
+  const auto missing = std::count(lastImages.begin(), lastImages.end(), fs::path());
+  if (missing > 0)
+    report.remarks.push_back(fmt::format("{}: the images of {} methods are not there.", record.name, missing));
+  return scene;
+}
+
+std::string titleOf(const CampaignResults& results) {
+  std::string title = results.scenes.size() == 1 ? "Convergence of " + results.scenes[0].name
+                                                 : fmt::format("Convergence on {} scenes", results.scenes.size());
+  const auto profile = results.campaign.find("profile");
+  if (profile != results.campaign.end() && !profile->second.empty()) title += ", profile " + profile->second;
+  return title;
+}
+
+}  // namespace
+
+ConvergenceReport collectCampaign(const CampaignResults& results) {
+  ConvergenceReport report;
+  report.title = titleOf(results);
+  for (const Metric* metric : measuredMetrics(results)) report.metrics.push_back(shownMetric(*metric));
+  for (const SceneRecord& scene : results.scenes) report.scenes.push_back(collectScene(results, scene, report));
+  // A scene whose runs are still to come has nothing to show.
+  std::erase_if(report.scenes, [](const ReportScene& scene) { return scene.series.empty() && scene.refusals.empty(); });
+  for (const ClaimRecord& claim : results.claims)
+    report.claims.push_back({claim.scene, claim.statement, claim.verdict, claim.evidence});
+  for (const auto& [key, value] : results.campaign) report.environment.push_back({key, value});
+  return report;
+}
+
+}  // namespace wavecrest

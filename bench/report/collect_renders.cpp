@@ -1,0 +1,178 @@
+#include "bench/report/collect_renders.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "bench/report/final_images.h"
+#include "bench/report/results_folder.h"
+#include "bench/report/series_facts.h"
+#include "bench/report/shown_metrics.h"
+#include "metrics/image/image_io.h"
+#include "metrics/noise_floor.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kEnvironmentKeys[] = {"version", "commit", "cpu", "isa", "threads"};
+
+struct SceneReference {
+  PreparedReference image;
+  std::vector<std::optional<double>> noiseFloors;  // by reportedMetrics()
+  std::string origin;
+};
+
+// Mean of two halves, and from their difference the noise that is left in it, by every metric.
+SceneReference readReference(const fs::path& folder, const std::string& scene) {
+  const std::vector<fs::path> files = findReference(folder, scene);
+  const std::vector<const Metric*> metrics = reportedMetrics();
+  std::vector<std::optional<double>> floors(metrics.size());
+  ImageFile mean = readImage(files[0].string());
+  std::string origin = files[0].filename().string();
+  if (files.size() == 2) {
+    const PreparedReference first(files[0].string(), mean);
+    // Refuses another size, naming both files.
+    const ComparedImage second = first.prepareTest(files[1].string(), readImage(files[1].string()));
+    const Image &a = mean.image, &b = second.file.image;
+    for (const NoiseFloor& floor : noiseFloors(a, b, metricList())) {
+      for (size_t m = 0; m < metrics.size(); ++m) {
+        if (metrics[m]->name == floor.metric && std::isfinite(floor.score)) floors[m] = floor.score;
+      }
+    }
+    for (size_t i = 0; i < mean.image.pixels.size(); ++i) mean.image.pixels[i] = 0.5F * (a.pixels[i] + b.pixels[i]);
+    origin = fmt::format("mean of {} and {}, two independent halves", origin, files[1].filename().string());
+  }
+  return {PreparedReference(files[0].string(), std::move(mean)), std::move(floors), std::move(origin)};
+}
+
+ReportPoint measure(const SnapshotFile& snapshot, const PreparedReference& reference) {
+  ReportPoint point{.seconds = snapshot.seconds, .iterations = snapshot.iterations, .values = {}};
+  const std::string path = snapshot.image.string();
+  const ComparedImage image = reference.prepareTest(path, readImage(path));
+  for (const Metric* metric : reportedMetrics()) {
+    if (std::min(image.codes.width, image.codes.height) < metric->smallestSide) {
+      point.values.push_back(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    const Measurement measurement = metric->measure(reference, image, false);
+    point.values.push_back(mainScore(*metric, measurement));
+    for (const Score& score : measurement.scores) {
+      if (score.name != metric->score) point.further.push_back({scoreName(*metric, score.name), score.value});
+    }
+  }
+  return point;
+}
+
+void addStages(std::vector<ReportStage>& sums, const nlohmann::json& stats) {
+  const auto stages = stats.find("stages");
+  if (stages == stats.end() || !stages->is_array()) return;
+  for (const nlohmann::json& stage : *stages) {
+    if (!stage.is_object()) continue;
+    const auto name = stage.find("name"), items = stage.find("items"), seconds = stage.find("seconds");
+    if (name == stage.end() || !name->is_string()) continue;
+    addStage(sums, {.name = name->get<std::string>(),
+                    .items = items != stage.end() && items->is_number() ? items->get<uint64_t>() : 0,
+                    .seconds = seconds != stage.end() && seconds->is_number() ? seconds->get<double>() : 0});
+  }
+}
+
+ReportSeries collectSeries(const std::vector<const RunFile*>& runs, const std::string& label,
+                           const PreparedReference& reference) {
+  ReportSeries series;
+  series.method = runs.front()->method;
+  series.label = label;
+  std::vector<const nlohmann::json*> stats;
+  for (const RunFile* run : runs) {
+    ReportRun measured{.seed = run->seed, .points = {}};
+    for (const SnapshotFile& snapshot : run->snapshots) measured.points.push_back(measure(snapshot, reference));
+    series.runs.push_back(std::move(measured));
+    stats.push_back(&run->stats);
+    addStages(series.stages, run->stats);
+  }
+  addSeriesFacts(series, stats);
+  return series;
+}
+
+// Runs of one scene that differ by the seed only, in order of first appearance.
+std::vector<std::vector<const RunFile*>> groupBySettings(const std::vector<const RunFile*>& runs) {
+  std::vector<std::vector<const RunFile*>> groups;
+  for (const RunFile* run : runs) {
+    const auto same = [&](const std::vector<const RunFile*>& group) {
+      return group[0]->method == run->method && group[0]->sampler == run->sampler &&
+             group[0]->precision == run->precision;
+    };
+    const auto group = std::find_if(groups.begin(), groups.end(), same);
+    if (group == groups.end()) {
+      groups.push_back({run});
+    } else {
+      group->push_back(run);
+    }
+  }
+  return groups;
+}
+
+// The method, and where several series share it what tells them apart.
+std::string seriesLabel(const std::vector<std::vector<const RunFile*>>& groups, const RunFile& run) {
+  std::string label = run.method;
+  bool otherSampler = false, otherPrecision = false;
+  for (const auto& group : groups) {
+    if (group[0]->method != run.method) continue;
+    otherSampler |= group[0]->sampler != run.sampler;
+    otherPrecision |= group[0]->precision != run.precision;
+  }
+  if (otherSampler) label += " " + run.sampler;
+  if (otherPrecision) label += " " + run.precision;
+  return label;
+}
+
+ReportScene collectScene(const fs::path& folder, const std::string& name, const std::vector<const RunFile*>& runs) {
+  ReportScene scene;
+  scene.name = name;
+  const SceneReference reference = readReference(folder, name);
+  scene.width = reference.image.image().codes.width;
+  scene.height = reference.image.image().codes.height;
+  scene.referenceOrigin = reference.origin;
+  scene.noiseFloors = reference.noiseFloors;
+  std::vector<fs::path> lastImages;
+  const auto groups = groupBySettings(runs);
+  for (const auto& group : groups) {
+    scene.series.push_back(collectSeries(group, seriesLabel(groups, *group[0]), reference.image));
+    lastImages.push_back(group[0]->snapshots.back().image);
+  }
+  addFinalImages(scene, reference.image, lastImages);
+  return scene;
+}
+
+}  // namespace
+
+ConvergenceReport collectRenders(const fs::path& folder) {
+  const std::vector<RunFile> files = readRuns(folder);
+  std::vector<const nlohmann::json*> stats;
+  std::vector<std::string> scenes;
+  for (const RunFile& file : files) {
+    stats.push_back(&file.stats);
+    if (std::find(scenes.begin(), scenes.end(), file.scene) == scenes.end()) scenes.push_back(file.scene);
+  }
+
+  ConvergenceReport report;
+  report.title =
+      scenes.size() == 1 ? "Convergence of " + scenes[0] : fmt::format("Convergence on {} scenes", scenes.size());
+  for (const Metric* metric : reportedMetrics()) report.metrics.push_back(shownMetric(*metric));
+  for (const char* key : kEnvironmentKeys) addDistinct(report.environment, stats, key);
+  for (const std::string& scene : scenes) {
+    std::vector<const RunFile*> runs;
+    for (const RunFile& file : files) {
+      if (file.scene == scene) runs.push_back(&file);
+    }
+    report.scenes.push_back(collectScene(folder, scene, runs));
+  }
+  return report;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,14 @@
+// Makes a report's data from a folder of renders (results_folder.h): measures every snapshot of every run against its
+// scene's reference, and gathers runs that differ by nothing but the seed.
+#pragma once
+
+#include <filesystem>
+
+#include "bench/report/report_data.h"
+
+namespace wavecrest {
+
+/// Throws ResultsError if the folder lacks something, ImageError if an image cannot be read or differs in size.
+ConvergenceReport collectRenders(const std::filesystem::path& folder);
+
+}  // namespace wavecrest

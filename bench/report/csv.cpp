@@ -1,0 +1,47 @@
+#include "bench/report/csv.h"
+
+#include <cmath>
+#include <string_view>
+
+#include "bench/report/html_text.h"
+
+namespace wavecrest {
+namespace {
+
+// Quoted where a comma, a quote or a line end would be misread.
+std::string field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char character : text) {
+    if (character == '"') quoted += '"';
+    quoted += character;
+  }
+  return quoted + '"';
+}
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
+}  // namespace
+
+std::string measurementsAsCsv(const ConvergenceReport& report) {
+  std::string csv = "scene,method,series,seed,snapshot,seconds,iterations,metric,value\n";
+  for (const ReportScene& scene : report.scenes) {
+    for (const ReportSeries& series : scene.series) {
+      const std::string start = fmt::format("{},{},{}", field(scene.name), field(series.method), field(series.label));
+      for (const ReportRun& run : series.runs) {
+        for (size_t k = 0; k < run.points.size(); ++k) {
+          const ReportPoint& point = run.points[k];
+          const auto add = [&](const std::string& metric, double value) {
+            append(csv, "{},{},{},{},{},{},{}\n", start, run.seed, k, number(point.seconds), point.iterations,
+                   field(metric), number(value));
+          };
+          for (size_t m = 0; m < report.metrics.size(); ++m) add(report.metrics[m].key, point.values[m]);
+          for (const NamedNumber& score : point.further) add(score.name, score.value);
+        }
+      }
+    }
+  }
+  return csv;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,155 @@
+#include "bench/report/scene_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "bench/report/html_text.h"
+#include "bench/report/method_style.h"
+#include "bench/report/series_values.h"
+
+namespace wavecrest {
+namespace {
+
+// The order of a ranking by the first metric; series without a value come last.
+std::vector<const ReportSeries*> ranked(const ConvergenceReport& report, const ReportScene& scene) {
+  std::vector<const ReportSeries*> order;
+  for (const ReportSeries& series : scene.series) order.push_back(&series);
+  std::stable_sort(order.begin(), order.end(), [&](const ReportSeries* a, const ReportSeries* b) {
+    return isBetter(report.metrics.front(), finalValue(*a, 0), finalValue(*b, 0));
+  });
+  return order;
+}
+
+std::string methodCell(const ReportSeries& series) {
+  return fmt::format("<th><i class=\"swatch m-{}\"></i>{}", escapeHtml(series.method), escapeHtml(series.label));
+}
+
+// "12 s", or for a method that never got there a dash.
+std::string targetCell(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex) {
+  const std::optional<double> time = timeToReach(series, metric, metricIndex, *metric.target);
+  return fmt::format("<td class=\"n\">{}", time ? formatSeconds(*time) : "–");
+}
+
+std::string resultHead(const ConvergenceReport& report) {
+  std::string html = "<thead><tr><th>method<th class=\"n\">seeds<th class=\"n\">time<th class=\"n\">iterations";
+  for (const ReportMetric& metric : report.metrics) append(html, "<th class=\"n\">{}", escapeHtml(metric.name));
+  for (const ReportMetric& metric : report.metrics) {
+    if (metric.target) append(html, "<th class=\"n\">{} {} after", escapeHtml(metric.name), *metric.target);
+  }
+  return html + "<th class=\"n\">paths/s<th class=\"n\">CPU time</thead>";
+}
+
+// A bar of stage shares and, below it, the figures: nanoseconds an item tell which kernel to look at.
+std::string renderStagesOf(const ReportSeries& series) {
+  const double total = std::accumulate(series.stages.begin(), series.stages.end(), 0.0,
+                                       [](double sum, const ReportStage& stage) { return sum + stage.seconds; });
+  if (!(total > 0)) return "";
+  std::string bar, rows;
+  for (size_t i = 0; i < series.stages.size(); ++i) {
+    const ReportStage& stage = series.stages[i];
+    const double share = 100 * stage.seconds / total;
+    const std::string perItem =
+        stage.items > 0 ? formatSignificant(1e9 * stage.seconds / static_cast<double>(stage.items)) : "–";
+    append(bar, "<i class=\"s{}\" style=\"width:{:.2f}%\" title=\"{} {:.1f} %\"></i>", i % 8, share,
+           escapeHtml(stage.name), share);
+    append(rows,
+           "<tr><th><i class=\"swatch s{}\"></i>{}<td class=\"n\">{:.1f} %<td class=\"n\">{}<td class=\"n\">{}"
+           "<td class=\"n\">{}",
+           i % 8, escapeHtml(stage.name), share, formatSeconds(stage.seconds),
+           formatCount(static_cast<double>(stage.items)), perItem);
+  }
+  return fmt::format(
+      "<div class=\"card stages\"><h4><i class=\"swatch m-{0}\"></i>{1} <small>{2} paths/s</small></h4>"
+      "<div class=\"bar\">{3}</div><div class=\"scroll\"><table><thead><tr><th>stage<th class=\"n\">share"
+      "<th class=\"n\">time<th class=\"n\">items<th "
+      "class=\"n\">ns/item</thead><tbody>{4}</tbody></table></div></div>\n",
+      escapeHtml(series.method), escapeHtml(series.label), formatCount(series.pathsPerSecond), bar, rows);
+}
+
+}  // namespace
+
+std::string renderResults(const ConvergenceReport& report, const ReportScene& scene) {
+  std::string html = "<div class=\"scroll\"><table>" + resultHead(report) + "<tbody>";
+  for (const ReportSeries* series : ranked(report, scene)) {
+    const ReportRun& run = series->runs.front();
+    const ReportPoint last = run.points.empty() ? ReportPoint{} : run.points.back();
+    append(html, "<tr>{}<td class=\"n\">{}<td class=\"n\">{}", methodCell(*series), series->runs.size(),
+           formatSeconds(finalSeconds(*series)));
+    append(html, "<td class=\"n\">{}", formatCount(static_cast<double>(last.iterations)));
+    for (size_t m = 0; m < report.metrics.size(); ++m) {
+      const double value = finalValue(*series, m);
+      const bool best = scene.series.size() > 1 && value == bestFinalValue(scene, report.metrics[m], m);
+      append(html, "<td class=\"n{}\">{}", best ? " best" : "", std::isnan(value) ? "–" : formatSignificant(value));
+    }
+    for (size_t m = 0; m < report.metrics.size(); ++m) {
+      if (report.metrics[m].target) html += targetCell(*series, report.metrics[m], m);
+    }
+    append(html, "<td class=\"n\">{}<td class=\"n\">{}", formatCount(series->pathsPerSecond),
+           formatSeconds(series->cpuSeconds));
+  }
+  html += "</tbody></table></div>\n";
+  for (const NamedValue& refusal : scene.refusals)
+    append(html, "<p class=\"facts\"><b>{}</b> was refused: {}</p>\n", escapeHtml(refusal.name),
+           escapeHtml(refusal.value));
+  return html;
+}
+
+std::string renderBias(const ReportScene& scene) {
+  std::string rows;
+  for (const ReportSeries& series : scene.series) {
+    if (series.bias.empty()) continue;
+    const ReportBias& last = series.bias.back();
+    const double share = 100 * last.bias2 / last.meanSquareError;
+    append(rows,
+           "<tr>{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{:.1f} %",
+           methodCell(series), last.seeds, formatSignificant(last.meanSquareError), formatSignificant(last.variance),
+           formatSignificant(last.bias2), share);
+  }
+  if (rows.empty()) return "";
+  return "<h3>Bias and variance at the end</h3><p class=\"facts\">Mean square error over several seeds, without the "
+         "noise of the reference. Variance falls with more samples, bias does not; a bias² around zero, of either "
+         "sign, is none that these seeds could show.</p><div class=\"scroll\"><table><thead><tr><th>method"
+         "<th class=\"n\">seeds<th class=\"n\">MSE<th class=\"n\">variance<th class=\"n\">bias²"
+         "<th class=\"n\">share of bias</thead><tbody>" +
+         rows + "</tbody></table></div>\n";
+}
+
+std::string renderPathClasses(const ReportScene& scene) {
+  if (scene.pathClasses.empty()) return "";
+  std::string html =
+      "<h3>Which paths a method can find</h3><div class=\"scroll\"><table class=\"classes\"><thead><tr>"
+      "<th>light path";
+  for (const NamedValue& verdict : scene.pathClasses.front().verdicts)
+    append(html, "<th><i class=\"swatch m-{0}\"></i>{0}", escapeHtml(verdict.name));
+  html += "</thead><tbody>";
+  for (const ReportPathClass& pathClass : scene.pathClasses) {
+    append(html, "<tr><th><code>{}</code>", escapeHtml(pathClass.name));
+    for (const NamedValue& verdict : pathClass.verdicts)
+      append(html, "<td class=\"v-{}\">{}", escapeHtml(verdict.value), escapeHtml(verdict.value));
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string renderStages(const ReportScene& scene) {
+  std::string stages;
+  for (const ReportSeries& series : scene.series) stages += renderStagesOf(series);
+  if (stages.empty()) return "";
+  return "<details><summary>Where the time went</summary><div class=\"grid\">\n" + stages + "</div></details>\n";
+}
+
+std::string renderSettings(const ReportScene& scene) {
+  std::string html = "<details><summary>Settings of each run</summary><div class=\"grid\">\n";
+  for (const ReportSeries& series : scene.series) {
+    append(html, "<table class=\"pairs\"><caption>{}</caption><tbody>", escapeHtml(series.label));
+    for (const NamedValue& setting : series.settings) {
+      append(html, "<tr><th>{}<td>{}", escapeHtml(setting.name), escapeHtml(setting.value));
+    }
+    html += "</tbody></table>\n";
+  }
+  return html + "</div></details>\n";
+}
+
+}  // namespace wavecrest

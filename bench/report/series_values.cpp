@@ -1,0 +1,102 @@
+#include "bench/report/series_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bench/report/method_style.h"
+
+namespace wavecrest {
+
+std::vector<CurvePoint> meanCurve(const ReportSeries& series, size_t metric) {
+  size_t longest = 0;
+  for (const ReportRun& run : series.runs) longest = std::max(longest, run.points.size());
+  std::vector<CurvePoint> curve;
+  for (size_t k = 0; k < longest; ++k) {
+    CurvePoint point{.low = std::numeric_limits<double>::infinity(), .high = -std::numeric_limits<double>::infinity()};
+    double count = 0;
+    for (const ReportRun& run : series.runs) {
+      if (k >= run.points.size() || !std::isfinite(run.points[k].values[metric])) continue;
+      const double value = run.points[k].values[metric];
+      point.seconds += run.points[k].seconds;
+      point.iterations += static_cast<double>(run.points[k].iterations);
+      point.mean += value;
+      point.low = std::min(point.low, value);
+      point.high = std::max(point.high, value);
+      ++count;
+    }
+    if (count == 0) continue;
+    point.seconds /= count;
+    point.iterations /= count;
+    point.mean /= count;
+    curve.push_back(point);
+  }
+  return curve;
+}
+
+double finalValue(const ReportSeries& series, size_t metric) {
+  double sum = 0, count = 0;
+  for (const ReportRun& run : series.runs) {
+    if (run.points.empty()) continue;
+    sum += run.points.back().values[metric];
+    ++count;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+double finalSeconds(const ReportSeries& series) {
+  double sum = 0, count = 0;
+  for (const ReportRun& run : series.runs) {
+    if (run.points.empty()) continue;
+    sum += run.points.back().seconds;
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+bool isBetter(const ReportMetric& metric, double a, double b) {
+  if (std::isnan(a) || std::isnan(b)) return std::isnan(b) && !std::isnan(a);
+  return metric.higherIsBetter ? a > b : a < b;
+}
+
+double bestFinalValue(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex) {
+  double best = std::numeric_limits<double>::quiet_NaN();
+  for (const ReportSeries& series : scene.series) {
+    const double value = finalValue(series, metricIndex);
+    if (isBetter(metric, value, best)) best = value;
+  }
+  return best;
+}
+
+std::optional<double> timeToReach(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
+                                  double target) {
+  const std::vector<CurvePoint> curve = meanCurve(series, metricIndex);
+  const auto reached = std::find_if(curve.begin(), curve.end(),
+                                    [&](const CurvePoint& point) { return !isBetter(metric, target, point.mean); });
+  if (reached == curve.end()) return std::nullopt;
+  if (reached == curve.begin()) return reached->seconds;
+  const CurvePoint& before = *(reached - 1);
+  const double part = (target - before.mean) / (reached->mean - before.mean);
+  if (!(before.seconds > 0)) return before.seconds + part * (reached->seconds - before.seconds);
+  return before.seconds * std::pow(reached->seconds / before.seconds, part);
+}
+
+std::vector<std::string> methodsOf(const ConvergenceReport& report) {
+  std::vector<std::string> methods;
+  for (const ReportScene& scene : report.scenes) {
+    for (const ReportSeries& series : scene.series) {
+      if (std::find(methods.begin(), methods.end(), series.method) == methods.end()) methods.push_back(series.method);
+    }
+  }
+  std::stable_sort(methods.begin(), methods.end(),
+                   [](const std::string& a, const std::string& b) { return methodRank(a) < methodRank(b); });
+  return methods;
+}
+
+const ReportSeries* seriesOf(const ReportScene& scene, const std::string& method) {
+  const auto found = std::find_if(scene.series.begin(), scene.series.end(),
+                                  [&](const ReportSeries& series) { return series.method == method; });
+  return found == scene.series.end() ? nullptr : &*found;
+}
+
+}  // namespace wavecrest

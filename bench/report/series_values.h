@@ -1,0 +1,46 @@
+// What plots, tables and exports read off a series: its mean curve over seeds, its value at the end, and the time to a
+// score. In one place, so that a figure in a table is always that of the curve beside it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/report/report_data.h"
+
+namespace wavecrest {
+
+/// The k-th snapshots of all runs of a series.
+struct CurvePoint {
+  double seconds = 0, iterations = 0;  ///< means over runs
+  double mean = 0, low = 0, high = 0;  ///< of the metric, over runs
+};
+
+/// Runs of one series meet at their k-th snapshot, since all were asked for the same times. Snapshots that no run has a
+/// finite value for are left out.
+std::vector<CurvePoint> meanCurve(const ReportSeries& series, size_t metric);
+
+/// The value of a metric at the end of a series: mean over its runs, NaN if there is none.
+double finalValue(const ReportSeries& series, size_t metric);
+
+/// Render seconds at the end of a series: mean over its runs.
+double finalSeconds(const ReportSeries& series);
+
+/// Whether a is the better score. A number is better than no number.
+bool isBetter(const ReportMetric& metric, double a, double b);
+
+/// The best of the final values of all series of a scene; NaN if there is none.
+double bestFinalValue(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex);
+
+/// When the mean curve first reaches a score: between snapshots by straight lines over the logarithm of time. Nothing
+/// if it never does.
+std::optional<double> timeToReach(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
+                                  double target);
+
+/// Every method that occurs, in the order of kMethodStyles, then any others.
+std::vector<std::string> methodsOf(const ConvergenceReport& report);
+
+/// The first series of a method in a scene, or null.
+const ReportSeries* seriesOf(const ReportScene& scene, const std::string& method);
+
+}  // namespace wavecrest

@@ -1,0 +1,36 @@
+#include "bench/report/shown_metrics.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace wavecrest {
+namespace {
+
+// From here on the study calls an image good.
+constexpr double kGoodSsim = 0.9;
+
+}  // namespace
+
+ReportMetric shownMetric(const Metric& metric) {
+  ReportMetric shown;
+  shown.key = scoreName(metric, metric.score);
+  shown.name = metric.symbol;
+  shown.explanation = fmt::format("{}; {} is better", metric.basis, metric.higherIsBetter ? "higher" : "lower");
+  shown.higherIsBetter = metric.higherIsBetter;
+  // Errors fall by orders of magnitude; scores that rise approach their ceiling.
+  shown.logarithmic = !metric.higherIsBetter;
+  if (metric.sampleExponent != 0) shown.idealSlope = metric.sampleExponent;
+  if (metric.name == "ssim") shown.target = kGoodSsim;
+  return shown;
+}
+
+std::vector<const Metric*> reportedMetrics() {
+  std::vector<const Metric*> metrics;
+  for (const Metric& metric : metricList()) {
+    if (metric.byDefault) metrics.push_back(&metric);
+  }
+  return metrics;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,201 @@
+#include "bench/report/summary_section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "bench/report/html_text.h"
+#include "bench/report/method_style.h"
+#include "bench/report/series_values.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// One heat map: a number for each scene and method, how far it is behind the best of its row in 0..1, and its text.
+struct HeatMap {
+  std::string name, explanation;
+  std::function<double(const ReportScene&, const ReportSeries&)> value;
+  std::function<double(double value, double best)> behind;
+  std::function<std::string(double)> text;
+  bool higherIsBetter = false;
+};
+
+std::string significant(double value) { return formatSignificant(value); }
+
+// Logarithmic metrics count in factors of two, four of which are the full shade; others by the distance to the best.
+HeatMap metricMap(const ReportMetric& metric, size_t index) {
+  return {.name = metric.name,
+          .explanation = fmt::format("{} at the end of each run, {}", metric.name,
+                                     metric.higherIsBetter ? "higher is better" : "lower is better"),
+          .value = [index](const ReportScene&, const ReportSeries& series) { return finalValue(series, index); },
+          .behind =
+              [logarithmic = metric.logarithmic](double value, double best) {
+                if (logarithmic) return std::abs(std::log2(value / best)) / 4;
+                return std::abs(value - best) / std::max(std::abs(best), 1e-12) * 2;
+              },
+          .text = significant,
+          .higherIsBetter = metric.higherIsBetter};
+}
+
+HeatMap targetMap(const ReportMetric& metric, size_t index) {
+  return {
+      .name = fmt::format("time to {} {}", metric.name, *metric.target),
+      .explanation = fmt::format("render time until {} reaches {}; – where it never did", metric.name, *metric.target),
+      .value =
+          [&metric, index](const ReportScene&, const ReportSeries& series) {
+            return timeToReach(series, metric, index, *metric.target).value_or(kNan);
+          },
+      .behind = [](double value, double best) { return std::abs(std::log2(value / best)) / 4; },
+      .text = formatSeconds,
+      .higherIsBetter = false};
+}
+
+std::string renderRow(const HeatMap& map, const ReportScene& scene, const std::vector<std::string>& methods) {
+  ReportMetric order;
+  order.higherIsBetter = map.higherIsBetter;
+  std::vector<double> values;
+  double best = kNan;
+  for (const std::string& method : methods) {
+    const ReportSeries* series = seriesOf(scene, method);
+    values.push_back(series ? map.value(scene, *series) : kNan);
+    if (isBetter(order, values.back(), best)) best = values.back();
+  }
+  std::string html;
+  for (const double value : values) {
+    if (std::isnan(value)) {
+      html += "<td class=\"n none\">–";
+      continue;
+    }
+    // The best is not behind itself, even where both are zero.
+    const double behind = value == best ? 0 : map.behind(value, best);
+    append(html, "<td class=\"n{}\" style=\"--behind:{:.2f}\">{}", value == best ? " best" : "",
+           std::isfinite(behind) ? std::min(1.0, behind) : 1.0, map.text(value));
+  }
+  return html;
+}
+
+std::string renderHeatMap(const ConvergenceReport& report, const HeatMap& map) {
+  const std::vector<std::string> methods = methodsOf(report);
+  std::string html = fmt::format(
+      "<figure class=\"heatmap\" data-name=\"{0}\"><figcaption><b>{0}</b> <small>{1}</small></figcaption>"
+      "<div class=\"scroll\"><table class=\"heat\"><thead><tr><th>scene",
+      escapeHtml(map.name), escapeHtml(map.explanation));
+  for (const std::string& method : methods)
+    append(html, "<th class=\"n\"><i class=\"swatch m-{0}\"></i>{0}", escapeHtml(method));
+  html += "</thead><tbody>";
+  for (size_t i = 0; i < report.scenes.size(); ++i) {
+    append(html, "<tr><th><a href=\"#scene-{}\">{}</a>{}", i, escapeHtml(report.scenes[i].name),
+           renderRow(map, report.scenes[i], methods));
+  }
+  return html + "</tbody></table></div></figure>\n";
+}
+
+// How a method fares over the scenes that it was run on.
+struct Standing {
+  std::string method;
+  std::vector<double> ranks;   // mean rank by metric
+  std::vector<double> factor;  // by metric: geometric mean of its score over the best one's, where that makes sense
+  size_t wins = 0;             // scenes where it is first by the first metric
+  double meanRank = kNan;      // over metrics
+};
+
+Standing standingOf(const ConvergenceReport& report, const std::string& method) {
+  Standing standing{.method = method, .ranks = {}, .factor = {}};
+  double total = 0, counted = 0;
+  for (size_t m = 0; m < report.metrics.size(); ++m) {
+    const ReportMetric& metric = report.metrics[m];
+    double rankSum = 0, logSum = 0, scenes = 0;
+    for (const ReportScene& scene : report.scenes) {
+      const ReportSeries* series = seriesOf(scene, method);
+      const double value = series ? finalValue(*series, m) : kNan;
+      if (std::isnan(value)) continue;
+      const auto better = std::count_if(scene.series.begin(), scene.series.end(), [&](const ReportSeries& other) {
+        return isBetter(metric, finalValue(other, m), value);
+      });
+      rankSum += 1 + static_cast<double>(better);
+      logSum += std::log(value / bestFinalValue(scene, metric, m));
+      standing.wins += m == 0 && better == 0 ? 1 : 0;
+      ++scenes;
+    }
+    standing.ranks.push_back(scenes > 0 ? rankSum / scenes : kNan);
+    standing.factor.push_back(scenes > 0 && metric.logarithmic ? std::exp(logSum / scenes) : kNan);
+    if (scenes > 0) {
+      total += rankSum / scenes;
+      ++counted;
+    }
+  }
+  if (counted > 0) standing.meanRank = total / counted;
+  return standing;
+}
+
+std::string numberCell(double value, const char* unit) {
+  if (!std::isfinite(value)) return "<td class=\"n\">–";
+  return fmt::format("<td class=\"n\">{}{}", formatSignificant(value), unit);
+}
+
+std::string verdictClass(const std::string& verdict) {
+  if (verdict == "holds") return "holds";
+  return verdict == "undecided" ? "undecided" : "fails";
+}
+
+}  // namespace
+
+std::string renderHeatMaps(const ConvergenceReport& report) {
+  std::string html = "<div class=\"heatmaps\">\n";
+  for (size_t m = 0; m < report.metrics.size(); ++m) html += renderHeatMap(report, metricMap(report.metrics[m], m));
+  for (size_t m = 0; m < report.metrics.size(); ++m) {
+    if (report.metrics[m].target) html += renderHeatMap(report, targetMap(report.metrics[m], m));
+  }
+  return html +
+         "</div><p class=\"facts\">The stronger the tint, the further behind the best of its row, which is bold.</p>\n";
+}
+
+std::string renderRanking(const ConvergenceReport& report) {
+  std::vector<Standing> standings;
+  for (const std::string& method : methodsOf(report)) standings.push_back(standingOf(report, method));
+  std::stable_sort(standings.begin(), standings.end(), [](const Standing& a, const Standing& b) {
+    return std::isnan(b.meanRank) ? !std::isnan(a.meanRank) : a.meanRank < b.meanRank;
+  });
+  const ReportMetric& first = report.metrics.front();
+  std::string html = "<h3>Ranking</h3><div class=\"scroll\"><table><thead><tr><th>method<th class=\"n\">mean rank";
+  for (const ReportMetric& metric : report.metrics) append(html, "<th class=\"n\">by {}", escapeHtml(metric.name));
+  append(html, "<th class=\"n\">first by {0}<th class=\"n\">{0} over best</thead><tbody>", escapeHtml(first.name));
+  for (const Standing& standing : standings) {
+    append(html, "<tr><th><i class=\"swatch m-{0}\"></i>{0} <small>{1}</small>", escapeHtml(standing.method),
+           escapeHtml(methodStyle(standing.method).name));
+    html += numberCell(standing.meanRank, "");
+    for (const double rank : standing.ranks) html += numberCell(rank, "");
+    append(html, "<td class=\"n\">{} of {}", standing.wins, report.scenes.size());
+    html += numberCell(standing.factor.front(), " ×");
+  }
+  return html +
+         "</tbody></table></div><p class=\"facts\">Ranks at equal time, means over the scenes that a method was run "
+         "on; "
+         "the last column is the geometric mean over scenes.</p>\n";
+}
+
+std::string renderClaims(const ConvergenceReport& report) {
+  if (report.claims.empty()) return "";
+  const auto count = [&](const char* verdict) {
+    return std::count_if(report.claims.begin(), report.claims.end(),
+                         [&](const ReportClaim& claim) { return claim.verdict == verdict; });
+  };
+  std::string html = fmt::format(
+      "<section id=\"claims\"><h2>The study's findings</h2><p class=\"facts\">{} hold, {} do not, {} are undecided "
+      "within noise.</p><div class=\"scroll\"><table class=\"claims\"><thead><tr><th>scene<th>finding<th>verdict"
+      "<th>evidence</thead><tbody>",
+      count("holds"), count("does not hold"), count("undecided"));
+  for (const ReportClaim& claim : report.claims) {
+    append(html, "<tr><th>{}<td>{}<td><span class=\"verdict {}\">{}</span><td>{}", escapeHtml(claim.scene),
+           escapeHtml(claim.statement), verdictClass(claim.verdict), escapeHtml(claim.verdict),
+           escapeHtml(claim.evidence));
+  }
+  return html + "</tbody></table></div></section>\n";
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,108 @@
+#include "bench/results/results_store.h"
+
+#include "bench/results/schema.h"
+
+namespace wavecrest {
+namespace {
+
+void putSnapshots(Database& database, int64_t run, const std::vector<SnapshotRecord>& snapshots) {
+  Statement row(database, "INSERT INTO snapshot VALUES(?, ?, ?, ?, ?)");
+  Statement value(database, "INSERT INTO measurement VALUES(?, ?, ?, ?)");
+  for (const SnapshotRecord& snapshot : snapshots) {
+    row.bind(run, snapshot.number, snapshot.renderSeconds, snapshot.iterations, snapshot.file).run();
+    for (const auto& [metric, score] : snapshot.values) value.bind(run, snapshot.number, metric, score).run();
+  }
+}
+
+}  // namespace
+
+ResultsStore::ResultsStore(const std::filesystem::path& path) : database_(path, OpenFor::writing) {
+  createSchema(database_);
+}
+
+// Does nothing while somebody reads; then the journal stays, and is as good.
+ResultsStore::~ResultsStore() {
+  sqlite3_exec(database_.handle(), "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
+}
+
+void ResultsStore::putCampaign(const std::map<std::string, std::string>& values) {
+  Transaction transaction(database_);
+  Statement row(database_, "INSERT OR REPLACE INTO campaign VALUES(?, ?)");
+  for (const auto& [key, value] : values) row.bind(key, value).run();
+  transaction.commit();
+}
+
+void ResultsStore::addEnvironment(const std::map<std::string, std::string>& values) {
+  std::map<std::string, std::string> lists;
+  Statement known(database_, "SELECT value FROM campaign WHERE key = ?");
+  for (const auto& [key, value] : values) {
+    if (known.bind(key).step()) lists[key] = known.text(0);
+    addDistinct(lists[key], value);
+  }
+  putCampaign(lists);
+}
+
+void ResultsStore::putScene(const SceneRecord& scene) {
+  Transaction transaction(database_);
+  Statement(database_,
+            "INSERT INTO scene VALUES(?1, ?2, ?3, ?4, ?5) ON CONFLICT(name) DO UPDATE "
+            "SET scene_hash = ?2, reference_file = ?3, width = ?4, height = ?5")
+      .bind(scene.name, scene.hash, scene.referenceFile, scene.width, scene.height)
+      .run();
+  Statement(database_, "DELETE FROM noise_floor WHERE scene = ?").bind(scene.name).run();
+  Statement floor(database_, "INSERT INTO noise_floor VALUES(?, ?, ?)");
+  for (const auto& [metric, value] : scene.noiseFloors) floor.bind(scene.name, metric, value).run();
+  Statement(database_, "DELETE FROM path_class WHERE scene = ?").bind(scene.name).run();
+  Statement row(database_, "INSERT INTO path_class VALUES(?, ?, ?, ?)");
+  for (const PathClassRecord& entry : scene.pathClasses) {
+    row.bind(scene.name, entry.pathClass, entry.method, entry.verdict).run();
+  }
+  transaction.commit();
+}
+
+void ResultsStore::putRun(const RunRecord& run) {
+  Transaction transaction(database_);
+  Statement(database_, "INSERT INTO run(scene, method, seed, state, reason, stats) VALUES(?, ?, ?, ?, ?, ?)")
+      .bind(run.scene, run.method, run.seed, toString(run.state), run.reason, run.stats)
+      .run();
+  const int64_t id = sqlite3_last_insert_rowid(database_.handle());
+  Statement stage(database_, "INSERT INTO stage VALUES(?, ?, ?, ?, ?)");
+  for (size_t i = 0; i < run.stages.size(); ++i) {
+    stage.bind(id, i, run.stages[i].name, run.stages[i].items, run.stages[i].seconds).run();
+  }
+  putSnapshots(database_, id, run.snapshots);
+  transaction.commit();
+}
+
+void ResultsStore::putBiases(const std::vector<BiasRecord>& biases) {
+  Transaction transaction(database_);
+  Statement row(database_, "INSERT OR REPLACE INTO bias VALUES(?, ?, ?, ?, ?, ?, ?)");
+  for (const BiasRecord& bias : biases) {
+    row.bind(bias.scene, bias.method, bias.number, bias.seeds, bias.meanSquareError, bias.variance, bias.biasSquared)
+        .run();
+  }
+  transaction.commit();
+}
+
+void ResultsStore::putClaims(const std::vector<ClaimRecord>& claims) {
+  Transaction transaction(database_);
+  database_.execute("DELETE FROM claim");
+  Statement row(database_, "INSERT INTO claim VALUES(?, ?, ?, ?, ?)");
+  for (const ClaimRecord& claim : claims) {
+    row.bind(claim.id, claim.scene, claim.statement, claim.verdict, claim.evidence).run();
+  }
+  transaction.commit();
+}
+
+std::optional<std::string> ResultsStore::sceneHash(const std::string& scene) {
+  Statement query(database_, "SELECT scene_hash FROM scene WHERE name = ?");
+  if (!query.bind(scene).step()) return std::nullopt;
+  return query.text(0);
+}
+
+bool ResultsStore::hasRun(const std::string& scene, const std::string& method, uint64_t seed) {
+  Statement query(database_, "SELECT 1 FROM run WHERE scene = ? AND method = ? AND seed = ?");
+  return query.bind(scene, method, seed).step();
+}
+
+}  // namespace wavecrest

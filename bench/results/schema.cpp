@@ -1,0 +1,103 @@
+#include "bench/results/schema.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr const char* kTables = R"(
+CREATE TABLE campaign(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE scene(
+  name TEXT PRIMARY KEY,
+  scene_hash TEXT NOT NULL,
+  reference_file TEXT NOT NULL,
+  width INTEGER NOT NULL,
+  height INTEGER NOT NULL);
+CREATE TABLE noise_floor(
+  scene TEXT NOT NULL REFERENCES scene(name),
+  metric TEXT NOT NULL,
+  value REAL,
+  PRIMARY KEY(scene, metric)) WITHOUT ROWID;
+CREATE TABLE path_class(
+  scene TEXT NOT NULL REFERENCES scene(name),
+  class TEXT NOT NULL,
+  method TEXT NOT NULL,
+  verdict TEXT NOT NULL CHECK(verdict IN ('sampled', 'inefficient', 'impossible')),
+  PRIMARY KEY(scene, class, method));
+CREATE TABLE run(
+  id INTEGER PRIMARY KEY,
+  scene TEXT NOT NULL REFERENCES scene(name),
+  method TEXT NOT NULL,
+  seed INTEGER NOT NULL,
+  state TEXT NOT NULL CHECK(state IN ('done', 'refused')),
+  reason TEXT NOT NULL,
+  stats TEXT NOT NULL,
+  UNIQUE(scene, method, seed));
+CREATE TABLE stage(
+  run INTEGER NOT NULL REFERENCES run(id),
+  position INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  items INTEGER NOT NULL,
+  seconds REAL NOT NULL,
+  PRIMARY KEY(run, position)) WITHOUT ROWID;
+CREATE TABLE snapshot(
+  run INTEGER NOT NULL REFERENCES run(id),
+  number INTEGER NOT NULL,
+  render_seconds REAL NOT NULL,
+  iterations INTEGER NOT NULL,
+  file TEXT NOT NULL,
+  PRIMARY KEY(run, number)) WITHOUT ROWID;
+CREATE TABLE measurement(
+  run INTEGER NOT NULL,
+  number INTEGER NOT NULL,
+  metric TEXT NOT NULL,
+  value REAL,
+  PRIMARY KEY(run, number, metric),
+  FOREIGN KEY(run, number) REFERENCES snapshot(run, number)) WITHOUT ROWID;
+CREATE TABLE bias(
+  scene TEXT NOT NULL REFERENCES scene(name),
+  method TEXT NOT NULL,
+  number INTEGER NOT NULL,
+  seeds INTEGER NOT NULL,
+  mean_square_error REAL,
+  variance REAL,
+  bias_squared REAL,
+  PRIMARY KEY(scene, method, number)) WITHOUT ROWID;
+CREATE TABLE claim(
+  id TEXT PRIMARY KEY,
+  scene TEXT NOT NULL,
+  statement TEXT NOT NULL,
+  verdict TEXT NOT NULL CHECK(verdict IN ('holds', 'does not hold', 'undecided')),
+  evidence TEXT NOT NULL);
+)";
+
+int64_t versionOf(Database& database) {
+  Statement version(database, "PRAGMA user_version");
+  version.step();
+  return version.integer(0);
+}
+
+[[noreturn]] void failVersion(const Database& database, int64_t version) {
+  throw ResultsFileError(database.path().string() + ": has results of version " + std::to_string(version) +
+                         "; expected version " + std::to_string(kResultsVersion));
+}
+
+}  // namespace
+
+void createSchema(Database& database) {
+  // One writer, readers beside it, and a file that is whole after a power cut.
+  database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
+  Transaction transaction(database);
+  const int64_t version = versionOf(database);
+  if (version == 0) {
+    database.execute(std::string(kTables) + "PRAGMA user_version = " + std::to_string(kResultsVersion));
+  } else if (version != kResultsVersion) {
+    failVersion(database, version);
+  }
+  transaction.commit();
+}
+
+void requireSchema(Database& database) {
+  const int64_t version = versionOf(database);
+  if (version != kResultsVersion) failVersion(database, version);
+}
+
+}  // namespace wavecrest

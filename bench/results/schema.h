@@ -1,0 +1,16 @@
+// The tables of a results file, and their version. bench/results/README.md says what each column means.
+#pragma once
+
+#include "bench/results/database.h"
+
+namespace wavecrest {
+
+constexpr int kResultsVersion = 1;  // of the schema, in PRAGMA user_version
+
+// Makes the tables in a new file; leaves a file of this version as it is. Throws ResultsFileError for any other file.
+void createSchema(Database& database);
+
+// Throws ResultsFileError unless the file has tables of this version.
+void requireSchema(Database& database);
+
+}  // namespace wavecrest

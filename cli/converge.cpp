@@ -1,0 +1,352 @@
+// wavecrest converge: a convergence campaign over scenes, methods and seeds.
+#include <fmt/core.h>
+
+#include <charconv>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "bench/campaign/run_campaign.h"
+#include "bench/campaign/scene_reference.h"
+#include "bench/claims/judge_claims.h"
+#include "bench/report/write_report.h"
+#include "bench/results/read_results.h"
+#include "bench/results/results_store.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/option_values.h"
+#include "cli/progress.h"
+#include "engine/load/load.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// Options that say what the campaign is: stored with it as they were given, so that --resume needs none of them, and
+// refused where they differ. How it is run (threads, folder, progress) may change from one process to the next.
+constexpr const char* kDefiningOptions[] = {"scenes",           "--methods", "--profile", "--time",
+                                            "--snapshot-every", "--spp",     "--seeds",   "--precision",
+                                            "--sampler",        "--size",    "--images"};
+
+struct ConvergeOptions {
+  std::map<std::string, std::vector<std::string>> defining;  // by option name; only what was given
+  std::string out = "out/converge", reference, shard = "1/1", isa = "auto", progress = "auto";
+  uint32_t threads = 0;
+  bool resume = false, check = false;
+
+  bool has(const char* name) const { return defining.contains(name); }
+  std::string get(const char* name, const std::string& otherwise = "") const {
+    const auto found = defining.find(name);
+    return found == defining.end() ? otherwise : found->second.front();
+  }
+};
+
+// ---- from words to settings -----------------------------------------------------------------------------------------
+
+// A whole number from 1 on, or 0 for any other text.
+uint32_t countOf(std::string_view text) {
+  uint32_t count = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  return error == std::errc() && rest == text.data() + text.size() ? count : 0;
+}
+
+uint32_t parseCount(const char* option, const std::string& text) {
+  const uint32_t count = countOf(text);
+  if (count == 0) throw UsageError(fmt::format("{} {}: expected a whole number from 1 on", option, text));
+  return count;
+}
+
+Shard parseShard(const std::string& text) {
+  const size_t slash = text.find('/');
+  if (slash == std::string::npos) throw UsageError(fmt::format("--shard {}: expected i/n", text));
+  const Shard shard{countOf(text.substr(0, slash)), countOf(text.substr(slash + 1))};
+  if (shard.index == 0 || shard.index > shard.count) {
+    throw UsageError(fmt::format("--shard {}: expected i/n with i from 1 to n", text));
+  }
+  return shard;
+}
+
+std::vector<Method> chosenMethods(const ConvergeOptions& options) {
+  std::vector<Method> methods;
+  if (!options.has("--methods")) {
+    for (const MethodEntry& entry : kMethods) methods.push_back(entry.method);
+    return methods;
+  }
+  for (const std::string& word : options.defining.at("--methods")) {
+    const std::optional<Method> method = parseMethod(word);
+    if (!method) throw UsageError(fmt::format("--methods {}: unknown; expected some of {}", word, methodChoices()));
+    if (std::find(methods.begin(), methods.end(), *method) == methods.end()) methods.push_back(*method);
+  }
+  return methods;
+}
+
+const Profile& chosenProfile(const ConvergeOptions& options) {
+  const std::string name = options.get("--profile", "quick");
+  if (const Profile* profile = findProfile(name)) return *profile;
+  std::string names;
+  for (const Profile& profile : profiles()) names += (names.empty() ? "" : ", ") + std::string(profile.name);
+  throw UsageError(fmt::format("--profile {}: unknown; expected one of {}", name, names));
+}
+
+Effort effortOf(const ConvergeOptions& options, const Profile& profile, std::string_view scene) {
+  Effort effort = profile.effort(scene);
+  if (options.has("--time")) effort.seconds = parseDuration(options.get("--time"));
+  if (options.has("--snapshot-every")) {
+    const std::string every = options.get("--snapshot-every");
+    effort.snapshotSeconds = every == "log" ? 0 : parseDuration(every);
+  }
+  return effort;
+}
+
+std::vector<CampaignScene> chosenScenes(const ConvergeOptions& options, const Profile& profile) {
+  std::vector<std::string> words;
+  if (options.has("scenes")) {
+    words = options.defining.at("scenes");
+  } else {
+    for (const SceneEntry& entry : builtInScenes()) words.emplace_back(entry.name);
+  }
+  std::vector<CampaignScene> scenes;
+  std::set<std::string> names;
+  for (const std::string& word : words) {
+    const fs::path file = findScene(word);
+    const std::string name = file.stem().string();
+    if (!names.insert(name).second) throw UsageError(fmt::format("{}: a second scene of the name '{}'", word, name));
+    scenes.push_back({.name = name, .file = file, .effort = effortOf(options, profile, name)});
+  }
+  return scenes;
+}
+
+RenderSettings renderSettings(const ConvergeOptions& options) {
+  RenderSettings render;
+  render.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  render.isa = parseIsaOption(options.isa);
+  render.precision =
+      static_cast<Precision>(parseChoice("--precision", options.get("--precision", "float"), kPrecisionNames));
+  const std::string sampler = options.get("--sampler", "independent");
+  const std::optional<SamplerKind> kind = parseSamplerKind(sampler);
+  if (!kind) throw UsageError(fmt::format("--sampler {}: expected independent or sobol", sampler));
+  render.sampler = *kind;
+  return render;
+}
+
+CampaignSettings campaignSettings(const ConvergeOptions& options) {
+  const Profile& profile = chosenProfile(options);
+  CampaignSettings settings;
+  settings.methods = chosenMethods(options);
+  settings.scenes = chosenScenes(options, profile);
+  settings.seeds = profile.seeds;
+  if (options.has("--seeds")) settings.seeds = parseCount("--seeds", options.get("--seeds"));
+  if (options.has("--spp")) settings.iterations = parseCount("--spp", options.get("--spp"));
+  if (settings.iterations && (options.has("--time") || options.get("--snapshot-every", "log") != "log")) {
+    throw UsageError(
+        "--spp counts iterations and takes snapshots after 1, 2, 4, ...; expected no --time or "
+        "--snapshot-every beside it");
+  }
+  settings.size = options.has("--size") ? parseSize(options.get("--size")) : profile.size;
+  settings.render = renderSettings(options);
+  settings.out = options.out;
+  settings.shard = parseShard(options.shard);
+  constexpr std::array<std::string_view, 2> kImageChoices{"all", "last"};
+  settings.keepImages = parseChoice("--images", options.get("--images", "all"), kImageChoices) == 0;
+  settings.referenceRequired = !options.reference.empty();
+  settings.referenceFolder = options.reference.empty() ? sceneFolder() / "references" : fs::path(options.reference);
+  if (options.check && settings.iterations) {
+    throw UsageError("--check: the study's findings are about equal time; expected no --spp beside it");
+  }
+  if (options.check && settings.shard.count > 1) {
+    throw UsageError("--check needs all methods of a scene; expected no --shard beside it");
+  }
+  return settings;
+}
+
+// ---- what the results file says of it -------------------------------------------------------------------------------
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+// One value if it is the same for all scenes, else SCENE=VALUE of each.
+template <class Value>
+std::string perScene(const CampaignSettings& settings, Value value) {
+  std::vector<std::string> all;
+  std::set<std::string> values;
+  for (const CampaignScene& scene : settings.scenes) {
+    values.insert(value(scene));
+    all.push_back(scene.name + "=" + value(scene));
+  }
+  return values.size() == 1 ? *values.begin() : joined(all);
+}
+
+std::map<std::string, std::string> campaignKeys(const ConvergeOptions& options, const CampaignSettings& settings) {
+  std::vector<std::string> scenes, methods;
+  for (const CampaignScene& scene : settings.scenes) scenes.push_back(scene.name);
+  for (const Method method : settings.methods) methods.emplace_back(toString(method));
+  std::map<std::string, std::string> keys{
+      {"options", json(options.defining).dump()},
+      {"profile", std::string(chosenProfile(options).name)},
+      {"scenes", joined(scenes)},
+      {"methods", joined(methods)},
+      {"seeds", std::to_string(settings.seeds)},
+      {"size", fmt::format("{}x{}", settings.size[0], settings.size[1])},
+      {"precision", std::string(kPrecisionNames[static_cast<size_t>(settings.render.precision)])},
+      {"sampler", std::string(toString(settings.render.sampler))},
+      {"shard", fmt::format("{}/{}", settings.shard.index, settings.shard.count)}};
+  if (settings.iterations) {
+    keys["spp"] = std::to_string(*settings.iterations);
+    keys["snapshots"] = "doubling";
+  } else {
+    keys["time"] = perScene(settings, [](const CampaignScene& s) { return fmt::format("{:g}", s.effort.seconds); });
+    keys["snapshots"] = perScene(settings, [](const CampaignScene& s) {
+      return s.effort.snapshotSeconds == 0 ? std::string("log") : fmt::format("{:g}", s.effort.snapshotSeconds);
+    });
+  }
+  return keys;
+}
+
+// Takes from an earlier process of the same campaign what was not given again.
+void resume(ConvergeOptions& options, const fs::path& results) {
+  const CampaignResults before = readResults(results);
+  const auto stored = before.campaign.find("options");
+  if (stored == before.campaign.end()) return;  // it died before it began
+  const auto defining = json::parse(stored->second).get<std::map<std::string, std::vector<std::string>>>();
+  for (const auto& [name, words] : options.defining) {
+    const auto known = defining.find(name);
+    if (known != defining.end() && known->second == words) continue;
+    throw UsageError(fmt::format("{} {}: {} was begun with {}; expected the same, or another --out", name,
+                                 joined(words), results.string(),
+                                 known == defining.end() ? "the default" : joined(known->second)));
+  }
+  options.defining = defining;
+}
+
+// ---- what people see ------------------------------------------------------------------------------------------------
+
+std::string durationText(double seconds) {
+  const auto whole = static_cast<uint64_t>(std::max(seconds, 0.0) + 0.5);
+  if (whole >= 3600) return fmt::format("{}h{:02}m", whole / 3600, whole / 60 % 60);
+  return whole >= 60 ? fmt::format("{}m{:02}s", whole / 60, whole % 60) : fmt::format("{}s", whole);
+}
+
+void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& progress) {
+  if (kind == ProgressKind::none) return;
+  if (kind == ProgressKind::jsonl) {
+    json line = {{"done", progress.done},       {"total", progress.total}, {"seconds_left", progress.secondsLeft},
+                 {"scene", run.scene},          {"method", run.method},    {"seed", run.seed},
+                 {"state", toString(run.state)}};
+    if (!run.snapshots.empty()) line["values"] = run.snapshots.back().values;
+    fmt::print(stderr, "{}\n", line.dump());
+    return;
+  }
+  std::string outcome = run.reason;
+  if (!run.snapshots.empty()) {
+    const SnapshotRecord& last = run.snapshots.back();
+    outcome = fmt::format("{:.1f} s, {} iterations", last.renderSeconds, last.iterations);
+    for (const char* name : {"rmse", "ssim", "q_mos"}) {
+      const auto value = last.values.find(name);
+      if (value != last.values.end()) outcome += fmt::format(", {} {:.4g}", name, value->second);
+    }
+  }
+  fmt::print(stderr, "[{}/{}] {} left  {} {} seed {}: {}\n", progress.done, progress.total,
+             durationText(progress.secondsLeft), run.scene, run.method, run.seed, outcome);
+}
+
+std::vector<ClaimRecord> storeClaims(const fs::path& results) {
+  std::vector<ClaimRecord> claims = judgeStudyClaims(readResults(results));
+  ResultsStore(results).putClaims(claims);
+  return claims;
+}
+
+int showCheck(const std::vector<ClaimRecord>& claims) {
+  bool held = true;
+  for (const ClaimRecord& claim : claims) {
+    fmt::print("{:13} {}: {} ({})\n", claim.verdict, claim.scene, claim.statement, claim.evidence);
+    if (claim.verdict != toString(ClaimVerdict::fails)) continue;
+    fmt::print(stderr, "wavecrest: check failed: {}: {}\n", claim.scene, claim.statement);
+    held = false;
+  }
+  return held ? kExitDone : kExitCheck;
+}
+
+int runConverge(ConvergeOptions options) {
+  CampaignSettings settings = campaignSettings(options);
+  const fs::path results = resultsFile(settings);
+  if (fs::exists(results)) {
+    if (!options.resume) {
+      throw UsageError(
+          fmt::format("{} exists; expected --resume to go on with it, or another --out", results.string()));
+    }
+    resume(options, results);
+    settings = campaignSettings(options);
+  }
+  const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  InterruptGuard guard;
+  const CampaignHooks hooks{
+      .watch = [&](Session* session) { guard.watch(session); },
+      .stopped = [&] { return guard.interrupted(); },
+      .finished = [&](const RunRecord& run, const CampaignProgress& progress) { showRun(kind, run, progress); },
+      .say =
+          [&](const std::string& line) {
+            if (kind != ProgressKind::none) fmt::print(stderr, "{}\n", line);
+          }};
+  try {
+    if (!runCampaign(settings, campaignKeys(options, settings), hooks)) {
+      fmt::print(stderr, "stopped; `wavecrest converge --out {} --resume` goes on\n", options.out);
+      return kExitInterrupted;
+    }
+  } catch (const ReferenceError& error) {
+    throw InputError(error.what());
+  } catch (const ReferenceMismatch& error) {
+    throw InputError(error.what());
+  } catch (const ResultsFileError& error) {
+    throw InputError(error.what());
+  }
+  fmt::print("{}\n", results.string());
+  if (settings.shard.count > 1) return kExitDone;  // the whole is judged and shown where all parts are read
+  const std::vector<ClaimRecord> claims = storeClaims(results);
+  for (const fs::path& file : writeReport(std::array{settings.out})) fmt::print("{}\n", file.string());
+  return options.check ? showCheck(claims) : kExitDone;
+}
+
+}  // namespace
+
+void addConvergeCommand(CLI::App& app, int& exitCode) {
+  auto options = std::make_shared<ConvergeOptions>();
+  CLI::App* command = app.add_subcommand("converge", "measure how methods converge: scenes x methods x seeds");
+  const auto defining = [&](const char* name, const char* description) {
+    return command->add_option(name, options->defining[name], description);
+  };
+  defining("scenes", "built-in scenes or XML files; default: the nine");
+  defining("--methods", "methods, separated by commas; default: all")->delimiter(',');
+  defining("--profile", "quick, standard or paper; default: quick")->expected(1);
+  defining("--time", "render time of each run; default: the profile's")->expected(1);
+  defining("--snapshot-every", "interval between snapshots, or log; default: the profile's")->expected(1);
+  defining("--spp", "iterations of each run instead of time; snapshots after 1, 2, 4, ...")->expected(1);
+  defining("--seeds", "runs of each method, seeds 1 to N; default: the profile's")->expected(1);
+  defining("--size", "film size, WIDTHxHEIGHT; default: the profile's")->expected(1);
+  defining("--precision", "float, double or fast; default: float")->expected(1);
+  defining("--sampler", "independent or sobol; default: independent")->expected(1);
+  defining("--images", "keep images of 'all' snapshots, or of the 'last' of each run; default: all")->expected(1);
+  command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
+  command->add_option("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512")->capture_default_str();
+  command->add_option("--out", options->out, "folder of results.sqlite, images and references")->capture_default_str();
+  command->add_option("--reference", options->reference,
+                      "folder of SCENE.exr; default: those that come with the scenes");
+  command->add_option("--shard", options->shard, "i/n: do only the i-th of n parts")->capture_default_str();
+  command->add_option("--progress", options->progress, "auto, bar, jsonl or none")->capture_default_str();
+  command->add_flag("--resume", options->resume, "go on with the campaign in --out, if there is one");
+  command->add_flag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
+  command->callback([options, command, &exitCode] {
+    for (const char* name : kDefiningOptions) {
+      if (command->get_option(name)->count() == 0) options->defining.erase(name);
+    }
+    exitCode = runConverge(*options);
+  });
+}
+
+}  // namespace wavecrest

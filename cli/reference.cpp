@@ -1,0 +1,133 @@
+// wavecrest reference: a scene's reference image, from two independent halves.
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "bench/campaign/render_reference.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/option_values.h"
+#include "cli/scene_options.h"
+#include "engine/path_classes.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kDefaultRelativeError = 0.01;
+constexpr double kReferenceRadius = 1e-4;  // of merging methods: their bias must be far below any that is measured
+
+struct ReferenceOptions {
+  SceneOptions scene;
+  std::string method = "auto", time, sampler = "independent", precision = "float", isa = "auto", output;
+  double relativeError = 0, radius = kReferenceRadius;
+  uint64_t spp = 0, seed = 0;
+  uint32_t threads = 0;
+  bool quiet = false;
+};
+
+// What is left to say once in a while, on a terminal in one line that is written over.
+void showAdvance(const ReferenceInfo& info) {
+  fmt::print(stderr, "{}{:8.1f} s  {:8} iterations of each half  relative error {:.4f}{}", isatty(2) ? "\r" : "",
+             info.renderSeconds, info.iterations, info.relativeError, isatty(2) ? " " : "\n");
+  std::fflush(stderr);
+}
+
+ReferenceChoice chosenMethod(const ReferenceOptions& options, const Scene& scene) {
+  if (options.method == "auto") return classifyPaths(scene).reference;
+  const std::optional<Method> method = parseMethod(options.method);
+  if (!method) {
+    throw UsageError(fmt::format("--method {}: unknown; expected auto or one of {}", options.method, methodChoices()));
+  }
+  return {.method = *method, .biased = false, .reason = "asked for"};
+}
+
+RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, Method method) {
+  RenderSettings settings;
+  settings.method = method;
+  const std::optional<SamplerKind> sampler = parseSamplerKind(options.sampler);
+  if (!sampler) throw UsageError(fmt::format("--sampler {}: expected independent or sobol", options.sampler));
+  settings.sampler = *sampler;
+  settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
+  settings.isa = parseIsaOption(options.isa);
+  settings.seed = options.seed;
+  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
+  settings.radius = options.radius;
+  return settings;
+}
+
+ReferenceGoal goalOf(const ReferenceOptions& options) {
+  ReferenceGoal goal;
+  if (options.relativeError > 0) goal.relativeError = options.relativeError;
+  if (!options.time.empty()) goal.seconds = parseDuration(options.time);
+  if (options.spp != 0) goal.iterations = options.spp;
+  if (!goal.relativeError && !goal.seconds && !goal.iterations) goal.relativeError = kDefaultRelativeError;
+  return goal;
+}
+
+int runReference(const ReferenceOptions& options) {
+  const std::filesystem::path scenePath = findScene(options.scene.scene);
+  const std::string output = options.output.empty() ? scenePath.stem().string() + ".reference.exr" : options.output;
+  if (std::filesystem::path(output).extension() != ".exr") {
+    throw UsageError(fmt::format("-o {}: expected a name that ends in .exr, which keeps the halves", output));
+  }
+  try {
+    checkImageTarget(output);
+  } catch (const ImageError& error) {
+    throw UsageError(error.what());
+  }
+  const ReferenceGoal goal = goalOf(options);
+  const Scene scene = loadScene(options.scene);
+  const ReferenceChoice method = chosenMethod(options, scene);
+  if (!options.quiet) fmt::print(stderr, "{} by {}: {}\n", scene.name, toString(method.method), method.reason);
+
+  InterruptGuard guard;
+  ReferenceHooks hooks{.watch = [&](Session* session) { guard.watch(session); },
+                       .stopped = [&] { return guard.interrupted(); },
+                       .advance = {}};
+  if (!options.quiet) hooks.advance = showAdvance;
+  try {
+    const Reference reference =
+        renderReference(scene, settingsFor(options, scene, method.method), method.reason, goal, output, hooks);
+    fmt::print("{}: {} iterations of each half, {:.1f} s, relative error {:.5f}\n", output, reference.info.iterations,
+               reference.info.renderSeconds, reference.info.relativeError);
+    for (const auto& [name, value] : reference.noiseFloors) fmt::print("noise floor {:8} {:.6g}\n", name, value);
+  } catch (const ReferenceMismatch& error) {
+    throw InputError(error.what());
+  }
+  return guard.interrupted() ? kExitInterrupted : kExitDone;
+}
+
+}  // namespace
+
+void addReferenceCommand(CLI::App& app, int& exitCode) {
+  auto options = std::make_shared<ReferenceOptions>();
+  CLI::App* command = app.add_subcommand("reference", "render a scene's reference image, or go on with it");
+  addSceneOptions(*command, options->scene);
+  command->add_option("-m,--method", options->method, "auto: by the scene's classes of paths; or a method")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--until-relative-error", options->relativeError,
+          "stop when a pixel is off by this share of its value, in the mean; 0.01 if nothing else is asked for")
+      ->check(CLI::Range(1e-9, 1.0));
+  command->add_option("--time", options->time, "stop after this much render time in all: 10m, 6h");
+  command->add_option("--spp", options->spp, "stop after N iterations of each half")->check(CLI::PositiveNumber);
+  command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
+  command->add_option("--seed", options->seed, "seed of both halves, which differ in its high word")
+      ->check(CLI::Range(uint64_t{0}, uint64_t{0xffffffff}));
+  command->add_option("--sampler", options->sampler, "independent or sobol")->capture_default_str();
+  command->add_option("--precision", options->precision, "float, double or fast")->capture_default_str();
+  command->add_option("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512")->capture_default_str();
+  command->add_option("--radius", options->radius, "first merge radius of ppm, bpm and vcm")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-9, 10.0));
+  command->add_option("-o,--output", options->output, "EXR file; default: SCENE.reference.exr; goes on if it exists");
+  command->add_flag("--quiet", options->quiet, "print the result only");
+  command->callback([options, &exitCode] { exitCode = runReference(*options); });
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,51 @@
+#include "engine/snapshots.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wavecrest {
+namespace {
+
+// Six snapshots per decade from a tenth of a second on: evenly spaced on the report's logarithmic axis.
+constexpr double kFirstLogSnapshot = 0.1;
+constexpr double kSnapshotsPerDecade = 6;
+
+// Whichever comes first.
+template <class T>
+std::optional<T> earlier(std::optional<T> a, std::optional<T> b) {
+  return a && b ? std::min(*a, *b) : a ? a : b;
+}
+
+}  // namespace
+
+SnapshotSchedule SnapshotSchedule::every(double seconds) { return SnapshotSchedule(Kind::regular, seconds); }
+
+SnapshotSchedule::Due SnapshotSchedule::due(unsigned number) const {
+  switch (kind_) {
+    case Kind::none:
+      return {};
+    case Kind::regular:
+      return {.seconds = interval_ * (number + 1), .iterations = std::nullopt};
+    case Kind::time:
+      return {.seconds = kFirstLogSnapshot * std::pow(10.0, number / kSnapshotsPerDecade), .iterations = std::nullopt};
+    case Kind::doubling:
+      return {.seconds = std::nullopt, .iterations = uint64_t{1} << std::min(number, 63u)};
+  }
+  return {};
+}
+
+unsigned renderWithSnapshots(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
+                             const std::function<void(unsigned number)>& onSnapshot) {
+  for (unsigned number = 0;; ++number) {
+    const SnapshotSchedule::Due due = schedule.due(number);
+    const bool inTime = due.seconds && (!settings.seconds || *due.seconds <= *settings.seconds);
+    const bool inIterations = due.iterations && (!settings.iterations || *due.iterations <= *settings.iterations);
+    session.renderUntil(earlier(settings.iterations, due.iterations), earlier(settings.seconds, due.seconds));
+    const bool reached = (inTime && session.progressSeconds() >= *due.seconds) ||
+                         (inIterations && session.statistics().iterations >= *due.iterations);
+    if (session.interrupted() || !reached) return number;
+    onSnapshot(number);
+  }
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,52 @@
+// The profiles say what they promise: the protocol of the study, and shards with files of their own.
+#include "bench/campaign/campaign_settings.h"
+
+#include <gtest/gtest.h>
+
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace {
+
+TEST(Profiles, paperIsTheProtocolOfTheStudy) {
+  const Profile& paper = *findProfile("paper");
+  EXPECT_EQ(paper.size, (std::array<uint32_t, 2>{1024, 768}));
+  const auto minutes = [&](const char* scene) { return paper.effort(scene).seconds / 60; };
+  for (const char* scene : {"cornell-diffuse", "cornell-mirror", "cornell-glossy"}) {
+    EXPECT_EQ(minutes(scene), 30) << scene;
+    EXPECT_EQ(paper.effort(scene).snapshotSeconds, 6) << scene;
+  }
+  for (const char* scene : {"cornell-spheres", "lafortune-room", "pool-interior"})
+    EXPECT_EQ(minutes(scene), 60) << scene;
+  for (const char* scene : {"dragon-caustics", "dragon-caustics-glossy", "veach-door"}) {
+    EXPECT_EQ(minutes(scene), 120) << scene;
+    EXPECT_EQ(paper.effort(scene).snapshotSeconds, 20) << scene;
+  }
+}
+
+TEST(Profiles, quickRendersTenMinutesAndStandardAnHourOrTwo) {
+  const auto seconds = [](const Profile& profile) {
+    double sum = 0;
+    for (const SceneEntry& scene : builtInScenes()) {
+      sum += static_cast<double>(kMethods.size()) * profile.seeds * profile.effort(scene.name).seconds;
+    }
+    return sum;
+  };
+  EXPECT_LE(seconds(*findProfile("quick")), 600);
+  EXPECT_GE(seconds(*findProfile("standard")), 3600);
+  EXPECT_LE(seconds(*findProfile("standard")), 7200);
+  EXPECT_GE(findProfile("quick")->seeds, 2u) << "one seed has no error band";
+}
+
+TEST(Profiles, unknownNamesAreNone) { EXPECT_EQ(findProfile("quickly"), nullptr); }
+
+TEST(ResultsFile, shardsHaveFilesOfTheirOwn) {
+  CampaignSettings settings;
+  settings.out = "out";
+  EXPECT_EQ(resultsFile(settings), "out/results.sqlite");
+  settings.shard = {2, 4};
+  EXPECT_EQ(resultsFile(settings), "out/results.2-of-4.sqlite");
+}
+
+}  // namespace
+}  // namespace wavecrest

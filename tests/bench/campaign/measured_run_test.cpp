@@ -1,0 +1,125 @@
+// A run leaves its snapshots, their values, and what it cost; with counted iterations it repeats to the bit.
+#include "bench/campaign/measured_run.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "engine/load/load.h"
+#include "metrics/image/image_io.h"
+#include "scenes/scene_list.h"
+#include "tests/metrics/temporary_folder.h"
+
+namespace wavecrest {
+namespace {
+
+class MeasuredRunTest : public testing::Test {
+ protected:
+  MeasuredRunTest() {
+    LoadOptions options;
+    options.filmSize = {{32, 24}};
+    scene_ = loadScene(findScene("cornell-diffuse"), options);
+    std::filesystem::create_directories(folder_.folder() / "images");
+  }
+  std::optional<RunRecord> run(Method method, uint64_t iterations, bool keepImages = true) {
+    RenderSettings settings;
+    settings.method = method;
+    settings.seed = 3;
+    settings.isa = bestIsa();
+    settings.threads = 2;
+    settings.measureStages = true;
+    settings.iterations = iterations;
+    return measuredRun({.scene = scene_,
+                        .settings = settings,
+                        .schedule = SnapshotSchedule::doubling(),
+                        .reference = reference_,
+                        .out = folder_.folder(),
+                        .keepImages = keepImages},
+                       watch_);
+  }
+  size_t imageCount() const {
+    return static_cast<size_t>(std::distance(std::filesystem::directory_iterator(folder_.folder() / "images"), {}));
+  }
+
+  const test::TemporaryFolder folder_;
+  Scene scene_;
+  const PreparedReference reference_{
+      "grey", {{.width = 32, .height = 24, .channels = 3, .pixels = std::vector<float>(3 * 32 * 24, 0.3f)}, {}, {}}};
+  std::function<void(Session*)> watch_;
+};
+
+TEST_F(MeasuredRunTest, snapshotsDoubleAndEndWithTheLastIteration) {
+  const RunRecord run = this->run(Method::pt, 5).value();
+  ASSERT_EQ(run.snapshots.size(), 4u);
+  const uint64_t expected[] = {1, 2, 4, 5};
+  for (unsigned i = 0; i < 4; ++i) {
+    EXPECT_EQ(run.snapshots[i].number, i);
+    EXPECT_EQ(run.snapshots[i].iterations, expected[i]);
+    EXPECT_EQ(run.snapshots[i].file, "images/cornell-diffuse.pt.3.000" + std::to_string(i) + ".exr");
+    if (i > 0) {
+      EXPECT_GE(run.snapshots[i].renderSeconds, run.snapshots[i - 1].renderSeconds);
+    }
+  }
+  EXPECT_EQ(this->run(Method::pt, 4).value().snapshots.size(), 3u) << "the end is not taken twice";
+}
+
+TEST_F(MeasuredRunTest, valuesAreThoseOfTheImages) {
+  const RunRecord run = this->run(Method::bpt, 2).value();
+  for (const SnapshotRecord& snapshot : run.snapshots) {
+    const Image image = readImage((folder_.folder() / snapshot.file).string()).image;
+    EXPECT_EQ(measureImage(reference_, "again", image), snapshot.values);
+  }
+  EXPECT_NE(run.snapshots[0].values.at("rmse"), run.snapshots[1].values.at("rmse"));
+  for (const char* name : {"rmse", "relmse", "ssim", "q_mos", "q", "flip"}) {
+    EXPECT_TRUE(run.snapshots[0].values.contains(name)) << name;
+  }
+}
+
+TEST_F(MeasuredRunTest, statisticsAreThoseOfTheWholeRun) {
+  const RunRecord run = this->run(Method::pt, 5).value();
+  const nlohmann::json stats = nlohmann::json::parse(run.stats);
+  EXPECT_EQ(stats.at("iterations"), 5);
+  EXPECT_EQ(stats.at("camera_paths"), 5 * 32 * 24);
+  EXPECT_EQ(stats.at("seed"), 3);
+  EXPECT_FALSE(stats.at("cpu").get<std::string>().empty());
+  ASSERT_FALSE(run.stages.empty());
+  EXPECT_EQ(run.stages[0].items, 5u * 32 * 24);
+}
+
+TEST_F(MeasuredRunTest, onlyTheLastImageIsKeptIfThatIsAskedFor) {
+  const RunRecord run = this->run(Method::pt, 5, false).value();
+  EXPECT_EQ(imageCount(), 1u);
+  ASSERT_EQ(run.snapshots.size(), 4u);
+  EXPECT_TRUE(run.snapshots[2].file.empty());
+  EXPECT_TRUE(std::filesystem::exists(folder_.folder() / run.snapshots[3].file));
+  EXPECT_TRUE(run.snapshots[0].values.contains("rmse"));
+}
+
+TEST_F(MeasuredRunTest, repeatsToTheBit) {
+  for (const MethodEntry& method : kMethods) {
+    const RunRecord first = run(method.method, 3).value(), second = run(method.method, 3).value();
+    ASSERT_EQ(first.snapshots.size(), second.snapshots.size()) << method.name;
+    for (size_t i = 0; i < first.snapshots.size(); ++i) {
+      EXPECT_EQ(first.snapshots[i].values, second.snapshots[i].values) << method.name;
+    }
+  }
+}
+
+TEST_F(MeasuredRunTest, aRefusalSaysWhy) {
+  scene_.sensor.kind = Sensor::Kind::orthographic;
+  const RunRecord run = this->run(Method::pt, 1).value();
+  EXPECT_EQ(run.state, RunState::refused);
+  EXPECT_NE(run.reason.find("orthographic"), std::string::npos) << run.reason;
+  EXPECT_TRUE(run.snapshots.empty());
+}
+
+TEST_F(MeasuredRunTest, anInterruptedRunIsNone) {
+  watch_ = [](Session* session) {
+    if (session != nullptr) session->interrupt();
+  };
+  EXPECT_FALSE(run(Method::pt, 100).has_value());
+}
+
+}  // namespace
+}  // namespace wavecrest

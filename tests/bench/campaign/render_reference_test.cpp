@@ -1,0 +1,130 @@
+// References grow by whole iterations of fresh random numbers, from call to call, until their goal.
+#include "bench/campaign/render_reference.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/load/load.h"
+#include "scenes/scene_list.h"
+#include "tests/metrics/temporary_folder.h"
+
+namespace wavecrest {
+namespace {
+
+Scene tinyScene(const char* name = "cornell-diffuse") {
+  LoadOptions options;
+  options.filmSize = {{32, 24}};
+  return loadScene(findScene(name), options);
+}
+
+RenderSettings settingsOf(Method method) {
+  RenderSettings settings;
+  settings.method = method;
+  settings.isa = bestIsa();
+  settings.threads = 2;
+  return settings;
+}
+
+ReferenceGoal iterations(uint64_t count) {
+  return {.relativeError = std::nullopt, .seconds = std::nullopt, .iterations = count};
+}
+
+class RenderReferenceTest : public testing::TestWithParam<Method> {
+ protected:
+  Reference render(uint64_t count, const ReferenceHooks& hooks = {}) const {
+    return renderReference(scene_, settingsOf(GetParam()), "test", iterations(count), file_, hooks);
+  }
+  const test::TemporaryFolder folder_;
+  const std::string file_ = folder_.path("r.exr");
+  const Scene scene_ = tinyScene();
+};
+
+TEST_P(RenderReferenceTest, goesOnWhereItWas) {
+  const Reference two = render(2), three = render(3);
+  EXPECT_EQ(two.info.iterations, 2u);
+  EXPECT_EQ(three.info.iterations, 3u);
+  EXPECT_GT(three.info.renderSeconds, two.info.renderSeconds);
+  // What the third iteration added is an image of its own: no sample of it is negative, but for rounding, as it would
+  // be if the parts were weighted wrongly; and it is not a repetition of the first two.
+  size_t negative = 0, repeated = 0;
+  for (const bool first : {true, false}) {
+    const Image before = first ? two.halfA() : two.halfB(), after = first ? three.halfA() : three.halfB();
+    for (size_t i = 0; i < before.pixels.size(); ++i) {
+      const double third = 3.0 * after.pixels[i] - 2.0 * before.pixels[i];
+      const double rounding = 1e-5 + 1e-3 * before.pixels[i];
+      if (third < -rounding) ++negative;
+      if (before.pixels[i] > 0 && std::abs(third - before.pixels[i]) < rounding) ++repeated;
+    }
+  }
+  EXPECT_EQ(negative, 0u);
+  EXPECT_LT(repeated, 2u * 3 * 32 * 24 / 20);
+}
+
+TEST_P(RenderReferenceTest, aReachedGoalRendersNothing) {
+  const Reference once = render(2);
+  const auto written = std::filesystem::last_write_time(file_);
+  const Reference again = render(2), less = render(1);
+  EXPECT_EQ(std::filesystem::last_write_time(file_), written);
+  EXPECT_EQ(again.mean.pixels, once.mean.pixels);
+  EXPECT_EQ(less.info.iterations, 2u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, RenderReferenceTest, testing::Values(Method::pt, Method::bpt, Method::vcm),
+                         [](const auto& method) { return std::string(toString(method.param)); });
+
+TEST(RenderReference, halvesAreIndependentAndRepeat) {
+  const test::TemporaryFolder folder;
+  const Scene scene = tinyScene();
+  const auto render = [&](const char* name) {
+    return renderReference(scene, settingsOf(Method::pt), "test", iterations(2), folder.path(name), {});
+  };
+  const Reference first = render("a.exr"), second = render("b.exr");
+  EXPECT_EQ(first.mean.pixels, second.mean.pixels);
+  EXPECT_EQ(first.difference->pixels, second.difference->pixels);
+  const auto differing =
+      std::count_if(first.difference->pixels.begin(), first.difference->pixels.end(), [](float d) { return d != 0; });
+  EXPECT_GT(differing, 3 * 32 * 24 / 2);
+}
+
+TEST(RenderReference, stopsAtARelativeError) {
+  const test::TemporaryFolder folder;
+  const ReferenceGoal goal{.relativeError = 0.15, .seconds = std::nullopt, .iterations = std::nullopt};
+  const Reference reference =
+      renderReference(tinyScene(), settingsOf(Method::pt), "test", goal, folder.path("r.exr"), {});
+  EXPECT_LE(reference.info.relativeError, 0.15);
+  EXPECT_GT(reference.info.iterations, 1u);
+  EXPECT_FALSE(reference.noiseFloors.empty());
+}
+
+TEST(RenderReference, anotherReferenceIsNotContinued) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.path("r.exr");
+  const Scene scene = tinyScene();
+  renderReference(scene, settingsOf(Method::pt), "test", iterations(1), file, {});
+  RenderSettings otherSeed = settingsOf(Method::pt), otherDepth = settingsOf(Method::pt);
+  otherSeed.seed = 5;
+  otherDepth.limits.maxDepth = 3;
+  EXPECT_THROW(renderReference(scene, otherSeed, "test", iterations(2), file, {}), ReferenceMismatch);
+  EXPECT_THROW(renderReference(scene, otherDepth, "test", iterations(2), file, {}), ReferenceMismatch);
+  EXPECT_THROW(renderReference(scene, settingsOf(Method::bpt), "test", iterations(2), file, {}), ReferenceMismatch);
+  EXPECT_THROW(renderReference(tinyScene("cornell-mirror"), settingsOf(Method::pt), "test", iterations(2), file, {}),
+               ReferenceMismatch);
+}
+
+TEST(RenderReference, aStopKeepsWholeIterationsOfBothHalves) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.path("r.exr");
+  const Scene scene = tinyScene();
+  int watched = 0;
+  // Stops in the second round, after its first half.
+  const ReferenceHooks hooks{.watch = [&](Session* session) { watched += session != nullptr ? 1 : 0; },
+                             .stopped = [&] { return watched >= 3; },
+                             .advance = {}};
+  const Reference stopped = renderReference(scene, settingsOf(Method::pt), "test", iterations(1000), file, hooks);
+  EXPECT_EQ(stopped.info.iterations, 1u);
+  EXPECT_EQ(readReference(file).mean.pixels, stopped.mean.pixels);
+}
+
+}  // namespace
+}  // namespace wavecrest

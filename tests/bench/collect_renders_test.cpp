@@ -1,0 +1,246 @@
+// A folder of renders written here, with images whose errors are known in advance, read back as a report.
+#include "bench/report/collect_renders.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/report/results_folder.h"
+#include "bench/report/shown_metrics.h"
+#include "bench/report/write_report.h"
+#include "metrics/image/image_io.h"
+#include "metrics/image/srgb.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr uint32_t kSide = 16;
+
+// All pixels 0.5, every second one brighter and the others darker by the deviation: RMSE against 0.5 is the deviation.
+Image speckled(float deviation, uint32_t side = kSide) {
+  Image image{.width = side, .height = side, .channels = 3, .pixels = {}};
+  for (uint32_t i = 0; i < side * side; ++i) {
+    for (int c = 0; c < 3; ++c) image.pixels.push_back(0.5F + (i % 2 == 0 ? deviation : -deviation));
+  }
+  return image;
+}
+
+class CollectRenders : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = fs::path(testing::TempDir()) / (std::string("wavecrest_collect_") + info->name());
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    writeExr((folder / "box.reference.exr").string(), speckled(0));
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  // A run of two snapshots, of error 0.2 and 0.1, and no final image.
+  json addRun(const std::string& stem, const json& changes = json::object()) {
+    writeExr((folder / (stem + ".000.exr")).string(), speckled(0.2F));
+    writeExr((folder / (stem + ".001.exr")).string(), speckled(0.1F));
+    json stats = {
+        {"scene", "some/where/box.xml"},
+        {"method", "pt"},
+        {"seed", 1},
+        {"sampler", "independent"},
+        {"precision", "float"},
+        {"iterations", 40},
+        {"render_seconds", 4.0},
+        {"cpu_seconds", 8.0},
+        {"paths_per_second", 100.0},
+        {"isa", "avx2"},
+        {"stages", {{{"name", "extend"}, {"items", 10}, {"seconds", 1.5}}}},
+        {"snapshots",
+         {{{"index", 0}, {"render_seconds", 1.0}, {"iterations", 10}, {"file", stem + ".000.exr"}},
+          {{"index", 1}, {"render_seconds", 4.0}, {"iterations", 40}, {"file", "gone/" + stem + ".001.exr"}}}}};
+    stats.update(changes);
+    std::ofstream(folder / (stem + ".json")) << stats;
+    return stats;
+  }
+
+  // The text of the error that collecting ends in.
+  std::string error() const {
+    try {
+      collectRenders(folder);
+    } catch (const ResultsError& failure) {
+      return failure.what();
+    } catch (const ImageError& failure) {
+      return failure.what();
+    }
+    return "none";
+  }
+
+  fs::path folder;
+};
+
+TEST_F(CollectRenders, measuresEverySnapshot) {
+  addRun("box.pt");
+  const ConvergenceReport report = collectRenders(folder);
+  ASSERT_EQ(report.scenes.size(), 1U);
+  EXPECT_EQ(report.scenes[0].name, "box");
+  ASSERT_EQ(report.metrics[0].key, "rmse");
+  const auto& points = report.scenes[0].series.at(0).runs.at(0).points;
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].seconds, 1.0);
+  EXPECT_EQ(points[1].iterations, 40U);
+  EXPECT_NEAR(points[0].values[0], 0.2, 1e-6);  // 0.5 +- 0.2 in float
+  EXPECT_NEAR(points[1].values[0], 0.1, 1e-6);
+}
+
+TEST_F(CollectRenders, imageOfTheStatsNameIsTheLastPointIfItIsFurther) {
+  addRun("box.pt", {{"iterations", 50}, {"render_seconds", 5.0}});
+  writeExr((folder / "box.pt.exr").string(), speckled(0.05F));
+  const auto points = collectRenders(folder).scenes[0].series[0].runs[0].points;
+  ASSERT_EQ(points.size(), 3U);
+  EXPECT_EQ(points[2].iterations, 50U);
+  EXPECT_NEAR(points[2].values[0], 0.05, 1e-6);
+}
+
+TEST_F(CollectRenders, imageOfTheStatsNameIsNotCountedTwice) {
+  addRun("box.pt");
+  writeExr((folder / "box.pt.exr").string(), speckled(0.1F));
+  EXPECT_EQ(collectRenders(folder).scenes[0].series[0].runs[0].points.size(), 2U);
+}
+
+// The metrics are those of the list that `compare` measures by default, each by its main score's name.
+TEST_F(CollectRenders, measuresTheMetricsOfTheList) {
+  addRun("box.pt");
+  const ConvergenceReport report = collectRenders(folder);
+  std::vector<std::string> expected, found;
+  for (const Metric& metric : metricList())
+    if (metric.byDefault) expected.push_back(scoreName(metric, metric.score));
+  for (const ReportMetric& metric : report.metrics) found.push_back(metric.key);
+  EXPECT_EQ(found, expected);
+  const ReportPoint& point = report.scenes[0].series[0].runs[0].points[0];
+  const PreparedReference reference("reference", readImage((folder / "box.reference.exr").string()));
+  const ComparedImage test = reference.prepareTest("test", readImage((folder / "box.pt.000.exr").string()));
+  for (size_t m = 0; m < found.size(); ++m) {
+    const Metric& metric = *reportedMetrics()[m];
+    if (kSide < metric.smallestSide) {
+      EXPECT_TRUE(std::isnan(point.values[m])) << found[m];
+    } else {
+      EXPECT_EQ(point.values[m], mainScore(metric, metric.measure(reference, test, false))) << found[m];
+    }
+  }
+  EXPECT_EQ(point.further.at(0).name, "relmse_trimmed");
+}
+
+TEST_F(CollectRenders, showsTheLastImageAndItsErrorMapOnTheScenesScale) {
+  addRun("a");
+  addRun("b", {{"method", "lt"}});
+  writeExr((folder / "b.001.exr").string(), speckled(0));
+  const ReportScene scene = collectRenders(folder).scenes[0];
+  const ReportSeries &noisy = scene.series[0], &perfect = scene.series[1];
+  EXPECT_EQ(noisy.finalImage.width, kSide);
+  EXPECT_EQ(noisy.finalImage.rgb[0], srgbCode(0.6F));
+  EXPECT_EQ(perfect.finalImage.rgb, scene.reference.rgb);
+  // Black where nothing differs; the worst series reaches the scale's end.
+  EXPECT_EQ(perfect.errorMap.rgb[0], 0);
+  EXPECT_GT(*std::max_element(noisy.errorMap.rgb.begin(), noisy.errorMap.rgb.end()), 240);
+  EXPECT_NE(scene.errorMapScale.find("FLIP"), std::string::npos);
+}
+
+TEST_F(CollectRenders, meanOfTwoHalvesIsTheReferenceAndHalfTheirDifferenceItsNoise) {
+  fs::remove(folder / "box.reference.exr");
+  writeExr((folder / "box.reference.1.exr").string(), speckled(0.01F));
+  writeExr((folder / "box.reference.2.exr").string(), speckled(-0.03F));
+  addRun("box.pt");
+  const ReportScene scene = collectRenders(folder).scenes[0];
+  ASSERT_TRUE(scene.noiseFloors[0].has_value());
+  EXPECT_NEAR(*scene.noiseFloors[0], 0.02, 1e-6);
+  EXPECT_NEAR(scene.series[0].runs[0].points[0].values[0], 0.21, 1e-6);  // against 0.5 -+ 0.01
+}
+
+TEST_F(CollectRenders, aSingleReferenceHasNoKnownNoise) {
+  addRun("box.pt");
+  for (const auto& floor : collectRenders(folder).scenes[0].noiseFloors) EXPECT_FALSE(floor.has_value());
+}
+
+TEST_F(CollectRenders, runsThatDifferByTheSeedAreOneSeries) {
+  addRun("box.pt.1");
+  addRun("box.pt.2", {{"seed", 2}});
+  const ReportScene scene = collectRenders(folder).scenes[0];
+  ASSERT_EQ(scene.series.size(), 1U);
+  ASSERT_EQ(scene.series[0].runs.size(), 2U);
+  EXPECT_EQ(scene.series[0].runs[1].seed, 2U);
+  EXPECT_EQ(scene.series[0].cpuSeconds, 16.0);
+  EXPECT_EQ(scene.series[0].pathsPerSecond, 100.0);
+  EXPECT_EQ(scene.series[0].stages.at(0).items, 20U);
+}
+
+TEST_F(CollectRenders, seriesOfOneMethodAreNamedByWhatDiffers) {
+  addRun("a");
+  addRun("b", {{"sampler", "sobol"}});
+  addRun("c", {{"method", "lt"}});
+  const ReportScene scene = collectRenders(folder).scenes[0];
+  ASSERT_EQ(scene.series.size(), 3U);
+  EXPECT_EQ(scene.series[0].label, "pt independent");
+  EXPECT_EQ(scene.series[1].label, "pt sobol");
+  EXPECT_EQ(scene.series[2].label, "lt");
+}
+
+TEST_F(CollectRenders, statsOfAReferenceAreNoRun) {
+  addRun("box.pt");
+  std::ofstream(folder / "box.reference.json") << "{}";
+  EXPECT_EQ(collectRenders(folder).scenes[0].series.size(), 1U);
+}
+
+TEST_F(CollectRenders, writesThePageIntoTheFolder) {
+  addRun("box.pt");
+  const std::vector<fs::path> folders{folder};
+  EXPECT_EQ(writeReport(folders), (std::vector<fs::path>{folder / "report.html"}));
+  EXPECT_GT(fs::file_size(folder / "report.html"), 10000U);
+  const std::vector<fs::path> files = writeReport(folders, {.csv = true, .plots = true});
+  ASSERT_EQ(files.size(), 2 + collectRenders(folder).metrics.size());
+  EXPECT_EQ(files[1], folder / "measurements.csv");
+  EXPECT_EQ(files[2], folder / "plots" / "box.rmse.svg");
+  for (const fs::path& file : files) EXPECT_TRUE(fs::is_regular_file(file)) << file;
+}
+
+TEST_F(CollectRenders, errorsNameTheFileAndWhatWasExpected) {
+  EXPECT_NE(error().find("holds no stats file; expected"), std::string::npos) << error();
+
+  addRun("box.pt");
+  fs::remove(folder / "box.reference.exr");
+  EXPECT_NE(error().find("no reference for 'box'; expected box.reference.exr"), std::string::npos) << error();
+
+  writeExr((folder / "box.reference.exr").string(), speckled(0, 12));
+  EXPECT_NE(error().find("box.pt.000.exr: image of 16x16 pixels; expected 12x12 as in"), std::string::npos) << error();
+
+  fs::remove(folder / "box.pt.001.exr");
+  EXPECT_NE(error().find("snapshot 'gone/box.pt.001.exr' does not exist; expected"), std::string::npos) << error();
+}
+
+TEST_F(CollectRenders, malformedStatsAreRefusedWithTheirName) {
+  std::ofstream(folder / "bad.json") << "{\"scene\": ";
+  EXPECT_NE(error().find("bad.json: is not JSON"), std::string::npos) << error();
+  std::ofstream(folder / "bad.json") << "[1, 2]";
+  EXPECT_NE(error().find("bad.json: is not an object"), std::string::npos) << error();
+  std::ofstream(folder / "bad.json") << "{\"scene\": 3}";
+  EXPECT_NE(error().find("bad.json: 'scene' is 3; expected"), std::string::npos) << error();
+  std::ofstream(folder / "bad.json") << "{\"scene\": \"box\"}";
+  EXPECT_NE(error().find("bad.json: has no 'method'; expected"), std::string::npos) << error();
+  addRun("bad", {{"snapshots", {1}}});
+  EXPECT_NE(error().find("bad.json: a snapshot is 1; expected"), std::string::npos) << error();
+  addRun("bad", {{"snapshots", json::array()}});
+  EXPECT_NE(error().find("bad.json: has no snapshot and no final image"), std::string::npos) << error();
+}
+
+TEST_F(CollectRenders, aFolderThatIsNotThereIsRefused) {
+  fs::remove_all(folder);
+  EXPECT_NE(error().find("is not a folder"), std::string::npos) << error();
+}
+
+}  // namespace
+}  // namespace wavecrest

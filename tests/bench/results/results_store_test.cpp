@@ -1,0 +1,235 @@
+// What is written into a results file comes back, whole runs at a time; and shards come back as one campaign.
+#include "bench/results/results_store.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bench/results/read_results.h"
+#include "bench/results/schema.h"
+#include "tests/metrics/temporary_folder.h"
+
+namespace wavecrest {
+namespace {
+
+using test::TemporaryFolder;
+
+SceneRecord sampleScene(const std::string& name = "box") {
+  return {.name = name,
+          .hash = "00ff",
+          .referenceFile = "references/" + name + ".exr",
+          .width = 32,
+          .height = 24,
+          .noiseFloors = {{"rmse", 0.001}, {"ssim", 0.999}},
+          .pathClasses = {{"L D E", "pt", "sampled"}, {"L S D E", "pt", "inefficient"}}};
+}
+
+RunRecord sampleRun(const std::string& scene = "box", const std::string& method = "pt", uint64_t seed = 1) {
+  return {.scene = scene,
+          .method = method,
+          .seed = seed,
+          .stats = R"({"threads":2})",
+          .stages = {{"generate", 100, 0.25}, {"extend", 90, 0.5}},
+          .snapshots = {{.number = 0,
+                         .renderSeconds = 0.1,
+                         .iterations = 1,
+                         .file = "images/a.0000.exr",
+                         .values = {{"rmse", 0.5}, {"ssim", 0.25}}},
+                        {.number = 1,
+                         .renderSeconds = 0.3,
+                         .iterations = 4,
+                         .file = "images/a.0001.exr",
+                         .values = {{"rmse", 0.25}, {"ssim", std::numeric_limits<double>::quiet_NaN()}}}}};
+}
+
+TEST(ResultsStore, whatIsWrittenIsReadBack) {
+  const TemporaryFolder folder;
+  const RunRecord run = sampleRun("box", "pt", 0xffffffffffffffffu);
+  {
+    ResultsStore store(folder.path("results.sqlite"));
+    store.putCampaign({{"profile", "quick"}, {"threads", "2"}});
+    store.putScene(sampleScene());
+    store.putRun(run);
+    store.putBiases({{"box", "pt", 1, 2, 3, 2, 1}});
+    store.putClaims({{"c1", "box", "pt wins", "holds", "pt 0.1, lt 0.2"}});
+  }
+  const CampaignResults results = readResults(folder.folder());
+  EXPECT_EQ(results.campaign.at("profile"), "quick");
+  ASSERT_EQ(results.scenes.size(), 1u);
+  const SceneRecord& scene = results.scenes[0];
+  EXPECT_EQ(scene.referenceFile, (folder.folder() / "references/box.exr").string());
+  EXPECT_EQ(scene.hash, "00ff");
+  EXPECT_EQ(scene.height, 24u);
+  EXPECT_EQ(scene.noiseFloors, sampleScene().noiseFloors);
+  ASSERT_EQ(scene.pathClasses.size(), 2u);
+  EXPECT_EQ(scene.pathClasses[1].verdict, "inefficient");
+  ASSERT_EQ(results.runs.size(), 1u);
+  const RunRecord& read = results.runs[0];
+  EXPECT_EQ(read.seed, run.seed) << "a seed keeps all 64 bits";
+  EXPECT_EQ(read.stats, run.stats);
+  ASSERT_EQ(read.stages.size(), 2u);
+  EXPECT_EQ(read.stages[1].name, "extend");
+  EXPECT_EQ(read.stages[1].items, 90u);
+  EXPECT_EQ(read.stages[1].seconds, 0.5);
+  ASSERT_EQ(read.snapshots.size(), 2u);
+  EXPECT_EQ(read.snapshots[1].iterations, 4u);
+  EXPECT_EQ(read.snapshots[1].renderSeconds, 0.3);
+  EXPECT_EQ(read.snapshots[1].file, (folder.folder() / "images/a.0001.exr").string());
+  EXPECT_EQ(read.snapshots[0].values, run.snapshots[0].values);
+  EXPECT_TRUE(std::isnan(read.snapshots[1].values.at("ssim")));
+  ASSERT_EQ(results.biases.size(), 1u);
+  EXPECT_EQ(results.biases[0].biasSquared, 1);
+  EXPECT_EQ(results.biases[0].seeds, 2u);
+  ASSERT_EQ(results.claims.size(), 1u);
+  EXPECT_EQ(results.claims[0].evidence, "pt 0.1, lt 0.2");
+}
+
+TEST(ResultsStore, aRefusalIsARunWithAReason) {
+  const TemporaryFolder folder;
+  {
+    ResultsStore store(folder.path("results.sqlite"));
+    store.putScene(sampleScene());
+    store.putRun({.scene = "box", .method = "bpt", .seed = 1, .state = RunState::refused, .reason = "cannot"});
+  }
+  const RunRecord run = readResults(folder.folder()).runs.at(0);
+  EXPECT_EQ(run.state, RunState::refused);
+  EXPECT_EQ(run.reason, "cannot");
+}
+
+TEST(ResultsStore, aRunThatIsThereIsRefusedAndLeavesNoTrace) {
+  const TemporaryFolder folder;
+  ResultsStore store(folder.path("results.sqlite"));
+  store.putScene(sampleScene());
+  store.putRun(sampleRun());
+  EXPECT_TRUE(store.hasRun("box", "pt", 1));
+  EXPECT_FALSE(store.hasRun("box", "pt", 2));
+  EXPECT_THROW(store.putRun(sampleRun()), ResultsFileError);
+  EXPECT_EQ(readResults(folder.folder()).runs.size(), 1u);
+}
+
+TEST(ResultsStore, aRunThatFailsHalfwayIsNotThereAtAll) {
+  const TemporaryFolder folder;
+  ResultsStore store(folder.path("results.sqlite"));
+  store.putScene(sampleScene());
+  RunRecord run = sampleRun();
+  run.snapshots[1].number = run.snapshots[0].number;  // after one snapshot has been written
+  EXPECT_THROW(store.putRun(run), ResultsFileError);
+  EXPECT_FALSE(store.hasRun("box", "pt", 1));
+  EXPECT_TRUE(readResults(folder.folder()).runs.empty());
+}
+
+TEST(ResultsStore, aRunNeedsItsScene) {
+  const TemporaryFolder folder;
+  ResultsStore store(folder.path("results.sqlite"));
+  EXPECT_THROW(store.putRun(sampleRun()), ResultsFileError);
+}
+
+TEST(ResultsStore, openingAgainGoesOn) {
+  const TemporaryFolder folder;
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
+    ResultsStore store(folder.path("results.sqlite"));
+    store.putScene(sampleScene());  // a second time: replaced, its runs stay
+    store.putRun(sampleRun("box", "pt", seed));
+  }
+  const CampaignResults results = readResults(folder.folder());
+  EXPECT_EQ(results.scenes.size(), 1u);
+  EXPECT_EQ(results.scenes[0].noiseFloors.size(), 2u);
+  EXPECT_EQ(results.runs.size(), 2u);
+}
+
+TEST(ResultsStore, aFinishedFileNeedsNoJournalBesideIt) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("results.sqlite");
+  const auto journalMode = [&] {
+    Database database(path, OpenFor::reading);
+    Statement mode(database, "PRAGMA journal_mode");
+    mode.step();
+    return mode.text(0);
+  };
+  {
+    ResultsStore store(path);
+    store.putCampaign({{"a", "b"}});
+    EXPECT_EQ(journalMode(), "wal");
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.folder()), {}), 1);
+  EXPECT_EQ(journalMode(), "delete") << "a file in WAL mode cannot be read in a folder that is read-only";
+}
+
+TEST(ReadResults, otherFilesAreRefused) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(readResults(folder.folder() / "none.sqlite"), ResultsFileError);
+  EXPECT_THROW(readResults(folder.write("text.sqlite", "this is no database, and long enough to be seen as none")),
+               ResultsFileError);
+  {
+    Database other(folder.path("other.sqlite"), OpenFor::writing);
+    other.execute("CREATE TABLE t(a)");
+  }
+  EXPECT_THROW(readResults(folder.path("other.sqlite")), ResultsFileError);
+  {
+    Database newer(folder.path("newer.sqlite"), OpenFor::writing);
+    newer.execute("PRAGMA user_version = 99");
+  }
+  EXPECT_THROW(readResults(folder.path("newer.sqlite")), ResultsFileError);
+  EXPECT_THROW(ResultsStore(folder.path("newer.sqlite")), ResultsFileError);
+}
+
+// A shard with one run.
+std::filesystem::path shard(const TemporaryFolder& folder, const std::string& name, const RunRecord& run,
+                            std::map<std::string, std::string> campaign, const SceneRecord& scene) {
+  const std::filesystem::path path = folder.path(name);
+  ResultsStore store(path);
+  store.putCampaign(campaign);
+  store.putScene(scene);
+  store.putRun(run);
+  store.putClaims({{"c1", "box", "pt wins", "undecided", "only one method"}});
+  return path;
+}
+
+TEST(ReadResults, shardsComeBackAsOneCampaign) {
+  const TemporaryFolder folder;
+  const std::array paths{
+      shard(folder, "b.sqlite", sampleRun("room", "pt", 1), {{"spp", "4"}, {"cpu", "y"}}, sampleScene("room")),
+      shard(folder, "a.sqlite", sampleRun("box", "pt", 1), {{"spp", "4"}, {"cpu", "x"}}, sampleScene()),
+      shard(folder, "c.sqlite", sampleRun("box", "lt", 1), {{"spp", "4"}, {"cpu", "x"}}, sampleScene())};
+  const CampaignResults results = readResults(paths);
+  EXPECT_EQ(results.campaign.at("spp"), "4");
+  EXPECT_EQ(results.campaign.at("cpu"), "y, x");
+  ASSERT_EQ(results.scenes.size(), 2u);
+  EXPECT_EQ(results.scenes[0].name, "box");
+  ASSERT_EQ(results.runs.size(), 3u);
+  EXPECT_NE(results.findRun("box", "lt", 1), nullptr);
+  EXPECT_EQ(results.runs[2].scene, "room");
+  EXPECT_TRUE(results.claims.empty()) << "no shard can judge the whole";
+}
+
+TEST(ReadResults, aFolderStandsForItsFileOrItsShards) {
+  const TemporaryFolder folder;
+  shard(folder, "results.1-of-2.sqlite", sampleRun("box", "pt", 1), {{"spp", "4"}}, sampleScene());
+  shard(folder, "results.2-of-2.sqlite", sampleRun("box", "lt", 1), {{"spp", "4"}}, sampleScene());
+  EXPECT_EQ(readResults(folder.folder()).runs.size(), 2u);
+  EXPECT_TRUE(holdsResults(folder.folder()));
+  EXPECT_FALSE(holdsResults(TemporaryFolder().folder()));
+  shard(folder, "results.sqlite", sampleRun("box", "vcm", 1), {{"spp", "4"}}, sampleScene());
+  EXPECT_EQ(readResults(folder.folder()).runs.size(), 1u);
+}
+
+TEST(ReadResults, whatIsNoPartOfTheSameCampaignIsRefused) {
+  const TemporaryFolder folder;
+  SceneRecord changed = sampleScene(), noisier = sampleScene();
+  changed.hash = "00fe";
+  noisier.noiseFloors["rmse"] = 0.5;
+  const auto first = shard(folder, "0.sqlite", sampleRun(), {{"spp", "4"}}, sampleScene());
+  const RunRecord other = sampleRun("box", "lt", 1);
+  const std::array others{shard(folder, "1.sqlite", sampleRun(), {{"spp", "4"}}, sampleScene()),
+                          shard(folder, "2.sqlite", other, {{"spp", "8"}}, sampleScene()),
+                          shard(folder, "3.sqlite", other, {{"spp", "4"}}, changed),
+                          shard(folder, "4.sqlite", other, {{"spp", "4"}}, noisier)};
+  for (const std::filesystem::path& path : others) {
+    EXPECT_THROW(readResults(std::array{first, path}), ResultsFileError) << path;
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest

@@ -1,0 +1,87 @@
+#include "bench/report/series_values.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/bench/sample_report.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Runs of one metric from (seconds, value) pairs.
+ReportSeries seriesOf(const std::vector<std::vector<std::pair<double, double>>>& runs) {
+  ReportSeries series;
+  series.method = series.label = "pt";
+  for (const auto& points : runs) {
+    ReportRun run;
+    for (const auto& [seconds, value] : points)
+      run.points.push_back({.seconds = seconds, .iterations = 10, .values = {value}});
+    series.runs.push_back(run);
+  }
+  return series;
+}
+
+ReportMetric rising() {
+  ReportMetric metric;
+  metric.higherIsBetter = true;
+  return metric;
+}
+
+TEST(MeanCurve, isMeanAndExtremesOverTheRunsThatGotThere) {
+  const auto curve = meanCurve(seriesOf({{{1, 4}, {2, 2}, {4, 1}}, {{1.2, 6}, {2.4, 3}}}), 0);
+  ASSERT_EQ(curve.size(), 3U);
+  EXPECT_DOUBLE_EQ(curve[0].seconds, 1.1);
+  EXPECT_DOUBLE_EQ(curve[0].mean, 5);
+  EXPECT_DOUBLE_EQ(curve[0].low, 4);
+  EXPECT_DOUBLE_EQ(curve[0].high, 6);
+  EXPECT_DOUBLE_EQ(curve[2].seconds, 4);
+  EXPECT_DOUBLE_EQ(curve[2].low, curve[2].high);
+}
+
+TEST(MeanCurve, leavesOutWhatIsNoNumber) {
+  const auto curve = meanCurve(seriesOf({{{1, kNan}, {2, 2}}, {{1, kNan}, {2, kNan}}}), 0);
+  ASSERT_EQ(curve.size(), 1U);
+  EXPECT_DOUBLE_EQ(curve[0].seconds, 2);
+  EXPECT_DOUBLE_EQ(curve[0].mean, 2);
+}
+
+TEST(FinalValue, isTheMeanOverSeeds) {
+  const ReportSeries series = sampleReport().scenes[0].series[0];
+  const double first = series.runs[0].points.back().values[0], second = series.runs[1].points.back().values[0];
+  ASSERT_NE(first, second);
+  EXPECT_DOUBLE_EQ(finalValue(series, 0), 0.5 * (first + second));
+  EXPECT_TRUE(std::isnan(finalValue(ReportSeries{}, 0)));
+}
+
+TEST(BestFinalValue, followsTheMetricsDirectionAndPassesOverNothing) {
+  ReportScene scene;
+  scene.series = {seriesOf({{{1, kNan}}}), seriesOf({{{1, 0.5}}}), seriesOf({{{1, 0.7}}})};
+  EXPECT_EQ(bestFinalValue(scene, ReportMetric{}, 0), 0.5);
+  EXPECT_EQ(bestFinalValue(scene, rising(), 0), 0.7);
+}
+
+TEST(TimeToReach, isBetweenSnapshotsByTheLogarithmOfTime) {
+  const auto time = timeToReach(seriesOf({{{1, 0.5}, {100, 0.9}}}), rising(), 0, 0.7);
+  ASSERT_TRUE(time.has_value());
+  EXPECT_NEAR(*time, 10, 1e-9);
+  EXPECT_EQ(timeToReach(seriesOf({{{1, 0.5}, {100, 0.7}}}), rising(), 0, 0.7), 100);
+}
+
+TEST(TimeToReach, isTheFirstSnapshotAtLatestOrNever) {
+  EXPECT_EQ(timeToReach(seriesOf({{{3, 0.95}, {4, 0.96}}}), rising(), 0, 0.9), 3);
+  EXPECT_FALSE(timeToReach(seriesOf({{{3, 0.5}, {4, 0.8}}}), rising(), 0, 0.9).has_value());
+  EXPECT_NEAR(*timeToReach(seriesOf({{{1, 0.4}, {4, 0.1}}}), ReportMetric{}, 0, 0.25), 2, 1e-9) << "errors fall";
+}
+
+TEST(MethodsOf, areInTheOrderOfTheStyleListThenOthers) {
+  ConvergenceReport report = sampleReport();
+  report.scenes[0].series[0].method = "zz";
+  EXPECT_EQ(methodsOf(report), (std::vector<std::string>{"pt", "bpt", "vcm", "zz"}));
+}
+
+}  // namespace
+}  // namespace wavecrest

@@ -1,0 +1,94 @@
+"""Reference images: what the file says, going on with it, and what survives kill and Ctrl-C."""
+
+import pathlib
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+from harness import DONE, INPUT, INTERRUPTED, USAGE, WAVECREST, CommandTest, read_exr_header
+
+
+class Reference(CommandTest):
+    def reference(self, *arguments, scene="cornell-diffuse", expect=DONE):
+        return self.run_wavecrest("reference", scene, "--size", "32x24", "--threads", "2", *arguments, expect=expect)
+
+    def header(self, name):
+        return read_exr_header(self.path(name))
+
+    def test_the_file_says_how_it_was_made_and_how_good_it_is(self):
+        self.reference("--spp", "4", "-o", "r.exr")
+        header = self.header("r.exr")
+        self.assertEqual(header["dataWindow"], (0, 0, 31, 23))
+        for channel in (b"R\0", b"difference.R\0", b"variance.B\0"):
+            self.assertIn(channel, header["channels"])
+        self.assertEqual(header["wavecrest:iterations"], "4")
+        self.assertEqual(header["wavecrest:scene"], "cornell-diffuse")
+        self.assertTrue(header["wavecrest:method"] and header["wavecrest:method_reason"])
+        for metric in ("rmse", "relmse", "ssim", "q_mos", "flip"):
+            float(header["wavecrest:noise_floor." + metric])
+
+    def test_running_it_again_goes_on(self):
+        errors = []
+        for spp in ("4", "16", "64"):
+            self.reference("--spp", spp, "-o", "r.exr")
+            self.assertEqual(self.header("r.exr")["wavecrest:iterations"], spp)
+            errors.append(float(self.header("r.exr")["wavecrest:relative_error"]))
+        # A factor of two each; anything beyond 1.4 says that the samples are new ones.
+        self.assertGreater(errors[0], 1.4 * errors[1])
+        self.assertGreater(errors[1], 1.4 * errors[2])
+
+    def test_a_goal_that_is_reached_changes_nothing(self):
+        self.reference("--spp", "4", "-o", "r.exr")
+        before = pathlib.Path(self.path("r.exr")).read_bytes()
+        self.reference("--spp", "4", "-o", "r.exr")
+        self.reference("--until-relative-error", "0.9", "-o", "r.exr")
+        self.assertEqual(pathlib.Path(self.path("r.exr")).read_bytes(), before)
+
+    def test_goals_by_time_and_error(self):
+        self.reference("--time", "0.3s", "-o", "time.exr")
+        self.assertGreaterEqual(float(self.header("time.exr")["wavecrest:render_seconds"]), 0.3)
+        self.reference("--until-relative-error", "0.2", "-o", "error.exr")
+        self.assertLessEqual(float(self.header("error.exr")["wavecrest:relative_error"]), 0.2)
+
+    def test_another_reference_is_not_overwritten(self):
+        self.reference("--spp", "1", "-o", "r.exr")
+        result = self.reference("--spp", "2", "--seed", "3", "--quiet", "-o", "r.exr", expect=INPUT)
+        self.assert_one_error_line(result, r"r\.exr: its seed is '0', not '3'; expected")
+
+    def test_wrong_words_and_files(self):
+        self.reference("--method", "guess", expect=USAGE)
+        self.reference("--until-relative-error", "0", expect=USAGE)
+        self.reference("-o", "r.png", expect=USAGE)
+        self.reference("-o", "nowhere/r.exr", expect=USAGE)
+        self.write("r.exr", "no image")
+        self.reference("--quiet", "-o", "r.exr", expect=INPUT)
+        self.run_wavecrest("reference", "nowhere.xml", expect=INPUT)
+
+    def test_interrupt_saves_what_there_is(self):
+        command = [WAVECREST, "reference", "cornell-diffuse", "--size", "32x24", "--time", "10m", "-o", "r.exr"]
+        process = subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
+        process.stderr.readline()  # which method, and why
+        process.stderr.readline()  # the first iterations are done
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, INTERRUPTED)
+        self.assertGreaterEqual(int(self.header("r.exr")["wavecrest:iterations"]), 1)
+
+    def test_a_kill_leaves_a_reference_or_none(self):
+        chance = random.Random(11)
+        for spp in ("64", "128", "192"):
+            command = [WAVECREST, "reference", "cornell-diffuse", "--size", "32x24", "--spp", spp, "-o", "r.exr"]
+            process = subprocess.Popen(
+                command, cwd=self.folder, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
+            )
+            time.sleep(chance.uniform(0, 0.2))
+            process.kill()
+            process.wait()
+            self.reference("--spp", spp, "-o", "r.exr")
+            self.assertEqual(self.header("r.exr")["wavecrest:iterations"], spp)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,227 @@
+// The integers of light paths, connections and merges: what goes into each stage and comes out (METHODS 9.9).
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/engine/bidirectional_walk.h"
+#include "tests/engine/light_scenes.h"
+#include "tests/engine/render_statistics.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr MisSettings kVcm{.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true};
+
+bool hasFiniteLobe(const SceneView<float>& scene, uint32_t primitive) {
+  return (scene.materials[scene.primitives[primitive].material].flags & kHasFinite) != 0;
+}
+
+// Counts again, item by item, what the stages have counted and stored.
+class Recount : public WalkVisitor<float> {
+ public:
+  explicit Recount(BidirectionalWalk<float>& walk) : walk_(walk) {}
+
+  size_t splatRays = 0, connections = 0, merges = 0, stored = 0;
+
+  void leaving(Walk kind, uint32_t depth, const Wave<float>& wave) override {
+    if (kind == Walk::light && depth == 1) {
+      EXPECT_EQ(wave.rays.size, wave.pathCount);  // 1
+    }
+    EXPECT_EQ(wave.rays.size, depth == 1 ? wave.pathCount : survivors_);  // 2
+    rays_ = wave.rays.size;
+    misses_ = walk_.counters.misses;
+  }
+
+  void arrived(Walk kind, uint32_t depth, const Wave<float>& wave) override {
+    const size_t missed = walk_.counters.misses - misses_;
+    const bool last = depth == walk_.limits().maxDepth;
+    EXPECT_EQ(wave.rays.size, last ? 0 : rays_ - missed) << "depth " << depth;  // 1: every ray hits or misses
+    if (kind == Walk::light) {
+      expectedStored_.clear();
+      for (size_t i = 0; i < wave.rays.size; ++i) {
+        if (hasFiniteLobe(walk_.scene(), wave.hits.primitive[i])) expectedStored_.push_back(wave.paths.lane[i]);
+      }
+    }
+  }
+
+  void splats(uint32_t depth, Wave<float>& wave) override {
+    // 5: a vertex is stored iff it has more than delta lobes; in lane order.
+    const LightStore<float>& light = walk_.light();
+    std::vector<uint32_t> lanes;
+    for (size_t i = light.firstOf(depth); i < light.firstOf(depth + 1); ++i) {
+      lanes.push_back(light.vertices.lane[i]);
+      EXPECT_EQ(light.vertices.depth[i], depth);
+    }
+    EXPECT_EQ(lanes, expectedStored_) << "depth " << depth;
+    stored += lanes.size();
+    // 6: at most one splat for each of them, and each on the film.
+    EXPECT_LE(wave.shadowRays.size, lanes.size());
+    for (size_t i = 0; i < wave.shadowRays.size; ++i) {
+      EXPECT_LT(wave.shadowRays.target[i], walk_.area().pixels.size());
+    }
+    splatRays += wave.shadowRays.size;
+  }
+
+  void scattered(Walk, uint32_t depth, const Wave<float>& wave) override {
+    EXPECT_LE(wave.rays.size, rays_) << "depth " << depth;
+    survivors_ = wave.rays.size;
+  }
+
+  void nextEvent(uint32_t, Wave<float>& wave) override {
+    size_t candidates = 0;  // 4
+    for (size_t i = 0; i < wave.rays.size; ++i) {
+      candidates += hasFiniteLobe(walk_.scene(), wave.hits.primitive[i]) ? 1 : 0;
+    }
+    EXPECT_LE(wave.shadowRays.size, candidates);
+  }
+
+  void connection(uint32_t lightDepth, uint32_t depth, Wave<float>& wave) override {
+    // 7: every stored vertex of the same lane, if the path is not too long.
+    size_t pairs = 0;
+    const LightStore<float>& light = walk_.light();
+    if (lightDepth + depth + 1 <= walk_.limits().maxDepth) {
+      const std::set<uint32_t> lanes(&wave.paths.lane[0], &wave.paths.lane[0] + wave.rays.size);
+      for (size_t i = light.firstOf(lightDepth); i < light.firstOf(lightDepth + 1); ++i) {
+        pairs += lanes.count(light.vertices.lane[i]);
+      }
+    }
+    EXPECT_EQ(walk_.counters.connections, connections + pairs) << "light depth " << lightDepth << ", depth " << depth;
+    EXPECT_LE(wave.shadowRays.size, pairs);
+    connections += pairs;
+  }
+
+  void merging(uint32_t depth, Wave<float>& wave, StageContext<float>& context) override {
+    if (depth == 1) buildMap();
+    context.photons = &map_;
+    walk_.stages().merge(context, wave);
+    const size_t expected = depth + 1 > walk_.limits().maxDepth ? 0 : bruteForceMerges(depth, wave);
+    EXPECT_EQ(walk_.counters.merges, merges + expected) << "depth " << depth;
+    merges += expected;
+  }
+
+ private:
+  void buildMap() {
+    LightStore<float>* const stores[1] = {const_cast<LightStore<float>*>(&walk_.light())};
+    map_.build(stores, walk_.mis().radius, [](size_t count, const std::function<void(size_t)>& body) {
+      for (size_t i = 0; i < count; ++i) body(i);
+    });
+    // 8: buckets hold all photons, each in its own.
+    const uint32_t buckets = map_.grid.bucketMask + 1;
+    ASSERT_EQ(map_.size, walk_.light().vertices.size);
+    EXPECT_EQ(map_.bucketStart[0], 0u);
+    EXPECT_EQ(map_.bucketStart[buckets], map_.size);
+    std::multiset<float> sorted, unsorted;
+    for (uint32_t bucket = 0; bucket < buckets; ++bucket) {
+      for (uint32_t i = map_.bucketStart[bucket]; i < map_.bucketStart[bucket + 1]; ++i) {
+        const auto& p = map_.photons[i].position;
+        uint32_t cell[3];
+        for (size_t axis = 0; axis < 3; ++axis) {
+          cell[axis] = static_cast<uint32_t>(std::floor((p[axis] - map_.grid.origin[axis]) * map_.grid.inverseCell));
+        }
+        EXPECT_EQ((PhotonGrid<float>::hash(cell[1], cell[2]) + cell[0]) & map_.grid.bucketMask, bucket);
+        sorted.insert(p[0]);
+        unsorted.insert(walk_.light().vertices.positionX[i]);
+      }
+    }
+    EXPECT_EQ(sorted, unsorted);
+  }
+
+  // 9: every pair of a camera vertex and a photon is looked at.
+  size_t bruteForceMerges(uint32_t depth, const Wave<float>& wave) const {
+    const auto& v = walk_.light().vertices;
+    const auto radius = static_cast<float>(walk_.mis().radius);
+    size_t count = 0;
+    for (size_t i = 0; i < wave.rays.size; ++i) {
+      if (!hasFiniteLobe(walk_.scene(), wave.hits.primitive[i])) continue;
+      for (size_t k = 0; k < v.size; ++k) {
+        if (v.depth[k] + depth > walk_.limits().maxDepth) continue;
+        const float x = v.positionX[k] - wave.rays.originX[i], y = v.positionY[k] - wave.rays.originY[i],
+                    z = v.positionZ[k] - wave.rays.originZ[i];
+        const float nx = wave.surfaces.normalX[i], ny = wave.surfaces.normalY[i], nz = wave.surfaces.normalZ[i];
+        const bool near = x * x + y * y + z * z <= radius * radius;
+        const bool alike = nx * v.normalX[k] + ny * v.normalY[k] + nz * v.normalZ[k] > 0.1f;
+        const bool flat = std::abs(x * nx + y * ny + z * nz) <= 0.5f * radius;
+        count += near && alike && flat ? 1 : 0;
+      }
+    }
+    return count;
+  }
+
+  BidirectionalWalk<float>& walk_;
+  PhotonMap<float> map_;
+  size_t rays_ = 0, survivors_ = 0;
+  uint64_t misses_ = 0;
+  std::vector<uint32_t> expectedStored_;
+};
+
+TEST(LightInvariants, holdFromStageToStage) {
+  for (const RoomLight light : {RoomLight::quad, RoomLight::constant}) {
+    for (const RoomMaterials materials : {RoomMaterials::diffuse, RoomMaterials::mixed}) {
+      const Scene scene = roomScene({.light = light, .materials = materials, .width = 32, .height = 24});
+      const WalkSettings settings{.lightPaths = 768, .radius = 0.1, .limits = {.maxDepth = 7, .rouletteDepth = 3}};
+      BidirectionalWalk<float> walk(scene, settings, kVcm);
+      Recount recount(walk);
+      walk.run(0, recount);
+      EXPECT_EQ(walk.counters.lightVertices, recount.stored);
+      EXPECT_EQ(walk.light().vertices.size, recount.stored);
+      EXPECT_EQ(walk.counters.nonFinite, 0u);  // 14
+      EXPECT_GT(recount.splatRays, 50u);
+      EXPECT_GT(recount.connections, 500u);
+      EXPECT_GT(recount.merges, 1000u);
+    }
+  }
+}
+
+uint64_t itemsOf(const RenderStatistics& statistics, const std::string& name) {
+  for (const auto& row : statistics.stages) {
+    if (row.name == name) return row.items;
+  }
+  ADD_FAILURE() << "no stage " << name;
+  return 0;
+}
+
+RenderStatistics statisticsOf(const Scene& scene, Method method) {
+  RenderSettings settings = settingsFor({Precision::floating, SamplerKind::independent, Accel::small});
+  settings.method = method;
+  settings.measureStages = true;
+  settings.waveSize = 100;
+  const auto session = Session::create(scene, settings);
+  session->renderUntil(3, std::nullopt);
+  return session->statistics();
+}
+
+// 10: in a room without delta lobes a camera path of ppm ends where it merges, and lt's camera pass at its first
+// vertex.
+TEST(LightInvariants, cameraPathsThatGoOnByDeltaLobesAloneEndAtTheFirstOtherVertex) {
+  const Scene scene = roomScene({.light = RoomLight::quad, .width = 40, .height = 27});
+  const RenderStatistics ppm = statisticsOf(scene, Method::ppm);
+  EXPECT_EQ(itemsOf(ppm, "extend"), 3u * 40 * 27);
+  EXPECT_LE(itemsOf(ppm, "merge"), 3u * 40 * 27);
+  const RenderStatistics lt = statisticsOf(scene, Method::lt);
+  EXPECT_EQ(itemsOf(lt, "extend first"), 3u * 40 * 27);
+  EXPECT_EQ(itemsOf(lt, "extend"), 0u);
+  const Scene mixed =
+      roomScene({.light = RoomLight::quad, .materials = RoomMaterials::mixed, .width = 40, .height = 27});
+  EXPECT_GT(itemsOf(statisticsOf(mixed, Method::lt), "extend"), 100u);
+  EXPECT_GT(itemsOf(statisticsOf(mixed, Method::ppm), "extend"), 3u * 40 * 27 + 100);
+}
+
+// The session's statistics of light passes add up.
+TEST(LightInvariants, statisticsAddUp) {
+  const Scene scene = roomScene({.light = RoomLight::quad, .width = 40, .height = 27});
+  for (const Method method : {Method::bpt, Method::vcm}) {
+    const RenderStatistics s = statisticsOf(scene, method);
+    EXPECT_EQ(s.lightPaths, 3u * 40 * 27);
+    EXPECT_EQ(itemsOf(s, "generate light"), s.lightPaths);
+    EXPECT_EQ(itemsOf(s, "extend light") + itemsOf(s, "extend"), s.counters.raysClosest);
+    EXPECT_EQ(itemsOf(s, "store"), itemsOf(s, "connect to camera"));
+    EXPECT_EQ(itemsOf(s, "store"), s.counters.lightVertices) << "all surfaces are diffuse";
+    EXPECT_EQ(itemsOf(s, "occlude light") + itemsOf(s, "occlude") + itemsOf(s, "occlude connection"),
+              s.counters.raysShadow);
+    EXPECT_LE(itemsOf(s, "occlude connection"), s.counters.connections);
+    EXPECT_EQ(s.counters.nonFinite, 0u);
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest

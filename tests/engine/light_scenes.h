@@ -1,0 +1,140 @@
+// Small rooms for the comparison of methods: one kind of light in each, and a choice of materials.
+//
+// The room is open to the camera's side, so that infinite lights get in, and about two units wide. Its floor is given
+// as a mesh, so that it can have vertex normals.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+
+// shell: a sphere around everything that shines inwards.
+enum class RoomLight { quad, mesh, sphere, shell, point, spot, directional, constant, envmap };
+constexpr std::array<const char*, 9> kRoomLightNames{"quad", "mesh",        "sphere",   "shell", "point",
+                                                     "spot", "directional", "constant", "envmap"};
+
+// diffuse: all walls. mixed: a mirror, a glass and a plastic ball, a glossy and a Phong wall. rough: the same room
+// without delta lobes, so that every method makes all of its paths whatever the light.
+enum class RoomMaterials { diffuse, mixed, rough };
+
+struct Room {
+  RoomLight light = RoomLight::quad;
+  RoomMaterials materials = RoomMaterials::diffuse;
+  bool tiltedNormals = false;  // the floor's shading normals lean
+  uint32_t width = 24, height = 18;
+};
+
+template <class Kind>
+uint32_t addMaterial(Scene& scene, const Kind& kind, bool twoSided = false) {
+  Material material;
+  material.kind = kind;
+  material.twoSided = twoSided;
+  scene.materials.push_back(material);
+  return static_cast<uint32_t>(scene.materials.size() - 1);
+}
+
+template <class Kind>
+void addEmitter(Scene& scene, const Kind& kind) {
+  Emitter emitter;
+  emitter.kind = kind;
+  scene.emitters.push_back(emitter);
+}
+
+inline void addRoomLight(Scene& scene, RoomLight light) {
+  const uint32_t black = addDiffuse(scene, 0, 0, 0);
+  switch (light) {
+    case RoomLight::quad:
+      addShape(scene, Rectangle{{-0.3, 0.9, -0.2}, {0.6, 0, 0}, {0, 0, 0.5}}, black);  // facing down
+      makeLight(scene, {6, 5, 4});
+      break;
+    case RoomLight::mesh: {
+      Mesh mesh;
+      mesh.positions = {{-0.4f, 0.9f, -0.3f}, {0.4f, 0.8f, -0.3f}, {0.0f, 0.9f, 0.4f}, {0.5f, 0.7f, 0.4f}};
+      mesh.triangles = {{0, 1, 2}, {1, 3, 2}};
+      addShape(scene, mesh, black);
+      makeLight(scene, {6, 5, 4});
+      break;
+    }
+    case RoomLight::sphere:
+      addShape(scene, Sphere{.center = {0.2, 0.55, 0.1}, .radius = 0.15}, black);
+      makeLight(scene, {9, 8, 6});
+      break;
+    case RoomLight::shell:
+      addShape(scene, Sphere{.center = {0.1, 0, 0.2}, .radius = 4, .flipNormals = true}, black);
+      makeLight(scene, {1, 0.9, 0.8});
+      break;
+    case RoomLight::point:
+      addEmitter(scene, PointEmitter{{0.1, 0.5, 0.2}, {1, 0.8, 0.6}});
+      break;
+    case RoomLight::spot:
+      addEmitter(scene, SpotEmitter{.position = {0.2, 0.8, 0.3},
+                                    .direction = {-0.2 / 1.1, -1.06 / 1.1, -0.21540659 / 1.1},
+                                    .intensity = {3, 3, 2},
+                                    .cutoffAngle = 50,
+                                    .beamWidth = 30});
+      break;
+    case RoomLight::directional:
+      addEmitter(scene, DirectionalEmitter{{-0.36, -0.48, -0.8}, {3, 2, 2}});
+      break;
+    case RoomLight::constant:
+      addEmitter(scene, ConstantEmitter{{1, 0.9, 0.8}});
+      break;
+    case RoomLight::envmap: {
+      auto bitmap = std::make_shared<Bitmap>();
+      bitmap->width = 16;
+      bitmap->height = 8;
+      for (uint32_t i = 0; i < 16 * 8; ++i) {
+        const float glow = i % 16 >= 6 && i % 16 <= 9 && i / 16 >= 2 && i / 16 <= 4 ? 4.0f : 0.3f;
+        for (const float tint : {1.0f, 0.9f, 0.7f}) bitmap->pixels.push_back(glow * tint);
+      }
+      EnvmapEmitter envmap{.bitmap = bitmap, .toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}};
+      addEmitter(scene, envmap);
+      break;
+    }
+  }
+}
+
+inline Scene roomScene(const Room& room) {
+  Scene scene;
+  scene.name = "room";
+  const bool mixed = room.materials != RoomMaterials::diffuse, rough = room.materials == RoomMaterials::rough;
+  const TexturedFloat alpha{rough ? 0.3 : 0.0};
+  const uint32_t white = addDiffuse(scene, 0.7, 0.7, 0.7), red = addDiffuse(scene, 0.7, 0.2, 0.2);
+  const uint32_t glossy = addMaterial(scene, Conductor{.eta = {0.2, 0.9, 1.1}, .k = {3.9, 2.4, 2.2}, .alpha = {0.3}});
+  const uint32_t phong = addMaterial(scene, Phong{.exponent = 8});
+
+  Mesh floor;
+  floor.positions = {{-1, -1, 1}, {1, -1, 1}, {1, -1, -1}, {-1, -1, -1}};
+  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+  if (room.tiltedNormals) {
+    for (const auto& [x, z] : {std::pair{0.3, 0.1}, {-0.2, 0.3}, {0.1, -0.4}, {-0.3, -0.1}}) {
+      const double length = std::sqrt(1 + x * x + z * z);
+      floor.normals.push_back(
+          {static_cast<float>(x / length), static_cast<float>(1 / length), static_cast<float>(z / length)});
+    }
+  }
+  addShape(scene, floor, white);
+  addShape(scene, Rectangle{{-1, -1, -1}, {2, 0, 0}, {0, 2, 0}}, mixed ? phong : white);  // back, facing +z
+  addShape(scene, Rectangle{{-1, -1, 1}, {0, 0, -2}, {0, 2, 0}}, red);                    // left, facing +x
+  addShape(scene, Rectangle{{1, -1, -1}, {0, 0, 2}, {0, 2, 0}}, mixed ? glossy : white);  // right, facing -x
+  addShape(scene, Rectangle{{-1, 1, -1}, {2, 0, 0}, {0, 0, 2}}, white);                   // ceiling, facing -y
+  const uint32_t mirror =
+      addMaterial(scene, Conductor{.perfectMirror = true, .specularReflectance = {{0.9, 0.9, 0.9}}, .alpha = alpha});
+  const uint32_t glass = addMaterial(scene, Dielectric{.intIor = 1.5, .extIor = 1, .alpha = alpha});
+  const uint32_t plastic =
+      addMaterial(scene, Plastic{.intIor = 1.5, .extIor = 1, .diffuseReflectance = {{0.3, 0.4, 0.7}}, .alpha = alpha});
+  addShape(scene, Sphere{.center = {-0.5, -0.65, -0.4}, .radius = 0.35}, mixed ? mirror : red);
+  if (mixed) {
+    addShape(scene, Sphere{.center = {0.3, -0.7, 0.2}, .radius = 0.3}, glass);
+    addShape(scene, Sphere{.center = {0.6, -0.7, -0.5}, .radius = 0.3}, plastic);
+  }
+  addRoomLight(scene, room.light);
+  setCamera(scene, {0.1, 0.05, 3.2}, 45, room.width, room.height);
+  return scene;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,90 @@
+// When snapshots are due, and that no render goes on past its time.
+#include "engine/snapshots.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+TEST(SnapshotSchedule, isRegularLogarithmicDoublingOrNone) {
+  EXPECT_DOUBLE_EQ(*SnapshotSchedule::every(6).due(0).seconds, 6);
+  EXPECT_DOUBLE_EQ(*SnapshotSchedule::every(6).due(9).seconds, 60);
+  const SnapshotSchedule logarithmic = SnapshotSchedule::logarithmic();
+  EXPECT_DOUBLE_EQ(*logarithmic.due(0).seconds, 0.1);
+  EXPECT_NEAR(*logarithmic.due(12).seconds, 10, 1e-12) << "six per decade";
+  EXPECT_EQ(*SnapshotSchedule::doubling().due(5).iterations, 32u);
+  EXPECT_FALSE(SnapshotSchedule::doubling().due(5).seconds);
+  EXPECT_FALSE(SnapshotSchedule::none().due(0).seconds || SnapshotSchedule::none().due(0).iterations);
+}
+
+class SnapshotsTest : public testing::TestWithParam<MethodEntry> {
+ protected:
+  std::unique_ptr<Session> session() const { return Session::create(scene_, settings_); }
+  SnapshotsTest() {
+    settings_.method = GetParam().method;
+    settings_.isa = bestIsa();
+    settings_.threads = 2;
+    settings_.waveSize = 256;
+  }
+  const Scene scene_ = sceneFile("cornell-diffuse", 40, 27);
+  RenderSettings settings_;
+};
+
+TEST_P(SnapshotsTest, areTakenAfterTheirIterations) {
+  settings_.iterations = 5;
+  const auto own = session();
+  std::vector<uint64_t> iterations;
+  const unsigned count = renderWithSnapshots(*own, settings_, SnapshotSchedule::doubling(), [&](unsigned number) {
+    EXPECT_EQ(number, iterations.size());
+    iterations.push_back(own->statistics().iterations);
+  });
+  EXPECT_EQ(iterations, (std::vector<uint64_t>{1, 2, 4}));
+  EXPECT_EQ(count, 3u);
+  EXPECT_EQ(own->statistics().iterations, 5u);
+}
+
+// The clock is looked at before every wave: a session that is out of time starts none, so a limit is overrun by what
+// is under way, one wave per worker, and no more.
+TEST_P(SnapshotsTest, noWaveStartsAfterTheEnd) {
+  const auto own = session();
+  own->renderUntil(std::nullopt, 1e-9);
+  EXPECT_EQ(own->progressPaths(), 0u);
+  EXPECT_EQ(own->statistics().lightPaths, 0u);
+  own->renderUntil(std::nullopt, 0.02);
+  const RenderStatistics before = own->statistics();
+  own->renderUntil(std::nullopt, 0.02);
+  const RenderStatistics after = own->statistics();
+  EXPECT_EQ(after.paths, before.paths);
+  EXPECT_EQ(after.lightPaths, before.lightPaths);
+  const auto items = [](const RenderStatistics& s) {
+    return std::accumulate(s.stages.begin(), s.stages.end(), uint64_t{0},
+                           [](uint64_t sum, const auto& stage) { return sum + stage.items; });
+  };
+  EXPECT_EQ(items(after), items(before));
+}
+
+// Iterations of a session that starts at k are those of one that rendered k before: sums agree, to rounding.
+TEST_P(SnapshotsTest, aSessionMayStartAtALaterIteration) {
+  const auto image = [&](uint64_t first, uint64_t count) {
+    settings_.firstIteration = first;
+    const auto own = session();
+    own->renderUntil(count, std::nullopt);
+    EXPECT_EQ(own->statistics().iterations, count);
+    return own->film().resolve();
+  };
+  const std::vector<float> all = image(0, 3), begin = image(0, 1), end = image(1, 2);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const float parts = (begin[i] + 2 * end[i]) / 3;
+    ASSERT_NEAR(all[i], parts, 1e-6f + 1e-5f * all[i]) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, SnapshotsTest, testing::ValuesIn(kMethods),
+                         [](const auto& entry) { return std::string(entry.param.name); });
+
+}  // namespace
+}  // namespace wavecrest
