@@ -23,12 +23,12 @@ namespace {
 // As written on the command line; resolved() turns words into settings.
 struct RenderOptions {
   std::string scene, method = "pt", time, size, sampler = "independent", precision = "float", isa = "auto",
-                     accel = "auto", snapshotEvery, stats, progress = "auto";
+                     accel = "auto", mlt, snapshotEvery, stats, progress = "auto";
   uint64_t spp = 0;
   uint32_t threads = 0;
   uint64_t seed = 0;
   int maxDepth = 0, rrDepth = 0;  // 0: what the scene says
-  uint32_t wave = 2048;
+  uint32_t wave = 2048, chains = MetropolisSettings().chains;
   double radius = 0.001, radiusAlpha = 0.75;
   std::vector<std::string> defines, outputs;
   bool lenient = false;
@@ -84,6 +84,18 @@ Isa chosenIsa(const std::string& word) {
   return *isa;
 }
 
+MetropolisSettings chosenChains(const RenderOptions& options) {
+  MetropolisSettings settings;
+  if (!options.mlt.empty()) {
+    settings.variant = static_cast<MetropolisVariant>(parseChoice("--mlt", options.mlt, kMetropolisVariantNames));
+  }
+  if (settings.variant == MetropolisVariant::pathspace) {
+    throw UsageError("--mlt pathspace: not implemented; expected pssmlt or mmlt");
+  }
+  settings.chains = options.chains;
+  return settings;
+}
+
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   RenderSettings settings;
   const std::optional<Method> method = parseMethod(options.method);
@@ -99,6 +111,7 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   settings.seed = options.seed;
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
+  settings.metropolis = chosenChains(options);
   settings.radius = options.radius;
   settings.radiusAlpha = options.radiusAlpha;
   const int maxDepth = options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth;
@@ -232,7 +245,8 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
   command->add_option("scene", options->scene, "built-in scene or path of an XML file")->required();
   command->add_option("-m,--method", options->method, "light-transport method")->capture_default_str();
   command->add_option("--time", options->time, "stop after this much render time: 6s, 2m, 1h30m");
-  command->add_option("--spp", options->spp, "stop after N iterations: paths per pixel")->check(CLI::PositiveNumber);
+  command->add_option("--spp", options->spp, "stop after N iterations: paths, of mlt mutations, per pixel")
+      ->check(CLI::PositiveNumber);
   command->add_option("--size", options->size, "film size, WIDTHxHEIGHT");
   command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
   command->add_option("--seed", options->seed, "seed of all random numbers")
@@ -257,6 +271,10 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
       ->capture_default_str()
       ->check(checkFinite)
       ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--mlt", options->mlt, "what the chains of mlt walk in: pssmlt or mmlt; default: mmlt");
+  command->add_option("--chains", options->chains, "Markov chains of mlt")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 24));
   command->add_option("-D", options->defines, "value of a scene's $name: NAME=VALUE")->allow_extra_args(false);
   command->add_flag("--lenient", options->lenient, "skip what a scene asks and wavecrest lacks, with a warning");
   command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");

@@ -1,5 +1,8 @@
 #include "engine/render_plan.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -16,8 +19,20 @@ ColumnNeeds columnNeeds(Specialization specialization) {
           .connections = (features & kBidirectional) != 0};
 }
 
+// Whether kernels with the whole MIS recursion are needed.
+bool isBidirectional(const RenderSettings& settings) {
+  if (settings.method == Method::mlt) return settings.metropolis.variant != MetropolisVariant::pssmlt;
+  return entryOf(settings.method).bidirectional;
+}
+
+// Whether t = 1 is among the strategies.
+bool joinsTheLens(const RenderSettings& settings) {
+  const Method m = settings.method;
+  return m == Method::lt || m == Method::bpt || m == Method::vcm || (m == Method::mlt && isBidirectional(settings));
+}
+
 Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
-  const uint32_t features = sceneFeatures(scene) | (entryOf(settings.method).bidirectional ? kBidirectional : 0u);
+  const uint32_t features = sceneFeatures(scene) | (isBidirectional(settings) ? kBidirectional : 0u);
   const Specialization least = chooseSpecialization(features, settings.precision);
   if (!settings.specialization) return least;
   if ((features & ~featuresOf(*settings.specialization)) != 0) {
@@ -34,10 +49,10 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   RenderPlan<S> plan;
   // t = 1 knows neither where a reconstruction filter spreads a splat nor which point of a lens to join.
   const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
-  if (lens && (settings.method == Method::lt || settings.method == Method::bpt || settings.method == Method::vcm)) {
-    throw SceneError({scene.name},
-                     "method " + std::string(toString(settings.method)) +
-                         " needs a perspective sensor and the box filter; expected those, or pt, ppm or bpm");
+  if (lens && joinsTheLens(settings)) {
+    throw SceneError({scene.name}, "method " + std::string(toString(settings.method)) +
+                                       " needs a perspective sensor and the box filter; expected those, or pt, ppm, "
+                                       "bpm or mlt with pssmlt");
   }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);
@@ -47,11 +62,26 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   const Intersector<S> intersector = plan.accel() == Accel::small
                                          ? Intersector<S>{stages.extendSmall, stages.occludeSmall, stages.lanes}
                                          : Intersector<S>{extendEmbree<S>, occludeEmbree<S>, kEmbreePacket};
-  plan.pipeline = makePipeline(settings.method, stages, intersector);
+  plan.pipeline = makePipeline(settings.method, settings.metropolis.variant, stages, intersector);
   return plan;
 }
 template RenderPlan<float> planRender(const Scene&, const RenderSettings&);
 template RenderPlan<double> planRender(const Scene&, const RenderSettings&);
+
+MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t pixels,
+                        uint64_t iteration) {
+  const auto lightPaths = static_cast<double>(pixels);
+  strategies.lightPaths = lightPaths;
+  strategies.camN = lightPaths;
+  const double shrink = std::pow(static_cast<double>(iteration + 1), (settings.radiusAlpha - 1) / 2);
+  // Below the precision of positions nothing could be merged.
+  strategies.radius = std::max(settings.radius * shrink, 16 * 0x1p-24) * sceneRadius;
+  const double density = std::numbers::pi * strategies.radius * strategies.radius * lightPaths;
+  strategies.mergeNorm = 1 / density;
+  strategies.kVM = strategies.merge ? density : 0;
+  strategies.kVC = strategies.merge && strategies.connect ? 1 / density : 0;
+  return strategies;
+}
 
 FilmArea filmArea(const FilmSettings& film) {
   if (film.cropWidth == 0 || film.cropHeight == 0) return FilmArea::make(0, 0, film.width, film.height);

@@ -27,6 +27,10 @@ struct RenderPlan {
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings);
 
+// Constants of an iteration's densities (METHODS 5.1, 6.1): one light path per pixel of the rendered rectangle.
+MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t pixels,
+                        uint64_t iteration);
+
 // The rectangle of the film that is rendered: its crop window, or all of it.
 FilmArea filmArea(const FilmSettings& film);
 

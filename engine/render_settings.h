@@ -11,8 +11,18 @@ namespace wavecrest {
 
 constexpr uint32_t kUnlimitedDepth = 64;  // edges; roulette ends paths long before
 
+// Markov chains. Their number is a setting, not a consequence of threads or waves, so that images depend on neither.
+struct MetropolisSettings {
+  MetropolisVariant variant = MetropolisVariant::mmlt;
+  uint32_t chains = 16384;
+  uint32_t bootstrapSamples = 131072;  // independent samples from which chains start, and the image's brightness comes
+  uint32_t restartSteps = 10000;       // steps of a chain before all start anew from fresh samples
+  double largeStep = 0.3;              // probability of a step that forgets where the chain is
+};
+
 struct RenderSettings {
   Method method = Method::pt;
+  MetropolisSettings metropolis;
   Precision precision = Precision::floating;
   Isa isa = Isa::scalar;
   Accel accel = Accel::automatic;

@@ -12,8 +12,20 @@
 
 #include "engine/film.h"
 #include "engine/render_settings.h"
+#include "kernels/columns/chains.h"
 
 namespace wavecrest {
+
+// What Markov chains have done so far.
+struct ChainStatistics {
+  uint64_t mutations = 0;  // of all chains, rejected ones included
+  uint64_t epochs = 0;
+  double brightness = 0, brightnessError = 0;  // b, the mean luminance of the image by the bootstraps; standard error
+  double largestShare =
+      0;  // of one bootstrap sample in b, at most over epochs: large where chains start too much alike
+  ChainCounters counters;
+  size_t bytes = 0;  // of the chains' state
+};
 
 // Numbers of a render so far, as --stats reports them.
 struct RenderStatistics {
@@ -32,8 +44,9 @@ struct RenderStatistics {
   Isa isa{};
   Specialization specialization{};
   Accel accel{};
-  size_t bytesPerPath = 0;  // of a wave's columns
-  size_t lightBytes = 0;    // light vertices and photon map
+  size_t bytesPerPath = 0;                // of a wave's columns
+  size_t lightBytes = 0;                  // light vertices and photon map
+  std::optional<ChainStatistics> chains;  // of mlt
 };
 
 class Session {

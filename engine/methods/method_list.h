@@ -10,7 +10,12 @@
 
 namespace wavecrest {
 
-enum class Method { pt, lt, bpt, ppm, bpm, vcm };
+enum class Method { pt, lt, bpt, mlt, ppm, bpm, vcm };
+
+// What the chains of Metropolis light transport walk in: primary samples of path tracing, primary samples of
+// bidirectional path tracing with one strategy per path, or paths.
+enum class MetropolisVariant { pssmlt, mmlt, pathspace };
+constexpr std::array<std::string_view, 3> kMetropolisVariantNames{"pssmlt", "mmlt", "pathspace"};
 
 struct MethodEntry {
   Method method;
@@ -23,6 +28,7 @@ constexpr std::array kMethods{
     MethodEntry{Method::pt, "pt", "path tracing with next event estimation", false},
     MethodEntry{Method::lt, "lt", "light tracing, and path tracing of directly visible specular surfaces", true},
     MethodEntry{Method::bpt, "bpt", "bidirectional path tracing", true},
+    MethodEntry{Method::mlt, "mlt", "Metropolis light transport", true},
     MethodEntry{Method::ppm, "ppm", "progressive photon mapping", true},
     MethodEntry{Method::bpm, "bpm", "bidirectional photon mapping: merging at every vertex", true},
     MethodEntry{Method::vcm, "vcm", "vertex connection and merging", true},
@@ -55,6 +61,13 @@ template <class S>
 Pipeline<S> vertexConnectionAndMerging(const Stages<S>& stages, const Intersector<S>& intersector);
 
 template <class S>
-Pipeline<S> makePipeline(Method method, const Stages<S>& stages, const Intersector<S>& intersector);
+Pipeline<S> primarySampleSpace(const Stages<S>& stages, const Intersector<S>& intersector);
+template <class S>
+Pipeline<S> multiplexedMetropolis(const Stages<S>& stages, const Intersector<S>& intersector);
+
+// variant: of mlt. Throws std::invalid_argument for one that has no pipeline.
+template <class S>
+Pipeline<S> makePipeline(Method method, MetropolisVariant variant, const Stages<S>& stages,
+                         const Intersector<S>& intersector);
 
 }  // namespace wavecrest
