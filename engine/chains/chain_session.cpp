@@ -123,6 +123,7 @@ std::vector<float> ChainSession<S>::bootstrapTargets(uint64_t epoch) {
                  count = std::min<size_t>(settings_.waveSize, targets.size() - first);
     // All steps are large, so no current numbers are kept.
     ChainState state(count, {});
+    state.samples.values = nullptr;
     const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
     std::copy_n(kept.blocks, 2, state.samples.blocks);
     state.multiplexed = plan_.pipeline.lightPass.has_value();

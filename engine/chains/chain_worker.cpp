@@ -60,8 +60,9 @@ ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, size_t p
     : splats(3 * pixels),
       pipeline_(plan.pipeline),
       wave_(capacity, plan.needs),
-      light_(capacity, plan.needs),
-      lightLanes_(paddedItems(capacity)) {
+      light_(capacity, plan.needs) {
+  lanesArena_ = Arena(lightLanes_.bytes(capacity));
+  lightLanes_.bind(lanesArena_, capacity);
   if (pipeline_.lightPass) {
     ends_.emplace(capacity, plan.needs, wave_);
     light_.beginDepth(capacity);  // at most one light vertex to a lane: room for all of them from the start
@@ -120,7 +121,7 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
   Wave<S>& atOrigin = ends_->atOrigin;
   atOrigin.rays.size = atOrigin.paths.size = atOrigin.hits.size = atOrigin.surfaces.size = 0;
   wave_.pathCount = chooseLightLanes(chains.columns, count);
-  context.lanes = lightLanes_.data();
+  context.lanes = lightLanes_;
   runPass(*pipeline_.lightPass, context, wave_, tally);
   advance(pipeline_.lightPass->stageCount());
   wave_.pathCount = count;

@@ -46,7 +46,8 @@ class ChainWorker {
   Wave<S> wave_;
   std::optional<WalkEnds<S>> ends_;
   LightStore<S> light_;
-  std::vector<uint32_t> lightLanes_;  // lanes whose light walk is worth its while
+  Arena lanesArena_;
+  Column<uint32_t> lightLanes_;  // lanes whose light walk is worth its while
 };
 
 // The rows of --stats that ChainWorker::tallies are of.

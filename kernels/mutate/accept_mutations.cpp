@@ -34,9 +34,11 @@ WAVECREST_INLINE Contribution proposedContribution(const Wave<S>& wave, const Ch
   return {{over(value.x), over(value.y), over(value.z)}, zeroUnless(lit, luminance)};
 }
 
-// Moves the primary samples of accepted lanes, of the vertices that the proposal used.
+// Moves the primary samples of accepted lanes, of the vertices that the proposal used. Chains that only ever take large
+// steps keep none.
 WAVECREST_INLINE void keepSamples(const SamplerSettings& sampler, Mask accepted, UInt vertices, size_t walk, size_t i) {
   const ChainSamples& chain = *sampler.chain;
+  if (chain.values == nullptr) return;
   const UInt lane = laneIndex(static_cast<uint32_t>(i));
   for (uint32_t depth = 0;; ++depth) {
     const Mask used = accepted & (UInt(depth) < vertices);
@@ -94,12 +96,13 @@ void acceptMutations(const StageContext<typename P::Storage>& context, Wave<type
 
     // The state that is left goes to the film with all its visits, else the proposal with its share.
     const UInt pixel = load(chains.pixel, i), proposedPixel = load(chains.proposedPixel, i);
-    const Float visits = select(accepted, weight, a);
+    const Float due = zeroUnless(somewhere, weight + (one - a));
+    const Float visits = select(accepted, due, a);
     const Vec3<Float> splat = select(accepted, colour, proposed.colour) * (visits * Float(state.splatFactor));
     const Mask splats = active & (visits > Float(0)) & (maxComponent(splat) > Float(0));
     if (any(splats)) addSplats(context, select(accepted, pixel, proposedPixel), splats, splat);
 
-    store(select(accepted, a, zeroUnless(somewhere, weight + (one - a))), chains.weight, i);
+    store(select(accepted, a, due), chains.weight, i);
     if (none(accepted)) continue;
     storeVec3(select(accepted, proposed.colour, colour), chains.red, chains.green, chains.blue, i);
     store(select(accepted, proposed.target, target), chains.target, i);

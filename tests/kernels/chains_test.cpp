@@ -36,11 +36,12 @@ class ToyChains {
 
   // One step: propose, evaluate, accept. Chains that are nowhere yet take what they get.
   void step(uint32_t number) {
-    StageContext<float> context{.scene = &scene_,
-                                .sampler = {SamplerKind::chain, 17, number, &state.samples},
-                                .splats = {sums.data(), 0, 0, kWidth, kHeight},
-                                .chains = &state,
-                                .counters = &counters};
+    StageContext<float> context;
+    context.scene = &scene_;
+    context.sampler = {SamplerKind::chain, 17, number, &state.samples};
+    context.splats = {sums.data(), 0, 0, kWidth, kHeight};
+    context.chains = &state;
+    context.counters = &counters;
     stages_.proposeMutations(context, wave_);
     stages_.generateCameraPaths(context, wave_);
     for (size_t i = 0; i < wave_.pathCount; ++i) {
@@ -139,7 +140,9 @@ TEST_P(Stationary, splatsAreTheTarget) {
   double all = 0, quarter = 0, wanted = 0;
   for (uint32_t pixel = 0; pixel < kPixels; ++pixel) {
     all += visits[pixel];
-    if (toyTarget(pixel) == 0) EXPECT_EQ(visits[pixel], 0);
+    if (toyTarget(pixel) == 0) {
+      EXPECT_EQ(visits[pixel], 0);
+    }
     if (pixel % kWidth >= 12) continue;
     quarter += visits[pixel];
     wanted += static_cast<double>(toyTarget(pixel)) / toySum();
