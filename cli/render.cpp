@@ -28,10 +28,10 @@ struct RenderOptions {
   uint32_t threads = 0;
   uint64_t seed = 0;
   int maxDepth = 0, rrDepth = 0;  // 0: what the scene says
-  uint32_t wave = 2048, chains = MetropolisSettings().chains;
+  uint32_t wave = 2048, chains = MetropolisSettings().chains, bootstrap = MetropolisSettings().bootstrapSamples;
   double radius = 0.001, radiusAlpha = 0.75;
   std::vector<std::string> defines, outputs;
-  bool lenient = false;
+  bool lenient = false, noDirectPass = false;
 };
 
 Session* interruptible = nullptr;
@@ -93,6 +93,8 @@ MetropolisSettings chosenChains(const RenderOptions& options) {
     throw UsageError("--mlt pathspace: not implemented; expected pssmlt or mmlt");
   }
   settings.chains = options.chains;
+  settings.directPass = !options.noDirectPass;
+  settings.bootstrapSamples = options.bootstrap;
   return settings;
 }
 
@@ -275,6 +277,10 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
   command->add_option("--chains", options->chains, "Markov chains of mlt")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 24));
+  command->add_option("--bootstrap", options->bootstrap, "independent samples from which chains start")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 28));
+  command->add_flag("--no-direct-pass", options->noDirectPass, "mmlt: chains render direct light too");
   command->add_option("-D", options->defines, "value of a scene's $name: NAME=VALUE")->allow_extra_args(false);
   command->add_flag("--lenient", options->lenient, "skip what a scene asks and wavecrest lacks, with a warning");
   command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");

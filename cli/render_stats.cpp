@@ -28,6 +28,7 @@ nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainSta
   return {
       {"mlt", nameOf(kMetropolisVariantNames, settings.metropolis.variant)},
       {"chains", settings.metropolis.chains},
+      {"direct_paths", chains.directPaths},
       {"chain_bytes", chains.bytes},
       {"bootstrap_epochs", chains.epochs},
       {"bootstrap_largest_share", chains.largestShare},

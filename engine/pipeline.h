@@ -68,7 +68,9 @@ template <class S>
 struct ChainCalls {
   StageCall<S> propose, accept;
   std::vector<JoinCall<S>> afterCamera = {}, afterLight = {};
+  std::optional<Pass<S>> directPass = std::nullopt;  // paths of up to kDirectLength edges, if chains leave them out
 };
+constexpr uint32_t kDirectLength = 2;
 
 // A method. With a photon map, all light passes of an iteration come before all its camera passes; with chains, the
 // camera pass comes first and paths are what the chains propose.

@@ -18,6 +18,7 @@ struct MetropolisSettings {
   uint32_t bootstrapSamples = 131072;  // independent samples from which chains start, and the image's brightness comes
   uint32_t restartSteps = 10000;       // steps of a chain before all start anew from fresh samples
   double largeStep = 0.3;              // probability of a step that forgets where the chain is
+  bool directPass = true;              // mmlt: emitters in view and direct light by path tracing, the rest by chains
 };
 
 struct RenderSettings {

@@ -18,9 +18,10 @@ namespace wavecrest {
 
 // What Markov chains have done so far.
 struct ChainStatistics {
-  uint64_t mutations = 0;  // of all chains, rejected ones included
+  uint64_t mutations = 0;    // of all chains, rejected ones included
+  uint64_t directPaths = 0;  // of the separate pass for direct light
   uint64_t epochs = 0;
-  double brightness = 0, brightnessError = 0;  // b, the mean luminance of the image by the bootstraps; standard error
+  double brightness = 0, brightnessError = 0;  // b, the mean luminance of what chains render, and its standard error
   double largestShare =
       0;  // of one bootstrap sample in b, at most over epochs: large where chains start too much alike
   ChainCounters counters;

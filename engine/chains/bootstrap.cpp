@@ -16,11 +16,12 @@ BootstrapPlan plainBootstrap(uint32_t samples) {
   return {std::vector<uint32_t>(samples, 0), std::vector<double>(samples, 1.0 / samples)};
 }
 
-BootstrapPlan bootstrapByLength(uint32_t samples, uint32_t maxLength) {
-  const double norm = (1 - kLengthRatio) / (1 - std::pow(kLengthRatio, maxLength));
+BootstrapPlan bootstrapByLength(uint32_t samples, uint32_t minLength, uint32_t maxLength) {
   BootstrapPlan plan;
-  for (uint32_t length = 1; length <= maxLength; ++length) {
-    const double wanted = samples * norm * std::pow(kLengthRatio, length - 1);
+  if (minLength > maxLength) return plan;
+  const double norm = (1 - kLengthRatio) / (1 - std::pow(kLengthRatio, maxLength - minLength + 1));
+  for (uint32_t length = minLength; length <= maxLength; ++length) {
+    const double wanted = samples * norm * std::pow(kLengthRatio, length - minLength);
     const uint32_t count = std::max(kFewestSamples, static_cast<uint32_t>(std::lround(wanted)));
     plan.length.insert(plan.length.end(), count, length);
     plan.share.insert(plan.share.end(), count, 1.0 / count);

@@ -20,9 +20,9 @@ struct BootstrapPlan {
 // All samples alike.
 BootstrapPlan plainBootstrap(uint32_t samples);
 
-// About `samples` samples over the lengths 1 to maxLength, most of them short: long paths carry less, and an error in
-// what they carry weighs less. Every length gets some, or its light would be lost.
-BootstrapPlan bootstrapByLength(uint32_t samples, uint32_t maxLength);
+// About `samples` samples over the lengths minLength to maxLength, most of them short: long paths carry less, and an
+// error in what they carry weighs less. Every length gets some, or its light would be lost.
+BootstrapPlan bootstrapByLength(uint32_t samples, uint32_t minLength, uint32_t maxLength);
 
 struct Brightness {
   double mean = 0;           // b: the integral of the target

@@ -20,6 +20,9 @@ namespace {
 // Steps of a wave between looks at the clock: a few hundredths of a second.
 constexpr uint64_t kRoundSteps = 16;
 
+// Mutations of a pixel, in the mean, to a sample of its direct light: a quarter or so of the time goes there.
+constexpr uint64_t kMutationsPerDirect = 2;
+
 // A number in [0, 1) that depends on the seed and epoch alone (the finalizer of SplitMix64, Steele et al. 2014).
 double startOffset(uint64_t seed, uint64_t epoch) {
   uint64_t x = seed * 0x9e3779b97f4a7c15u + epoch;
@@ -48,11 +51,13 @@ class ChainSession final : public Session {
   }
   uint64_t stepsFor(uint64_t iterations) const;
   uint64_t mutations() const { return step_ * settings_.metropolis.chains; }
+  bool direct() const { return plan_.pipeline.chains->directPass && settings_.metropolis.directPass; }
 
   std::vector<float> bootstrapTargets(uint64_t epoch);
   void beginEpoch(uint64_t epoch);
   void startChains(size_t wave, uint64_t epoch, const std::vector<uint32_t>& starts);
   void advance(size_t wave, uint64_t steps);
+  void traceDirect();
   void addPending(size_t wave, std::vector<int64_t>& sums) const;
   void collectSplats();
 
@@ -67,9 +72,10 @@ class ChainSession final : public Session {
   BootstrapPlan bootstrap_;
   std::vector<ChainState> waves_;
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
-  uint64_t step_ = 0;         // steps that every chain has taken
-  double referenceMean_ = 0;  // b of the first epoch that found light: the film is in units of it
-  bool dark_ = true;          // the epoch's bootstrap found no light
+  uint64_t directIterations_ = 0;  // direct light samples of every pixel
+  uint64_t step_ = 0;              // steps that every chain has taken
+  double referenceMean_ = 0;       // b of the first epoch that found light: the film is in units of it
+  bool dark_ = true;               // the epoch's bootstrap found no light
   struct Epoch {
     Brightness brightness;
     uint64_t steps = 0;
@@ -88,7 +94,8 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
   arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
   const MetropolisSettings& metropolis = settings.metropolis;
   const bool multiplexed = plan_.pipeline.lightPass.has_value();
-  bootstrap_ = multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, settings.limits.maxDepth)
+  bootstrap_ = multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,
+                                               settings.limits.maxDepth)
                            : plainBootstrap(metropolis.bootstrapSamples);
   const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings.limits.maxDepth);
   const size_t waves = (metropolis.chains + settings.waveSize - 1) / settings.waveSize;
@@ -229,6 +236,25 @@ void ChainSession<S>::advance(size_t wave, uint64_t steps) {
   }
 }
 
+// One direct sample of each pixel for every so many mutations of it, beginning with the first step.
+template <class S>
+void ChainSession<S>::traceDirect() {
+  const FilmArea& area = film_.area();
+  const uint64_t perIteration = kMutationsPerDirect * area.pixels.size();
+  for (; directIterations_ * perIteration < mutations(); ++directIterations_) {
+    const size_t waves = (area.pixels.size() + settings_.waveSize - 1) / settings_.waveSize;
+    forEach(waves, [&](size_t wave) {
+      const FlushToZero flushToZero;
+      const size_t first = wave * settings_.waveSize;
+      StageContext<S> context = chainContext(plan_, settings_, area);
+      context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(directIterations_), nullptr};
+      ChainWorker<S>& mine = worker();
+      mine.traceDirect(context, area, first, std::min<size_t>(settings_.waveSize, area.pixels.size() - first));
+      mine.counters.nonFinite += film_.add(mine.wave());
+    });
+  }
+}
+
 template <class S>
 void ChainSession<S>::collectSplats() {
   std::vector<int64_t> sums(3 * film_.area().pixels.size(), 0);
@@ -265,6 +291,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
       if (!dark_) forEach(waves_.size(), [&](size_t wave) { advance(wave, steps); });
       step_ += steps;
       epochs_.back().steps += steps;
+      if (direct()) traceDirect();
     }
   });
   renderSeconds_ += secondsSince(begin);
@@ -291,9 +318,14 @@ RenderStatistics ChainSession<S>::statistics() const {
     out.lightBytes += worker->lightBytes();
     addTallies(worker->tallies, 0, out.stages);
   }
+  if (direct()) {
+    out.stages.push_back({"direct pass"});
+    for (const auto& worker : workers_) addTallies({worker->directTally}, out.stages.size() - 1, out.stages);
+  }
 
   ChainStatistics& chains = out.chains.emplace();
   chains.mutations = mutations();
+  chains.directPaths = directIterations_ * film_.area().pixels.size();
   chains.epochs = epochs_.size();
   double steps = 0, variance = 0;
   for (const Epoch& epoch : epochs_) {

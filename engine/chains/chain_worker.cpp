@@ -1,5 +1,6 @@
 #include "engine/chains/chain_worker.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace wavecrest {
@@ -57,10 +58,7 @@ StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& se
 
 template <class S>
 ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, size_t pixels)
-    : splats(3 * pixels),
-      pipeline_(plan.pipeline),
-      wave_(capacity, plan.needs),
-      light_(capacity, plan.needs) {
+    : splats(3 * pixels), pipeline_(plan.pipeline), wave_(capacity, plan.needs), light_(capacity, plan.needs) {
   lanesArena_ = Arena(lightLanes_.bytes(capacity));
   lightLanes_.bind(lanesArena_, capacity);
   if (pipeline_.lightPass) {
@@ -139,6 +137,22 @@ void ChainWorker<S>::decide(StageContext<S> context, ChainState& chains, bool me
   context.counters = &counters;
   context.splats.sums = splats.data();
   runStage(pipeline_.chains->accept, context, wave_, measure ? &tallies.back() : nullptr);
+}
+
+template <class S>
+void ChainWorker<S>::traceDirect(StageContext<S> context, const FilmArea& area, size_t first, size_t count) {
+  const Pass<S>& pass = *pipeline_.chains->directPass;
+  context.pixels = area.pixels.data();
+  context.limits.maxDepth = std::min(context.limits.maxDepth, kDirectLength);
+  context.mis = pass.strategies;
+  context.counters = &counters;
+  wave_.firstPath = first;
+  wave_.pathCount = count;
+  const uint64_t begin = readTicks();
+  runPass<S>(pass, context, wave_, nullptr);
+  directTally.ticks += readTicks() - begin;
+  directTally.items += count;
+  directTally.laneSlots += count;
 }
 
 template <class S>

@@ -23,7 +23,8 @@ class ChainWorker {
  public:
   StageCounters counters;
   std::vector<int64_t> splats;      // RGB of the film's rectangle
-  std::vector<StageTally> tallies;  // in the order of stageRows
+  std::vector<StageTally> tallies;  // in the order of stageNames
+  StageTally directTally;
 
   ChainWorker(const RenderPlan<S>& plan, size_t capacity, size_t pixels);
 
@@ -33,6 +34,9 @@ class ChainWorker {
   void trace(StageContext<S> context, ChainState& chains, size_t count, bool measure);
   // Accepts or rejects what trace has proposed.
   void decide(StageContext<S> context, ChainState& chains, bool measure);
+
+  // Traces the direct light of pixels [first, first + count) of the area by path tracing, for the film.
+  void traceDirect(StageContext<S> context, const FilmArea& area, size_t first, size_t count);
 
   const Wave<S>& wave() const { return wave_; }
   size_t bytesPerPath() { return wave_.bytesPerPath(); }

@@ -40,7 +40,8 @@ template Pipeline<double> primarySampleSpace(const Stages<double>&, const Inters
 
 // mmlt: over bidirectional path tracing (Hachisuka et al., "Multiplexed Metropolis Light Transport", 2014). A chain's
 // paths have one length; a primary sample picks the strategy, so a proposal is one pair of walks and one connection,
-// weighted against the other strategies as ever.
+// weighted against the other strategies as ever. Direct light may be left to path tracing: it is what chains are least
+// needed for, and where a lamp in view is bright and small, most of the error of b.
 template <class S>
 Pipeline<S> multiplexedMetropolis(const Stages<S>& stages, const Intersector<S>& intersector) {
   constexpr MisSettings kAll{.emission = true, .nextEvent = true, .connect = true, .camera = true};
@@ -67,6 +68,7 @@ Pipeline<S> multiplexedMetropolis(const Stages<S>& stages, const Intersector<S>&
        Walk::camera,
        1},
   };
+  chains.directPass = pathTracing(stages, intersector).cameraPass;
   return {
       .lightPass =
           Pass<S>{

@@ -13,7 +13,7 @@ namespace wavecrest {
 namespace {
 
 TEST(Bootstrap, hasSamplesOfEveryLengthThatStandForItsWhole) {
-  const BootstrapPlan plan = bootstrapByLength(20'000, 64);
+  const BootstrapPlan plan = bootstrapByLength(20'000, 1, 64);
   ASSERT_EQ(plan.length.size(), plan.share.size());
   EXPECT_TRUE(std::is_sorted(plan.length.begin(), plan.length.end()));
   std::vector<double> whole(65, 0);
@@ -21,6 +21,12 @@ TEST(Bootstrap, hasSamplesOfEveryLengthThatStandForItsWhole) {
   EXPECT_EQ(whole[0], 0);
   for (size_t length = 1; length <= 64; ++length) EXPECT_NEAR(whole[length], 1, 1e-9) << length;
   EXPECT_NEAR(static_cast<double>(plan.length.size()), 20'000, 2'500);
+}
+
+TEST(Bootstrap, leavesOutTheShortestIfAsked) {
+  EXPECT_EQ(bootstrapByLength(1'000, 3, 9).length.front(), 3u);
+  EXPECT_EQ(bootstrapByLength(1'000, 3, 9).length.back(), 9u);
+  EXPECT_TRUE(bootstrapByLength(1'000, 3, 2).length.empty());
 }
 
 // Lengths 1 and 2 with three and two samples: 1/3 (1 + 2 + 3) + 1/2 (4 + 8).
