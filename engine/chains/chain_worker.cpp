@@ -89,6 +89,8 @@ size_t ChainWorker<S>::chooseLightLanes(const Chains& chains, size_t count) {
     lightLanes_[chosen] = lane;
     chosen += chains.lightGranted[lane] != 0 ? 1 : 0;
   }
+  // The tail of the last block is read too: lanes that exist, whichever wave was here before.
+  std::fill_n(lightLanes_ + chosen, kColumnPadding, 0u);
   return chosen;
 }
 
