@@ -138,6 +138,7 @@ TEST_P(MetropolisTest, brightnessIsThatOfTheImageWithinItsError) {
   double z2 = 0;
   for (size_t seed = 0; seed < kSeeds; ++seed) {
     RenderSettings chosen = settings();
+    chosen.metropolis.bootstrapSamples = 1 << 19;
     chosen.seed = 4000 + seed;
     const auto session = Session::create(scene, chosen);
     session->renderUntil(1, std::nullopt);
