@@ -25,16 +25,31 @@ namespace {
 // As written on the command line; resolved() turns words into settings.
 struct RenderOptions {
   SceneOptions scene;
-  std::string method = "pt", time, sampler = "independent", precision = "float", isa = "auto", accel = "auto", memory,
-              snapshotEvery, stats, progress = "auto";
+  std::string method = "pt", time, sampler = "independent", precision = "float", isa = "auto", accel = "auto", mlt,
+              memory, snapshotEvery, stats, progress = "auto";
   uint64_t spp = 0;
   uint32_t threads = 0;
   uint64_t seed = 0;
   int maxDepth = 0, rrDepth = 0;  // 0: what the scene says
-  uint32_t wave = 2048;
+  uint32_t wave = 2048, chains = MetropolisSettings().chains, bootstrap = MetropolisSettings().bootstrapSamples;
   double radius = 0.001, radiusAlpha = 0.75;
   std::vector<std::string> outputs;
+  bool noDirectPass = false;
 };
+
+MetropolisSettings chosenChains(const RenderOptions& options) {
+  MetropolisSettings settings;
+  if (!options.mlt.empty()) {
+    settings.variant = static_cast<MetropolisVariant>(parseChoice("--mlt", options.mlt, kMetropolisVariantNames));
+  }
+  if (settings.variant == MetropolisVariant::pathspace) {
+    throw UsageError("--mlt pathspace: not implemented; expected pssmlt or mmlt");
+  }
+  settings.chains = options.chains;
+  settings.directPass = !options.noDirectPass;
+  settings.bootstrapSamples = options.bootstrap;
+  return settings;
+}
 
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   RenderSettings settings;
@@ -51,6 +66,7 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   settings.seed = options.seed;
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
+  settings.metropolis = chosenChains(options);
   settings.radius = options.radius;
   settings.radiusAlpha = options.radiusAlpha;
   settings.limits = pathLimits(options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth,
@@ -163,6 +179,7 @@ std::string describe(const MemoryPlan& plan) {
   add("splats", use.splats);
   add("light vertices", use.lightVertices);
   add("photon map", use.photonMap);
+  add("chains", use.chains);
   text += fmt::format("together {:.1f} MB", static_cast<double>(use.total()) / 1e6);
   if (plan.lightPaths != 0) text += fmt::format("; {} light paths in each iteration", plan.lightPaths);
   return text;
@@ -205,7 +222,8 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
   addSceneOptions(*command, options->scene);
   command->add_option("-m,--method", options->method, "light-transport method")->capture_default_str();
   command->add_option("--time", options->time, "stop after this much render time: 6s, 2m, 1h30m");
-  command->add_option("--spp", options->spp, "stop after N iterations: paths per pixel")->check(CLI::PositiveNumber);
+  command->add_option("--spp", options->spp, "stop after N iterations: paths, of mlt mutations, per pixel")
+      ->check(CLI::PositiveNumber);
   command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
   command->add_option("--seed", options->seed, "seed of all random numbers")
       ->capture_default_str()
@@ -231,6 +249,14 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
       ->check(CLI::Range(0.0, 1.0));
   command->add_option("--memory", options->memory,
                       "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
+  command->add_option("--mlt", options->mlt, "what the chains of mlt walk in: pssmlt or mmlt; default: mmlt");
+  command->add_option("--chains", options->chains, "Markov chains of mlt")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 24));
+  command->add_option("--bootstrap", options->bootstrap, "independent samples from which chains start")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 28));
+  command->add_flag("--no-direct-pass", options->noDirectPass, "mmlt: chains render direct light too");
   command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");
   command->add_option("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable")
       ->allow_extra_args(false);

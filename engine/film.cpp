@@ -65,14 +65,14 @@ uint64_t Film::add(const Wave<S>& wave) {
 template uint64_t Film::add(const Wave<float>&);
 template uint64_t Film::add(const Wave<double>&);
 
-void Film::setSplats(std::vector<int64_t> sums, uint64_t lightPaths) {
+void Film::setSplats(std::vector<int64_t> sums, double factor) {
   splats_ = std::move(sums);
-  lightPaths_ = lightPaths;
+  splatFactor_ = factor;
 }
 
 std::vector<float> Film::resolve() const {
   std::vector<float> image(3 * size_t{area_.width} * area_.height, 0.0f);
-  const double splatScale = lightPaths_ == 0 ? 0 : 1 / (kSplatScale * static_cast<double>(lightPaths_));
+  const double splatScale = splatFactor_ / kSplatScale;
   for (size_t i = 0; i < area_.pixels.size(); ++i) {
     const uint32_t x = (area_.pixels[i] & 0xffffu) - area_.x0, y = (area_.pixels[i] >> 16) - area_.y0;
     const size_t pixel = 3 * (size_t{y} * area_.width + x);

@@ -29,11 +29,12 @@ class Film {
   template <class S>
   uint64_t add(const Wave<S>& wave);
 
-  // What light paths have splatted so far, in fixed point (kSplatScale), row by row, and how many there were.
-  void setSplats(std::vector<int64_t> sums, uint64_t lightPaths);
+  // What has been splatted so far, in fixed point (kSplatScale), row by row, and the factor that makes it radiance: for
+  // light paths one over their number.
+  void setSplats(std::vector<int64_t> sums, double factor);
 
   // The image, row by row from the top, RGB: the mean of each pixel's samples (black where there are none) plus the
-  // splats per light path.
+  // splats.
   std::vector<float> resolve() const;
 
   const FilmArea& area() const { return area_; }
@@ -44,7 +45,7 @@ class Film {
   std::vector<double> sums_;       // RGB, in wave order
   std::vector<uint32_t> samples_;  // in wave order
   std::vector<int64_t> splats_;
-  uint64_t lightPaths_ = 0;
+  double splatFactor_ = 0;
 };
 
 }  // namespace wavecrest

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/chains/chain_memory.h"
 #include "engine/flush_to_zero.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
@@ -72,9 +73,14 @@ class Planner {
     const size_t pixels = area_.pixels.size();
     MemoryUse& use = memory_.use;
     use.scene = sceneBytes(*plan_.scene);
-    memory_.bytesPerPath = Wave<S>(1, plan_.needs).bytesPerPath();
-    use.waves = settings_.threads * waveBytes(memory_.bytesPerPath, settings_.waveSize);
     use.film = filmBytes(pixels);
+    memory_.bytesPerPath = Wave<S>(1, plan_.needs).bytesPerPath();
+    if (plan_.pipeline.chains) {
+      addChainMemory(plan_, settings_, pixels, settings_.threads, use);
+      if (settings_.memoryBytes && use.total() > *settings_.memoryBytes) refuse(use.total());
+      return memory_;
+    }
+    use.waves = settings_.threads * waveBytes(memory_.bytesPerPath, settings_.waveSize);
     if (plan_.pipeline.splats()) use.splats = (settings_.threads + 1) * splatBytes(pixels);
     if (plan_.pipeline.lightPass) addLightPaths(static_cast<size_t>(settings_.lightPaths.value_or(pixels)));
     if (settings_.memoryBytes && use.total() > *settings_.memoryBytes) refuse(use.total());

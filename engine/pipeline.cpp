@@ -46,10 +46,8 @@ double secondsPerTick() {
   return value;
 }
 
-namespace {
-
 template <class S>
-void call(const StageCall<S>& stage, const StageContext<S>& context, Wave<S>& wave, StageTally* tally) {
+void runStage(const StageCall<S>& stage, const StageContext<S>& context, Wave<S>& wave, StageTally* tally) {
   if (tally == nullptr) {
     stage.run(context, wave);
     return;
@@ -61,6 +59,10 @@ void call(const StageCall<S>& stage, const StageContext<S>& context, Wave<S>& wa
   stage.run(context, wave);
   tally->ticks += readTicks() - begin;
 }
+template void runStage(const StageCall<float>&, const StageContext<float>&, Wave<float>&, StageTally*);
+template void runStage(const StageCall<double>&, const StageContext<double>&, Wave<double>&, StageTally*);
+
+namespace {
 
 // Runs a depth's stages; rows of perLightDepth stages are repeated over the depths of the light store.
 template <class S>
@@ -68,14 +70,14 @@ void runDepth(const std::vector<StageCall<S>>& stages, StageContext<S>& context,
   const auto tallyOf = [tally](size_t i) { return tally == nullptr ? nullptr : tally + i; };
   for (size_t i = 0; i < stages.size();) {
     if (stages[i].repeat == Repeat::once) {
-      call(stages[i], context, wave, tallyOf(i));
+      runStage(stages[i], context, wave, tallyOf(i));
       ++i;
       continue;
     }
     size_t end = i;
     while (end < stages.size() && stages[end].repeat == Repeat::perLightDepth) ++end;
     for (context.lightDepth = 1; context.lightDepth <= context.light->depths(); ++context.lightDepth) {
-      for (size_t k = i; k < end; ++k) call(stages[k], context, wave, tallyOf(k));
+      for (size_t k = i; k < end; ++k) runStage(stages[k], context, wave, tallyOf(k));
     }
     i = end;
   }
@@ -89,7 +91,7 @@ void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, Stage
   context.depth = 0;
   const bool storing = pass.walk == Walk::light && context.light != nullptr;
   if (storing) context.light->clear();
-  call(pass.generate, context, wave, tally);
+  runStage(pass.generate, context, wave, tally);
   StageTally* const first = tally == nullptr ? nullptr : tally + 1;
   StageTally* const rest = tally == nullptr ? nullptr : first + pass.firstDepth.size();
   for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {

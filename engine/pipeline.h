@@ -51,14 +51,37 @@ struct Pass {
   size_t stageCount() const { return 1 + firstDepth.size() + perDepth.size(); }
 };
 
-// A method. With a photon map, all light passes of an iteration come before all its camera passes.
+// Where the stages that join the walks of multiplexed chains work: kernels/columns/chains.h, WalkEnds.
+enum class EndsOf { atOrigin, cameraAtVertex, lightAtVertex };
+
+// A stage that runs once, on walks' ends. walk, depth: what it takes them for; ends of all depths come together.
+template <class S>
+struct JoinCall {
+  StageCall<S> stage;
+  EndsOf ends;
+  Walk walk;
+  uint32_t depth;
+};
+
+// What Markov chains do beside the passes: propose, then the passes with a join after each, then accept.
+template <class S>
+struct ChainCalls {
+  StageCall<S> propose, accept;
+  std::vector<JoinCall<S>> afterCamera = {}, afterLight = {};
+  std::optional<Pass<S>> directPass = std::nullopt;  // paths of up to kDirectLength edges, if chains leave them out
+};
+constexpr uint32_t kDirectLength = 2;
+
+// A method. With a photon map, all light passes of an iteration come before all its camera passes; with chains, the
+// camera pass comes first and paths are what the chains propose.
 template <class S>
 struct Pipeline {
   std::optional<Pass<S>> lightPass = std::nullopt;
   bool photonMap = false;
   Pass<S> cameraPass;
+  std::optional<ChainCalls<S>> chains = std::nullopt;
 
-  bool splats() const { return lightPass && lightPass->strategies.camera; }
+  bool splats() const { return chains || (lightPass && lightPass->strategies.camera); }
   bool bidirectional() const { return lightPass.has_value(); }
 };
 
@@ -73,6 +96,10 @@ struct Intersector {
 struct StageTally {
   uint64_t items = 0, laneSlots = 0, ticks = 0;
 };
+
+// Runs one stage; tally: its entry, or nullptr to measure nothing.
+template <class S>
+void runStage(const StageCall<S>& stage, const StageContext<S>& context, Wave<S>& wave, StageTally* tally);
 
 // Time-stamp counter ticks, and their length.
 uint64_t readTicks();

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/scene/scene_error.h"
+
 namespace wavecrest {
 namespace {
 
@@ -17,10 +19,16 @@ ColumnNeeds columnNeeds(Specialization specialization) {
           .connections = (features & kBidirectional) != 0};
 }
 
+// Whether kernels with the whole MIS recursion are needed.
+bool isBidirectional(const RenderSettings& settings) {
+  if (settings.method == Method::mlt) return settings.metropolis.variant != MetropolisVariant::pssmlt;
+  return entryOf(settings.method).bidirectional;
+}
+
 }  // namespace
 
 Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
-  const uint32_t features = sceneFeatures(scene) | (entryOf(settings.method).bidirectional ? kBidirectional : 0u);
+  const uint32_t features = sceneFeatures(scene) | (isBidirectional(settings) ? kBidirectional : 0u);
   const Specialization least = chooseSpecialization(features, settings.precision);
   if (!settings.specialization) return least;
   if ((features & ~featuresOf(*settings.specialization)) != 0) {
@@ -41,12 +49,20 @@ template Intersector<double> chooseIntersector(const Stages<double>&, Accel);
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   RenderPlan<S> plan;
+  // A chain's t = 1 has one pixel, and knows neither where a reconstruction filter spreads it nor a point of the lens.
+  const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
+  if (lens && settings.method == Method::mlt && isBidirectional(settings)) {
+    throw SceneError(
+        {scene.name},
+        "method mlt by mmlt needs a perspective sensor and the box filter; expected those, or --mlt pssmlt");
+  }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);
   plan.scene = compileScene<S>(scene, settings.accel);
   const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, plan.specialization);
   plan.isa = stages.isa;
-  plan.pipeline = makePipeline(settings.method, stages, chooseIntersector(stages, plan.accel()));
+  plan.pipeline =
+      makePipeline(settings.method, settings.metropolis.variant, stages, chooseIntersector(stages, plan.accel()));
   return plan;
 }
 template RenderPlan<float> planRender(const Scene&, const RenderSettings&);

@@ -21,8 +21,19 @@ inline PathLimits pathLimits(int maxDepth, int rouletteDepth) {
   return limits;
 }
 
+// Markov chains. Their number is a setting, not a consequence of threads or waves, so that images depend on neither.
+struct MetropolisSettings {
+  MetropolisVariant variant = MetropolisVariant::mmlt;
+  uint32_t chains = 16384;
+  uint32_t bootstrapSamples = 131072;  // independent samples from which chains start, and the image's brightness comes
+  uint32_t restartSteps = 10000;       // steps of a chain before all start anew from fresh samples
+  double largeStep = 0.3;              // probability of a step that forgets where the chain is
+  bool directPass = true;              // mmlt: emitters in view and direct light by path tracing, the rest by chains
+};
+
 struct RenderSettings {
   Method method = Method::pt;
+  MetropolisSettings metropolis;
   Precision precision = Precision::floating;
   Isa isa = Isa::scalar;
   Accel accel = Accel::automatic;

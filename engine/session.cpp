@@ -2,41 +2,22 @@
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/flow_graph.h>
-#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 
+#include "engine/chains/chain_session.h"
 #include "engine/flush_to_zero.h"
+#include "engine/render_clock.h"
 #include "engine/render_plan.h"
+#include "engine/stage_rows.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
 
 namespace wavecrest {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-double processCpuSeconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-// TBB gives an arena of more threads than the machine has cores no workers for the surplus unless it is told to. Only
-// while a session works: the least of all limits alive counts, and several sessions may be.
-struct WorkerLimit {
-  explicit WorkerLimit(size_t threads) : control(oneapi::tbb::global_control::max_allowed_parallelism, threads) {}
-  oneapi::tbb::global_control control;
-};
 
 // The part of a session that depends on the storage type of its precision.
 //
@@ -251,7 +232,7 @@ void TypedSession<S>::collectSplats() {
     for (size_t i = 0; i < sums.size(); ++i) sums[i] += worker->splats[i];
     lightPaths += worker->lightPaths;
   }
-  film_.setSplats(std::move(sums), lightPaths);
+  film_.setSplats(std::move(sums), lightPaths == 0 ? 0 : 1 / static_cast<double>(lightPaths));
 }
 
 template <class S>
@@ -271,21 +252,6 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   cpuSeconds_ += processCpuSeconds() - cpuBegin;
   progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
   collectSplats();
-}
-
-// The rows of a pass's stages, filled from a worker's tallies.
-template <class S>
-void addRows(const Pass<S>& pass, std::vector<RenderStatistics::StageRow>& rows) {
-  rows.push_back({std::string(pass.generate.name)});
-  for (const auto& stage : pass.firstDepth) rows.push_back({std::string(stage.name)});
-  for (const auto& stage : pass.perDepth) rows.push_back({std::string(stage.name)});
-}
-void addTallies(const std::vector<StageTally>& tallies, size_t first, std::vector<RenderStatistics::StageRow>& rows) {
-  for (size_t i = 0; i < tallies.size(); ++i) {
-    rows[first + i].items += tallies[i].items;
-    rows[first + i].laneSlots += tallies[i].laneSlots;
-    rows[first + i].seconds += static_cast<double>(tallies[i].ticks) * secondsPerTick();
-  }
 }
 
 template <class S>
@@ -327,6 +293,10 @@ RenderStatistics TypedSession<S>::statistics() const {
 }  // namespace
 
 std::unique_ptr<Session> Session::create(const Scene& scene, const RenderSettings& settings) {
+  if (settings.method == Method::mlt) {
+    return settings.precision == Precision::doubled ? makeChainSession<double>(scene, settings)
+                                                    : makeChainSession<float>(scene, settings);
+  }
   if (settings.precision == Precision::doubled) return std::make_unique<TypedSession<double>>(scene, settings);
   return std::make_unique<TypedSession<float>>(scene, settings);
 }

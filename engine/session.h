@@ -13,8 +13,21 @@
 #include "engine/film.h"
 #include "engine/memory_plan.h"
 #include "engine/render_settings.h"
+#include "kernels/columns/chains.h"
 
 namespace wavecrest {
+
+// What Markov chains have done so far.
+struct ChainStatistics {
+  uint64_t mutations = 0;    // of all chains, rejected ones included
+  uint64_t directPaths = 0;  // of the separate pass for direct light
+  uint64_t epochs = 0;
+  double brightness = 0, brightnessError = 0;  // b, the mean luminance of what chains render, and its standard error
+  double largestShare =
+      0;  // of one bootstrap sample in b, at most over epochs: large where chains start too much alike
+  ChainCounters counters;
+  size_t bytes = 0;  // of the chains' state
+};
 
 // Numbers of a render so far, as --stats reports them.
 struct RenderStatistics {
@@ -33,8 +46,9 @@ struct RenderStatistics {
   Isa isa{};
   Specialization specialization{};
   Accel accel{};
-  size_t bytesPerPath = 0;  // of a wave's columns
-  MemoryUse memory;         // of all threads that have worked
+  size_t bytesPerPath = 0;                // of a wave's columns
+  MemoryUse memory;                       // of all threads that have worked
+  std::optional<ChainStatistics> chains;  // of mlt
 };
 
 class Session {

@@ -110,7 +110,7 @@ WAVECREST_INLINE void addRadiance(Radiance<S>& radiance, UInt lane, Mask m, Vec3
 // Adds a to pixels of the splat sums in fixed point.
 template <class S, class Real>
 WAVECREST_INLINE void addSplats(const StageContext<S>& context, UInt pixel, Mask m, Vec3<Real> a) {
-  HWY_ALIGN S values[3][kLanes];
+  HWY_ALIGN typename Real::Storage values[3][kLanes];
   HWY_ALIGN uint32_t pixels[kLanes];
   store(compress(a.x, m), values[0]);
   store(compress(a.y, m), values[1]);
@@ -183,24 +183,19 @@ WAVECREST_INLINE PixelLanes pixelsOf(const StageContext<S>& context, const Wave<
   return {x, y, y * UInt(context.scene->camera.width) + x};
 }
 
-// The index that a path's random numbers depend on: the raster index for camera paths; light paths are counted.
+// The index that a path's random numbers depend on: the raster index for camera paths; light paths, and the paths of
+// chains, are counted.
 template <class S>
 WAVECREST_INLINE UInt pathOf(const StageContext<S>& context, const Wave<S>& wave, UInt lane) {
-  if (context.walk == Walk::light) return lane + UInt(static_cast<uint32_t>(wave.firstPath));
+  if (context.walk == Walk::light || context.pixels == nullptr)
+    return lane + UInt(static_cast<uint32_t>(wave.firstPath));
   return pixelsOf(context, wave, lane).path;
 }
 
 // Whether a feature set's paths carry PathStates::rouletteScale.
 constexpr bool hasRouletteScale(uint32_t features) { return has(features, kSpecularBsdfs | kBidirectional); }
 
-// Four numbers of the vertex at the context's depth. Each vertex has four blocks; this is the one table of their uses.
-enum class Block : uint32_t {
-  scatter = 0,  // lobe, direction (2), roulette; of a camera path's origin: raster (2), lens (2); of a light's: light,
-                // direction (2), choice within the light
-  light = 1,    // next event: light, choice within the light, position (2); of a light path's origin: position (2)
-  opacity = 2,  // second lobe choice
-  environment = 3  // texel of the environment map (2), place within (2)
-};
+// Four numbers of the vertex at the context's depth.
 template <class S>
 WAVECREST_INLINE Uniform4 draw(const StageContext<S>& context, UInt path, Block block) {
   return uniform4(context.sampler, path, 4 * context.depth + static_cast<uint32_t>(block),

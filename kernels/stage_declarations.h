@@ -21,6 +21,11 @@ WAVECREST_DECLARE_STAGE(storeLightVertices)   // connect/store_light_vertices.cp
 WAVECREST_DECLARE_STAGE(connectToCamera)      // connect/connect_camera.cpp
 WAVECREST_DECLARE_STAGE(connectVertices)      // connect/connect_vertices.cpp
 WAVECREST_DECLARE_STAGE(merge)                // merge/merge.cpp
+WAVECREST_DECLARE_STAGE(proposeMutations)     // mutate/propose_mutations.cpp
+WAVECREST_DECLARE_STAGE(recordVertices)       // mutate/record_vertices.cpp
+WAVECREST_DECLARE_STAGE(acceptMutations)      // mutate/accept_mutations.cpp
+WAVECREST_DECLARE_STAGE(admitWalks)           // mutate/take_ends.cpp
+WAVECREST_DECLARE_STAGE(takeEnds)             // mutate/take_ends.cpp
 
 #undef WAVECREST_DECLARE_STAGE
 

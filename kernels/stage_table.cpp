@@ -18,13 +18,18 @@ constexpr Stages<typename P::Storage> makeStages() {
                                      .arrive = arrive<P, kFeatures>,
                                      .nextEvent = nextEvent<P, kFeatures>,
                                      .scatter = scatter<P, kFeatures>,
-                                     .scatterSpecular = scatterSpecular<P, kFeatures>};
+                                     .scatterSpecular = scatterSpecular<P, kFeatures>,
+                                     .proposeMutations = proposeMutations<P, kFeatures>,
+                                     .recordVertices = recordVertices<P, kFeatures>,
+                                     .acceptMutations = acceptMutations<P, kFeatures>};
   if constexpr (has(kFeatures, kBidirectional)) {
     stages.generateLightPaths = generateLightPaths<P, kFeatures>;
     stages.storeLightVertices = storeLightVertices<P, kFeatures>;
     stages.connectToCamera = connectToCamera<P, kFeatures>;
     stages.connectVertices = connectVertices<P, kFeatures>;
     stages.merge = merge<P, kFeatures>;
+    stages.admitWalks = admitWalks<P, kFeatures>;
+    stages.takeEnds = takeEnds<P, kFeatures>;
   }
   return stages;
 }

@@ -109,6 +109,10 @@ class LightStore;  // kernels/columns/light_vertices.h
 template <class S>
 struct PhotonMap;  // kernels/merge/photon_map.h
 
+struct ChainState;  // kernels/columns/chains.h
+template <class S>
+struct WalkEnds;  // kernels/columns/chains.h
+
 struct PathLimits {
   uint32_t maxDepth = 64;      // K: edges of the longest path
   uint32_t rouletteDepth = 5;  // first vertex at which Russian roulette may end a path
@@ -134,7 +138,10 @@ struct StageCounters {
 template <class S>
 struct StageContext {
   const SceneView<S>* scene = nullptr;
-  const uint32_t* pixels = nullptr;  // raster (y << 16 | x) of each path of the iteration, in the order of waves
+  // Raster (y << 16 | x) of each path of the iteration, in the order of waves. None: paths choose their own pixel, over
+  // the rectangle of the splats.
+  const uint32_t* pixels = nullptr;
+  const uint32_t* lanes = nullptr;  // lanes in which light paths begin; none: the first ones
   SamplerSettings sampler;
   PathLimits limits;
   Walk walk = Walk::camera;
@@ -144,7 +151,12 @@ struct StageContext {
   LightStore<S>* light = nullptr;         // light vertices of this wave's paths
   const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place
   SplatSink splats;
+  ChainState* chains = nullptr;  // of Markov chains: their state, one chain to a lane
+  WalkEnds<S>* ends = nullptr;   // of multiplexed chains: where walks stop to be joined
   StageCounters* counters = nullptr;
+
+  // Contributions of light walks go to the film, except those of chains, which join their lane's.
+  bool contributesToLanes() const { return walk == Walk::camera || splats.sums == nullptr; }
 };
 
 template <class S>
@@ -161,12 +173,17 @@ struct Stages {
   Stage<S> nextEvent = nullptr;
   Stage<S> scatter = nullptr;
   Stage<S> scatterSpecular = nullptr;  // only by delta lobes; paths without one end
+  Stage<S> proposeMutations = nullptr;
+  Stage<S> recordVertices = nullptr;
+  Stage<S> acceptMutations = nullptr;
   // Of bidirectional feature sets only.
   Stage<S> generateLightPaths = nullptr;
   Stage<S> storeLightVertices = nullptr;
   Stage<S> connectToCamera = nullptr;
   Stage<S> connectVertices = nullptr;
   Stage<S> merge = nullptr;
+  Stage<S> admitWalks = nullptr;
+  Stage<S> takeEnds = nullptr;
 };
 
 // The stages compiled for these choices. The instruction set must be one of availableIsas(), S the storage type of the

@@ -19,6 +19,30 @@ std::string nameOf(const std::array<std::string_view, kCount>& names, Enum value
   return std::string(names[static_cast<size_t>(value)]);
 }
 
+// What only Metropolis light transport has.
+nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainStatistics& chains) {
+  const ChainCounters& counters = chains.counters;
+  const auto share = [](uint64_t part, uint64_t whole) {
+    return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+  };
+  return {
+      {"mlt", nameOf(kMetropolisVariantNames, settings.metropolis.variant)},
+      {"chains", settings.metropolis.chains},
+      {"direct_paths", chains.directPaths},
+      {"chain_bytes", chains.bytes},
+      {"bootstrap_epochs", chains.epochs},
+      {"bootstrap_largest_share", chains.largestShare},
+      {"b", chains.brightness},
+      {"b_error", chains.brightnessError},
+      {"large_steps", counters.largeSteps},
+      {"large_acceptance", share(counters.largeAccepted, counters.largeSteps)},
+      {"small_steps", counters.smallSteps},
+      {"small_acceptance", share(counters.smallAccepted, counters.smallSteps)},
+      {"dark_proposals", counters.dark},
+      {"longest_rejection", counters.longestRejection},
+  };
+}
+
 }  // namespace
 
 nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& settings,
@@ -38,7 +62,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
                             {"iterations", snapshot.iterations},
                             {"file", snapshot.file}});
   }
-  return {
+  nlohmann::ordered_json stats = {
       {"version", kVersion},
       {"commit", kCommit},
       {"scene", scene.name},
@@ -57,7 +81,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"iterations", statistics.iterations},
       {"camera_paths", statistics.paths},
       {"light_paths", statistics.lightPaths},
-      {"mutations", 0},
+      {"mutations", statistics.chains ? statistics.chains->mutations : 0},
       {"rays_closest", statistics.counters.raysClosest},
       {"rays_shadow", statistics.counters.raysShadow},
       {"connections", statistics.counters.connections},
@@ -76,6 +100,8 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"stages", stages},
       {"snapshots", snapshotRows},
   };
+  if (statistics.chains) stats.update(chainStats(settings, *statistics.chains));
+  return stats;
 }
 
 Metadata statsMetadata(const nlohmann::ordered_json& stats) {

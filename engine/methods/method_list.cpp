@@ -11,7 +11,8 @@ std::string methodChoices() {
 }
 
 template <class S>
-Pipeline<S> makePipeline(Method method, const Stages<S>& stages, const Intersector<S>& intersector) {
+Pipeline<S> makePipeline(Method method, MetropolisVariant variant, const Stages<S>& stages,
+                         const Intersector<S>& intersector) {
   switch (method) {
     case Method::pt:
       return pathTracing(stages, intersector);
@@ -19,6 +20,10 @@ Pipeline<S> makePipeline(Method method, const Stages<S>& stages, const Intersect
       return lightTracing(stages, intersector);
     case Method::bpt:
       return bidirectionalPathTracing(stages, intersector);
+    case Method::mlt:
+      if (variant == MetropolisVariant::pssmlt) return primarySampleSpace(stages, intersector);
+      if (variant == MetropolisVariant::mmlt) return multiplexedMetropolis(stages, intersector);
+      break;
     case Method::ppm:
       return progressivePhotonMapping(stages, intersector);
     case Method::bpm:
@@ -28,7 +33,7 @@ Pipeline<S> makePipeline(Method method, const Stages<S>& stages, const Intersect
   }
   throw std::invalid_argument("makePipeline: a method without a pipeline");
 }
-template Pipeline<float> makePipeline(Method, const Stages<float>&, const Intersector<float>&);
-template Pipeline<double> makePipeline(Method, const Stages<double>&, const Intersector<double>&);
+template Pipeline<float> makePipeline(Method, MetropolisVariant, const Stages<float>&, const Intersector<float>&);
+template Pipeline<double> makePipeline(Method, MetropolisVariant, const Stages<double>&, const Intersector<double>&);
 
 }  // namespace wavecrest

@@ -10,7 +10,12 @@
 
 namespace wavecrest {
 
-enum class Method { pt, lt, bpt, ppm, bpm, vcm };
+enum class Method { pt, lt, bpt, mlt, ppm, bpm, vcm };
+
+// What the chains of Metropolis light transport walk in: primary samples of path tracing, primary samples of
+// bidirectional path tracing with one strategy per path, or paths.
+enum class MetropolisVariant { pssmlt, mmlt, pathspace };
+constexpr std::array<std::string_view, 3> kMetropolisVariantNames{"pssmlt", "mmlt", "pathspace"};
 
 // The ways in which a method joins s light vertices and t camera vertices. engine/path_classes.h derives from them
 // which paths the method can make.
@@ -43,6 +48,11 @@ constexpr std::array kMethods{
     MethodEntry{Method::bpt,
                 "bpt",
                 "bidirectional path tracing",
+                true,
+                {.emission = true, .nextEvent = true, .connect = true, .camera = true}},
+    MethodEntry{Method::mlt,
+                "mlt",
+                "Metropolis light transport",
                 true,
                 {.emission = true, .nextEvent = true, .connect = true, .camera = true}},
     MethodEntry{Method::ppm,
@@ -89,6 +99,13 @@ template <class S>
 Pipeline<S> vertexConnectionAndMerging(const Stages<S>& stages, const Intersector<S>& intersector);
 
 template <class S>
-Pipeline<S> makePipeline(Method method, const Stages<S>& stages, const Intersector<S>& intersector);
+Pipeline<S> primarySampleSpace(const Stages<S>& stages, const Intersector<S>& intersector);
+template <class S>
+Pipeline<S> multiplexedMetropolis(const Stages<S>& stages, const Intersector<S>& intersector);
+
+// variant: of mlt. Throws std::invalid_argument for one that has no pipeline.
+template <class S>
+Pipeline<S> makePipeline(Method method, MetropolisVariant variant, const Stages<S>& stages,
+                         const Intersector<S>& intersector);
 
 }  // namespace wavecrest

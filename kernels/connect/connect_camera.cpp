@@ -1,16 +1,30 @@
 // connectToCamera: strategy t = 1. Joins each light vertex with the lens and pushes a shadow ray towards the pixel that
 // sees it.
 //
-// in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: ShadowRays [<= n] whose targets are
-// pixels of the splat sink, in lane order. METHODS 4.3, 5.6. The contribution leaves out 1/N_L: the film divides by the
-// number of light paths, as the average over passes does. Densities are per pixel whatever the reconstruction filter,
-// so weights do not depend on it.
+// in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: ShadowRays [<= n] in lane order, whose
+// targets are pixels of the splat sink; of chains their lanes, and the pixels go to Chains::proposedPixel.
+// METHODS 4.3, 5.6. The contribution leaves out 1/N_L: the film divides by the number of light paths, as the average
+// over passes does. Densities are per pixel whatever the reconstruction filter, so weights do not depend on it.
+#include "kernels/columns/chains.h"
 #include "kernels/generate/camera_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/shading_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
+
+namespace {
+
+// Stores the lanes of a where m holds, each at its index; no index comes twice.
+WAVECREST_INLINE void storeWhere(UInt a, Mask m, uint32_t* target, UInt index) {
+  HWY_ALIGN uint32_t values[kLanes];
+  HWY_ALIGN uint32_t indices[kLanes];
+  store(compress(a, m), values);
+  store(compress(index, m), indices);
+  for (size_t k = 0, count = countTrue(m); k < count; ++k) target[indices[k]] = values[k];
+}
+
+}  // namespace
 
 template <class P, uint32_t kFeatures>
 void connectToCamera(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
@@ -69,7 +83,13 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
     appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
     appendVec3(to<Float>(view.lens - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
     appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
-    append(pixel, lit, shadow.target, out);
+    if (context.contributesToLanes()) {
+      const UInt lane = select(lit, load(paths.lane, i), UInt(0u));
+      storeWhere(pixel, lit, context.chains->columns.proposedPixel, lane);
+      append(lane, lit, shadow.target, out);
+    } else {
+      append(pixel, lit, shadow.target, out);
+    }
     out += countTrue(lit);
   }
   shadow.size = out;

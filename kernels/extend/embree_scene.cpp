@@ -162,7 +162,7 @@ void occludeEmbree(const StageContext<S>& context, Wave<S>& wave) {
     query(Packet<kWidth>::occluded, valid, scene, packet);
     for (size_t k = 0; k < std::min(kWidth, count - i); ++k) {
       if (packet.tfar[k] < 0) continue;  // -infinity: blocked
-      if (context.walk == Walk::camera) {
+      if (context.contributesToLanes()) {
         const uint32_t target = shadow.target[i + k];
         wave.radiance.red[target] += shadow.red[i + k];
         wave.radiance.green[target] += shadow.green[i + k];

@@ -1,6 +1,6 @@
 // occlude, small scenes: adds the contribution of each shadow ray that nothing blocks.
 //
-// in: ShadowRays [n]. out: Radiance grows, or on light walks the splat sums; ShadowRays empty.
+// in: ShadowRays [n]. out: Radiance grows, or on light walks that splat, the film; ShadowRays empty.
 #include "kernels/extend/small_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -41,7 +41,7 @@ void occludeSmall(const StageContext<typename P::Storage>& context, Wave<typenam
     if (none(visible)) continue;
     const UInt target = load(shadow.target, i);
     const auto contribution = loadVec3(shadow.red, shadow.green, shadow.blue, i);
-    if (context.walk == Walk::camera) {
+    if (context.contributesToLanes()) {
       addRadiance(wave.radiance, target, visible, contribution);
     } else {
       addSplats(context, target, visible, contribution);

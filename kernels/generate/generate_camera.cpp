@@ -1,12 +1,49 @@
 // generate: starts one camera path per lane of the wave.
 //
-// in: the pixels of paths [firstPath, firstPath + pathCount). out: Rays, PathStates [pathCount], in lane order;
-// Radiance set to zero. The raster position is uniform in the pixel, so W_j cos / p = 1 and the throughput begins at 1.
+// in: the pixels of paths [firstPath, firstPath + pathCount), or none for paths that choose them. out: Rays, PathStates
+// [pathCount], in lane order; Radiance set to zero. The raster position is uniform in the pixel, so W_j cos / p = 1 and
+// the throughput begins at 1.
+#include "kernels/columns/chains.h"
 #include "kernels/generate/camera_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
+
+namespace {
+
+// The pixel of each lane's path, its place in the pixel (u.a, u.b) and on the lens (u.c, u.d).
+struct CameraSample {
+  PixelLanes pixel;
+  Uniform4 u;
+};
+template <class S>
+WAVECREST_INLINE CameraSample cameraSample(const StageContext<S>& context, const Wave<S>& wave, UInt lane) {
+  if (context.pixels != nullptr) [[likely]] {
+    const PixelLanes pixel = pixelsOf(context, wave, lane);
+    return {pixel, draw(context, pixel.path, Block::scatter)};
+  }
+  // u.a, u.b: place in the whole rectangle. Numbers have 24 bits, of which the pixel takes the upper ones.
+  Uniform4 u = draw(context, lane, Block::scatter);
+  const SplatSink& film = context.splats;
+  const auto split = [](Float number, uint32_t size, Float& rest) HWY_ATTR {
+    const Float place = number * Float(static_cast<float>(size));
+    const UInt whole = min(toUInt(place), UInt(size - 1));
+    rest = place - toFloat(whole);
+    return whole;
+  };
+  const UInt x = split(u.a, film.width, u.a), y = split(u.b, film.height, u.b);
+  return {{x + UInt(film.x0), y + UInt(film.y0), lane}, u};
+}
+
+template <class S>
+WAVECREST_INLINE void recordPixel(const StageContext<S>& context, const PixelLanes& pixel, size_t i) {
+  const SplatSink& film = context.splats;
+  const UInt index = (pixel.y - UInt(film.y0)) * UInt(film.width) + pixel.x - UInt(film.x0);
+  store(index, context.chains->columns.proposedPixel, i);
+}
+
+}  // namespace
 
 template <class P, uint32_t kFeatures>
 void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
@@ -19,8 +56,10 @@ void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<
 
   for (size_t i = 0; i < count; i += kLanes) {
     const UInt lane = min(laneIndex(static_cast<uint32_t>(i)), UInt(static_cast<uint32_t>(count - 1)));
-    const PixelLanes pixel = pixelsOf(context, wave, lane);
-    const Uniform4 u = draw(context, pixel.path, Block::scatter);
+    const CameraSample sample = cameraSample(context, wave, lane);
+    if (context.chains != nullptr) recordPixel(context, sample.pixel, i);
+    const PixelLanes& pixel = sample.pixel;
+    const Uniform4& u = sample.u;
     const auto ray = cameraRay<P, kFeatures>(context.scene->camera, pixel, u);
 
     storeVec3(ray.origin, wave.rays.originX, wave.rays.originY, wave.rays.originZ, i);

@@ -1,8 +1,9 @@
 // generate: starts one light path per lane of the wave.
 //
-// in: path indices [firstPath, firstPath + pathCount). out: Rays, PathStates [pathCount], in lane order. Sampling of
-// emission after METHODS 2.2: a point on the light by area and a direction by cosine; for infinite lights a direction
-// and a point on the disc that faces it and covers the scene. MIS sums of the origin: METHODS 5.3.
+// in: path indices [firstPath, firstPath + pathCount), or the context's lanes [pathCount]. out: Rays, PathStates
+// [pathCount], in lane order. Sampling of emission after METHODS 2.2: a point on the light by area and a direction by
+// cosine; for infinite lights a direction and a point on the disc that faces it and covers the scene. MIS sums of the
+// origin: METHODS 5.3.
 #include "kernels/connect/light_sample_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/sampling/warp_lanes.h"
@@ -161,7 +162,8 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
   paths.claim(count);
 
   for (size_t i = 0; i < count; i += kLanes) {
-    const UInt lane = laneIndex(static_cast<uint32_t>(i));
+    UInt lane = laneIndex(static_cast<uint32_t>(i));
+    if (context.lanes != nullptr) lane = load(context.lanes + i);
     const UInt path = pathOf(context, wave, lane);
     const Uniform4 u = draw(context, path, Block::scatter), v = draw(context, path, Block::light);
     const UInt light = pickLight(scene, u.a, u.d);

@@ -6,6 +6,7 @@
 // ns per path with AVX-512, kernels_bench).
 #pragma once
 
+#include "kernels/sampling/chain_lanes.h"
 #include "kernels/sampling/philox_lanes.h"
 #include "kernels/sampling/sampler.h"
 #include "kernels/sampling/sobol_lanes.h"
@@ -29,8 +30,13 @@ WAVECREST_INLINE Uniform4 independentUniform4(const SamplerSettings& sampler, UI
 }
 
 // Not inlined: it would fill the loop of every caller with ten times the code of the other branch.
-inline WAVECREST_NOINLINE Uniform4 sobolUniform4(const SamplerSettings& sampler, UInt path, uint32_t block,
-                                                 Stream stream) {
+inline WAVECREST_NOINLINE Uniform4 dependentUniform4(const SamplerSettings& sampler, UInt path, uint32_t block,
+                                                     Stream stream) {
+  if (sampler.kind == SamplerKind::chain) {
+    const ChainNumbers numbers = chainNumbers(sampler, path, block, stream);
+    const auto unit = [](UInt number) HWY_ATTR { return toFloat(number) * Float(0x1p-24f); };
+    return {unit(numbers.a), unit(numbers.b), unit(numbers.c), unit(numbers.d)};
+  }
   const SobolPoint bits = sobolBits(sampler, path, block, stream);
   return {toUnitInterval(bits.a), toUnitInterval(bits.b), toUnitInterval(bits.c), toUnitInterval(bits.d)};
 }
@@ -39,7 +45,7 @@ inline WAVECREST_NOINLINE Uniform4 sobolUniform4(const SamplerSettings& sampler,
 WAVECREST_INLINE Uniform4 uniform4(const SamplerSettings& sampler, UInt path, uint32_t block, Stream stream) {
   if (sampler.kind == SamplerKind::independent) [[likely]]
     return independentUniform4(sampler, path, block, stream);
-  return sobolUniform4(sampler, path, block, stream);
+  return dependentUniform4(sampler, path, block, stream);
 }
 
 WAVECREST_SIMD_END

@@ -5,6 +5,7 @@
 //
 // Per path: position and normal; the arrival step of the MIS recursion (METHODS 5.3, 5.4); on camera paths emission of
 // strategy s = 0 with its weight (5.6), which needs the distance and cosine of this edge.
+#include "kernels/columns/chains.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/interpolation_lanes.h"
 #include "kernels/shade/light_lanes.h"
@@ -108,6 +109,8 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
   // nothing but delta lobes. Those have no earlier strategy in their sums.
   const bool mergingAlone = context.mis.merge && !context.mis.nextEvent;
   const bool alone = context.depth == 1 || mergingAlone;  // s = 0 is the only strategy of a path of one edge
+  // Multiplexed chains make each path by one strategy: emission counts at the vertex where s = 0 ends.
+  const bool stopsAtEmission = camera && context.chains != nullptr && context.chains->multiplexed;
   const bool firstLightVertex = !camera && context.depth == 1;
   const bool goesOn = context.depth + 1 <= context.limits.maxDepth;
   const size_t count = rays.size;
@@ -125,14 +128,18 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     const UInt lane = load(paths.lane, i);
     MisSums<Real> mis = loadMis<kFeatures>(paths, i);
 
-    Mask unmergeable = active;
-    if (mergingAlone) unmergeable = active & (mis.dVCM == Real(0)) & (mis.dVM == Real(0));
+    Mask counted = active;  // emission counts
+    if (mergingAlone) counted = active & (mis.dVCM == Real(0)) & (mis.dVM == Real(0));
+    if (stopsAtEmission) {
+      const UInt depth = gather(context.chains->columns.emissionDepth, select(active, lane, UInt(0u)));
+      counted = counted & (depth == UInt(context.depth));
+    }
     const Mask missed = andNot(active, hit);
     if (any(missed)) {
       misses += countTrue(missed);
       if (camera && scene.infiniteLight != kNoIndex) {
         const Vec3<Real> radiance = throughput * missedRadiance<P, kFeatures>(context, direction, mis, alone);
-        addRadiance(wave.radiance, lane, missed & unmergeable, radiance);
+        addRadiance(wave.radiance, lane, missed & counted, radiance);
       }
       if (none(hit)) continue;
     }
@@ -166,7 +173,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
         const Vec3<Real> radiance =
             metRadiance<P, kFeatures>(context, select(emits, light, UInt(0u)), origin, cosine, dist2, mis, alone,
                                       to<Float>(surface.u), to<Float>(surface.v));
-        addRadiance(wave.radiance, lane, emits & unmergeable, throughput * radiance);
+        addRadiance(wave.radiance, lane, emits & counted, throughput * radiance);
       }
     }
     if (!goesOn) continue;

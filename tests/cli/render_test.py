@@ -108,6 +108,17 @@ class Statistics(CommandTest):
         self.assertEqual(sum(s["items"] for s in stats["stages"] if s["name"] == "extend"), stats["rays_closest"])
         self.assertAlmostEqual(stats["paths_per_second"] * stats["render_seconds"], stats["camera_paths"], delta=1)
 
+    def test_chains_report_their_steps(self):
+        for variant in ("pssmlt", "mmlt"):
+            options = ("--spp", "6", "--method", "mlt", "--mlt", variant, "--chains", "256", "--bootstrap", "4096")
+            stats = self.stats(*options)
+            self.assertEqual((stats["mlt"], stats["chains"]), (variant, 256))
+            self.assertEqual((stats["mutations"], stats["iterations"]), (6 * 32 * 24, 6))
+            self.assertEqual(stats["large_steps"] + stats["small_steps"], stats["mutations"])
+            for key in ("b", "b_error", "large_acceptance", "small_acceptance", "longest_rejection"):
+                self.assertGreater(stats[key], 0, key)
+            self.assertEqual(stats["direct_paths"] > 0, variant == "mmlt")
+
     def test_clocks_are_consistent(self):
         stats = self.stats("--time", "0.3s")
         clocks = stats["load_seconds"] + stats["build_seconds"] + stats["render_seconds"]

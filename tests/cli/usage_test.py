@@ -65,6 +65,10 @@ class Usage(CommandTest):
             ("--memory", "nanG"),
             ("--radius-alpha", "2"),
             ("--radius-alpha", "nan"),
+            ("--mlt", "metropolis"),
+            ("--mlt", "pathspace"),
+            ("--chains", "0"),
+            ("--bootstrap", "none"),
         ]:
             with self.subTest(option=option, value=value):
                 wrong = f"{option}={value}" if option.startswith("--") else f"{option}{value}"

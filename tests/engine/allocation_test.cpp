@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "engine/chains/chain_worker.h"
 #include "engine/pipeline.h"
 #include "engine/render_plan.h"
 #include "tests/engine/test_scenes.h"
@@ -106,6 +107,37 @@ TEST_P(WaveAllocationTest, isNoneForAnyPrecision) {
     EXPECT_EQ(allocationsPerWave<float>(scene, settings), 0u) << scene;
     settings.precision = Precision::doubled;
     EXPECT_EQ(allocationsPerWave<double>(scene, settings), 0u) << scene;
+  }
+}
+
+// A step of the chains, from proposal to acceptance.
+TEST(ChainAllocation, isNoneForAnyStep) {
+  for (const MetropolisVariant variant : {MetropolisVariant::pssmlt, MetropolisVariant::mmlt}) {
+    RenderSettings settings;
+    settings.isa = bestIsa();
+    settings.method = Method::mlt;
+    settings.metropolis.variant = variant;
+    const Scene scene = sceneFile("cornell-mirror", 48, 36);
+    const RenderPlan<float> plan = planRender<float>(scene, settings);
+    const FilmArea area = filmArea(scene.film);
+    constexpr size_t kChains = 500;
+    ChainWorker<float> worker(plan, 512, area.pixels.size());
+    ChainState state(kChains, keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth));
+    state.multiplexed = variant == MetropolisVariant::mmlt;
+    for (uint32_t i = 0; i < kChains; ++i) {
+      state.columns.source[i] = i;
+      state.columns.length[i] = 1 + i % 9;
+    }
+    StageContext<float> context = chainContext(plan, settings, area);
+    const auto run = [&](uint32_t first, uint32_t last) {
+      for (context.sampler.iteration = first; context.sampler.iteration < last; ++context.sampler.iteration) {
+        worker.trace(context, state, kChains, true);
+        worker.decide(context, state, true);
+      }
+    };
+    run(0, 1);  // the clock's ticks are measured once
+    EXPECT_EQ(allocationsOf([&] { run(1, 20); }), 0u);
+    EXPECT_GT(state.counters.smallAccepted, 1'000u);
   }
 }
 

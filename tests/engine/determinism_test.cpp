@@ -26,17 +26,27 @@ size_t differentPixels(const RgbImage& a, const RgbImage& b) {
 struct MethodVariant {
   Method method;
   Variant variant;
+  MetropolisVariant metropolis;
 };
 
-std::string nameOf(const MethodVariant& v) { return std::string(toString(v.method)) + "_" + nameOf(v.variant); }
+std::string nameOf(const MethodVariant& v) {
+  const std::string_view name =
+      v.method == Method::mlt ? kMetropolisVariantNames[static_cast<size_t>(v.metropolis)] : toString(v.method);
+  return std::string(name) + "_" + nameOf(v.variant);
+}
 
 // Path tracing in all variants, the other methods in the default one.
 std::vector<MethodVariant> methodVariants() {
   std::vector<MethodVariant> list;
-  for (const Variant& variant : allVariants()) list.push_back({Method::pt, variant});
+  for (const Variant& variant : allVariants()) list.push_back({Method::pt, variant, MetropolisVariant::mmlt});
   for (const MethodEntry& entry : kMethods) {
     if (entry.method == Method::pt) continue;
-    list.push_back({entry.method, {Precision::floating, SamplerKind::independent, Accel::small}});
+    if (entry.method == Method::mlt) {
+      list.push_back(
+          {entry.method, {Precision::floating, SamplerKind::independent, Accel::embree}, MetropolisVariant::pssmlt});
+    }
+    list.push_back(
+        {entry.method, {Precision::floating, SamplerKind::independent, Accel::small}, MetropolisVariant::mmlt});
   }
   return list;
 }
@@ -48,6 +58,10 @@ class DeterminismTest : public testing::TestWithParam<MethodVariant> {
   RenderSettings settings() const {
     RenderSettings settings = settingsFor(GetParam().variant);
     settings.method = GetParam().method;
+    settings.metropolis.variant = GetParam().metropolis;
+    settings.metropolis.chains = 500;
+    settings.metropolis.bootstrapSamples = 4000;
+    settings.metropolis.restartSteps = 4;  // so that iterations lie across a restart
     settings.threads = 1;
     settings.waveSize = 256;
     settings.seed = 5;

@@ -1,0 +1,39 @@
+// Bootstrap: independent samples from which chains start, and which say how bright the image is.
+//
+// Chains that start from samples chosen in proportion to their target, with the image scaled by the mean target of the
+// same samples, are unbiased from the first step on (Veach 1997, 11.3.1): E[b g(x0)] is the integral of I g, and no
+// step changes that. So nothing is discarded, and chains may be short.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace wavecrest {
+
+// Samples to draw, in the order of path lengths: the length of each (0 where chains have none), and the share of the
+// whole that it stands for, one over the number of samples of its length.
+struct BootstrapPlan {
+  std::vector<uint32_t> length;
+  std::vector<double> share;
+};
+
+// All samples alike.
+BootstrapPlan plainBootstrap(uint32_t samples);
+
+// About `samples` samples over the lengths minLength to maxLength, most of them short: long paths carry less, and an
+// error in what they carry weighs less. Every length gets some, or its light would be lost.
+BootstrapPlan bootstrapByLength(uint32_t samples, uint32_t minLength, uint32_t maxLength);
+
+struct Brightness {
+  double mean = 0;           // b: the integral of the target
+  double standardError = 0;  // of the mean
+  double largestShare = 0;   // of one sample in the mean; large where too few samples found light
+};
+Brightness brightnessOf(const BootstrapPlan& plan, const std::vector<float>& targets);
+
+// Systematic resampling: chain m starts from the sample at (m + offset) / chains of the sum of share times target, with
+// offset in [0, 1). Samples in order, so chains are in the order of lengths. Some target must not be zero.
+std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<float>& targets, uint32_t chains,
+                                   double offset);
+
+}  // namespace wavecrest

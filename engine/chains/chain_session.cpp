@@ -1,0 +1,365 @@
+#include "engine/chains/chain_session.h"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/partitioner.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/chains/bootstrap.h"
+#include "engine/chains/chain_memory.h"
+#include "engine/chains/chain_worker.h"
+#include "engine/flush_to_zero.h"
+#include "engine/render_clock.h"
+#include "engine/stage_rows.h"
+
+namespace wavecrest {
+namespace {
+
+// Steps of a wave between looks at the clock: a few hundredths of a second.
+constexpr uint64_t kRoundSteps = 16;
+
+// Mutations of a pixel, in the mean, to a sample of its direct light: a quarter or so of the time goes there.
+constexpr uint64_t kMutationsPerDirect = 2;
+
+// A number in [0, 1) that depends on the seed and epoch alone (the finalizer of SplitMix64, Steele et al. 2014).
+double startOffset(uint64_t seed, uint64_t epoch) {
+  uint64_t x = seed * 0x9e3779b97f4a7c15u + epoch;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
+}
+
+template <class S>
+class ChainSession final : public Session {
+ public:
+  ChainSession(const Scene& scene, const RenderSettings& settings);
+
+  void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) override;
+  RenderStatistics statistics() const override;
+  const Film& film() const override { return film_; }
+  const MemoryPlan& memoryPlan() const override { return memory_; }
+  double progressSeconds() const override { return progressSeconds_.load(std::memory_order_relaxed); }
+  uint64_t progressPaths() const override { return progressPaths_.load(std::memory_order_relaxed); }
+
+ private:
+  ChainWorker<S>& worker();
+  // The first chain of a wave, and the number of its chains.
+  size_t firstChain(size_t wave) const { return wave * settings_.waveSize; }
+  size_t chainCount(size_t wave) const {
+    return std::min<size_t>(settings_.waveSize, settings_.metropolis.chains - firstChain(wave));
+  }
+  uint64_t stepsFor(uint64_t iterations) const;
+  uint64_t mutations() const { return step_ * settings_.metropolis.chains; }
+  bool direct() const { return plan_.pipeline.chains->directPass && settings_.metropolis.directPass; }
+
+  std::vector<float> bootstrapTargets(uint64_t epoch);
+  void beginEpoch(uint64_t epoch);
+  void startChains(size_t wave, uint64_t epoch, const std::vector<uint32_t>& starts);
+  void advance(size_t wave, uint64_t steps);
+  void traceDirect();
+  void addPending(size_t wave, std::vector<int64_t>& sums) const;
+  void collectSplats();
+
+  static void forEach(size_t count, const std::function<void(size_t)>& body) {
+    oneapi::tbb::parallel_for(size_t{0}, count, body, oneapi::tbb::simple_partitioner());
+  }
+
+  const RenderSettings settings_;
+  oneapi::tbb::task_arena arena_;
+  Film film_;
+  RenderPlan<S> plan_;
+  MemoryPlan memory_;
+  BootstrapPlan bootstrap_;
+  std::vector<ChainState> waves_;
+  oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
+  uint64_t directIterations_ = 0;  // direct light samples of every pixel
+  uint64_t step_ = 0;              // steps that every chain has taken
+  double referenceMean_ = 0;       // b of the first epoch that found light: the film is in units of it
+  bool dark_ = true;               // the epoch's bootstrap found no light
+  struct Epoch {
+    Brightness brightness;
+    uint64_t steps = 0;
+  };
+  std::vector<Epoch> epochs_;
+  double buildSeconds_ = 0, renderSeconds_ = 0, cpuSeconds_ = 0;
+  std::atomic<double> progressSeconds_{0};
+  std::atomic<uint64_t> progressPaths_{0};
+};
+
+template <class S>
+ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings)
+    : settings_(settings), arena_(static_cast<int>(settings.threads)), film_(filmArea(scene.film)) {
+  const auto begin = Clock::now();
+  const WorkerLimit limit(settings.threads);
+  arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
+  memory_ = planMemory(plan_, settings, film_.area());
+  const MetropolisSettings& metropolis = settings.metropolis;
+  const bool multiplexed = plan_.pipeline.lightPass.has_value();
+  bootstrap_ = multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,
+                                               settings.limits.maxDepth)
+                           : plainBootstrap(metropolis.bootstrapSamples);
+  const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings.limits.maxDepth);
+  const size_t waves = (metropolis.chains + settings.waveSize - 1) / settings.waveSize;
+  for (size_t wave = 0; wave < waves; ++wave) {
+    ChainState& state = waves_.emplace_back(chainCount(wave), kept);
+    state.multiplexed = multiplexed;
+  }
+  buildSeconds_ = secondsSince(begin);
+}
+
+template <class S>
+ChainWorker<S>& ChainSession<S>::worker() {
+  std::unique_ptr<ChainWorker<S>>& mine = workers_.local();
+  if (!mine) mine = std::make_unique<ChainWorker<S>>(plan_, settings_.waveSize, film_.area().pixels.size());
+  return *mine;
+}
+
+// An iteration is a mutation per pixel in the mean.
+template <class S>
+uint64_t ChainSession<S>::stepsFor(uint64_t iterations) const {
+  const uint64_t chains = settings_.metropolis.chains;
+  return (iterations * film_.area().pixels.size() + chains - 1) / chains;
+}
+
+template <class S>
+std::vector<float> ChainSession<S>::bootstrapTargets(uint64_t epoch) {
+  std::vector<float> targets(bootstrap_.length.size());
+  const size_t waves = (targets.size() + settings_.waveSize - 1) / settings_.waveSize;
+  forEach(waves, [&](size_t wave) {
+    const FlushToZero flushToZero;
+    const size_t first = wave * settings_.waveSize,
+                 count = std::min<size_t>(settings_.waveSize, targets.size() - first);
+    // All steps are large, so no current numbers are kept.
+    ChainState state(count, {});
+    state.samples.values = nullptr;
+    const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
+    std::copy_n(kept.blocks, 2, state.samples.blocks);
+    state.multiplexed = plan_.pipeline.lightPass.has_value();
+    state.samples.stream = Stream::bootstrap;
+    state.samples.largeStep = 2;
+    for (size_t i = 0; i < count; ++i) {
+      state.columns.source[i] = static_cast<uint32_t>(first + i);
+      state.columns.length[i] = bootstrap_.length[first + i];
+    }
+    StageContext<S> context = chainContext(plan_, settings_, film_.area());
+    context.sampler.iteration = static_cast<uint32_t>(epoch);
+    ChainWorker<S>& mine = worker();
+    mine.trace(context, state, count, false);
+    // Moves every chain, from nowhere, to its sample; what it adds to the film is nothing.
+    mine.decide(context, state, false);
+    for (size_t i = 0; i < count; ++i) targets[first + i] = state.columns.target[i];
+  });
+  return targets;
+}
+
+template <class S>
+void ChainSession<S>::startChains(size_t wave, uint64_t epoch, const std::vector<uint32_t>& starts) {
+  const FlushToZero flushToZero;
+  ChainState& state = waves_[wave];
+  Chains& chains = state.columns;
+  const size_t count = chainCount(wave);
+  const ChainCounters before = state.counters;
+  // Replays the samples and accepts them all.
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t sample = starts[firstChain(wave) + i];
+    chains.source[i] = sample;
+    chains.length[i] = bootstrap_.length[sample];
+    chains.target[i] = 0;
+    chains.weight[i] = 0;
+  }
+  state.samples.stream = Stream::bootstrap;
+  state.samples.largeStep = 2;
+  StageContext<S> context = chainContext(plan_, settings_, film_.area());
+  context.sampler.iteration = static_cast<uint32_t>(epoch);
+  ChainWorker<S>& mine = worker();
+  mine.trace(context, state, count, false);
+  mine.decide(context, state, false);
+
+  // From here on chains are themselves. The start is no step and has no weight.
+  state.counters = before;
+  state.samples.stream = Stream::chain;
+  state.samples.largeStep = static_cast<float>(settings_.metropolis.largeStep);
+  for (size_t i = 0; i < count; ++i) {
+    chains.source[i] = static_cast<uint32_t>(firstChain(wave) + i);
+    chains.weight[i] = 0;
+    chains.rejections[i] = 0;
+  }
+}
+
+// Adds what is due to the states that the chains of a wave are in.
+template <class S>
+void ChainSession<S>::addPending(size_t wave, std::vector<int64_t>& sums) const {
+  const ChainState& state = waves_[wave];
+  const Chains& chains = state.columns;
+  for (size_t i = 0; i < chainCount(wave); ++i) {
+    if (!(chains.target[i] > 0)) continue;
+    const double visits = static_cast<double>(chains.weight[i]) * static_cast<double>(state.splatFactor);
+    const double colour[3] = {chains.red[i], chains.green[i], chains.blue[i]};
+    for (size_t c = 0; c < 3; ++c) {
+      sums[3 * size_t{chains.pixel[i]} + c] += static_cast<int64_t>(colour[c] * visits * kSplatScale + 0.5);
+    }
+  }
+}
+
+template <class S>
+void ChainSession<S>::beginEpoch(uint64_t epoch) {
+  if (epoch != 0) {
+    for (size_t wave = 0; wave < waves_.size(); ++wave) addPending(wave, worker().splats);
+  }
+  const std::vector<float> targets = bootstrapTargets(epoch);
+  const Brightness brightness = brightnessOf(bootstrap_, targets);
+  epochs_.push_back({brightness});
+  dark_ = !(brightness.mean > 0);
+  if (dark_) {
+    for (size_t wave = 0; wave < waves_.size(); ++wave) {
+      std::fill_n(static_cast<float*>(waves_[wave].columns.target), chainCount(wave), 0.0f);
+    }
+    return;
+  }
+  if (referenceMean_ == 0) referenceMean_ = brightness.mean;
+  const std::vector<uint32_t> starts =
+      startSamples(bootstrap_, targets, settings_.metropolis.chains, startOffset(settings_.seed, epoch));
+  for (ChainState& state : waves_) state.splatFactor = static_cast<float>(brightness.mean / referenceMean_);
+  forEach(waves_.size(), [&](size_t wave) { startChains(wave, epoch, starts); });
+}
+
+template <class S>
+void ChainSession<S>::advance(size_t wave, uint64_t steps) {
+  const FlushToZero flushToZero;
+  ChainState& state = waves_[wave];
+  ChainWorker<S>& mine = worker();
+  StageContext<S> context = chainContext(plan_, settings_, film_.area());
+  for (uint64_t step = step_; step < step_ + steps; ++step) {
+    context.sampler.iteration = static_cast<uint32_t>(step);
+    mine.trace(context, state, chainCount(wave), settings_.measureStages);
+    mine.decide(context, state, settings_.measureStages);
+    progressPaths_.fetch_add(chainCount(wave), std::memory_order_relaxed);
+  }
+}
+
+// One direct sample of each pixel for every so many mutations of it, beginning with the first step.
+template <class S>
+void ChainSession<S>::traceDirect() {
+  const FilmArea& area = film_.area();
+  const uint64_t perIteration = kMutationsPerDirect * area.pixels.size();
+  for (; directIterations_ * perIteration < mutations(); ++directIterations_) {
+    const size_t waves = (area.pixels.size() + settings_.waveSize - 1) / settings_.waveSize;
+    forEach(waves, [&](size_t wave) {
+      const FlushToZero flushToZero;
+      const size_t first = wave * settings_.waveSize;
+      StageContext<S> context = chainContext(plan_, settings_, area);
+      context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(directIterations_), nullptr};
+      ChainWorker<S>& mine = worker();
+      mine.traceDirect(context, area, first, std::min<size_t>(settings_.waveSize, area.pixels.size() - first));
+      mine.counters.nonFinite += film_.add(mine.wave());
+    });
+  }
+}
+
+template <class S>
+void ChainSession<S>::collectSplats() {
+  std::vector<int64_t> sums(3 * film_.area().pixels.size(), 0);
+  for (const auto& worker : workers_) {
+    for (size_t i = 0; i < sums.size(); ++i) sums[i] += worker->splats[i];
+  }
+  for (size_t wave = 0; wave < waves_.size(); ++wave) addPending(wave, sums);
+  // b N_pix / M
+  const double factor =
+      step_ == 0 ? 0
+                 : referenceMean_ * static_cast<double>(film_.area().pixels.size()) / static_cast<double>(mutations());
+  film_.setSplats(std::move(sums), factor);
+}
+
+template <class S>
+void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
+  const auto begin = Clock::now();
+  const double cpuBegin = processCpuSeconds();
+  const WorkerLimit limit(settings_.threads);
+  const uint64_t restart = settings_.metropolis.restartSteps;
+  const auto stepsLeft = [&]() -> uint64_t {
+    const double now = renderSeconds_ + secondsSince(begin);
+    progressSeconds_.store(now, std::memory_order_relaxed);
+    if ((seconds && now >= *seconds) || interrupted()) return 0;
+    const uint64_t untilRestart = restart - step_ % restart;
+    const uint64_t round = std::min(kRoundSteps, untilRestart);
+    if (!iterations) return round;
+    const uint64_t goal = stepsFor(*iterations);
+    return goal > step_ ? std::min(round, goal - step_) : 0;
+  };
+  arena_.execute([&] {
+    for (uint64_t steps = stepsLeft(); steps != 0; steps = stepsLeft()) {
+      if (step_ % restart == 0) beginEpoch(step_ / restart);
+      if (!dark_) forEach(waves_.size(), [&](size_t wave) { advance(wave, steps); });
+      step_ += steps;
+      epochs_.back().steps += steps;
+      if (direct()) traceDirect();
+    }
+  });
+  renderSeconds_ += secondsSince(begin);
+  cpuSeconds_ += processCpuSeconds() - cpuBegin;
+  progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
+  collectSplats();
+}
+
+template <class S>
+RenderStatistics ChainSession<S>::statistics() const {
+  RenderStatistics out;
+  out.iterations = mutations() / film_.area().pixels.size();
+  out.paths = mutations();
+  out.buildSeconds = buildSeconds_;
+  out.renderSeconds = renderSeconds_;
+  out.cpuSeconds = cpuSeconds_;
+  out.isa = plan_.isa;
+  out.specialization = plan_.specialization;
+  out.accel = plan_.accel();
+  for (std::string& name : stageNames(plan_.pipeline)) out.stages.push_back({std::move(name)});
+  out.memory.scene = sceneBytes(*plan_.scene);
+  out.memory.film = filmBytes(film_.area().pixels.size());
+  addChainMemory(plan_, settings_, film_.area().pixels.size(), workers_.size(), out.memory);
+  for (const auto& worker : workers_) {
+    out.counters += worker->counters;
+    out.bytesPerPath = worker->bytesPerPath();
+    addTallies(worker->tallies, 0, out.stages);
+  }
+  if (direct()) {
+    out.stages.push_back({"direct pass"});
+    for (const auto& worker : workers_) addTallies({worker->directTally}, out.stages.size() - 1, out.stages);
+  }
+
+  ChainStatistics& chains = out.chains.emplace();
+  chains.mutations = mutations();
+  chains.directPaths = directIterations_ * film_.area().pixels.size();
+  chains.epochs = epochs_.size();
+  double steps = 0, variance = 0;
+  for (const Epoch& epoch : epochs_) {
+    const auto count = static_cast<double>(epoch.steps);
+    steps += count;
+    chains.brightness += count * epoch.brightness.mean;
+    variance += count * count * epoch.brightness.standardError * epoch.brightness.standardError;
+    chains.largestShare = std::max(chains.largestShare, epoch.brightness.largestShare);
+  }
+  if (steps > 0) {
+    chains.brightness /= steps;
+    chains.brightnessError = std::sqrt(variance) / steps;
+  }
+  for (const ChainState& state : waves_) {
+    chains.counters += state.counters;
+    chains.bytes += state.bytes();
+  }
+  out.counters.nonFinite += chains.counters.nonFinite;
+  return out;
+}
+
+}  // namespace
+
+template <class S>
+std::unique_ptr<Session> makeChainSession(const Scene& scene, const RenderSettings& settings) {
+  return std::make_unique<ChainSession<S>>(scene, settings);
+}
+template std::unique_ptr<Session> makeChainSession<float>(const Scene&, const RenderSettings&);
+template std::unique_ptr<Session> makeChainSession<double>(const Scene&, const RenderSettings&);
+
+}  // namespace wavecrest

@@ -1,0 +1,60 @@
+// What one worker thread needs to advance waves of chains, and the step itself.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/render_plan.h"
+#include "kernels/columns/chains.h"
+#include "kernels/columns/light_vertices.h"
+
+namespace wavecrest {
+
+// Which primary samples the chains of a method keep, for paths of up to maxDepth edges.
+template <class S>
+ChainState::Kept keptSamples(const Pipeline<S>& pipeline, const SceneView<S>& scene, uint32_t maxDepth);
+
+// The context of a chain's stages: everything but the chains themselves. The plan must outlive it.
+template <class S>
+StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
+
+template <class S>
+class ChainWorker {
+ public:
+  StageCounters counters;
+  std::vector<int64_t> splats;      // RGB of the film's rectangle
+  std::vector<StageTally> tallies;  // in the order of stageNames
+  StageTally directTally;
+
+  ChainWorker(const RenderPlan<S>& plan, size_t capacity, size_t pixels);
+
+  // Proposes and traces one path for each of the first `count` chains, whose radiance is in the wave afterwards,
+  // without deciding anything. What the proposals depend on is in the chains' columns and samples, and in
+  // context.sampler.
+  void trace(StageContext<S> context, ChainState& chains, size_t count, bool measure);
+  // Accepts or rejects what trace has proposed.
+  void decide(StageContext<S> context, ChainState& chains, bool measure);
+
+  // Traces the direct light of pixels [first, first + count) of the area by path tracing, for the film.
+  void traceDirect(StageContext<S> context, const FilmArea& area, size_t first, size_t count);
+
+  const Wave<S>& wave() const { return wave_; }
+  size_t bytesPerPath() { return wave_.bytesPerPath(); }
+
+ private:
+  void join(const std::vector<JoinCall<S>>& joins, StageContext<S>& context, StageTally* tally);
+  size_t chooseLightLanes(const Chains& chains, size_t count);
+
+  const Pipeline<S>& pipeline_;
+  Wave<S> wave_;
+  std::optional<WalkEnds<S>> ends_;
+  LightStore<S> light_;
+  Arena lanesArena_;
+  Column<uint32_t> lightLanes_;  // lanes whose light walk is worth its while
+};
+
+// The rows of --stats that ChainWorker::tallies are of.
+template <class S>
+std::vector<std::string> stageNames(const Pipeline<S>& pipeline);
+
+}  // namespace wavecrest

@@ -1,0 +1,118 @@
+// Markov chains of Metropolis light transport: one chain to a lane of a wave.
+#pragma once
+
+#include <memory>
+
+#include "kernels/columns/wave.h"
+#include "kernels/sampling/sampler.h"
+
+namespace wavecrest {
+
+// The state of each chain, and what its proposal of the step under way is about to be. Written by proposeMutations, by
+// stages of the walks, and by acceptMutations; `source` and `length` by the engine.
+struct Chains : Columns<Chains> {
+  // Where the chain is.
+  Column<float> red, green, blue;   // contribution over its luminance
+  Column<float> target;             // luminance of the contribution; 0: nowhere yet
+  Column<float> weight;             // expected visits that are not on the film yet
+  Column<uint32_t> pixel;           // of the film's rectangle, row by row
+  Column<uint32_t> cameraVertices;  // vertices whose numbers its path used
+  Column<uint32_t> lightVertices;   // the same of the light walk
+  Column<uint32_t> rejections;      // in a row, up to now
+  Column<uint32_t> length;          // edges of its paths, where that is fixed
+  // What it proposes.
+  Column<uint32_t> source;      // ChainSamples::source
+  Column<uint32_t> cameraLive;  // ChainSamples::live
+  Column<uint32_t> lightLive;
+  Column<float> threshold;  // accepted where the ratio of targets exceeds it
+  Column<float> scale;      // factor of the contribution
+  Column<uint32_t> proposedPixel;
+  Column<uint32_t> proposedCamera;  // vertices of the walks used so far
+  Column<uint32_t> proposedLight;
+  // Of multiplexed chains: how far the walks go.
+  Column<uint32_t> cameraEdges, lightEdges;
+  Column<uint32_t> lightGranted;   // lightEdges once there is something to join with, before that 0
+  Column<uint32_t> emissionDepth;  // vertex at which emission counts; 0: none
+  auto all() {
+    return std::tie(red, green, blue, target, weight, pixel, cameraVertices, lightVertices, rejections, length, source,
+                    cameraLive, lightLive, threshold, scale, proposedPixel, proposedCamera, proposedLight, cameraEdges,
+                    lightEdges, lightGranted, emissionDepth);
+  }
+};
+
+// What acceptMutations counts.
+struct ChainCounters {
+  uint64_t largeSteps = 0, largeAccepted = 0, smallSteps = 0, smallAccepted = 0;
+  uint64_t dark = 0;       // proposals without light
+  uint64_t nonFinite = 0;  // proposals whose contribution was no number; never accepted
+  uint64_t longestRejection = 0;
+
+  ChainCounters& operator+=(const ChainCounters& other) {
+    largeSteps += other.largeSteps;
+    largeAccepted += other.largeAccepted;
+    smallSteps += other.smallSteps;
+    smallAccepted += other.smallAccepted;
+    dark += other.dark;
+    nonFinite += other.nonFinite;
+    longestRejection = longestRejection > other.longestRejection ? longestRejection : other.longestRejection;
+    return *this;
+  }
+};
+
+// The chains of one wave. kept: which blocks of each walk, and of how many vertices, have current numbers; a walk
+// without any has none. Movable only.
+struct ChainState {
+  Chains columns;
+  ChainSamples samples;
+  ChainCounters counters;
+  bool multiplexed = false;  // walks stop where their strategy says
+  float splatFactor = 1;     // of everything that goes to the film
+
+  struct Kept {
+    ChainBlocks blocks[2];   // camera walk, light walk
+    uint32_t vertices[2]{};  // 0: the walk keeps nothing
+  };
+
+  ChainState(size_t capacity, const Kept& kept) : stride_(paddedItems(capacity)) {
+    uint32_t columnCount = 0;
+    for (size_t walk = 0; walk < 2; ++walk) {
+      samples.blocks[walk] = kept.blocks[walk];
+      samples.firstColumn[walk] = columnCount;
+      // The column of the first block past the last vertex is the number of columns.
+      if (kept.vertices[walk] != 0) columnCount = samples.column(walk, 4 * kept.vertices[walk]);
+    }
+    const size_t values = size_t{4} * columnCount * stride_;
+    arena_ = Arena(columns.bytes(capacity) + values * sizeof(uint32_t) + kColumnAlignment);
+    columns.bind(arena_, capacity);
+    samples.values = arena_.take<uint32_t>(values);
+    samples.stride = stride_;
+    samples.source = columns.source;
+    samples.live[0] = columns.cameraLive;
+    samples.live[1] = columns.lightLive;
+    bytes_ = arena_.used();
+  }
+
+  size_t bytes() const { return bytes_; }
+
+ private:
+  size_t stride_;
+  size_t bytes_ = 0;
+  Arena arena_;
+};
+
+// Vertices at which the walks of multiplexed chains end, gathered over all depths: at most one to a lane and walk.
+// Contributions made here are those of the main wave, whose radiance they share.
+template <class S>
+struct WalkEnds {
+  Wave<S> atOrigin;        // joined with the other walk's origin: a light, or the lens
+  Wave<S> cameraAtVertex;  // joined with a vertex of the light walk
+  Wave<S> lightAtVertex;
+
+  WalkEnds(size_t capacity, const ColumnNeeds& needs, const Wave<S>& main)
+      : atOrigin(capacity, needs), cameraAtVertex(capacity, needs), lightAtVertex(capacity, needs) {
+    for (Wave<S>* wave : {&atOrigin, &cameraAtVertex, &lightAtVertex}) wave->radiance = main.radiance;
+  }
+  Wave<S>& atVertex(bool cameraWalk) { return cameraWalk ? cameraAtVertex : lightAtVertex; }
+};
+
+}  // namespace wavecrest

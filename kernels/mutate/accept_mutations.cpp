@@ -1,0 +1,121 @@
+// acceptMutations: the Metropolis decision, and what it puts on the film.
+//
+// in: Radiance of the proposals and Chains [pathCount]. out: Chains, moved where accepted; the film's sums.
+//
+// Both states of a step are splatted by their expected values, contribution over target times (1 - a) and a (Veach
+// 1997, 11.5). What is due to the current state is added up and splatted when the chain leaves it, so a step splats
+// once.
+#include "kernels/columns/chains.h"
+#include "kernels/stage_declarations.h"
+
+WAVECREST_SIMD_BEGIN
+
+namespace {
+
+struct Contribution {
+  Vec3<Float> colour;  // over its luminance
+  Float target;
+};
+
+// Contributions that are no finite numbers count as dark.
+template <class S>
+WAVECREST_INLINE Contribution proposedContribution(const Wave<S>& wave, const Chains& chains, Mask active, size_t i,
+                                                   ChainCounters& counters) {
+  const Vec3<Float> value =
+      to<Float>(loadVec3(wave.radiance.red, wave.radiance.green, wave.radiance.blue, i)) * load(chains.scale, i);
+  const Float luminance = mulAdd(value.x, Float(0.2126f), mulAdd(value.y, Float(0.7152f), value.z * Float(0.0722f)));
+  const Mask finite = (luminance >= Float(0)) & (luminance < Float(1e37f));
+  counters.nonFinite += countTrue(andNot(active, finite));
+  // Below that the reciprocal is no number either.
+  const Mask lit = active & finite & (luminance > Float(1e-37f));
+  counters.dark += countTrue(andNot(active & finite, lit));
+  const Float inverse = Float(1) / select(lit, luminance, Float(1));
+  const auto over = [&](Float x) HWY_ATTR { return zeroUnless(lit, x * inverse); };
+  return {{over(value.x), over(value.y), over(value.z)}, zeroUnless(lit, luminance)};
+}
+
+// Moves the primary samples of accepted lanes, of the vertices that the proposal used. Chains that only ever take large
+// steps keep none.
+WAVECREST_INLINE void keepSamples(const SamplerSettings& sampler, Mask accepted, UInt vertices, size_t walk, size_t i) {
+  const ChainSamples& chain = *sampler.chain;
+  if (chain.values == nullptr) return;
+  const UInt lane = laneIndex(static_cast<uint32_t>(i));
+  for (uint32_t depth = 0;; ++depth) {
+    const Mask used = accepted & (UInt(depth) < vertices);
+    if (none(used)) return;
+    for (uint32_t block = 4 * depth; block < 4 * depth + 4; ++block) {
+      if (!chain.keeps(walk, block)) continue;
+      const ChainNumbers numbers = chainNumbers(sampler, lane, block, walk == 1 ? Stream::light : Stream::camera);
+      uint32_t* row = chain.values + size_t{4} * chain.column(walk, block) * chain.stride + i;
+      for (const UInt number : {numbers.a, numbers.b, numbers.c, numbers.d}) {
+        store(select(used, number, load(row)), row);
+        row += chain.stride;
+      }
+    }
+  }
+}
+
+WAVECREST_INLINE void countSteps(ChainCounters& counters, Mask active, Mask large, Mask accepted) {
+  counters.largeSteps += countTrue(active & large);
+  counters.largeAccepted += countTrue(accepted & large);
+  counters.smallSteps += countTrue(andNot(active, large));
+  counters.smallAccepted += countTrue(andNot(accepted, large));
+}
+
+WAVECREST_INLINE void countRejections(ChainState& state, Mask active, Mask accepted, size_t i) {
+  const UInt run = select(accepted, UInt(0u), load(state.columns.rejections, i) + UInt(1u));
+  store(run, state.columns.rejections, i);
+  HWY_ALIGN uint32_t runs[kLanes];
+  store(select(active, run, UInt(0u)), runs);
+  for (const uint32_t length : runs) {
+    if (length > state.counters.longestRejection) state.counters.longestRejection = length;
+  }
+}
+
+}  // namespace
+
+template <class P, uint32_t kFeatures>
+void acceptMutations(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  ChainState& state = *context.chains;
+  const Chains& chains = state.columns;
+  const size_t count = wave.pathCount;
+  for (size_t i = 0; i < count; i += kLanes) {
+    const Mask active = firstLanes(count - i);
+    const Contribution proposed = proposedContribution(wave, chains, active, i, state.counters);
+    const Vec3<Float> colour = loadVec3(chains.red, chains.green, chains.blue, i);
+    const Float target = load(chains.target, i), weight = load(chains.weight, i);
+
+    // a = min(1, I(y) / I(x)); from nowhere any light is taken.
+    const Float one(1);
+    const Mask somewhere = target > Float(0);
+    const Float ratio = min(proposed.target / select(somewhere, target, one), one);
+    const Float a = select(somewhere, ratio, zeroUnless(proposed.target > Float(0), one));
+    const Mask accepted = active & (load(chains.threshold, i) < a);
+    countSteps(state.counters, active, load(chains.cameraLive, i) == UInt(0u), accepted);
+    countRejections(state, active, accepted, i);
+
+    // The state that is left goes to the film with all its visits, else the proposal with its share.
+    const UInt pixel = load(chains.pixel, i), proposedPixel = load(chains.proposedPixel, i);
+    const Float due = zeroUnless(somewhere, weight + (one - a));
+    const Float visits = select(accepted, due, a);
+    const Vec3<Float> splat = select(accepted, colour, proposed.colour) * (visits * Float(state.splatFactor));
+    const Mask splats = active & (visits > Float(0)) & (maxComponent(splat) > Float(0));
+    if (any(splats)) addSplats(context, select(accepted, pixel, proposedPixel), splats, splat);
+
+    store(select(accepted, a, due), chains.weight, i);
+    if (none(accepted)) continue;
+    storeVec3(select(accepted, proposed.colour, colour), chains.red, chains.green, chains.blue, i);
+    store(select(accepted, proposed.target, target), chains.target, i);
+    store(select(accepted, proposedPixel, pixel), chains.pixel, i);
+    const UInt camera = load(chains.proposedCamera, i), light = load(chains.proposedLight, i);
+    keepSamples(context.sampler, accepted, camera, 0, i);
+    keepSamples(context.sampler, accepted, light, 1, i);
+    // Last: until here the proposals are functions of what the chains were.
+    store(select(accepted, camera, load(chains.cameraVertices, i)), chains.cameraVertices, i);
+    store(select(accepted, light, load(chains.lightVertices, i)), chains.lightVertices, i);
+  }
+}
+
+WAVECREST_SIMD_END
+
+WAVECREST_INSTANTIATE_STAGE(acceptMutations)

@@ -1,0 +1,189 @@
+// The parts of Metropolis light transport that need no image: what chains start from, and that a chain's state is what
+// its primary samples say.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/chains/bootstrap.h"
+#include "engine/chains/chain_worker.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+TEST(Bootstrap, hasSamplesOfEveryLengthThatStandForItsWhole) {
+  const BootstrapPlan plan = bootstrapByLength(20'000, 1, 64);
+  ASSERT_EQ(plan.length.size(), plan.share.size());
+  EXPECT_TRUE(std::is_sorted(plan.length.begin(), plan.length.end()));
+  std::vector<double> whole(65, 0);
+  for (size_t i = 0; i < plan.length.size(); ++i) whole[plan.length[i]] += plan.share[i];
+  EXPECT_EQ(whole[0], 0);
+  for (size_t length = 1; length <= 64; ++length) EXPECT_NEAR(whole[length], 1, 1e-9) << length;
+  EXPECT_NEAR(static_cast<double>(plan.length.size()), 20'000, 2'500);
+}
+
+TEST(Bootstrap, leavesOutTheShortestIfAsked) {
+  EXPECT_EQ(bootstrapByLength(1'000, 3, 9).length.front(), 3u);
+  EXPECT_EQ(bootstrapByLength(1'000, 3, 9).length.back(), 9u);
+  EXPECT_TRUE(bootstrapByLength(1'000, 3, 2).length.empty());
+}
+
+// Lengths 1 and 2 with three and two samples: 1/3 (1 + 2 + 3) + 1/2 (4 + 8).
+TEST(Bootstrap, addsUpTheMeansOfTheLengths) {
+  const BootstrapPlan plan{{1, 1, 1, 2, 2}, {1 / 3.0, 1 / 3.0, 1 / 3.0, 0.5, 0.5}};
+  const Brightness b = brightnessOf(plan, {1, 2, 3, 4, 8});
+  EXPECT_DOUBLE_EQ(b.mean, 8);
+  EXPECT_DOUBLE_EQ(b.standardError, std::sqrt(1.0 / 3 + 8.0 / 2));
+  EXPECT_DOUBLE_EQ(b.largestShare, 0.5);
+}
+
+// A sample gets its share of the chains, up to one, and over all offsets exactly its share.
+TEST(Bootstrap, startsChainsInProportionToTheTarget) {
+  const BootstrapPlan plan = plainBootstrap(5);
+  const std::vector<float> targets{0, 1, 2, 0, 5};
+  constexpr uint32_t kChains = 13, kOffsets = 64;
+  std::vector<double> total(5, 0);
+  for (uint32_t k = 0; k < kOffsets; ++k) {
+    const std::vector<uint32_t> starts = startSamples(plan, targets, kChains, (k + 0.5) / kOffsets);
+    ASSERT_EQ(starts.size(), kChains);
+    EXPECT_TRUE(std::is_sorted(starts.begin(), starts.end()));
+    std::vector<double> count(5, 0);
+    for (const uint32_t start : starts) ++count[start];
+    for (size_t i = 0; i < 5; ++i) {
+      EXPECT_LE(std::abs(count[i] - kChains * targets[i] / 8.0), 1) << i;
+      total[i] += count[i];
+    }
+  }
+  for (size_t i = 0; i < 5; ++i) EXPECT_NEAR(total[i] / kOffsets, kChains * targets[i] / 8.0, 2.0 / kOffsets) << i;
+}
+
+struct ChainCase {
+  const char* scene;
+  MetropolisVariant variant;
+};
+
+// Chains of a scene that begin nowhere and take what they get.
+class SceneChains {
+ public:
+  SceneChains(const Scene& scene, const ChainCase& chosen, Isa isa, size_t count)
+      : settings_(settingsOf(chosen.variant, isa)),
+        plan_(planRender<float>(scene, settings_)),
+        area_(filmArea(scene.film)),
+        state(count, keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth)),
+        worker_(plan_, count, area_.pixels.size()),
+        context_(chainContext(plan_, settings_, area_)),
+        count_(count) {
+    state.multiplexed = chosen.variant == MetropolisVariant::mmlt;
+    for (uint32_t i = 0; i < count; ++i) {
+      state.columns.source[i] = i;
+      state.columns.length[i] = 1 + i % 7;
+    }
+  }
+
+  void trace(uint32_t step) {
+    context_.sampler.iteration = step;
+    worker_.trace(context_, state, count_, false);
+  }
+  void decide() { worker_.decide(context_, state, false); }
+  // Luminance of a chain's proposal.
+  double proposed(size_t i) const {
+    const auto& radiance = worker_.wave().radiance;
+    return static_cast<double>(state.columns.scale[i]) *
+           (0.2126 * static_cast<double>(radiance.red[i]) + 0.7152 * static_cast<double>(radiance.green[i]) +
+            0.0722 * static_cast<double>(radiance.blue[i]));
+  }
+
+ private:
+  static RenderSettings settingsOf(MetropolisVariant variant, Isa isa) {
+    RenderSettings settings;
+    settings.method = Method::mlt;
+    settings.metropolis.variant = variant;
+    settings.isa = isa;
+    settings.seed = 3;
+    return settings;
+  }
+  const RenderSettings settings_;
+  const RenderPlan<float> plan_;
+  const FilmArea area_;
+
+ public:
+  ChainState state;
+
+ private:
+  ChainWorker<float> worker_;
+  StageContext<float> context_;
+  size_t count_;
+};
+
+class ChainTest : public testing::TestWithParam<ChainCase> {};
+
+// A proposal that changes nothing finds what the chain already has: every number that a path uses was kept when the
+// path was accepted, whether by a large or by a small step, and however long the path before it was.
+TEST_P(ChainTest, stateIsWhatItsSamplesSay) {
+  SceneChains chains(sceneFile(GetParam().scene, 40, 30), GetParam(), bestIsa(), 333);
+  for (uint32_t step = 0; step < 30; ++step) {
+    chains.trace(step);
+    chains.decide();
+  }
+  EXPECT_GT(chains.state.counters.smallAccepted, 300u);
+  EXPECT_GT(chains.state.counters.largeAccepted, 300u);
+  chains.state.samples.stepBits = 0;
+  chains.state.samples.largeStep = 0;
+  chains.trace(30);
+  size_t lit = 0;
+  for (size_t i = 0; i < 333; ++i) {
+    const double target = chains.state.columns.target[i];
+    if (!(target > 0)) continue;  // still nowhere
+    EXPECT_NEAR(chains.proposed(i), target, 1e-6 * target) << "chain " << i;
+    EXPECT_EQ(chains.state.columns.proposedPixel[i], chains.state.columns.pixel[i]) << "chain " << i;
+    ++lit;
+  }
+  EXPECT_GT(lit, 100u);
+}
+
+// Walks, their ends and what joins them, at odd counts: the scalar twin's proposals are the same. A path that only
+// rounding decides about may differ.
+TEST_P(ChainTest, proposalsAreThoseOfTheScalarTwin) {
+  const Scene scene = sceneFile(GetParam().scene, 40, 30);
+  for (const Isa isa : availableIsas()) {
+    if (isa == Isa::scalar) continue;
+    size_t lit = 0, different = 0, all = 0;
+    for (const size_t count : {1u, 15u, 17u, 333u}) {
+      SceneChains expected(scene, GetParam(), Isa::scalar, count), actual(scene, GetParam(), isa, count);
+      for (uint32_t step = 0; step < 4; ++step) {
+        expected.trace(step);
+        actual.trace(step);
+        for (size_t i = 0; i < count; ++i) {
+          const double want = expected.proposed(i), got = actual.proposed(i);
+          lit += want > 0 ? 1 : 0;
+          different += std::abs(got - want) > 1e-3 * want ? 1 : 0;
+          ++all;
+        }
+      }
+    }
+    EXPECT_GT(lit, all / 50);
+    EXPECT_LE(different, all / 200) << toString(isa);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Engine, ChainTest,
+                         testing::Values(ChainCase{"cornell-diffuse", MetropolisVariant::pssmlt},
+                                         ChainCase{"cornell-diffuse", MetropolisVariant::mmlt},
+                                         ChainCase{"cornell-mirror", MetropolisVariant::mmlt},
+                                         ChainCase{"cornell-glossy", MetropolisVariant::pssmlt},
+                                         ChainCase{"cornell-spheres", MetropolisVariant::mmlt},
+                                         ChainCase{"features/roughplastic", MetropolisVariant::mmlt},
+                                         ChainCase{"features/envmap", MetropolisVariant::pssmlt},
+                                         ChainCase{"features/envmap", MetropolisVariant::mmlt}),
+                         [](const auto& instance) {
+                           std::string name = instance.param.scene;
+                           std::replace_if(
+                               name.begin(), name.end(), [](char c) { return c == '-' || c == '/'; }, '_');
+                           return name + "_" +
+                                  std::string(kMetropolisVariantNames[static_cast<size_t>(instance.param.variant)]);
+                         });
+
+}  // namespace
+}  // namespace wavecrest

@@ -1,0 +1,257 @@
+// Metropolis light transport against what is known, and against path tracing and bidirectional path tracing.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <numeric>
+
+#include "tests/engine/render_statistics.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr uint32_t kWidth = 32, kHeight = 24;
+
+RenderSettings defaults() {
+  RenderSettings settings = settingsFor({Precision::floating, SamplerKind::independent, Accel::small});
+  // Few and short bootstraps, so that an error in what chains start from would show.
+  settings.metropolis.chains = 512;
+  settings.metropolis.bootstrapSamples = 16384;
+  return settings;
+}
+
+RenderSettings metropolis(MetropolisVariant variant) {
+  RenderSettings settings = defaults();
+  settings.method = Method::mlt;
+  settings.metropolis.variant = variant;
+  return settings;
+}
+
+double luminance(const float* rgb) {
+  return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
+         0.0722 * static_cast<double>(rgb[2]);
+}
+
+double meanLuminance(const RgbImage& image) {
+  double sum = 0;
+  for (size_t i = 0; i < image.size(); i += 3) sum += luminance(&image[i]);
+  return sum / (static_cast<double>(image.size()) / 3);
+}
+
+// What L = L_e (1 - rho^K) / (1 - rho) adds up to.
+double series(double rho, uint32_t maxDepth) { return (1 - std::pow(rho, maxDepth)) / (1 - rho); }
+
+struct MetropolisCase {
+  MetropolisVariant variant;
+  bool directPass;
+};
+
+class MetropolisTest : public testing::TestWithParam<MetropolisCase> {
+ protected:
+  RenderSettings settings() const {
+    RenderSettings settings = metropolis(GetParam().variant);
+    settings.metropolis.directPass = GetParam().directPass;
+    return settings;
+  }
+  // The method whose image the variant's must be.
+  static Method reference() { return GetParam().variant == MetropolisVariant::pssmlt ? Method::pt : Method::bpt; }
+
+  void expectReference(const Scene& scene, const RenderSettings& chosen, uint64_t mutations, uint64_t paths) {
+    RenderSettings other = chosen;
+    other.method = reference();
+    expectSameTruth(renderSeeds(scene, chosen, mutations), renderSeeds(scene, other, paths, 2000), scene.name);
+  }
+};
+
+TEST_P(MetropolisTest, closedBoxForEachDepth) {
+  for (const uint32_t maxDepth : {1u, 2u, 3u, 6u}) {
+    const Scene scene = sceneFile("validation/closed-box", kWidth, kHeight, {{"albedo", "0.5"}});
+    RenderSettings chosen = settings();
+    chosen.limits.maxDepth = maxDepth;
+    expectTruth(
+        renderSeeds(scene, chosen, 64),
+        [&](uint32_t, uint32_t, size_t) -> std::optional<double> { return series(0.5, maxDepth); },
+        "K = " + std::to_string(maxDepth));
+  }
+}
+
+TEST_P(MetropolisTest, closedBoxWithLongPaths) {
+  const Scene scene = sceneFile("validation/closed-box", kWidth, kHeight, {{"albedo", "0.8"}});
+  expectTruth(
+      renderSeeds(scene, settings(), 96),
+      [&](uint32_t, uint32_t, size_t) -> std::optional<double> { return series(0.8, kUnlimitedDepth); }, "albedo 0.8");
+}
+
+TEST_P(MetropolisTest, pointLightInADiffuseSphere) {
+  const Scene scene = sceneFile("validation/point-in-sphere", kWidth, kHeight, {{"albedo", "0.5"}});
+  expectTruth(
+      renderSeeds(scene, settings(), 64),
+      [&](uint32_t, uint32_t, size_t) -> std::optional<double> {
+        return (series(0.5, kUnlimitedDepth) - 1) / std::numbers::pi;
+      },
+      "point light");
+}
+
+TEST_P(MetropolisTest, diffuseBoxIsThatOfPathTracing) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings other = defaults();
+  expectSameTruth(renderSeeds(scene, settings(), 128), renderSeeds(scene, other, 128, 2000), scene.name);
+}
+
+TEST_P(MetropolisTest, causticIsThatOfTheUnderlyingMethod) {
+  expectReference(sceneFile("cornell-mirror", kWidth, kHeight), settings(), 192, 192);
+}
+
+TEST_P(MetropolisTest, everyPrecisionGivesTheSameImage) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const SeedMeans expected = renderSeeds(scene, settings(), 64);
+  for (const Precision precision : {Precision::doubled, Precision::fast}) {
+    RenderSettings chosen = settings();
+    chosen.precision = precision;
+    expectSameTruth(expected, renderSeeds(scene, chosen, 64, 3000), "precision");
+  }
+}
+
+// A crop window is rendered for itself: chains do not look elsewhere, and the image is the same there.
+TEST_P(MetropolisTest, cropWindowShowsItsPartOfTheImage) {
+  Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings other = settings();
+  other.method = Method::pt;
+  scene.film.cropX = 9;
+  scene.film.cropY = 5;
+  scene.film.cropWidth = 16;
+  scene.film.cropHeight = 11;
+  expectSameTruth(renderSeeds(scene, settings(), 256), renderSeeds(scene, other, 256, 2000), "crop");
+}
+
+// b is the mean luminance of the image; its error says how far off it may be.
+TEST_P(MetropolisTest, brightnessIsThatOfTheImageWithinItsError) {
+  if (GetParam().directPass) GTEST_SKIP() << "b leaves out direct light";
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings other = defaults();
+  std::vector<double> truths;
+  for (const RgbImage& image : renderSeeds(scene, other, 256, 2000).images) truths.push_back(meanLuminance(image));
+  const double truth = std::accumulate(truths.begin(), truths.end(), 0.0) / kSeeds;
+  double squares = 0;
+  for (const double t : truths) squares += (t - truth) * (t - truth);
+  const double truthError2 = squares / (kSeeds - 1) / kSeeds;
+  double z2 = 0;
+  for (size_t seed = 0; seed < kSeeds; ++seed) {
+    RenderSettings chosen = settings();
+    chosen.metropolis.bootstrapSamples = 1 << 19;
+    chosen.seed = 4000 + seed;
+    const auto session = Session::create(scene, chosen);
+    session->renderUntil(1, std::nullopt);
+    const ChainStatistics chains = *session->statistics().chains;
+    EXPECT_GT(chains.brightnessError, 0);
+    EXPECT_LT(chains.brightnessError, 0.05 * chains.brightness);
+    const double error2 = chains.brightnessError * chains.brightnessError + truthError2;
+    z2 += (chains.brightness - truth) * (chains.brightness - truth) / error2;
+  }
+  // Chi-square with 16 degrees of freedom: mean 16, standard deviation 5.7; too small would be a wrong error too.
+  EXPECT_LT(z2, 16 + 6 * 5.7);
+  EXPECT_GT(z2, 3);
+}
+
+// Three steps per chain are far from any equilibrium, and still unbiased: chains start where they should.
+TEST_P(MetropolisTest, hasNoStartUpBias) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings few = settings();
+  few.metropolis.chains = 4096;
+  few.metropolis.bootstrapSamples = 8192;
+  few.metropolis.restartSteps = 3;
+  RenderSettings other = defaults();
+  expectSameTruth(renderSeeds(scene, few, 96), renderSeeds(scene, other, 128, 2000), "restarts every third step");
+}
+
+TEST_P(MetropolisTest, largeStepsAloneArePlainMonteCarlo) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings independent = settings();
+  independent.metropolis.largeStep = 1;
+  RenderSettings other = defaults();
+  expectSameTruth(renderSeeds(scene, independent, 96), renderSeeds(scene, other, 96, 2000), "large steps");
+  const auto session = Session::create(scene, independent);
+  session->renderUntil(4, std::nullopt);
+  EXPECT_EQ(session->statistics().chains->counters.smallSteps, 0u);
+}
+
+// The image's mean luminance is b by construction: every step splats a luminance of 1.
+TEST_P(MetropolisTest, everyStepIsOnTheFilm) {
+  if (GetParam().directPass) GTEST_SKIP() << "b leaves out direct light";
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const auto session = Session::create(scene, settings());
+  for (const uint64_t iterations : {1u, 7u}) {
+    session->renderUntil(iterations, std::nullopt);
+    const double b = session->statistics().chains->brightness;
+    EXPECT_NEAR(meanLuminance(session->film().resolve()), b, 1e-5 * b) << iterations << " iterations";
+  }
+}
+
+// Epochs are independent estimates of the image. The spread of whole renders over seeds is what the spread of the
+// epochs within one predicts, tile by tile.
+TEST_P(MetropolisTest, spreadOverSeedsIsThatPredictedWithinARender) {
+  constexpr uint64_t kEpochs = 16, kSteps = 24;  // of 512 chains: 16 mutations per pixel
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings chosen = settings();
+  chosen.metropolis.restartSteps = kSteps;
+  const auto quarters = [](const RgbImage& image) {  // luminance in 4 x 4 tiles
+    std::vector<double> sums(16, 0);
+    for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
+      sums[i / kWidth / (kHeight / 4) * 4 + i % kWidth / (kWidth / 4)] += luminance(&image[3 * i]) / (kWidth * kHeight);
+    }
+    return sums;
+  };
+  double predicted = 0;
+  std::vector<std::vector<double>> wholes;
+  for (size_t seed = 0; seed < kSeeds; ++seed) {
+    chosen.seed = 5000 + seed;
+    const auto session = Session::create(scene, chosen);
+    std::vector<double> before(16, 0);
+    std::vector<std::vector<double>> epochs;
+    for (uint64_t epoch = 1; epoch <= kEpochs; ++epoch) {
+      session->renderUntil(epoch * kSteps * 512 / (kWidth * kHeight), std::nullopt);
+      std::vector<double> sum = quarters(session->film().resolve());
+      for (double& s : sum) s *= static_cast<double>(epoch);
+      epochs.push_back(sum);
+      for (size_t i = 0; i < 16; ++i) epochs.back()[i] -= before[i];
+      before = std::move(sum);
+    }
+    wholes.push_back(before);
+    for (size_t i = 0; i < 16; ++i) {
+      const double mean = before[i] / kEpochs;
+      double squares = 0;
+      for (const auto& epoch : epochs) squares += (epoch[i] - mean) * (epoch[i] - mean);
+      predicted += squares / (kEpochs - 1) / kEpochs;  // variance of the mean
+    }
+  }
+  double actual = 0;
+  for (size_t i = 0; i < 16; ++i) {
+    double mean = 0, squares = 0;
+    for (const auto& whole : wholes) mean += whole[i] / kEpochs / kSeeds;
+    for (const auto& whole : wholes) squares += (whole[i] / kEpochs - mean) * (whole[i] / kEpochs - mean);
+    actual += squares / (kSeeds - 1) * kSeeds;
+  }
+  // The variance of 16 tiles over 16 seeds has about 240 degrees of freedom, fewer as tiles share b.
+  EXPECT_NEAR(std::sqrt(actual / predicted), 1, 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Engine, MetropolisTest,
+                         testing::Values(MetropolisCase{MetropolisVariant::pssmlt, false},
+                                         MetropolisCase{MetropolisVariant::mmlt, false},
+                                         MetropolisCase{MetropolisVariant::mmlt, true}),
+                         [](const auto& instance) {
+                           const auto name = kMetropolisVariantNames[static_cast<size_t>(instance.param.variant)];
+                           return std::string(name) + (instance.param.directPass ? "_direct_pass" : "");
+                         });
+
+TEST(Metropolis, rendersNothingWhereThereIsNoLight) {
+  Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  scene.emitters.clear();
+  for (Shape& shape : scene.shapes) shape.emitter = kNone;
+  for (const MetropolisVariant variant : {MetropolisVariant::pssmlt, MetropolisVariant::mmlt}) {
+    for (const float value : render(scene, metropolis(variant), 2)) EXPECT_EQ(value, 0.0f);
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest
