@@ -1,6 +1,7 @@
 // wavecrest converge: a convergence campaign over scenes, methods and seeds.
 #include <fmt/core.h>
 
+#include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -9,6 +10,8 @@
 #include "bench/campaign/run_campaign.h"
 #include "bench/campaign/scene_reference.h"
 #include "bench/claims/judge_claims.h"
+#include "bench/report/results_folder.h"
+#include "bench/report/write_report.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
 #include "cli/commands.h"
@@ -45,21 +48,26 @@ struct ConvergeOptions {
 
 // ---- from words to settings -----------------------------------------------------------------------------------------
 
-uint64_t parseCount(const char* option, const std::string& text) {
-  uint64_t count = 0;
-  if (!CLI::detail::lexical_cast(text, count) || count == 0) {
-    throw UsageError(fmt::format("{} {}: expected a whole number from 1 on", option, text));
-  }
+// A whole number from 1 on, or 0 for any other text.
+uint32_t countOf(std::string_view text) {
+  uint32_t count = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  return error == std::errc() && rest == text.data() + text.size() ? count : 0;
+}
+
+uint32_t parseCount(const char* option, const std::string& text) {
+  const uint32_t count = countOf(text);
+  if (count == 0) throw UsageError(fmt::format("{} {}: expected a whole number from 1 on", option, text));
   return count;
 }
 
 Shard parseShard(const std::string& text) {
-  Shard shard;
   const size_t slash = text.find('/');
-  const bool valid = slash != std::string::npos && CLI::detail::lexical_cast(text.substr(0, slash), shard.index) &&
-                     CLI::detail::lexical_cast(text.substr(slash + 1), shard.count) && shard.index >= 1 &&
-                     shard.index <= shard.count;
-  if (!valid) throw UsageError(fmt::format("--shard {}: expected i/n with i from 1 to n", text));
+  if (slash == std::string::npos) throw UsageError(fmt::format("--shard {}: expected i/n", text));
+  const Shard shard{countOf(text.substr(0, slash)), countOf(text.substr(slash + 1))};
+  if (shard.index == 0 || shard.index > shard.count) {
+    throw UsageError(fmt::format("--shard {}: expected i/n with i from 1 to n", text));
+  }
   return shard;
 }
 
@@ -132,7 +140,7 @@ CampaignSettings campaignSettings(const ConvergeOptions& options) {
   settings.methods = chosenMethods(options);
   settings.scenes = chosenScenes(options, profile);
   settings.seeds = profile.seeds;
-  if (options.has("--seeds")) settings.seeds = static_cast<unsigned>(parseCount("--seeds", options.get("--seeds")));
+  if (options.has("--seeds")) settings.seeds = parseCount("--seeds", options.get("--seeds"));
   if (options.has("--spp")) settings.iterations = parseCount("--spp", options.get("--spp"));
   if (settings.iterations && (options.has("--time") || options.get("--snapshot-every", "log") != "log")) {
     throw UsageError(
@@ -287,21 +295,14 @@ int runConverge(ConvergeOptions options) {
           [&](const std::string& line) {
             if (kind != ProgressKind::none) fmt::print(stderr, "{}\n", line);
           }};
-  try {
-    if (!runCampaign(settings, campaignKeys(options, settings), hooks)) {
-      fmt::print(stderr, "stopped; `wavecrest converge --out {} --resume` goes on\n", options.out);
-      return kExitInterrupted;
-    }
-  } catch (const ReferenceError& error) {
-    throw InputError(error.what());
-  } catch (const ReferenceMismatch& error) {
-    throw InputError(error.what());
-  } catch (const ResultsFileError& error) {
-    throw InputError(error.what());
+  if (!runCampaign(settings, campaignKeys(options, settings), hooks)) {
+    fmt::print(stderr, "stopped; `wavecrest converge --out {} --resume` goes on\n", options.out);
+    return kExitInterrupted;
   }
   fmt::print("{}\n", results.string());
-  if (settings.shard.count > 1) return kExitDone;  // the whole is judged where all parts are read
+  if (settings.shard.count > 1) return kExitDone;  // the whole is judged and shown where all parts are read
   const std::vector<ClaimRecord> claims = storeClaims(results);
+  for (const fs::path& file : writeReport(std::array{settings.out})) fmt::print("{}\n", file.string());
   return options.check ? showCheck(claims) : kExitDone;
 }
 
@@ -337,7 +338,17 @@ void addConvergeCommand(CLI::App& app, int& exitCode) {
     for (const char* name : kDefiningOptions) {
       if (command->get_option(name)->count() == 0) options->defining.erase(name);
     }
-    exitCode = runConverge(*options);
+    try {
+      exitCode = runConverge(*options);
+    } catch (const ReferenceError& error) {
+      throw InputError(error.what());
+    } catch (const ReferenceMismatch& error) {
+      throw InputError(error.what());
+    } catch (const ResultsFileError& error) {
+      throw InputError(error.what());
+    } catch (const ResultsError& error) {
+      throw InputError(error.what());
+    }
   });
 }
 

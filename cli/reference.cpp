@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <thread>
 
-#include "bench/campaign/reference_method.h"
 #include "bench/campaign/render_reference.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
-#include "engine/load/load.h"
+#include "cli/scene_options.h"
+#include "engine/path_classes.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {
@@ -20,7 +20,8 @@ constexpr double kDefaultRelativeError = 0.01;
 constexpr double kReferenceRadius = 1e-4;  // of merging methods: their bias must be far below any that is measured
 
 struct ReferenceOptions {
-  std::string scene, method = "auto", time, size, sampler = "independent", precision = "float", isa = "auto", output;
+  SceneOptions scene;
+  std::string method = "auto", time, sampler = "independent", precision = "float", isa = "auto", output;
   double relativeError = 0, radius = kReferenceRadius;
   uint64_t spp = 0, seed = 0;
   uint32_t threads = 0;
@@ -34,13 +35,13 @@ void showAdvance(const ReferenceInfo& info) {
   std::fflush(stderr);
 }
 
-ReferenceMethod chosenMethod(const ReferenceOptions& options, const Scene& scene) {
-  if (options.method == "auto") return referenceMethod(scene);
+ReferenceChoice chosenMethod(const ReferenceOptions& options, const Scene& scene) {
+  if (options.method == "auto") return classifyPaths(scene).reference;
   const std::optional<Method> method = parseMethod(options.method);
   if (!method) {
     throw UsageError(fmt::format("--method {}: unknown; expected auto or one of {}", options.method, methodChoices()));
   }
-  return {*method, "asked for"};
+  return {.method = *method, .biased = false, .reason = "asked for"};
 }
 
 RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, Method method) {
@@ -68,7 +69,7 @@ ReferenceGoal goalOf(const ReferenceOptions& options) {
 }
 
 int runReference(const ReferenceOptions& options) {
-  const std::filesystem::path scenePath = findScene(options.scene);
+  const std::filesystem::path scenePath = findScene(options.scene.scene);
   const std::string output = options.output.empty() ? scenePath.stem().string() + ".reference.exr" : options.output;
   if (std::filesystem::path(output).extension() != ".exr") {
     throw UsageError(fmt::format("-o {}: expected a name that ends in .exr, which keeps the halves", output));
@@ -79,10 +80,8 @@ int runReference(const ReferenceOptions& options) {
     throw UsageError(error.what());
   }
   const ReferenceGoal goal = goalOf(options);
-  LoadOptions loading;
-  if (!options.size.empty()) loading.filmSize = parseSize(options.size);
-  const Scene scene = loadScene(scenePath, loading);
-  const ReferenceMethod method = chosenMethod(options, scene);
+  const Scene scene = loadScene(options.scene);
+  const ReferenceChoice method = chosenMethod(options, scene);
   if (!options.quiet) fmt::print(stderr, "{} by {}: {}\n", scene.name, toString(method.method), method.reason);
 
   InterruptGuard guard;
@@ -107,7 +106,7 @@ int runReference(const ReferenceOptions& options) {
 void addReferenceCommand(CLI::App& app, int& exitCode) {
   auto options = std::make_shared<ReferenceOptions>();
   CLI::App* command = app.add_subcommand("reference", "render a scene's reference image, or go on with it");
-  command->add_option("scene", options->scene, "built-in scene or path of an XML file")->required();
+  addSceneOptions(*command, options->scene);
   command->add_option("-m,--method", options->method, "auto: by the scene's classes of paths; or a method")
       ->capture_default_str();
   command
@@ -117,7 +116,6 @@ void addReferenceCommand(CLI::App& app, int& exitCode) {
       ->check(CLI::Range(1e-9, 1.0));
   command->add_option("--time", options->time, "stop after this much render time in all: 10m, 6h");
   command->add_option("--spp", options->spp, "stop after N iterations of each half")->check(CLI::PositiveNumber);
-  command->add_option("--size", options->size, "film size, WIDTHxHEIGHT");
   command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
   command->add_option("--seed", options->seed, "seed of both halves, which differ in its high word")
       ->check(CLI::Range(uint64_t{0}, uint64_t{0xffffffff}));

@@ -28,11 +28,10 @@ uint64_t halfSeed(uint64_t seed, size_t half, uint64_t firstIteration) {
 }
 
 ReferenceInfo describe(const Scene& scene, const RenderSettings& settings, const std::string& methodReason) {
-  const Method method = settings.method;
-  const bool merges = method == Method::ppm || method == Method::bpm || method == Method::vcm;
+  const bool merges = entryOf(settings.method).strategies.merge;
   return {.scene = scene.name,
           .sceneHash = fmt::format("{:016x}", scene.hash),
-          .method = std::string(toString(method)),
+          .method = std::string(toString(settings.method)),
           .sampler = std::string(toString(settings.sampler)),
           .precision = std::string(kPrecisionNames[static_cast<size_t>(settings.precision)]),
           .seed = settings.seed,

@@ -12,6 +12,7 @@
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
 #include "engine/load/load.h"
+#include "engine/path_classes.h"
 
 namespace wavecrest {
 namespace {
@@ -136,8 +137,23 @@ class Campaign {
                      .referenceFile = file.string(),
                      .width = settings_.size[0],
                      .height = settings_.size[1],
-                     .noiseFloors = reference.noiseFloors});
+                     .noiseFloors = reference.noiseFloors,
+                     .pathClasses = pathClasses(scene)});
     return reference;
+  }
+
+  // What each of the campaign's methods makes of each class of the scene's paths.
+  std::vector<PathClassRecord> pathClasses(const Scene& scene) const {
+    const PathClassTable table = classifyPaths(scene);
+    std::vector<PathClassRecord> records;
+    for (const PathClass& entry : table.classes) {
+      for (const Method method : settings_.methods) {
+        const Verdict verdict = table.verdict(entry, method);
+        records.push_back(
+            {entry.signature, std::string(toString(method)), std::string(kVerdictNames[static_cast<size_t>(verdict)])});
+      }
+    }
+    return records;
   }
 
   bool runMissing(const CampaignScene& entry, const Scene& scene, const std::vector<Method>& methods,

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/campaign/reference_method.h"
+#include "engine/path_classes.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
@@ -32,9 +32,9 @@ std::string misfit(const Reference& reference, const Scene& scene, const Campaig
 
 Reference renderOwn(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings,
                     const fs::path& file, const ReferenceHooks& hooks) {
-  const ReferenceMethod method = referenceMethod(scene);
+  const ReferenceChoice choice = classifyPaths(scene).reference;
   RenderSettings render = settings.render;
-  render.method = method.method;
+  render.method = choice.method;
   render.seed = 0;
   render.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   render.radius = kReferenceRadius;
@@ -44,7 +44,7 @@ Reference renderOwn(const Scene& scene, const CampaignScene& entry, const Campai
   } else {
     goal.seconds = kReferenceEffort * entry.effort.seconds;
   }
-  return renderReference(scene, render, method.reason, goal, file, hooks);
+  return renderReference(scene, render, choice.reason, goal, file, hooks);
 }
 
 }  // namespace

@@ -192,6 +192,10 @@ CampaignResults readResults(const fs::path& path) {
           .claims = readClaims(database)};
 }
 
+bool holdsResults(const fs::path& folder) {
+  return fs::is_directory(folder) && (fs::exists(folder / kResultsFile) || !shardFiles(folder).empty());
+}
+
 CampaignResults readResults(std::span<const fs::path> paths) {
   if (paths.empty()) throw std::invalid_argument("readResults: no file");
   CampaignResults all = readResults(paths.front());

@@ -16,6 +16,9 @@ constexpr std::string_view kResultsFile = "results.sqlite";  // in a campaign's 
 // shards in it. Throws ResultsFileError.
 CampaignResults readResults(const std::filesystem::path& path);
 
+// Whether a folder holds a results file, or those of shards.
+bool holdsResults(const std::filesystem::path& folder);
+
 // Several files as one campaign. Throws ResultsFileError where they are not parts of the same: settings or scenes that
 // differ, or a run that is in two of them. Values of the environment that differ (cpu, commit, ...) are listed. Claims
 // are left out, as none of the parts could judge the whole: see bench/claims.

@@ -5,20 +5,24 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "kernels/simd/stream_store.h"
 
 namespace wavecrest {
 namespace {
 
 // Photons are first dealt to this many partitions by the top bits of the bucket, then sorted within each: the first
-// pass writes as many streams of whole cache lines, the second stays within a core's caches for up to some ten million
-// photons.
+// pass writes as many streams of whole cache lines past the caches, the second stays within a core's for up to some ten
+// million photons.
 constexpr uint32_t kPartitions = 256;
 constexpr uint32_t kMinBuckets = 1u << 12;
 
 // Iterations differ a little in how many photons they have: some room, so that memory is allocated once.
 constexpr size_t withRoom(size_t count) { return count + count / 16; }
 
-constexpr size_t bucketCount(size_t photons) { return std::max<size_t>(std::bit_ceil(photons), kMinBuckets); }
+// About every third bucket is filled: searches of a hashed grid read what else is in their buckets.
+constexpr size_t bucketCount(size_t photons) { return std::max<size_t>(std::bit_ceil(2 * photons), kMinBuckets); }
 
 template <class S>
 struct Bounds {
@@ -130,23 +134,39 @@ void PhotonMap<S>::dealToPartitions(Stores stores, const ForEach& forEach) {
     for (uint32_t p = 0; p < kPartitions; ++p) next[p] = offsets_[p * storeCount + i];
     for (size_t k = 0; k < v.size; ++k) {
       const uint32_t bucket = buckets_[firstVertex_[i] + k];
-      dealt_[next[bucket >> partitionShift]++] = recordOf(v, k, bucket);
+      streamStore(recordOf(v, k, bucket), &records_[next[bucket >> partitionShift]++]);
     }
+    streamFence();
   });
 }
 
-// A stable counting sort by bucket.
+// A stable counting sort by bucket. Records change places where they are: the partition is in the cache by then, and a
+// second copy of all photons would cost more time than the sort.
 template <class S>
 void PhotonMap<S>::sortPartition(size_t partition, size_t storeCount) {
   const uint32_t perPartition = (grid.bucketMask + 1) / kPartitions;
-  const uint32_t first = offsets_[partition * storeCount], last = offsets_[(partition + 1) * storeCount];
+  const uint32_t first = offsets_[partition * storeCount], count = offsets_[(partition + 1) * storeCount] - first;
   const uint32_t firstBucket = static_cast<uint32_t>(partition) * perPartition;
-  std::vector<uint32_t> next(perPartition + 1, 0);
-  for (uint32_t k = first; k < last; ++k) ++next[dealt_[k].bucket - firstBucket + 1];
-  next[0] = first;
-  for (uint32_t b = 0; b < perPartition; ++b) next[b + 1] += next[b];
-  std::copy(next.begin(), next.end() - 1, bucketStart.begin() + firstBucket);
-  for (uint32_t k = first; k < last; ++k) sorted_[next[dealt_[k].bucket - firstBucket]++] = dealt_[k];
+  PhotonRecord<S>* const records = records_ + first;
+  std::vector<uint32_t> next(perPartition + 1, 0), source(count);
+  for (uint32_t k = 0; k < count; ++k) ++next[records[k].bucket - firstBucket + 1];
+  for (uint32_t b = 0; b < perPartition; ++b) {
+    bucketStart[firstBucket + b] = first + next[b];
+    next[b + 1] += next[b];
+  }
+  for (uint32_t k = 0; k < count; ++k) source[next[records[k].bucket - firstBucket]++] = k;
+  // Cycle by cycle: the first record steps aside, each place takes the one that belongs there.
+  for (uint32_t k = 0; k < count; ++k) {
+    if (source[k] == k) continue;
+    const PhotonRecord<S> aside = records[k];
+    uint32_t place = k;
+    while (source[place] != k) {
+      records[place] = records[source[place]];
+      place = std::exchange(source[place], place);
+    }
+    records[place] = aside;
+    source[place] = place;
+  }
 }
 
 template <class S>
@@ -157,13 +177,12 @@ void PhotonMap<S>::build(Stores stores, double radius, const ForEach& forEach) {
   if (size > capacity_) {
     capacity_ = withRoom(size);
     arena_ = Arena();  // first, so that the old and the new are not there at once
-    arena_ = Arena(2 * capacity_ * sizeof(PhotonRecord<S>));
-    dealt_ = arena_.take<PhotonRecord<S>>(capacity_);
-    sorted_ = arena_.take<PhotonRecord<S>>(capacity_);
+    arena_ = Arena(capacity_ * sizeof(PhotonRecord<S>));
+    records_ = arena_.take<PhotonRecord<S>>(capacity_);
     buckets_ = {};
     buckets_.resize(capacity_);
   }
-  photons = sorted_;
+  photons = records_;
   const size_t buckets = bucketCount(size);
   bucketStart.resize(buckets + 2);
   if (size == 0) {
@@ -180,13 +199,12 @@ void PhotonMap<S>::build(Stores stores, double radius, const ForEach& forEach) {
 
 template <class S>
 size_t PhotonMap<S>::bytesFor(size_t count) {
-  return withRoom(count) * (2 * sizeof(PhotonRecord<S>) + sizeof(uint32_t)) +
-         (bucketCount(count) + 2) * sizeof(uint32_t);
+  return withRoom(count) * (sizeof(PhotonRecord<S>) + sizeof(uint32_t)) + (bucketCount(count) + 2) * sizeof(uint32_t);
 }
 
 template <class S>
 size_t PhotonMap<S>::bytes() const {
-  return capacity_ * (2 * sizeof(PhotonRecord<S>) + sizeof(uint32_t)) + bucketStart.capacity() * sizeof(uint32_t);
+  return capacity_ * (sizeof(PhotonRecord<S>) + sizeof(uint32_t)) + bucketStart.capacity() * sizeof(uint32_t);
 }
 
 template struct PhotonMap<float>;

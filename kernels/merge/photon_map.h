@@ -72,7 +72,7 @@ struct PhotonMap {
   void sortPartition(size_t partition, size_t storeCount);
 
   size_t capacity_ = 0;
-  PhotonRecord<S>*dealt_ = nullptr, *sorted_ = nullptr;
+  PhotonRecord<S>* records_ = nullptr;
   std::vector<uint32_t> buckets_;    // of each light vertex, store by store
   std::vector<uint32_t> offsets_;    // of each (partition, store)
   std::vector<size_t> firstVertex_;  // of each store

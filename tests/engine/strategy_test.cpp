@@ -128,7 +128,7 @@ using ImagesOfSeeds = std::map<StrategyKey, std::vector<RgbImage>>;
 
 ImagesOfSeeds walkSeeds(const Scene& scene, const MisSettings& strategies) {
   ImagesOfSeeds out;
-  const auto iterations = static_cast<uint32_t>(effort(32, 4));
+  const auto iterations = static_cast<uint32_t>(effort(48, 4));
   for (size_t seed = 0; seed < kSeeds; ++seed) {
     const WalkSettings settings{.lightPaths = 16 * 16,
                                 .radius = kRadius,
@@ -145,7 +145,7 @@ ImagesOfSeeds walkSeeds(const Scene& scene, const MisSettings& strategies) {
 // Two lists of images, one per seed: the same mean. allowed: relative difference of the whole images' means that is no
 // failure.
 void expectSameImages(const std::vector<RgbImage>& a, const std::vector<RgbImage>& b, double allowed,
-                      const std::string& where) {
+                      const std::string& where, bool connection = false) {
   ASSERT_EQ(a.size(), kSeeds) << where;
   ASSERT_EQ(b.size(), kSeeds) << where;
   const auto difference = [&](size_t s, size_t i) -> std::optional<double> { return double{a[s][i]} - b[s][i]; };
@@ -154,6 +154,12 @@ void expectSameImages(const std::vector<RgbImage>& a, const std::vector<RgbImage
     for (const float value : image) mean += value / static_cast<double>(kSeeds * image.size());
   }
   EXPECT_GT(mean, 0) << where;
+  // Without a weight, connections of vertices in a corner have no finite variance (1 / d^2): single tiles say nothing.
+  if (connection) {
+    const TileStatistics statistics = tileStatistics(16, a[0].size(), difference, 2e-6 * mean);
+    EXPECT_LE(statistics.imageT, 7) << where << ": " << statistics.describe();
+    return;
+  }
   if (allowed == 0) {
     expectWithinNoise(tileStatistics(16, a[0].size(), difference, 2e-6 * mean), where);
     return;
@@ -182,7 +188,7 @@ TEST_P(StrategyTest, allMakeTheSameImageAndTheirWeightedSumIsIt) {
       if (s == 0 && delta) {  // a delta light cannot be met
         for (const float value : images[0]) ASSERT_EQ(value, 0.0f);
       } else if (s != reference) {
-        expectSameImages(images, expected, 0, "s = " + std::to_string(s) + edges);
+        expectSameImages(images, expected, 0, "s = " + std::to_string(s) + edges, s >= 2 && s < k);
       }
       for (size_t seed = 0; seed < kSeeds; ++seed) {
         for (size_t i = 0; i < sum[seed].size(); ++i) sum[seed][i] += weighted.at({false, s, k})[seed][i];

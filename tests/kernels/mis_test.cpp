@@ -187,8 +187,10 @@ std::vector<double> weights(const MisKernels<S>& kernels, const MisSettings& mis
       wCamera = behindCamera[path];
     } else if (s == 0) {
       if (delta) continue;
-      wCamera = (mis.nextEvent ? p.direct[path] * camera[0].dVCM[path] : S(0)) +
-                p.position[path] * p.direction[path] * camera[0].dVC[path];
+      // A light that the camera sees has no other strategy: those of one light and one camera vertex are never used.
+      if (k > 1)
+        wCamera = (mis.nextEvent ? p.direct[path] * camera[0].dVCM[path] : S(0)) +
+                  p.position[path] * p.direction[path] * camera[0].dVC[path];
     } else if (s == 1) {
       if (specular(1)) continue;
       const S directW = p.direct[path] * d2 / n0;

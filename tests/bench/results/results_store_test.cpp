@@ -209,6 +209,8 @@ TEST(ReadResults, aFolderStandsForItsFileOrItsShards) {
   shard(folder, "results.1-of-2.sqlite", sampleRun("box", "pt", 1), {{"spp", "4"}}, sampleScene());
   shard(folder, "results.2-of-2.sqlite", sampleRun("box", "lt", 1), {{"spp", "4"}}, sampleScene());
   EXPECT_EQ(readResults(folder.folder()).runs.size(), 2u);
+  EXPECT_TRUE(holdsResults(folder.folder()));
+  EXPECT_FALSE(holdsResults(TemporaryFolder().folder()));
   shard(folder, "results.sqlite", sampleRun("box", "vcm", 1), {{"spp", "4"}}, sampleScene());
   EXPECT_EQ(readResults(folder.folder()).runs.size(), 1u);
 }
