@@ -149,6 +149,7 @@ TEST(HdrFlip, TakesBlackAndConstantImages) {
   EXPECT_EQ(PreparedHdrFlip(black).compare(black).mean, 0.0);
   EXPECT_EQ(PreparedHdrFlip(grey).compare(grey).mean, 0.0);
   EXPECT_GT(PreparedHdrFlip(grey).compare(black).mean, 0.1);
+  EXPECT_GT(PreparedHdrFlip(black).compare(grey).mean, 0.1) << "a black reference has an exposure too";
 }
 
 TEST(HdrFlip, TakesAnyLight) {
