@@ -10,6 +10,7 @@
 #include "bench/campaign/run_campaign.h"
 #include "bench/campaign/scene_reference.h"
 #include "bench/claims/judge_claims.h"
+#include "bench/report/results_folder.h"
 #include "bench/report/write_report.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
@@ -294,17 +295,9 @@ int runConverge(ConvergeOptions options) {
           [&](const std::string& line) {
             if (kind != ProgressKind::none) fmt::print(stderr, "{}\n", line);
           }};
-  try {
-    if (!runCampaign(settings, campaignKeys(options, settings), hooks)) {
-      fmt::print(stderr, "stopped; `wavecrest converge --out {} --resume` goes on\n", options.out);
-      return kExitInterrupted;
-    }
-  } catch (const ReferenceError& error) {
-    throw InputError(error.what());
-  } catch (const ReferenceMismatch& error) {
-    throw InputError(error.what());
-  } catch (const ResultsFileError& error) {
-    throw InputError(error.what());
+  if (!runCampaign(settings, campaignKeys(options, settings), hooks)) {
+    fmt::print(stderr, "stopped; `wavecrest converge --out {} --resume` goes on\n", options.out);
+    return kExitInterrupted;
   }
   fmt::print("{}\n", results.string());
   if (settings.shard.count > 1) return kExitDone;  // the whole is judged and shown where all parts are read
@@ -345,7 +338,17 @@ void addConvergeCommand(CLI::App& app, int& exitCode) {
     for (const char* name : kDefiningOptions) {
       if (command->get_option(name)->count() == 0) options->defining.erase(name);
     }
-    exitCode = runConverge(*options);
+    try {
+      exitCode = runConverge(*options);
+    } catch (const ReferenceError& error) {
+      throw InputError(error.what());
+    } catch (const ReferenceMismatch& error) {
+      throw InputError(error.what());
+    } catch (const ResultsFileError& error) {
+      throw InputError(error.what());
+    } catch (const ResultsError& error) {
+      throw InputError(error.what());
+    }
   });
 }
 

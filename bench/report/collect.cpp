@@ -16,10 +16,11 @@ namespace {
 namespace fs = std::filesystem;
 
 ConvergenceReport collect(std::span<const fs::path> paths) {
-  const bool renders = paths.size() == 1 && !fs::is_regular_file(paths[0]) && !holdsResults(paths[0]);
-  if (renders) return collectRenders(paths[0]);
+  const bool file = paths.size() == 1 && (fs::is_regular_file(paths[0]) || fs::exists(paths[0] / kResultsFile));
+  if (paths.size() == 1 && !file && !holdsResults(paths[0])) return collectRenders(paths[0]);
   CampaignResults results = readResults(paths);
-  if (results.claims.empty()) results.claims = judgeStudyClaims(results);  // of shards, or of a campaign under way
+  // No part could judge the whole.
+  if (!file) results.claims = judgeStudyClaims(results);
   return collectCampaign(results);
 }
 

@@ -57,9 +57,7 @@ TEST_F(MeasuredRunTest, snapshotsDoubleAndEndWithTheLastIteration) {
     EXPECT_EQ(run.snapshots[i].number, i);
     EXPECT_EQ(run.snapshots[i].iterations, expected[i]);
     EXPECT_EQ(run.snapshots[i].file, "images/cornell-diffuse.pt.3.000" + std::to_string(i) + ".exr");
-    if (i > 0) {
-      EXPECT_GE(run.snapshots[i].renderSeconds, run.snapshots[i - 1].renderSeconds);
-    }
+    EXPECT_GE(run.snapshots[i].renderSeconds, i > 0 ? run.snapshots[i - 1].renderSeconds : 0);
   }
   EXPECT_EQ(this->run(Method::pt, 4).value().snapshots.size(), 3u) << "the end is not taken twice";
 }
