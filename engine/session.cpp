@@ -131,7 +131,10 @@ typename TypedSession<S>::Worker& TypedSession<S>::worker() {
   if (!mine) {
     mine = std::make_unique<Worker>(settings_.waveSize, plan_.needs);
     mine->cameraTallies.resize(plan_.pipeline.cameraPass.stageCount());
-    if (plan_.pipeline.lightPass) mine->lightTallies.resize(plan_.pipeline.lightPass->stageCount());
+    if (plan_.pipeline.lightPass) {
+      mine->lightTallies.resize(plan_.pipeline.lightPass->stageCount());
+      if (!plan_.pipeline.photonMap) mine->light.reserve(memory_.verticesPerWave);
+    }
     if (plan_.pipeline.splats()) mine->splats.resize(3 * film_.area().pixels.size());
   }
   return *mine;
@@ -308,7 +311,7 @@ RenderStatistics TypedSession<S>::statistics() const {
     out.bytesPerPath = worker->wave.bytesPerPath();
     out.memory.waves += waveBytes(out.bytesPerPath, settings_.waveSize);
     out.memory.splats += worker->splats.size() * sizeof(worker->splats[0]);
-    if (!plan_.pipeline.photonMap) out.memory.lightVertices += worker->light.bytes();
+    if (plan_.pipeline.lightPass && !plan_.pipeline.photonMap) out.memory.lightVertices += worker->light.bytes();
     addTallies(worker->lightTallies, 0, out.stages);
     addTallies(worker->cameraTallies, cameraRow, out.stages);
   }

@@ -18,7 +18,10 @@ void appendPane(std::string& html, const ReportImage& image, const std::string& 
 
 // Two rows of panes: pictures, with the reference first, and below them the error map of each.
 std::string renderImages(const ReportScene& scene, const EmbeddedImages& images) {
-  std::string html = "<div class=\"viewer\"><div class=\"panes\" data-kind=\"Pictures\">\n";
+  if (scene.reference.rgb.empty()) return "";
+  std::string html =
+      "<h3>Pictures at the end</h3>\n"
+      "<div class=\"viewer\"><div class=\"panes\" data-kind=\"Pictures\">\n";
   appendPane(html, scene.reference, "reference", images);
   std::string maps;
   for (const ReportSeries& series : scene.series) {
@@ -51,7 +54,7 @@ std::string renderScene(const ConvergenceReport& report, size_t index, const Emb
          escapeHtml(scene.name), scene.width, scene.height, escapeHtml(scene.referenceOrigin));
   html += "<h3>Error over time</h3>\n" + renderPlots(report, scene);
   html += "<h3>At the end</h3>\n" + renderResults(report, scene);
-  html += "<h3>Pictures at the end</h3>\n" + renderImages(scene, images);
+  html += renderImages(scene, images);
   html += renderBias(scene) + renderPathClasses(scene) + renderStages(scene) + renderSettings(scene);
   return html + "</section>\n";
 }

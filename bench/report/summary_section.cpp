@@ -71,7 +71,8 @@ std::string renderRow(const HeatMap& map, const ReportScene& scene, const std::v
       html += "<td class=\"n none\">–";
       continue;
     }
-    const double behind = map.behind(value, best);
+    // The best is not behind itself, even where both are zero.
+    const double behind = value == best ? 0 : map.behind(value, best);
     append(html, "<td class=\"n{}\" style=\"--behind:{:.2f}\">{}", value == best ? " best" : "",
            std::isfinite(behind) ? std::min(1.0, behind) : 1.0, map.text(value));
   }

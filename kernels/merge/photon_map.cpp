@@ -21,7 +21,8 @@ constexpr uint32_t kMinBuckets = 1u << 12;
 // Iterations differ a little in how many photons they have: some room, so that memory is allocated once.
 constexpr size_t withRoom(size_t count) { return count + count / 16; }
 
-constexpr size_t bucketCount(size_t photons) { return std::max<size_t>(std::bit_ceil(photons), kMinBuckets); }
+// About every third bucket is filled: searches of a hashed grid read what else is in their buckets.
+constexpr size_t bucketCount(size_t photons) { return std::max<size_t>(std::bit_ceil(2 * photons), kMinBuckets); }
 
 template <class S>
 struct Bounds {
@@ -147,19 +148,24 @@ void PhotonMap<S>::sortPartition(size_t partition, size_t storeCount) {
   const uint32_t first = offsets_[partition * storeCount], count = offsets_[(partition + 1) * storeCount] - first;
   const uint32_t firstBucket = static_cast<uint32_t>(partition) * perPartition;
   PhotonRecord<S>* const records = records_ + first;
-  std::vector<uint32_t> next(perPartition + 1, 0), target(count);
+  std::vector<uint32_t> next(perPartition + 1, 0), source(count);
   for (uint32_t k = 0; k < count; ++k) ++next[records[k].bucket - firstBucket + 1];
   for (uint32_t b = 0; b < perPartition; ++b) {
     bucketStart[firstBucket + b] = first + next[b];
     next[b + 1] += next[b];
   }
-  for (uint32_t k = 0; k < count; ++k) target[k] = next[records[k].bucket - firstBucket]++;
+  for (uint32_t k = 0; k < count; ++k) source[next[records[k].bucket - firstBucket]++] = k;
+  // Cycle by cycle: the first record steps aside, each place takes the one that belongs there.
   for (uint32_t k = 0; k < count; ++k) {
-    while (target[k] != k) {
-      const uint32_t place = target[k];
-      std::swap(records[k], records[place]);
-      target[k] = std::exchange(target[place], place);
+    if (source[k] == k) continue;
+    const PhotonRecord<S> aside = records[k];
+    uint32_t place = k;
+    while (source[place] != k) {
+      records[place] = records[source[place]];
+      place = std::exchange(source[place], place);
     }
+    records[place] = aside;
+    source[place] = place;
   }
 }
 

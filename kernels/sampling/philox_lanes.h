@@ -26,6 +26,8 @@ struct PhiloxBlock {
   C c;
   D d;
 };
+template <class A, class B, class C, class D>  // compilers before C++20's aggregates need to be told
+PhiloxBlock(A, B, C, D)->PhiloxBlock<A, B, C, D>;
 
 template <int kRounds, class A, class B, class C, class D>
 WAVECREST_INLINE auto philox4x32(PhiloxBlock<A, B, C, D> x, PhiloxKey key) {

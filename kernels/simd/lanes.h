@@ -38,10 +38,12 @@ using IntTag = hn::ScalableTag<int32_t>;
 constexpr size_t kLanes = hn::MaxLanes(FloatTag());
 
 // The instruction set of this compilation.
+// NOLINTBEGIN(misc-redundant-expression): HWY_TARGET is one of these constants itself
 constexpr Isa kIsa = HWY_TARGET == HWY_AVX3   ? Isa::avx512
                      : HWY_TARGET == HWY_AVX2 ? Isa::avx2
                      : HWY_TARGET == HWY_SSE4 ? Isa::sse4
                                               : Isa::scalar;
+// NOLINTEND(misc-redundant-expression)
 static_assert(kIsa != Isa::scalar || HWY_TARGET == HWY_SCALAR, "an instruction set that kernels/simd does not know");
 
 // ---- masks ----------------------------------------------------------------------------------------------------------

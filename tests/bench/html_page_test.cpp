@@ -93,6 +93,15 @@ TEST(Summary, heatMapsShadeByTheDistanceToTheBestOfTheRow) {
   EXPECT_TRUE(contains(maps, "<td class=\"n none\">–")) << "the second scene has one method";
 }
 
+TEST(Summary, aPerfectScoreIsNotBehindItself) {
+  ConvergenceReport report = sampleReport();
+  for (ReportSeries& series : report.scenes[0].series)
+    for (ReportRun& run : series.runs) run.points.back().values[0] = series.method == "bpt" ? 0 : 0.04;
+  const std::string maps = renderHeatMaps(report);
+  EXPECT_TRUE(
+      contains(maps, "<td class=\"n\" style=\"--behind:1.00\">0.04<td class=\"n best\" style=\"--behind:0.00\">0<"));
+}
+
 TEST(Summary, claimsCarryTheirVerdicts) {
   const std::string claims = renderClaims(sampleReport());
   EXPECT_TRUE(contains(claims, "0 hold, 1 do not, 1 are undecided"));
@@ -114,10 +123,11 @@ TEST(SceneSection, showsWhatIsKnownAndNothingElse) {
     series.stages.clear();
     series.errorMap = {};
   }
+  report.scenes[0].reference = {};  // results travel without their images
   report.scenes[0].pathClasses.clear();
   report.scenes[0].refusals.clear();
   const std::string bare = renderScene(report, 0, EmbeddedImages());
-  for (const char* absent : {"Bias", "Which paths", "refused", "Error maps", "Where the time went"})
+  for (const char* absent : {"Pictures", "<img", "Bias", "Which paths", "refused", "Error maps", "Where the time went"})
     EXPECT_FALSE(contains(bare, absent)) << absent;
 }
 

@@ -144,5 +144,18 @@ TEST_P(DirectLightTest, ofManyLightsOfDifferentPower) {
 INSTANTIATE_TEST_SUITE_P(PathTracing, DirectLightTest, testing::ValuesIn(allVariants()),
                          [](const auto& instance) { return nameOf(instance.param); });
 
+// Path tracing reads a light's texture where a ray meets it and where it was sampled, light tracing where light set
+// out.
+TEST(DirectLight, ofTexturedLightsIsTheSameHoweverTheyAreSampled) {
+  const Scene scene = sceneFile("features/textured-lights", 48, 36);
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  settings.limits.maxDepth = 2;
+  settings.method = Method::pt;
+  const SeedMeans byPaths = renderSeeds(scene, settings, 64);
+  settings.method = Method::lt;
+  expectSameTruth(byPaths, renderSeeds(scene, settings, 64), "textured lights");
+}
+
 }  // namespace
 }  // namespace wavecrest

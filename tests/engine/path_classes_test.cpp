@@ -211,12 +211,13 @@ TEST_P(CausticTest, isMadeBySampledMethodsAndByNoOther) {
     settings.method = entry.method;
     settings.radius = 0.01;
     settings.limits.maxDepth = GetParam() ? 4 : 3;  // the floor is seen again in the mirror's light
-    const RgbImage image = render(scene, settings, 400);
+    const RgbImage image = render(scene, settings, 800);
     if (table.verdict(table.classes[0], entry.method) == Verdict::impossible) {
       EXPECT_EQ(*std::max_element(image.begin(), image.end()), 0.0f) << entry.name;
     } else {
-      // 230,000 light paths, of which a twentieth arrives in view: 1 %; merging blurs a smooth image by less.
-      EXPECT_NEAR(meanOf(image) / truth, 1, 0.05) << entry.name;
+      // 460,000 light paths, of which 0.6 % arrive in view: a standard error of 2 %; merging blurs a smooth image by
+      // less.
+      EXPECT_NEAR(meanOf(image) / truth, 1, 0.1) << entry.name;
     }
   }
 }

@@ -69,7 +69,8 @@ TEST(Flip, OfBlackAndOtherConstantImagesRisesWithTheirDistance) {
   const PreparedFlip black(constant(0));
   double last = black.compare(constant(0)).mean;
   EXPECT_EQ(last, 0.0);
-  for (const uint8_t code : {20, 80, 160, 255}) {
+  for (const int level : {20, 80, 160, 255}) {
+    const auto code = static_cast<uint8_t>(level);
     const FlipResult result = black.compare(constant(code), true);
     EXPECT_GT(result.mean, last);
     EXPECT_NEAR(result.map[0], result.map[31], 1e-6) << "edges are no different from the middle";

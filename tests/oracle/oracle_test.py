@@ -30,7 +30,7 @@ class Case:
     scene: pathlib.Path
     spp: int
     methods: list
-    size: tuple = (96, 96)
+    size: tuple = (96, 96)  # None: the scene's own, crop window included
     max_depth: int = -1
     options: tuple = ()  # further arguments for wavecrest
     filters: bool = False  # the scene is about a reconstruction filter other than the box

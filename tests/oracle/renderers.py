@@ -54,8 +54,9 @@ def render_wavecrest(program, case, method, seeds, folder, read_exr):
     for seed in seeds:
         output = folder / f"wavecrest-{seed}.exr"
         command = [program, "render", case.scene, "--method", method, "--spp", case.spp, "--seed", seed]
-        command += ["--size", f"{case.size[0]}x{case.size[1]}", "--max-depth", case.max_depth]
-        command += ["--rr-depth", RUSSIAN_ROULETTE_DEPTH, "--progress", "none", "-o", output, *case.options]
+        if case.size:
+            command += ["--size", f"{case.size[0]}x{case.size[1]}"]
+        command += ["--max-depth", case.max_depth, "--rr-depth", RUSSIAN_ROULETTE_DEPTH, "--progress", "none", "-o", output, *case.options]
         subprocess.run([str(word) for word in command], check=True)
         images.append(read_exr(output))
     return np.stack(images)
