@@ -212,6 +212,7 @@ std::map<std::string, std::string> campaignKeys(const ConvergeOptions& options, 
 
 // Takes from an earlier process of the same campaign what was not given again.
 void resume(ConvergeOptions& options, const fs::path& results) {
+  const ResultsStore whole(results);  // also where a process died before it had made the tables
   const CampaignResults before = readResults(results);
   const auto stored = before.campaign.find("options");
   if (stored == before.campaign.end()) return;  // it died before it began

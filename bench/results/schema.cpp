@@ -88,6 +88,8 @@ void createSchema(Database& database) {
   Transaction transaction(database);
   const int64_t version = versionOf(database);
   if (version == 0) {
+    Statement tables(database, "SELECT count(*) FROM sqlite_master");
+    if (tables.step() && tables.integer(0) != 0) failVersion(database, version);  // a database of somebody else
     database.execute(std::string(kTables) + "PRAGMA user_version = " + std::to_string(kResultsVersion));
   } else if (version != kResultsVersion) {
     failVersion(database, version);

@@ -7,7 +7,8 @@ namespace wavecrest {
 
 constexpr int kResultsVersion = 1;  // of the schema, in PRAGMA user_version
 
-// Makes the tables in a new file; leaves a file of this version as it is. Throws ResultsFileError for any other file.
+// Makes the tables in a file without any, be it new or left by a process that died before it made them; leaves a file
+// of this version as it is. Throws ResultsFileError for any other file.
 void createSchema(Database& database);
 
 // Throws ResultsFileError unless the file has tables of this version.

@@ -147,6 +147,12 @@ class Resuming(Converge):
         self.assertEqual(rows(self.results("killed")), rows(self.results("whole")))
         self.assertEqual(self.image_names("killed"), self.image_names("whole"))
 
+    def test_a_process_that_died_at_once_leaves_nothing_in_the_way(self):
+        os.mkdir(self.path("a"))
+        sqlite3.connect(self.results("a")).execute("PRAGMA journal_mode = WAL")
+        self.tiny("a", "--resume")
+        self.assertEqual({row[1:4] for row in kind(rows(self.results("a")), "run")}, RUNS)
+
     def test_what_is_done_is_not_rendered_again(self):
         self.tiny("a")
         stamp = os.stat(self.path("a/images/cornell-diffuse.pt.1.0000.exr")).st_mtime_ns

@@ -139,6 +139,13 @@ TEST(ResultsStore, openingAgainGoesOn) {
   EXPECT_EQ(results.runs.size(), 2u);
 }
 
+TEST(ResultsStore, aFileThatWasBegunAndLeftEmptyIsTaken) {
+  const TemporaryFolder folder;
+  { Database(folder.path("results.sqlite"), OpenFor::writing).execute("PRAGMA journal_mode = WAL"); }
+  { ResultsStore(folder.path("results.sqlite")).putScene(sampleScene()); }
+  EXPECT_EQ(readResults(folder.folder()).scenes.size(), 1u);
+}
+
 TEST(ResultsStore, aFinishedFileNeedsNoJournalBesideIt) {
   const TemporaryFolder folder;
   const std::string path = folder.path("results.sqlite");
@@ -167,6 +174,7 @@ TEST(ReadResults, otherFilesAreRefused) {
     other.execute("CREATE TABLE t(a)");
   }
   EXPECT_THROW(readResults(folder.path("other.sqlite")), ResultsFileError);
+  EXPECT_THROW(ResultsStore(folder.path("other.sqlite")), ResultsFileError);
   {
     Database newer(folder.path("newer.sqlite"), OpenFor::writing);
     newer.execute("PRAGMA user_version = 99");
