@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "engine/chains/chain_memory.h"
+#include "engine/chains/chain_worker.h"
 #include "engine/flush_to_zero.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
@@ -73,21 +73,34 @@ class Planner {
     const size_t pixels = area_.pixels.size();
     MemoryUse& use = memory_.use;
     use.scene = sceneBytes(*plan_.scene);
-    use.film = filmBytes(pixels);
     memory_.bytesPerPath = Wave<S>(1, plan_.needs).bytesPerPath();
-    if (plan_.pipeline.chains) {
-      addChainMemory(plan_, settings_, pixels, settings_.threads, use);
-      if (settings_.memoryBytes && use.total() > *settings_.memoryBytes) refuse(use.total());
-      return memory_;
-    }
     use.waves = settings_.threads * waveBytes(memory_.bytesPerPath, settings_.waveSize);
+    use.film = filmBytes(pixels);
     if (plan_.pipeline.splats()) use.splats = (settings_.threads + 1) * splatBytes(pixels);
-    if (plan_.pipeline.lightPass) addLightPaths(static_cast<size_t>(settings_.lightPaths.value_or(pixels)));
+    if (plan_.pipeline.chains) {
+      addChains();
+    } else if (plan_.pipeline.lightPass) {
+      addLightPaths(static_cast<size_t>(settings_.lightPaths.value_or(pixels)));
+    }
     if (settings_.memoryBytes && use.total() > *settings_.memoryBytes) refuse(use.total());
     return memory_;
   }
 
  private:
+  // Waves of walks' ends and a light vertex per lane where walks are joined; chains by the waves they are cut into.
+  void addChains() {
+    MemoryUse& use = memory_.use;
+    if (plan_.pipeline.lightPass) {
+      use.waves *= kWavesOfJoinedWalks;
+      use.lightVertices = settings_.threads * emptyStore_.bytesFor(settings_.waveSize);
+    }
+    const auto kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
+    for (size_t left = settings_.metropolis.chains; left != 0;) {
+      const size_t wave = std::min<size_t>(left, settings_.waveSize);
+      use.chains += ChainState::bytesFor(wave, kept);
+      left -= wave;
+    }
+  }
   void addLightPaths(size_t asked) {
     pilot_ = walkLightPaths(plan_, settings_, area_, asked);
     const double spread = pilot_.paths < asked ? kSpread : 1;

@@ -21,7 +21,7 @@ struct MemoryUse {
   size_t splats = 0;         // sums of t = 1: one per thread, and the image's
   size_t lightVertices = 0;  // of a wave per thread, or with a photon map of all waves
   size_t photonMap = 0;
-  size_t chains = 0;  // Markov chains and their numbers
+  size_t chains = 0;  // state of the Markov chains
 
   size_t total() const { return scene + waves + film + splats + lightVertices + photonMap + chains; }
 };

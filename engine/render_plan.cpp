@@ -49,12 +49,10 @@ template Intersector<double> chooseIntersector(const Stages<double>&, Accel);
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   RenderPlan<S> plan;
-  // A chain's t = 1 has one pixel, and knows neither where a reconstruction filter spreads it nor a point of the lens.
+  // A chain keeps no numbers for the place on the lens, or the pixel, that t = 1 chooses.
   const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
   if (lens && settings.method == Method::mlt && isBidirectional(settings)) {
-    throw SceneError(
-        {scene.name},
-        "method mlt by mmlt needs a perspective sensor and the box filter; expected those, or --mlt pssmlt");
+    throw SceneError({scene.name}, "mmlt needs a pinhole and the box filter; expected those, or --mlt pssmlt");
   }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);

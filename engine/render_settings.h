@@ -12,15 +12,6 @@ namespace wavecrest {
 
 constexpr uint32_t kUnlimitedDepth = 64;  // edges; roulette ends paths long before
 
-// Limits of paths from what a scene file or a user says: depth in edges, -1 for as many as roulette allows; the first
-// vertex where roulette may end a path.
-inline PathLimits pathLimits(int maxDepth, int rouletteDepth) {
-  PathLimits limits;
-  if (maxDepth > 0) limits.maxDepth = std::min(static_cast<uint32_t>(maxDepth), kUnlimitedDepth);
-  limits.rouletteDepth = static_cast<uint32_t>(rouletteDepth);
-  return limits;
-}
-
 // Markov chains. Their number is a setting, not a consequence of threads or waves, so that images depend on neither.
 struct MetropolisSettings {
   MetropolisVariant variant = MetropolisVariant::mmlt;
@@ -30,6 +21,15 @@ struct MetropolisSettings {
   double largeStep = 0.3;              // probability of a step that forgets where the chain is
   bool directPass = true;              // mmlt: emitters in view and direct light by path tracing, the rest by chains
 };
+
+// Limits of paths from what a scene file or a user says: depth in edges, -1 for as many as roulette allows; the first
+// vertex where roulette may end a path.
+inline PathLimits pathLimits(int maxDepth, int rouletteDepth) {
+  PathLimits limits;
+  if (maxDepth > 0) limits.maxDepth = std::min(static_cast<uint32_t>(maxDepth), kUnlimitedDepth);
+  limits.rouletteDepth = static_cast<uint32_t>(rouletteDepth);
+  return limits;
+}
 
 struct RenderSettings {
   Method method = Method::pt;

@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "engine/chains/bootstrap.h"
-#include "engine/chains/chain_memory.h"
 #include "engine/chains/chain_worker.h"
 #include "engine/flush_to_zero.h"
 #include "engine/render_clock.h"
@@ -18,8 +18,8 @@
 namespace wavecrest {
 namespace {
 
-// Steps of a wave between looks at the clock: a few hundredths of a second.
-constexpr uint64_t kRoundSteps = 16;
+// Steps of a wave between looks at the clock: a few milliseconds to some tens of them.
+constexpr uint64_t kRoundSteps = 4;
 
 // Mutations of a pixel, in the mean, to a sample of its direct light: a quarter or so of the time goes there.
 constexpr uint64_t kMutationsPerDirect = 2;
@@ -92,6 +92,9 @@ class ChainSession final : public Session {
 template <class S>
 ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings)
     : settings_(settings), arena_(static_cast<int>(settings.threads)), film_(filmArea(scene.film)) {
+  if (settings.firstIteration != 0) {
+    throw std::invalid_argument("ChainSession: chains cannot begin in the middle; expected the first iteration");
+  }
   const auto begin = Clock::now();
   const WorkerLimit limit(settings.threads);
   arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
@@ -316,12 +319,13 @@ RenderStatistics ChainSession<S>::statistics() const {
   out.specialization = plan_.specialization;
   out.accel = plan_.accel();
   for (std::string& name : stageNames(plan_.pipeline)) out.stages.push_back({std::move(name)});
-  out.memory.scene = sceneBytes(*plan_.scene);
-  out.memory.film = filmBytes(film_.area().pixels.size());
-  addChainMemory(plan_, settings_, film_.area().pixels.size(), workers_.size(), out.memory);
   for (const auto& worker : workers_) {
     out.counters += worker->counters;
     out.bytesPerPath = worker->bytesPerPath();
+    out.memory.waves +=
+        (plan_.pipeline.lightPass ? kWavesOfJoinedWalks : 1) * waveBytes(worker->bytesPerPath(), settings_.waveSize);
+    out.memory.lightVertices += worker->lightBytes();
+    out.memory.splats += splatBytes(film_.area().pixels.size());
     addTallies(worker->tallies, 0, out.stages);
   }
   if (direct()) {
@@ -350,6 +354,10 @@ RenderStatistics ChainSession<S>::statistics() const {
     chains.bytes += state.bytes();
   }
   out.counters.nonFinite += chains.counters.nonFinite;
+  out.memory.scene = sceneBytes(*plan_.scene);
+  out.memory.film = filmBytes(film_.area().pixels.size());
+  out.memory.splats += splatBytes(film_.area().pixels.size());
+  out.memory.chains = chains.bytes;
   return out;
 }
 

@@ -63,7 +63,7 @@ ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, size_t p
   lightLanes_.bind(lanesArena_, capacity);
   if (pipeline_.lightPass) {
     ends_.emplace(capacity, plan.needs, wave_);
-    light_.beginDepth(capacity);  // at most one light vertex to a lane: room for all of them from the start
+    light_.reserve(capacity);  // at most one light vertex to a lane: room for all of them from the start
   }
   tallies.resize(stageNames(pipeline_).size());
 }
@@ -109,6 +109,7 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
   if (ends_) {
     context.ends = &*ends_;
     for (Wave<S>* ends : {&ends_->atOrigin, &ends_->cameraAtVertex, &ends_->lightAtVertex}) {
+      ends->pathCount = count;
       ends->rays.size = ends->paths.size = ends->hits.size = ends->surfaces.size = 0;
     }
   }

@@ -18,6 +18,9 @@ ChainState::Kept keptSamples(const Pipeline<S>& pipeline, const SceneView<S>& sc
 template <class S>
 StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
 
+// Waves that a worker holds where walks are joined: the walks', and those of WalkEnds.
+constexpr size_t kWavesOfJoinedWalks = 4;
+
 template <class S>
 class ChainWorker {
  public:
@@ -40,6 +43,7 @@ class ChainWorker {
 
   const Wave<S>& wave() const { return wave_; }
   size_t bytesPerPath() { return wave_.bytesPerPath(); }
+  size_t lightBytes() const { return pipeline_.lightPass ? light_.bytes() : 0; }
 
  private:
   void join(const std::vector<JoinCall<S>>& joins, StageContext<S>& context, StageTally* tally);

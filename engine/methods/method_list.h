@@ -27,6 +27,7 @@ struct PathStrategies {
   bool merge = false;               // without nextEvent, emission then serves the paths that have no vertex to merge at
   bool specularViewsOnly = false;   // emission and nextEvent serve only what a delta lobe, or nothing, shows to the eye
   bool mergeAtFirstVertex = false;  // merges where a camera path first has more than delta lobes, and nowhere else
+  bool operator==(const PathStrategies&) const = default;
 };
 
 struct MethodEntry {
@@ -50,6 +51,7 @@ constexpr std::array kMethods{
                 "bidirectional path tracing",
                 true,
                 {.emission = true, .nextEvent = true, .connect = true, .camera = true}},
+    // As mmlt; pssmlt makes what pt does.
     MethodEntry{Method::mlt,
                 "mlt",
                 "Metropolis light transport",

@@ -73,29 +73,38 @@ struct ChainState {
     uint32_t vertices[2]{};  // 0: the walk keeps nothing
   };
 
-  ChainState(size_t capacity, const Kept& kept) : stride_(paddedItems(capacity)) {
-    uint32_t columnCount = 0;
-    for (size_t walk = 0; walk < 2; ++walk) {
-      samples.blocks[walk] = kept.blocks[walk];
-      samples.firstColumn[walk] = columnCount;
-      // The column of the first block past the last vertex is the number of columns.
-      if (kept.vertices[walk] != 0) columnCount = samples.column(walk, 4 * kept.vertices[walk]);
-    }
-    const size_t values = size_t{4} * columnCount * stride_;
-    arena_ = Arena(columns.bytes(capacity) + values * sizeof(uint32_t) + kColumnAlignment);
+  ChainState(size_t capacity, const Kept& kept) {
+    samples.blocks[0] = kept.blocks[0];
+    samples.blocks[1] = kept.blocks[1];
+    samples.firstColumn[1] = columnsOf(kept, 0);
+    samples.stride = paddedItems(capacity);
+    arena_ = Arena(bytesFor(capacity, kept));
     columns.bind(arena_, capacity);
-    samples.values = arena_.take<uint32_t>(values);
-    samples.stride = stride_;
+    samples.values = arena_.take<uint32_t>(valuesOf(capacity, kept));
     samples.source = columns.source;
     samples.live[0] = columns.cameraLive;
     samples.live[1] = columns.lightLive;
-    bytes_ = arena_.used();
+    bytes_ = bytesFor(capacity, kept);
   }
 
+  // Memory of so many chains.
+  static size_t bytesFor(size_t capacity, const Kept& kept) {
+    return Chains().bytes(capacity) + valuesOf(capacity, kept) * sizeof(uint32_t) + kColumnAlignment;
+  }
   size_t bytes() const { return bytes_; }
 
  private:
-  size_t stride_;
+  // Columns of numbers that a walk keeps: that of the first block past its last vertex is their number.
+  static uint32_t columnsOf(const Kept& kept, size_t walk) {
+    if (kept.vertices[walk] == 0) return 0;
+    ChainSamples layout;
+    layout.blocks[walk] = kept.blocks[walk];
+    return layout.column(walk, 4 * kept.vertices[walk]);
+  }
+  static size_t valuesOf(size_t capacity, const Kept& kept) {
+    return size_t{4} * (columnsOf(kept, 0) + columnsOf(kept, 1)) * paddedItems(capacity);
+  }
+
   size_t bytes_ = 0;
   Arena arena_;
 };

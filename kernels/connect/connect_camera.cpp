@@ -37,6 +37,7 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
   shadow.size = 0;
   shadow.claim(count);
   size_t out = 0;
+  [[maybe_unused]] const bool choosesPlace = scene.camera.lensRadius > 0 || scene.camera.filter != FilterKind::box;
 
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
@@ -45,7 +46,7 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
     Uniform4 u{};  // place on the lens, choice of the pixel
     if constexpr (has(kFeatures, kLens)) {
       const UInt lane = select(active, load(paths.lane, i), UInt(0u));
-      u = draw(context, pathOf(context, wave, lane), Block::light);
+      if (choosesPlace) u = draw(context, pathOf(context, wave, lane), Block::light);
     }
     const auto view = project<P, kFeatures>(scene.camera, shading.position, u);
     SplatPixel<Real> column{floor(view.rasterX), Real(1)}, row{floor(view.rasterY), Real(1)};

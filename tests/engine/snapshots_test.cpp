@@ -29,6 +29,8 @@ class SnapshotsTest : public testing::TestWithParam<MethodEntry> {
     settings_.isa = bestIsa();
     settings_.threads = 2;
     settings_.waveSize = 256;
+    settings_.metropolis.chains = 270;  // four steps of all chains are a mutation per pixel
+    settings_.metropolis.bootstrapSamples = 4096;
   }
   const Scene scene_ = sceneFile("cornell-diffuse", 40, 27);
   RenderSettings settings_;
@@ -71,12 +73,17 @@ TEST_P(SnapshotsTest, noWaveStartsAfterTheEnd) {
 TEST_P(SnapshotsTest, aSessionMayStartAtALaterIteration) {
   const auto image = [&](uint64_t first, uint64_t count) {
     settings_.firstIteration = first;
+    if (GetParam().method == Method::mlt && first != 0) {  // where chains stand follows from all steps before
+      EXPECT_THROW(session(), std::invalid_argument);
+      return std::vector<float>();
+    }
     const auto own = session();
     own->renderUntil(count, std::nullopt);
     EXPECT_EQ(own->statistics().iterations, count);
     return own->film().resolve();
   };
   const std::vector<float> all = image(0, 3), begin = image(0, 1), end = image(1, 2);
+  if (end.empty()) return;
   for (size_t i = 0; i < all.size(); ++i) {
     const float parts = (begin[i] + 2 * end[i]) / 3;
     ASSERT_NEAR(all[i], parts, 1e-6f + 1e-5f * all[i]) << i;
