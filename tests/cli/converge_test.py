@@ -221,7 +221,7 @@ class Checks(Converge):
         self.converge("--out", "a", "--resume", "--check", expect=CHECK)
 
     def test_undecided_findings_are_no_failure(self):
-        self.converge("pool-interior", "--methods", "vcm", "--size", "16x12", "--time", "0.01s", "--out", "a", "--check")
+        self.converge("cornell-glossy", "--methods", "vcm", "--size", "16x12", "--time", "0.01s", "--out", "a", "--check")
 
     def test_findings_are_about_time(self):
         self.tiny("a", "--check", expect=USAGE)
