@@ -116,9 +116,8 @@ def step_tidy(tally):
 
 
 STEPS = {"release": step_release, "long": step_long, "sanitizers": step_sanitizers, "lint": step_lint, "tidy": step_tidy}
-# Pictures of all scenes, the sanitizers, and clang-tidy over the whole tree take longer than all else together: steps to
-# ask for.
-DEFAULT_STEPS = ("release", "lint")
+# Pictures of all scenes, and clang-tidy over the whole tree, take longer than all else together: steps to ask for.
+DEFAULT_STEPS = ("release", "sanitizers", "lint")
 
 
 def main():

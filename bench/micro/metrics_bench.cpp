@@ -28,8 +28,8 @@ bool checkScore(benchmark::State& state, double score, double golden, double tol
   return false;
 }
 
-// CPU seconds that the usual program takes for the same pair, the least that bench/peers/metrics saw. Ratios of one run of
-// that script mean more: it lets the programs take turns.
+// CPU seconds that the usual program takes for the same pair, the least that bench/peers/metrics saw. Ratios of one run
+// of that script mean more: it lets the programs take turns.
 constexpr double kScikitImageSeconds = 0.56;    // scikit-image 0.26, structural_similarity, three channels
 constexpr double kFlipEvaluatorSeconds = 1.52;  // flip-evaluator 1.7, evaluate(..., "LDR")
 constexpr double kOctaveHdrVdpSeconds = 4.5;    // the original HDR-VDP-2.2 under GNU Octave 7.3, second call

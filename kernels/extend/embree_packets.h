@@ -31,8 +31,8 @@ WAVECREST_PACKET(8)
 WAVECREST_PACKET(16)
 #undef WAVECREST_PACKET
 
-// Embree 3 takes a context before the rays, Embree 4 optional arguments behind them. coherent: the rays of a packet stay
-// together, so that the hierarchy is walked once for all; rays that do not are slowed down by it.
+// Embree 3 takes a context before the rays, Embree 4 optional arguments behind them. coherent: the rays of a packet
+// stay together, so that the hierarchy is walked once for all; rays that do not are slowed down by it.
 class Query {
  public:
 #if WAVECREST_EMBREE == 3

@@ -1,9 +1,10 @@
 // Renders for statistical tests: the same image from independent seeds, and its comparison with what is known.
 //
-// With 16 seeds every tile of 8x8 pixels has a mean and a standard error, and (mean - truth) / error follows Student's t
-// with 15 degrees of freedom (METHODS 10.4). Two statistics are tested:
+// With 16 seeds every tile of 8x8 pixels has a mean and a standard error, and (mean - truth) / error follows Student's
+// t with 15 degrees of freedom (METHODS 10.4). Two statistics are tested:
 //  - the image's mean over its seeds: |t| <= 7, false alarm 4e-6;
-//  - the mean of t^2 over all tiles, whose expectation is 15/13 and whose standard deviation 1.84 / sqrt(tiles): at most
+//  - the mean of t^2 over all tiles, whose expectation is 15/13 and whose standard deviation 1.84 / sqrt(tiles): at
+//  most
 //    6 of these above.
 // Seeds are fixed, so a test that passes once passes always.
 #pragma once

@@ -171,7 +171,8 @@ TEST(JudgeClaims, evidenceGivesValuesAndBands) {
   const Condition better = condition(ConditionKind::better, "rmse", {"pt"}, {"lt"});
   const std::string evidence =
       MadeUp().with("pt", "rmse", {2, 2.01}).with("lt", "rmse", {1, 1.01}).floor("rmse", 0.5).judge(better).evidence;
-  EXPECT_NE(evidence.find("rmse: pt 2.005 +- 0.064, lt 1.005 +- 0.064 (noise floor 0.5)"), std::string::npos) << evidence;
+  EXPECT_NE(evidence.find("rmse: pt 2.005 +- 0.064, lt 1.005 +- 0.064 (noise floor 0.5)"), std::string::npos)
+      << evidence;
   EXPECT_NE(evidence.find("not so: pt against lt in rmse"), std::string::npos) << evidence;
 }
 
