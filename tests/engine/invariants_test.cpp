@@ -21,7 +21,8 @@ class WaveWalk {
  public:
   WaveWalk(const Scene& scene, PathLimits limits)
       : compiled_(compileScene<float>(scene, Accel::small)),
-        stages_(findStages<float>(bestIsa(), Precision::floating, Specialization::smooth)),
+        stages_(findStages<float>(bestIsa(), Precision::floating,
+                                  chooseSpecialization(featuresOf(Specialization::smooth), Precision::floating))),
         area_(FilmArea::make(0, 0, scene.film.width, scene.film.height)) {
     context_.scene = &compiled_->view;
     context_.pixels = area_.pixels.data();

@@ -24,7 +24,8 @@ class ToyChains {
   using Target = std::function<float(uint32_t pixel)>;
 
   ToyChains(Isa isa, size_t count, Target target)
-      : stages_(findStages<float>(isa, Precision::floating, Specialization::diffuse)),
+      : stages_(findStages<float>(isa, Precision::floating,
+                                  chooseSpecialization(featuresOf(Specialization::diffuse), Precision::floating))),
         wave_(count, {.shadingNormals = false, .textures = false, .rouletteScale = false, .connections = false}),
         state(count, kept()),
         sums(3 * kPixels, 0),

@@ -18,7 +18,8 @@ struct Intersector {
 inline std::vector<Intersector> allIntersectors() {
   std::vector<Intersector> list{{"embree", extendEmbree<float>, occludeEmbree<float>}};
   for (const Isa isa : availableIsas()) {
-    const auto& stages = findStages<float>(isa, Precision::floating, Specialization::smooth);
+    const auto& stages = findStages<float>(
+        isa, Precision::floating, chooseSpecialization(featuresOf(Specialization::smooth), Precision::floating));
     list.push_back({"small_" + std::string(toString(isa)), stages.extendSmall, stages.occludeSmall});
   }
   return list;
