@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -79,9 +80,12 @@ template <class S>
 class StageScene {
  public:
   // Sorts the primitives by kind, keeping their order otherwise.
-  explicit StageScene(std::vector<PrimitiveRecord<double>> primitives) : precise(std::move(primitives)) {
-    std::stable_sort(precise.begin(), precise.end(),
-                     [](const auto& a, const auto& b) { return a.kind == b.kind ? false : order(a) < order(b); });
+  explicit StageScene(const std::vector<PrimitiveRecord<double>>& primitives) {
+    // No std::stable_sort: its buffer does not keep the records' alignment.
+    for (size_t kind = 0; kind < 3; ++kind) {
+      std::copy_if(primitives.begin(), primitives.end(), std::back_inserter(precise),
+                   [kind](const auto& record) { return order(record) == kind; });
+    }
     uint32_t counts[3]{};
     for (const auto& record : precise) {
       records.push_back(rounded(record));
