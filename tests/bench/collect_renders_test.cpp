@@ -164,7 +164,8 @@ TEST_F(CollectRenders, meanOfTwoHalvesIsTheReferenceAndHalfTheirDifferenceItsNoi
 
 TEST_F(CollectRenders, aSingleReferenceHasNoKnownNoise) {
   addRun("box.pt");
-  for (const auto& floor : collectRenders(folder).scenes[0].noiseFloors) EXPECT_FALSE(floor.has_value());
+  const ConvergenceReport report = collectRenders(folder);
+  for (const auto& floor : report.scenes[0].noiseFloors) EXPECT_FALSE(floor.has_value());
 }
 
 TEST_F(CollectRenders, runsThatDifferByTheSeedAreOneSeries) {
