@@ -48,7 +48,7 @@ class TypedSession final : public Session {
     uint64_t paths = 0, lightPaths = 0;
     Worker(size_t waveSize, const ColumnNeeds& needs) : wave(waveSize, needs), light(waveSize, needs) {}
   };
-  // Whether a wave that has done so many iterations is to stop.
+  // Whether a wave is to stop before it traces iteration `next`.
   using Finished = std::function<bool(uint64_t next)>;
 
   Worker& worker();
@@ -240,7 +240,6 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
   const WorkerLimit limit(settings_.threads);
-  // next: the iteration that the wave would trace.
   const Finished finished = [&](uint64_t next) {
     if (iterations && next - settings_.firstIteration >= *iterations) return true;
     const double now = renderSeconds_ + secondsSince(begin);
