@@ -50,7 +50,7 @@ uint64_t Film::add(const Wave<S>& wave) {
   uint64_t nonFinite = 0;
   for (size_t i = 0; i < wave.pathCount; ++i) {
     const double r = wave.radiance.red[i], g = wave.radiance.green[i], b = wave.radiance.blue[i];
-    const size_t pixel = wave.firstPath + i;
+    const size_t pixel = wave.firstPath + (i >> wave.iterationBits);
     ++samples_[pixel];
     if (!std::isfinite(r + g + b)) {
       ++nonFinite;

@@ -24,7 +24,7 @@ class Film {
  public:
   explicit Film(FilmArea area);
 
-  // Adds one sample for each path of the wave. Samples that are not finite count as black; returns how many there were.
+  // Adds one sample for each path of the wave, a pixel's in the order of their iterations. Samples that are not finite count as black; returns how many there were.
   // Waves of disjoint pixels may be added at the same time.
   template <class S>
   uint64_t add(const Wave<S>& wave);

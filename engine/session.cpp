@@ -7,6 +7,8 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 
 #include "engine/chains/chain_session.h"
 #include "engine/flush_to_zero.h"
@@ -25,6 +27,9 @@ namespace {
 // the memory plan says. Without a photon map a wave's light and camera pass follow each other and waves are
 // independent; with one, all light passes come first, then the map, then all camera passes. Where time runs out in
 // between, what is done stays done and the next renderUntil goes on from there.
+//
+// Camera paths that need no light paths are taken several iterations at a time, so that the paths of a pixel run
+// together: a wave is then fewer pixels. That changes no path and no sum, only their order in time.
 template <class S>
 class TypedSession final : public Session {
  public:
@@ -48,12 +53,23 @@ class TypedSession final : public Session {
     uint64_t paths = 0, lightPaths = 0;
     Worker(size_t waveSize, const ColumnNeeds& needs) : wave(waveSize, needs), light(waveSize, needs) {}
   };
+  // How far the camera paths of a wave's pixels are: 2^iterationBits iterations from `next` on are under way, and done
+  // for the first `pixels` of them.
+  struct CameraProgress {
+    uint64_t next = 0;
+    uint32_t iterationBits = 0;
+    size_t pixels = 0;
+  };
   // Whether a wave is to stop before it traces iteration `next`.
   using Finished = std::function<bool(uint64_t next)>;
 
   Worker& worker();
-  void tracePass(const Pass<S>& pass, size_t waveIndex, size_t paths, uint64_t iteration, LightStore<S>* light,
-                 Worker& worker);
+  // What pass the worker's wave goes through, its paths being set; iteration: that of its paths that are not ahead.
+  void tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker);
+  size_t pathsOf(size_t waveIndex, size_t paths) const {
+    return std::min<size_t>(settings_.waveSize, paths - waveIndex * settings_.waveSize);
+  }
+  uint32_t iterationBits(uint64_t next) const;
   void traceLight(size_t waveIndex, Worker& worker);
   void traceCamera(size_t waveIndex, Worker& worker);
   // Iterations of a method whose waves are independent.
@@ -75,7 +91,9 @@ class TypedSession final : public Session {
   Film film_;
   RenderPlan<S> plan_;
   MemoryPlan memory_;
-  std::vector<uint64_t> lightDone_, cameraDone_;        // next iteration of each wave
+  uint64_t endIteration_ = 0;                           // of this renderUntil
+  std::vector<uint64_t> lightDone_;                     // next iteration of each wave
+  std::vector<CameraProgress> camera_;                  // of each wave
   std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each light wave, where a photon map gathers them
   PhotonMap<S> photons_;
   std::optional<uint64_t> photonIteration_;  // which iteration the map is of
@@ -96,7 +114,7 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
   memory_ = planMemory(plan_, settings, film_.area());
   const auto waves = [&](size_t paths) { return (paths + settings.waveSize - 1) / settings.waveSize; };
   lightDone_.resize(waves(memory_.lightPaths), settings.firstIteration);
-  cameraDone_.resize(waves(pixels), settings.firstIteration);
+  camera_.resize(waves(pixels), {.next = settings.firstIteration});
   if (plan_.pipeline.photonMap) {
     for (size_t i = 0; i < lightDone_.size(); ++i) {
       stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs));
@@ -122,13 +140,9 @@ typename TypedSession<S>::Worker& TypedSession<S>::worker() {
 }
 
 template <class S>
-void TypedSession<S>::tracePass(const Pass<S>& pass, size_t waveIndex, size_t paths, uint64_t iteration,
-                                LightStore<S>* light, Worker& worker) {
+void TypedSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker) {
   const FlushToZero flushToZero;
   const FilmArea& area = film_.area();
-  Wave<S>& wave = worker.wave;
-  wave.firstPath = waveIndex * settings_.waveSize;
-  wave.pathCount = std::min<size_t>(settings_.waveSize, paths - wave.firstPath);
   StageContext<S> context{
       .scene = &plan_.scene->view,
       .pixels = area.pixels.data(),
@@ -140,14 +154,18 @@ void TypedSession<S>::tracePass(const Pass<S>& pass, size_t waveIndex, size_t pa
       .splats = {worker.splats.data(), area.x0, area.y0, area.width, area.height},
       .counters = &worker.counters};
   auto& tallies = pass.walk == Walk::light ? worker.lightTallies : worker.cameraTallies;
-  runPass(pass, context, wave, settings_.measureStages ? tallies.data() : nullptr);
+  runPass(pass, context, worker.wave, settings_.measureStages ? tallies.data() : nullptr);
 }
 
 template <class S>
 void TypedSession<S>::traceLight(size_t waveIndex, Worker& worker) {
   LightStore<S>* const store = plan_.pipeline.photonMap ? stores_[waveIndex].get() : &worker.light;
-  tracePass(*plan_.pipeline.lightPass, waveIndex, memory_.lightPaths, lightDone_[waveIndex], store, worker);
-  worker.lightPaths += worker.wave.pathCount;
+  Wave<S>& wave = worker.wave;
+  wave.firstPath = waveIndex * settings_.waveSize;
+  wave.pathCount = pathsOf(waveIndex, memory_.lightPaths);
+  wave.iterationBits = 0;
+  tracePass(*plan_.pipeline.lightPass, lightDone_[waveIndex], store, worker);
+  worker.lightPaths += wave.pathCount;
   ++lightDone_[waveIndex];
 }
 
@@ -155,39 +173,59 @@ template <class S>
 LightStore<S>* TypedSession<S>::partnersOf(size_t waveIndex, Worker& worker) {
   if (!plan_.pipeline.photonMap) return &worker.light;
   if (!plan_.pipeline.cameraPass.strategies.connect) return nullptr;
-  const size_t pixels = film_.area().pixels.size(), first = waveIndex * settings_.waveSize;
+  const size_t pixels = film_.area().pixels.size();
   if (memory_.lightPaths == pixels) return stores_[waveIndex].get();
-  worker.light.collect(stores_, memory_.lightPaths, first, std::min<size_t>(settings_.waveSize, pixels - first));
+  worker.light.collect(stores_, memory_.lightPaths, waveIndex * settings_.waveSize, pathsOf(waveIndex, pixels));
   return &worker.light;
+}
+
+// Never more iterations at once than there were before, so that a film that is looked at early has samples everywhere.
+template <class S>
+uint32_t TypedSession<S>::iterationBits(uint64_t next) const {
+  if (plan_.pipeline.lightPass) return 0;
+  const auto log2 = [](uint64_t n) { return static_cast<uint32_t>(std::bit_width(std::max<uint64_t>(n, 1))) - 1; };
+  const auto aligned = static_cast<uint32_t>(std::countr_zero(next));
+  return std::min({log2(kIterationsPerWave), aligned, log2(next - settings_.firstIteration), log2(endIteration_ - next),
+                   log2(settings_.waveSize)});
 }
 
 template <class S>
 void TypedSession<S>::traceCamera(size_t waveIndex, Worker& worker) {
-  tracePass(plan_.pipeline.cameraPass, waveIndex, film_.area().pixels.size(), cameraDone_[waveIndex],
-            partnersOf(waveIndex, worker), worker);
-  worker.counters.nonFinite += film_.add(worker.wave);
-  worker.paths += worker.wave.pathCount;
-  progressPaths_.fetch_add(worker.wave.pathCount, std::memory_order_relaxed);
-  ++cameraDone_[waveIndex];
+  CameraProgress& progress = camera_[waveIndex];
+  const size_t pixels = pathsOf(waveIndex, film_.area().pixels.size());
+  if (progress.pixels == 0) progress.iterationBits = iterationBits(progress.next);
+  Wave<S>& wave = worker.wave;
+  wave.firstPath = waveIndex * settings_.waveSize + progress.pixels;
+  wave.iterationBits = progress.iterationBits;
+  const size_t some = std::min(size_t{settings_.waveSize} >> wave.iterationBits, pixels - progress.pixels);
+  wave.pathCount = some << wave.iterationBits;
+  tracePass(plan_.pipeline.cameraPass, progress.next, partnersOf(waveIndex, worker), worker);
+  worker.counters.nonFinite += film_.add(wave);
+  worker.paths += wave.pathCount;
+  progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
+  progress.pixels += some;
+  if (progress.pixels < pixels) return;
+  progress.next += uint64_t{1} << progress.iterationBits;
+  progress.pixels = 0;
 }
 
 template <class S>
 void TypedSession<S>::renderWaves(const Finished& finished) {
-  // The graph has a token per wave. A token that has traced its iteration goes back to the queue, behind all others, so
-  // that waves advance together; the run ends when none is put back.
+  // The graph has a token per wave. A token that has been traced goes back to the queue, behind all others, so that waves
+  // advance together; the run ends when none is put back.
   namespace flow = oneapi::tbb::flow;
   flow::graph graph;
   flow::queue_node<size_t> ready(graph);
   flow::function_node<size_t, flow::continue_msg, flow::rejecting> tracing(graph, settings_.threads, [&](size_t wave) {
-    if (finished(cameraDone_[wave])) return flow::continue_msg();
+    if (finished(camera_[wave].next)) return flow::continue_msg();
     Worker& mine = worker();
     if (plan_.pipeline.lightPass) traceLight(wave, mine);
     traceCamera(wave, mine);
-    if (!finished(cameraDone_[wave])) ready.try_put(wave);
+    if (!finished(camera_[wave].next)) ready.try_put(wave);
     return flow::continue_msg();
   });
   flow::make_edge(ready, tracing);
-  for (size_t wave = 0; wave < cameraDone_.size(); ++wave) ready.try_put(wave);
+  for (size_t wave = 0; wave < camera_.size(); ++wave) ready.try_put(wave);
   graph.wait_for_all();
 }
 
@@ -206,8 +244,13 @@ void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
 
 template <class S>
 void TypedSession<S>::renderPhases(const Finished& finished) {
+  const auto leastDone = [this] {
+    const auto least = std::min_element(camera_.begin(), camera_.end(),
+                                        [](const auto& a, const auto& b) { return a.next < b.next; });
+    return least->next;
+  };
   for (;;) {
-    const uint64_t iteration = *std::min_element(cameraDone_.begin(), cameraDone_.end());
+    const uint64_t iteration = leastDone();
     forEach(stores_.size(), [&](size_t wave) {
       if (lightDone_[wave] == iteration && !finished(iteration)) traceLight(wave, worker());
     });
@@ -216,10 +259,10 @@ void TypedSession<S>::renderPhases(const Finished& finished) {
       if (finished(iteration)) return;
       buildPhotonMap(iteration);
     }
-    forEach(cameraDone_.size(), [&](size_t wave) {
-      if (cameraDone_[wave] == iteration && !finished(iteration)) traceCamera(wave, worker());
+    forEach(camera_.size(), [&](size_t wave) {
+      if (camera_[wave].next == iteration && !finished(iteration)) traceCamera(wave, worker());
     });
-    if (*std::min_element(cameraDone_.begin(), cameraDone_.end()) == iteration) return;
+    if (leastDone() == iteration) return;
   }
 }
 
@@ -240,8 +283,9 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
   const WorkerLimit limit(settings_.threads);
+  endIteration_ = iterations ? settings_.firstIteration + *iterations : std::numeric_limits<uint64_t>::max();
   const Finished finished = [&](uint64_t next) {
-    if (iterations && next - settings_.firstIteration >= *iterations) return true;
+    if (next >= endIteration_) return true;
     const double now = renderSeconds_ + secondsSince(begin);
     progressSeconds_.store(now, std::memory_order_relaxed);
     return (seconds && now >= *seconds) || interrupted();

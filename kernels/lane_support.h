@@ -171,20 +171,21 @@ WAVECREST_INLINE Vec3<Real> broadcast(const double (&a)[3]) {
 
 WAVECREST_INLINE constexpr bool has(uint32_t features, uint32_t feature) { return (features & feature) != 0; }
 
-// Raster position of each lane's path, and its index in the full film, which is what random numbers depend on.
+// Raster position of each lane's path, and its path word: the index in the full film, and the iteration.
 struct PixelLanes {
   UInt x, y, path;
 };
 template <class S>
 WAVECREST_INLINE PixelLanes pixelsOf(const StageContext<S>& context, const Wave<S>& wave, UInt lane) {
-  const UInt packed = gather(context.pixels + wave.firstPath, lane);
+  const UInt packed = gather(context.pixels + wave.firstPath, shiftRight(lane, wave.iterationBits));
+  const UInt ahead = lane & UInt((1u << wave.iterationBits) - 1);
   const UInt x = packed & UInt(0xffffu);
   const UInt y = shiftRight<16>(packed);
-  return {x, y, y * UInt(context.scene->camera.width) + x};
+  return {x, y, y * UInt(context.scene->camera.width) + x + shiftLeft<kPathBits>(ahead)};
 }
 
-// The index that a path's random numbers depend on: the raster index for camera paths; light paths, and the paths of
-// chains, are counted.
+// The path word that random numbers depend on (kernels/sampling/sampler.h): the path is the raster index for camera
+// paths; light paths, and the paths of chains, are counted.
 template <class S>
 WAVECREST_INLINE UInt pathOf(const StageContext<S>& context, const Wave<S>& wave, UInt lane) {
   if (context.walk == Walk::light || context.pixels == nullptr)

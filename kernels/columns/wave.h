@@ -24,6 +24,9 @@ struct Wave {
   Radiance<S> radiance;
   size_t firstPath = 0;  // index of lane 0 in the iteration's order of paths
   size_t pathCount = 0;  // lanes in use when the wave began
+  // Camera paths of a wave may be of 2^iterationBits successive iterations: lane i is path firstPath + i >> bits, ahead
+  // by the low bits of i. Paths of one pixel then share packets and what they touch of the scene.
+  uint32_t iterationBits = 0;
 
   Wave(size_t capacity, const ColumnNeeds& needs) {
     if (!needs.shadingNormals) {
@@ -58,6 +61,7 @@ struct Wave {
     radiance.size = other.radiance.size;
     firstPath = other.firstPath;
     pathCount = other.pathCount;
+    iterationBits = other.iterationBits;
   }
 
   size_t bytesPerPath() {

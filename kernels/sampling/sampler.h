@@ -4,6 +4,10 @@
 // Every number is a pure function of (seed, iteration, path, block, stream): nothing is stored between draws, so wave
 // size, queue order, thread count and instruction set do not change what a path sees, and any path can be repeated
 // alone.
+//
+// Lanes of one wave may be of kIterationsPerWave successive iterations: a lane's path word is its path plus how many
+// iterations it is ahead of the sampler's, kPathBits higher. The words of all lanes then differ in one register, and
+// everything else about a draw is the same for the whole wave.
 #pragma once
 
 #include <array>
@@ -14,6 +18,10 @@
 #include <string_view>
 
 namespace wavecrest {
+
+constexpr uint32_t kPathBits = 28;
+constexpr uint32_t kMostPaths = 1u << kPathBits;
+constexpr uint32_t kIterationsPerWave = 1u << (32 - kPathBits);
 
 // independent: every number is independent of every other.
 // sobol: the numbers of one (path, block) are well distributed over the iterations.
@@ -97,7 +105,7 @@ struct ChainSamples {
 struct SamplerSettings {
   SamplerKind kind = SamplerKind::independent;
   uint64_t seed = 0;
-  uint32_t iteration = 0;
+  uint32_t iteration = 0;  // if lanes are ahead of it, a multiple of the number of iterations in the wave
   const ChainSamples* chain = nullptr;  // of kind `chain`
 };
 

@@ -90,6 +90,7 @@ template <int kBits>
 WAVECREST_INLINE UInt shiftRight(UInt a) {
   return {hn::ShiftRight<kBits>(a.v)};
 }
+WAVECREST_INLINE UInt shiftRight(UInt a, uint32_t bits) { return {hn::ShiftRightSame(a.v, static_cast<int>(bits))}; }
 WAVECREST_INLINE Mask operator==(UInt a, UInt b) { return {hn::RebindMask(FloatTag(), hn::Eq(a.v, b.v))}; }
 WAVECREST_INLINE Mask operator!=(UInt a, UInt b) { return !(a == b); }
 WAVECREST_INLINE Mask operator<(UInt a, UInt b) { return {hn::RebindMask(FloatTag(), hn::Lt(a.v, b.v))}; }

@@ -118,5 +118,42 @@ TEST_P(DeterminismTest, seedsDiffer) {
 INSTANTIATE_TEST_SUITE_P(Engine, DeterminismTest, testing::ValuesIn(methodVariants()),
                          [](const auto& instance) { return nameOf(instance.param); });
 
+// Path tracing takes up to sixteen iterations of a pixel at a time, but no more than it has done, and from a multiple of
+// their number on: here 1, 1, 1, 2, 2, 4, 8, 8, 16, 16 and 1.
+class IterationsTogetherTest : public testing::TestWithParam<SamplerKind> {
+ protected:
+  static constexpr uint64_t kMany = 60;
+  IterationsTogetherTest() {
+    settings_.threads = 2;
+    settings_.waveSize = 250;
+    settings_.seed = 5;
+    settings_.firstIteration = 5;
+  }
+  const Scene scene_ = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings settings_ = settingsFor({Precision::floating, GetParam(), Accel::automatic});
+};
+
+TEST_P(IterationsTogetherTest, giveTheImageOfOneByOne) {
+  const auto oneByOne = Session::create(scene_, settings_);
+  for (uint64_t iterations = 1; iterations <= kMany; ++iterations) oneByOne->renderUntil(iterations, std::nullopt);
+  EXPECT_TRUE(sameBits(oneByOne->film().resolve(), render(scene_, settings_, kMany)));
+}
+
+TEST_P(IterationsTogetherTest, stopsByTheClockChangeNothing) {
+  const auto session = Session::create(scene_, settings_);
+  uint64_t partial = 0;
+  for (int stop = 1; stop <= 20; ++stop) {
+    session->renderUntil(kMany, 1e-3 * stop);
+    partial += session->statistics().paths % (kWidth * kHeight) != 0 ? 1 : 0;
+  }
+  EXPECT_GT(partial, 0u) << "the clock never stopped within an iteration";
+  session->renderUntil(kMany, std::nullopt);
+  EXPECT_EQ(session->statistics().paths, kMany * kWidth * kHeight);
+  EXPECT_TRUE(sameBits(render(scene_, settings_, kMany), session->film().resolve()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Engine, IterationsTogetherTest, testing::ValuesIn(kAllSamplerKinds),
+                         [](const auto& instance) { return std::string(toString(instance.param)); });
+
 }  // namespace
 }  // namespace wavecrest
