@@ -24,8 +24,8 @@ class Film {
  public:
   explicit Film(FilmArea area);
 
-  // Adds one sample for each path of the wave, a pixel's in the order of their iterations. Samples that are not finite count as black; returns how many there were.
-  // Waves of disjoint pixels may be added at the same time.
+  // Adds one sample for each path of the wave, a pixel's in the order of their iterations. Samples that are not finite
+  // count as black; returns how many there were. Waves of disjoint pixels may be added at the same time.
   template <class S>
   uint64_t add(const Wave<S>& wave);
 

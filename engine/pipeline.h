@@ -25,6 +25,9 @@ struct StageCall {
   Repeat repeat = Repeat::once;
 };
 
+// The strategies of path tracing, where it is not part of a bidirectional method.
+constexpr MisSettings kPathTracingStrategies{.emission = true, .nextEvent = true, .powerHeuristic = true};
+
 // What a stage works on: rays of live paths, or shadow rays.
 template <class S>
 size_t pathItems(const Wave<S>& wave) {

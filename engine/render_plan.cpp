@@ -56,7 +56,7 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);
-  plan.scene = compileScene<S>(scene, settings.accel);
+  plan.scene = compileScene<S>(scene, settings.accel, settings.precision != Precision::fast);
   const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, plan.specialization);
   plan.isa = stages.isa;
   plan.pipeline =

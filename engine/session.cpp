@@ -211,8 +211,8 @@ void TypedSession<S>::traceCamera(size_t waveIndex, Worker& worker) {
 
 template <class S>
 void TypedSession<S>::renderWaves(const Finished& finished) {
-  // The graph has a token per wave. A token that has been traced goes back to the queue, behind all others, so that waves
-  // advance together; the run ends when none is put back.
+  // The graph has a token per wave. A token that has been traced goes back to the queue, behind all others, so that
+  // waves advance together; the run ends when none is put back.
   namespace flow = oneapi::tbb::flow;
   flow::graph graph;
   flow::queue_node<size_t> ready(graph);
@@ -245,8 +245,8 @@ void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
 template <class S>
 void TypedSession<S>::renderPhases(const Finished& finished) {
   const auto leastDone = [this] {
-    const auto least = std::min_element(camera_.begin(), camera_.end(),
-                                        [](const auto& a, const auto& b) { return a.next < b.next; });
+    const auto least =
+        std::min_element(camera_.begin(), camera_.end(), [](const auto& a, const auto& b) { return a.next < b.next; });
     return least->next;
   };
   for (;;) {

@@ -1,8 +1,8 @@
 // The MIS recursion in lanes: one set of partial sums for every method (Georgiev, "Implementing Vertex Connection and
 // Merging", 2012; the constants of the strategies are in MisSettings).
 //
-// Weights use the balance heuristic; roulette is not part of any density. Path tracing alone needs only dVCM: without
-// kBidirectional the other sums do not exist.
+// Weights use the balance heuristic, path tracing alone the power heuristic; roulette is not part of any density. Path
+// tracing needs only dVCM: without kBidirectional the other sums do not exist.
 #pragma once
 
 #include "kernels/lane_support.h"
@@ -40,6 +40,15 @@ WAVECREST_INLINE void appendMis(const MisSums<Real>& mis, Mask m, PathStates<S>&
     append(mis.dVC, m, paths.dVC, out);
     append(mis.dVM, m, paths.dVM, out);
   }
+}
+
+// What the weight's denominator has beside 1, from the other strategies' densities relative to this one's. With two
+// strategies the power heuristic (Veach 1997, 9.2.4) squares the one ratio there is; kept below overflow.
+template <class Real>
+WAVECREST_INLINE Real others(const MisSettings& settings, Real ratio) {
+  if (!settings.powerHeuristic) return ratio;
+  const Real bounded = min(ratio, Real(1e18f));
+  return bounded * bounded;
 }
 
 // e_i: whether the edge behind vertex `depth` could have been a connection. The switch of a sub-path's first edge (next

@@ -76,7 +76,7 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film) {
 }
 
 template <class S>
-std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel) {
+std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertight) {
   auto compiled = std::make_unique<CompiledScene<S>>();
   const bool textured = (sceneFeatures(scene) & kTextures) != 0;
   auto& primitives = compiled->primitives = compilePrimitives<S>(scene, textured);
@@ -100,8 +100,9 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel) 
     compiled->small = std::make_unique<SmallScene>(precise.records.data(), precise.records.size());
     view.small = &compiled->small->view();
   } else {
-    compiled->embree = std::make_unique<EmbreeScene>(primitives.records.data(), primitives.counts.quads,
-                                                     primitives.counts.triangles, primitives.counts.spheres);
+    compiled->embree =
+        std::make_unique<EmbreeScene>(primitives.records.data(), primitives.counts.quads, primitives.counts.triangles,
+                                      primitives.counts.spheres, watertight);
     view.embree = compiled->embree->handle();
   }
   view.primitives = primitives.records.data();
@@ -122,7 +123,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel) 
   view.camera = compileCamera(scene.sensor, scene.film);
   return compiled;
 }
-template std::unique_ptr<CompiledScene<float>> compileScene(const Scene&, Accel);
-template std::unique_ptr<CompiledScene<double>> compileScene(const Scene&, Accel);
+template std::unique_ptr<CompiledScene<float>> compileScene(const Scene&, Accel, bool);
+template std::unique_ptr<CompiledScene<double>> compileScene(const Scene&, Accel, bool);
 
 }  // namespace wavecrest

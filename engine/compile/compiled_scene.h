@@ -39,7 +39,7 @@ struct CompiledScene {
 
 // Builds everything; threads bounds the hierarchy's build. Throws SceneError where the scene cannot be rendered.
 template <class S>
-std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel);
+std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertight = true);
 
 // The camera of a sensor over its full film.
 CameraView compileCamera(const Sensor& sensor, const FilmSettings& film);

@@ -24,7 +24,7 @@ Pipeline<S> lightTracing(const Stages<S>& stages, const Intersector<S>& intersec
       .cameraPass =
           {
               .walk = Walk::camera,
-              .strategies = {.emission = true, .nextEvent = true},
+              .strategies = kPathTracingStrategies,
               .generate = {"generate", stages.generateCameraPaths, generatedItems<S>, stages.lanes},
               .firstDepth =
                   {

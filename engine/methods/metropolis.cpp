@@ -20,7 +20,7 @@ Pipeline<S> primarySampleSpace(const Stages<S>& stages, const Intersector<S>& in
       .cameraPass =
           {
               .walk = Walk::camera,
-              .strategies = {.emission = true, .nextEvent = true},
+              .strategies = kPathTracingStrategies,
               .generate = {"generate", stages.generateCameraPaths, generatedItems<S>, stages.lanes},
               .perDepth =
                   {

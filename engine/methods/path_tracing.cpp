@@ -1,4 +1,4 @@
-// Path tracing with next event estimation: strategies s = 0 and s = 1, weighted by the balance heuristic.
+// Path tracing with next event estimation: strategies s = 0 and s = 1, weighted by the power heuristic.
 #include "engine/methods/method_list.h"
 
 namespace wavecrest {
@@ -9,7 +9,7 @@ Pipeline<S> pathTracing(const Stages<S>& stages, const Intersector<S>& intersect
       .cameraPass =
           {
               .walk = Walk::camera,
-              .strategies = {.emission = true, .nextEvent = true},
+              .strategies = kPathTracingStrategies,
               .generate = {"generate", stages.generateCameraPaths, generatedItems<S>, stages.lanes},
               .perDepth =
                   {

@@ -44,7 +44,7 @@ void nextEvent(const StageContext<typename P::Storage>& context, Wave<typename P
       wCamera = sample.emissionPdf * abs(dot(sample.direction, shading.normal)) * inversePdf *
                 behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
     }
-    const Real scale = abs(gen.z) * inversePdf * reciprocal<P>(Real(1) + wLight + wCamera);
+    const Real scale = abs(gen.z) * inversePdf * reciprocal<P>(Real(1) + others(context.mis, wLight + wCamera));
     const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     const Vec3<Real> contribution = throughput * bsdf.f * sample.radiance * scale;
 

@@ -91,7 +91,8 @@ void splat(const StageContext<S>& context, const ShadowRays<S>& shadow, size_t i
 }  // namespace
 
 template <class S>
-EmbreeScene::EmbreeScene(const PrimitiveRecord<S>* records, uint32_t quads, uint32_t triangles, uint32_t spheres) {
+EmbreeScene::EmbreeScene(const PrimitiveRecord<S>* records, uint32_t quads, uint32_t triangles, uint32_t spheres,
+                         bool watertight) {
   // Large pages, where the system gives them, save a part of the misses of incoherent rays.
   RTCDevice device = rtcNewDevice("hugepages=1");
   if (device == nullptr) {
@@ -103,7 +104,7 @@ EmbreeScene::EmbreeScene(const PrimitiveRecord<S>* records, uint32_t quads, uint
   };
   rtcSetDeviceMemoryMonitorFunction(device, countBytes, &bytes_);
   RTCScene scene = rtcNewScene(device);
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  if (watertight) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   addFaces(device, scene, records, quads, true, kQuads);
   addFaces(device, scene, records + quads, triangles, false, kTriangles);
   addSpheres(device, scene, records + quads + triangles, spheres);
@@ -117,8 +118,8 @@ EmbreeScene::EmbreeScene(const PrimitiveRecord<S>* records, uint32_t quads, uint
   device_ = device;
   scene_ = scene;
 }
-template EmbreeScene::EmbreeScene(const PrimitiveRecord<float>*, uint32_t, uint32_t, uint32_t);
-template EmbreeScene::EmbreeScene(const PrimitiveRecord<double>*, uint32_t, uint32_t, uint32_t);
+template EmbreeScene::EmbreeScene(const PrimitiveRecord<float>*, uint32_t, uint32_t, uint32_t, bool);
+template EmbreeScene::EmbreeScene(const PrimitiveRecord<double>*, uint32_t, uint32_t, uint32_t, bool);
 
 EmbreeScene::~EmbreeScene() {
   rtcReleaseScene(static_cast<RTCScene>(scene_));

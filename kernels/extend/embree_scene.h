@@ -19,7 +19,8 @@ class EmbreeScene {
   // records: quads, then triangles, then spheres. The hierarchy is built at once, by as many threads as the calling TBB
   // arena has. Throws std::runtime_error with Embree's message if that fails.
   template <class S>
-  EmbreeScene(const PrimitiveRecord<S>* records, uint32_t quads, uint32_t triangles, uint32_t spheres);
+  EmbreeScene(const PrimitiveRecord<S>* records, uint32_t quads, uint32_t triangles, uint32_t spheres,
+              bool watertight = true);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;

@@ -1,9 +1,9 @@
 // uniform4: the random numbers of every kernel, four per call and lane.
 //
-// in: the sampler's settings, one path word (kernels/sampling/sampler.h) per lane, a block and a stream; out: four numbers in [0,1) on the grid of
-// 2^-24, which a float holds exactly. A block is one row of the dimension table: 4 times the vertex index plus the
-// Block of kernels/lane_support.h. Call it where the numbers are used; storing them costs more than drawing them (1.3
-// ns per path with AVX-512, kernels_bench).
+// in: the sampler's settings, one path word (kernels/sampling/sampler.h) per lane, a block and a stream; out: four
+// numbers in [0,1) on the grid of 2^-24, which a float holds exactly. A block is one row of the dimension table: 4
+// times the vertex index plus the Block of kernels/lane_support.h. Call it where the numbers are used; storing them
+// costs more than drawing them (1.3 ns per path with AVX-512, kernels_bench).
 #pragma once
 
 #include "kernels/sampling/chain_lanes.h"

@@ -105,7 +105,7 @@ struct ChainSamples {
 struct SamplerSettings {
   SamplerKind kind = SamplerKind::independent;
   uint64_t seed = 0;
-  uint32_t iteration = 0;  // if lanes are ahead of it, a multiple of the number of iterations in the wave
+  uint32_t iteration = 0;               // if lanes are ahead of it, a multiple of the number of iterations in the wave
   const ChainSamples* chain = nullptr;  // of kind `chain`
 };
 

@@ -41,7 +41,7 @@ WAVECREST_INLINE Vec3<typename P::Real> missedRadiance(const StageContext<typena
   if constexpr (has(kFeatures, kBidirectional)) {
     wCamera = mulAdd(pick * pdfW * Real(kInvPi / (scene.radius * scene.radius)), mis.dVC, wCamera);
   }
-  return radiance * reciprocal<P>(Real(1) + wCamera);
+  return radiance * reciprocal<P>(Real(1) + others(context.mis, wCamera));
 }
 
 // Radiance of area lights that lanes arrived at, weighted likewise with the sums after arrival (METHODS 5.6, s = 0).
@@ -64,7 +64,7 @@ WAVECREST_INLINE Vec3<typename P::Real> metRadiance(const StageContext<typename 
     const Real emissionPdf = light.pick * light.inverseArea * n0 * Real(kInvPi);
     wCamera = mulAdd(emissionPdf, mis.dVC, wCamera);
   }
-  return radiance * reciprocal<P>(Real(1) + wCamera);
+  return radiance * reciprocal<P>(Real(1) + others(context.mis, wCamera));
 }
 
 // What turns dVCM of a light path's first edge into area measure at y_1: d^2 for a light that has a place. For spheres

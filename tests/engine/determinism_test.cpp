@@ -118,8 +118,8 @@ TEST_P(DeterminismTest, seedsDiffer) {
 INSTANTIATE_TEST_SUITE_P(Engine, DeterminismTest, testing::ValuesIn(methodVariants()),
                          [](const auto& instance) { return nameOf(instance.param); });
 
-// Path tracing takes up to sixteen iterations of a pixel at a time, but no more than it has done, and from a multiple of
-// their number on: here 1, 1, 1, 2, 2, 4, 8, 8, 16, 16 and 1.
+// Path tracing takes up to sixteen iterations of a pixel at a time, but no more than it has done, and from a multiple
+// of their number on: here 1, 1, 1, 2, 2, 4, 8, 8, 16, 16 and 1.
 class IterationsTogetherTest : public testing::TestWithParam<SamplerKind> {
  protected:
   static constexpr uint64_t kMany = 60;
