@@ -15,6 +15,7 @@
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
 #include "cli/commands.h"
+#include "cli/findings.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
@@ -159,7 +160,9 @@ CampaignSettings campaignSettings(const ConvergeOptions& options) {
     throw UsageError("--check: the study's findings are about equal time; expected no --spp beside it");
   }
   if (options.check && settings.shard.count > 1) {
-    throw UsageError("--check needs all methods of a scene; expected no --shard beside it");
+    throw UsageError(
+        "--check needs all methods of a scene; expected no --shard beside it, but `wavecrest report --check` once "
+        "all shards are done");
   }
   return settings;
 }
@@ -235,6 +238,24 @@ std::string durationText(double seconds) {
   return whole >= 60 ? fmt::format("{}m{:02}s", whole / 60, whole % 60) : fmt::format("{}s", whole);
 }
 
+void showPlan(ProgressKind kind, const CampaignPlan& plan) {
+  if (kind == ProgressKind::none) return;
+  if (kind == ProgressKind::jsonl) {
+    const json line = {{"total", plan.runs},
+                       {"done", plan.done},
+                       {"render_seconds", plan.renderSeconds},
+                       {"unreferenced", plan.unreferenced},
+                       {"reference_seconds", plan.referenceSeconds}};
+    fmt::print(stderr, "{}\n", line.dump());
+    return;
+  }
+  std::string text = fmt::format("{} runs, {} of them done", plan.runs, plan.done);
+  if (plan.renderSeconds > 0) text += fmt::format("; {} of render time ahead", durationText(plan.renderSeconds));
+  if (!plan.unreferenced.empty()) text += fmt::format("; references to render: {}", joined(plan.unreferenced));
+  if (plan.referenceSeconds > 0) text += fmt::format(", {}", durationText(plan.referenceSeconds));
+  fmt::print(stderr, "{}\n", text);
+}
+
 void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& progress) {
   if (kind == ProgressKind::none) return;
   if (kind == ProgressKind::jsonl) {
@@ -258,21 +279,9 @@ void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& pr
              durationText(progress.secondsLeft), run.scene, run.method, run.seed, outcome);
 }
 
-std::vector<ClaimRecord> storeClaims(const fs::path& results) {
-  std::vector<ClaimRecord> claims = judgeStudyClaims(readResults(results));
+void storeClaims(const fs::path& results) {
+  const std::vector<ClaimRecord> claims = judgeStudyClaims(readResults(results));
   ResultsStore(results).putClaims(claims);
-  return claims;
-}
-
-int showCheck(const std::vector<ClaimRecord>& claims) {
-  bool held = true;
-  for (const ClaimRecord& claim : claims) {
-    fmt::print("{:13} {}: {} ({})\n", claim.verdict, claim.scene, claim.statement, claim.evidence);
-    if (claim.verdict != toString(ClaimVerdict::fails)) continue;
-    fmt::print(stderr, "wavecrest: check failed: {}: {}\n", claim.scene, claim.statement);
-    held = false;
-  }
-  return held ? kExitDone : kExitCheck;
 }
 
 int runConverge(ConvergeOptions options) {
@@ -291,6 +300,7 @@ int runConverge(ConvergeOptions options) {
   const CampaignHooks hooks{
       .watch = [&](Session* session) { guard.watch(session); },
       .stopped = [&] { return guard.interrupted(); },
+      .planned = [&](const CampaignPlan& plan) { showPlan(kind, plan); },
       .finished = [&](const RunRecord& run, const CampaignProgress& progress) { showRun(kind, run, progress); },
       .say =
           [&](const std::string& line) {
@@ -302,9 +312,10 @@ int runConverge(ConvergeOptions options) {
   }
   fmt::print("{}\n", results.string());
   if (settings.shard.count > 1) return kExitDone;  // the whole is judged and shown where all parts are read
-  const std::vector<ClaimRecord> claims = storeClaims(results);
-  for (const fs::path& file : writeReport(std::array{settings.out})) fmt::print("{}\n", file.string());
-  return options.check ? showCheck(claims) : kExitDone;
+  storeClaims(results);
+  const WrittenReport report = writeReport(std::array{settings.out});
+  for (const fs::path& file : report.files) fmt::print("{}\n", file.string());
+  return options.check ? showFindings(report.claims) : kExitDone;
 }
 
 }  // namespace

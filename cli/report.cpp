@@ -10,6 +10,7 @@
 #include "bench/report/write_report.h"
 #include "bench/results/results_error.h"
 #include "cli/commands.h"
+#include "cli/findings.h"
 #include "metrics/image/image.h"
 
 namespace wavecrest {
@@ -18,6 +19,7 @@ namespace {
 struct ReportOptions {
   std::vector<std::string> paths;
   ReportFiles files;
+  bool check = false;
 };
 
 }  // namespace
@@ -32,10 +34,18 @@ void addReportCommand(CLI::App& app, int& exitCode) {
       ->required();
   command->add_flag("--csv", options->files.csv, "also write DIR/measurements.csv: every score of every snapshot");
   command->add_flag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");
+  command->add_flag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
   command->callback([options, &exitCode] {
+    exitCode = kExitDone;
     const std::vector<std::filesystem::path> paths(options->paths.begin(), options->paths.end());
     try {
-      for (const auto& file : writeReport(paths, options->files)) fmt::print("{}\n", file.string());
+      const WrittenReport report = writeReport(paths, options->files);
+      for (const auto& file : report.files) fmt::print("{}\n", file.string());
+      if (!options->check) return;
+      if (report.claims.empty()) {
+        throw InputError(options->paths[0] + ": holds no judged finding; expected a campaign by time that is over");
+      }
+      exitCode = showFindings(report.claims);
     } catch (const ResultsError& error) {
       throw InputError(error.what());
     } catch (const ResultsFileError& error) {
@@ -43,7 +53,6 @@ void addReportCommand(CLI::App& app, int& exitCode) {
     } catch (const ImageError& error) {
       throw InputError(error.what());
     }
-    exitCode = kExitDone;
   });
 }
 

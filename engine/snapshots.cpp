@@ -41,7 +41,9 @@ unsigned renderWithSnapshots(Session& session, const RenderSettings& settings, c
     const bool inTime = due.seconds && (!settings.seconds || *due.seconds <= *settings.seconds);
     const bool inIterations = due.iterations && (!settings.iterations || *due.iterations <= *settings.iterations);
     session.renderUntil(earlier(settings.iterations, due.iterations), earlier(settings.seconds, due.seconds));
-    const bool reached = (inTime && session.progressSeconds() >= *due.seconds) ||
+    // The last one is due at the limit, a moment before which a session may have nothing left to do.
+    const bool atLimit = inTime && !settings.iterations && *due.seconds == settings.seconds;
+    const bool reached = atLimit || (inTime && session.progressSeconds() >= *due.seconds) ||
                          (inIterations && session.statistics().iterations >= *due.iterations);
     if (session.interrupted() || !reached) return number;
     onSnapshot(number);

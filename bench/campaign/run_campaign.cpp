@@ -22,6 +22,8 @@ using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
+std::string hashOf(const Scene& scene) { return fmt::format("{:016x}", scene.hash); }
+
 // The methods of a scene that this shard does.
 std::vector<Method> methodsOfShard(const CampaignSettings& settings, size_t scene) {
   std::vector<Method> methods;
@@ -32,35 +34,37 @@ std::vector<Method> methodsOfShard(const CampaignSettings& settings, size_t scen
   return methods;
 }
 
-// Counts runs and guesses how long the rest takes: its render time, and what runs so far took beyond theirs.
+// Guesses how long the rest takes: its render time, and what runs so far took beyond theirs. Time is counted in render
+// seconds, or in runs of counted iterations, which are taken for equally long.
 class Pace {
  public:
   explicit Pace(const CampaignSettings& settings) : settings_(settings) {}
 
-  void add(const CampaignScene& scene, bool done) {
-    ++progress_.total;
-    if (done) {
-      ++progress_.done;
-    } else {
-      secondsAhead_ += charged(scene);
-    }
+  double ofRun(const CampaignScene& scene) const { return settings_.iterations ? 1 : scene.effort.seconds; }
+  double ofReference(const CampaignScene& scene) const { return kReferenceEffort * ofRun(scene); }
+
+  void begin(const CampaignPlan& plan, double ahead) {
+    progress_ = {.done = plan.done, .total = plan.runs};
+    ahead_ = ahead;
   }
   const CampaignProgress& finish(const CampaignScene& scene, double wallSeconds) {
     ++progress_.done;
-    secondsAhead_ -= charged(scene);
-    chargedSeconds_ += charged(scene);
-    wallSeconds_ += wallSeconds;
-    progress_.secondsLeft = secondsAhead_ * wallSeconds_ / chargedSeconds_;
+    pass(ofRun(scene), wallSeconds);
+    progress_.secondsLeft = ahead_ * wallSeconds_ / passed_;
     return progress_;
   }
+  void finishReference(const CampaignScene& scene, double wallSeconds) { pass(ofReference(scene), wallSeconds); }
 
  private:
-  // Runs of counted iterations are taken for equally long.
-  double charged(const CampaignScene& scene) const { return settings_.iterations ? 1 : scene.effort.seconds; }
+  void pass(double charged, double wallSeconds) {
+    ahead_ -= charged;
+    passed_ += charged;
+    wallSeconds_ += wallSeconds;
+  }
 
   const CampaignSettings& settings_;
   CampaignProgress progress_;
-  double secondsAhead_ = 0, chargedSeconds_ = 0, wallSeconds_ = 0;
+  double ahead_ = 0, passed_ = 0, wallSeconds_ = 0;
 };
 
 class Campaign {
@@ -74,13 +78,7 @@ class Campaign {
   }
 
   bool run() {
-    for (size_t s = 0; s < settings_.scenes.size(); ++s) {
-      for (const Method method : methodsOfShard(settings_, s)) {
-        for (uint64_t seed = 1; seed <= settings_.seeds; ++seed) {
-          pace_.add(settings_.scenes[s], isDone(settings_.scenes[s], method, seed));
-        }
-      }
-    }
+    plan();
     for (size_t s = 0; s < settings_.scenes.size(); ++s) {
       if (!runScene(settings_.scenes[s], methodsOfShard(settings_, s))) return false;
     }
@@ -91,25 +89,65 @@ class Campaign {
   bool isDone(const CampaignScene& scene, Method method, uint64_t seed) {
     return store_.hasRun(scene.name, std::string(toString(method)), seed);
   }
+  // Counts what is ahead, and throws now what would be thrown later.
+  void plan() {
+    CampaignPlan plan;
+    double ahead = 0;
+    for (size_t s = 0; s < settings_.scenes.size(); ++s) {
+      const CampaignScene& entry = settings_.scenes[s];
+      const std::vector<Method> methods = methodsOfShard(settings_, s);
+      const size_t missing = missingRuns(entry, methods);
+      plan.runs += methods.size() * settings_.seeds;
+      plan.done += methods.size() * settings_.seeds - missing;
+      if (missing == 0) continue;
+      ahead += static_cast<double>(missing) * pace_.ofRun(entry);
+      if (hasReference(entry)) continue;
+      plan.unreferenced.push_back(entry.name);
+      plan.referenceSeconds += pace_.ofReference(entry);
+    }
+    if (!settings_.iterations) plan.renderSeconds = ahead;
+    pace_.begin(plan, ahead + plan.referenceSeconds);
+    if (settings_.iterations) plan.referenceSeconds = 0;
+    if (hooks_.planned) hooks_.planned(plan);
+  }
+
+  bool hasReference(const CampaignScene& entry) {
+    const Scene scene = load(entry);
+    return isKnown(entry, scene) || referenceExists(scene, entry, settings_);
+  }
+
+  // Whether the scene was begun by an earlier process, which settled its reference. Throws if it has changed since.
+  bool isKnown(const CampaignScene& entry, const Scene& scene) {
+    const std::optional<std::string> known = store_.sceneHash(entry.name);
+    if (known && *known != hashOf(scene)) {
+      throw ResultsFileError(fmt::format("{}: the scene changed since this campaign began; expected scene_hash {}",
+                                         entry.file.string(), *known));
+    }
+    return known.has_value();
+  }
+
+  Scene load(const CampaignScene& entry) const {
+    LoadOptions loading;
+    loading.filmSize = settings_.size;
+    return loadScene(entry.file, loading);
+  }
+
   bool stopped() const { return hooks_.stopped && hooks_.stopped(); }
 
-  bool sceneIsDone(const CampaignScene& entry, const std::vector<Method>& methods) {
+  size_t missingRuns(const CampaignScene& entry, const std::vector<Method>& methods) {
+    size_t missing = 0;
     for (const Method method : methods) {
-      for (uint64_t seed = 1; seed <= settings_.seeds; ++seed) {
-        if (!isDone(entry, method, seed)) return false;
-      }
+      for (uint64_t seed = 1; seed <= settings_.seeds; ++seed) missing += isDone(entry, method, seed) ? 0 : 1;
     }
-    return true;
+    return missing;
   }
 
   // False if it was stopped.
   bool runScene(const CampaignScene& entry, const std::vector<Method>& methods) {
     if (methods.empty()) return true;
-    if (!sceneIsDone(entry, methods)) {
+    if (missingRuns(entry, methods) > 0) {
       const auto begin = Clock::now();
-      LoadOptions loading;
-      loading.filmSize = settings_.size;
-      const Scene scene = loadScene(entry.file, loading);
+      const Scene scene = load(entry);
       const double loadSeconds = secondsSince(begin);
       const Reference reference = this->reference(entry, scene);
       if (stopped()) return false;
@@ -122,18 +160,16 @@ class Campaign {
 
   // Of a scene that an earlier process began the same one; else a new one, with which the scene begins.
   Reference reference(const CampaignScene& entry, const Scene& scene) {
-    const std::string hash = fmt::format("{:016x}", scene.hash);
     const fs::path file = referenceFile(entry.name);
-    if (const std::optional<std::string> known = store_.sceneHash(entry.name)) {
-      if (*known == hash) return readReference(settings_.out / file);
-      throw ResultsFileError(fmt::format("{}: the scene changed since this campaign began; expected scene_hash {}",
-                                         entry.file.string(), *known));
-    }
+    if (isKnown(entry, scene)) return readReference(settings_.out / file);
+    const bool exists = referenceExists(scene, entry, settings_);
+    const auto begin = Clock::now();
     Reference reference = sceneReference(scene, entry, settings_,
                                          {.watch = hooks_.watch, .stopped = hooks_.stopped, .advance = {}}, hooks_.say);
     if (stopped()) return reference;
+    if (!exists) pace_.finishReference(entry, secondsSince(begin));
     store_.putScene({.name = entry.name,
-                     .hash = hash,
+                     .hash = hashOf(scene),
                      .referenceFile = file.string(),
                      .width = settings_.size[0],
                      .height = settings_.size[1],

@@ -1,5 +1,8 @@
 // A campaign from start to end, or from wherever an earlier process stopped.
 //
+// Before the first run every scene that is not done is loaded once and its reference looked for, so that what would
+// stop a campaign in its middle (a file that is missing, a scene that changed) stops it at once.
+//
 // Scene by scene: load it, get its reference, then seed by seed every method, one run at a time with the machine to
 // itself; seeds are the outer loop so that a machine that warms up or is shared does so for all methods alike. Each run
 // is written into the results file as a whole once it is over. What is there already is not rendered again.
@@ -7,6 +10,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "bench/campaign/campaign_settings.h"
 #include "bench/results/results.h"
@@ -14,6 +18,14 @@
 namespace wavecrest {
 
 class Session;
+
+// What is ahead of a shard.
+struct CampaignPlan {
+  size_t runs = 0, done = 0;              // done: by earlier processes
+  double renderSeconds = 0;               // of the runs ahead; 0 where iterations are counted
+  std::vector<std::string> unreferenced;  // scenes whose reference is to be rendered first
+  double referenceSeconds = 0;            // of those
+};
 
 struct CampaignProgress {
   size_t done = 0, total = 0;  // runs of this shard, those of earlier processes included
@@ -23,6 +35,7 @@ struct CampaignProgress {
 struct CampaignHooks {
   std::function<void(Session*)> watch;  // the session about to render; null: none
   std::function<bool()> stopped;        // true: return at once, without the run under way
+  std::function<void(const CampaignPlan&)> planned;
   std::function<void(const RunRecord&, const CampaignProgress&)> finished;
   std::function<void(const std::string&)> say;  // what people should know, a line at a time
 };

@@ -10,10 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A reference's noise must be far below the errors it measures: variance below a tenth (METHODS 8.4), as a method that
-// suits the scene is as good after a tenth of the reference's time.
-constexpr double kReferenceEffort = 12;
-
 // Of merging methods in a reference: their bias goes with the square.
 constexpr double kReferenceRadius = 1e-4;
 
@@ -28,6 +24,38 @@ std::string misfit(const Reference& reference, const Scene& scene, const Campaig
     return fmt::format("is of scene_hash {}; expected {} of this {}", reference.info.sceneHash, hash, scene.name);
   }
   return "";
+}
+
+// The one in the reference folder if it fits; else `wrong` says why it cannot be used.
+struct GivenReference {
+  fs::path file;
+  std::optional<Reference> reference;
+  std::string wrong;
+};
+
+// Throws ReferenceError where there is none and none may be rendered.
+GivenReference givenReference(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings) {
+  GivenReference given{.file = settings.referenceFolder / (entry.name + ".exr"), .reference = {}, .wrong = {}};
+  const bool exists = fs::is_regular_file(given.file);
+  if (exists) {
+    given.reference = readReference(given.file);
+    given.wrong = misfit(*given.reference, scene, settings);
+    if (given.wrong.empty()) return given;
+    given.reference.reset();
+  } else {
+    given.wrong = "does not exist";
+  }
+  if (settings.referenceRequired) {
+    throw ReferenceError(fmt::format("{}: {}{}; make it by `wavecrest reference`", given.file.string(), given.wrong,
+                                     exists ? "" : "; expected the reference of " + entry.name));
+  }
+  if (settings.shard.count > 1 && !settings.iterations) {
+    throw ReferenceError(
+        fmt::format("{}: {}; expected --reference with a folder of references, or every shard would "
+                    "render another",
+                    given.file.string(), given.wrong));
+  }
+  return given;
 }
 
 Reference renderOwn(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings,
@@ -49,33 +77,21 @@ Reference renderOwn(const Scene& scene, const CampaignScene& entry, const Campai
 
 }  // namespace
 
+bool referenceExists(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings) {
+  return givenReference(scene, entry, settings).reference.has_value();
+}
+
 fs::path referenceFile(const std::string& scene) { return fs::path("references") / (scene + ".exr"); }
 
 Reference sceneReference(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings,
                          const ReferenceHooks& hooks, const std::function<void(const std::string&)>& say) {
   const fs::path file = settings.out / referenceFile(entry.name);
-  const fs::path given = settings.referenceFolder / (entry.name + ".exr");
-  std::string wrong = "does not exist";
-  if (fs::is_regular_file(given)) {
-    Reference reference = readReference(given);
-    wrong = misfit(reference, scene, settings);
-    if (wrong.empty()) {
-      writeFileAtomically(file.string(), readFileBytes(given.string()));
-      return reference;
-    }
+  const GivenReference given = givenReference(scene, entry, settings);
+  if (given.reference) {
+    writeFileAtomically(file.string(), readFileBytes(given.file.string()));
+    return *given.reference;
   }
-  if (settings.referenceRequired) {
-    throw ReferenceError(
-        fmt::format("{}: {}; make it by `wavecrest reference`", given.string(),
-                    wrong == "does not exist" ? wrong + "; expected the reference of " + entry.name : wrong));
-  }
-  if (settings.shard.count > 1 && !settings.iterations) {
-    throw ReferenceError(
-        fmt::format("{}: {}; expected --reference with a folder of references, or every shard would "
-                    "render another",
-                    given.string(), wrong));
-  }
-  say(fmt::format("{}: rendering its reference ({} {})", entry.name, given.string(), wrong));
+  say(fmt::format("{}: rendering its reference ({} {})", entry.name, given.file.string(), given.wrong));
   return renderOwn(scene, entry, settings, file, hooks);
 }
 

@@ -20,6 +20,14 @@ struct ReferenceError : std::runtime_error {
 Reference sceneReference(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings,
                          const ReferenceHooks& hooks, const std::function<void(const std::string&)>& say);
 
+// Whether sceneReference will take one that exists; else it will render one, for so much longer than a run. Throws the
+// same ReferenceError, so that a campaign can find out before its first run.
+bool referenceExists(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings);
+
+// A reference's noise must be far below the errors it measures: variance below a tenth (METHODS 8.4), as a method that
+// suits the scene is as good after a tenth of the reference's time.
+constexpr double kReferenceEffort = 12;
+
 // Where it lies, relative to the campaign's folder.
 std::filesystem::path referenceFile(const std::string& scene);
 

@@ -28,11 +28,14 @@ ConditionKind parseKind(const std::string& id, const std::string& word) {
   return found->second;
 }
 
-Condition parseCondition(const std::string& id, const json& object) {
-  static const std::set<std::string> kKeys{"kind", "metrics", "methods", "than", "factor", "score", "slope", "share"};
+void requireKeys(const std::string& id, const json& object, const std::set<std::string>& known) {
   for (const auto& [key, value] : object.items()) {
-    if (!kKeys.contains(key)) throw ClaimListError("claim " + id + ": unknown key '" + key + "'");
+    if (!known.contains(key)) throw ClaimListError("claim " + id + ": unknown key '" + key + "'");
   }
+}
+
+Condition parseCondition(const std::string& id, const json& object) {
+  requireKeys(id, object, {"kind", "metrics", "methods", "than", "factor", "score", "slope", "share"});
   Condition condition;
   condition.kind = parseKind(id, object.at("kind").get<std::string>());
   object.at("metrics").get_to(condition.metrics);
@@ -52,8 +55,12 @@ std::vector<Claim> parseClaims(std::string_view text) {
   std::set<std::string> ids;
   try {
     for (const json& object : json::parse(text)) {
-      Claim claim{
-          .id = object.at("id"), .scene = object.at("scene"), .statement = object.at("statement"), .conditions = {}};
+      Claim claim{.id = object.at("id"),
+                  .scene = object.at("scene"),
+                  .statement = object.at("statement"),
+                  .source = object.value("source", ""),
+                  .explanation = object.value("explanation", "")};
+      requireKeys(claim.id, object, {"id", "scene", "statement", "source", "explanation", "all"});
       if (!ids.insert(claim.id).second) throw ClaimListError("claim " + claim.id + ": a second one of this id");
       for (const json& condition : object.at("all")) claim.conditions.push_back(parseCondition(claim.id, condition));
       if (claim.conditions.empty()) throw ClaimListError("claim " + claim.id + ": has no condition");
@@ -68,6 +75,12 @@ std::vector<Claim> parseClaims(std::string_view text) {
 const std::vector<Claim>& studyClaims() {
   static const std::vector<Claim> claims = parseClaims(kClaimsJson);
   return claims;
+}
+
+const Claim* findStudyClaim(std::string_view id) {
+  const std::vector<Claim>& claims = studyClaims();
+  const auto found = std::find_if(claims.begin(), claims.end(), [&](const Claim& claim) { return claim.id == id; });
+  return found == claims.end() ? nullptr : &*found;
 }
 
 }  // namespace wavecrest

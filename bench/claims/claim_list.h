@@ -31,7 +31,9 @@ struct Condition {
 
 struct Claim {
   std::string id, scene, statement;
-  std::vector<Condition> conditions;
+  std::string source = {};       // the study's words
+  std::string explanation = {};  // why it may not hold here, or stay open; shown where that is so
+  std::vector<Condition> conditions = {};
 };
 
 // A list of claims that is not what it should be. The text is complete.
@@ -42,5 +44,7 @@ struct ClaimListError : std::runtime_error {
 std::vector<Claim> parseClaims(std::string_view json);
 
 const std::vector<Claim>& studyClaims();
+// Null if there is none of this id.
+const Claim* findStudyClaim(std::string_view id);
 
 }  // namespace wavecrest

@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bench/claims/judge_claims.h"
 #include "bench/report/final_images.h"
 #include "bench/report/html_text.h"
 #include "bench/report/series_facts.h"
@@ -187,6 +188,16 @@ ReportScene collectScene(const CampaignResults& results, const SceneRecord& reco
   return scene;
 }
 
+// With what bench/claims says about it today: explanations are written once the results are known.
+ReportClaim shownClaim(const ClaimRecord& record) {
+  ReportClaim shown{record.scene, record.statement, record.verdict, record.evidence};
+  if (const Claim* claim = findStudyClaim(record.id)) {
+    shown.source = claim->source;
+    if (record.verdict != toString(ClaimVerdict::holds)) shown.explanation = claim->explanation;
+  }
+  return shown;
+}
+
 std::string titleOf(const CampaignResults& results) {
   std::string title = results.scenes.size() == 1 ? "Convergence of " + results.scenes[0].name
                                                  : fmt::format("Convergence on {} scenes", results.scenes.size());
@@ -204,8 +215,7 @@ ConvergenceReport collectCampaign(const CampaignResults& results) {
   for (const SceneRecord& scene : results.scenes) report.scenes.push_back(collectScene(results, scene, report));
   // A scene whose runs are still to come has nothing to show.
   std::erase_if(report.scenes, [](const ReportScene& scene) { return scene.series.empty() && scene.refusals.empty(); });
-  for (const ClaimRecord& claim : results.claims)
-    report.claims.push_back({claim.scene, claim.statement, claim.verdict, claim.evidence});
+  for (const ClaimRecord& claim : results.claims) report.claims.push_back(shownClaim(claim));
   for (const auto& [key, value] : results.campaign) report.environment.push_back({key, value});
   return report;
 }

@@ -106,6 +106,8 @@ struct ReportClaim {
   std::string scene, statement;
   std::string verdict = {};  ///< "holds", "does not hold" or "undecided"
   std::string evidence = {};
+  std::string source = {};       ///< the study's words
+  std::string explanation = {};  ///< why it does not hold or is open, where somebody has written that down
 };
 
 struct ConvergenceReport {

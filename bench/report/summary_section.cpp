@@ -191,9 +191,12 @@ std::string renderClaims(const ConvergenceReport& report) {
       "<th>evidence</thead><tbody>",
       count("holds"), count("does not hold"), count("undecided"));
   for (const ReportClaim& claim : report.claims) {
-    append(html, "<tr><th>{}<td>{}<td><span class=\"verdict {}\">{}</span><td>{}", escapeHtml(claim.scene),
-           escapeHtml(claim.statement), verdictClass(claim.verdict), escapeHtml(claim.verdict),
-           escapeHtml(claim.evidence));
+    append(html, "<tr><th>{}<td>{}", escapeHtml(claim.scene), escapeHtml(claim.statement));
+    if (!claim.source.empty()) append(html, "<small class=\"source\">{}</small>", escapeHtml(claim.source));
+    append(html, "<td><span class=\"verdict {}\">{}</span><td>", verdictClass(claim.verdict),
+           escapeHtml(claim.verdict));
+    if (!claim.explanation.empty()) append(html, "<p>{}</p>", escapeHtml(claim.explanation));
+    html += escapeHtml(claim.evidence);
   }
   return html + "</tbody></table></div></section>\n";
 }

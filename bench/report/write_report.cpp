@@ -1,6 +1,7 @@
 #include "bench/report/write_report.h"
 
 #include <string>
+#include <utility>
 
 #include "bench/report/collect.h"
 #include "bench/report/csv.h"
@@ -19,8 +20,8 @@ void write(const fs::path& path, const std::string& text) {
 
 }  // namespace
 
-std::vector<fs::path> writeReport(std::span<const fs::path> paths, const ReportFiles& files) {
-  const ConvergenceReport report = collectReport(paths);
+WrittenReport writeReport(std::span<const fs::path> paths, const ReportFiles& files) {
+  ConvergenceReport report = collectReport(paths);
   const fs::path folder = fs::is_directory(paths[0]) ? paths[0] : paths[0].parent_path();
   std::vector<fs::path> written{folder / "report.html"};
   write(written[0], renderReport(report));
@@ -32,7 +33,7 @@ std::vector<fs::path> writeReport(std::span<const fs::path> paths, const ReportF
     const std::vector<fs::path> plots = writePlotFiles(report, folder / "plots");
     written.insert(written.end(), plots.begin(), plots.end());
   }
-  return written;
+  return {.files = std::move(written), .claims = std::move(report.claims)};
 }
 
 }  // namespace wavecrest

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "bench/report/report_data.h"
+
 namespace wavecrest {
 
 struct ReportFiles {
@@ -12,9 +14,13 @@ struct ReportFiles {
   bool plots = false;  ///< plots/SCENE.METRIC.svg
 };
 
-/// Writes report.html, and what else is asked for, into the folder of the first path; returns the files. Errors as
-/// collectReport, and ImageError if a file cannot be written.
-std::vector<std::filesystem::path> writeReport(std::span<const std::filesystem::path> paths,
-                                               const ReportFiles& files = {});
+struct WrittenReport {
+  std::vector<std::filesystem::path> files;
+  std::vector<ReportClaim> claims;  ///< as the page shows them
+};
+
+/// Writes report.html, and what else is asked for, into the folder of the first path. Errors as collectReport, and
+/// ImageError if a file cannot be written.
+WrittenReport writeReport(std::span<const std::filesystem::path> paths, const ReportFiles& files = {});
 
 }  // namespace wavecrest

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/chains/bootstrap.h"
@@ -55,11 +56,17 @@ class ChainSession final : public Session {
   uint64_t mutations() const { return step_ * settings_.metropolis.chains; }
   bool direct() const { return plan_.pipeline.chains->directPass && settings_.metropolis.directPass; }
 
-  std::vector<float> bootstrapTargets(uint64_t epoch);
-  void beginEpoch(uint64_t epoch);
+  // Whether a render is to end: its time is over, or somebody asked for it. Looked at before every wave.
+  using Stop = std::function<bool()>;
+
+  // These return false where they were stopped; the next call goes on from there.
+  bool bootstrap(uint64_t epoch, const Stop& stop);
+  bool beginEpoch(uint64_t epoch, const Stop& stop);
+  bool traceDirect(const Stop& stop);
+  void bootstrapWave(size_t wave, uint64_t epoch);
   void startChains(size_t wave, uint64_t epoch, const std::vector<uint32_t>& starts);
   void advance(size_t wave, uint64_t steps);
-  void traceDirect();
+  uint64_t stepsInTime(uint64_t most, double now) const;
   void addPending(size_t wave, std::vector<int64_t>& sums) const;
   void collectSplats();
 
@@ -75,10 +82,13 @@ class ChainSession final : public Session {
   BootstrapPlan bootstrap_;
   std::vector<ChainState> waves_;
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
-  uint64_t directIterations_ = 0;  // direct light samples of every pixel
-  uint64_t step_ = 0;              // steps that every chain has taken
-  double referenceMean_ = 0;       // b of the first epoch that found light: the film is in units of it
-  bool dark_ = true;               // the epoch's bootstrap found no light
+  std::vector<float> targets_;        // of the epoch's bootstrap samples, as far as they are traced
+  std::vector<char> bootstrapped_;    // which waves of them are
+  std::vector<uint64_t> directDone_;  // direct light samples of each pixel, by wave
+  uint64_t step_ = 0;                 // steps that every chain has taken
+  double stepSeconds_ = 0;            // that the latest took
+  double referenceMean_ = 0;          // b of the first epoch that found light: the film is in units of it
+  bool dark_ = true;                  // the epoch's bootstrap found no light
   struct Epoch {
     Brightness brightness;
     uint64_t steps = 0;
@@ -110,6 +120,9 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
     ChainState& state = waves_.emplace_back(chainCount(wave), kept);
     state.multiplexed = multiplexed;
   }
+  targets_.resize(bootstrap_.length.size());
+  bootstrapped_.resize((targets_.size() + settings.waveSize - 1) / settings.waveSize);
+  directDone_.resize((film_.area().pixels.size() + settings.waveSize - 1) / settings.waveSize);
   buildSeconds_ = secondsSince(begin);
 }
 
@@ -128,34 +141,38 @@ uint64_t ChainSession<S>::stepsFor(uint64_t iterations) const {
 }
 
 template <class S>
-std::vector<float> ChainSession<S>::bootstrapTargets(uint64_t epoch) {
-  std::vector<float> targets(bootstrap_.length.size());
-  const size_t waves = (targets.size() + settings_.waveSize - 1) / settings_.waveSize;
-  forEach(waves, [&](size_t wave) {
-    const FlushToZero flushToZero;
-    const size_t first = wave * settings_.waveSize,
-                 count = std::min<size_t>(settings_.waveSize, targets.size() - first);
-    // All steps are large, so no current numbers are kept.
-    ChainState state(count, {});
-    state.samples.values = nullptr;
-    const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
-    std::copy_n(kept.blocks, 2, state.samples.blocks);
-    state.multiplexed = plan_.pipeline.lightPass.has_value();
-    state.samples.stream = Stream::bootstrap;
-    state.samples.largeStep = 2;
-    for (size_t i = 0; i < count; ++i) {
-      state.columns.source[i] = static_cast<uint32_t>(first + i);
-      state.columns.length[i] = bootstrap_.length[first + i];
-    }
-    StageContext<S> context = chainContext(plan_, settings_, film_.area());
-    context.sampler.iteration = static_cast<uint32_t>(epoch);
-    ChainWorker<S>& mine = worker();
-    mine.trace(context, state, count, false);
-    // Moves every chain, from nowhere, to its sample; what it adds to the film is nothing.
-    mine.decide(context, state, false);
-    for (size_t i = 0; i < count; ++i) targets[first + i] = state.columns.target[i];
+void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
+  const FlushToZero flushToZero;
+  const size_t first = wave * settings_.waveSize, count = std::min<size_t>(settings_.waveSize, targets_.size() - first);
+  // All steps are large, so no current numbers are kept.
+  ChainState state(count, {});
+  state.samples.values = nullptr;
+  const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
+  std::copy_n(kept.blocks, 2, state.samples.blocks);
+  state.multiplexed = plan_.pipeline.lightPass.has_value();
+  state.samples.stream = Stream::bootstrap;
+  state.samples.largeStep = 2;
+  for (size_t i = 0; i < count; ++i) {
+    state.columns.source[i] = static_cast<uint32_t>(first + i);
+    state.columns.length[i] = bootstrap_.length[first + i];
+  }
+  StageContext<S> context = chainContext(plan_, settings_, film_.area());
+  context.sampler.iteration = static_cast<uint32_t>(epoch);
+  ChainWorker<S>& mine = worker();
+  mine.trace(context, state, count, false);
+  // Moves every chain, from nowhere, to its sample; what it adds to the film is nothing.
+  mine.decide(context, state, false);
+  for (size_t i = 0; i < count; ++i) targets_[first + i] = state.columns.target[i];
+}
+
+template <class S>
+bool ChainSession<S>::bootstrap(uint64_t epoch, const Stop& stop) {
+  forEach(bootstrapped_.size(), [&](size_t wave) {
+    if (bootstrapped_[wave] || stop()) return;
+    bootstrapWave(wave, epoch);
+    bootstrapped_[wave] = 1;
   });
-  return targets;
+  return std::find(bootstrapped_.begin(), bootstrapped_.end(), 0) == bootstrapped_.end();
 }
 
 template <class S>
@@ -208,25 +225,27 @@ void ChainSession<S>::addPending(size_t wave, std::vector<int64_t>& sums) const 
 }
 
 template <class S>
-void ChainSession<S>::beginEpoch(uint64_t epoch) {
+bool ChainSession<S>::beginEpoch(uint64_t epoch, const Stop& stop) {
+  if (!bootstrap(epoch, stop)) return false;
+  std::fill(bootstrapped_.begin(), bootstrapped_.end(), 0);  // the next epoch has samples of its own
   if (epoch != 0) {
     for (size_t wave = 0; wave < waves_.size(); ++wave) addPending(wave, worker().splats);
   }
-  const std::vector<float> targets = bootstrapTargets(epoch);
-  const Brightness brightness = brightnessOf(bootstrap_, targets);
+  const Brightness brightness = brightnessOf(bootstrap_, targets_);
   epochs_.push_back({brightness});
   dark_ = !(brightness.mean > 0);
   if (dark_) {
     for (size_t wave = 0; wave < waves_.size(); ++wave) {
       std::fill_n(static_cast<float*>(waves_[wave].columns.target), chainCount(wave), 0.0f);
     }
-    return;
+    return true;
   }
   if (referenceMean_ == 0) referenceMean_ = brightness.mean;
   const std::vector<uint32_t> starts =
-      startSamples(bootstrap_, targets, settings_.metropolis.chains, startOffset(settings_.seed, epoch));
+      startSamples(bootstrap_, targets_, settings_.metropolis.chains, startOffset(settings_.seed, epoch));
   for (ChainState& state : waves_) state.splatFactor = static_cast<float>(brightness.mean / referenceMean_);
   forEach(waves_.size(), [&](size_t wave) { startChains(wave, epoch, starts); });
+  return true;
 }
 
 template <class S>
@@ -245,21 +264,32 @@ void ChainSession<S>::advance(size_t wave, uint64_t steps) {
 
 // One direct sample of each pixel for every so many mutations of it, beginning with the first step.
 template <class S>
-void ChainSession<S>::traceDirect() {
+bool ChainSession<S>::traceDirect(const Stop& stop) {
   const FilmArea& area = film_.area();
-  const uint64_t perIteration = kMutationsPerDirect * area.pixels.size();
-  for (; directIterations_ * perIteration < mutations(); ++directIterations_) {
-    const size_t waves = (area.pixels.size() + settings_.waveSize - 1) / settings_.waveSize;
-    forEach(waves, [&](size_t wave) {
-      const FlushToZero flushToZero;
-      const size_t first = wave * settings_.waveSize;
+  const uint64_t perIteration = kMutationsPerDirect * area.pixels.size(),
+                 goal = (mutations() + perIteration - 1) / perIteration;
+  forEach(directDone_.size(), [&](size_t wave) {
+    const FlushToZero flushToZero;
+    const size_t first = wave * settings_.waveSize;
+    for (uint64_t& done = directDone_[wave]; done < goal && !stop(); ++done) {
       StageContext<S> context = chainContext(plan_, settings_, area);
-      context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(directIterations_), nullptr};
+      context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(done), nullptr};
       ChainWorker<S>& mine = worker();
       mine.traceDirect(context, area, first, std::min<size_t>(settings_.waveSize, area.pixels.size() - first));
       mine.counters.nonFinite += film_.add(mine.wave());
-    });
-  }
+    }
+  });
+  return *std::min_element(directDone_.begin(), directDone_.end()) == goal;
+}
+
+// Chains move together, as the film divides by one number of steps, so a step that has begun is finished. One that
+// would end after the limit, by the time that the latest took, is left out; before there is any, one at a time.
+template <class S>
+uint64_t ChainSession<S>::stepsInTime(uint64_t most, double now) const {
+  if (!settings_.seconds) return most;
+  if (stepSeconds_ == 0) return std::min<uint64_t>(most, 1);
+  const double fit = (*settings_.seconds - now) / stepSeconds_;
+  return fit >= static_cast<double>(most) ? most : static_cast<uint64_t>(std::max(fit, 0.0));
 }
 
 template <class S>
@@ -282,23 +312,25 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   const double cpuBegin = processCpuSeconds();
   const WorkerLimit limit(settings_.threads);
   const uint64_t restart = settings_.metropolis.restartSteps;
-  const auto stepsLeft = [&]() -> uint64_t {
-    const double now = renderSeconds_ + secondsSince(begin);
-    progressSeconds_.store(now, std::memory_order_relaxed);
-    if ((seconds && now >= *seconds) || interrupted()) return 0;
-    const uint64_t untilRestart = restart - step_ % restart;
-    const uint64_t round = std::min(kRoundSteps, untilRestart);
-    if (!iterations) return round;
-    const uint64_t goal = stepsFor(*iterations);
-    return goal > step_ ? std::min(round, goal - step_) : 0;
+  const uint64_t goal = iterations ? stepsFor(*iterations) : std::numeric_limits<uint64_t>::max();
+  const auto now = [&] {
+    const double charged = renderSeconds_ + secondsSince(begin);
+    progressSeconds_.store(charged, std::memory_order_relaxed);
+    return charged;
   };
+  const Stop stop = [&] { return (seconds && now() >= *seconds) || interrupted(); };
   arena_.execute([&] {
-    for (uint64_t steps = stepsLeft(); steps != 0; steps = stepsLeft()) {
-      if (step_ % restart == 0) beginEpoch(step_ / restart);
+    while (!stop()) {
+      if (direct() && !traceDirect(stop)) return;
+      if (step_ >= goal) return;
+      if (epochs_.size() <= step_ / restart && !beginEpoch(step_ / restart, stop)) return;
+      const double before = now();
+      const uint64_t steps = stepsInTime(std::min({kRoundSteps, restart - step_ % restart, goal - step_}), before);
+      if (steps == 0) return;
       if (!dark_) forEach(waves_.size(), [&](size_t wave) { advance(wave, steps); });
       step_ += steps;
       epochs_.back().steps += steps;
-      if (direct()) traceDirect();
+      stepSeconds_ = (now() - before) / static_cast<double>(steps);
     }
   });
   renderSeconds_ += secondsSince(begin);
@@ -335,7 +367,10 @@ RenderStatistics ChainSession<S>::statistics() const {
 
   ChainStatistics& chains = out.chains.emplace();
   chains.mutations = mutations();
-  chains.directPaths = directIterations_ * film_.area().pixels.size();
+  for (size_t wave = 0; wave < directDone_.size(); ++wave) {
+    const size_t first = wave * settings_.waveSize, pixels = film_.area().pixels.size();
+    chains.directPaths += directDone_[wave] * std::min<size_t>(settings_.waveSize, pixels - first);
+  }
   chains.epochs = epochs_.size();
   double steps = 0, variance = 0;
   for (const Epoch& epoch : epochs_) {

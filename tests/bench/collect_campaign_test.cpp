@@ -182,7 +182,10 @@ TEST_F(CollectCampaign, findingsAreJudgedOverAllParts) {
   }
   const ConvergenceReport report = collectReport(parts);
   EXPECT_GT(report.claims.size(), 1U);
-  for (const ReportClaim& claim : report.claims) EXPECT_EQ(claim.scene, "cornell-diffuse");
+  for (const ReportClaim& claim : report.claims) {
+    EXPECT_EQ(claim.scene, "cornell-diffuse");
+    EXPECT_FALSE(claim.source.empty()) << "the study's words come with it";
+  }
 }
 
 TEST_F(CollectCampaign, refusesResultsWithoutAMeasurement) {

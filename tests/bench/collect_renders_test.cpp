@@ -200,9 +200,9 @@ TEST_F(CollectRenders, statsOfAReferenceAreNoRun) {
 TEST_F(CollectRenders, writesThePageIntoTheFolder) {
   addRun("box.pt");
   const std::vector<fs::path> folders{folder};
-  EXPECT_EQ(writeReport(folders), (std::vector<fs::path>{folder / "report.html"}));
+  EXPECT_EQ(writeReport(folders).files, (std::vector<fs::path>{folder / "report.html"}));
   EXPECT_GT(fs::file_size(folder / "report.html"), 10000U);
-  const std::vector<fs::path> files = writeReport(folders, {.csv = true, .plots = true});
+  const std::vector<fs::path> files = writeReport(folders, {.csv = true, .plots = true}).files;
   ASSERT_EQ(files.size(), 2 + collectRenders(folder).metrics.size());
   EXPECT_EQ(files[1], folder / "measurements.csv");
   EXPECT_EQ(files[2], folder / "plots" / "box.rmse.svg");

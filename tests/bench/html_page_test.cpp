@@ -107,6 +107,11 @@ TEST(Summary, claimsCarryTheirVerdicts) {
   EXPECT_TRUE(contains(claims, "0 hold, 1 do not, 1 are undecided"));
   EXPECT_TRUE(contains(claims, "<td>pt &lt; bpt<td><span class=\"verdict fails\">does not hold</span>"));
   ConvergenceReport report = sampleReport();
+  report.claims[0].source = "BPT & PT";
+  report.claims[0].explanation = "a < b";
+  const std::string explained = renderClaims(report);
+  EXPECT_TRUE(contains(explained, "<td>pt &lt; bpt<small class=\"source\">BPT &amp; PT</small><td>"));
+  EXPECT_TRUE(contains(explained, "<td><p>a &lt; b</p>0.1"));
   report.claims.clear();
   EXPECT_EQ(renderClaims(report), "");
 }

@@ -3,6 +3,7 @@
 KILLS says how often the campaign of the kill test is killed before it may finish.
 """
 
+import json
 import os
 import pathlib
 import random
@@ -190,6 +191,40 @@ class Resuming(Converge):
         self.assert_one_error_line(result, r".*room\.xml: the scene changed since this campaign began")
 
 
+class Planning(Converge):
+    def runs(self, out):
+        return kind(rows(self.results(out)), "run")
+
+    def test_a_scene_that_does_not_load_stops_it_before_the_first_run(self):
+        broken = self.write("broken.xml", ROOM.replace('"sphere"', '"obj"', 1).replace("RADIANCE", "1"))
+        result = self.converge("cornell-diffuse", broken, *TINY[1:], "--out", "a", "--progress", "none", expect=INPUT)
+        self.assert_one_error_line(result, r".*broken\.xml:\d+: ")
+        self.assertEqual(self.runs("a"), [])
+
+    def test_a_reference_that_is_missing_stops_it_before_the_first_run(self):
+        os.mkdir(self.path("given"))
+        self.run_wavecrest(
+            "reference", "cornell-diffuse", "--size", "32x24", "--spp", "8", "-o", "given/cornell-diffuse.exr"
+        )
+        scenes = ["cornell-diffuse", "cornell-mirror", *TINY[1:]]
+        result = self.converge(*scenes, "--reference", "given", "--out", "a", "--progress", "none", expect=INPUT)
+        self.assert_one_error_line(result, r"given/cornell-mirror\.exr: does not exist")
+        self.assertEqual(self.runs("a"), [])
+
+    def test_it_begins_with_what_is_ahead(self):
+        times = ["--methods", "pt,lt", "--size", "16x12", "--time", "0.02s", "--seeds", "3", "--progress", "jsonl"]
+        result = self.converge("cornell-diffuse", *times, "--out", "a")
+        plan = json.loads(result.stderr.splitlines()[0])
+        self.assertEqual((plan["total"], plan["done"]), (6, 0))
+        self.assertAlmostEqual(plan["render_seconds"], 6 * 0.02)
+        self.assertEqual(plan["unreferenced"], ["cornell-diffuse"])
+        self.assertAlmostEqual(plan["reference_seconds"], 12 * 0.02)
+        result = self.converge("--out", "a", "--resume", "--progress", "jsonl")
+        plan = json.loads(result.stderr.splitlines()[0])
+        self.assertEqual((plan["total"], plan["done"], plan["render_seconds"]), (6, 6, 0))
+        self.assertEqual(plan["unreferenced"], [])
+
+
 class Shards(Converge):
     def test_shards_together_are_the_whole(self):
         self.tiny("whole")
@@ -220,6 +255,23 @@ class Checks(Converge):
         self.assertEqual(claims["cornell-diffuse.mlt-slowest"], "undecided")
         self.converge("--out", "a", "--resume", expect=DONE)
         self.converge("--out", "a", "--resume", "--check", expect=CHECK)
+
+    def test_shards_are_checked_together(self):
+        arguments = ["cornell-diffuse", "--methods", "pt,lt", "--size", "32x24", "--time", "0.0005s", "--seeds", "6"]
+        os.mkdir(self.path("given"))
+        self.run_wavecrest(
+            "reference", "cornell-diffuse", "--size", "32x24", "--spp", "64", "-o", "given/cornell-diffuse.exr"
+        )
+        for i in (1, 2):
+            self.converge(*arguments, "--reference", "given", "--out", "a", "--shard", f"{i}/2")
+        result = self.run_wavecrest("report", "a", "--check", expect=CHECK)
+        self.assertIn("All methods converge", result.stderr)
+        self.assertIn("undecided", result.stdout)
+
+    def test_what_has_no_findings_cannot_be_checked(self):
+        self.tiny("a")
+        result = self.run_wavecrest("report", "a", "--check", expect=INPUT)
+        self.assert_one_error_line(result, r"a: holds no judged finding")
 
     def test_undecided_findings_are_no_failure(self):
         self.converge("cornell-glossy", "--methods", "vcm", "--size", "16x12", "--time", "0.01s", "--out", "a", "--check")

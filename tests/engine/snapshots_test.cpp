@@ -69,6 +69,43 @@ TEST_P(SnapshotsTest, noWaveStartsAfterTheEnd) {
   EXPECT_EQ(items(after), items(before));
 }
 
+// What a method does before its first path of the image, Metropolis' bootstrap above all, ends with the time as well.
+TEST_P(SnapshotsTest, preparationsKeepToTheTime) {
+  settings_.metropolis.bootstrapSamples = 1 << 18;
+  const auto whole = session();
+  whole->renderUntil(20, std::nullopt);
+  settings_.seconds = 1e-4;
+  const auto own = session();
+  own->renderUntil(std::nullopt, settings_.seconds);
+  EXPECT_LT(own->statistics().counters.raysClosest, whole->statistics().counters.raysClosest / 2);
+}
+
+// A bootstrap that is stopped, over and over, is that of an unbroken render.
+TEST_P(SnapshotsTest, aStoppedBootstrapGoesOn) {
+  if (GetParam().method != Method::mlt) GTEST_SKIP() << "has none";
+  settings_.metropolis.bootstrapSamples = 1 << 16;
+  const auto whole = session(), own = session();
+  whole->renderUntil(20, std::nullopt);
+  unsigned calls = 0;
+  for (; own->progressPaths() == 0; ++calls) own->renderUntil(std::nullopt, own->progressSeconds() + 1e-3);
+  EXPECT_GT(calls, 1u);
+  ASSERT_LT(own->statistics().iterations, 20u);
+  own->renderUntil(20, std::nullopt);
+  EXPECT_EQ(own->statistics().chains->directPaths, whole->statistics().chains->directPaths);
+  EXPECT_EQ(own->film().resolve(), whole->film().resolve());
+}
+
+// A limit is not overrun because all chains move together, nor is a snapshot at its end lost where they stop before it.
+TEST_P(SnapshotsTest, theLastSnapshotIsAtTheLimit) {
+  settings_.seconds = 0.05;
+  const auto own = session();
+  unsigned taken = 0;
+  const unsigned count =
+      renderWithSnapshots(*own, settings_, SnapshotSchedule::every(0.025), [&](unsigned) { ++taken; });
+  EXPECT_EQ(taken, 2u);
+  EXPECT_EQ(count, 2u);
+}
+
 // Iterations of a session that starts at k are those of one that rendered k before: sums agree, to rounding.
 TEST_P(SnapshotsTest, aSessionMayStartAtALaterIteration) {
   const auto image = [&](uint64_t first, uint64_t count) {

@@ -185,6 +185,8 @@ TEST(StudyClaims, nameScenesMethodsAndMetricsThatExist) {
   for (const Claim& claim : studyClaims()) {
     ++scenes[claim.scene];
     EXPECT_TRUE(claim.id.starts_with(claim.scene + ".")) << claim.id;
+    EXPECT_FALSE(claim.source.empty()) << claim.id;
+    EXPECT_EQ(findStudyClaim(claim.id), &claim);
     for (const Condition& c : claim.conditions) {
       EXPECT_FALSE(c.methods.empty()) << claim.id;
       for (const std::string& name : c.methods) EXPECT_TRUE(known(methods, name)) << claim.id << name;
@@ -193,6 +195,7 @@ TEST(StudyClaims, nameScenesMethodsAndMetricsThatExist) {
     }
   }
   EXPECT_EQ(scenes.size(), 9u);
+  EXPECT_EQ(findStudyClaim("nothing"), nullptr);
 }
 
 TEST(StudyClaims, malformedListsAreRefused) {
@@ -200,6 +203,9 @@ TEST(StudyClaims, malformedListsAreRefused) {
   EXPECT_THROW(parseClaims(R"([{"id": "a"}])"), ClaimListError);
   const std::string head = R"([{"id": "a", "scene": "s", "statement": "t", "all": [)";
   EXPECT_THROW(parseClaims(head + "]}]"), ClaimListError);
+  const std::string condition = R"({"kind": "good", "metrics": [], "methods": []}])";
+  EXPECT_THROW(parseClaims(head + condition + R"(], "explanatoin": "so"}])"), ClaimListError);
+  EXPECT_EQ(parseClaims(head + condition + R"(], "explanation": "so"}])").at(0).explanation, "so");
   EXPECT_THROW(parseClaims(head + R"({"kind": "nice", "metrics": [], "methods": []}]}])"), ClaimListError);
   EXPECT_THROW(parseClaims(head + R"({"kind": "good", "metrics": [], "methods": [], "facter": 2}]}])"), ClaimListError);
   EXPECT_EQ(parseClaims(head + R"({"kind": "good", "metrics": [], "methods": [], "factor": 2}]}])").size(), 1u);

@@ -1,0 +1,14 @@
+// What `--check` prints of the study's findings, and the exit code that follows from them.
+#pragma once
+
+#include <span>
+
+#include "bench/report/report_data.h"
+
+namespace wavecrest {
+
+// A line for each finding on stdout, and on stderr one for each that does not hold: then the exit code is kExitCheck.
+// Undecided ones are no failure.
+int showFindings(std::span<const ReportClaim> claims);
+
+}  // namespace wavecrest
