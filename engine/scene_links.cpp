@@ -99,16 +99,12 @@ class Walker {
  public:
   explicit Walker(const Scene& scene)
       : plan_(planRender<float>(scene, settings())),
-        // Merging needs neither a pinhole nor a box filter; of its kernels only the walking ones run here.
         stages_(findStages<float>(plan_.isa, Precision::floating, plan_.specialization)),
         intersector_(chooseIntersector(stages_, plan_.accel())),
         area_(filmArea(scene.film)),
         wave_(kPaths, plan_.needs),
         splats_(3 * area_.pixels.size()) {
     for (const MaterialRecord& material : plan_.scene->materials) events_.push_back(eventsOf(material));
-    const bool pinhole =
-        scene.sensor.kind == Sensor::Kind::perspective && scene.film.filter == ReconstructionFilter::box;
-    splatting_ = pinhole;
     // Pixels all over the film, whatever its size.
     pixels_.resize(kPaths * kIterations + kColumnPadding, area_.pixels.front());
     for (size_t i = 0; i < kPaths * kIterations; ++i) {
@@ -132,7 +128,7 @@ class Walker {
  private:
   static RenderSettings settings() {
     RenderSettings settings;
-    settings.method = Method::bpm;
+    settings.method = Method::lt;  // the kernels of both walks
     settings.isa = bestIsa();
     return settings;
   }
@@ -157,7 +153,7 @@ class Walker {
       stages_.arrive(context, wave_);
       noteEvents(walk, context.depth);
       if (walk == Walk::camera) countLit(context);
-      if (walk == Walk::light && splatting_) countSeen(context);
+      if (walk == Walk::light) countSeen(context);
       stages_.scatter(context, wave_);
     }
   }
@@ -240,7 +236,6 @@ class Walker {
   FilmArea area_;
   Wave<float> wave_;
   std::vector<int64_t> splats_;
-  bool splatting_ = false;
   std::vector<uint32_t> pixels_;
   std::vector<uint8_t> events_;           // of each material
   std::vector<uint8_t> previous_;         // events at each lane's last vertex

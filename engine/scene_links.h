@@ -26,7 +26,7 @@ struct SceneLinks {
   bool eyeSeesGlossy = false;          // a surface of narrow lobes alone is in view
   bool onlyGlossyPairs = false;        // two diffuse events in a row are glossy ones, always
   double lightSolidAngle = 0;          // of the smallest extended light from a distance of the scene's radius, sr
-  double cameraCoverage = 0;           // share of the vertices of light paths that the lens sees; 0 with a finite lens
+  double cameraCoverage = 0;           // share of the vertices of light paths that the lens sees
   double lightCoverage = 0;            // share of the vertices of camera paths that a sampled light reaches
 };
 

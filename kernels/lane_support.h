@@ -213,10 +213,12 @@ WAVECREST_SIMD_END
 #define WAVECREST_INSTANTIATE_PLAIN(STAGE)              \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuse) \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smooth)  \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, plain)   \
   WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuse)
 #define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)                   \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuseBidirectional) \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smoothBidirectional)  \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, plainBidirectional)   \
   WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuseBidirectional)
 #endif
 #define WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)       \

@@ -115,14 +115,16 @@ struct AliasEntry {
   uint32_t other;
 };
 
-// Raster (x, y) maps to the direction corner + x * du + y * dv, not normalised. METHODS: D is the distance in pixels at
-// which a pixel has area 1.
 enum class FilterKind : uint32_t { box, tent, gaussian };
 
+// Raster (x, y) maps to the direction corner + x * du + y * dv, not normalised, from the origin; of parallel rays,
+// which all go along the axis, to their origin, origin + x * du + y * dv. du, dv and the axis are perpendicular to each
+// other.
 struct CameraView {
   double origin[3], corner[3], du[3], dv[3], axis[3];
-  uint32_t width = 0, height = 0;  // of the full film
-  double pixelDistance = 0;
+  uint32_t width = 0, height = 0;         // of the full film
+  bool parallel = false;                  // an orthographic camera
+  double pixelDistance = 0;               // METHODS: D, the distance in pixels at which a pixel has area 1
   double planeDepth = 0;                  // corner . axis
   double inverseDu2 = 0, inverseDv2 = 0;  // 1 / |du|^2, 1 / |dv|^2
   double lensRadius = 0, focusDistance = 0;

@@ -38,12 +38,29 @@ enum Feature : uint32_t {
 };
 
 // What kernels are instantiated for: feature sets, in the order in which a scene and method try them; the last has all.
-enum class Specialization { diffuse, smooth, diffuseBidirectional, smoothBidirectional, general };
-constexpr size_t kSpecializationCount = 5;
+// plain: everything but textures and shading normals, which are what makes each vertex dearer (kernels/README.md).
+enum class Specialization {
+  diffuse,
+  smooth,
+  plain,
+  diffuseBidirectional,
+  smoothBidirectional,
+  plainBidirectional,
+  general
+};
+constexpr size_t kSpecializationCount = 7;
 constexpr std::array<std::string_view, kSpecializationCount> kSpecializationNames{
-    "diffuse", "smooth", "diffuse-bidirectional", "smooth-bidirectional", "general"};
-constexpr std::array<uint32_t, kSpecializationCount> kSpecializationFeatures{
-    0, kSpecularBsdfs | kCurvedShapes, kBidirectional, kSpecularBsdfs | kCurvedShapes | kBidirectional, 255};
+    "diffuse", "smooth", "plain", "diffuse-bidirectional", "smooth-bidirectional", "plain-bidirectional", "general"};
+constexpr uint32_t kAllFeatures = 255;
+constexpr uint32_t kPlainFeatures = kAllFeatures & ~(kTextures | kShadingNormals | kBidirectional);
+constexpr uint32_t kSmoothFeatures = kSpecularBsdfs | kCurvedShapes;
+constexpr std::array<uint32_t, kSpecializationCount> kSpecializationFeatures{0,
+                                                                             kSmoothFeatures,
+                                                                             kPlainFeatures,
+                                                                             kBidirectional,
+                                                                             kSmoothFeatures | kBidirectional,
+                                                                             kPlainFeatures | kBidirectional,
+                                                                             kAllFeatures};
 
 constexpr uint32_t featuresOf(Specialization specialization) {
   return kSpecializationFeatures[static_cast<size_t>(specialization)];

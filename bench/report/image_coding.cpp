@@ -4,13 +4,11 @@
 #include <png.h>
 
 #include <algorithm>
-#include <csetjmp>
-#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <stdexcept>
-// After <cstdio>: jpeglib.h uses FILE without declaring it.
-#include <jpeglib.h>
+
+#include "metrics/image/jpeg_errors.h"
 
 namespace wavecrest {
 namespace {
@@ -32,19 +30,6 @@ std::vector<uint8_t> encodePng(const ReportImage& image) {
   }
   bytes.resize(size);
   return bytes;
-}
-
-// libjpeg reports errors through a callback that must not return; it jumps back, over frames without destructors.
-struct JpegErrors {
-  jpeg_error_mgr manager;  // first member: libjpeg hands back a pointer to it
-  std::jmp_buf returnPoint;
-  char message[JMSG_LENGTH_MAX];
-};
-
-void onJpegError(j_common_ptr info) {
-  auto* errors = reinterpret_cast<JpegErrors*>(info->err);
-  errors->manager.format_message(info, errors->message);
-  std::longjmp(errors->returnPoint, 1);
 }
 
 struct JpegOutput {
@@ -79,10 +64,9 @@ bool compress(JpegErrors& errors, jpeg_compress_struct& info, const ReportImage&
 }
 
 std::vector<uint8_t> encodeJpeg(const ReportImage& image, int quality) {
-  JpegErrors errors{};
+  JpegErrors errors;
   jpeg_compress_struct info{};
-  info.err = jpeg_std_error(&errors.manager);
-  errors.manager.error_exit = onJpegError;
+  info.err = &errors.manager;
   JpegOutput output;
   const bool done = compress(errors, info, image, quality, output);
   jpeg_destroy_compress(&info);

@@ -44,12 +44,21 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film) {
   CameraView camera;
   camera.width = film.width;
   camera.height = film.height;
-  const double halfWidth = std::tan(sensor.fovX * std::numbers::pi / 360);
+  camera.parallel = sensor.kind == Sensor::Kind::orthographic;
+  // An orthographic film reaches from -1 to 1.
+  const double halfWidth = camera.parallel ? 1 : std::tan(sensor.fovX * std::numbers::pi / 360);
   const double halfHeight = halfWidth * film.height / film.width;
-  camera.pixelDistance = film.width / (2 * halfWidth);
   // Mitsuba's camera looks along +z with +x to the left of the image, so raster x runs against x.
-  assign(camera.origin, transformPoint(sensor.toWorld, {0, 0, 0}));
-  assign(camera.corner, transformVector(sensor.toWorld, {halfWidth, halfHeight, 1}));
+  if (camera.parallel) {
+    assign(camera.origin, transformPoint(sensor.toWorld, {halfWidth, halfHeight, sensor.nearClip}));
+    assign(camera.corner, {0, 0, 0});
+  } else {
+    camera.pixelDistance = film.width / (2 * halfWidth);
+    assign(camera.origin, transformPoint(sensor.toWorld, {0, 0, 0}));
+    const auto [shiftX, shiftY] = sensor.principalPointOffset;  // in widths and heights of the film
+    assign(camera.corner,
+           transformVector(sensor.toWorld, {halfWidth * (1 - 2 * shiftX), halfHeight * (1 - 2 * shiftY), 1}));
+  }
   assign(camera.du, transformVector(sensor.toWorld, {-2 * halfWidth / film.width, 0, 0}));
   assign(camera.dv, transformVector(sensor.toWorld, {0, -2 * halfHeight / film.height, 0}));
   assign(camera.axis, normalized(transformVector(sensor.toWorld, {0, 0, 1})));
@@ -80,9 +89,6 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   auto compiled = std::make_unique<CompiledScene<S>>();
   const bool textured = (sceneFeatures(scene) & kTextures) != 0;
   auto& primitives = compiled->primitives = compilePrimitives<S>(scene, textured);
-  if (scene.sensor.kind == Sensor::Kind::orthographic) {
-    throw SceneError({scene.name}, "an orthographic sensor is not supported; expected perspective or thinlens");
-  }
   if (primitives.records.empty()) {
     const SourceLocation where = scene.shapes.empty() ? SourceLocation{scene.name} : scene.shapes.front().source;
     throw SceneError(where, "no shape of the scene has a surface; expected one of positive area");

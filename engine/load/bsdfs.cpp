@@ -180,13 +180,22 @@ void readMask(LoadContext& context, Parameters& parameters, Material& material) 
 }
 
 // Bump and normal maps are Blinn's (1978): normals that face away stay as they are, and nothing softens the terminator.
-// Newer versions of Mitsuba do both unless told otherwise; a file that asks for them by name is refused.
+// Mitsuba does both since 3.7.1 unless told otherwise; a file that asks for them by name is refused, one that leaves
+// the choice to the program is told. What they do depends on which end of a path is the eye: a normal is flipped for
+// the eye's direction and the shadowing term is one of the light's. So a vertex of a light path would not know its
+// frame before it knows where the path goes on, and the methods could not agree.
 void requireClassicalPerturbation(LoadContext& context, Parameters& parameters) {
+  bool said = true;
   for (const char* name : {"flip_invalid_normals", "use_shadowing_function"}) {
+    said = said && parameters.has(name);
     if (parameters.boolean(name, false)) {
       context.unsupported(parameters.locationOf(name), std::string(name) + " is not supported; expected false");
     }
   }
+  if (said) return;
+  context.warn(parameters.location(),
+               "bump and normal maps neither flip normals that face away nor soften shadows, as Mitsuba 3.7.1 does "
+               "unless flip_invalid_normals and use_shadowing_function are false");
 }
 
 void readBumpMap(LoadContext& context, Parameters& parameters, Material& material) {

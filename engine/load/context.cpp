@@ -29,6 +29,10 @@ std::filesystem::path LoadContext::resolvePath(std::string_view name, const XmlE
 
 void LoadContext::unsupported(const SourceLocation& where, const std::string& message) {
   if (!options.lenient) throw LoadError(where, message);
+  warn(where, message);
+}
+
+void LoadContext::warn(const SourceLocation& where, const std::string& message) {
   scene.warnings.push_back(where.file + ":" + std::to_string(where.line) + ": " + message);
 }
 

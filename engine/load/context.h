@@ -38,6 +38,7 @@ struct LoadContext {
   // Something well-formed that wavecrest does not support: an error, or with --lenient a warning after which the
   // caller goes on without it.
   void unsupported(const SourceLocation& where, const std::string& message);
+  void warn(const SourceLocation& where, const std::string& message);
 };
 
 // Marks an object as being read for its lifetime; throws if it already is, that is, if it contains itself,

@@ -1,39 +1,17 @@
 #include "engine/load/jpeg.h"
 
 #include <algorithm>
-#include <csetjmp>
-#include <cstddef>
-#include <cstdio>
-// After <cstdio>: jpeglib.h uses FILE without declaring it.
-#include <jpeglib.h>
+
+#include "metrics/image/jpeg_errors.h"
 
 namespace wavecrest {
 
 namespace {
 
-// libjpeg reports errors through callbacks that must not return. It is C, so no exception may pass through it: the
-// callback jumps back instead, and decodeJpeg keeps objects with destructors out of the frame it jumps over.
-struct ErrorState {
-  jpeg_error_mgr manager;  // first member: libjpeg hands back a pointer to it
-  std::jmp_buf returnPoint;
-  char message[JMSG_LENGTH_MAX];
-};
-
-void onError(j_common_ptr info) {
-  ErrorState* state = reinterpret_cast<ErrorState*>(info->err);
-  state->manager.format_message(info, state->message);
-  std::longjmp(state->returnPoint, 1);
-}
-
-// Warnings mean damaged data that libjpeg would paper over in grey.
-void onWarning(j_common_ptr info, int level) {
-  if (level < 0) onError(info);
-}
-
-// Plain data only: false and state.message on error.
-bool decode(ErrorState& state, jpeg_decompress_struct& info, std::span<const char> bytes, Image& image,
+// Plain data only: false and errors.message on error.
+bool decode(JpegErrors& errors, jpeg_decompress_struct& info, std::span<const char> bytes, Image& image,
             std::vector<unsigned char>& row) {
-  if (setjmp(state.returnPoint) != 0) return false;
+  if (setjmp(errors.returnPoint) != 0) return false;
   jpeg_create_decompress(&info);
   jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<unsigned long>(bytes.size()));
   jpeg_read_header(&info, TRUE);
@@ -42,7 +20,7 @@ bool decode(ErrorState& state, jpeg_decompress_struct& info, std::span<const cha
   constexpr size_t kPixelsPerByte = 1024, kMostPixels = size_t{1} << 27;
   const size_t pixels = size_t{info.image_width} * info.image_height;
   if (pixels > std::min(kMostPixels, kPixelsPerByte * bytes.size())) {
-    std::snprintf(state.message, sizeof state.message, "announces %u x %u pixels in %zu bytes", info.image_width,
+    std::snprintf(errors.message, sizeof errors.message, "announces %u x %u pixels in %zu bytes", info.image_width,
                   info.image_height, bytes.size());
     return false;
   }
@@ -76,13 +54,11 @@ ImageFile decodeJpeg(const std::string& path, std::span<const char> bytes) {
   ImageFile file;
   file.encoding = Encoding::srgb8;
   std::vector<unsigned char> row;
-  ErrorState state{};
+  JpegErrors errors;
   Decompressor decompressor;
-  decompressor.info.err = jpeg_std_error(&state.manager);
-  state.manager.error_exit = &onError;
-  state.manager.emit_message = &onWarning;
-  if (!decode(state, decompressor.info, bytes, file.image, row)) {
-    throw ImageError(path, std::string("damaged JPEG: ") + state.message, "expected an intact JPEG file");
+  decompressor.info.err = &errors.manager;
+  if (!decode(errors, decompressor.info, bytes, file.image, row)) {
+    throw ImageError(path, std::string("damaged JPEG: ") + errors.message, "expected an intact JPEG file");
   }
   return file;
 }

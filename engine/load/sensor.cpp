@@ -74,6 +74,21 @@ void checkRigid(const Matrix4& m, const SourceLocation& where) {
   }
 }
 
+// Axes that are perpendicular, of any length but none: the picture of an orthographic camera may be scaled, not
+// sheared.
+void checkPerpendicular(const Matrix4& m, const SourceLocation& where) {
+  constexpr double kTolerance = 1e-6;
+  const auto product = [&](size_t i, size_t j) { return m[0][i] * m[0][j] + m[1][i] * m[1][j] + m[2][i] * m[2][j]; };
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = i; j < 3; ++j) {
+      const bool perpendicular = std::abs(product(i, j)) <= kTolerance * std::sqrt(product(i, i) * product(j, j));
+      if (i == j ? !(product(i, i) > 0) : !perpendicular) {
+        throw LoadError(where, "to_world of the sensor shears or flattens; expected rotation, translation and scale");
+      }
+    }
+  }
+}
+
 void readCommon(Parameters& parameters, Sensor& sensor) {
   sensor.toWorld = parameters.transform("to_world").value_or(identityMatrix());
   sensor.nearClip = parameters.positiveReal("near_clip", 1e-2);
@@ -124,6 +139,7 @@ void readSensor(LoadContext& context, const XmlElement& element) {
 
   if (sensor.kind == Sensor::Kind::orthographic) {
     parameters.ignore({"fov", "fov_axis", "focal_length"});
+    checkPerpendicular(sensor.toWorld, parameters.locationOf("to_world"));
   } else {
     checkRigid(sensor.toWorld, parameters.locationOf("to_world"));
     sensor.fovX = horizontalFov(readFieldOfView(parameters), context.scene.film);

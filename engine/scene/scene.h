@@ -223,7 +223,7 @@ struct Scene {
   RenderDefaults defaults;
   uint64_t droppedTriangles = 0;      // without area, left out of the meshes
   uint64_t hash = 0;                  // of all data above that can change an image; stable across runs and machines
-  std::vector<std::string> warnings;  // what --lenient skipped
+  std::vector<std::string> warnings;  // what --lenient skipped, or may look unlike Mitsuba
 };
 
 }  // namespace wavecrest

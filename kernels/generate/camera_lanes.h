@@ -1,4 +1,4 @@
-// Camera rays in lanes: pinhole now and always; the lens only where the feature set has it.
+// Camera rays in lanes: pinhole now and always; lens and parallel rays only where the feature set has them.
 #pragma once
 
 #include <cmath>
@@ -50,6 +50,13 @@ WAVECREST_INLINE RayLanes<typename P::Real> cameraRay(const CameraView& camera, 
   Real dx = to<Real>(u.a), dy = to<Real>(u.b);
   if constexpr (has(kFeatures, kLens)) filterOffset(camera, dx, dy);
   const Real rasterX = to<Real>(toFloat(pixel.x)) + dx, rasterY = to<Real>(toFloat(pixel.y)) + dy;
+  if constexpr (has(kFeatures, kLens)) {
+    if (camera.parallel) {
+      const Vec3<Real> origin = mulAdd(broadcast<Real>(camera.du), rasterX,
+                                       mulAdd(broadcast<Real>(camera.dv), rasterY, broadcast<Real>(camera.origin)));
+      return {origin, broadcast<Real>(camera.axis)};
+    }
+  }
   const Vec3<Real> onPlane = mulAdd(broadcast<Real>(camera.du), rasterX,
                                     mulAdd(broadcast<Real>(camera.dv), rasterY, broadcast<Real>(camera.corner)));
   const Vec3<Real> origin = broadcast<Real>(camera.origin);
@@ -64,24 +71,30 @@ WAVECREST_INLINE RayLanes<typename P::Real> cameraRay(const CameraView& camera, 
   return {origin, normalizeFast<P>(onPlane)};
 }
 
+// Parallel rays of one pixel per area across them: each of its points sends one ray. METHODS 4.4.
+inline double parallelPdf(const CameraView& camera) { return std::sqrt(camera.inverseDu2 * camera.inverseDv2); }
+
 // Density per solid angle of the camera rays of one pixel: D^2 / cos^3, D the distance in pixels at which a pixel has
-// area 1 (METHODS 4.1).
-template <class P>
-WAVECREST_INLINE typename P::Real cameraPdfW(const CameraView& camera, Vec3<typename P::Real> direction) {
+// area 1 (METHODS 4.1). Of parallel rays per area across them: arrive multiplies by no d^2 then.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE typename P::Real cameraPdf(const CameraView& camera, Vec3<typename P::Real> direction) {
   using Real = typename P::Real;
+  if constexpr (has(kFeatures, kLens)) {
+    if (camera.parallel) return Real(parallelPdf(camera));
+  }
   const Real cosine = dot(direction, broadcast<Real>(camera.axis));
   return Real(camera.pixelDistance * camera.pixelDistance) / (cosine * cosine * cosine);
 }
 
 // Where a point is seen from a point of the lens: raster position, and density per area of the pixel's rays at the
 // point, without the cosine there. A thin lens's own density cancels between the lens point's and the filter's (METHODS
-// 4.2): the density is the pinhole's.
+// 4.2): the density is the pinhole's. Parallel rays meet a point from one place.
 template <class Real>
 struct Projection {
   Real rasterX, rasterY;
   Vec3<Real> direction;  // unit, from the point to the lens
   Vec3<Real> lens;       // the point on the lens
-  Real pdf;              // D^2 / (cos^3 d^2)
+  Real pdf;              // D^2 / (cos^3 d^2), or 1 / pixel area
   Mask inFront;
 };
 // u.a, u.b: place on the lens.
@@ -90,6 +103,18 @@ WAVECREST_INLINE Projection<typename P::Real> project(const CameraView& camera, 
                                                       [[maybe_unused]] const Uniform4& u) {
   using Real = typename P::Real;
   Projection<Real> out;
+  if constexpr (has(kFeatures, kLens)) {
+    if (camera.parallel) {
+      const Vec3<Real> axis = broadcast<Real>(camera.axis), fromCorner = point - broadcast<Real>(camera.origin);
+      const Real along = dot(fromCorner, axis);
+      return {.rasterX = dot(fromCorner, broadcast<Real>(camera.du)) * Real(camera.inverseDu2),
+              .rasterY = dot(fromCorner, broadcast<Real>(camera.dv)) * Real(camera.inverseDv2),
+              .direction = -axis,
+              .lens = mulAdd(axis, -along, point),
+              .pdf = Real(parallelPdf(camera)),
+              .inFront = along > Real(0)};
+    }
+  }
   out.lens = broadcast<Real>(camera.origin);
   Vec3<Real> onLens{Real(0), Real(0), Real(0)};
   // The image plane, corner + x du + y dv, is at planeDepth along the axis; where the ray meets the plane in focus,

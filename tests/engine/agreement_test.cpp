@@ -141,6 +141,15 @@ TEST(Agreement, throughALens) {
   scene.sensor.focusDistance = 3.4;
   expectAgreement(scene, {Method::lt, Method::bpt, Method::vcm});
 }
+// Turned, stretched and within the room: some of it lies behind the plane of the film.
+TEST(Agreement, underParallelRays) {
+  Scene scene = plainRoom();
+  scene.sensor.kind = Sensor::Kind::orthographic;
+  scene.sensor.toWorld = {{{-0.96, 0, -0.42, 0.4}, {0, 1.1, 0, -0.1}, {0.28, 0, -1.44, 0.9}, {0, 0, 0, 1}}};
+  expectAgreement(scene, {Method::lt, Method::bpt, Method::vcm});
+  scene.film.filter = ReconstructionFilter::gaussian;
+  expectAgreement(scene, {Method::lt}, ", gaussian");
+}
 TEST(Agreement, underAFilter) {
   for (const double scale : {0.7, 1.0, 1.9}) {
     Scene scene = plainRoom();

@@ -98,6 +98,13 @@ TEST_P(MetropolisTest, diffuseBoxIsThatOfPathTracing) {
   expectSameTruth(renderSeeds(scene, settings(), 128), renderSeeds(scene, other, 128, 2000), scene.name);
 }
 
+TEST_P(MetropolisTest, parallelRaysSeeWhatThoseOfTheUnderlyingMethodDo) {
+  Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  scene.sensor.kind = Sensor::Kind::orthographic;
+  scene.sensor.toWorld = {{{278, 0, 0, 278}, {0, 278, 0, 273}, {0, 0, 1, -800}, {0, 0, 0, 1}}};
+  expectReference(scene, settings(), 128, 128);
+}
+
 TEST_P(MetropolisTest, causticIsThatOfTheUnderlyingMethod) {
   expectReference(sceneFile("cornell-mirror", kWidth, kHeight), settings(), 192, 192);
 }

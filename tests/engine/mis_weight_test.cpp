@@ -155,6 +155,16 @@ TEST_P(MisWeightTest, isTheOneComputedFromScratch) {
   RecordProperty("largest_double", std::to_string(doubled.largest));
 }
 
+TEST(MisWeight, underParallelRaysIsTheOneComputedFromScratch) {
+  Scene scene = roomScene({.light = RoomLight::quad, .materials = RoomMaterials::mixed, .width = 32, .height = 24});
+  scene.sensor.kind = Sensor::Kind::orthographic;
+  WalkSettings settings{.lightPaths = 3000, .radius = 0.06};
+  const Comparison single = compareWeights<float>(scene, settings, kVcm.mis, 1e-4);
+  EXPECT_GT(std::min({single.nextEvent, single.connection, single.camera, single.merge}), 30u);
+  settings.precision = Precision::doubled;
+  EXPECT_GT(compareWeights<double>(scene, settings, kVcm.mis, 1e-5).camera, 30u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Engine, MisWeightTest, testing::ValuesIn(weightCases()),
                          [](const auto& instance) { return nameOf(instance.param); });
 

@@ -135,6 +135,22 @@ TEST(PathClasses, areThoseThatLinksAllow) {
 // ---- reference methods ----------------------------------------------------------------------------------------------
 
 // What the study rendered its references by; merging needs a choice between vcm and ppm.
+// t = 1 knows lenses and filters, so the share of light vertices in view does not depend on them, but for the few at
+// the frame's edge.
+TEST(SceneLinks, aLensAFilterAndParallelRaysSeeLightVerticesToo) {
+  Scene scene = sceneFile("cornell-diffuse", 64, 48);
+  const double pinhole = findLinks(scene).cameraCoverage;
+  EXPECT_GT(pinhole, 0.05);
+  scene.film.filter = ReconstructionFilter::gaussian;
+  scene.sensor.kind = Sensor::Kind::thinlens;
+  scene.sensor.apertureRadius = 5;
+  scene.sensor.focusDistance = 1000;
+  EXPECT_NEAR(findLinks(scene).cameraCoverage, pinhole, 0.1 * pinhole);
+  scene.sensor.kind = Sensor::Kind::orthographic;
+  scene.sensor.toWorld = {{{278, 0, 0, 278}, {0, 278, 0, 273}, {0, 0, 1, -800}, {0, 0, 0, 1}}};
+  EXPECT_GT(findLinks(scene).cameraCoverage, 0.05);
+}
+
 TEST(ReferenceMethod, isTheStudysForItsScenes) {
   const auto reference = [](const std::string& scene) { return classifyPaths(sceneFile(scene, 64, 48)).reference; };
   EXPECT_EQ(reference("cornell-diffuse").method, Method::pt);

@@ -117,6 +117,10 @@ class PathDensity {
     const CameraView& camera = scene_.camera;
     const Double3 axis{camera.axis[0], camera.axis[1], camera.axis[2]};
     const double cos = -dot(path.x[k - 1].toCamera, axis);
+    if (camera.parallel) {
+      const auto length = [](const double(&a)[3]) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); };
+      return cosineToCamera(path, k - 1) / (length(camera.du) * length(camera.dv));
+    }
     const double pdfW = camera.pixelDistance * camera.pixelDistance / (cos * cos * cos);
     return pdfW * cosineToCamera(path, k - 1) / toCamera2(path, k - 1);
   }

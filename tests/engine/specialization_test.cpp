@@ -2,6 +2,7 @@
 // nothing.
 #include <gtest/gtest.h>
 
+#include "tests/engine/light_scenes.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
 
@@ -16,8 +17,9 @@ class SpecializationTest : public testing::TestWithParam<Variant> {
   // Renders with each specialisation that covers the scene and compares with `general`. The same paths are traced, so
   // pixels differ by rounding only; a path whose roulette or edge is decided by rounding may differ, at most one pixel
   // in a thousand.
-  void expectSameImages(const Scene& scene, std::initializer_list<Specialization> list) {
+  void expectSameImages(const Scene& scene, std::initializer_list<Specialization> list, Method method = Method::pt) {
     RenderSettings settings = settingsFor(GetParam());
+    settings.method = method;
     settings.specialization = Specialization::general;
     const RgbImage general = render(scene, settings, kIterations);
     for (const Specialization specialization : list) {
@@ -37,12 +39,30 @@ class SpecializationTest : public testing::TestWithParam<Variant> {
 };
 
 TEST_P(SpecializationTest, diffuseSceneByEveryKernel) {
-  expectSameImages(sceneFile("cornell-diffuse", kWidth, kHeight), {Specialization::diffuse, Specialization::smooth});
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  expectSameImages(scene, {Specialization::diffuse, Specialization::smooth, Specialization::plain});
+  expectSameImages(
+      scene,
+      {Specialization::diffuseBidirectional, Specialization::smoothBidirectional, Specialization::plainBidirectional},
+      Method::bpt);
 }
 
 TEST_P(SpecializationTest, specularSceneByTheKernelsThatCoverIt) {
   expectSameImages(sceneFile("cornell-mirror", kWidth, kHeight), {Specialization::smooth});
   expectSameImages(sceneFile("validation/furnace-glass", kWidth, kHeight), {Specialization::smooth});
+}
+
+// Sun, sky, a lens, a Gaussian filter and layered materials.
+TEST_P(SpecializationTest, plainSceneByTheKernelsThatCoverIt) {
+  Scene scene =
+      roomScene({.light = RoomLight::envmap, .materials = RoomMaterials::mixed, .width = kWidth, .height = kHeight});
+  addRoomLight(scene, RoomLight::directional);
+  scene.sensor.kind = Sensor::Kind::thinlens;
+  scene.sensor.apertureRadius = 0.1;
+  scene.sensor.focusDistance = 3;
+  scene.film.filter = ReconstructionFilter::gaussian;
+  expectSameImages(scene, {Specialization::plain});
+  expectSameImages(scene, {Specialization::plainBidirectional}, Method::bpt);
 }
 
 INSTANTIATE_TEST_SUITE_P(PathTracing, SpecializationTest, testing::ValuesIn(allVariants()),
@@ -55,6 +75,18 @@ TEST(Specialization, isTheFirstThatCoversTheScene) {
   EXPECT_EQ(chosen("cornell-diffuse"), Specialization::diffuse);
   EXPECT_EQ(chosen("cornell-mirror"), Specialization::smooth);
   EXPECT_EQ(chosen("validation/furnace-sphere"), Specialization::smooth);
+  EXPECT_EQ(chosen("cornell-spheres"), Specialization::plain);
+}
+
+// Whatever else a scene has: without textures and shading normals it does not pay for them.
+TEST(Specialization, hasTexturesAndShadingNormalsOnlyWhereTheSceneDoes) {
+  constexpr uint32_t kDear = kTextures | kShadingNormals;
+  if (!isCompiled(Precision::floating, Specialization::plain)) GTEST_SKIP() << "only general kernels are compiled";
+  for (uint32_t features = 0; features <= kAllFeatures; ++features) {
+    const uint32_t chosen = featuresOf(chooseSpecialization(features, Precision::floating));
+    EXPECT_EQ((chosen & kDear) != 0, (features & kDear) != 0) << features;
+    EXPECT_EQ(features & ~chosen, 0u) << features;
+  }
 }
 
 TEST(Specialization, thatDoesNotCoverTheSceneIsRefused) {

@@ -171,6 +171,22 @@ TEST(Bsdf, BumpAndNormalMapsAreClassical) {
   expectBsdfError(bumpmap(R"(<boolean name="flip_invalid_normals" value="true"/>)"), "expected false");
 }
 
+TEST(Bsdf, MapsThatLeaveFlippingAndShadowingOpenGiveAWarning) {
+  const auto warnings = [](const std::string& parameters) {
+    return loadBody(
+               std::string(kSphere) + R"(<bsdf type="bumpmap" id="b">)" + parameters +
+               R"(<texture type="checkerboard"/><bsdf type="diffuse"/></bsdf><shape type="cube"><ref id="b"/></shape>)")
+        .warnings;
+  };
+  const std::string flip = R"(<boolean name="flip_invalid_normals" value="false"/>)",
+                    shadow = R"(<boolean name="use_shadowing_function" value="false"/>)";
+  EXPECT_TRUE(warnings(flip + shadow).empty());
+  for (const std::string& parameters : {std::string(), flip, shadow}) {
+    ASSERT_EQ(warnings(parameters).size(), 1u) << parameters;
+    EXPECT_NE(warnings(parameters)[0].find("neither flip"), std::string::npos);
+  }
+}
+
 TEST(Bsdf, NormalMapTakesItsTexture) {
   const Material material = materialOf(R"(<bsdf type="normalmap"><texture type="checkerboard" name="normalmap"/>
       <bsdf type="diffuse"/></bsdf>)");

@@ -90,6 +90,13 @@ TEST(Sensor, OrthographicMayScale) {
   EXPECT_EQ(sensor.toWorld[0][0], 3);
 }
 
+TEST(Sensor, OrthographicMayNotShearOrFlatten) {
+  expectSensorError(R"(<transform name="to_world"><matrix value="1 0.1 0 0 0 1 0 0 0 0 1 0 0 0 0 1"/></transform>)",
+                    "shears or flattens", "orthographic");
+  expectSensorError(R"(<transform name="to_world"><matrix value="1 0 0 0 0 0 0 0 0 0 1 0 0 0 0 1"/></transform>)",
+                    "; expected", "orthographic");
+}
+
 TEST(Sensor, OnlyTheFirstIsUsedAndAWarningSaysSo) {
   const Scene scene = loadBody(R"(<sensor type="perspective"><float name="fov" value="30"/></sensor>
     <sensor type="perspective"><float name="fov" value="60"/></sensor>)");

@@ -105,10 +105,10 @@ TEST_F(MeasuredRunTest, repeatsToTheBit) {
 }
 
 TEST_F(MeasuredRunTest, aRefusalSaysWhy) {
-  scene_.sensor.kind = Sensor::Kind::orthographic;
-  const RunRecord run = this->run(Method::pt, 1).value();
+  scene_.sensor.kind = Sensor::Kind::thinlens;
+  const RunRecord run = this->run(Method::mlt, 1).value();
   EXPECT_EQ(run.state, RunState::refused);
-  EXPECT_NE(run.reason.find("orthographic"), std::string::npos) << run.reason;
+  EXPECT_NE(run.reason.find("mmlt needs a pinhole"), std::string::npos) << run.reason;
   EXPECT_TRUE(run.snapshots.empty());
 }
 
