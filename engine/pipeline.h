@@ -1,6 +1,8 @@
 // A pipeline: the stages of a method in the order they run, and the loop that runs them on one wave.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -84,6 +86,12 @@ struct Pipeline {
   Pass<S> cameraPass;
   std::optional<ChainCalls<S>> chains = std::nullopt;
 
+  // The logarithm of how many iterations a camera wave of this many paths takes at once (Wave::iterationBits), where it
+  // may: camera paths that are joined with light paths of their iteration come alone.
+  uint32_t mostIterationBits(uint32_t waveSize) const {
+    if (lightPass || chains) return 0;
+    return static_cast<uint32_t>(std::bit_width(std::min(waveSize, kIterationsPerWave))) - 1;
+  }
   bool splats() const { return chains || (lightPass && lightPass->strategies.camera); }
   bool bidirectional() const { return lightPass.has_value(); }
 };

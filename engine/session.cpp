@@ -182,11 +182,9 @@ LightStore<S>* TypedSession<S>::partnersOf(size_t waveIndex, Worker& worker) {
 // Never more iterations at once than there were before, so that a film that is looked at early has samples everywhere.
 template <class S>
 uint32_t TypedSession<S>::iterationBits(uint64_t next) const {
-  if (plan_.pipeline.lightPass) return 0;
   const auto log2 = [](uint64_t n) { return static_cast<uint32_t>(std::bit_width(std::max<uint64_t>(n, 1))) - 1; };
-  const auto aligned = static_cast<uint32_t>(std::countr_zero(next));
-  return std::min({log2(kIterationsPerWave), aligned, log2(next - settings_.firstIteration), log2(endIteration_ - next),
-                   log2(settings_.waveSize)});
+  return std::min({plan_.pipeline.mostIterationBits(settings_.waveSize), static_cast<uint32_t>(std::countr_zero(next)),
+                   log2(next - settings_.firstIteration), log2(endIteration_ - next)});
 }
 
 template <class S>

@@ -8,7 +8,10 @@ namespace wavecrest {
 
 template <class S>
 WaveCapture<S>::WaveCapture(const Scene& scene, const RenderSettings& settings)
-    : settings_(settings), plan_(planRender<S>(scene, settings)), pixels_(filmArea(scene.film).pixels) {}
+    : settings_(settings),
+      plan_(planRender<S>(scene, settings)),
+      iterationBits_(plan_.pipeline.mostIterationBits(settings.waveSize)),
+      pixels_(filmArea(scene.film).pixels) {}
 
 template <class S>
 StageContext<S> WaveCapture<S>::context(uint32_t depth) {
@@ -24,8 +27,9 @@ StageContext<S> WaveCapture<S>::context(uint32_t depth) {
 
 template <class S>
 void WaveCapture<S>::trace(Wave<S>& wave, size_t index, const Observer& observer) {
-  wave.firstPath = index * settings_.waveSize;
-  wave.pathCount = std::min<size_t>(settings_.waveSize, pixels_.size() - wave.firstPath);
+  wave.firstPath = index * pixelsPerWave();
+  wave.pathCount = std::min(pixelsPerWave(), pixels_.size() - wave.firstPath) << iterationBits_;
+  wave.iterationBits = iterationBits_;
   StageContext<S> context = this->context(0);
   const auto run = [&](const StageCall<S>& stage) {
     if (!observer(stage.name, context.depth, wave)) return false;

@@ -20,7 +20,8 @@ class WaveCapture {
   // Called with the name of the stage that is about to run, its depth and the wave; returns whether to go on.
   using Observer = std::function<bool(std::string_view stage, uint32_t depth, Wave<S>& wave)>;
 
-  // Traces the wave of the given index in iteration 0 until its paths have ended or the observer has seen enough.
+  // Traces the wave of the given index, of the first iterations, until its paths have ended or the observer has seen
+  // enough.
   void trace(Wave<S>& wave, size_t index, const Observer& observer);
 
   // The middle wave of the film as it is right before `stage` runs at `depth` (0 for generate). Throws
@@ -31,13 +32,16 @@ class WaveCapture {
   StageContext<S> context(uint32_t depth);
   // The i-th index of a walk over all waves in large steps: any first few of them are spread over the film.
   size_t waveFromAllOver(size_t i) const { return i * (waveCount() / 7 * 3 + 1) % waveCount(); }
-  size_t waveCount() const { return (pixels_.size() + settings_.waveSize - 1) / settings_.waveSize; }
+  size_t waveCount() const { return (pixels_.size() + pixelsPerWave() - 1) / pixelsPerWave(); }
   RenderPlan<S>& plan() { return plan_; }
   const StageCounters& counters() const { return counters_; }
 
  private:
+  size_t pixelsPerWave() const { return settings_.waveSize >> iterationBits_; }
+
   const RenderSettings settings_;
   RenderPlan<S> plan_;
+  uint32_t iterationBits_ = 0;    // of all waves, as a session has them that has been running for a while
   std::vector<uint32_t> pixels_;  // of the film, in wave order
   StageCounters counters_;
 };
