@@ -46,7 +46,8 @@ class TypedSession final : public Session {
     std::vector<StageTally> lightTallies, cameraTallies;
     std::vector<int64_t> splats;
     uint64_t paths = 0, lightPaths = 0;
-    Worker(size_t waveSize, const ColumnNeeds& needs) : wave(waveSize, needs), light(waveSize, needs) {}
+    Worker(size_t waveSize, const ColumnNeeds& needs)
+        : wave(waveSize, needs), light(waveSize, needs, {.merged = false}) {}
   };
   // Whether a wave is to stop before it traces iteration `next`.
   using Finished = std::function<bool(uint64_t next)>;
@@ -99,7 +100,7 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
   cameraDone_.resize(waves(pixels), settings.firstIteration);
   if (plan_.pipeline.photonMap) {
     for (size_t i = 0; i < lightDone_.size(); ++i) {
-      stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs));
+      stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs, plan_.lightUse));
       stores_.back()->reserve(memory_.verticesPerWave);
     }
   }
