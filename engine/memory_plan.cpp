@@ -35,7 +35,7 @@ Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, 
                      size_t lightPaths) {
   const FlushToZero flushToZero;
   Wave<S> wave(settings.waveSize, plan.needs);
-  LightStore<S> store(settings.waveSize, plan.needs);
+  LightStore<S> store(settings.waveSize, plan.needs, plan.lightUse);
   std::vector<int64_t> splats(plan.pipeline.splats() ? 3 * area.pixels.size() : 0);
   StageCounters counters;
   StageContext<S> context;
@@ -63,7 +63,7 @@ template <class S>
 class Planner {
  public:
   Planner(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
-      : plan_(plan), settings_(settings), area_(area), emptyStore_(settings.waveSize, plan.needs) {
+      : plan_(plan), settings_(settings), area_(area), emptyStore_(settings.waveSize, plan.needs, plan.lightUse) {
     if (settings.lightPaths && !plan.pipeline.photonMap) {
       throw std::invalid_argument("planMemory: a number of light paths for " + std::string(toString(settings.method)));
     }

@@ -61,6 +61,8 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   plan.isa = stages.isa;
   plan.pipeline =
       makePipeline(settings.method, settings.metropolis.variant, stages, chooseIntersector(stages, plan.accel()));
+  plan.lightUse = {.connected = !plan.pipeline.photonMap || plan.pipeline.cameraPass.strategies.connect,
+                   .merged = plan.pipeline.photonMap};
   return plan;
 }
 template RenderPlan<float> planRender(const Scene&, const RenderSettings&);

@@ -9,6 +9,7 @@
 
 #include "engine/film.h"
 #include "engine/render_settings.h"
+#include "kernels/columns/light_vertices.h"
 
 namespace wavecrest {
 
@@ -17,6 +18,7 @@ struct RenderPlan {
   std::unique_ptr<CompiledScene<S>> scene;
   Specialization specialization{};
   ColumnNeeds needs;
+  LightVertexUse lightUse;
   Isa isa{};
   Pipeline<S> pipeline;
 

@@ -51,7 +51,8 @@ class TypedSession final : public Session {
     std::vector<StageTally> lightTallies, cameraTallies;
     std::vector<int64_t> splats;
     uint64_t paths = 0, lightPaths = 0;
-    Worker(size_t waveSize, const ColumnNeeds& needs) : wave(waveSize, needs), light(waveSize, needs) {}
+    Worker(size_t waveSize, const ColumnNeeds& needs)
+        : wave(waveSize, needs), light(waveSize, needs, {.merged = false}) {}
   };
   // How far the camera paths of a wave's pixels are: 2^iterationBits iterations from `next` on are under way, and done
   // for the first `pixels` of them.
@@ -117,7 +118,7 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
   camera_.resize(waves(pixels), {.next = settings.firstIteration});
   if (plan_.pipeline.photonMap) {
     for (size_t i = 0; i < lightDone_.size(); ++i) {
-      stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs));
+      stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs, plan_.lightUse));
       stores_.back()->reserve(memory_.verticesPerWave);
     }
   }

@@ -117,6 +117,14 @@ void fillStore(LightStore<float>& store, size_t count, float z, Random& random) 
     v.primitive[i] = z == 0 ? 0 : 1;
     v.depth[i] = 1;
     v.lane[i] = i;
+    store.photons()[i] = {.position = {v.positionX[i], v.positionY[i], v.positionZ[i]},
+                          .direction = {v.fixX[i], v.fixY[i], v.fixZ[i]},
+                          .normal = {0, 0, up},
+                          .power = {1 / (up * v.fixZ[i]), 1 / (up * v.fixZ[i]), 1 / (up * v.fixZ[i])},
+                          .dVCM = v.dVCM[i],
+                          .dVM = v.dVM[i],
+                          .depth = 1,
+                          .unused = 0};
   }
 }
 

@@ -58,7 +58,10 @@ StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& se
 
 template <class S>
 ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, size_t pixels)
-    : splats(3 * pixels), pipeline_(plan.pipeline), wave_(capacity, plan.needs), light_(capacity, plan.needs) {
+    : splats(3 * pixels),
+      pipeline_(plan.pipeline),
+      wave_(capacity, plan.needs),
+      light_(capacity, plan.needs, plan.lightUse) {
   lanesArena_ = Arena(lightLanes_.bytes(capacity));
   lightLanes_.bind(lanesArena_, capacity);
   if (pipeline_.lightPass) {

@@ -29,7 +29,27 @@ struct LightVertices : Columns<LightVertices<S>> {
   }
 };
 
-// The light vertices of one wave, in the order (depth, lane).
+// What merging reads of a light vertex. A record, not columns: searches come to photons in no order, and in float one
+// photon is one cache line.
+template <class S>
+struct alignas(64) PhotonRecord {
+  S position[3];
+  S direction[3];  // back along the light path
+  S normal[3];
+  S power[3];  // throughput over the cosine to the normal of the direction
+  S dVCM, dVM;
+  S depth;   // edges from the light
+  S unused;  // sixteen numbers, so that records are written as a transposed block of lanes
+};
+static_assert(sizeof(PhotonRecord<float>) == 64);
+
+// What camera paths do with light vertices.
+struct LightVertexUse {
+  bool connected = true, merged = true;
+};
+
+// The light vertices of one wave, in the order (depth, lane): columns for connections, records for merging. Positions
+// are columns in either case, because a photon map is built from them alone.
 //
 // Grows between stages to what a wave needs and keeps that memory, so a steady state allocates nothing.
 // Path i of an iteration is lane i % lanes of store i / lanes.
@@ -38,7 +58,8 @@ class LightStore {
  public:
   LightVertices<S> vertices;
 
-  LightStore(size_t lanes, const ColumnNeeds& needs) : lanes_(lanes), rayOfLane_(lanes) {
+  LightStore(size_t lanes, const ColumnNeeds& needs, LightVertexUse use = {})
+      : lanes_(lanes), keepsPhotons_(use.merged), rayOfLane_(lanes) {
     if (!needs.shadingNormals) {
       for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ}) column->drop();
     }
@@ -46,7 +67,15 @@ class LightStore {
       vertices.uvU.drop();
       vertices.uvV.drop();
     }
+    if (!use.connected) dropConnectedColumns();
   }
+
+  // Whether vertices have all their columns, and whether they are photons as well.
+  bool keepsColumns() const { return vertices.lane.needed(); }
+  bool keepsPhotons() const { return keepsPhotons_; }
+  // One per vertex.
+  PhotonRecord<S>* photons() { return photons_; }
+  const PhotonRecord<S>* photons() const { return photons_; }
 
   // Forgets the vertices of the previous wave.
   void clear() {
@@ -101,15 +130,35 @@ class LightStore {
 
   size_t bytes() const { return bytesFor(vertices.capacity()); }
   // The same for a store of this capacity.
-  size_t bytesFor(size_t capacity) const { return vertices.bytes(capacity) + lanes_ * sizeof(uint32_t); }
+  size_t bytesFor(size_t capacity) const {
+    return vertices.bytes(capacity) + photonBytes(capacity) + lanes_ * sizeof(uint32_t);
+  }
 
  private:
+  size_t photonBytes(size_t capacity) const { return keepsPhotons_ ? capacity * sizeof(PhotonRecord<S>) : 0; }
+
+  void dropConnectedColumns() {
+    for (Column<S>* column :
+         {&vertices.fixX, &vertices.fixY, &vertices.fixZ, &vertices.normalX, &vertices.normalY, &vertices.normalZ,
+          &vertices.shadingX, &vertices.shadingY, &vertices.shadingZ, &vertices.offset, &vertices.throughputR,
+          &vertices.throughputG, &vertices.throughputB, &vertices.dVCM, &vertices.dVC, &vertices.dVM}) {
+      column->drop();
+    }
+    for (Column<float>* column : {&vertices.uvU, &vertices.uvV}) column->drop();
+    for (Column<uint32_t>* column : {&vertices.primitive, &vertices.depth, &vertices.lane}) column->drop();
+  }
+
   void grow(size_t capacity) {
     LightVertices<S> larger = vertices;  // the same columns dropped
-    Arena arena(larger.bytes(capacity));
+    Arena arena(larger.bytes(capacity) + photonBytes(capacity));
     const size_t size = vertices.size;
     larger.bind(arena, capacity);
     copyColumns(vertices.all(), larger.all(), 0, 0, size, Indices());
+    if (keepsPhotons_) {
+      auto* const photons = arena.take<PhotonRecord<S>>(capacity);
+      std::copy_n(photons_, size, photons);
+      photons_ = photons;
+    }
     vertices = larger;
     vertices.size = size;
     arena_ = std::move(arena);
@@ -147,6 +196,8 @@ class LightStore {
   }
 
   size_t lanes_;
+  bool keepsPhotons_;
+  PhotonRecord<S>* photons_ = nullptr;
   size_t depths_ = 0, roomUsed_ = 0;
   std::vector<size_t> firstOfDepth_;  // by depth
   std::vector<uint32_t> rayOfLane_;

@@ -1,58 +1,131 @@
-// storeLightVertices: keeps each light vertex that camera paths can join.
+// storeLightVertices: keeps each light vertex that camera paths can join, for connections, for merging, or for both.
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: the next depth of the context's light
 // store [<= n], in lane order; nothing else changes. The caller has begun the depth, so there is room.
+#include <cstring>
+
 #include "kernels/columns/light_vertices.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/shading_lanes.h"
+#include "kernels/simd/interleave.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
 
-template <class P, uint32_t kFeatures>
-void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  using Real = typename P::Real;
-  const auto& scene = *context.scene;
+namespace {
+
+// Vertices of block i of a light walk that more than delta lobes can join.
+template <uint32_t kFeatures, class S>
+WAVECREST_INLINE Mask joinableVertices(const SceneView<S>& scene, const Wave<S>& wave, size_t i) {
+  const Mask active = firstLanes(wave.rays.size - i);
+  if constexpr (has(kFeatures, kSpecularBsdfs)) {
+    const UInt primitive = select(active, load(wave.hits.primitive, i), UInt(0u));
+    const RecordLanes<PrimitiveRecord<S>> at(scene.primitives, primitive);
+    const RecordLanes<MaterialRecord> material(scene.materials, at(scene.primitives->material));
+    return active & hasNonDeltaLobes(material(scene.materials->kind));
+  } else {
+    return active;
+  }
+}
+
+// The vertices of all waves are more than the caches hold: asks for the lines that later blocks will be written to.
+constexpr size_t kColumnsAhead = 64, kRecordsAhead = 48;  // items
+template <class... Items>
+WAVECREST_INLINE void prefetchColumns(size_t out, const Column<Items>&... columns) {
+  (__builtin_prefetch(columns + out + kColumnsAhead, 1), ...);
+}
+
+template <class S>
+WAVECREST_INLINE void appendPosition(const Rays<S>& rays, size_t i, Mask m, LightVertices<S>& vertices, size_t out) {
+  prefetchColumns(out, vertices.positionX, vertices.positionY, vertices.positionZ);
+  appendVec3(loadVec3(rays.originX, rays.originY, rays.originZ, i), m, vertices.positionX, vertices.positionY,
+             vertices.positionZ, out);
+}
+
+// What connections need beside the position.
+template <uint32_t kFeatures, class S>
+WAVECREST_INLINE void appendColumns(const StageContext<S>& context, const Wave<S>& wave, size_t i, Mask m,
+                                    LightVertices<S>& vertices, size_t out) {
   const auto& rays = wave.rays;
   const auto& surfaces = wave.surfaces;
   const auto& paths = wave.paths;
-  auto& vertices = context.light->vertices;
-  const size_t count = rays.size;
-  size_t out = vertices.size;
+  prefetchColumns(out, vertices.fixX, vertices.fixY, vertices.fixZ, vertices.normalX, vertices.normalY,
+                  vertices.normalZ, vertices.offset, vertices.throughputR, vertices.throughputG, vertices.throughputB,
+                  vertices.dVCM, vertices.dVC, vertices.dVM, vertices.primitive, vertices.depth, vertices.lane);
+  appendVec3(-loadVec3(rays.directionX, rays.directionY, rays.directionZ, i), m, vertices.fixX, vertices.fixY,
+             vertices.fixZ, out);
+  appendVec3(loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i), m, vertices.normalX, vertices.normalY,
+             vertices.normalZ, out);
+  append(load(surfaces.offset, i), m, vertices.offset, out);
+  if constexpr (has(kFeatures, kShadingNormals)) {
+    appendVec3(loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i), m, vertices.shadingX,
+               vertices.shadingY, vertices.shadingZ, out);
+  }
+  if constexpr (has(kFeatures, kTextures)) {
+    append(load(surfaces.uvU, i), m, vertices.uvU, out);
+    append(load(surfaces.uvV, i), m, vertices.uvV, out);
+  }
+  appendVec3(loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i), m, vertices.throughputR,
+             vertices.throughputG, vertices.throughputB, out);
+  const auto mis = loadMis<kFeatures>(paths, i);
+  append(mis.dVCM, m, vertices.dVCM, out);
+  append(mis.dVC, m, vertices.dVC, out);
+  append(mis.dVM, m, vertices.dVM, out);
+  append(load(wave.hits.primitive, i), m, vertices.primitive, out);
+  append(UInt(context.depth), m, vertices.depth, out);
+  append(load(paths.lane, i), m, vertices.lane, out);
+}
 
-  for (size_t i = 0; i < count; i += kLanes) {
-    const Mask active = firstLanes(count - i);
-    const UInt primitive = select(active, load(wave.hits.primitive, i), UInt(0u));
-    Mask joinable = active;
-    if constexpr (has(kFeatures, kSpecularBsdfs)) {
-      const RecordLanes<PrimitiveRecord<typename P::Storage>> at(scene.primitives, primitive);
-      const RecordLanes<MaterialRecord> material(scene.materials, at(scene.primitives->material));
-      joinable = active & hasNonDeltaLobes(material(scene.materials->kind));
+// The same vertices as records: the block is transposed by fours, then each lane's pieces go to its record.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE void appendPhotons(const StageContext<typename P::Storage>& context,
+                                    const Wave<typename P::Storage>& wave, size_t i, Mask m,
+                                    PhotonRecord<typename P::Storage>* out) {
+  using Real = typename P::Real;
+  using S = typename P::Storage;
+  const auto& rays = wave.rays;
+  const auto& surfaces = wave.surfaces;
+  const auto& paths = wave.paths;
+  const Vec3<Real> position = loadVec3(rays.originX, rays.originY, rays.originZ, i);
+  const Vec3<Real> fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
+  const Vec3<Real> normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
+  // METHODS 3.9; directions within the surface carry nothing that a merge could use.
+  const Real cosine = abs(dot(fix, normal));
+  const Real scale = zeroUnless(cosine > Real(1e-6f), reciprocal<P>(max(cosine, Real(1e-6f))));
+  const Vec3<Real> power = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * scale;
+  const auto mis = loadMis<kFeatures>(paths, i);
+
+  constexpr size_t kPieces = 4;
+  HWY_ALIGN S pieces[kPieces][4 * kLanes];
+  storeInterleaved(position.x, position.y, position.z, fix.x, pieces[0]);
+  storeInterleaved(fix.y, fix.z, normal.x, normal.y, pieces[1]);
+  storeInterleaved(normal.z, power.x, power.y, power.z, pieces[2]);
+  storeInterleaved(mis.dVCM, mis.dVM, Real(static_cast<float>(context.depth)), Real(0), pieces[3]);
+  static_assert(sizeof(PhotonRecord<S>) == kPieces * 4 * sizeof(S));
+  HWY_ALIGN uint32_t source[kLanes];
+  store(compress(laneIndex(), m), source);
+  for (size_t k = 0, count = countTrue(m); k < count; ++k) {
+    auto* const record = reinterpret_cast<S*>(out + k);
+    __builtin_prefetch(out + k + kRecordsAhead, 1);
+    for (size_t piece = 0; piece < kPieces; ++piece) {
+      std::memcpy(record + 4 * piece, &pieces[piece][4 * source[k]], 4 * sizeof(S));
     }
-    appendVec3(loadVec3(rays.originX, rays.originY, rays.originZ, i), joinable, vertices.positionX, vertices.positionY,
-               vertices.positionZ, out);
-    appendVec3(-loadVec3(rays.directionX, rays.directionY, rays.directionZ, i), joinable, vertices.fixX, vertices.fixY,
-               vertices.fixZ, out);
-    appendVec3(loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i), joinable, vertices.normalX,
-               vertices.normalY, vertices.normalZ, out);
-    append(load(surfaces.offset, i), joinable, vertices.offset, out);
-    if constexpr (has(kFeatures, kShadingNormals)) {
-      appendVec3(loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i), joinable, vertices.shadingX,
-                 vertices.shadingY, vertices.shadingZ, out);
-    }
-    if constexpr (has(kFeatures, kTextures)) {
-      append(load(surfaces.uvU, i), joinable, vertices.uvU, out);
-      append(load(surfaces.uvV, i), joinable, vertices.uvV, out);
-    }
-    appendVec3(loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i), joinable, vertices.throughputR,
-               vertices.throughputG, vertices.throughputB, out);
-    const MisSums<Real> mis = loadMis<kFeatures>(paths, i);
-    append(mis.dVCM, joinable, vertices.dVCM, out);
-    append(mis.dVC, joinable, vertices.dVC, out);
-    append(mis.dVM, joinable, vertices.dVM, out);
-    append(primitive, joinable, vertices.primitive, out);
-    append(UInt(context.depth), joinable, vertices.depth, out);
-    append(load(paths.lane, i), joinable, vertices.lane, out);
+  }
+}
+
+}  // namespace
+
+template <class P, uint32_t kFeatures>
+void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  LightStore<typename P::Storage>& store = *context.light;
+  auto& vertices = store.vertices;
+  const bool columns = store.keepsColumns(), photons = store.keepsPhotons();
+  size_t out = vertices.size;
+  for (size_t i = 0; i < wave.rays.size; i += kLanes) {
+    const Mask joinable = joinableVertices<kFeatures>(*context.scene, wave, i);
+    appendPosition(wave.rays, i, joinable, vertices, out);
+    if (columns) appendColumns<kFeatures>(context, wave, i, joinable, vertices, out);
+    if (photons) appendPhotons<P, kFeatures>(context, wave, i, joinable, store.photons() + out);
     out += countTrue(joinable);
   }
   context.counters->lightVertices += out - vertices.size;

@@ -1,6 +1,8 @@
 // occlude, small scenes: adds the contribution of each shadow ray that nothing blocks.
 //
 // in: ShadowRays [n]. out: Radiance grows, or on light walks that splat, the film; ShadowRays empty.
+#include <algorithm>
+
 #include "kernels/extend/small_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -26,6 +28,11 @@ WAVECREST_INLINE Mask blocked(const SmallSceneView& scene, Vec3<Float> origin, V
   return hit;
 }
 
+// Asks for the pixels that a block will be splatted to, which lie all over the film, while its rays are traced.
+WAVECREST_INLINE void prefetchPixels(const SplatSink& splats, const uint32_t* pixels, size_t count) {
+  for (size_t k = 0; k < count; ++k) __builtin_prefetch(splats.sums + 3 * size_t{pixels[k]}, 1);
+}
+
 }  // namespace
 
 template <class P, uint32_t kFeatures>
@@ -34,17 +41,19 @@ void occludeSmall(const StageContext<typename P::Storage>& context, Wave<typenam
   auto& shadow = wave.shadowRays;
   const size_t count = shadow.size;
   context.counters->raysShadow += count;
+  const bool splatting = !context.contributesToLanes();
   for (size_t i = 0; i < count; i += kLanes) {
+    if (splatting) prefetchPixels(context.splats, shadow.target + i, std::min(kLanes, count - i));
     const Vec3<Float> origin = loadVec3(shadow.originX, shadow.originY, shadow.originZ, i);
     const Vec3<Float> direction = loadVec3(shadow.directionX, shadow.directionY, shadow.directionZ, i);
     const Mask visible = andNot(firstLanes(count - i), blocked(scene, origin, direction));
     if (none(visible)) continue;
     const UInt target = load(shadow.target, i);
     const auto contribution = loadVec3(shadow.red, shadow.green, shadow.blue, i);
-    if (context.contributesToLanes()) {
-      addRadiance(wave.radiance, target, visible, contribution);
-    } else {
+    if (splatting) {
       addSplats(context, target, visible, contribution);
+    } else {
+      addRadiance(wave.radiance, target, visible, contribution);
     }
   }
   shadow.size = 0;

@@ -7,6 +7,7 @@
 #include "kernels/connect/light_sample_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/sampling/warp_lanes.h"
+#include "kernels/shade/light_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -22,13 +23,12 @@ struct EmittedRay {
 
 // Point lights: uniform over the sphere of directions.
 template <class P>
-WAVECREST_INLINE EmittedRay<typename P::Real> emitFromPoint(const RecordLanes<LightRecord<typename P::Storage>>& at,
-                                                            const LightRecord<typename P::Storage>& fields,
+WAVECREST_INLINE EmittedRay<typename P::Real> emitFromPoint(const LightLanes<typename P::Real>& light,
                                                             const Uniform4& u) {
   using Real = typename P::Real;
   const Vec3<Real> direction = uniformSphere<Real>(to<Real>(u.b), to<Real>(u.c));
-  const Real inverse = reciprocal<P>(at(fields.pick)) * Real(4 * kPi);
-  return {at(fields.p0), direction, at(fields.radiance) * inverse, {Real(4 * kPi), Real(0), Real(0)}};
+  const Real inverse = reciprocal<P>(light.pick) * Real(4 * kPi);
+  return {light.p0, direction, light.radiance * inverse, {Real(4 * kPi), Real(0), Real(0)}};
 }
 
 // Origin of a ray that comes from outside the scene: on the disc of the bounding sphere that faces the direction.
@@ -45,95 +45,92 @@ WAVECREST_INLINE Vec3<typename P::Real> pointOnDisc(const SceneView<typename P::
 // The constant environment: from the disc of the bounding sphere, against the direction to the light.
 template <class P>
 WAVECREST_INLINE EmittedRay<typename P::Real> emitFromConstant(const SceneView<typename P::Storage>& scene,
-                                                               const RecordLanes<LightRecord<typename P::Storage>>& at,
+                                                               const LightLanes<typename P::Real>& light,
                                                                const Uniform4& u, const Uniform4& v) {
   using Real = typename P::Real;
   const Vec3<Real> direction = uniformSphere<Real>(to<Real>(u.b), to<Real>(u.c));
-  const Real inversePick = reciprocal<P>(at(scene.lights->pick));
+  const Real inversePick = reciprocal<P>(light.pick);
   const Real discArea(kPi * scene.radius * scene.radius);
   const Real inverseEmission = inversePick * discArea * Real(4 * kPi);
   return {pointOnDisc<P>(scene, direction, v),
           direction,
-          at(scene.lights->radiance) * inverseEmission,
+          light.radiance * inverseEmission,
           {discArea, inverseEmission, Real(0)}};
 }
 
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE EmittedRay<typename P::Real> emitFromArea(const SceneView<typename P::Storage>& scene,
-                                                           const RecordLanes<LightRecord<typename P::Storage>>& at,
-                                                           UInt kind, const Uniform4& u, const Uniform4& v) {
+                                                           const LightLanes<typename P::Real>& light, const Uniform4& u,
+                                                           const Uniform4& v) {
   using Real = typename P::Real;
-  const auto& fields = *scene.lights;
   Real a = to<Real>(v.a), b = to<Real>(v.b);
-  const Mask fold = (kind == lightKind(LightKind::triangle)) & (a + b > Real(1));
+  const Mask fold = (light.kind == lightKind(LightKind::triangle)) & (a + b > Real(1));
   a = select(fold, Real(1) - a, a);
   b = select(fold, Real(1) - b, b);
-  Vec3<Real> point = mulAdd(at(fields.e1), a, mulAdd(at(fields.e2), b, at(fields.p0)));
-  Vec3<Real> normal = at(fields.normal);
+  Vec3<Real> point = mulAdd(light.e1, a, mulAdd(light.e2, b, light.p0));
+  Vec3<Real> normal = light.normal;
   Mask sphere = noLanes();
   if constexpr (has(kFeatures, kCurvedShapes)) {
-    sphere = kind == lightKind(LightKind::sphere);
+    sphere = light.kind == lightKind(LightKind::sphere);
     if (any(sphere)) {
       const Vec3<Real> outward = uniformSphere<Real>(to<Real>(v.a), to<Real>(v.b));
-      normal = select(sphere, outward * at(fields.e1).y, normal);
-      point = select(sphere, mulAdd(outward, at(fields.radius), at(fields.p0)), point);
+      normal = select(sphere, outward * light.e1.y, normal);
+      point = select(sphere, mulAdd(outward, light.radius, light.p0), point);
     }
   }
   const Vec3<Real> local = cosineHemisphere<Real>(to<Real>(u.b), to<Real>(u.c));
   const Vec3<Real> direction = Frame<Real>::fromNormal(normal).toWorld(local);
-  const Real area = reciprocal<P>(at(fields.inverseArea));
-  const Real inversePick = reciprocal<P>(at(fields.pick));
+  const Real area = reciprocal<P>(light.inverseArea);
+  const Real inversePick = reciprocal<P>(light.pick);
   const Real flux = Real(kPi) * area * inversePick;
   // directPdf / emissionPdf = (1 / area) / (n_0 / (pi area)). A sphere's direct density depends on the receiver: arrive
   // supplies it, and here stands pick n_0 / emissionPdf = pi area.
   const Real dVCM = select(sphere, Real(kPi) * area, Real(kPi) * reciprocal<P>(local.z));
-  Vec3<Real> radiance = at(fields.radiance);
+  Vec3<Real> radiance = light.radiance;
   if constexpr (has(kFeatures, kTextures)) {
-    radiance = radiance *
-               to<Real>(textureFactor(scene.textures, scene.texels, at(fields.texture), to<Float>(a), to<Float>(b)));
+    radiance =
+        radiance * to<Real>(textureFactor(scene.textures, scene.texels, light.texture, to<Float>(a), to<Float>(b)));
   }
-  return {mulAdd(normal, at(fields.offset), point), direction, radiance * flux, {dVCM, flux, Real(0)}};
+  return {mulAdd(normal, light.offset, point), direction, radiance * flux, {dVCM, flux, Real(0)}};
 }
 
 template <class P>
-WAVECREST_INLINE EmittedRay<typename P::Real> emitFromSpot(const RecordLanes<LightRecord<typename P::Storage>>& at,
-                                                           const LightRecord<typename P::Storage>& fields,
+WAVECREST_INLINE EmittedRay<typename P::Real> emitFromSpot(const LightLanes<typename P::Real>& light,
                                                            const Uniform4& u) {
   using Real = typename P::Real;
-  const Real cosTotal = at(fields.cosTotal);
+  const Real cosTotal = light.cosTotal;
   const Real height = max(Real(1) - cosTotal, Real(1e-9f));
   const Vec3<Real> local = uniformCone<Real>(to<Real>(u.b), to<Real>(u.c), height);
   const Real inverseCone = Real(2 * kPi) * height;
-  const Real falloff = spotFalloff(local.z, cosTotal, at(fields.cosFalloff));
-  return {at(fields.p0),
-          Frame<Real>::fromNormal(at(fields.normal)).toWorld(local),
-          at(fields.radiance) * (falloff * inverseCone * reciprocal<P>(at(fields.pick))),
+  const Real falloff = spotFalloff(local.z, cosTotal, light.cosFalloff);
+  return {light.p0,
+          Frame<Real>::fromNormal(light.normal).toWorld(local),
+          light.radiance * (falloff * inverseCone * reciprocal<P>(light.pick)),
           {inverseCone, Real(0), Real(0)}};
 }
 
 template <class P>
 WAVECREST_INLINE EmittedRay<typename P::Real> emitDirectional(const SceneView<typename P::Storage>& scene,
-                                                              const RecordLanes<LightRecord<typename P::Storage>>& at,
+                                                              const LightLanes<typename P::Real>& light,
                                                               const Uniform4& v) {
   using Real = typename P::Real;
-  const Vec3<Real> direction = at(scene.lights->normal);
+  const Vec3<Real> direction = light.normal;
   const Real discArea(kPi * scene.radius * scene.radius);
   return {pointOnDisc<P>(scene, direction, v),
           direction,
-          at(scene.lights->radiance) * (discArea * reciprocal<P>(at(scene.lights->pick))),
+          light.radiance * (discArea * reciprocal<P>(light.pick)),
           {discArea, Real(0), Real(0)}};
 }
 
 template <class P>
 WAVECREST_INLINE EmittedRay<typename P::Real> emitFromMap(const SceneView<typename P::Storage>& scene,
-                                                          const RecordLanes<LightRecord<typename P::Storage>>& at,
-                                                          const Uniform4& v, const Uniform4& more) {
+                                                          const LightLanes<typename P::Real>& light, const Uniform4& v,
+                                                          const Uniform4& more) {
   using Real = typename P::Real;
   const Vec3<Real> toLight = sampleMap<Real>(scene.environment, more);
   const MapPoint<Real> point = mapPoint(scene.environment, toLight);
   const Real discArea(kPi * scene.radius * scene.radius);
-  const Real inverseEmission =
-      discArea / (max(mapPdfW(scene.environment, point), Real(1e-30f)) * at(scene.lights->pick));
+  const Real inverseEmission = discArea / (max(mapPdfW(scene.environment, point), Real(1e-30f)) * light.pick);
   return {pointOnDisc<P>(scene, -toLight, v),
           -toLight,
           mapRadiance(scene.environment, point) * inverseEmission,
@@ -166,23 +163,22 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
     if (context.lanes != nullptr) lane = load(context.lanes + i);
     const UInt path = pathOf(context, wave, lane);
     const Uniform4 u = draw(context, path, Block::scatter), v = draw(context, path, Block::light);
-    const UInt light = pickLight(scene, u.a, u.d);
-    const RecordLanes<LightRecord<typename P::Storage>> at(scene.lights, light);
-    const UInt kind = at(scene.lights->kind);
+    const UInt picked = pickLight(scene, u.a, u.d);
+    const LightLanes<Real> light = loadLight(scene, picked);
 
-    EmittedRay<Real> ray = emitFromArea<P, kFeatures>(scene, at, kind, u, v);
-    const Mask point = kind == lightKind(LightKind::point);
-    if (any(point)) ray = select(point, emitFromPoint<P>(at, *scene.lights, u), ray);
-    const Mask constant = kind == lightKind(LightKind::constant);
-    if (any(constant)) ray = select(constant, emitFromConstant<P>(scene, at, u, v), ray);
+    EmittedRay<Real> ray = emitFromArea<P, kFeatures>(scene, light, u, v);
+    const Mask point = light.kind == lightKind(LightKind::point);
+    if (any(point)) ray = select(point, emitFromPoint<P>(light, u), ray);
+    const Mask constant = light.kind == lightKind(LightKind::constant);
+    if (any(constant)) ray = select(constant, emitFromConstant<P>(scene, light, u, v), ray);
 
     if constexpr (has(kFeatures, kRareLights)) {
-      const Mask spot = kind == lightKind(LightKind::spot);
-      if (any(spot)) ray = select(spot, emitFromSpot<P>(at, *scene.lights, u), ray);
-      const Mask directional = kind == lightKind(LightKind::directional);
-      if (any(directional)) ray = select(directional, emitDirectional<P>(scene, at, v), ray);
-      const Mask map = kind == lightKind(LightKind::envmap);
-      if (any(map)) ray = select(map, emitFromMap<P>(scene, at, v, draw(context, path, Block::environment)), ray);
+      const Mask spot = light.kind == lightKind(LightKind::spot);
+      if (any(spot)) ray = select(spot, emitFromSpot<P>(light, u), ray);
+      const Mask directional = light.kind == lightKind(LightKind::directional);
+      if (any(directional)) ray = select(directional, emitDirectional<P>(scene, light, v), ray);
+      const Mask map = light.kind == lightKind(LightKind::envmap);
+      if (any(map)) ray = select(map, emitFromMap<P>(scene, light, v, draw(context, path, Block::environment)), ray);
     }
 
     const Real zero(0);
@@ -195,7 +191,7 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
     storeMis<kFeatures>(ray.mis, paths, i);
     store(Real(1) / max(maxComponent(ray.throughput), Real(1e-30f)), paths.rouletteScale, i);
     store(lane, paths.lane, i);
-    store(light, paths.light, i);
+    store(picked, paths.light, i);
   }
 }
 

@@ -2,7 +2,10 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the photon map. out: Radiance grows. METHODS 6.2, 6.4, 5.6
 // (37)-(39). Candidates are (vertex, photon) pairs in a flat list, so that lanes are full whatever the photons per
-// cell; pairs are summed in list order, which is the order of photons.
+// cell; a vertex sums its pairs in the order of photons. Most candidates only share a bucket with the vertex, so what
+// is looked at first is their position alone; the others' records follow.
+#include <algorithm>
+
 #include "kernels/merge/photon_map.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/shading_lanes.h"
@@ -14,11 +17,8 @@ namespace {
 
 constexpr uint32_t kRunShift = 30;  // the run (dy + 2 dz) of a candidate stands above its vertex index
 constexpr uint32_t kIndexMask = (1u << kRunShift) - 1;
-
-template <class Real>
-WAVECREST_INLINE UInt cellOf(Real p, Real origin, Real inverseCell) {
-  return toUInt(to<Float>(floor((p - origin) * inverseCell)));
-}
+// Ends of a search are rounded; a photon that the distance test lets through must lie between them.
+constexpr double kReach = 1 + 1e-5;
 
 template <class P, uint32_t kFeatures>
 class Merger {
@@ -31,28 +31,33 @@ class Merger {
 
   // Lists the candidates of every vertex, and shades whenever the list is full.
   void run() {
-    const auto& grid = map_.grid;
     const uint32_t* const start = map_.bucketStart.data();
-    const UInt bucketMask(grid.bucketMask);
+    const UInt bucketMask(map_.grid.bucketMask);
     for (size_t i = 0; i < wave_.rays.size; i += kLanes) {
       const Mask querying = queries(i);
       if (none(querying)) continue;
-      const Real radius(context_.mis.radius), inverse(grid.inverseCell);
-      const UInt x = cellOf(load(wave_.rays.originX, i) - radius, Real(grid.origin[0]), inverse);
-      const UInt y = cellOf(load(wave_.rays.originY, i) - radius, Real(grid.origin[1]), inverse);
-      const UInt z = cellOf(load(wave_.rays.originZ, i) - radius, Real(grid.origin[2]), inverse);
+      const Vec3<Real> position = loadVec3(wave_.rays.originX, wave_.rays.originY, wave_.rays.originZ, i);
+      const Real reach(context_.mis.radius * kReach);
+      const Cells low = cellsOf(position - Vec3<Real>{reach, reach, reach});
+      const Cells high = cellsOf(position + Vec3<Real>{reach, reach, reach});
+      const Mask twoAlongY = low.y != high.y, twoAlongZ = low.z != high.z;
+      // At most 1 wherever there are photons; far beyond them cell numbers run out of bits.
+      const UInt moreAlongX = select(querying, min(high.x - low.x, UInt(1u)), UInt(0u));
       // All look-ups before the first that is used: buckets are all over memory.
-      UInt bucket[4]{x, x, x, x}, first[4]{x, x, x, x}, last[4]{x, x, x, x};
+      UInt bucket[4]{low.x, low.x, low.x, low.x}, first[4]{low.x, low.x, low.x, low.x},
+          last[4]{low.x, low.x, low.x, low.x};
+      Mask searched[4]{querying, querying & twoAlongY, querying & twoAlongZ, querying & twoAlongY & twoAlongZ};
       for (uint32_t run = 0; run < 4; ++run) {
-        bucket[run] = select(querying, (hash(y + UInt(run & 1), z + UInt(run >> 1)) + x) & bucketMask, UInt(0u));
+        bucket[run] =
+            select(searched[run], (hash(low.y + UInt(run & 1), low.z + UInt(run >> 1)) + low.x) & bucketMask, UInt(0u));
         first[run] = gather(start, bucket[run]);
-        last[run] = gather(start + 2, bucket[run]);
+        last[run] = gather(start, bucket[run] + UInt(1u) + moreAlongX);
       }
       for (uint32_t run = 0; run < 4; ++run) {
         const UInt vertex = laneIndex(static_cast<uint32_t>(i)) | UInt(run << kRunShift);
-        list(vertex, first[run], last[run], querying & (first[run] < last[run]));
+        list(vertex, first[run], last[run], searched[run]);
         // After the last bucket comes the first.
-        const Mask wraps = querying & (bucket[run] == bucketMask);
+        const Mask wraps = searched[run] & (bucket[run] == bucketMask) & (low.x != high.x);
         if (any(wraps)) list(vertex, UInt(start[0]), UInt(start[1]), wraps);
       }
     }
@@ -60,6 +65,17 @@ class Merger {
   }
 
  private:
+  struct Cells {
+    UInt x, y, z;
+  };
+  WAVECREST_INLINE Cells cellsOf(Vec3<Real> p) const {
+    const auto& grid = map_.grid;
+    const auto cell = [&](Real coordinate, S origin) HWY_ATTR {
+      return toUInt(to<Float>(floor((coordinate - Real(origin)) * Real(grid.inverseCell))));
+    };
+    return {cell(p.x, grid.origin[0]), cell(p.y, grid.origin[1]), cell(p.z, grid.origin[2])};
+  }
+
   static WAVECREST_INLINE UInt hash(UInt y, UInt z) {
     UInt h = (y * UInt(0x9e3779b1u)) ^ (z * UInt(0x85ebca77u));
     h = h ^ shiftRight<15>(h);
@@ -72,7 +88,7 @@ class Merger {
     Mask querying = firstLanes(wave_.rays.size - i);
     const auto& grid = map_.grid;
     // Left of the grid's margin there is no photon within reach, and cell numbers would be negative.
-    const Real reach = Real(context_.mis.radius);
+    const Real reach(context_.mis.radius * kReach);
     querying = querying & (load(wave_.rays.originX, i) - reach >= Real(grid.origin[0])) &
                (load(wave_.rays.originY, i) - reach >= Real(grid.origin[1])) &
                (load(wave_.rays.originZ, i) - reach >= Real(grid.origin[2]));
@@ -86,55 +102,37 @@ class Merger {
     return querying;
   }
 
-  // The candidates [first, last) of each lane in m.
-  void list(UInt vertexAndRun, UInt first, UInt last, Mask m) {
-    if (none(m)) return;
-    HWY_ALIGN uint32_t vertices[kLanes], begin[kLanes], end[kLanes];
-    store(compress(vertexAndRun, m), vertices);
-    store(compress(first, m), begin);
-    store(compress(last, m), end);
-    for (size_t k = 0, count = countTrue(m); k < count; ++k) {
-      for (uint32_t photon = begin[k]; photon < end[k]; ++photon) {
-        if (count_ == capacity_) shade();
-        __builtin_prefetch(map_.photons + photon);
-        wave_.pairs.camera[count_] = vertices[k];
-        wave_.pairs.light[count_] = photon;
-        ++count_;
-      }
+  // The candidates [first, last) of each lane in m: the first of every lane, then the second, and so on.
+  WAVECREST_INLINE void list(UInt vertexAndRun, UInt first, UInt last, Mask m) {
+    for (Mask more = m & (first < last); any(more); more = m & (first < last)) {
+      if (count_ + kLanes > capacity_) shade();
+      append(vertexAndRun, more, wave_.pairs.camera, count_);
+      append(first, more, wave_.pairs.light, count_);
+      count_ += countTrue(more);
+      first = first + UInt(1u);
     }
   }
 
-  // Of the listed candidates keeps those within the radius, each found through its own cell, on the same side of the
-  // surface and not beyond the path length; packs them to the front of the list.
+  // Of the listed candidates keeps those within the radius, each found through its own cell; packs vertex and photon to
+  // the front of the list.
   size_t selectNear() {
-    const PhotonRecord<S>* const photons = map_.photons;
-    const auto& grid = map_.grid;
     const auto& rays = wave_.rays;
-    const auto& surfaces = wave_.surfaces;
-    const Real radius(context_.mis.radius), inverse(grid.inverseCell);
+    const Real radius(context_.mis.radius);
+    const Real reach(context_.mis.radius * kReach);
     size_t out = 0;
     for (size_t i = 0; i < count_; i += kLanes) {
       const Mask active = firstLanes(count_ - i);
       const UInt camera = select(active, load(wave_.pairs.camera, i), UInt(0u));
       const UInt vertex = camera & UInt(kIndexMask), run = shiftRight<kRunShift>(camera);
-      const UInt photon = select(active, load(wave_.pairs.light, i), UInt(0u));
-      const RecordLanes<PhotonRecord<S>> at(photons, photon);
-      const Vec3<Real> p = at(photons->position);
+      const RecordLanes<PhotonKey<S>> at(map_.keys, select(active, load(wave_.pairs.light, i), UInt(0u)));
+      const Vec3<Real> p = at(map_.keys->position);
       const auto z = gatherVec3(rays.originX, rays.originY, rays.originZ, vertex);
-      const Vec3<Real> between = p - z;
-      Mask near = active & (length2(between) <= radius * radius);
+      Mask near = active & (length2(p - z) <= radius * radius);
       if (none(near)) continue;
-      const UInt x0 = cellOf(z.x - radius, Real(grid.origin[0]), inverse);
-      const UInt y0 = cellOf(z.y - radius, Real(grid.origin[1]), inverse) + (run & UInt(1u));
-      const UInt z0 = cellOf(z.z - radius, Real(grid.origin[2]), inverse) + shiftRight<1>(run);
-      const UInt px = cellOf(p.x, Real(grid.origin[0]), inverse);
-      near = near & ((px == x0) | (px == x0 + UInt(1u))) & (cellOf(p.y, Real(grid.origin[1]), inverse) == y0) &
-             (cellOf(p.z, Real(grid.origin[2]), inverse) == z0);
-      const auto normal = gatherVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, vertex);
-      const Vec3<Real> photonNormal = at(photons->normal);
-      near = near & (dot(normal, photonNormal) > Real(0.1f)) & (abs(dot(between, normal)) <= radius * Real(0.5f));
-      // k = len_L + len_C
-      near = near & (at(photons->depth) < UInt(context_.limits.maxDepth - context_.depth + 1));
+      const Cells low = cellsOf(z - Vec3<Real>{reach, reach, reach}), own = cellsOf(p);
+      near = near & ((own.x == low.x) | (own.x == low.x + UInt(1u))) & (own.y == low.y + (run & UInt(1u))) &
+             (own.z == low.z + shiftRight<1>(run));
+      const UInt photon = at(map_.keys->photon);
       append(vertex, near, wave_.pairs.camera, out);
       append(photon, near, wave_.pairs.light, out);
       out += countTrue(near);
@@ -142,25 +140,45 @@ class Merger {
     return out;
   }
 
+  // Photons of a block, copied out of the stores they are scattered over.
+  struct Photons {
+    HWY_ALIGN PhotonRecord<S> records[kLanes];
+  };
+  WAVECREST_INLINE void fetch(size_t i, size_t count, Photons& photons) const {
+    for (size_t k = 0; k < kLanes; ++k) {
+      photons.records[k] = map_.recordOf(wave_.pairs.light[i + std::min(k, count - 1)]);
+    }
+  }
+
   void shade() {
-    const size_t accepted = selectNear();
+    const size_t near = selectNear();
     count_ = 0;
-    context_.counters->merges += accepted;
     const auto& scene = *context_.scene;
-    const PhotonRecord<S>* const photons = map_.photons;
     const auto& paths = wave_.paths;
-    for (size_t i = 0; i < accepted; i += kLanes) {
-      const Mask active = firstLanes(accepted - i);
+    const auto& rays = wave_.rays;
+    const Real radius(context_.mis.radius);
+    // k = len_L + len_C
+    const Real longest(static_cast<float>(context_.limits.maxDepth - context_.depth));
+    Photons photons;
+    for (size_t i = 0; i < near; i += kLanes) {
+      const Mask active = firstLanes(near - i);
+      fetch(i, near - i, photons);
       const UInt vertex = select(active, load(wave_.pairs.camera, i), UInt(0u));
-      const UInt photon = select(active, load(wave_.pairs.light, i), UInt(0u));
+      const RecordLanes<PhotonRecord<S>> at(photons.records, laneIndex());
       const auto shading = gatherShading<P, kFeatures>(scene, wave_, vertex);
-      const RecordLanes<PhotonRecord<S>> at(photons, photon);
-      const Vec3<Real> direction = at(photons->direction);
+      const Vec3<Real> between =
+          at(photons.records->position) - gatherVec3(rays.originX, rays.originY, rays.originZ, vertex);
+      // On the same side of the surface, and not beyond the path length.
+      const Mask accepted = active & (dot(shading.normal, at(photons.records->normal)) > Real(0.1f)) &
+                            (abs(dot(between, shading.normal)) <= radius * Real(0.5f)) &
+                            (at(photons.records->depth) <= longest);
+      context_.counters->merges += countTrue(accepted);
+      const Vec3<Real> direction = at(photons.records->direction);
       const Vec3<Real> gen = shading.toLocal(direction);
       const auto bsdf = evalBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, gen);
       Real weight(1);
       if (context_.mis.mergeWeights) {
-        const MisSums<Real> light{at(photons->dVCM), Real(0), at(photons->dVM)};
+        const MisSums<Real> light{at(photons.records->dVCM), Real(0), at(photons.records->dVM)};
         const MisSums<Real> camera{gather(paths.dVCM, vertex), Real(0), gather(paths.dVM, vertex)};
         // Where connections compete (kVC > 0) every edge may be one; else kVC is 0 and the switch does not matter.
         const Real wLight = behindMerge(context_.mis, 1, light, bsdf.pdf);
@@ -169,8 +187,8 @@ class Merger {
       }
       const Real scale = Real(context_.mis.mergeNorm) * weight * abs(gen.z);
       const Vec3<Real> contribution = gatherVec3(paths.throughputR, paths.throughputG, paths.throughputB, vertex) *
-                                      bsdf.f * at(photons->power) * scale;
-      const Mask lit = active & shading.sidesAgree(direction, gen);
+                                      bsdf.f * at(photons.records->power) * scale;
+      const Mask lit = accepted & shading.sidesAgree(direction, gen);
       addRadiance(wave_.radiance, gather(paths.lane, vertex), lit, contribution);
     }
   }

@@ -5,24 +5,29 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <utility>
-
-#include "kernels/simd/stream_store.h"
+#include <stdexcept>
 
 namespace wavecrest {
 namespace {
 
 // Photons are first dealt to this many partitions by the top bits of the bucket, then sorted within each: the first
-// pass writes as many streams of whole cache lines past the caches, the second stays within a core's for up to some ten
+// pass writes as many streams, whose pages are all at hand, the second stays within a core's caches for up to some
 // million photons.
-constexpr uint32_t kPartitions = 256;
+constexpr uint32_t kPartitions = 64;
+// Each stream's next lines are asked for so many photons before they are written.
+constexpr size_t kPhotonsAhead = 8;
 constexpr uint32_t kMinBuckets = 1u << 12;
 
 // Iterations differ a little in how many photons they have: some room, so that memory is allocated once.
 constexpr size_t withRoom(size_t count) { return count + count / 16; }
 
-// About every third bucket is filled: searches of a hashed grid read what else is in their buckets.
-constexpr size_t bucketCount(size_t photons) { return std::max<size_t>(std::bit_ceil(2 * photons), kMinBuckets); }
+// On a surface as large as the sides of the box around all photons so many are in a cell; more where the search is
+// wide.
+constexpr double kPhotonsPerCell = 0.5;
+
+// About every second bucket is filled: searches of a hashed grid read what else is in their buckets, but with more of
+// them the table outgrows the caches.
+constexpr size_t bucketCount(size_t photons) { return std::max<size_t>(std::bit_ceil(photons), kMinBuckets); }
 
 template <class S>
 struct Bounds {
@@ -66,21 +71,6 @@ uint32_t bucketOf(const PhotonGrid<S>& grid, S x, S y, S z) {
   return (PhotonGrid<S>::hash(cell(y, 1), cell(z, 2)) + cell(x, 0)) & grid.bucketMask;
 }
 
-template <class S>
-PhotonRecord<S> recordOf(const LightVertices<S>& v, size_t i, uint32_t bucket) {
-  const S cosine = std::abs(v.fixX[i] * v.normalX[i] + v.fixY[i] * v.normalY[i] + v.fixZ[i] * v.normalZ[i]);
-  // Directions within the surface carry nothing that a merge could use (METHODS 3.9).
-  const S scale = cosine > static_cast<S>(1e-6) ? 1 / cosine : 0;
-  return {.position = {v.positionX[i], v.positionY[i], v.positionZ[i]},
-          .direction = {v.fixX[i], v.fixY[i], v.fixZ[i]},
-          .normal = {v.normalX[i], v.normalY[i], v.normalZ[i]},
-          .power = {v.throughputR[i] * scale, v.throughputG[i] * scale, v.throughputB[i] * scale},
-          .dVCM = v.dVCM[i],
-          .dVM = v.dVM[i],
-          .depth = v.depth[i],
-          .bucket = bucket};
-}
-
 }  // namespace
 
 template <class S>
@@ -89,18 +79,22 @@ void PhotonMap<S>::placeGrid(Stores stores, double radius, const ForEach& forEac
   forEach(stores.size(), [&](size_t i) { bounds[i] = boundsOf(stores[i]->vertices); });
   // A shade wider than the diameter, so that rounding cannot put the far end of a query into a third cell.
   double cell = 2 * radius * (1 + 1e-4);
+  double extent[3];
   for (size_t axis = 0; axis < 3; ++axis) {
     S low = std::numeric_limits<S>::infinity(), high = -low;
     for (const Bounds<S>& b : bounds) {
       low = std::min(low, b.low[axis]);
       high = std::max(high, b.high[axis]);
     }
-    // Two cells of margin below keep every cell that a query touches at or above zero.
+    // A margin below keeps every cell that a query touches at or above zero.
     grid.origin[axis] = low - static_cast<S>(4 * radius);
+    extent[axis] = static_cast<double>(high) - low;
     // Cell numbers stay exact in S and within 21 bits: a search of smaller radius than that reads somewhat more
     // photons.
-    cell = std::max(cell, (static_cast<double>(high) - low) / (1 << 21));
+    cell = std::max(cell, extent[axis] / (1 << 21));
   }
+  const double sides = 2 * (extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0]);
+  cell = std::max(cell, std::sqrt(kPhotonsPerCell * sides / static_cast<double>(size)));
   grid.inverseCell = static_cast<S>(1 / cell);
   grid.bucketMask = static_cast<uint32_t>(bucketCount(size)) - 1;
 }
@@ -130,59 +124,67 @@ void PhotonMap<S>::dealToPartitions(Stores stores, const ForEach& forEach) {
   const size_t storeCount = stores.size();
   forEach(storeCount, [&](size_t i) {
     const LightVertices<S>& v = stores[i]->vertices;
+    const uint32_t* const buckets = buckets_ + firstVertex_[i];
+    const uint32_t firstPhoton = static_cast<uint32_t>(i) << storeShift;
     std::array<uint32_t, kPartitions> next;
     for (uint32_t p = 0; p < kPartitions; ++p) next[p] = offsets_[p * storeCount + i];
-    for (size_t k = 0; k < v.size; ++k) {
-      const uint32_t bucket = buckets_[firstVertex_[i] + k];
-      streamStore(recordOf(v, k, bucket), &records_[next[bucket >> partitionShift]++]);
+    for (uint32_t k = 0; k < v.size; ++k) {
+      const uint32_t place = next[buckets[k] >> partitionShift]++;
+      __builtin_prefetch(dealt_ + place + kPhotonsAhead, 1);
+      dealt_[place] = {{v.positionX[k], v.positionY[k], v.positionZ[k]}, firstPhoton + k};
+      dealtBuckets_[place] = buckets[k];
     }
-    streamFence();
   });
 }
 
-// A stable counting sort by bucket. Records change places where they are: the partition is in the cache by then, and a
-// second copy of all photons would cost more time than the sort.
+// A stable counting sort by bucket.
 template <class S>
 void PhotonMap<S>::sortPartition(size_t partition, size_t storeCount) {
   const uint32_t perPartition = (grid.bucketMask + 1) / kPartitions;
-  const uint32_t first = offsets_[partition * storeCount], count = offsets_[(partition + 1) * storeCount] - first;
-  const uint32_t firstBucket = static_cast<uint32_t>(partition) * perPartition;
-  PhotonRecord<S>* const records = records_ + first;
-  std::vector<uint32_t> next(perPartition + 1, 0), source(count);
-  for (uint32_t k = 0; k < count; ++k) ++next[records[k].bucket - firstBucket + 1];
+  const uint32_t first = offsets_[partition * storeCount], end = offsets_[(partition + 1) * storeCount];
+  uint32_t* const start = bucketStart.data() + partition * perPartition;
+  const uint32_t* const bucket = dealtBuckets_ + first;
+  const uint32_t firstBucket = static_cast<uint32_t>(partition) * perPartition, count = end - first;
+  std::vector<uint32_t> next(perPartition, 0);
+  for (uint32_t k = 0; k < count; ++k) ++next[bucket[k] - firstBucket];
+  uint32_t place = first;
   for (uint32_t b = 0; b < perPartition; ++b) {
-    bucketStart[firstBucket + b] = first + next[b];
-    next[b + 1] += next[b];
+    start[b] = place;
+    place += next[b];
+    next[b] = start[b];
   }
-  for (uint32_t k = 0; k < count; ++k) source[next[records[k].bucket - firstBucket]++] = k;
-  // Cycle by cycle: the first record steps aside, each place takes the one that belongs there.
-  for (uint32_t k = 0; k < count; ++k) {
-    if (source[k] == k) continue;
-    const PhotonRecord<S> aside = records[k];
-    uint32_t place = k;
-    while (source[place] != k) {
-      records[place] = records[source[place]];
-      place = std::exchange(source[place], place);
-    }
-    records[place] = aside;
-    source[place] = place;
-  }
+  for (uint32_t k = 0; k < count; ++k) keys_[next[bucket[k] - firstBucket]++] = dealt_[first + k];
+}
+
+template <class S>
+void PhotonMap<S>::reserve(size_t count) {
+  if (count <= capacity_) return;
+  capacity_ = withRoom(count);
+  arena_ = Arena();  // first, so that the old and the new are not there at once
+  arena_ = Arena(arenaBytes(capacity_));
+  keys_ = arena_.take<PhotonKey<S>>(capacity_);
+  dealt_ = arena_.take<PhotonKey<S>>(capacity_);
+  dealtBuckets_ = arena_.take<uint32_t>(capacity_);
+  buckets_ = arena_.take<uint32_t>(capacity_);
+  keys = keys_;
 }
 
 template <class S>
 void PhotonMap<S>::build(Stores stores, double radius, const ForEach& forEach) {
   firstVertex_.assign(1, 0);
-  for (const LightStore<S>* store : stores) firstVertex_.push_back(firstVertex_.back() + store->vertices.size);
-  size = firstVertex_.back();
-  if (size > capacity_) {
-    capacity_ = withRoom(size);
-    arena_ = Arena();  // first, so that the old and the new are not there at once
-    arena_ = Arena(capacity_ * sizeof(PhotonRecord<S>));
-    records_ = arena_.take<PhotonRecord<S>>(capacity_);
-    buckets_ = {};
-    buckets_.resize(capacity_);
+  records.clear();
+  size_t largest = 1;
+  for (const LightStore<S>* store : stores) {
+    firstVertex_.push_back(firstVertex_.back() + store->vertices.size);
+    records.push_back(store->photons());
+    largest = std::max(largest, store->vertices.size);
   }
-  photons = records_;
+  storeShift = static_cast<uint32_t>(std::bit_width(largest - 1));
+  if (stores.size() > (size_t{1} << (32 - storeShift))) {
+    throw std::length_error("PhotonMap: more light vertices than 32 bits can tell apart");
+  }
+  size = firstVertex_.back();
+  reserve(size);
   const size_t buckets = bucketCount(size);
   bucketStart.resize(buckets + 2);
   if (size == 0) {
@@ -198,13 +200,19 @@ void PhotonMap<S>::build(Stores stores, double radius, const ForEach& forEach) {
 }
 
 template <class S>
+size_t PhotonMap<S>::arenaBytes(size_t capacity) {
+  // Each array is rounded up to whole lines.
+  return capacity * 2 * (sizeof(PhotonKey<S>) + sizeof(uint32_t)) + 4 * kColumnAlignment;
+}
+
+template <class S>
 size_t PhotonMap<S>::bytesFor(size_t count) {
-  return withRoom(count) * (sizeof(PhotonRecord<S>) + sizeof(uint32_t)) + (bucketCount(count) + 2) * sizeof(uint32_t);
+  return arenaBytes(withRoom(count)) + (bucketCount(count) + 2) * sizeof(uint32_t);
 }
 
 template <class S>
 size_t PhotonMap<S>::bytes() const {
-  return capacity_ * (sizeof(PhotonRecord<S>) + sizeof(uint32_t)) + bucketStart.capacity() * sizeof(uint32_t);
+  return arenaBytes(capacity_) + bucketStart.capacity() * sizeof(uint32_t);
 }
 
 template struct PhotonMap<float>;

@@ -1,8 +1,13 @@
 // Light vertices of a whole iteration sorted by place, for range searches of one fixed radius.
 //
-// A hashed grid of cells somewhat wider than the search's diameter: a query touches two cells along each axis. The
-// bucket of a cell is a hash of its y and z plus its x, so the two cells along x are neighbouring buckets and a query
-// reads four runs of photons. Buckets may mix cells; a search compares each photon's own cell, so none counts twice.
+// A hashed grid of cells at least as wide as the search's diameter: a query touches one or two cells along each axis.
+// The bucket of a cell is a hash of its y and z plus its x, so the two cells along x are neighbouring buckets and a
+// query reads one to four runs of photons. Buckets may mix cells; a search compares each photon's own cell, so none
+// counts twice. Where photons are few for the radius the cells are wider: a search then looks at one more photon now
+// and then, and at fewer buckets always.
+//
+// Only positions are sorted; the other fields stay in the records of the light stores, in the order in which light
+// paths left them. Moving them costs more than the searches that find a photon save.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +19,13 @@
 
 namespace wavecrest {
 
-// What merging reads of a light vertex. A record, not columns: searches come to photons in no order, and in float one
-// photon is one cache line.
+// Where a photon is, and its record: that of vertex (photon & (2^storeShift - 1)) of store (photon >> storeShift).
 template <class S>
-struct alignas(64) PhotonRecord {
+struct alignas(4 * sizeof(S)) PhotonKey {
   S position[3];
-  S direction[3];  // back along the light path
-  S normal[3];
-  S power[3];  // throughput over the cosine to the normal of the direction
-  S dVCM, dVM;
-  uint32_t depth;
-  uint32_t bucket;
+  uint32_t photon;
 };
-static_assert(sizeof(PhotonRecord<float>) == 64);
+static_assert(sizeof(PhotonKey<float>) == 16);
 
 // The grid that cells are counted in. cell = floor((position - origin) * inverseCell), in S without contraction, so
 // that build and search agree to the bit.
@@ -46,9 +45,11 @@ struct PhotonGrid {
 
 template <class S>
 struct PhotonMap {
-  const PhotonRecord<S>* photons = nullptr;  // by bucket, within a bucket by (wave, depth, lane)
+  const PhotonKey<S>* keys = nullptr;  // by bucket, within a bucket by (wave, depth, lane)
   size_t size = 0;
   PhotonGrid<S> grid;
+  std::vector<const PhotonRecord<S>*> records;  // of each store
+  uint32_t storeShift = 0;
   // The photons of buckets b and b + 1 are those from bucketStart[b] up to bucketStart[b + 2]; after the last bucket
   // there is an empty one.
   std::vector<uint32_t> bucketStart;
@@ -56,8 +57,12 @@ struct PhotonMap {
   // Runs body(i) for i in [0, count), in any order and on any threads.
   using ForEach = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
 
-  // Sorts the vertices of all stores. radius: of the searches that will follow. The result does not depend on how
-  // forEach spreads the work.
+  const PhotonRecord<S>& recordOf(uint32_t photon) const {
+    return records[photon >> storeShift][photon & ((1u << storeShift) - 1)];
+  }
+
+  // Sorts the vertices of all stores, which must stay as they are while the map is searched. radius: of the searches
+  // that will follow. The result does not depend on how forEach spreads the work.
   void build(std::span<LightStore<S>* const> stores, double radius, const ForEach& forEach);
 
   size_t bytes() const;
@@ -66,16 +71,20 @@ struct PhotonMap {
 
  private:
   using Stores = std::span<LightStore<S>* const>;
+  static size_t arenaBytes(size_t capacity);
+  void reserve(size_t count);
   void placeGrid(Stores stores, double radius, const ForEach& forEach);
   void countBuckets(Stores stores, const ForEach& forEach);
   void dealToPartitions(Stores stores, const ForEach& forEach);
   void sortPartition(size_t partition, size_t storeCount);
 
   size_t capacity_ = 0;
-  PhotonRecord<S>* records_ = nullptr;
-  std::vector<uint32_t> buckets_;    // of each light vertex, store by store
-  std::vector<uint32_t> offsets_;    // of each (partition, store)
-  std::vector<size_t> firstVertex_;  // of each store
+  PhotonKey<S>* keys_ = nullptr;
+  PhotonKey<S>* dealt_ = nullptr;     // by partition
+  uint32_t* dealtBuckets_ = nullptr;  // of each of these
+  uint32_t* buckets_ = nullptr;       // of each light vertex, store by store
+  std::vector<uint32_t> offsets_;     // of each (partition, store)
+  std::vector<size_t> firstVertex_;   // of each store
   Arena arena_;
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <tuple>
 
 #include "tests/engine/bidirectional_walk.h"
 #include "tests/engine/light_scenes.h"
@@ -91,7 +92,10 @@ class Recount : public WalkVisitor<float> {
   }
 
   void merging(uint32_t depth, Wave<float>& wave, StageContext<float>& context) override {
-    if (depth == 1) buildMap();
+    if (depth == 1) {
+      compareRecords();
+      buildMap();
+    }
     context.photons = &map_;
     walk_.stages().merge(context, wave);
     const size_t expected = depth + 1 > walk_.limits().maxDepth ? 0 : bruteForceMerges(depth, wave);
@@ -113,17 +117,38 @@ class Recount : public WalkVisitor<float> {
     std::multiset<float> sorted, unsorted;
     for (uint32_t bucket = 0; bucket < buckets; ++bucket) {
       for (uint32_t i = map_.bucketStart[bucket]; i < map_.bucketStart[bucket + 1]; ++i) {
-        const auto& p = map_.photons[i].position;
+        const auto& p = map_.keys[i].position;
         uint32_t cell[3];
         for (size_t axis = 0; axis < 3; ++axis) {
           cell[axis] = static_cast<uint32_t>(std::floor((p[axis] - map_.grid.origin[axis]) * map_.grid.inverseCell));
         }
         EXPECT_EQ((PhotonGrid<float>::hash(cell[1], cell[2]) + cell[0]) & map_.grid.bucketMask, bucket);
+        EXPECT_EQ(map_.recordOf(map_.keys[i].photon).position[1], p[1]);
         sorted.insert(p[0]);
         unsorted.insert(walk_.light().vertices.positionX[i]);
       }
     }
     EXPECT_EQ(sorted, unsorted);
+  }
+
+  // Records hold what columns do.
+  void compareRecords() {
+    const auto& v = walk_.light().vertices;
+    for (size_t i = 0; i < v.size; ++i) {
+      const PhotonRecord<float>& record = walk_.light().photons()[i];
+      EXPECT_EQ(std::tie(record.position[0], record.position[1], record.position[2]),
+                std::tie(v.positionX[i], v.positionY[i], v.positionZ[i]));
+      EXPECT_EQ(std::tie(record.direction[0], record.direction[1], record.direction[2]),
+                std::tie(v.fixX[i], v.fixY[i], v.fixZ[i]));
+      EXPECT_EQ(std::tie(record.normal[0], record.normal[1], record.normal[2]),
+                std::tie(v.normalX[i], v.normalY[i], v.normalZ[i]));
+      EXPECT_EQ(std::tie(record.dVCM, record.dVM), std::tie(v.dVCM[i], v.dVM[i]));
+      EXPECT_EQ(record.depth, static_cast<float>(v.depth[i]));
+      const float cosine = std::abs(v.fixX[i] * v.normalX[i] + v.fixY[i] * v.normalY[i] + v.fixZ[i] * v.normalZ[i]);
+      if (cosine < 1e-3f) continue;  // a sum of three products that cancel, rounded in another order
+      const float throughput[3] = {v.throughputR[i], v.throughputG[i], v.throughputB[i]};
+      for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(record.power[c] * cosine, throughput[c], 1e-3f * throughput[c]);
+    }
   }
 
   // 9: every pair of a camera vertex and a photon is looked at.
@@ -170,6 +195,16 @@ TEST(LightInvariants, holdFromStageToStage) {
       EXPECT_GT(recount.merges, 1000u);
     }
   }
+}
+
+// Where photons are few for the radius the cells of the map are wider than a search.
+TEST(LightInvariants, holdForMergesOfASmallRadius) {
+  const Scene scene = roomScene({.light = RoomLight::quad, .width = 64, .height = 48});
+  const WalkSettings settings{.lightPaths = 3072, .radius = 0.01, .limits = {.maxDepth = 7, .rouletteDepth = 3}};
+  BidirectionalWalk<float> walk(scene, settings, kVcm);
+  Recount recount(walk);
+  walk.run(0, recount);
+  EXPECT_GT(recount.merges, 300u);
 }
 
 uint64_t itemsOf(const RenderStatistics& statistics, const std::string& name) {

@@ -129,8 +129,8 @@ class PathRecorder : public WalkVisitor<S> {
       const LightStore<S>& light = walk_.light();
       for (size_t i = light.firstOf(lightDepth); i < light.firstOf(lightDepth + 1); i += 7) {
         const uint32_t lane = light.vertices.lane[i];
-        const PhotonMap<S> map = singlePhoton(static_cast<uint32_t>(i));
-        context.photons = &map;
+        takeSinglePhoton(static_cast<uint32_t>(i));
+        context.photons = &photon_;
         walk_.stages().merge(context, wave);
         recordMerges(lightDepth, depth, lane, wave);
       }
@@ -288,18 +288,17 @@ class PathRecorder : public WalkVisitor<S> {
 
   // ---- merging ----
 
-  PhotonMap<S> singlePhoton(uint32_t index) const {
-    LightStore<S> store(1, BidirectionalWalk<S>::kNeeds);
-    store.beginDepth(1);
+  void takeSinglePhoton(uint32_t index) {
+    photonStore_.clear();
+    photonStore_.beginDepth(1);
     LightVertices<S> from = walk_.light().vertices;
-    forEachColumn(from, store.vertices, [&](size_t, auto& source, auto& target) { target[0] = source[index]; });
-    store.vertices.claim(1);
-    LightStore<S>* const stores[1] = {&store};
-    PhotonMap<S> map;
-    map.build(stores, walk_.mis().radius, [](size_t count, const std::function<void(size_t)>& body) {
+    forEachColumn(from, photonStore_.vertices, [&](size_t, auto& source, auto& target) { target[0] = source[index]; });
+    photonStore_.vertices.claim(1);
+    photonStore_.photons()[0] = walk_.light().photons()[index];
+    LightStore<S>* const stores[1] = {&photonStore_};
+    photon_.build(stores, walk_.mis().radius, [](size_t count, const std::function<void(size_t)>& body) {
       for (size_t i = 0; i < count; ++i) body(i);
     });
-    return map;
   }
 
   void recordMerges(uint32_t lightDepth, uint32_t depth, uint32_t lightLane, Wave<S>& wave) {
@@ -320,6 +319,8 @@ class PathRecorder : public WalkVisitor<S> {
   }
 
   BidirectionalWalk<S>& walk_;
+  LightStore<S> photonStore_{1, BidirectionalWalk<S>::kNeeds};
+  PhotonMap<S> photon_;
   std::vector<std::vector<Vertex>> light_, camera_;  // by lane and depth
 };
 

@@ -85,14 +85,17 @@ class StrategyImages : public WalkVisitor<float> {
   // One map for the vertices of each depth, so that merges are known by their length.
   void buildMaps() {
     maps_ = std::vector<PhotonMap<float>>(walk_.light().depths());
+    stores_.clear();
     for (uint32_t depth = 1; depth <= walk_.light().depths(); ++depth) {
       LightVertices<float> all = walk_.light().vertices;
-      LightStore<float> some(all.size, BidirectionalWalk<float>::kNeeds);
+      stores_.push_back(std::make_unique<LightStore<float>>(all.size, BidirectionalWalk<float>::kNeeds));
+      LightStore<float>& some = *stores_.back();
       some.beginDepth(all.size);
       for (size_t i = 0; i < all.size; ++i) {
         if (all.depth[i] != depth) continue;
         const size_t target = some.vertices.claim(1);
         forEachColumn(all, some.vertices, [&](size_t, auto& from, auto& to) { to[target] = from[i]; });
+        some.photons()[target] = walk_.light().photons()[i];
       }
       LightStore<float>* const stores[1] = {&some};
       maps_[depth - 1].build(stores, walk_.mis().radius, [](size_t count, const std::function<void(size_t)>& body) {
@@ -102,6 +105,7 @@ class StrategyImages : public WalkVisitor<float> {
   }
 
   BidirectionalWalk<float>& walk_;
+  std::vector<std::unique_ptr<LightStore<float>>> stores_;
   std::vector<PhotonMap<float>> maps_;
 };
 

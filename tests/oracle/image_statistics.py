@@ -39,10 +39,10 @@ class Verdict:
         )
 
 
-def tile_means(image):
-    """(height, width, 3) -> (ceil(height / 8), ceil(width / 8), 3); tiles at the border may be smaller."""
-    rows = np.arange(0, image.shape[0], TILE)
-    columns = np.arange(0, image.shape[1], TILE)
+def tile_means(image, tile=TILE):
+    """(height, width, 3) -> (ceil(height / tile), ceil(width / tile), 3); tiles at the border may be smaller."""
+    rows = np.arange(0, image.shape[0], tile)
+    columns = np.arange(0, image.shape[1], tile)
     sums = np.add.reduceat(np.add.reduceat(image.astype(np.float64), rows, axis=0), columns, axis=1)
     heights = np.diff(np.append(rows, image.shape[0]))
     widths = np.diff(np.append(columns, image.shape[1]))
