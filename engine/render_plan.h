@@ -7,6 +7,7 @@
 
 #include <memory>
 
+#include "engine/chains/path_law.h"
 #include "engine/film.h"
 #include "engine/render_settings.h"
 
@@ -19,6 +20,7 @@ struct RenderPlan {
   ColumnNeeds needs;
   Isa isa{};
   Pipeline<S> pipeline;
+  PathLaws pathLaws;  // of chains in path space
 
   Accel accel() const { return scene->small != nullptr ? Accel::small : Accel::embree; }
 };

@@ -53,10 +53,14 @@ class ChainSession final : public Session {
   }
   uint64_t stepsFor(uint64_t iterations) const;
   uint64_t mutations() const { return step_ * settings_.metropolis.chains; }
+  bool inPathSpace() const { return plan_.pipeline.chains->inPathSpace(); }
+  PathStore<S>* pathsOf(size_t wave) { return paths_.empty() ? nullptr : &paths_[wave]; }
   bool direct() const { return plan_.pipeline.chains->directPass && settings_.metropolis.directPass; }
 
   std::vector<float> bootstrapTargets(uint64_t epoch);
-  void beginEpoch(uint64_t epoch);
+  // False where an interrupt came first: then nothing has changed.
+  bool beginEpoch(uint64_t epoch);
+  void listStuckChains(std::vector<StuckChain>& list) const;
   void startChains(size_t wave, uint64_t epoch, const std::vector<uint32_t>& starts);
   void advance(size_t wave, uint64_t steps);
   void traceDirect();
@@ -74,6 +78,7 @@ class ChainSession final : public Session {
   MemoryPlan memory_;
   BootstrapPlan bootstrap_;
   std::vector<ChainState> waves_;
+  std::vector<PathStore<S>> paths_;  // of the waves, in path space
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
   uint64_t directIterations_ = 0;  // direct light samples of every pixel
   uint64_t step_ = 0;              // steps that every chain has taken
@@ -84,6 +89,8 @@ class ChainSession final : public Session {
     uint64_t steps = 0;
   };
   std::vector<Epoch> epochs_;
+  LargeStepSums bootstrapSums_;    // of all epochs
+  std::vector<StuckChain> stuck_;  // at the ends of epochs
   double buildSeconds_ = 0, renderSeconds_ = 0, cpuSeconds_ = 0;
   std::atomic<double> progressSeconds_{0};
   std::atomic<uint64_t> progressPaths_{0};
@@ -109,6 +116,7 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
   for (size_t wave = 0; wave < waves; ++wave) {
     ChainState& state = waves_.emplace_back(chainCount(wave), kept);
     state.multiplexed = multiplexed;
+    if (inPathSpace()) paths_.emplace_back(chainCount(wave), plan_.pathLaws.law().maxEdges, plan_.needs);
   }
   buildSeconds_ = secondsSince(begin);
 }
@@ -132,6 +140,7 @@ std::vector<float> ChainSession<S>::bootstrapTargets(uint64_t epoch) {
   std::vector<float> targets(bootstrap_.length.size());
   const size_t waves = (targets.size() + settings_.waveSize - 1) / settings_.waveSize;
   forEach(waves, [&](size_t wave) {
+    if (interrupted()) return;
     const FlushToZero flushToZero;
     const size_t first = wave * settings_.waveSize,
                  count = std::min<size_t>(settings_.waveSize, targets.size() - first);
@@ -165,6 +174,7 @@ void ChainSession<S>::startChains(size_t wave, uint64_t epoch, const std::vector
   Chains& chains = state.columns;
   const size_t count = chainCount(wave);
   const ChainCounters before = state.counters;
+  const LargeStepSums largeBefore = state.largeSteps;
   // Replays the samples and accepts them all.
   for (size_t i = 0; i < count; ++i) {
     const uint32_t sample = starts[firstChain(wave) + i];
@@ -178,17 +188,19 @@ void ChainSession<S>::startChains(size_t wave, uint64_t epoch, const std::vector
   StageContext<S> context = chainContext(plan_, settings_, film_.area());
   context.sampler.iteration = static_cast<uint32_t>(epoch);
   ChainWorker<S>& mine = worker();
-  mine.trace(context, state, count, false);
+  mine.trace(context, state, count, false, pathsOf(wave));
   mine.decide(context, state, false);
 
   // From here on chains are themselves. The start is no step and has no weight.
   state.counters = before;
+  state.largeSteps = largeBefore;
   state.samples.stream = Stream::chain;
   state.samples.largeStep = static_cast<float>(settings_.metropolis.largeStep);
   for (size_t i = 0; i < count; ++i) {
     chains.source[i] = static_cast<uint32_t>(firstChain(wave) + i);
     chains.weight[i] = 0;
     chains.rejections[i] = 0;
+    if (inPathSpace()) chains.length[i] = 0;  // of any length from now on
   }
 }
 
@@ -208,11 +220,33 @@ void ChainSession<S>::addPending(size_t wave, std::vector<int64_t>& sums) const 
 }
 
 template <class S>
-void ChainSession<S>::beginEpoch(uint64_t epoch) {
+void ChainSession<S>::listStuckChains(std::vector<StuckChain>& list) const {
+  for (size_t wave = 0; wave < waves_.size(); ++wave) {
+    const Chains& chains = waves_[wave].columns;
+    for (size_t i = 0; i < chainCount(wave); ++i) {
+      if (chains.rejections[i] < kStuckRejections) continue;
+      const uint32_t edges = inPathSpace()              ? paths_[wave].headers.edges[i]
+                             : waves_[wave].multiplexed ? chains.length[i]
+                                                        : chains.cameraVertices[i];
+      list.push_back({static_cast<uint32_t>(firstChain(wave) + i), chains.rejections[i], edges, chains.pixel[i]});
+    }
+  }
+  std::stable_sort(list.begin(), list.end(),
+                   [](const StuckChain& a, const StuckChain& b) { return a.rejections > b.rejections; });
+  if (list.size() > kListedStuckChains) list.resize(kListedStuckChains);
+}
+
+template <class S>
+bool ChainSession<S>::beginEpoch(uint64_t epoch) {
+  const std::vector<float> targets = bootstrapTargets(epoch);
+  if (interrupted()) return false;
   if (epoch != 0) {
     for (size_t wave = 0; wave < waves_.size(); ++wave) addPending(wave, worker().splats);
+    listStuckChains(stuck_);
   }
-  const std::vector<float> targets = bootstrapTargets(epoch);
+  for (size_t i = 0; i < targets.size(); ++i) {
+    bootstrapSums_.add(bootstrap_.length[i], static_cast<double>(targets[i]));
+  }
   const Brightness brightness = brightnessOf(bootstrap_, targets);
   epochs_.push_back({brightness});
   dark_ = !(brightness.mean > 0);
@@ -220,13 +254,14 @@ void ChainSession<S>::beginEpoch(uint64_t epoch) {
     for (size_t wave = 0; wave < waves_.size(); ++wave) {
       std::fill_n(static_cast<float*>(waves_[wave].columns.target), chainCount(wave), 0.0f);
     }
-    return;
+    return true;
   }
   if (referenceMean_ == 0) referenceMean_ = brightness.mean;
   const std::vector<uint32_t> starts =
       startSamples(bootstrap_, targets, settings_.metropolis.chains, startOffset(settings_.seed, epoch));
   for (ChainState& state : waves_) state.splatFactor = static_cast<float>(brightness.mean / referenceMean_);
   forEach(waves_.size(), [&](size_t wave) { startChains(wave, epoch, starts); });
+  return true;
 }
 
 template <class S>
@@ -237,7 +272,7 @@ void ChainSession<S>::advance(size_t wave, uint64_t steps) {
   StageContext<S> context = chainContext(plan_, settings_, film_.area());
   for (uint64_t step = step_; step < step_ + steps; ++step) {
     context.sampler.iteration = static_cast<uint32_t>(step);
-    mine.trace(context, state, chainCount(wave), settings_.measureStages);
+    mine.trace(context, state, chainCount(wave), settings_.measureStages, pathsOf(wave));
     mine.decide(context, state, settings_.measureStages);
     progressPaths_.fetch_add(chainCount(wave), std::memory_order_relaxed);
   }
@@ -294,7 +329,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   };
   arena_.execute([&] {
     for (uint64_t steps = stepsLeft(); steps != 0; steps = stepsLeft()) {
-      if (step_ % restart == 0) beginEpoch(step_ / restart);
+      if (step_ % restart == 0 && !beginEpoch(step_ / restart)) break;
       if (!dark_) forEach(waves_.size(), [&](size_t wave) { advance(wave, steps); });
       step_ += steps;
       epochs_.back().steps += steps;
@@ -323,7 +358,8 @@ RenderStatistics ChainSession<S>::statistics() const {
     out.counters += worker->counters;
     out.bytesPerPath = worker->bytesPerPath();
     out.memory.waves +=
-        (plan_.pipeline.lightPass ? kWavesOfJoinedWalks : 1) * waveBytes(worker->bytesPerPath(), settings_.waveSize);
+        (worker->joinsWalks() ? kWavesOfJoinedWalks : 1) * waveBytes(worker->bytesPerPath(), settings_.waveSize) +
+        worker->pathBytes();
     out.memory.lightVertices += worker->lightBytes();
     out.memory.splats += splatBytes(film_.area().pixels.size());
     addTallies(worker->tallies, 0, out.stages);
@@ -349,10 +385,30 @@ RenderStatistics ChainSession<S>::statistics() const {
     chains.brightness /= steps;
     chains.brightnessError = std::sqrt(variance) / steps;
   }
+  LargeStepSums largeSteps;
   for (const ChainState& state : waves_) {
     chains.counters += state.counters;
+    largeSteps += state.largeSteps;
     chains.bytes += state.bytes();
   }
+  if (inPathSpace()) {
+    for (size_t wave = 0; wave < waves_.size(); ++wave) {
+      chains.bytes += PathStore<S>::bytesFor(chainCount(wave), plan_.pathLaws.law().maxEdges, plan_.needs);
+    }
+  }
+  // In path space a large step may have any length, and says something about b as a whole.
+  Brightness all = brightnessOf(bootstrapSums_);
+  if (inPathSpace()) {
+    all = pooled(all, brightnessOf(largeSteps));
+  } else {
+    LargeStepSums both = bootstrapSums_;
+    both += largeSteps;
+    all = brightnessOf(both);
+  }
+  chains.pooledBrightness = all.mean;
+  chains.pooledError = all.standardError;
+  chains.stuck = stuck_;
+  listStuckChains(chains.stuck);
   out.counters.nonFinite += chains.counters.nonFinite;
   out.memory.scene = sceneBytes(*plan_.scene);
   out.memory.film = filmBytes(film_.area().pixels.size());
