@@ -42,9 +42,6 @@ MetropolisSettings chosenChains(const RenderOptions& options) {
   if (!options.mlt.empty()) {
     settings.variant = static_cast<MetropolisVariant>(parseChoice("--mlt", options.mlt, kMetropolisVariantNames));
   }
-  if (settings.variant == MetropolisVariant::pathspace) {
-    throw UsageError("--mlt pathspace: not implemented; expected pssmlt or mmlt");
-  }
   settings.chains = options.chains;
   settings.directPass = !options.noDirectPass;
   settings.bootstrapSamples = options.bootstrap;
@@ -210,6 +207,10 @@ int runRender(const RenderOptions& options) {
     renderWithSnapshots(*session, settings, schedule,
                         [&](unsigned number) { outputs.writeSnapshot(*session, number); });
   }
+  if (session->interrupted() && session->statistics().paths == 0) {
+    fmt::print(stderr, "wavecrest: interrupted before anything was rendered; no image was written\n");
+    return kExitInterrupted;
+  }
   outputs.writeFinal(*session);
   return session->interrupted() ? kExitInterrupted : kExitDone;
 }
@@ -249,14 +250,15 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
       ->check(CLI::Range(0.0, 1.0));
   command->add_option("--memory", options->memory,
                       "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
-  command->add_option("--mlt", options->mlt, "what the chains of mlt walk in: pssmlt or mmlt; default: mmlt");
+  command->add_option("--mlt", options->mlt,
+                      "what the chains of mlt walk in: pssmlt, mmlt or pathspace; default: mmlt");
   command->add_option("--chains", options->chains, "Markov chains of mlt")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 24));
   command->add_option("--bootstrap", options->bootstrap, "independent samples from which chains start")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 28));
-  command->add_flag("--no-direct-pass", options->noDirectPass, "mmlt: chains render direct light too");
+  command->add_flag("--no-direct-pass", options->noDirectPass, "mmlt and pathspace: chains render direct light too");
   command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");
   command->add_option("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable")
       ->allow_extra_args(false);

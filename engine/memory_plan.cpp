@@ -90,7 +90,11 @@ class Planner {
   // Waves of walks' ends and a light vertex per lane where walks are joined; chains by the waves they are cut into.
   void addChains() {
     MemoryUse& use = memory_.use;
-    if (plan_.pipeline.lightPass) {
+    const bool pathSpace = plan_.pipeline.chains->inPathSpace();
+    const uint32_t edges = plan_.pathLaws.law().maxEdges;
+    if (pathSpace) {
+      use.waves += settings_.threads * PathMutations<S>::bytesFor(settings_.waveSize, edges, plan_.needs);
+    } else if (plan_.pipeline.lightPass) {
       use.waves *= kWavesOfJoinedWalks;
       use.lightVertices = settings_.threads * emptyStore_.bytesFor(settings_.waveSize);
     }
@@ -98,6 +102,7 @@ class Planner {
     for (size_t left = settings_.metropolis.chains; left != 0;) {
       const size_t wave = std::min<size_t>(left, settings_.waveSize);
       use.chains += ChainState::bytesFor(wave, kept);
+      if (pathSpace) use.chains += PathStore<S>::bytesFor(wave, edges, plan_.needs);
       left -= wave;
     }
   }

@@ -73,7 +73,11 @@ template <class S>
 struct ChainCalls {
   StageCall<S> propose, accept;
   std::vector<JoinCall<S>> afterCamera = {}, afterLight = {};
+  // In path space: what joins and weighs the walks of whole waves, and what follows an acceptance.
+  std::vector<StageCall<S>> weigh = {}, commit = {};
   std::optional<Pass<S>> directPass = std::nullopt;  // paths of up to kDirectLength edges, if chains leave them out
+
+  bool inPathSpace() const { return !weigh.empty(); }
 };
 constexpr uint32_t kDirectLength = 2;
 

@@ -52,7 +52,9 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   // A chain keeps no numbers for the place on the lens, or the pixel, that t = 1 chooses.
   const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
   if (lens && settings.method == Method::mlt && isBidirectional(settings)) {
-    throw SceneError({scene.name}, "mmlt needs a pinhole and the box filter; expected those, or --mlt pssmlt");
+    const auto variant = kMetropolisVariantNames[static_cast<size_t>(settings.metropolis.variant)];
+    throw SceneError({scene.name},
+                     std::string(variant) + " needs a pinhole and the box filter; expected those, or --mlt pssmlt");
   }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);
@@ -63,6 +65,11 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
       makePipeline(settings.method, settings.metropolis.variant, stages, chooseIntersector(stages, plan.accel()));
   plan.lightUse = {.connected = !plan.pipeline.photonMap || plan.pipeline.cameraPass.strategies.connect,
                    .merged = plan.pipeline.photonMap};
+  if (plan.pipeline.chains && plan.pipeline.chains->inPathSpace()) {
+    const uint32_t least = settings.metropolis.directPass ? kDirectLength + 1 : 1;
+    plan.pathLaws = PathLaws(least, std::max(settings.limits.maxDepth, least));
+    plan.pathLaws.kinds = settings.metropolis.pathMutations;
+  }
   return plan;
 }
 template RenderPlan<float> planRender(const Scene&, const RenderSettings&);

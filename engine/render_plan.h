@@ -7,6 +7,7 @@
 
 #include <memory>
 
+#include "engine/chains/path_law.h"
 #include "engine/film.h"
 #include "engine/render_settings.h"
 #include "kernels/columns/light_vertices.h"
@@ -21,6 +22,7 @@ struct RenderPlan {
   LightVertexUse lightUse;
   Isa isa{};
   Pipeline<S> pipeline;
+  PathLaws pathLaws;  // of chains in path space
 
   Accel accel() const { return scene->small != nullptr ? Accel::small : Accel::embree; }
 };

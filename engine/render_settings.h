@@ -7,6 +7,7 @@
 
 #include "engine/compile/compiled_scene.h"
 #include "engine/methods/method_list.h"
+#include "kernels/mutate/path_law.h"
 
 namespace wavecrest {
 
@@ -19,7 +20,8 @@ struct MetropolisSettings {
   uint32_t bootstrapSamples = 131072;  // independent samples from which chains start, and the image's brightness comes
   uint32_t restartSteps = 10000;       // steps of a chain before all start anew from fresh samples
   double largeStep = 0.3;              // probability of a step that forgets where the chain is
-  bool directPass = true;              // mmlt: emitters in view and direct light by path tracing, the rest by chains
+  uint32_t pathMutations = PathLaw().kinds;  // pathspace: kinds beside large steps (PathLaw)
+  bool directPass = true;  // mmlt, pathspace: emitters in view and direct light by path tracing, the rest by chains
 };
 
 // Limits of paths from what a scene file or a user says: depth in edges, -1 for as many as roulette allows; the first

@@ -17,16 +17,29 @@
 
 namespace wavecrest {
 
+// A chain that has rejected kStuckRejections proposals in a row, or more.
+struct StuckChain {
+  uint32_t chain = 0;
+  uint32_t rejections = 0;
+  uint32_t edges = 0;  // of the path it is at; of pssmlt the vertices that draw numbers
+  uint32_t pixel = 0;  // of the film's rectangle, row by row
+};
+constexpr size_t kListedStuckChains = 16;
+
 // What Markov chains have done so far.
 struct ChainStatistics {
   uint64_t mutations = 0;    // of all chains, rejected ones included
   uint64_t directPaths = 0;  // of the separate pass for direct light
   uint64_t epochs = 0;
   double brightness = 0, brightnessError = 0;  // b, the mean luminance of what chains render, and its standard error
+  // b from the bootstraps and all large steps together. The image is scaled by the bootstraps' own, which chains start
+  // from: any other would bias it.
+  double pooledBrightness = 0, pooledError = 0;
   double largestShare =
       0;  // of one bootstrap sample in b, at most over epochs: large where chains start too much alike
   ChainCounters counters;
-  size_t bytes = 0;  // of the chains' state
+  std::vector<StuckChain> stuck;  // the worst at the ends of epochs and now
+  size_t bytes = 0;               // of the chains' state
 };
 
 // Numbers of a render so far, as --stats reports them.

@@ -91,6 +91,27 @@ WAVECREST_INLINE void appendVec3(Vec3<Real> a, Mask m, const Column<S>& x, const
   append(a.z, m, z, out);
 }
 
+// Stores the lanes of a where m holds, each at its index; no index comes twice.
+template <class V, class T>
+WAVECREST_INLINE void storeWhere(V a, Mask m, T* target, UInt index) {
+  HWY_ALIGN T values[kLanes];
+  HWY_ALIGN uint32_t indices[kLanes];
+  store(compress(a, m), values);
+  store(compress(index, m), indices);
+  for (size_t k = 0, count = countTrue(m); k < count; ++k) target[indices[k]] = values[k];
+}
+template <class V, class T>
+WAVECREST_INLINE void storeWhere(V a, Mask m, const Column<T>& column, UInt index) {
+  storeWhere(a, m, static_cast<T*>(column), index);
+}
+template <class Real, class S>
+WAVECREST_INLINE void storeWhere(Vec3<Real> a, Mask m, const Column<S>& x, const Column<S>& y, const Column<S>& z,
+                                 UInt index) {
+  storeWhere(a.x, m, x, index);
+  storeWhere(a.y, m, y, index);
+  storeWhere(a.z, m, z, index);
+}
+
 // Adds a to the radiance of the given lanes, one after the other: a lane may come more than once.
 template <class Real, class S>
 WAVECREST_INLINE void addRadiance(Radiance<S>& radiance, UInt lane, Mask m, Vec3<Real> a) {

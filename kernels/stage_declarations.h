@@ -26,6 +26,16 @@ WAVECREST_DECLARE_STAGE(recordVertices)       // mutate/record_vertices.cpp
 WAVECREST_DECLARE_STAGE(acceptMutations)      // mutate/accept_mutations.cpp
 WAVECREST_DECLARE_STAGE(admitWalks)           // mutate/take_ends.cpp
 WAVECREST_DECLARE_STAGE(takeEnds)             // mutate/take_ends.cpp
+WAVECREST_DECLARE_STAGE(proposePaths)         // mutate/propose_paths.cpp
+WAVECREST_DECLARE_STAGE(beginEyeWalks)        // mutate/walk_paths.cpp
+WAVECREST_DECLARE_STAGE(beginLightWalks)      // mutate/walk_paths.cpp
+WAVECREST_DECLARE_STAGE(recordMisses)         // mutate/walk_paths.cpp
+WAVECREST_DECLARE_STAGE(recordPathVertices)   // mutate/walk_paths.cpp
+WAVECREST_DECLARE_STAGE(walkPaths)            // mutate/walk_paths.cpp
+WAVECREST_DECLARE_STAGE(joinPaths)            // mutate/join_paths.cpp
+WAVECREST_DECLARE_STAGE(evaluatePaths)        // mutate/evaluate_paths.cpp
+WAVECREST_DECLARE_STAGE(weighPaths)           // mutate/weigh_paths.cpp
+WAVECREST_DECLARE_STAGE(commitPaths)          // mutate/weigh_paths.cpp
 
 #undef WAVECREST_DECLARE_STAGE
 

@@ -30,6 +30,16 @@ constexpr Stages<typename P::Storage> makeStages() {
     stages.merge = merge<P, kFeatures>;
     stages.admitWalks = admitWalks<P, kFeatures>;
     stages.takeEnds = takeEnds<P, kFeatures>;
+    stages.proposePaths = proposePaths<P, kFeatures>;
+    stages.beginEyeWalks = beginEyeWalks<P, kFeatures>;
+    stages.beginLightWalks = beginLightWalks<P, kFeatures>;
+    stages.recordMisses = recordMisses<P, kFeatures>;
+    stages.recordPathVertices = recordPathVertices<P, kFeatures>;
+    stages.walkPaths = walkPaths<P, kFeatures>;
+    stages.joinPaths = joinPaths<P, kFeatures>;
+    stages.evaluatePaths = evaluatePaths<P, kFeatures>;
+    stages.weighPaths = weighPaths<P, kFeatures>;
+    stages.commitPaths = commitPaths<P, kFeatures>;
   }
   return stages;
 }

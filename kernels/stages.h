@@ -131,6 +131,8 @@ struct PhotonMap;  // kernels/merge/photon_map.h
 
 struct ChainState;  // kernels/columns/chains.h
 template <class S>
+struct PathMutations;  // kernels/columns/chain_paths.h
+template <class S>
 struct WalkEnds;  // kernels/columns/chains.h
 
 struct PathLimits {
@@ -171,8 +173,9 @@ struct StageContext {
   LightStore<S>* light = nullptr;         // light vertices of this wave's paths
   const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place
   SplatSink splats;
-  ChainState* chains = nullptr;  // of Markov chains: their state, one chain to a lane
-  WalkEnds<S>* ends = nullptr;   // of multiplexed chains: where walks stop to be joined
+  ChainState* chains = nullptr;       // of Markov chains: their state, one chain to a lane
+  WalkEnds<S>* ends = nullptr;        // of multiplexed chains: where walks stop to be joined
+  PathMutations<S>* paths = nullptr;  // of chains in path space: the paths and what is to change about them
   StageCounters* counters = nullptr;
 
   // Contributions of light walks go to the film, except those of chains, which join their lane's.
@@ -204,6 +207,16 @@ struct Stages {
   Stage<S> merge = nullptr;
   Stage<S> admitWalks = nullptr;
   Stage<S> takeEnds = nullptr;
+  Stage<S> proposePaths = nullptr;
+  Stage<S> beginEyeWalks = nullptr;
+  Stage<S> beginLightWalks = nullptr;
+  Stage<S> recordMisses = nullptr;
+  Stage<S> recordPathVertices = nullptr;
+  Stage<S> walkPaths = nullptr;
+  Stage<S> joinPaths = nullptr;
+  Stage<S> evaluatePaths = nullptr;
+  Stage<S> weighPaths = nullptr;
+  Stage<S> commitPaths = nullptr;
 };
 
 // The stages compiled for these choices. The instruction set must be one of availableIsas(), S the storage type of the

@@ -25,7 +25,12 @@ nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainSta
   const auto share = [](uint64_t part, uint64_t whole) {
     return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
   };
-  return {
+  nlohmann::ordered_json stuck = nlohmann::ordered_json::array();
+  for (const StuckChain& chain : chains.stuck) {
+    stuck.push_back(
+        {{"chain", chain.chain}, {"rejections", chain.rejections}, {"edges", chain.edges}, {"pixel", chain.pixel}});
+  }
+  nlohmann::ordered_json stats = {
       {"mlt", nameOf(kMetropolisVariantNames, settings.metropolis.variant)},
       {"chains", settings.metropolis.chains},
       {"direct_paths", chains.directPaths},
@@ -34,13 +39,24 @@ nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainSta
       {"bootstrap_largest_share", chains.largestShare},
       {"b", chains.brightness},
       {"b_error", chains.brightnessError},
-      {"large_steps", counters.largeSteps},
-      {"large_acceptance", share(counters.largeAccepted, counters.largeSteps)},
-      {"small_steps", counters.smallSteps},
-      {"small_acceptance", share(counters.smallAccepted, counters.smallSteps)},
+      {"b_pooled", chains.pooledBrightness},
+      {"b_pooled_error", chains.pooledError},
       {"dark_proposals", counters.dark},
       {"longest_rejection", counters.longestRejection},
+      {"stuck_runs", counters.stuck},
+      {"stuck_chains", stuck},
   };
+  constexpr std::array<const char*, kMutationKinds> kNames{"large", "small",       "bidirectional",
+                                                           "lens",  "multi_chain", "caustic"};
+  for (size_t kind = 0; kind < kMutationKinds; ++kind) {
+    const uint64_t proposed = counters.proposed[kind];
+    const std::string name = kNames[kind];
+    const bool pathSpace = settings.metropolis.variant == MetropolisVariant::pathspace;
+    if (kind != 0 && pathSpace == (kind == static_cast<size_t>(Mutation::small))) continue;
+    stats[name + "_steps"] = proposed;
+    stats[name + "_acceptance"] = share(counters.accepted[kind], proposed);
+  }
+  return stats;
 }
 
 }  // namespace

@@ -53,6 +53,30 @@ Brightness brightnessOf(const BootstrapPlan& plan, const std::vector<float>& tar
   return out;
 }
 
+Brightness brightnessOf(const LargeStepSums& samples) {
+  Brightness out;
+  double variance = 0;
+  for (size_t length = 0; length < LargeStepSums::kLengths; ++length) {
+    if (samples.count[length] == 0) continue;
+    const auto count = static_cast<double>(samples.count[length]);
+    const double mean = samples.sum[length] / count;
+    out.mean += mean;
+    if (count > 1) variance += std::max(samples.squares[length] / count - mean * mean, 0.0) / (count - 1);
+  }
+  out.standardError = std::sqrt(variance);
+  return out;
+}
+
+Brightness pooled(const Brightness& a, const Brightness& b) {
+  const double va = a.standardError * a.standardError, vb = b.standardError * b.standardError;
+  if (!(va > 0)) return b;
+  if (!(vb > 0)) return a;
+  Brightness out;
+  out.mean = (a.mean * vb + b.mean * va) / (va + vb);
+  out.standardError = std::sqrt(va * vb / (va + vb));
+  return out;
+}
+
 std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<float>& targets, uint32_t chains,
                                    double offset) {
   const auto weight = [&](size_t i) { return plan.share[i] * static_cast<double>(targets[i]); };

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/columns/chains.h"
+
 namespace wavecrest {
 
 // Samples to draw, in the order of path lengths: the length of each (0 where chains have none), and the share of the
@@ -30,6 +32,11 @@ struct Brightness {
   double largestShare = 0;   // of one sample in the mean; large where too few samples found light
 };
 Brightness brightnessOf(const BootstrapPlan& plan, const std::vector<float>& targets);
+
+// The same of samples that are kept as sums: the means of all lengths, added up. Lengths without samples add nothing.
+Brightness brightnessOf(const LargeStepSums& samples);
+// Two independent estimates of the same b, weighted by what is known of their variances.
+Brightness pooled(const Brightness& a, const Brightness& b);
 
 // Systematic resampling: chain m starts from the sample at (m + offset) / chains of the sum of share times target, with
 // offset in [0, 1). Samples in order, so chains are in the order of lengths. Some target must not be zero.

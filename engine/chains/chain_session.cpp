@@ -54,6 +54,8 @@ class ChainSession final : public Session {
   }
   uint64_t stepsFor(uint64_t iterations) const;
   uint64_t mutations() const { return step_ * settings_.metropolis.chains; }
+  bool inPathSpace() const { return plan_.pipeline.chains->inPathSpace(); }
+  PathStore<S>* pathsOf(size_t wave) { return paths_.empty() ? nullptr : &paths_[wave]; }
   bool direct() const { return plan_.pipeline.chains->directPass && settings_.metropolis.directPass; }
 
   // Whether a render is to end: its time is over, or somebody asked for it. Looked at before every wave.
@@ -64,6 +66,7 @@ class ChainSession final : public Session {
   bool beginEpoch(uint64_t epoch, const Stop& stop);
   bool traceDirect(const Stop& stop);
   void bootstrapWave(size_t wave, uint64_t epoch);
+  void listStuckChains(std::vector<StuckChain>& list) const;
   void startChains(size_t wave, uint64_t epoch, const std::vector<uint32_t>& starts);
   void advance(size_t wave, uint64_t steps);
   uint64_t stepsInTime(uint64_t most, double now) const;
@@ -81,6 +84,7 @@ class ChainSession final : public Session {
   MemoryPlan memory_;
   BootstrapPlan bootstrap_;
   std::vector<ChainState> waves_;
+  std::vector<PathStore<S>> paths_;  // of the waves, in path space
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
   std::vector<float> targets_;        // of the epoch's bootstrap samples, as far as they are traced
   std::vector<char> bootstrapped_;    // which waves of them are
@@ -94,6 +98,8 @@ class ChainSession final : public Session {
     uint64_t steps = 0;
   };
   std::vector<Epoch> epochs_;
+  LargeStepSums bootstrapSums_;    // of all epochs
+  std::vector<StuckChain> stuck_;  // at the ends of epochs
   double buildSeconds_ = 0, renderSeconds_ = 0, cpuSeconds_ = 0;
   std::atomic<double> progressSeconds_{0};
   std::atomic<uint64_t> progressPaths_{0};
@@ -119,6 +125,7 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
   for (size_t wave = 0; wave < waves; ++wave) {
     ChainState& state = waves_.emplace_back(chainCount(wave), kept);
     state.multiplexed = multiplexed;
+    if (inPathSpace()) paths_.emplace_back(chainCount(wave), plan_.pathLaws.law().maxEdges, plan_.needs);
   }
   targets_.resize(bootstrap_.length.size());
   bootstrapped_.resize((targets_.size() + settings.waveSize - 1) / settings.waveSize);
@@ -182,6 +189,7 @@ void ChainSession<S>::startChains(size_t wave, uint64_t epoch, const std::vector
   Chains& chains = state.columns;
   const size_t count = chainCount(wave);
   const ChainCounters before = state.counters;
+  const LargeStepSums largeBefore = state.largeSteps;
   // Replays the samples and accepts them all.
   for (size_t i = 0; i < count; ++i) {
     const uint32_t sample = starts[firstChain(wave) + i];
@@ -195,17 +203,19 @@ void ChainSession<S>::startChains(size_t wave, uint64_t epoch, const std::vector
   StageContext<S> context = chainContext(plan_, settings_, film_.area());
   context.sampler.iteration = static_cast<uint32_t>(epoch);
   ChainWorker<S>& mine = worker();
-  mine.trace(context, state, count, false);
+  mine.trace(context, state, count, false, pathsOf(wave));
   mine.decide(context, state, false);
 
   // From here on chains are themselves. The start is no step and has no weight.
   state.counters = before;
+  state.largeSteps = largeBefore;
   state.samples.stream = Stream::chain;
   state.samples.largeStep = static_cast<float>(settings_.metropolis.largeStep);
   for (size_t i = 0; i < count; ++i) {
     chains.source[i] = static_cast<uint32_t>(firstChain(wave) + i);
     chains.weight[i] = 0;
     chains.rejections[i] = 0;
+    if (inPathSpace()) chains.length[i] = 0;  // of any length from now on
   }
 }
 
@@ -225,11 +235,32 @@ void ChainSession<S>::addPending(size_t wave, std::vector<int64_t>& sums) const 
 }
 
 template <class S>
+void ChainSession<S>::listStuckChains(std::vector<StuckChain>& list) const {
+  for (size_t wave = 0; wave < waves_.size(); ++wave) {
+    const Chains& chains = waves_[wave].columns;
+    for (size_t i = 0; i < chainCount(wave); ++i) {
+      if (chains.rejections[i] < kStuckRejections) continue;
+      const uint32_t edges = inPathSpace()              ? paths_[wave].headers.edges[i]
+                             : waves_[wave].multiplexed ? chains.length[i]
+                                                        : chains.cameraVertices[i];
+      list.push_back({static_cast<uint32_t>(firstChain(wave) + i), chains.rejections[i], edges, chains.pixel[i]});
+    }
+  }
+  std::stable_sort(list.begin(), list.end(),
+                   [](const StuckChain& a, const StuckChain& b) { return a.rejections > b.rejections; });
+  if (list.size() > kListedStuckChains) list.resize(kListedStuckChains);
+}
+
+template <class S>
 bool ChainSession<S>::beginEpoch(uint64_t epoch, const Stop& stop) {
   if (!bootstrap(epoch, stop)) return false;
   std::fill(bootstrapped_.begin(), bootstrapped_.end(), 0);  // the next epoch has samples of its own
   if (epoch != 0) {
     for (size_t wave = 0; wave < waves_.size(); ++wave) addPending(wave, worker().splats);
+    listStuckChains(stuck_);
+  }
+  for (size_t i = 0; i < targets_.size(); ++i) {
+    bootstrapSums_.add(bootstrap_.length[i], static_cast<double>(targets_[i]));
   }
   const Brightness brightness = brightnessOf(bootstrap_, targets_);
   epochs_.push_back({brightness});
@@ -256,7 +287,7 @@ void ChainSession<S>::advance(size_t wave, uint64_t steps) {
   StageContext<S> context = chainContext(plan_, settings_, film_.area());
   for (uint64_t step = step_; step < step_ + steps; ++step) {
     context.sampler.iteration = static_cast<uint32_t>(step);
-    mine.trace(context, state, chainCount(wave), settings_.measureStages);
+    mine.trace(context, state, chainCount(wave), settings_.measureStages, pathsOf(wave));
     mine.decide(context, state, settings_.measureStages);
     progressPaths_.fetch_add(chainCount(wave), std::memory_order_relaxed);
   }
@@ -355,7 +386,8 @@ RenderStatistics ChainSession<S>::statistics() const {
     out.counters += worker->counters;
     out.bytesPerPath = worker->bytesPerPath();
     out.memory.waves +=
-        (plan_.pipeline.lightPass ? kWavesOfJoinedWalks : 1) * waveBytes(worker->bytesPerPath(), settings_.waveSize);
+        (worker->joinsWalks() ? kWavesOfJoinedWalks : 1) * waveBytes(worker->bytesPerPath(), settings_.waveSize) +
+        worker->pathBytes();
     out.memory.lightVertices += worker->lightBytes();
     out.memory.splats += splatBytes(film_.area().pixels.size());
     addTallies(worker->tallies, 0, out.stages);
@@ -384,10 +416,30 @@ RenderStatistics ChainSession<S>::statistics() const {
     chains.brightness /= steps;
     chains.brightnessError = std::sqrt(variance) / steps;
   }
+  LargeStepSums largeSteps;
   for (const ChainState& state : waves_) {
     chains.counters += state.counters;
+    largeSteps += state.largeSteps;
     chains.bytes += state.bytes();
   }
+  if (inPathSpace()) {
+    for (size_t wave = 0; wave < waves_.size(); ++wave) {
+      chains.bytes += PathStore<S>::bytesFor(chainCount(wave), plan_.pathLaws.law().maxEdges, plan_.needs);
+    }
+  }
+  // In path space a large step may have any length, and says something about b as a whole.
+  Brightness all = brightnessOf(bootstrapSums_);
+  if (inPathSpace()) {
+    all = pooled(all, brightnessOf(largeSteps));
+  } else {
+    LargeStepSums both = bootstrapSums_;
+    both += largeSteps;
+    all = brightnessOf(both);
+  }
+  chains.pooledBrightness = all.mean;
+  chains.pooledError = all.standardError;
+  chains.stuck = stuck_;
+  listStuckChains(chains.stuck);
   out.counters.nonFinite += chains.counters.nonFinite;
   out.memory.scene = sceneBytes(*plan_.scene);
   out.memory.film = filmBytes(film_.area().pixels.size());

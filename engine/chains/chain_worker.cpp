@@ -22,7 +22,9 @@ void forEachStage(const Pipeline<S>& pipeline, Function&& function) {
   for (const JoinCall<S>& join : chains.afterCamera) function(join.stage);
   if (pipeline.lightPass) pass(*pipeline.lightPass);
   for (const JoinCall<S>& join : chains.afterLight) function(join.stage);
+  for (const StageCall<S>& stage : chains.weigh) function(stage);
   function(chains.accept);
+  for (const StageCall<S>& stage : chains.commit) function(stage);
 }
 
 }  // namespace
@@ -31,6 +33,10 @@ template <class S>
 ChainState::Kept keptSamples(const Pipeline<S>& pipeline, const SceneView<S>& scene, uint32_t maxDepth) {
   const uint32_t sky = scene.environment.width != 0 ? bit(Block::environment) : 0u;
   ChainState::Kept kept;
+  if (pipeline.chains->inPathSpace()) {  // numbers are drawn for all that walks do, and none is kept
+    kept.blocks[0] = kept.blocks[1] = {0xfu, 0xfu};
+    return kept;
+  }
   if (!pipeline.lightPass) {
     kept.blocks[0] = {bit(Block::scatter), bit(Block::scatter) | bit(Block::light) | sky};
     kept.vertices[0] = maxDepth;  // the last vertex, which draws nothing, does not count
@@ -61,10 +67,15 @@ ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, size_t p
     : splats(3 * pixels),
       pipeline_(plan.pipeline),
       wave_(capacity, plan.needs),
-      light_(capacity, plan.needs, plan.lightUse) {
+      light_(capacity, plan.needs, plan.lightUse),
+      law_(plan.pathLaws.law()),
+      needs_(plan.needs) {
   lanesArena_ = Arena(lightLanes_.bytes(capacity));
   lightLanes_.bind(lanesArena_, capacity);
-  if (pipeline_.lightPass) {
+  if (pipeline_.chains->inPathSpace()) {
+    paths_.emplace(capacity, law_.maxEdges, plan.needs);
+    paths_->law = &law_;
+  } else if (pipeline_.lightPass) {
     ends_.emplace(capacity, plan.needs, wave_);
     light_.reserve(capacity);  // at most one light vertex to a lane: room for all of them from the start
   }
@@ -98,7 +109,24 @@ size_t ChainWorker<S>::chooseLightLanes(const Chains& chains, size_t count) {
 }
 
 template <class S>
-void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t count, bool measure) {
+void ChainWorker<S>::tracePaths(StageContext<S>& context, size_t count, StageTally* tally) {
+  const auto next = [&tally](size_t stages) {
+    StageTally* const mine = tally;
+    tally = tally == nullptr ? nullptr : tally + stages;
+    return mine;
+  };
+  context.limits.maxDepth = law_.maxEdges + 1;  // arrive lets no path go on at the last vertex
+  runStage(pipeline_.chains->propose, context, wave_, next(1));
+  runPass(pipeline_.cameraPass, context, wave_, next(pipeline_.cameraPass.stageCount()));
+  wave_.pathCount = count;
+  runPass(*pipeline_.lightPass, context, wave_, next(pipeline_.lightPass->stageCount()));
+  context.walk = Walk::camera;
+  for (const StageCall<S>& stage : pipeline_.chains->weigh) runStage(stage, context, wave_, next(1));
+}
+
+template <class S>
+void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t count, bool measure,
+                           PathStore<S>* paths) {
   StageTally* tally = measure ? tallies.data() : nullptr;
   const auto advance = [&tally](size_t stages) { tally = tally == nullptr ? nullptr : tally + stages; };
   context.chains = &chains;
@@ -107,6 +135,12 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
   context.splats.sums = nullptr;  // contributions go to the chain's lane
   wave_.firstPath = 0;
   wave_.pathCount = count;
+  if (paths_) {
+    paths_->current = paths;
+    context.paths = &*paths_;
+    tracePaths(context, count, tally);
+    return;
+  }
   runStage(pipeline_.chains->propose, context, wave_, tally);
   advance(1);
   if (ends_) {
@@ -142,7 +176,11 @@ void ChainWorker<S>::decide(StageContext<S> context, ChainState& chains, bool me
   context.sampler.chain = &chains.samples;
   context.counters = &counters;
   context.splats.sums = splats.data();
-  runStage(pipeline_.chains->accept, context, wave_, measure ? &tallies.back() : nullptr);
+  if (paths_) context.paths = &*paths_;
+  const std::vector<StageCall<S>>& commit = pipeline_.chains->commit;
+  StageTally* tally = measure ? tallies.data() + (tallies.size() - 1 - commit.size()) : nullptr;
+  runStage(pipeline_.chains->accept, context, wave_, tally);
+  for (const StageCall<S>& stage : commit) runStage(stage, context, wave_, tally == nullptr ? nullptr : ++tally);
 }
 
 template <class S>

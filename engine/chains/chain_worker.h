@@ -33,8 +33,8 @@ class ChainWorker {
 
   // Proposes and traces one path for each of the first `count` chains, whose radiance is in the wave afterwards,
   // without deciding anything. What the proposals depend on is in the chains' columns and samples, and in
-  // context.sampler.
-  void trace(StageContext<S> context, ChainState& chains, size_t count, bool measure);
+  // context.sampler; in path space also the chains' paths, without which every proposal is made anew.
+  void trace(StageContext<S> context, ChainState& chains, size_t count, bool measure, PathStore<S>* paths = nullptr);
   // Accepts or rejects what trace has proposed.
   void decide(StageContext<S> context, ChainState& chains, bool measure);
 
@@ -42,10 +42,17 @@ class ChainWorker {
   void traceDirect(StageContext<S> context, const FilmArea& area, size_t first, size_t count);
 
   const Wave<S>& wave() const { return wave_; }
+  // In path space: what trace has proposed.
+  const PathMutations<S>& mutations() const { return *paths_; }
   size_t bytesPerPath() { return wave_.bytesPerPath(); }
-  size_t lightBytes() const { return pipeline_.lightPass ? light_.bytes() : 0; }
+  bool joinsWalks() const { return ends_.has_value(); }
+  size_t lightBytes() const { return joinsWalks() ? light_.bytes() : 0; }
+  size_t pathBytes() const {
+    return paths_ ? PathMutations<S>::bytesFor(wave_.rays.capacity(), law_.maxEdges, needs_) : 0;
+  }
 
  private:
+  void tracePaths(StageContext<S>& context, size_t count, StageTally* tally);
   void join(const std::vector<JoinCall<S>>& joins, StageContext<S>& context, StageTally* tally);
   size_t chooseLightLanes(const Chains& chains, size_t count);
 
@@ -53,6 +60,9 @@ class ChainWorker {
   Wave<S> wave_;
   std::optional<WalkEnds<S>> ends_;
   LightStore<S> light_;
+  const PathLaw law_;
+  const ColumnNeeds needs_;
+  std::optional<PathMutations<S>> paths_;
   Arena lanesArena_;
   Column<uint32_t> lightLanes_;  // lanes whose light walk is worth its while
 };

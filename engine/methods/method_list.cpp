@@ -23,7 +23,7 @@ Pipeline<S> makePipeline(Method method, MetropolisVariant variant, const Stages<
     case Method::mlt:
       if (variant == MetropolisVariant::pssmlt) return primarySampleSpace(stages, intersector);
       if (variant == MetropolisVariant::mmlt) return multiplexedMetropolis(stages, intersector);
-      break;
+      return pathSpaceMetropolis(stages, intersector);
     case Method::ppm:
       return progressivePhotonMapping(stages, intersector);
     case Method::bpm:

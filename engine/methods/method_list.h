@@ -51,7 +51,7 @@ constexpr std::array kMethods{
                 "bidirectional path tracing",
                 true,
                 {.emission = true, .nextEvent = true, .connect = true, .camera = true}},
-    // As mmlt; pssmlt makes what pt does.
+    // As mmlt and pathspace; pssmlt makes what pt does.
     MethodEntry{Method::mlt,
                 "mlt",
                 "Metropolis light transport",
@@ -104,8 +104,10 @@ template <class S>
 Pipeline<S> primarySampleSpace(const Stages<S>& stages, const Intersector<S>& intersector);
 template <class S>
 Pipeline<S> multiplexedMetropolis(const Stages<S>& stages, const Intersector<S>& intersector);
+template <class S>
+Pipeline<S> pathSpaceMetropolis(const Stages<S>& stages, const Intersector<S>& intersector);
 
-// variant: of mlt. Throws std::invalid_argument for one that has no pipeline.
+// variant: of mlt.
 template <class S>
 Pipeline<S> makePipeline(Method method, MetropolisVariant variant, const Stages<S>& stages,
                          const Intersector<S>& intersector);

@@ -1,5 +1,5 @@
-// Metropolis light transport in primary sample space (Kelemen et al. 2002): chains whose state is the random numbers of
-// a path, advanced in lockstep through the stages of another method.
+// Metropolis light transport: chains advanced in lockstep, whose state is the random numbers of a path (primary sample
+// space, Kelemen et al. 2002) or the path itself, through the stages of other methods.
 #include "engine/methods/method_list.h"
 
 namespace wavecrest {
@@ -90,5 +90,47 @@ Pipeline<S> multiplexedMetropolis(const Stages<S>& stages, const Intersector<S>&
 }
 template Pipeline<float> multiplexedMetropolis(const Stages<float>&, const Intersector<float>&);
 template Pipeline<double> multiplexedMetropolis(const Stages<double>&, const Intersector<double>&);
+
+// pathspace: chains of paths themselves (Veach and Guibas, "Metropolis Light Transport", 1997). A proposal replaces
+// part of a path by two walks and what joins them; how it was made says nothing about its contribution, which follows
+// from its vertices. The stages of the walks know no weights: the strategies that could have made a path are summed up
+// when it is weighed.
+template <class S>
+Pipeline<S> pathSpaceMetropolis(const Stages<S>& stages, const Intersector<S>& intersector) {
+  constexpr MisSettings kNone{.emission = false, .nextEvent = false};
+  const StageCall<S> extend{"extend", intersector.extend, pathItems<S>, intersector.lanes},
+      arrive{"arrive", stages.arrive, pathItems<S>, stages.lanes},
+      record{"record", stages.recordPathVertices, pathItems<S>, stages.lanes},
+      walk{"walk", stages.walkPaths, pathItems<S>, stages.lanes};
+  ChainCalls<S> chains = decisions(stages);
+  chains.propose.run = stages.proposePaths;
+  chains.weigh = {
+      {"join", stages.joinPaths, generatedItems<S>, stages.lanes},
+      {"occlude", intersector.occlude, shadowItems<S>, intersector.lanes},
+      {"evaluate", stages.evaluatePaths, generatedItems<S>, stages.lanes},
+      {"weigh", stages.weighPaths, generatedItems<S>, stages.lanes},
+  };
+  chains.commit = {{"commit", stages.commitPaths, generatedItems<S>, stages.lanes}};
+  chains.directPass = pathTracing(stages, intersector).cameraPass;
+  return {
+      .lightPass =
+          Pass<S>{
+              .walk = Walk::light,
+              .strategies = kNone,
+              .generate = {"begin light", stages.beginLightWalks, generatedItems<S>, stages.lanes},
+              .perDepth = {extend, arrive, record, walk},
+          },
+      .cameraPass =
+          {
+              .walk = Walk::camera,
+              .strategies = kNone,
+              .generate = {"begin", stages.beginEyeWalks, generatedItems<S>, stages.lanes},
+              .perDepth = {extend, {"miss", stages.recordMisses, pathItems<S>, 1}, arrive, record, walk},
+          },
+      .chains = std::move(chains),
+  };
+}
+template Pipeline<float> pathSpaceMetropolis(const Stages<float>&, const Intersector<float>&);
+template Pipeline<double> pathSpaceMetropolis(const Stages<double>&, const Intersector<double>&);
 
 }  // namespace wavecrest

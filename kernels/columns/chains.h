@@ -1,8 +1,10 @@
 // Markov chains of Metropolis light transport: one chain to a lane of a wave.
 #pragma once
 
+#include <array>
 #include <memory>
 
+#include "kernels/columns/chain_paths.h"
 #include "kernels/columns/wave.h"
 #include "kernels/sampling/sampler.h"
 
@@ -26,6 +28,7 @@ struct Chains : Columns<Chains> {
   Column<uint32_t> lightLive;
   Column<float> threshold;  // accepted where the ratio of targets exceeds it
   Column<float> scale;      // factor of the contribution
+  Column<float> estimate;   // of b, by a large step in path space; elsewhere that is the contribution's luminance
   Column<uint32_t> proposedPixel;
   Column<uint32_t> proposedCamera;  // vertices of the walks used so far
   Column<uint32_t> proposedLight;
@@ -35,26 +38,56 @@ struct Chains : Columns<Chains> {
   Column<uint32_t> emissionDepth;  // vertex at which emission counts; 0: none
   auto all() {
     return std::tie(red, green, blue, target, weight, pixel, cameraVertices, lightVertices, rejections, length, source,
-                    cameraLive, lightLive, threshold, scale, proposedPixel, proposedCamera, proposedLight, cameraEdges,
-                    lightEdges, lightGranted, emissionDepth);
+                    cameraLive, lightLive, threshold, scale, estimate, proposedPixel, proposedCamera, proposedLight,
+                    cameraEdges, lightEdges, lightGranted, emissionDepth);
   }
 };
 
+// A chain that has rejected so many proposals in a row counts as stuck.
+constexpr uint32_t kStuckRejections = 1000;
+
 // What acceptMutations counts.
 struct ChainCounters {
-  uint64_t largeSteps = 0, largeAccepted = 0, smallSteps = 0, smallAccepted = 0;
+  // By Mutation.
+  std::array<uint64_t, kMutationKinds> proposed{}, accepted{};
   uint64_t dark = 0;       // proposals without light
   uint64_t nonFinite = 0;  // proposals whose contribution was no number; never accepted
   uint64_t longestRejection = 0;
+  uint64_t stuck = 0;  // runs of rejections that reached kStuckRejections
 
   ChainCounters& operator+=(const ChainCounters& other) {
-    largeSteps += other.largeSteps;
-    largeAccepted += other.largeAccepted;
-    smallSteps += other.smallSteps;
-    smallAccepted += other.smallAccepted;
+    for (size_t kind = 0; kind < kMutationKinds; ++kind) {
+      proposed[kind] += other.proposed[kind];
+      accepted[kind] += other.accepted[kind];
+    }
     dark += other.dark;
     nonFinite += other.nonFinite;
+    stuck += other.stuck;
     longestRejection = longestRejection > other.longestRejection ? longestRejection : other.longestRejection;
+    return *this;
+  }
+  uint64_t proposedOf(Mutation kind) const { return proposed[static_cast<size_t>(kind)]; }
+  uint64_t acceptedOf(Mutation kind) const { return accepted[static_cast<size_t>(kind)]; }
+};
+
+// What large steps say about b, by the length of the paths that a chain is bound to; 0 where it is bound to none. Each
+// is an independent sample, whether it is accepted or not (METHODS 7.3).
+struct LargeStepSums {
+  static constexpr size_t kLengths = 65;
+  std::array<uint64_t, kLengths> count{};
+  std::array<double, kLengths> sum{}, squares{};
+
+  void add(size_t length, double estimate) {
+    ++count[length];
+    sum[length] += estimate;
+    squares[length] += estimate * estimate;
+  }
+  LargeStepSums& operator+=(const LargeStepSums& other) {
+    for (size_t i = 0; i < kLengths; ++i) {
+      count[i] += other.count[i];
+      sum[i] += other.sum[i];
+      squares[i] += other.squares[i];
+    }
     return *this;
   }
 };
@@ -65,6 +98,7 @@ struct ChainState {
   Chains columns;
   ChainSamples samples;
   ChainCounters counters;
+  LargeStepSums largeSteps;
   bool multiplexed = false;  // walks stop where their strategy says
   float splatFactor = 1;     // of everything that goes to the film
 
@@ -80,7 +114,7 @@ struct ChainState {
     samples.stride = paddedItems(capacity);
     arena_ = Arena(bytesFor(capacity, kept));
     columns.bind(arena_, capacity);
-    samples.values = arena_.take<uint32_t>(valuesOf(capacity, kept));
+    if (valuesOf(capacity, kept) != 0) samples.values = arena_.take<uint32_t>(valuesOf(capacity, kept));
     samples.source = columns.source;
     samples.live[0] = columns.cameraLive;
     samples.live[1] = columns.lightLive;

@@ -13,19 +13,6 @@
 
 WAVECREST_SIMD_BEGIN
 
-namespace {
-
-// Stores the lanes of a where m holds, each at its index; no index comes twice.
-WAVECREST_INLINE void storeWhere(UInt a, Mask m, uint32_t* target, UInt index) {
-  HWY_ALIGN uint32_t values[kLanes];
-  HWY_ALIGN uint32_t indices[kLanes];
-  store(compress(a, m), values);
-  store(compress(index, m), indices);
-  for (size_t k = 0, count = countTrue(m); k < count; ++k) target[indices[k]] = values[k];
-}
-
-}  // namespace
-
 template <class P, uint32_t kFeatures>
 void connectToCamera(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   using Real = typename P::Real;

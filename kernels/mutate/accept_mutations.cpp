@@ -55,11 +55,22 @@ WAVECREST_INLINE void keepSamples(const SamplerSettings& sampler, Mask accepted,
   }
 }
 
-WAVECREST_INLINE void countSteps(ChainCounters& counters, Mask active, Mask large, Mask accepted) {
-  counters.largeSteps += countTrue(active & large);
-  counters.largeAccepted += countTrue(accepted & large);
-  counters.smallSteps += countTrue(andNot(active, large));
-  counters.smallAccepted += countTrue(andNot(accepted, large));
+// Kinds that no lane has proposed cost nothing but the question.
+WAVECREST_INLINE void countSteps(ChainCounters& counters, Mask active, UInt kind, Mask accepted) {
+  for (uint32_t k = 0; k < kMutationKinds; ++k) {
+    const Mask mine = active & (kind == UInt(k));
+    if (none(mine)) continue;
+    counters.proposed[k] += countTrue(mine);
+    counters.accepted[k] += countTrue(accepted & mine);
+  }
+}
+
+// What kind of step a chain takes: in primary samples large where nothing is perturbed.
+template <class S>
+WAVECREST_INLINE UInt kindOf(const StageContext<S>& context, size_t i) {
+  if (context.paths != nullptr) return load(context.paths->plans.kind, i);
+  const Mask large = load(context.chains->columns.cameraLive, i) == UInt(0u);
+  return select(large, UInt(static_cast<uint32_t>(Mutation::large)), UInt(static_cast<uint32_t>(Mutation::small)));
 }
 
 WAVECREST_INLINE void countRejections(ChainState& state, Mask active, Mask accepted, size_t i) {
@@ -69,6 +80,18 @@ WAVECREST_INLINE void countRejections(ChainState& state, Mask active, Mask accep
   store(select(active, run, UInt(0u)), runs);
   for (const uint32_t length : runs) {
     if (length > state.counters.longestRejection) state.counters.longestRejection = length;
+    if (length == kStuckRejections) ++state.counters.stuck;
+  }
+}
+
+// What the large steps of a block say about b.
+WAVECREST_INLINE void addEstimates(ChainState& state, Mask large, Float estimate, size_t i) {
+  HWY_ALIGN float values[kLanes];
+  HWY_ALIGN uint32_t lengths[kLanes];
+  store(compress(estimate, large), values);
+  store(compress(load(state.columns.length, i), large), lengths);
+  for (size_t k = 0, count = countTrue(large); k < count; ++k) {
+    state.largeSteps.add(lengths[k], static_cast<double>(values[k]));
   }
 }
 
@@ -91,7 +114,12 @@ void acceptMutations(const StageContext<typename P::Storage>& context, Wave<type
     const Float ratio = min(proposed.target / select(somewhere, target, one), one);
     const Float a = select(somewhere, ratio, zeroUnless(proposed.target > Float(0), one));
     const Mask accepted = active & (load(chains.threshold, i) < a);
-    countSteps(state.counters, active, load(chains.cameraLive, i) == UInt(0u), accepted);
+    const UInt kind = kindOf(context, i);
+    countSteps(state.counters, active, kind, accepted);
+    const Mask large = active & (kind == UInt(static_cast<uint32_t>(Mutation::large)));
+    if (any(large)) {
+      addEstimates(state, large, context.paths != nullptr ? load(chains.estimate, i) : proposed.target, i);
+    }
     countRejections(state, active, accepted, i);
 
     // The state that is left goes to the film with all its visits, else the proposal with its share.

@@ -109,15 +109,23 @@ class Statistics(CommandTest):
         self.assertAlmostEqual(stats["paths_per_second"] * stats["render_seconds"], stats["camera_paths"], delta=1)
 
     def test_chains_report_their_steps(self):
-        for variant in ("pssmlt", "mmlt"):
+        small = {"large", "small"}
+        kinds = {"pssmlt": small, "mmlt": small, "pathspace": {"large", "bidirectional", "lens", "multi_chain", "caustic"}}
+        for variant, steps in kinds.items():
             options = ("--spp", "6", "--method", "mlt", "--mlt", variant, "--chains", "256", "--bootstrap", "4096")
             stats = self.stats(*options)
             self.assertEqual((stats["mlt"], stats["chains"]), (variant, 256))
             self.assertEqual((stats["mutations"], stats["iterations"]), (6 * 32 * 24, 6))
-            self.assertEqual(stats["large_steps"] + stats["small_steps"], stats["mutations"])
-            for key in ("b", "b_error", "large_acceptance", "small_acceptance", "longest_rejection"):
+            self.assertEqual({key[: -len("_steps")] for key in stats if key.endswith("_steps")}, steps)
+            self.assertEqual(sum(stats[f"{kind}_steps"] for kind in steps), stats["mutations"])
+            for key in ("b", "b_error", "b_pooled", "b_pooled_error", "longest_rejection"):
                 self.assertGreater(stats[key], 0, key)
-            self.assertEqual(stats["direct_paths"] > 0, variant == "mmlt")
+            for kind in steps - {"multi_chain"}:  # the box has no delta lobes
+                self.assertGreater(stats[f"{kind}_acceptance"], 0, kind)
+            self.assertLess(stats["b_pooled_error"], stats["b_error"])
+            self.assertLess(abs(stats["b_pooled"] - stats["b"]), 6 * stats["b_error"])
+            self.assertEqual((stats["stuck_runs"], stats["stuck_chains"]), (0, []))
+            self.assertEqual(stats["direct_paths"] > 0, variant != "pssmlt")
 
     def test_clocks_are_consistent(self):
         stats = self.stats("--time", "0.3s")
@@ -205,6 +213,24 @@ class Interrupt(CommandTest):
         self.assertLess(stats["render_seconds"], 60)
         self.assertEqual(read_exr_header(self.path("image.exr"))["wavecrest:iterations"], str(stats["iterations"]))
         self.assertGreater(max(read_pfm(self.path("image.pfm"))[2]), 0)
+
+    def test_control_c_ends_a_bootstrap_at_once(self):
+        process = subprocess.Popen(
+            [WAVECREST, "render", "cornell-diffuse", "--size", "32x24", "--threads", "2", "--method", "mlt", "--bootstrap",
+             str(1 << 24), "--progress", "jsonl", "-o", "image.exr"],
+            cwd=self.folder, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        try:
+            for line in process.stderr:  # until the session is at work
+                if '"paths":' in line:
+                    break
+            process.send_signal(signal.SIGINT)
+            error = process.communicate(timeout=TIMEOUT_SECONDS)[1]
+        finally:
+            process.kill()
+        self.assertEqual(process.returncode, INTERRUPTED)
+        self.assertIn("before anything was rendered", error)
+        self.assertFalse((self.folder / "image.exr").exists())
 
 
 if __name__ == "__main__":

@@ -66,7 +66,6 @@ class Usage(CommandTest):
             ("--radius-alpha", "2"),
             ("--radius-alpha", "nan"),
             ("--mlt", "metropolis"),
-            ("--mlt", "pathspace"),
             ("--chains", "0"),
             ("--bootstrap", "none"),
         ]:

@@ -112,7 +112,8 @@ TEST_P(WaveAllocationTest, isNoneForAnyPrecision) {
 
 // A step of the chains, from proposal to acceptance.
 TEST(ChainAllocation, isNoneForAnyStep) {
-  for (const MetropolisVariant variant : {MetropolisVariant::pssmlt, MetropolisVariant::mmlt}) {
+  for (const MetropolisVariant variant :
+       {MetropolisVariant::pssmlt, MetropolisVariant::mmlt, MetropolisVariant::pathspace}) {
     RenderSettings settings;
     settings.isa = bestIsa();
     settings.method = Method::mlt;
@@ -123,7 +124,9 @@ TEST(ChainAllocation, isNoneForAnyStep) {
     constexpr size_t kChains = 500;
     ChainWorker<float> worker(plan, 512, area.pixels.size());
     ChainState state(kChains, keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth));
-    state.multiplexed = variant == MetropolisVariant::mmlt;
+    state.multiplexed = variant != MetropolisVariant::pssmlt;
+    const bool pathSpace = variant == MetropolisVariant::pathspace;
+    PathStore<float> paths(kChains, pathSpace ? plan.pathLaws.law().maxEdges : 1, plan.needs);
     for (uint32_t i = 0; i < kChains; ++i) {
       state.columns.source[i] = i;
       state.columns.length[i] = 1 + i % 9;
@@ -131,13 +134,13 @@ TEST(ChainAllocation, isNoneForAnyStep) {
     StageContext<float> context = chainContext(plan, settings, area);
     const auto run = [&](uint32_t first, uint32_t last) {
       for (context.sampler.iteration = first; context.sampler.iteration < last; ++context.sampler.iteration) {
-        worker.trace(context, state, kChains, true);
+        worker.trace(context, state, kChains, true, &paths);
         worker.decide(context, state, true);
       }
     };
     run(0, 1);  // the clock's ticks are measured once
     EXPECT_EQ(allocationsOf([&] { run(1, 20); }), 0u);
-    EXPECT_GT(state.counters.smallAccepted, 1'000u);
+    EXPECT_GT(state.counters.acceptedOf(pathSpace ? Mutation::bidirectional : Mutation::small), 1'000u);
   }
 }
 

@@ -72,10 +72,11 @@ class SceneChains {
         plan_(planRender<float>(scene, settings_)),
         area_(filmArea(scene.film)),
         state(count, keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth)),
+        paths_(count, std::max(plan_.pathLaws.law().maxEdges, 1u), plan_.needs),
         worker_(plan_, count, area_.pixels.size()),
         context_(chainContext(plan_, settings_, area_)),
         count_(count) {
-    state.multiplexed = chosen.variant == MetropolisVariant::mmlt;
+    state.multiplexed = chosen.variant != MetropolisVariant::pssmlt;
     for (uint32_t i = 0; i < count; ++i) {
       state.columns.source[i] = i;
       state.columns.length[i] = 1 + i % 7;
@@ -84,7 +85,7 @@ class SceneChains {
 
   void trace(uint32_t step) {
     context_.sampler.iteration = step;
-    worker_.trace(context_, state, count_, false);
+    worker_.trace(context_, state, count_, false, &paths_);
   }
   void decide() { worker_.decide(context_, state, false); }
   // Luminance of a chain's proposal.
@@ -112,6 +113,7 @@ class SceneChains {
   ChainState state;
 
  private:
+  PathStore<float> paths_;
   ChainWorker<float> worker_;
   StageContext<float> context_;
   size_t count_;
@@ -127,8 +129,8 @@ TEST_P(ChainTest, stateIsWhatItsSamplesSay) {
     chains.trace(step);
     chains.decide();
   }
-  EXPECT_GT(chains.state.counters.smallAccepted, 300u);
-  EXPECT_GT(chains.state.counters.largeAccepted, 300u);
+  EXPECT_GT(chains.state.counters.acceptedOf(Mutation::small), 300u);
+  EXPECT_GT(chains.state.counters.acceptedOf(Mutation::large), 300u);
   chains.state.samples.stepBits = 0;
   chains.state.samples.largeStep = 0;
   chains.trace(30);
@@ -145,7 +147,8 @@ TEST_P(ChainTest, stateIsWhatItsSamplesSay) {
 
 // Walks, their ends and what joins them, at odd counts: the scalar twin's proposals are the same. A path that only
 // rounding decides about may differ.
-TEST_P(ChainTest, proposalsAreThoseOfTheScalarTwin) {
+class ChainTwinTest : public ChainTest {};
+TEST_P(ChainTwinTest, proposalsAreThoseOfTheScalarTwin) {
   const Scene scene = sceneFile(GetParam().scene, 40, 30);
   for (const Isa isa : availableIsas()) {
     if (isa == Isa::scalar) continue;
@@ -161,6 +164,10 @@ TEST_P(ChainTest, proposalsAreThoseOfTheScalarTwin) {
           different += std::abs(got - want) > 1e-3 * want ? 1 : 0;
           ++all;
         }
+        if (GetParam().variant != MetropolisVariant::pathspace) continue;
+        // In path space mutations need a path to change.
+        expected.decide();
+        actual.decide();
       }
     }
     EXPECT_GT(lit, all / 50);
@@ -168,22 +175,25 @@ TEST_P(ChainTest, proposalsAreThoseOfTheScalarTwin) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Engine, ChainTest,
-                         testing::Values(ChainCase{"cornell-diffuse", MetropolisVariant::pssmlt},
-                                         ChainCase{"cornell-diffuse", MetropolisVariant::mmlt},
-                                         ChainCase{"cornell-mirror", MetropolisVariant::mmlt},
-                                         ChainCase{"cornell-glossy", MetropolisVariant::pssmlt},
-                                         ChainCase{"cornell-spheres", MetropolisVariant::mmlt},
-                                         ChainCase{"features/roughplastic", MetropolisVariant::mmlt},
-                                         ChainCase{"features/envmap", MetropolisVariant::pssmlt},
-                                         ChainCase{"features/envmap", MetropolisVariant::mmlt}),
-                         [](const auto& instance) {
-                           std::string name = instance.param.scene;
-                           std::replace_if(
-                               name.begin(), name.end(), [](char c) { return c == '-' || c == '/'; }, '_');
-                           return name + "_" +
-                                  std::string(kMetropolisVariantNames[static_cast<size_t>(instance.param.variant)]);
-                         });
+std::string nameOf(const testing::TestParamInfo<ChainCase>& instance) {
+  std::string name = instance.param.scene;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '-' || c == '/'; }, '_');
+  return name + "_" + std::string(kMetropolisVariantNames[static_cast<size_t>(instance.param.variant)]);
+}
+
+const std::vector<ChainCase> kPrimarySamples{
+    {"cornell-diffuse", MetropolisVariant::pssmlt}, {"cornell-diffuse", MetropolisVariant::mmlt},
+    {"cornell-mirror", MetropolisVariant::mmlt},    {"cornell-glossy", MetropolisVariant::pssmlt},
+    {"cornell-spheres", MetropolisVariant::mmlt},   {"features/roughplastic", MetropolisVariant::mmlt},
+    {"features/envmap", MetropolisVariant::pssmlt}, {"features/envmap", MetropolisVariant::mmlt}};
+const std::vector<ChainCase> kPaths{{"cornell-diffuse", MetropolisVariant::pathspace},
+                                    {"cornell-mirror", MetropolisVariant::pathspace},
+                                    {"features/roughplastic", MetropolisVariant::pathspace},
+                                    {"features/envmap", MetropolisVariant::pathspace}};
+INSTANTIATE_TEST_SUITE_P(Engine, ChainTest, testing::ValuesIn(kPrimarySamples), nameOf);
+INSTANTIATE_TEST_SUITE_P(PrimarySamples, ChainTwinTest, testing::ValuesIn(kPrimarySamples), nameOf);
+INSTANTIATE_TEST_SUITE_P(Paths, ChainTwinTest, testing::ValuesIn(kPaths), nameOf);
 
 }  // namespace
 }  // namespace wavecrest

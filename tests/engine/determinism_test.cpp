@@ -44,6 +44,8 @@ std::vector<MethodVariant> methodVariants() {
     if (entry.method == Method::mlt) {
       list.push_back(
           {entry.method, {Precision::floating, SamplerKind::independent, Accel::embree}, MetropolisVariant::pssmlt});
+      list.push_back(
+          {entry.method, {Precision::floating, SamplerKind::independent, Accel::small}, MetropolisVariant::pathspace});
     }
     list.push_back(
         {entry.method, {Precision::floating, SamplerKind::independent, Accel::small}, MetropolisVariant::mmlt});

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "tests/engine/light_scenes.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
 
@@ -179,7 +180,7 @@ TEST_P(MetropolisTest, largeStepsAloneArePlainMonteCarlo) {
   expectSameTruth(renderSeeds(scene, independent, 96), renderSeeds(scene, other, 96, 2000), "large steps");
   const auto session = Session::create(scene, independent);
   session->renderUntil(4, std::nullopt);
-  EXPECT_EQ(session->statistics().chains->counters.smallSteps, 0u);
+  EXPECT_EQ(session->statistics().chains->counters.proposedOf(Mutation::small), 0u);
 }
 
 // The image's mean luminance is b by construction: every step splats a luminance of 1.
@@ -245,17 +246,95 @@ TEST_P(MetropolisTest, spreadOverSeedsIsThatPredictedWithinARender) {
 INSTANTIATE_TEST_SUITE_P(Engine, MetropolisTest,
                          testing::Values(MetropolisCase{MetropolisVariant::pssmlt, false},
                                          MetropolisCase{MetropolisVariant::mmlt, false},
-                                         MetropolisCase{MetropolisVariant::mmlt, true}),
+                                         MetropolisCase{MetropolisVariant::mmlt, true},
+                                         MetropolisCase{MetropolisVariant::pathspace, false},
+                                         MetropolisCase{MetropolisVariant::pathspace, true}),
                          [](const auto& instance) {
                            const auto name = kMetropolisVariantNames[static_cast<size_t>(instance.param.variant)];
                            return std::string(name) + (instance.param.directPass ? "_direct_pass" : "");
+                         });
+
+// Chains start from the distribution that they are to have, and a mutation that keeps to detailed balance leaves it as
+// it is, whether or not it gets everywhere. So each kind of mutation gives the image by itself, with no other beside
+// it.
+struct MutationCase {
+  const char* name;
+  uint32_t kinds;
+};
+class PathMutationTest : public testing::TestWithParam<MutationCase> {
+ protected:
+  static void expectReference(const Scene& scene, uint64_t mutations) {
+    RenderSettings chosen = metropolis(MetropolisVariant::pathspace);
+    chosen.metropolis.largeStep = 0;
+    chosen.metropolis.directPass = false;
+    chosen.metropolis.pathMutations = GetParam().kinds;
+    chosen.metropolis.restartSteps = 60;
+    RenderSettings other = defaults();
+    other.method = Method::bpt;
+    const auto session = Session::create(scene, chosen);
+    session->renderUntil(2, std::nullopt);
+    const ChainStatistics chains = *session->statistics().chains;
+    EXPECT_EQ(chains.counters.proposedOf(Mutation::large), 0u);
+    uint64_t accepted = 0;
+    for (const uint64_t count : chains.counters.accepted) accepted += count;
+    EXPECT_GT(accepted, chains.mutations / 50);
+    expectSameTruth(renderSeeds(scene, chosen, mutations), renderSeeds(scene, other, 192, 2000), scene.name);
+  }
+};
+
+TEST_P(PathMutationTest, aloneLeavesTheImageAsItIs) {
+  expectReference(sceneFile("cornell-diffuse", kWidth, kHeight), 128);
+}
+
+TEST_P(PathMutationTest, aloneLeavesDeltaLobesAsTheyAre) {
+  expectReference(roomScene({.materials = RoomMaterials::mixed, .width = kWidth, .height = kHeight}), 128);
+}
+
+TEST_P(PathMutationTest, aloneLeavesInfiniteLightsAsTheyAre) {
+  expectReference(roomScene({.light = RoomLight::envmap, .width = kWidth, .height = kHeight}), 128);
+}
+
+INSTANTIATE_TEST_SUITE_P(Engine, PathMutationTest,
+                         testing::Values(MutationCase{"from_eye", PathLaw::kFromEye},
+                                         MutationCase{"bidirectional", PathLaw::kBidirectional},
+                                         MutationCase{"caustic", PathLaw::kCaustic},
+                                         MutationCase{"all", PathLaw().kinds}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+// Every kind of light, and materials of every kind.
+class PathSpaceLightTest : public testing::TestWithParam<Room> {};
+
+TEST_P(PathSpaceLightTest, givesTheImageOfBidirectionalPathTracing) {
+  Room room = GetParam();
+  room.width = kWidth;
+  room.height = kHeight;
+  const Scene scene = roomScene(room);
+  RenderSettings chosen = metropolis(MetropolisVariant::pathspace), other = defaults();
+  chosen.metropolis.directPass = false;
+  other.method = Method::bpt;
+  expectSameTruth(renderSeeds(scene, chosen, 96), renderSeeds(scene, other, 96, 2000), "room");
+}
+
+INSTANTIATE_TEST_SUITE_P(Engine, PathSpaceLightTest, testing::ValuesIn([] {
+                           std::vector<Room> rooms;
+                           for (size_t light = 0; light < kRoomLightNames.size(); ++light) {
+                             const bool mixed = light % 2 == 0;
+                             rooms.push_back({.light = static_cast<RoomLight>(light),
+                                              .materials = mixed ? RoomMaterials::mixed : RoomMaterials::rough,
+                                              .tiltedNormals = mixed});
+                           }
+                           return rooms;
+                         }()),
+                         [](const auto& instance) {
+                           return std::string(kRoomLightNames[static_cast<size_t>(instance.param.light)]);
                          });
 
 TEST(Metropolis, rendersNothingWhereThereIsNoLight) {
   Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
   scene.emitters.clear();
   for (Shape& shape : scene.shapes) shape.emitter = kNone;
-  for (const MetropolisVariant variant : {MetropolisVariant::pssmlt, MetropolisVariant::mmlt}) {
+  for (const MetropolisVariant variant :
+       {MetropolisVariant::pssmlt, MetropolisVariant::mmlt, MetropolisVariant::pathspace}) {
     for (const float value : render(scene, metropolis(variant), 2)) EXPECT_EQ(value, 0.0f);
   }
 }

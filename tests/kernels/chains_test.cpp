@@ -209,12 +209,12 @@ TEST_P(SmallSteps, areTakenAsOftenAsAsked) {
   chains.state.samples.largeStep = 0.3f;
   for (uint32_t step = 0; step < 50; ++step) chains.step(step);
   const ChainCounters& counters = chains.state.counters;
-  EXPECT_EQ(counters.largeSteps + counters.smallSteps, 50 * kChains);
+  EXPECT_EQ(counters.proposedOf(Mutation::large) + counters.proposedOf(Mutation::small), 50 * kChains);
   const double steps = 49 * kChains;  // the first is from nowhere, which counts as large
-  const double large = static_cast<double>(counters.largeSteps) - kChains;
+  const double large = static_cast<double>(counters.proposedOf(Mutation::large)) - kChains;
   EXPECT_NEAR(large / steps, 0.3, 5 * std::sqrt(0.21 / steps));
-  EXPECT_EQ(counters.largeSteps, counters.largeAccepted);
-  EXPECT_EQ(counters.smallSteps, counters.smallAccepted);
+  EXPECT_EQ(counters.proposedOf(Mutation::large), counters.acceptedOf(Mutation::large));
+  EXPECT_EQ(counters.proposedOf(Mutation::small), counters.acceptedOf(Mutation::small));
   EXPECT_EQ(counters.longestRejection, 0u);
 }
 
@@ -238,8 +238,8 @@ TEST_P(ChainTwin, takesTheSameStepsForAnyCount) {
       ASSERT_NEAR(a.weight[i], b.weight[i], 1e-4f);
     }
     for (size_t row = 0; row < 4; ++row) EXPECT_EQ(expected.numbers(row), actual.numbers(row)) << count << " chains";
-    EXPECT_EQ(expected.state.counters.largeAccepted, actual.state.counters.largeAccepted);
-    EXPECT_EQ(expected.state.counters.smallAccepted, actual.state.counters.smallAccepted);
+    EXPECT_EQ(expected.state.counters.acceptedOf(Mutation::large), actual.state.counters.acceptedOf(Mutation::large));
+    EXPECT_EQ(expected.state.counters.acceptedOf(Mutation::small), actual.state.counters.acceptedOf(Mutation::small));
     EXPECT_EQ(expected.state.counters.dark, actual.state.counters.dark);
     EXPECT_EQ(expected.state.counters.longestRejection, actual.state.counters.longestRejection);
     for (uint32_t pixel = 0; pixel < kPixels; ++pixel) {

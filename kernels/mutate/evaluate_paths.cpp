@@ -1,0 +1,174 @@
+// evaluatePaths: BSDFs and densities at the vertices of proposed paths that have new neighbours.
+//
+// in: plans, PathVertices; Radiance > 0 in the lanes whose paths are whole. out: those lanes, in PathMutations::lanes;
+// step, eye, light and the choices of their changed rows (columns/chain_paths.h). METHODS 1.3, 1.4, 2.2, 4.1, 7.6.
+//
+// Whatever walks have made a path, its densities are computed here from its vertices alone, so that those of a path and
+// of its mutation come from the same code.
+#include <algorithm>
+
+#include "kernels/mutate/path_lanes.h"
+#include "kernels/stage_declarations.h"
+
+WAVECREST_SIMD_BEGIN
+
+namespace {
+
+// Scattering at a vertex, in both directions. step: f c / pdf towards the light's side. Densities per solid angle;
+// those of a delta lobe P eta_gen^2 |cos gen|, in one measure for both directions, with its probabilities P as choices.
+template <class Real>
+struct Scattering {
+  Vec3<Real> step;
+  Real eyePdf, lightPdf, eyeChoice, lightChoice;
+};
+
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE Scattering<typename P::Real> scatteringOf(const ShadingLanes<P, kFeatures>& shading, Mask active,
+                                                           Vec3<typename P::Real> towardsLight, UInt event) {
+  using Real = typename P::Real;
+  const Real zero(0);
+  const Vec3<Real> gen = shading.toLocal(towardsLight);
+  const Mask agree = active & shading.sidesAgree(towardsLight, gen);
+  const auto value = evalBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, gen);
+  const Mask scatters = agree & (value.pdf > zero);
+  Scattering<Real> out{zeroUnless(scatters, value.f * (abs(gen.z) / select(scatters, value.pdf, Real(1)))), value.pdf,
+                       value.pdfReverse, value.pdf, value.pdfReverse};
+  if constexpr (!onlyDiffuse(kFeatures)) {
+    const Mask delta = active & (event != eventCode(PathEvent::scattered));
+    if (any(delta)) {
+      const Uniform4 u{numberOfEvent<P, kFeatures>(shading.bsdf, event), Float(0), Float(0), Float(0)};
+      const auto sample = sampleBsdf<P, kFeatures>(shading.bsdf, delta, shading.fix, u);
+      const Mask found = agree & (eventOf<P, kFeatures>(shading.bsdf, shading.fix, sample, u.a) == event);
+      out.step = select(delta, zeroUnless(found, sample.weight), out.step);
+      out.eyePdf = select(delta, sample.pdf * abs(sample.gen.z), out.eyePdf);
+      out.lightPdf =
+          select(delta, sample.pdfReverse * sample.etaRatio * sample.etaRatio * abs(shading.fix.z), out.lightPdf);
+      out.eyeChoice = select(delta, sample.pdf, out.eyeChoice);
+      out.lightChoice = select(delta, sample.pdfReverse, out.lightChoice);
+    }
+  }
+  return out;
+}
+
+// The rows of one block of paths.
+template <class P, uint32_t kFeatures>
+class Rows {
+ public:
+  using Real = typename P::Real;
+  using S = typename P::Storage;
+
+  WAVECREST_INLINE Rows(const StageContext<S>& context, UInt lane)
+      : context_(context),
+        v_(context.paths->proposed.vertices),
+        headers_(context.paths->proposed.headers),
+        stride_(static_cast<uint32_t>(context.paths->proposed.stride())),
+        lane_(lane),
+        edges_(gather(headers_.edges, lane)) {}
+
+  // Row r, a surface, in the lanes of m: its scattering and the densities of its neighbours made from it.
+  WAVECREST_INLINE void evaluate(UInt r, Mask m) const {
+    const UInt one(1u), at = r * stride_ + lane_, behind = at - stride_, ahead = at + stride_;
+    const Vec3<Real> x = positionAt(v_, at), towardsEye = positionAt(v_, ahead) - x;
+    Vec3<Real> towardsLight = positionAt(v_, behind) - x;
+    Real dist2 = max(length2(towardsLight), Real(1e-37f));
+    towardsLight = towardsLight * reciprocalSqrt<P>(dist2);
+    Real lightCosine = abs(dot(towardsLight, normalAt(v_, behind)));
+    const Mask first = m & (r == one);
+    LightEdge<Real> edge{};
+    if (any(first)) {
+      edge = lightEdge<P, kFeatures>(*context_.scene, select(first, gather(v_.primitive, lane_), UInt(0u)),
+                                     positionAt(v_, lane_), normalAt(v_, lane_), x);
+      towardsLight = select(first, edge.direction, towardsLight);
+      dist2 = select(first, edge.dist2, dist2);
+      lightCosine = select(first, edge.n0, lightCosine);
+    }
+    const Real eyeDist2 = max(length2(towardsEye), Real(1e-37f));
+    const Vec3<Real> back = towardsEye * reciprocalSqrt<P>(eyeDist2);
+    const auto shading = pathShading<P, kFeatures>(*context_.scene, v_, at, back, Walk::camera);
+    auto scattering = scatteringOf<P, kFeatures>(shading, m, towardsLight, gather(v_.event, at));
+
+    const Real toArea = lightCosine / dist2;
+    Real eye = scattering.eyePdf * toArea;
+    if (any(first)) {
+      const Vec3<Real> radiance = gatherVec3(headers_.lightR, headers_.lightG, headers_.lightB, lane_);
+      const Vec3<Real> emitted = radiance * (edge.falloff * eye / max(edge.position, Real(1e-37f)));
+      scattering.step = select(first, scattering.step * emitted, scattering.step);
+      eye = select(first & edge.delta, Real(0), eye);
+      storeWhere(edge.position, first, v_.light, lane_);
+      storeWhere(edge.firstEdge, first, v_.lightChoice, lane_);
+      storeWhere(edge.firstEdge * abs(dot(towardsLight, shading.normal)) / dist2, first, v_.light, lane_ + stride_);
+    }
+    storeWhere(scattering.step, m, v_.stepR, v_.stepG, v_.stepB, at);
+    storeWhere(scattering.eyeChoice, m, v_.eyeChoice, at);
+    storeWhere(scattering.lightChoice, m, v_.lightChoice, at);
+    storeWhere(eye, m, v_.eye, behind);
+    storeWhere(scattering.lightPdf * abs(dot(back, normalAt(v_, ahead))) / eyeDist2, m, v_.light, ahead);
+  }
+
+  // The row before a new lens; a light that the lens sees has no other strategy, and no vertex that scatters.
+  WAVECREST_INLINE void evaluateLens(Mask m) const {
+    const UInt one(1u), last = select(m, edges_ - one, UInt(0u)), at = last * stride_ + lane_;
+    const Vec3<Real> lens = positionAt(v_, at + stride_), x = positionAt(v_, at);
+    Vec3<Real> direction = x - lens;
+    Real dist2 = max(length2(direction), Real(1e-37f));
+    direction = direction * reciprocalSqrt<P>(dist2);
+    Real cosine = abs(dot(direction, normalAt(v_, at)));
+    const Mask seen = m & (edges_ == one);
+    if (any(seen)) {
+      const auto edge = lightEdge<P, kFeatures>(*context_.scene, select(seen, gather(v_.primitive, lane_), UInt(0u)), x,
+                                                normalAt(v_, at), lens);
+      direction = select(seen, edge.direction, direction);
+      dist2 = select(seen, edge.dist2, dist2);
+      cosine = select(seen, edge.n0, cosine);
+      storeWhere(edge.position, seen, v_.light, lane_);
+    }
+    storeWhere(filmPdfW<P>(context_, direction) * cosine / dist2, m, v_.eye, at);
+  }
+
+ private:
+  const StageContext<S>& context_;
+  const PathVertices<S>& v_;
+  const PathHeaders<S>& headers_;
+  UInt stride_, lane_, edges_;
+};
+
+// The lanes whose paths are whole, in the order of the plans.
+template <class S>
+WAVECREST_INLINE void gatherLanes(PathMutations<S>& paths, const Wave<S>& wave) {
+  paths.laneCount = 0;
+  for (size_t i = 0; i < wave.pathCount; ++i) {
+    const uint32_t lane = paths.plans.order[i];
+    paths.lanes[paths.laneCount] = lane;
+    paths.laneCount += wave.radiance.red[lane] > 0 ? 1 : 0;
+  }
+  std::fill_n(paths.lanes + paths.laneCount, kColumnPadding, 0u);
+}
+
+}  // namespace
+
+template <class P, uint32_t kFeatures>
+void evaluatePaths(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  auto& paths = *context.paths;
+  const PathPlans& plans = paths.plans;
+  gatherLanes(paths, wave);
+  const UInt zero(0u), one(1u);
+  for (size_t i = 0; i < paths.laneCount; i += kLanes) {
+    const Mask active = firstLanes(paths.laneCount - i);
+    const UInt lane = load(paths.lanes, i);
+    const UInt kept = gather(plans.lightKept, lane), eyeTo = gather(plans.eyeTo, lane);
+    const UInt edges = gather(paths.proposed.headers.edges, lane);
+    const Rows<P, kFeatures> rows(context, lane);
+    const UInt end = min(eyeTo + one, edges);  // one past the last changed surface
+    for (UInt row = max(select(kept == zero, zero, kept - one), one);; row = row + one) {
+      const Mask m = active & (row < end);
+      if (none(m)) break;
+      rows.evaluate(select(m, row, one), m);
+    }
+    const Mask newLens = active & (edges < eyeTo);
+    if (any(newLens)) rows.evaluateLens(newLens);
+  }
+}
+
+WAVECREST_SIMD_END
+
+WAVECREST_INSTANTIATE_BIDIRECTIONAL_STAGE(evaluatePaths)

@@ -1,0 +1,233 @@
+// Rows of explicit paths in lanes: reading and writing vertices, and the way a walk leaves one.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "kernels/columns/chain_paths.h"
+#include "kernels/columns/chains.h"
+#include "kernels/generate/camera_lanes.h"
+#include "kernels/mutate/path_law.h"
+#include "kernels/shade/light_lanes.h"
+#include "kernels/shade/shading_lanes.h"
+
+WAVECREST_SIMD_BEGIN
+
+WAVECREST_INLINE UInt eventCode(PathEvent event) { return UInt(static_cast<uint32_t>(event)); }
+WAVECREST_INLINE UInt mutationCode(Mutation kind) { return UInt(static_cast<uint32_t>(kind)); }
+
+// Mutations that keep the events of a path and perturb its directions.
+WAVECREST_INLINE Mask isPerturbation(UInt kind) {
+  return (kind == mutationCode(Mutation::lens)) | (kind == mutationCode(Mutation::multiChain)) |
+         (kind == mutationCode(Mutation::caustic));
+}
+
+// Calls function(a, b) for each column that two records of the same kind hold.
+template <class Record, class Function, size_t... kIndex>
+WAVECREST_INLINE void forEachColumnOf(Record& from, Record& to, Function&& function, std::index_sequence<kIndex...>) {
+  const auto a = from.all();
+  const auto b = to.all();
+  const auto visit = [&](const auto& in, const auto& out) HWY_ATTR {
+    if (in.needed()) function(in, out);
+  };
+  (visit(std::get<kIndex>(a), std::get<kIndex>(b)), ...);
+}
+template <class Record, class Function>
+WAVECREST_INLINE void forEachColumn(Record& from, Record& to, Function&& function) {
+  constexpr size_t kCount = std::tuple_size_v<decltype(from.all())>;
+  forEachColumnOf(from, to, function, std::make_index_sequence<kCount>());
+}
+
+template <class S>
+WAVECREST_INLINE auto positionAt(const PathVertices<S>& v, UInt at) {
+  return gatherVec3(v.positionX, v.positionY, v.positionZ, at);
+}
+template <class S>
+WAVECREST_INLINE auto normalAt(const PathVertices<S>& v, UInt at) {
+  return gatherVec3(v.normalX, v.normalY, v.normalZ, at);
+}
+
+// A surface vertex, with `fix` the direction to the neighbour that a walk comes from.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename P::Storage>& scene,
+                                                        const PathVertices<typename P::Storage>& v, UInt at,
+                                                        Vec3<typename P::Real> fix, Walk walk) {
+  using Real = typename P::Real;
+  VertexLanes<Real> vertex{.position = positionAt(v, at),
+                           .fix = fix,
+                           .normal = normalAt(v, at),
+                           .shadingNormal = {},
+                           .offset = gather(v.offset, at),
+                           .u = Float(0),
+                           .v = Float(0),
+                           .primitive = gather(v.primitive, at)};
+  vertex.shadingNormal = vertex.normal;
+  if constexpr (has(kFeatures, kShadingNormals)) {
+    vertex.shadingNormal = gatherVec3(v.shadingX, v.shadingY, v.shadingZ, at);
+  }
+  if constexpr (has(kFeatures, kTextures)) {
+    vertex.u = gather(v.uvU, at);
+    vertex.v = gather(v.uvV, at);
+  }
+  auto shading = shadingOf<P, kFeatures>(scene, vertex);
+  shading.bsdf.walk = walk;
+  return shading;
+}
+
+// ---- how a walk goes on ---------------------------------------------------------------------------------------------
+
+// The number that makes sampling take the delta lobe of an event, if the surface has it: lobes share [0, 1) in the
+// order reflection, refraction, absence of the surface.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE Float numberOfEvent(const BsdfInput<P>& bsdf, UInt event) {
+  const Float last(0x1.fffffep-1f);
+  Float refracts = last;
+  if constexpr (has(kFeatures, kLayeredBsdfs)) refracts = last * min(to<Float>(bsdf.opacity()), Float(1));
+  return select(event == eventCode(PathEvent::reflected), Float(0),
+                select(event == eventCode(PathEvent::refracted), refracts, last));
+}
+
+// The event that sampling by the number u.a led to.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE UInt eventOf(const BsdfInput<P>& bsdf, Vec3<typename P::Real> fix,
+                              const BsdfSample<typename P::Real>& sample, [[maybe_unused]] Float number) {
+  using Real = typename P::Real;
+  UInt event =
+      select((fix.z * sample.gen.z) > Real(0), eventCode(PathEvent::reflected), eventCode(PathEvent::refracted));
+  if constexpr (has(kFeatures, kLayeredBsdfs)) {
+    const Real opacity = bsdf.opacity();
+    event = select((opacity < Real(1)) & (to<Real>(number) >= opacity), eventCode(PathEvent::passed), event);
+  }
+  return select(sample.specular, event, eventCode(PathEvent::scattered));
+}
+
+template <class Real>
+struct WalkStep {
+  Vec3<Real> direction;
+  UInt event;
+  Mask alive;
+};
+
+// From a vertex to the next: by the BSDF; where `same` holds by the delta lobe of `event`.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE WalkStep<typename P::Real> walkOn(const ShadingLanes<P, kFeatures>& shading, Mask active, Uniform4 u,
+                                                   Mask same, UInt event) {
+  using Real = typename P::Real;
+  u.a = select(same, numberOfEvent<P, kFeatures>(shading.bsdf, event), u.a);
+  const auto sample = sampleBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, u);
+  WalkStep<Real> step{shading.toWorld(sample.gen), eventOf<P, kFeatures>(shading.bsdf, shading.fix, sample, u.a),
+                      noLanes()};
+  step.alive = active & shading.sidesAgree(step.direction, sample.gen) & (maxComponent(sample.weight) > Real(0)) &
+               (sample.pdf > Real(0)) & (!same | (step.event == event));
+  return step;
+}
+
+// A direction turned by the angle theta, about itself by a fraction of a full turn.
+template <class Real>
+WAVECREST_INLINE Vec3<Real> turned(Vec3<Real> direction, Real theta, Real turn) {
+  const SinCos<Real> polar = sinCos(theta), azimuth = sinCos2Pi(turn);
+  return normalize(
+      Frame<Real>::fromNormal(direction).toWorld({polar.sin * azimuth.cos, polar.sin * azimuth.sin, polar.cos}));
+}
+// smallest to smallest times ratio, uniform in the logarithm.
+template <class Real>
+WAVECREST_INLINE Real logarithmic(Real smallest, double logRatio, Real u) {
+  return smallest * exp(u * Real(logRatio));
+}
+
+// ---- the ends of a path ---------------------------------------------------------------------------------------------
+
+// Emission at x_0 towards x_1, and the densities of METHODS 2.2; `position` in the measure of x_0, `firstEdge` per
+// solid angle there, or of infinite lights per area of the disc that faces the scene.
+template <class Real>
+struct LightEdge {
+  Vec3<Real> direction;  // unit, from x_1 to x_0
+  Real dist2, n0;        // 1 where the light has no place, or no surface
+  Real position, firstEdge;
+  Real falloff;  // of a spot
+  Mask delta, infinite;
+};
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE LightEdge<typename P::Real> lightEdge(const SceneView<typename P::Storage>& scene, UInt index,
+                                                       Vec3<typename P::Real> x0, Vec3<typename P::Real> normal,
+                                                       Vec3<typename P::Real> x1) {
+  using Real = typename P::Real;
+  const LightLanes<Real> light = loadLight(scene, index);
+  const Real one(1), zero(0);
+  const Vec3<Real> segment = x0 - x1;
+  const Real length = max(length2(segment), Real(1e-37f));
+  LightEdge<Real> edge{
+      segment * reciprocalSqrt<P>(length), length, zero, zero, zero, one, noLanes(), isInfinite(light.kind)};
+  edge.n0 = max(-dot(edge.direction, normal), zero);
+  edge.position = light.pick * light.inverseArea;
+  edge.firstEdge = edge.n0 * Real(kInvPi);
+  const Mask point = light.kind == lightKind(LightKind::point);
+  Mask noPlace = point;
+  if constexpr (has(kFeatures, kRareLights)) {
+    const Mask spot = light.kind == lightKind(LightKind::spot);
+    if (any(spot)) {
+      noPlace = noPlace | spot;
+      edge.falloff =
+          select(spot, spotFalloff(-dot(edge.direction, light.normal), light.cosTotal, light.cosFalloff), one);
+    }
+    const Real cone = Real(kInvPi / 2) / max(one - light.cosTotal, Real(1e-9f));
+    edge.firstEdge = select(spot, cone, edge.firstEdge);
+    edge.delta = light.kind == lightKind(LightKind::directional);
+  }
+  edge.firstEdge = select(point, Real(kInvPi / 4), edge.firstEdge);
+  edge.n0 = select(noPlace | edge.infinite, one, edge.n0);
+  edge.position = select(noPlace | edge.delta, light.pick, edge.position);
+  edge.delta = edge.delta | noPlace;
+  if (any(edge.infinite)) {
+    Real pdfW(kInvPi / 4);
+    if constexpr (has(kFeatures, kRareLights)) {
+      if (scene.environment.width != 0) pdfW = mapPdfW(scene.environment, mapPoint(scene.environment, x0));
+    }
+    edge.direction = select(edge.infinite, x0, edge.direction);
+    edge.dist2 = select(edge.infinite, one, edge.dist2);
+    edge.position = select(andNot(edge.infinite, edge.delta), light.pick * pdfW, edge.position);
+    edge.firstEdge = select(edge.infinite, Real(kInvPi / (scene.radius * scene.radius)), edge.firstEdge);
+  }
+  return edge;
+}
+
+// Angles by which caustic perturbations of a path turn: as far as those of the lens move x_{k-1} in the image. The
+// distribution is uniform in the logarithm, from `smallest` over a range of `logRatio`.
+template <class Real>
+struct CausticRange {
+  Real smallest, logRatio;
+};
+// start: the first row that is made anew. Lanes outside of m get some range.
+template <class Real, class S>
+WAVECREST_INLINE CausticRange<Real> causticRange(const StageContext<S>& context, const PathVertices<S>& v,
+                                                 size_t rowStride, UInt edges, UInt start, Mask m, UInt lane) {
+  const UInt zero(0u), one(1u), stride(static_cast<uint32_t>(rowStride));
+  const auto edgeFrom = [&](UInt row) HWY_ATTR {
+    return sqrt(length2(positionAt(v, (row + one) * stride + lane) - positionAt(v, row * stride + lane)));
+  };
+  const UInt last = select(m, edges - one, one);
+  Real toLight(0);
+  for (UInt row = select(m, start - one, zero);; row = row + one) {
+    const Mask counts = m & (row < last);
+    if (none(counts)) break;
+    toLight = toLight + zeroUnless(counts, edgeFrom(select(counts, row, zero)));
+  }
+  const Real ratio = edgeFrom(select(m, last, zero)) / max(toLight, Real(1e-20f));
+  const double pixels = static_cast<double>(context.splats.width) * context.splats.height;
+  const double largest = std::max(std::sqrt(kLensShare * pixels * kInvPi), 2 * kLensSmallest);
+  const double perPixel = 1 / context.scene->camera.pixelDistance;
+  const Real theta2 = min(ratio * Real(largest * perPixel), Real(kAngleLimit));
+  const Real theta1 = min(ratio * Real(kLensSmallest * perPixel), theta2 * Real(0.5f));
+  return {theta1, log(theta2 / max(theta1, Real(1e-30f)))};
+}
+
+// Density per solid angle of directions from the lens over the whole rendered rectangle.
+template <class P>
+WAVECREST_INLINE typename P::Real filmPdfW(const StageContext<typename P::Storage>& context,
+                                           Vec3<typename P::Real> direction) {
+  using Real = typename P::Real;
+  const double pixels = static_cast<double>(context.splats.width) * context.splats.height;
+  return cameraPdfW<P>(context.scene->camera, direction) * Real(1 / pixels);
+}
+
+WAVECREST_SIMD_END
