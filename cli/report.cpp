@@ -32,7 +32,9 @@ void addReportCommand(CLI::App& app, int& exitCode) {
                    "folder of a campaign, or of renders with stats and a reference per scene; several folders or "
                    "results files are the parts of one campaign, reported in the first")
       ->required();
-  command->add_flag("--csv", options->files.csv, "also write DIR/measurements.csv: every score of every snapshot");
+  command->add_flag(
+      "--csv", options->files.csv,
+      "also write DIR/measurements.csv, every score of every snapshot, and DIR/summary.csv and claims.csv");
   command->add_flag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");
   command->add_flag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
   command->callback([options, &exitCode] {

@@ -54,6 +54,7 @@ class Judge {
     for (const std::string& metric : condition.metrics) {
       showValues(metric, condition);
       verdict = allOf(verdict, byMetric(metric, condition));
+      noteOpenPoints(metric);
     }
     return verdict;
   }
@@ -111,7 +112,7 @@ class Judge {
       if (values.empty()) continue;
       const Band band = meanBand(values);
       line += fmt::format("{}{} {:.4g}", line.empty() ? "" : ", ", method, band.mean);
-      if (std::isfinite(band.halfWidth)) line += fmt::format(" +- {:.2g}", band.halfWidth);
+      if (std::isfinite(band.halfWidth)) line += fmt::format(" \u00b1 {:.2g}", band.halfWidth);
     }
     const SceneRecord* scene = results_.findScene(scene_);
     if (scene != nullptr && scene->noiseFloors.contains(metric)) {
@@ -124,12 +125,12 @@ class Judge {
     switch (condition.kind) {
       case ConditionKind::better:
         return forPairs(condition, [&](const auto& a, const auto& b) {
-          return explain(largerLoss(metric, b, a, 1), fmt::format("{} against {} in {}", a, b, metric));
+          return explain(largerLoss(metric, b, a, 1), a + " against", b);
         });
       case ConditionKind::good:
         return forPairs(condition, [&](const auto& a, const auto& b) {
           return explain(negated(largerLoss(metric, a, b, condition.factor)),
-                         fmt::format("{} within {:g} of {} in {}", a, condition.factor, b, metric));
+                         fmt::format("{} within {:g} times", a, condition.factor), b);
         });
       case ConditionKind::poor:
         return poor(metric, condition);
@@ -146,11 +147,22 @@ class Judge {
     return V::undecided;
   }
 
-  // Notes a comparison that does not hold, or is open.
-  V explain(V verdict, const std::string& comparison) {
-    if (verdict == V::fails) note("not so: " + comparison);
-    if (verdict == V::undecided) note("open: " + comparison);
+  // Remembers a comparison of `subject` that does not hold, or is open.
+  V explain(V verdict, const std::string& subject, const std::string& object) {
+    if (verdict == V::holds) return verdict;
+    const std::string point = (verdict == V::fails ? "not so: " : "open: ") + subject;
+    const auto same = [&](const auto& known) { return known.first == point; };
+    const auto known = std::find_if(openPoints_.begin(), openPoints_.end(), same);
+    if (known == openPoints_.end()) {
+      openPoints_.emplace_back(point, object);
+    } else {
+      known->second += ", " + object;
+    }
     return verdict;
+  }
+  void noteOpenPoints(const std::string& metric) {
+    for (const auto& [point, objects] : openPoints_) note(point + " " + objects + " in " + metric);
+    openPoints_.clear();
   }
 
   V forPairs(const Condition& condition, const std::function<V(const std::string&, const std::string&)>& compare) {
@@ -186,9 +198,8 @@ class Judge {
       for (const std::string& other : condition.than) {
         if (other != method) beyondSome = anyOf(beyondSome, largerLoss(metric, method, other, condition.factor));
       }
-      verdict =
-          allOf(verdict,
-                explain(beyondSome, fmt::format("{} beyond {:g} of the best in {}", method, condition.factor, metric)));
+      verdict = allOf(verdict,
+                      explain(beyondSome, fmt::format("{} beyond {:g} times", method, condition.factor), "the best"));
     }
     return verdict;
   }
@@ -199,7 +210,7 @@ class Judge {
       for (const std::string& b : condition.methods) {
         if (a == b) continue;
         verdict = allOf(verdict, explain(negated(largerLoss(metric, a, b, condition.factor)),
-                                         fmt::format("{} within {:g} of {} in {}", a, condition.factor, b, metric)));
+                                         fmt::format("{} within {:g} times", a, condition.factor), b));
       }
     }
     return verdict;
@@ -212,8 +223,8 @@ class Judge {
       const std::vector<double> values = scores(method, metric);
       V own = values.empty() ? V::undecided : atLeast(meanBand(values), condition.score);
       if (!reaches) own = negated(own);
-      verdict = allOf(verdict, explain(own, fmt::format("{} {} {:g} in {}", method, reaches ? "reaches" : "misses",
-                                                        condition.score, metric)));
+      verdict = allOf(
+          verdict, explain(own, fmt::format("{} {:g} by", reaches ? "reaching" : "missing", condition.score), method));
     }
     return verdict;
   }
@@ -237,9 +248,9 @@ class Judge {
       const std::vector<double> slopes = perSeed(method, [&](const RunRecord& run) { return slopeOf(run, metric); });
       if (slopes.empty()) return V::undecided;
       const Band band = meanBand(slopes);
-      note(fmt::format("slope of {} {:.2f} +- {:.2f}", method, band.mean, band.halfWidth));
-      verdict = allOf(verdict, explain(atLeast(band, condition.slope),
-                                       fmt::format("{} flatter than {:g} in {}", method, condition.slope, metric)));
+      note(fmt::format("slope of {} {:.2f} \u00b1 {:.2f}", method, band.mean, band.halfWidth));
+      verdict = allOf(verdict, explain(atLeast(band, condition.slope), fmt::format("{} flatter than", method),
+                                       fmt::format("{:g}", condition.slope)));
     }
     return verdict;
   }
@@ -260,14 +271,16 @@ class Judge {
         if (reached == 0) own = V::fails;
       }
       verdict =
-          allOf(verdict, explain(own, fmt::format("bias^2 of {} at least {:g} %", method, 100 * condition.share)));
+          allOf(verdict, explain(own, method + "'s bias^2 at least", fmt::format("{:g} %", 100 * condition.share)));
     }
+    noteOpenPoints("mean square error");
     return verdict;
   }
 
   const std::string& scene_;
   const CampaignResults& results_;
   std::string evidence_;
+  std::vector<std::pair<std::string, std::string>> openPoints_;  // of the metric under way: what, about whom
 };
 
 }  // namespace

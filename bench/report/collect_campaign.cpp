@@ -192,6 +192,7 @@ ReportScene collectScene(const CampaignResults& results, const SceneRecord& reco
 ReportClaim shownClaim(const ClaimRecord& record) {
   ReportClaim shown{record.scene, record.statement, record.verdict, record.evidence};
   if (const Claim* claim = findStudyClaim(record.id)) {
+    shown.id = claim->id;
     shown.source = claim->source;
     if (record.verdict != toString(ClaimVerdict::holds)) shown.explanation = claim->explanation;
   }

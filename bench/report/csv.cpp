@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "bench/report/html_text.h"
+#include "bench/report/series_values.h"
 
 namespace wavecrest {
 namespace {
@@ -37,6 +38,38 @@ std::string measurementsAsCsv(const ConvergenceReport& report) {
           };
           for (size_t m = 0; m < report.metrics.size(); ++m) add(report.metrics[m].key, point.values[m]);
           for (const NamedNumber& score : point.further) add(score.name, score.value);
+        }
+      }
+    }
+  }
+  return csv;
+}
+
+std::string claimsAsCsv(const ConvergenceReport& report) {
+  std::string csv = "id,scene,statement,source,verdict,explanation,evidence\n";
+  for (const ReportClaim& claim : report.claims) {
+    append(csv, "{},{},{},{},{},{},{}\n", field(claim.id), field(claim.scene), field(claim.statement),
+           field(claim.source), field(claim.verdict), field(claim.explanation), field(claim.evidence));
+  }
+  return csv;
+}
+
+std::string summaryAsCsv(const ConvergenceReport& report) {
+  std::string csv = "scene,method,series,seeds,metric,mean,low,high,noise_floor,target,seconds_to_target\n";
+  for (const ReportScene& scene : report.scenes) {
+    for (const ReportSeries& series : scene.series) {
+      for (size_t m = 0; m < report.metrics.size(); ++m) {
+        const ReportMetric& metric = report.metrics[m];
+        const Range range = finalRange(series, m);
+        const bool hasFloor = m < scene.noiseFloors.size() && scene.noiseFloors[m];
+        append(csv, "{},{},{},{},{},{},{},{},{}", field(scene.name), field(series.method), field(series.label),
+               series.runs.size(), field(metric.key), number(finalValue(series, m)), number(range.low),
+               number(range.high), hasFloor ? number(*scene.noiseFloors[m]) : "");
+        if (metric.target) {
+          const std::optional<double> seconds = timeToReach(series, metric, m, *metric.target);
+          append(csv, ",{},{}\n", number(*metric.target), seconds ? number(*seconds) : "");
+        } else {
+          csv += ",,\n";
         }
       }
     }

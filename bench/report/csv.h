@@ -11,4 +11,11 @@ namespace wavecrest {
 /// iterations, metric, value. RFC 4180; numbers with all their digits, nothing where there is no number.
 std::string measurementsAsCsv(const ConvergenceReport& report);
 
+/// A line for each finding of the study, with its verdict, evidence and explanation.
+std::string claimsAsCsv(const ConvergenceReport& report);
+
+/// A line for each series and metric: mean and extremes over seeds at the end, what the reference's own noise would
+/// score, and the render time to the metric's target, where it has one and the mean curve reaches it.
+std::string summaryAsCsv(const ConvergenceReport& report);
+
 }  // namespace wavecrest

@@ -108,6 +108,7 @@ struct ReportClaim {
   std::string evidence = {};
   std::string source = {};       ///< the study's words
   std::string explanation = {};  ///< why it does not hold or is open, where somebody has written that down
+  std::string id = {};           ///< in bench/claims
 };
 
 struct ConvergenceReport {

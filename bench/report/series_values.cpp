@@ -44,6 +44,17 @@ double finalValue(const ReportSeries& series, size_t metric) {
   return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
+Range finalRange(const ReportSeries& series, size_t metric) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  Range range{kNone, kNone};
+  for (const ReportRun& run : series.runs) {
+    if (run.points.empty()) continue;
+    range.low = std::fmin(range.low, run.points.back().values[metric]);
+    range.high = std::fmax(range.high, run.points.back().values[metric]);
+  }
+  return range;
+}
+
 double finalSeconds(const ReportSeries& series) {
   double sum = 0, count = 0;
   for (const ReportRun& run : series.runs) {

@@ -23,6 +23,12 @@ std::vector<CurvePoint> meanCurve(const ReportSeries& series, size_t metric);
 /// The value of a metric at the end of a series: mean over its runs, NaN if there is none.
 double finalValue(const ReportSeries& series, size_t metric);
 
+/// The extremes of its runs there.
+struct Range {
+  double low = 0, high = 0;
+};
+Range finalRange(const ReportSeries& series, size_t metric);
+
 /// Render seconds at the end of a series: mean over its runs.
 double finalSeconds(const ReportSeries& series);
 

@@ -26,8 +26,13 @@ WrittenReport writeReport(std::span<const fs::path> paths, const ReportFiles& fi
   std::vector<fs::path> written{folder / "report.html"};
   write(written[0], renderReport(report));
   if (files.csv) {
-    written.push_back(folder / "measurements.csv");
-    write(written.back(), measurementsAsCsv(report));
+    const std::pair<const char*, std::string> tables[] = {{"measurements.csv", measurementsAsCsv(report)},
+                                                          {"summary.csv", summaryAsCsv(report)},
+                                                          {"claims.csv", claimsAsCsv(report)}};
+    for (const auto& [name, table] : tables) {
+      written.push_back(folder / name);
+      write(written.back(), table);
+    }
   }
   if (files.plots) {
     const std::vector<fs::path> plots = writePlotFiles(report, folder / "plots");

@@ -10,7 +10,7 @@
 namespace wavecrest {
 
 struct ReportFiles {
-  bool csv = false;    ///< measurements.csv: every measurement
+  bool csv = false;    ///< measurements.csv: every measurement; summary.csv: series at their ends; claims.csv
   bool plots = false;  ///< plots/SCENE.METRIC.svg
 };
 

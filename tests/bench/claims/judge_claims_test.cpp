@@ -171,9 +171,19 @@ TEST(JudgeClaims, evidenceGivesValuesAndBands) {
   const Condition better = condition(ConditionKind::better, "rmse", {"pt"}, {"lt"});
   const std::string evidence =
       MadeUp().with("pt", "rmse", {2, 2.01}).with("lt", "rmse", {1, 1.01}).floor("rmse", 0.5).judge(better).evidence;
-  EXPECT_NE(evidence.find("rmse: pt 2.005 +- 0.064, lt 1.005 +- 0.064 (noise floor 0.5)"), std::string::npos)
-      << evidence;
+  EXPECT_NE(evidence.find("rmse: pt 2.005 ± 0.064, lt 1.005 ± 0.064 (noise floor 0.5)"), std::string::npos) << evidence;
   EXPECT_NE(evidence.find("not so: pt against lt in rmse"), std::string::npos) << evidence;
+}
+
+TEST(JudgeClaims, evidenceNamesWhoIsNotAheadOfWhomOnce) {
+  const Condition better = condition(ConditionKind::better, "rmse", {"pt"}, {"lt", "bpt"});
+  const std::string evidence = MadeUp()
+                                   .with("pt", "rmse", {2, 2.01})
+                                   .with("lt", "rmse", {1, 1.01})
+                                   .with("bpt", "rmse", {1, 1.01})
+                                   .judge(better)
+                                   .evidence;
+  EXPECT_TRUE(evidence.ends_with("; not so: pt against lt, bpt in rmse")) << evidence;
 }
 
 TEST(StudyClaims, nameScenesMethodsAndMetricsThatExist) {
@@ -203,7 +213,7 @@ TEST(StudyClaims, malformedListsAreRefused) {
   EXPECT_THROW(parseClaims(R"([{"id": "a"}])"), ClaimListError);
   const std::string head = R"([{"id": "a", "scene": "s", "statement": "t", "all": [)";
   EXPECT_THROW(parseClaims(head + "]}]"), ClaimListError);
-  const std::string condition = R"({"kind": "good", "metrics": [], "methods": []}])";
+  const std::string condition = R"({"kind": "good", "metrics": [], "methods": []})";
   EXPECT_THROW(parseClaims(head + condition + R"(], "explanatoin": "so"}])"), ClaimListError);
   EXPECT_EQ(parseClaims(head + condition + R"(], "explanation": "so"}])").at(0).explanation, "so");
   EXPECT_THROW(parseClaims(head + R"({"kind": "nice", "metrics": [], "methods": []}]}])"), ClaimListError);
