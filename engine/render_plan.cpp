@@ -49,12 +49,16 @@ template Intersector<double> chooseIntersector(const Stages<double>&, Accel);
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   RenderPlan<S> plan;
-  // A chain keeps no numbers for the place on the lens, or the pixel, that t = 1 chooses.
-  const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
-  if (lens && settings.method == Method::mlt && isBidirectional(settings)) {
-    const auto variant = kMetropolisVariantNames[static_cast<size_t>(settings.metropolis.variant)];
-    throw SceneError({scene.name},
-                     std::string(variant) + " needs a pinhole and the box filter; expected those, or --mlt pssmlt");
+  // A chain keeps no numbers for the place on the lens, or the pixel, that t = 1 chooses; and densities of path space
+  // are those of rays that leave one point.
+  if (settings.method == Method::mlt && isBidirectional(settings)) {
+    const MetropolisVariant variant = settings.metropolis.variant;
+    const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
+    const bool parallel = scene.sensor.kind == Sensor::Kind::orthographic && variant == MetropolisVariant::pathspace;
+    if (lens || parallel) {
+      throw SceneError({scene.name}, std::string(kMetropolisVariantNames[static_cast<size_t>(variant)]) +
+                                         " needs a pinhole and the box filter; expected those, or --mlt pssmlt");
+    }
   }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(plan.specialization);

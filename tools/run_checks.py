@@ -113,6 +113,12 @@ def step_sanitizers(tally):
         test(tally, "asan-ubsan", *selection, UBSAN_OPTIONS="print_stacktrace=1")
 
 
+def step_fuzz(tally):
+    """Ten thousand damaged files through loader and compiler; needs no kernels, so it builds in a minute."""
+    if build(tally, "asan-ubsan", "-DWAVECREST_BENCH=OFF", targets=("load_fuzz_test",)):
+        test(tally, "asan-ubsan", "--tests-regex", "^fuzz[.]load[.]all$", UBSAN_OPTIONS="print_stacktrace=1")
+
+
 def step_lint(tally):
     run(tally, "format", [sys.executable, "tools/lint.py", "format"])
 
@@ -121,7 +127,14 @@ def step_tidy(tally):
     run(tally, "tidy", [sys.executable, "tools/lint.py", "tidy", "--build", "build/release"])
 
 
-STEPS = {"release": step_release, "long": step_long, "sanitizers": step_sanitizers, "lint": step_lint, "tidy": step_tidy}
+STEPS = {
+    "release": step_release,
+    "long": step_long,
+    "sanitizers": step_sanitizers,
+    "fuzz": step_fuzz,
+    "lint": step_lint,
+    "tidy": step_tidy,
+}
 # To ask for: pictures of all scenes, and clang-tidy over the whole tree, take longer than all else together; the sanitizers
 # find nothing in metrics_test, but stages_test demands of its reduced ray counts what only the full ones give.
 DEFAULT_STEPS = ("release", "lint")

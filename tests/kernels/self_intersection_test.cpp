@@ -27,16 +27,7 @@ struct Fixture {
     std::fill_n(scene.materials[0].reflectance, 3, 1.0f);
     scene.materials[0].opacity = 1;
     scene.view.materials = scene.materials.data();
-    CameraView camera{};
-    camera.width = camera.height = 32;
-    const Point first = Point{-0.5, 0.5, 0.7} * spread;
-    for (size_t i = 0; i < 3; ++i) {
-      camera.origin[i] = eye[i];
-      camera.corner[i] = first[i];
-    }
-    camera.du[0] = spread / 32;
-    camera.dv[1] = -spread / 32;
-    scene.setCamera(camera);
+    scene.setCamera(pinholeCamera(eye, Point{-0.5, 0.5, 0.7} * spread, {spread / 32, 0, 0}, {0, -spread / 32, 0}, 32));
     if constexpr (sizeof(S) == sizeof(double)) {
       extend = chosen.name == "embree" ? extendEmbree<double> : stages.extendSmall;
     } else {

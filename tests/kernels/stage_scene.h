@@ -29,6 +29,21 @@ inline Point cross(const Point& a, const Point& b) {
 inline double length(const Point& a) { return std::sqrt(dot(a, a)); }
 inline Point normalized(const Point& a) { return a * (1 / length(a)); }
 
+// A square film whose raster (x, y) is seen in the direction corner + x across + y down. What only t = 1 reads is left
+// out.
+inline CameraView pinholeCamera(const Point& origin, const Point& corner, const Point& across, const Point& down,
+                                uint32_t size) {
+  CameraView camera{};
+  camera.width = camera.height = size;
+  for (size_t i = 0; i < 3; ++i) {
+    camera.origin[i] = origin[i];
+    camera.corner[i] = corner[i];
+    camera.du[i] = across[i];
+    camera.dv[i] = down[i];
+  }
+  return camera;
+}
+
 // ---- primitives -----------------------------------------------------------------------------------------------------
 
 inline PrimitiveRecord<double> facePrimitive(PrimitiveKind kind, const Point& p0, const Point& e1, const Point& e2) {

@@ -110,17 +110,7 @@ StageScene<S> makeRoom(bool spheres, bool specular) {
   if (spheres) lights.push_back(areaLight(scene.records[9], LightKind::sphere, 4 * 3.14159265 * 0.15 * 0.15));
   scene.setLights(std::move(lights));
 
-  CameraView camera{};
-  camera.width = camera.height = 24;
-  const Point origin = p(0.1, 0.05, 3.2), first = p(-0.5, 0.5, -1.5), across = p(1.0 / 24, 0, 0),
-              down = p(0, -1.0 / 24, 0);
-  for (size_t i = 0; i < 3; ++i) {
-    camera.origin[i] = origin[i];
-    camera.corner[i] = first[i];
-    camera.du[i] = across[i];
-    camera.dv[i] = down[i];
-  }
-  scene.setCamera(camera);
+  scene.setCamera(pinholeCamera(p(0.1, 0.05, 3.2), p(-0.5, 0.5, -1.5), p(1.0 / 24, 0, 0), p(0, -1.0 / 24, 0), 24));
   return scene;
 }
 

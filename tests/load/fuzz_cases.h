@@ -1,0 +1,211 @@
+// Damaged scene, PLY and OBJ files for the tests that nothing in them may crash, hang or fill the memory.
+//
+// Case i mutates one of the seeds below with a generator seeded by i, so a case is its number. How many of them a test
+// takes comes from WAVECREST_FUZZ_CASES; WAVECREST_FUZZ_CASE=i picks one alone.
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "metrics/image/image_io.h"
+#include "tests/load/mesh_text.h"
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+
+constexpr int kFewCases = 1'000;  // of a test that nobody asked for more
+constexpr double kSecondsPerCase = 5;
+constexpr size_t kMostMemory = size_t{1} << 30;
+
+using Random = std::mt19937_64;
+
+// One file of each kind that uses most of what its format can say.
+inline constexpr std::string_view kSceneSeed = R"(<scene version="3.0.0">
+  <default name="size" value="32"/>
+  <integrator type="path"><integer name="max_depth" value="6"/></integrator>
+  <sensor type="thinlens">
+    <float name="fov" value="40"/><string name="fov_axis" value="smaller"/><float name="aperture_radius" value="0.1"/>
+    <transform name="to_world"><lookat origin="0, 1, 5" target="0, 0, 0" up="0, 1, 0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="$size"/><integer name="height" value="$size"/>
+      <rfilter type="gaussian"><float name="stddev" value="0.4"/></rfilter></film>
+    <sampler type="independent"><integer name="sample_count" value="16"/></sampler>
+  </sensor>
+  <texture type="bitmap" id="wood"><string name="filename" value="wood.png"/>
+    <transform name="to_uv"><scale x="2" y="3"/></transform></texture>
+  <bsdf type="twosided" id="red"><bsdf type="diffuse"><ref id="wood" name="reflectance"/></bsdf></bsdf>
+  <bsdf type="roughconductor" id="gold"><string name="material" value="Au"/><float name="alpha" value="0.2"/></bsdf>
+  <bsdf type="bumpmap" id="bumpy"><ref id="wood" name="arbitrary"/><float name="scale" value="0.5"/>
+    <boolean name="flip_invalid_normals" value="false"/><boolean name="use_shadowing_function" value="false"/>
+    <bsdf type="plastic"/></bsdf>
+  <bsdf type="mask" id="veil"><float name="opacity" value="0.3"/><bsdf type="roughplastic"/></bsdf>
+  <shape type="ply"><string name="filename" value="mesh.ply"/><ref id="gold"/></shape>
+  <shape type="obj"><string name="filename" value="mesh.obj"/><ref id="red"/>
+    <transform name="to_world"><rotate x="1" angle="30"/><translate x="1" y="2" z="3"/></transform></shape>
+  <shape type="sphere"><point name="center" x="0" y="1" z="0"/><float name="radius" value="0.5"/>
+    <bsdf type="dielectric"><string name="int_ior" value="bk7"/></bsdf></shape>
+  <shape type="shapegroup" id="group"><shape type="cube"><ref id="veil"/></shape><shape type="cylinder"><ref id="bumpy"/></shape></shape>
+  <shape type="instance"><ref id="group"/><transform name="to_world"><scale value="2"/></transform></shape>
+  <shape type="rectangle"><emitter type="area"><rgb name="radiance" value="17, 12, 4"/></emitter></shape>
+  <emitter type="spot"><spectrum name="intensity" value="400:1, 500:2, 600:3"/></emitter>
+  <emitter type="envmap"><string name="filename" value="wood.png"/><float name="scale" value="0.5"/></emitter>
+  <include filename="part.xml"/>
+</scene>
+)";
+inline constexpr std::string_view kPartSeed = R"(<scene version="0.6.0">
+  <shape type="disk"><transform name="toWorld"><matrix value="1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"/></transform>
+    <bsdf type="phong"><float name="exponent" value="20"/></bsdf></shape>
+</scene>
+)";
+inline constexpr std::string_view kObjSeed =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1 4/1/1\nf -4 -3 -1\n"
+    "f 1//1 2//1 4//1\n";
+inline constexpr std::string_view kUvPlySeed =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\n"
+    "property float ny\nproperty float nz\nproperty float u\nproperty float v\nelement face 1\nproperty list uchar int "
+    "vertex_indices\nproperty float quality\nend_header\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2 "
+    ".5\n";
+
+// Fragments that sit at the edges of what parsers accept.
+inline constexpr std::string_view kFragments[] = {"-1",
+                                                  "0",
+                                                  "1e39",
+                                                  "1e-400",
+                                                  "-1e999",
+                                                  "nan",
+                                                  "inf",
+                                                  "4294967295",
+                                                  "4294967296",
+                                                  "-2147483649",
+                                                  "99999999999999999999",
+                                                  "0x7f",
+                                                  "",
+                                                  " ",
+                                                  "\n",
+                                                  "\"",
+                                                  "<",
+                                                  ">",
+                                                  "/>",
+                                                  "</scene>",
+                                                  "&amp;",
+                                                  "&#0;",
+                                                  "$size",
+                                                  "$",
+                                                  "\\$",
+                                                  "<ref id=\"red\"/>",
+                                                  "<ref id=\"group\"/>",
+                                                  "<include filename=\"part.xml\"/>",
+                                                  "<include filename=\"scene.xml\"/>",
+                                                  "<default name=\"a\" value=\"$a$a\"/>",
+                                                  "<shape type=\"sphere\"/>",
+                                                  "<bsdf type=\"twosided\">",
+                                                  "true",
+                                                  "list",
+                                                  "uchar",
+                                                  "double",
+                                                  "element vertex 3\n",
+                                                  "element face 4000000000\n",
+                                                  "end_header\n",
+                                                  "property list uchar int x\n",
+                                                  "f 1 2 3\n",
+                                                  "f 1/2/3/4 2 3\n",
+                                                  "v 1 2\n",
+                                                  "//",
+                                                  "\xff\xfe",
+                                                  "<![CDATA["};
+
+inline size_t below(Random& random, size_t bound) { return bound == 0 ? 0 : static_cast<size_t>(random() % bound); }
+
+// Another digit for one somewhere after `at`: sizes, counts, indices and coordinates change, the grammar does not.
+inline void changeDigit(std::string& text, size_t at, Random& random) {
+  const size_t digit = text.find_first_of("0123456789", at);
+  if (digit != std::string::npos) text[digit] = static_cast<char>('0' + below(random, 10));
+}
+
+// Every second file keeps its grammar, so that many get past the parsers.
+inline std::string mutated(std::string text, Random& random) {
+  const size_t count = 1 + below(random, 3);
+  if (below(random, 2) == 0) {
+    for (size_t i = 0; i < count; ++i) changeDigit(text, below(random, text.size() + 1), random);
+    return text;
+  }
+  for (size_t i = 0; i < count; ++i) {
+    const size_t at = below(random, text.size() + 1), length = below(random, 1 + text.size() - at);
+    const size_t some = std::min<size_t>(length, 1 + below(random, 24));
+    switch (below(random, 7)) {
+      case 0:  // one bit
+        if (at < text.size()) text[at] = static_cast<char>(text[at] ^ (1 << below(random, 8)));
+        break;
+      case 1:
+        text.replace(at, some, kFragments[below(random, std::size(kFragments))]);
+        break;
+      case 2:
+        text.insert(at, kFragments[below(random, std::size(kFragments))]);
+        break;
+      case 3:
+        text.erase(at, some);
+        break;
+      case 4:
+        text.insert(below(random, text.size() + 1), text.substr(at, length));
+        break;  // repeat a piece elsewhere
+      case 5:
+        text.resize(at);
+        break;  // truncate
+      default:
+        changeDigit(text, at, random);
+    }
+  }
+  return text;
+}
+
+// The undamaged files of which case i damages one.
+inline void writeSeeds(const Folder& folder) {
+  writePng((folder.path() / "wood.png").string(), Image8{.width = 2, .height = 1, .pixels = {90, 60, 30, 120, 80, 40}});
+  folder.write("part.xml", kPartSeed);
+  folder.write("mesh.ply", kQuadPly);
+  folder.write("mesh.obj", kObjSeed);
+  folder.write("scene.xml", kSceneSeed);
+}
+
+inline bool isLenient(int index) { return index % 5 == 0; }
+
+// Writes all files of case `index` over those of the folder; returns the scene's.
+inline std::filesystem::path writeCase(const Folder& folder, int index) {
+  Random random(static_cast<uint64_t>(index));
+  std::string scene(kSceneSeed), ply(kQuadPly), obj(kObjSeed), part(kPartSeed);
+  switch (index % 6) {
+    case 0:
+      scene = mutated(scene, random);
+      break;
+    case 1:
+      part = mutated(part, random);
+      break;
+    case 2:
+      ply = mutated(std::string(index % 12 == 2 ? kQuadPly : kUvPlySeed), random);
+      break;
+    case 3:
+      ply = mutated(binaryQuadPly(index % 12 == 3), random);
+      break;
+    case 4:
+      obj = mutated(obj, random);
+      break;
+    default:
+      ply = mutated(gzip(kUvPlySeed), random);
+  }
+  folder.write("part.xml", part);
+  folder.write("mesh.ply", ply);
+  folder.write("mesh.obj", obj);
+  return folder.write("scene.xml", scene);
+}
+
+// First and one past the last case to run.
+inline std::pair<int, int> casesToRun() {
+  if (const char* chosen = std::getenv("WAVECREST_FUZZ_CASE")) return {std::atoi(chosen), std::atoi(chosen) + 1};
+  const char* count = std::getenv("WAVECREST_FUZZ_CASES");
+  return {0, count != nullptr ? std::atoi(count) : kFewCases};
+}
+
+}  // namespace wavecrest::testing
