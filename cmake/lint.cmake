@@ -1,4 +1,5 @@
-# Target `lint`: formatting and clang-tidy, the same two runs as in ./check. `format` rewrites the sources.
+# Target `lint`: formatting and clang-tidy over every translation unit (./check reads only what
+# changed). `format` rewrites the sources.
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   add_custom_target(lint

@@ -1,8 +1,9 @@
-"""The lint target: formatting of every source file, and clang-tidy over every translation unit.
+"""The lint target: formatting of every source file, and clang-tidy over what changed or over every translation unit.
 
     lint.py format [--fix]             clang-format 14 on all C++ files that git knows
     lint.py tidy [--build DIR] [FILE…] clang-tidy 14 with DIR/compile_commands.json (default build/release); FILEs are
                                        substrings of paths, default all
+    lint.py tidy --changed             the units that differ from main, and one for each header that does
 
 Kernel files are compiled once per instruction set; tidy reads each once, as AVX2 where it can. Status 1 on any finding.
 """
@@ -18,6 +19,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+import changed_units
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 VERSION = "14"  # other versions format and judge differently
@@ -60,11 +63,15 @@ def compile_commands(build):
         if not file.is_relative_to(ROOT) or file.is_relative_to(ROOT / "build"):
             continue  # generated, or not ours
         words = shlex.split(entry["command"])
-        if pathlib.Path(words[0]).name == "ccache":
-            words = words[1:]
+        if not re.search(r"(c\+\+|g\+\+|clang\+\+)(-[0-9]+)?$", words[0]):
+            words = words[1:]  # a launcher such as ccache
+        if "-Winvalid-pch" in words:  # followed by -include and GCC's precompiled header, which only GCC can read
+            at = words.index("-Winvalid-pch")
+            del words[at : at + 3]
         words.append("-Wno-unknown-warning-option")
         if file not in chosen or PREFERRED_ISA in entry["command"]:
-            chosen[file] = {"directory": entry["directory"], "file": str(file), "arguments": words}
+            output = words[words.index("-o") + 1]
+            chosen[file] = {"directory": entry["directory"], "file": str(file), "output": output, "arguments": words}
     return [chosen[file] for file in sorted(chosen)]
 
 
@@ -74,8 +81,17 @@ def tidy_one(tool, database, entry):
     return entry["file"], result.returncode, result.stdout if result.stdout else result.stderr
 
 
-def check_tidy(build, substrings):
+def check_tidy(build, substrings, changed):
     entries = compile_commands(build)
+    if changed:
+        base = changed_units.base_of_change()
+        if base is None:
+            print("lint: no earlier commit to compare with; clang-tidy reads nothing")
+            return 0
+        entries = changed_units.units_of_change(entries, build, changed_units.changed_files(base))
+        if not entries:
+            print(f"lint: no translation unit differs from {base[:12]}")
+            return 0
     if substrings:
         entries = [entry for entry in entries if any(part in entry["file"] for part in substrings)]
     if not entries:
@@ -99,11 +115,12 @@ def main():
     formatting.add_argument("--fix", action="store_true", help="rewrite the files")
     tidy = commands.add_parser("tidy")
     tidy.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release")
+    tidy.add_argument("--changed", action="store_true", help="only what differs from main, or from the commit before")
     tidy.add_argument("files", nargs="*")
     arguments = parser.parse_args()
     if arguments.command == "format":
         sys.exit(check_format(arguments.fix))
-    sys.exit(check_tidy(arguments.build.resolve(), arguments.files))
+    sys.exit(check_tidy(arguments.build.resolve(), arguments.files, arguments.changed))
 
 
 if __name__ == "__main__":

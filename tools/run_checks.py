@@ -102,9 +102,19 @@ def step_long(tally):
         test(tally, "release", "--label-regex", "^long$")
 
 
-# Where raw memory and strange files are handled. The other rooms' unit tests compile for half an hour under sanitizers:
-# cmake --build --preset asan-ubsan, then ctest.
-SANITIZED_TESTS = ("metrics_test", "stages_test")
+# Unit tests: metrics, loader, intersectors and stages, allocation, results and reports. Not those that render whole
+# images, nor scenes_test, whose fixture generates the dragon. Not yet those
+# of lanes, chains and sessions: they compile, but nobody has seen them through to the end under sanitizers.
+SANITIZED_TESTS = (
+    "allocation_test",
+    "bench_report_test",
+    "campaign_test",
+    "claims_test",
+    "load_test",
+    "metrics_test",
+    "results_test",
+    "stages_test",
+)
 
 
 def step_sanitizers(tally):
@@ -121,6 +131,9 @@ def step_fuzz(tally):
 
 def step_lint(tally):
     run(tally, "format", [sys.executable, "tools/lint.py", "format"])
+    if build(tally, "release"):  # whose compile commands and dependencies it reads
+        tidy = [sys.executable, "tools/lint.py", "tidy", "--changed", "--build", "build/release"]
+        run(tally, "tidy of what changed", tidy)
 
 
 def step_tidy(tally):
@@ -135,9 +148,9 @@ STEPS = {
     "lint": step_lint,
     "tidy": step_tidy,
 }
-# To ask for: pictures of all scenes, and clang-tidy over the whole tree, take longer than all else together; the sanitizers
-# find nothing in metrics_test, but stages_test demands of its reduced ray counts what only the full ones give.
-DEFAULT_STEPS = ("release", "lint")
+# To ask for: pictures of all scenes, ten thousand damaged files, and clang-tidy over the whole tree, take longer than all
+# else together.
+DEFAULT_STEPS = ("release", "sanitizers", "lint")
 
 
 def main():

@@ -26,7 +26,8 @@ class ToyChains {
   ToyChains(Isa isa, size_t count, Target target)
       : stages_(findStages<float>(isa, Precision::floating,
                                   chooseSpecialization(featuresOf(Specialization::diffuse), Precision::floating))),
-        wave_(count, {.shadingNormals = false, .textures = false, .rouletteScale = false, .connections = false}),
+        // Every column: where only the general kernels are compiled they stand in for these.
+        wave_(count, {.shadingNormals = true, .textures = true, .rouletteScale = true, .connections = true}),
         state(count, kept()),
         sums(3 * kPixels, 0),
         target_(std::move(target)) {
