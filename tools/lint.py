@@ -92,7 +92,7 @@ def check_tidy(build, substrings, changed):
             print(f"lint: no translation unit differs from {base[:12]}")
             return 0
         if len(entries) > MOST_CHANGED_UNITS:
-            print(f"lint: {len(entries)} units differ from {base[:12]}; reading {MOST_CHANGED_UNITS}, ./check --steps tidy reads all")
+            print(f"lint: {len(entries)} units differ from {base[:12]}; ./check --steps tidy reads all of them")
             entries = entries[:: -(-len(entries) // MOST_CHANGED_UNITS)]
     if substrings:
         entries = [entry for entry in entries if any(part in entry["file"] for part in substrings)]
