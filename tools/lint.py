@@ -25,7 +25,6 @@ import changed_units
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 VERSION = "14"  # other versions format and judge differently
 PREFERRED_ISA = "HWY_BASELINE_TARGETS=HWY_AVX2"
-
 MOST_CHANGED_UNITS = 24  # at some ten seconds each; a larger change has them spread over it
 
 

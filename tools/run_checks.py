@@ -103,8 +103,8 @@ def step_long(tally):
 
 
 # Unit tests: metrics, loader, intersectors and stages, allocation, results and reports. Not those that render whole
-# images, nor scenes_test, whose fixture generates the dragon. Not yet those
-# of lanes, chains and sessions: they compile, but nobody has seen them through to the end under sanitizers.
+# images, nor scenes_test, whose fixture generates the dragon. Not yet those of lanes, chains and sessions: they compile, but
+# nobody has seen them through to the end under sanitizers.
 SANITIZED_TESTS = (
     "allocation_test",
     "bench_report_test",
