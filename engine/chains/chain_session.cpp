@@ -78,7 +78,7 @@ class ChainSession final : public Session {
   MemoryPlan memory_;
   BootstrapPlan bootstrap_;
   std::vector<ChainState> waves_;
-  std::vector<PathStore<S>> paths_;  // of the waves, in path space
+  std::vector<PathStore<S>> paths_;  // of the waves, in path space; rows as long as those of proposals
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
   uint64_t directIterations_ = 0;  // direct light samples of every pixel
   uint64_t step_ = 0;              // steps that every chain has taken
@@ -116,7 +116,7 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
   for (size_t wave = 0; wave < waves; ++wave) {
     ChainState& state = waves_.emplace_back(chainCount(wave), kept);
     state.multiplexed = multiplexed;
-    if (inPathSpace()) paths_.emplace_back(chainCount(wave), plan_.pathLaws.law().maxEdges, plan_.needs);
+    if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan_.pathLaws.law().maxEdges, plan_.needs);
   }
   buildSeconds_ = secondsSince(begin);
 }
@@ -393,7 +393,7 @@ RenderStatistics ChainSession<S>::statistics() const {
   }
   if (inPathSpace()) {
     for (size_t wave = 0; wave < waves_.size(); ++wave) {
-      chains.bytes += PathStore<S>::bytesFor(chainCount(wave), plan_.pathLaws.law().maxEdges, plan_.needs);
+      chains.bytes += PathStore<S>::bytesFor(settings_.waveSize, plan_.pathLaws.law().maxEdges, plan_.needs);
     }
   }
   // In path space a large step may have any length, and says something about b as a whole.
