@@ -102,7 +102,7 @@ class Planner {
     for (size_t left = settings_.metropolis.chains; left != 0;) {
       const size_t wave = std::min<size_t>(left, settings_.waveSize);
       use.chains += ChainState::bytesFor(wave, kept);
-      if (pathSpace) use.chains += PathStore<S>::bytesFor(wave, edges, plan_.needs);
+      if (pathSpace) use.chains += PathStore<S>::bytesFor(settings_.waveSize, edges, plan_.needs);
       left -= wave;
     }
   }

@@ -84,7 +84,7 @@ class ChainSession final : public Session {
   MemoryPlan memory_;
   BootstrapPlan bootstrap_;
   std::vector<ChainState> waves_;
-  std::vector<PathStore<S>> paths_;  // of the waves, in path space
+  std::vector<PathStore<S>> paths_;  // of the waves, in path space; rows as long as those of proposals
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
   std::vector<float> targets_;        // of the epoch's bootstrap samples, as far as they are traced
   std::vector<char> bootstrapped_;    // which waves of them are
@@ -125,7 +125,7 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
   for (size_t wave = 0; wave < waves; ++wave) {
     ChainState& state = waves_.emplace_back(chainCount(wave), kept);
     state.multiplexed = multiplexed;
-    if (inPathSpace()) paths_.emplace_back(chainCount(wave), plan_.pathLaws.law().maxEdges, plan_.needs);
+    if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan_.pathLaws.law().maxEdges, plan_.needs);
   }
   targets_.resize(bootstrap_.length.size());
   bootstrapped_.resize((targets_.size() + settings.waveSize - 1) / settings.waveSize);
@@ -424,7 +424,7 @@ RenderStatistics ChainSession<S>::statistics() const {
   }
   if (inPathSpace()) {
     for (size_t wave = 0; wave < waves_.size(); ++wave) {
-      chains.bytes += PathStore<S>::bytesFor(chainCount(wave), plan_.pathLaws.law().maxEdges, plan_.needs);
+      chains.bytes += PathStore<S>::bytesFor(settings_.waveSize, plan_.pathLaws.law().maxEdges, plan_.needs);
     }
   }
   // In path space a large step may have any length, and says something about b as a whole.

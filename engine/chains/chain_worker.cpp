@@ -1,6 +1,7 @@
 #include "engine/chains/chain_worker.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 namespace wavecrest {
@@ -136,6 +137,7 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
   wave_.firstPath = 0;
   wave_.pathCount = count;
   if (paths_) {
+    assert(paths == nullptr || paths->stride() == paths_->proposed.stride());
     paths_->current = paths;
     context.paths = &*paths_;
     tracePaths(context, count, tally);
