@@ -110,6 +110,7 @@ SANITIZED_TESTS = (
     "bench_report_test",
     "campaign_test",
     "claims_test",
+    "load_fuzz_test",
     "load_test",
     "metrics_test",
     "results_test",

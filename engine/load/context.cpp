@@ -17,7 +17,7 @@ const XmlElement& LoadContext::resolve(const XmlElement& element) const {
 
 std::filesystem::path LoadContext::resolvePath(std::string_view name, const XmlElement& namedIn) const {
   const auto folderOf = [](const std::string& file) { return std::filesystem::path(file).parent_path(); };
-  const std::filesystem::path besideScene = (folderOf(document.files.front()) / name).lexically_normal();
+  std::filesystem::path besideScene = (folderOf(document.files.front()) / name).lexically_normal();
   std::vector<std::filesystem::path> candidates = {besideScene, folderOf(*namedIn.file) / name};
   for (const std::filesystem::path& folder : document.searchPaths) candidates.push_back(folder / name);
   for (const std::filesystem::path& candidate : candidates) {
