@@ -161,7 +161,9 @@ class Judge {
     return verdict;
   }
   void noteOpenPoints(const std::string& metric) {
-    for (const auto& [point, objects] : openPoints_) note(point + " " + objects + " in " + metric);
+    for (const auto& [point, objects] : openPoints_) {
+      note(std::string(point).append(" ").append(objects).append(" in ").append(metric));
+    }
     openPoints_.clear();
   }
 

@@ -132,7 +132,7 @@ WAVECREST_NOINLINE void proposeWave(const StageContext<S>& context, const Wave<S
     const Mask large = (toUnitInterval(step.a) < Float(context.chains->samples.largeStep)) | (edges == zero);
 
     Plan plan = anew(law, edges, load(chains.length, i), more.a, toUnitInterval(more.d));
-    if (!all(large)) {
+    if (paths.current != nullptr && !all(large)) {
       const auto& current = paths.current->headers;
       const UInt eyeEnd = load(current.eyeEnd, i), causticStart = load(current.causticStart, i);
       const Mask multiChain = load(current.multiChain, i) != zero;

@@ -207,7 +207,7 @@ TEST_P(AxisAlignedTest, raysAlongTheAxesHitTheFacesTheyMeet) {
       faces.push_back(quadPrimitive(p, u, v));
     }
   }
-  const StageScene<float> scene(std::move(faces));
+  const StageScene<float> scene(faces);
   RayBatch batch;
   std::vector<uint32_t> expected;
   for (uint32_t axis = 0; axis < 3; ++axis) {

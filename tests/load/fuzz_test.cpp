@@ -11,7 +11,9 @@
 
 // One allocation beyond the bound ends the process; what is freed is given back soon, so that the process's size means
 // something.
+// NOLINTNEXTLINE(readability-identifier-naming,bugprone-reserved-identifier)
 extern "C" const char* __asan_default_options();
+// NOLINTNEXTLINE(readability-identifier-naming,bugprone-reserved-identifier)
 extern "C" const char* __asan_default_options() { return "max_allocation_size_mb=1024:quarantine_size_mb=16"; }
 
 namespace wavecrest::testing {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
+#include <stdlib.h>  // mkdtemp  NOLINT(modernize-deprecated-headers)
 
 #include <filesystem>
 #include <fstream>
@@ -28,7 +28,7 @@ class Folder {
   Folder& operator=(const Folder&) = delete;
 
   std::filesystem::path write(const std::string& name, std::string_view content) const {
-    const std::filesystem::path path = path_ / name;
+    std::filesystem::path path = path_ / name;
     std::filesystem::create_directories(path.parent_path());
     std::filesystem::remove(path);  // file systems may flush to the disk when a file is overwritten
     std::ofstream(path, std::ios::binary) << content;
