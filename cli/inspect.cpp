@@ -173,7 +173,7 @@ void addInspectCommand(CLI::App& app, int& exitCode) {
   addSceneOptions(*command, options->scene);
   command->add_flag("--json", options->json, "as JSON");
   command->add_option("--precision", options->precision, "of the render that is planned")->capture_default_str();
-  command->add_option("--accel", options->accel, "auto, embree or small")->capture_default_str();
+  command->add_option("--accel", options->accel, "auto, small, bvh or embree")->capture_default_str();
   command->add_option("--threads", options->threads, "of the render that is planned; default: all cores")
       ->check(CLI::Range(1, 4096));
   command->add_option("--wave", options->wave, "paths per wave")->capture_default_str()->check(CLI::Range(16, 1 << 20));

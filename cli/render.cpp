@@ -236,7 +236,7 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
       ->check(CLI::PositiveNumber);
   command->add_option("--precision", options->precision, "float, double or fast")->capture_default_str();
   command->add_option("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512")->capture_default_str();
-  command->add_option("--accel", options->accel, "intersector: auto, embree or small")->capture_default_str();
+  command->add_option("--accel", options->accel, "intersector: auto, small, bvh or embree")->capture_default_str();
   command->add_option("--wave", options->wave, "paths per wave")->capture_default_str()->check(CLI::Range(16, 1 << 20));
   command
       ->add_option("--radius", options->radius,

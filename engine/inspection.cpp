@@ -102,7 +102,7 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
   const auto compiled = compileScene<float>(scene, settings.accel);
   out.primitives = compiled->primitives.counts;
   out.bounds = boundPrimitives(compiled->primitives.records);
-  out.accel = compiled->small != nullptr ? Accel::small : Accel::embree;
+  out.accel = compiled->accel();
 
   for (const MethodEntry& entry : kMethods) {
     MethodInspection& row = out.methods.emplace_back();

@@ -165,7 +165,7 @@ size_t sceneBytes(const CompiledScene<S>& scene) {
          bytesOf(scene.textures.records) + bytesOf(scene.textures.texels) + bytesOf(scene.lights.records) +
          bytesOf(scene.lights.table) + bytesOf(scene.lights.environment.texels) +
          bytesOf(scene.lights.environment.probability) + bytesOf(scene.lights.environment.table) +
-         (scene.embree ? scene.embree->bytes() : 0);
+         (scene.embree ? scene.embree->bytes() : 0) + (scene.bvh ? scene.bvh->bytes() : 0);
 }
 template size_t sceneBytes(const CompiledScene<float>&);
 template size_t sceneBytes(const CompiledScene<double>&);

@@ -41,6 +41,7 @@ Specialization specializationFor(const Scene& scene, const RenderSettings& setti
 template <class S>
 Intersector<S> chooseIntersector(const Stages<S>& stages, Accel accel) {
   if (accel == Accel::small) return {stages.extendSmall, stages.occludeSmall, stages.lanes};
+  if (accel == Accel::bvh) return {stages.extendBvh, stages.occludeBvh, stages.lanes};
   return {extendEmbree<S>, occludeEmbree<S>, kEmbreePacket};
 }
 template Intersector<float> chooseIntersector(const Stages<float>&, Accel);

@@ -24,7 +24,7 @@ struct RenderPlan {
   Pipeline<S> pipeline;
   PathLaws pathLaws;  // of chains in path space
 
-  Accel accel() const { return scene->small != nullptr ? Accel::small : Accel::embree; }
+  Accel accel() const { return scene->accel(); }
 };
 
 // S is the storage type of settings.precision. Throws std::runtime_error where the scene cannot be rendered.

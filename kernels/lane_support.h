@@ -258,6 +258,12 @@ WAVECREST_SIMD_END
   WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)             \
   WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)              \
   WAVECREST_SIMD_END
+// For a stage that depends on how columns are kept alone.
+#define WAVECREST_INSTANTIATE_STORAGE_STAGE(STAGE)                         \
+  WAVECREST_SIMD_BEGIN                                                     \
+  template void STAGE<float>(const StageContext<float>&, Wave<float>&);    \
+  template void STAGE<double>(const StageContext<double>&, Wave<double>&); \
+  WAVECREST_SIMD_END
 #define WAVECREST_INSTANTIATE(STAGE, PRECISION, SPECIALIZATION)                                                       \
   template void STAGE<PRECISION, featuresOf(Specialization::SPECIALIZATION)>(const StageContext<PRECISION::Storage>&, \
                                                                              Wave<PRECISION::Storage>&);

@@ -144,6 +144,7 @@ struct EnvironmentView {
 };
 
 struct SmallSceneView;  // kernels/extend/small_scene.h
+struct BvhView;         // kernels/extend/bvh.h
 
 template <class S>
 struct SceneView {
@@ -160,7 +161,8 @@ struct SceneView {
   bool spheres = false;               // some primitive is a sphere
   double center[3]{}, radius = 0;     // bounding sphere
   CameraView camera;
-  const SmallSceneView* small = nullptr;
+  const SmallSceneView* small = nullptr;  // one of these three
+  const BvhView* bvh = nullptr;
   void* embree = nullptr;        // RTCScene
   uint32_t firstPrimitive[3]{};  // of the quads, triangles and spheres in `primitives`
 };

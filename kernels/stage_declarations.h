@@ -39,4 +39,14 @@ WAVECREST_DECLARE_STAGE(commitPaths)          // mutate/weigh_paths.cpp
 
 #undef WAVECREST_DECLARE_STAGE
 
+// What depends on neither features nor precision but how columns are kept.
+#define WAVECREST_DECLARE_STORAGE_STAGE(STAGE) \
+  template <class S>                           \
+  void STAGE(const StageContext<S>&, Wave<S>&);
+
+WAVECREST_DECLARE_STORAGE_STAGE(extendBvh)   // extend/extend_bvh.cpp
+WAVECREST_DECLARE_STORAGE_STAGE(occludeBvh)  // extend/occlude_bvh.cpp
+
+#undef WAVECREST_DECLARE_STORAGE_STAGE
+
 WAVECREST_SIMD_END

@@ -15,6 +15,8 @@ constexpr Stages<typename P::Storage> makeStages() {
                                      .generateCameraPaths = generateCameraPaths<P, kFeatures>,
                                      .extendSmall = extendSmall<P, kFeatures>,
                                      .occludeSmall = occludeSmall<P, kFeatures>,
+                                     .extendBvh = extendBvh<typename P::Storage>,
+                                     .occludeBvh = occludeBvh<typename P::Storage>,
                                      .arrive = arrive<P, kFeatures>,
                                      .nextEvent = nextEvent<P, kFeatures>,
                                      .scatter = scatter<P, kFeatures>,

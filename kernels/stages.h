@@ -192,6 +192,8 @@ struct Stages {
   Stage<S> generateCameraPaths = nullptr;
   Stage<S> extendSmall = nullptr;   // closest hits by the small-scene intersector
   Stage<S> occludeSmall = nullptr;  // visibility by the small-scene intersector
+  Stage<S> extendBvh = nullptr;     // closest hits in large scenes
+  Stage<S> occludeBvh = nullptr;    // visibility in large scenes
   Stage<S> arrive = nullptr;
   Stage<S> nextEvent = nullptr;
   Stage<S> scatter = nullptr;

@@ -101,10 +101,18 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   bindLightTextures(scene, primitives, compiled->lights, compiled->textures);
 
   SceneView<S>& view = compiled->view;
-  if (accel == Accel::small || (accel == Accel::automatic && primitives.counts.total() <= kSmallSceneLimit)) {
+  view.camera = compileCamera(scene.sensor, scene.film);
+  if (accel == Accel::automatic) {
+    accel = primitives.counts.total() <= kSmallSceneLimit ? Accel::small : Accel::bvh;
+  }
+  if (accel == Accel::small) {
     const Primitives<double> precise = compilePrimitives<double>(scene, false);
     compiled->small = std::make_unique<SmallScene>(precise.records.data(), precise.records.size());
     view.small = &compiled->small->view();
+  } else if (accel == Accel::bvh) {
+    const Primitives<double> precise = compilePrimitives<double>(scene, false);
+    compiled->bvh = std::make_unique<Bvh>(precise.records.data(), precise.records.size(), view.camera.origin);
+    view.bvh = &compiled->bvh->view();
   } else {
     compiled->embree =
         std::make_unique<EmbreeScene>(primitives.records.data(), primitives.counts.quads, primitives.counts.triangles,
@@ -126,7 +134,6 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   view.firstPrimitive[2] = primitives.counts.quads + primitives.counts.triangles;
   for (size_t i = 0; i < 3; ++i) view.center[i] = bounds.center[i];
   view.radius = bounds.radius;
-  view.camera = compileCamera(scene.sensor, scene.film);
   return compiled;
 }
 template std::unique_ptr<CompiledScene<float>> compileScene(const Scene&, Accel, bool);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/extend/small_scene.h"
+#include "kernels/extend/sphere_lanes.h"
 #include "kernels/lane_support.h"
 
 WAVECREST_SIMD_BEGIN
@@ -37,22 +38,9 @@ WAVECREST_INLINE Mask insideTriangle(const PlaneHit& hit, const PlaneLimits& lim
   return min(min(hit.u, hit.v), Float(1) - hit.u - hit.v) >= -margin;
 }
 
-// The nearest t > 0 at which the rays meet the sphere, or a negative number. The discriminant is taken from the point
-// of the ray nearest to the centre, and the roots from the one that does not cancel (Haines et al., "Precision
-// Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019). direction need not be unit.
 WAVECREST_INLINE Float intersectSphere(const SphereForm& sphere, Vec3<Float> origin, Vec3<Float> direction) {
-  const Vec3<Float> toOrigin = origin - Vec3<Float>{sphere.center[0], sphere.center[1], sphere.center[2]};
-  const Float a = length2(direction);
-  const Float b = -dot(toOrigin, direction);
-  const Float r2 = Float(sphere.radius * sphere.radius);
-  const Vec3<Float> nearest = mulAdd(direction, b / a, toOrigin);
-  const Float discriminant = r2 - length2(nearest);
-  const Float q = b + copySign(sqrt(max(a * discriminant, Float(0))), b);
-  const Float c = length2(toOrigin) - r2;
-  const Float t0 = c / q, t1 = q / a;
-  const Float first = min(t0, t1), second = max(t0, t1);
-  const Float t = select(first > Float(0), first, second);
-  return select(discriminant >= Float(0), t, Float(-1));
+  const Vec3<Float> center{sphere.center[0], sphere.center[1], sphere.center[2]};
+  return intersectSpheres(center, Float(sphere.radius), origin, direction);
 }
 
 WAVECREST_SIMD_END

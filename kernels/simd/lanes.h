@@ -200,6 +200,9 @@ WAVECREST_INLINE Float toFloat(UInt a) { return {hn::ConvertTo(FloatTag(), hn::B
 // Truncates; a must lie in [0, 2^31).
 WAVECREST_INLINE UInt toUInt(Float a) { return {hn::BitCast(UIntTag(), hn::ConvertTo(IntTag(), a.v))}; }
 
+WAVECREST_INLINE float leastLane(Float a) { return hn::GetLane(hn::MinOfLanes(FloatTag(), a.v)); }
+WAVECREST_INLINE float greatestLane(Float a) { return hn::GetLane(hn::MaxOfLanes(FloatTag(), a.v)); }
+
 // ---- memory ---------------------------------------------------------------------------------------------------------
 // Pointers of the aligned forms are multiples of the vector size: column blocks are.
 

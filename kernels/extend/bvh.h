@@ -1,0 +1,86 @@
+// The intersector of large scenes: a bounding volume hierarchy of eight-wide nodes whose boxes are kept in bytes.
+//
+// A node is two cache lines: the boxes of its children on a grid of 255 steps over their union (Ylitie, Karras, Laine,
+// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017), and a reference to each child.
+// Leaves hold up to four triangles, or spheres, in columns. A mesh of a million triangles has 10 MB of nodes and 50 MB
+// of leaves.
+//
+// Watertightness: boxes are widened by a bound on the rounding of their test (bvh.cpp), and the edge functions of two
+// triangles that share an edge are exact negatives of each other, so no ray passes between them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "kernels/scene_view.h"
+
+namespace wavecrest {
+
+constexpr size_t kBvhWidth = 8;  // children of a node
+constexpr size_t kLeafSize = 4;  // primitives of a leaf
+
+// A reference: what it leads to in the upper two bits, and the distance from the arena's begin in units of 32 bytes.
+enum class BvhEntry : uint32_t { node, faces, spheres, end };
+constexpr uint32_t kBvhUnit = 32, kBvhEntryShift = 30, kBvhOffsetMask = (1u << kBvhEntryShift) - 1;
+constexpr BvhEntry entryOf(uint32_t reference) { return static_cast<BvhEntry>(reference >> kBvhEntryShift); }
+constexpr uint32_t makeReference(BvhEntry entry, size_t bytes) {
+  return static_cast<uint32_t>(entry) << kBvhEntryShift | static_cast<uint32_t>(bytes / kBvhUnit);
+}
+constexpr uint32_t kBvhEnd = makeReference(BvhEntry::end, 0);
+
+// Planes of child i along an axis: corner + scale * bounds[axis or 3 + axis][i], low ones before high ones. Scales are
+// powers of two. Absent children have low above high.
+struct alignas(128) BvhNode {
+  uint32_t children[kBvhWidth];
+  float corner[3], scale[3];
+  uint8_t bounds[6][kBvhWidth];
+};
+static_assert(sizeof(BvhNode) == 128);
+
+// What a hit's coordinates mean: a quad is two triangles, cut from (u, v) = (0, 0) to (1, 1).
+enum class FaceKind : uint32_t { triangle, lowerHalf, upperHalf, sphere };
+constexpr uint32_t kFaceKindShift = 30, kFacePrimitiveMask = (1u << kFaceKindShift) - 1;
+
+// Slots past the last primitive repeat it. id: index into SceneView::primitives, FaceKind in the upper two bits.
+struct alignas(32) BvhFaces {
+  float corner[3][3][kLeafSize];  // [corner][axis][slot]
+  uint32_t id[kLeafSize];
+};
+struct alignas(32) BvhSpheres {
+  float center[3][kLeafSize], radius[kLeafSize];
+  uint32_t id[kLeafSize];
+};
+
+// Room for the references that a ray has still to visit.
+constexpr size_t kBvhStack = 256;
+
+struct BvhView {
+  const std::byte* arena = nullptr;
+  uint32_t root = kBvhEnd;
+
+  template <class Record>
+  const Record& at(uint32_t reference) const {
+    return *reinterpret_cast<const Record*>(arena + size_t{reference & kBvhOffsetMask} * kBvhUnit);
+  }
+};
+
+class Bvh {
+ public:
+  // primitives: in SceneView order, in double so that triangles which share a corner agree on its float. eye: another
+  // point that rays start from. Built by as many threads as the calling TBB arena has. Throws std::runtime_error where
+  // that fails.
+  Bvh(const PrimitiveRecord<double>* primitives, size_t count, const double (&eye)[3]);
+  const BvhView& view() const { return view_; }
+  size_t bytes() const { return bytes_; }
+
+ private:
+  struct Free {
+    void operator()(std::byte* p) const;
+  };
+  std::unique_ptr<std::byte, Free> arena_;
+  size_t bytes_ = 0;
+  BvhView view_;
+};
+
+}  // namespace wavecrest

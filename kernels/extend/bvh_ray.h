@@ -1,0 +1,228 @@
+// One ray in the hierarchy of bvh.h, and a packet of rays that stay together: the walkers of walk_bvh.h.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "kernels/extend/walk_bvh.h"
+
+WAVECREST_SIMD_BEGIN
+
+template <size_t kCount>
+WAVECREST_INLINE Vec3<FloatGroup<kCount>> broadcast(const float (&a)[3]) {
+  return {a[0], a[1], a[2]};
+}
+template <size_t kCount>
+WAVECREST_INLINE Vec3<FloatGroup<kCount>> loadPoints(const float (&a)[3][kCount]) {
+  return {loadGroup<kCount>(a[0]), loadGroup<kCount>(a[1]), loadGroup<kCount>(a[2])};
+}
+// Where in BvhNode::bounds the planes are through which rays enter that go in the direction d: 0, or 3 rows on.
+WAVECREST_INLINE uint32_t nearPlanes(float d) { return std::signbit(d) ? 3 * kBvhWidth : 0; }
+
+// kAnyHit: whatever lies before the ray's end ends the walk.
+template <bool kAnyHit>
+struct alignas(64) BvhRay {
+  float origin[3], direction[3], inverse[3];
+  uint32_t nearPlane[3];
+  float t;              // nothing beyond counts: of the nearest hit so far, or the ray's end
+  float second, third;  // of that hit: weights of the corners, or t and 0 of a sphere
+  uint32_t id;          // of the face, or kMiss
+  uint32_t index, at, waiting;
+  uint32_t stack[kBvhStack];
+
+  WAVECREST_INLINE void begin(size_t ray, float ox, float oy, float oz, float dx, float dy, float dz, float end) {
+    index = static_cast<uint32_t>(ray);
+    id = kMiss;
+    t = end;
+    const float o[3] = {ox, oy, oz}, d[3] = {dx, dy, dz};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const float size = std::abs(d[axis]);
+      origin[axis] = o[axis];
+      direction[axis] = d[axis];
+      inverse[axis] = std::copysign(1 / (size > kLeastDirection ? size : kLeastDirection), d[axis]);
+      nearPlane[axis] = nearPlanes(d[axis]);
+    }
+  }
+
+  // Puts the children that the ray meets before t on its stack: the nearest last, or in any order if any hit will do.
+  WAVECREST_INLINE void visit(const BvhNode& node) {
+    using Group = FloatGroup<kBvhWidth>;
+    Group enter(0.0f), leave(t);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const Group step(node.scale[axis] * inverse[axis]);
+      const Group first((node.corner[axis] - origin[axis]) * inverse[axis]);
+      const uint8_t* const low = node.bounds[axis];
+      enter = max(mulAdd(loadBytes<kBvhWidth>(low + nearPlane[axis]), step, first), enter);
+      leave = min(mulAdd(loadBytes<kBvhWidth>(low + 3 * kBvhWidth - nearPlane[axis]), step, first), leave);
+    }
+    const auto children = loadGroup<kBvhWidth>(node.children);
+    const auto met = (enter <= leave) & (children != kBvhEnd);
+    uint32_t* const top = stack + waiting;
+    waiting += static_cast<uint32_t>(kAnyHit ? appendWhere(met, children, top)
+                                             : appendByFallingKey(met, enter, children, top));
+  }
+  WAVECREST_INLINE void visit(const BvhFaces& faces) {
+    using Group = FloatGroup<kLeafSize>;
+    const Vec3<Group> o = broadcast<kLeafSize>(origin), d = broadcast<kLeafSize>(direction);
+    MaskGroup<kLeafSize> met;
+    const FaceHit<Group> hit = intersectFaces(loadPoints(faces.corner[0]) - o, loadPoints(faces.corner[1]) - o,
+                                              loadPoints(faces.corner[2]) - o, d, met);
+    keep(met, hit.t, faces.id, [&](size_t slot) HWY_ATTR {
+      HWY_ALIGN float sum[kLeafSize], weights[2][kLeafSize];
+      store(hit.sum, sum);
+      store(hit.second, weights[0]);
+      store(hit.third, weights[1]);
+      second = weights[0][slot] / sum[slot];
+      third = weights[1][slot] / sum[slot];
+    });
+  }
+  WAVECREST_INLINE void visit(const BvhSpheres& spheres) {
+    using Group = FloatGroup<kLeafSize>;
+    const Group distance = intersectSpheres(loadPoints(spheres.center), loadGroup<kLeafSize>(spheres.radius),
+                                            broadcast<kLeafSize>(origin), broadcast<kLeafSize>(direction));
+    keep(distance > Group(0.0f), distance, spheres.id, [&](size_t) HWY_ATTR {
+      second = t;
+      third = 0;
+    });
+  }
+
+ private:
+  // The nearest of a leaf's hits. Of equally near ones that of the lowest id counts, so that a hit does not depend on
+  // the order of visits. coordinates(slot): sets those of the hit.
+  template <class Coordinates>
+  WAVECREST_INLINE void keep(MaskGroup<kLeafSize> met, FloatGroup<kLeafSize> distance, const uint32_t* ids,
+                             const Coordinates& coordinates) {
+    using Group = FloatGroup<kLeafSize>;
+    met = met & (distance > Group(0.0f)) & (distance <= Group(t));
+    if (!any(met)) return;
+    if constexpr (kAnyHit) {
+      id = ids[0];
+      waiting = 1;
+      return;
+    }
+    const Least nearest = leastOf(select(met, distance, Group(std::numeric_limits<float>::infinity())));
+    if (nearest.value == t && ids[nearest.index] >= id) return;
+    t = nearest.value;
+    id = ids[nearest.index];
+    coordinates(nearest.index);
+  }
+};
+
+// As many rays as there are lanes. Nodes are tested once for all of them, by the intervals that their origins and
+// directions span; leaves ray by ray.
+struct BvhPacket {
+  Vec3<Float> origin, direction, inverse;
+  Float t, second, third;  // as of a single ray
+  UInt id;
+  float nearOrigin[3], farOrigin[3];  // least along the rays of what they enter by and leave by
+  float inverses[2][3];               // ends of the interval of 1 / direction
+  float slack[3];                     // infinite where rays go both ways, else 0
+  uint32_t nearPlane[3];
+  float end;  // greatest t
+  uint32_t index, at, waiting;
+  uint32_t stack[kBvhStack];
+
+  WAVECREST_INLINE void begin(size_t first, Vec3<Float> o, Vec3<Float> d) {
+    index = static_cast<uint32_t>(first);
+    origin = o;
+    direction = d;
+    end = std::numeric_limits<float>::infinity();
+    t = Float(end);
+    second = third = Float(0);
+    id = UInt(kMiss);
+    inverse = {bound(0, o.x, d.x), bound(1, o.y, d.y), bound(2, o.z, d.z)};
+  }
+
+  WAVECREST_INLINE void visit(const BvhNode& node) {
+    using Group = FloatGroup<kBvhWidth>;
+    Group enter(0.0f), leave(end);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const float scale = node.scale[axis], corner = node.corner[axis];
+      const Group step0(scale * inverses[0][axis]), step1(scale * inverses[1][axis]);
+      const float near = corner - nearOrigin[axis], far = corner - farOrigin[axis];
+      const auto along = [&](Group planes, float from) HWY_ATTR {
+        return std::pair{mulAdd(planes, step0, Group(from * inverses[0][axis])),
+                         mulAdd(planes, step1, Group(from * inverses[1][axis]))};
+      };
+      const uint8_t* const low = node.bounds[axis];
+      const auto [enter0, enter1] = along(loadBytes<kBvhWidth>(low + nearPlane[axis]), near);
+      const auto [leave0, leave1] = along(loadBytes<kBvhWidth>(low + 3 * kBvhWidth - nearPlane[axis]), far);
+      enter = max(min(enter0, enter1) - Group(slack[axis]), enter);
+      leave = min(max(leave0, leave1) + Group(slack[axis]), leave);
+    }
+    const auto met = (enter <= leave) & (loadGroup<kBvhWidth>(node.children) != kBvhEnd);
+    uint32_t slots[kBvhWidth];
+    const size_t count = appendByFallingKey(met, enter, loadGroup<kBvhWidth>(kLaneNumbers), slots);
+    const Vec3<Float> scale{node.scale[0], node.scale[1], node.scale[2]};
+    const Vec3<Float> corner{node.corner[0], node.corner[1], node.corner[2]};
+    const Vec3<Float> step = scale * inverse, first = (corner - origin) * inverse;
+    for (size_t i = 0; i < count; ++i) {
+      stack[waiting] = node.children[slots[i]];
+      waiting += meets(node, slots[i], step, first) ? 1 : 0;
+    }
+  }
+  WAVECREST_INLINE void visit(const BvhFaces& faces) {
+    forEachSlot(faces.id, [&](size_t slot, UInt face) HWY_ATTR {
+      const auto corner = [&](size_t k) HWY_ATTR {
+        const auto& c = faces.corner[k];
+        return Vec3<Float>{c[0][slot], c[1][slot], c[2][slot]} - origin;
+      };
+      Mask met;
+      const FaceHit<Float> hit = intersectFaces(corner(0), corner(1), corner(2), direction, met);
+      met = met & (hit.t > Float(0));
+      if (any(met)) keep(met, hit.t, hit.second / hit.sum, hit.third / hit.sum, face);
+    });
+  }
+  WAVECREST_INLINE void visit(const BvhSpheres& spheres) {
+    forEachSlot(spheres.id, [&](size_t slot, UInt sphere) HWY_ATTR {
+      const Vec3<Float> center{spheres.center[0][slot], spheres.center[1][slot], spheres.center[2][slot]};
+      const Float distance = intersectSpheres(center, Float(spheres.radius[slot]), origin, direction);
+      keep(distance > Float(0), distance, distance, Float(0), sphere);
+    });
+  }
+
+ private:
+  WAVECREST_INLINE Float bound(size_t axis, Float o, Float d) {
+    const Float inverted = copySign(Float(1) / max(abs(d), Float(kLeastDirection)), d);
+    const float least = leastLane(inverted), most = greatestLane(inverted);
+    const bool backward = std::signbit(most), forward = !std::signbit(least);
+    inverses[0][axis] = least;
+    inverses[1][axis] = most;
+    slack[axis] = backward || forward ? 0 : std::numeric_limits<float>::infinity();
+    nearPlane[axis] = nearPlanes(most);
+    const float low = leastLane(o), high = greatestLane(o);
+    nearOrigin[axis] = backward ? low : high;
+    farOrigin[axis] = backward ? high : low;
+    return inverted;
+  }
+  // Whether any of the rays themselves meets a child. step, first: distances along them are plane * step + first.
+  WAVECREST_INLINE bool meets(const BvhNode& node, size_t child, Vec3<Float> step, Vec3<Float> first) const {
+    Float enter(0), leave = t;
+    const auto clip = [&](size_t axis, Float s, Float f) HWY_ATTR {
+      const Float low = mulAdd(Float(static_cast<float>(node.bounds[axis][child])), s, f);
+      const Float high = mulAdd(Float(static_cast<float>(node.bounds[3 + axis][child])), s, f);
+      enter = max(enter, min(low, high));
+      leave = min(leave, max(low, high));
+    };
+    clip(0, step.x, first.x);
+    clip(1, step.y, first.y);
+    clip(2, step.z, first.z);
+    return any(enter <= leave);
+  }
+  template <class Test>
+  WAVECREST_INLINE void forEachSlot(const uint32_t* ids, const Test& test) {
+    for (size_t slot = 0; slot < kLeafSize && (slot == 0 || ids[slot] != ids[slot - 1]); ++slot) {
+      test(slot, UInt(ids[slot]));
+    }
+    end = greatestLane(t);
+  }
+  WAVECREST_INLINE void keep(Mask met, Float distance, Float a, Float b, UInt face) {
+    const Mask closer = met & ((distance < t) | ((distance == t) & (face < id)));
+    t = select(closer, distance, t);
+    second = select(closer, a, second);
+    third = select(closer, b, third);
+    id = select(closer, face, id);
+  }
+};
+
+WAVECREST_SIMD_END

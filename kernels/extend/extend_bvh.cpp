@@ -1,0 +1,104 @@
+// extend, large scenes: the closest hit of each ray in the hierarchy of bvh.h.
+//
+// in: Rays [n]. out: Hits [n], in ray order. Rays are in float under every precision policy. The result does not depend
+// on the width of a block, nor on which rays are walked together.
+#include "kernels/extend/bvh_ray.h"
+#include "kernels/extend/offset.h"
+#include "kernels/stage_declarations.h"
+
+WAVECREST_SIMD_BEGIN
+
+namespace {
+
+// Asks for the record that the next stage gathers, which in a large scene is far from any cache.
+template <class S>
+WAVECREST_INLINE void prefetchPrimitive(const SceneView<S>& scene, uint32_t id) {
+  if (id == kMiss) return;
+  const auto* record = reinterpret_cast<const char*>(scene.primitives + (id & kFacePrimitiveMask));
+  for (size_t byte = 0; byte < sizeof(PrimitiveRecord<S>); byte += 64) __builtin_prefetch(record + byte);
+}
+template <class S>
+WAVECREST_INLINE void prefetchAttributes(const SceneView<S>& scene, const uint32_t* primitives) {
+  if (scene.attributes == nullptr) return;
+  for (size_t k = 0; k < kLanes; ++k) {
+    if (primitives[k] == kMiss) continue;
+    const uint32_t index = scene.primitives[primitives[k]].attributes;
+    if (index != kNoIndex) __builtin_prefetch(scene.attributes + index);
+  }
+}
+
+// From weights of corners to coordinates of the primitive, kept off its edges (see kInset).
+template <class S>
+WAVECREST_INLINE void finish(const SceneView<S>& scene, Hits& hits, size_t i) {
+  const UInt id = load(hits.primitive, i);
+  const UInt kind = shiftRight<kFaceKindShift>(id);
+  const auto is = [&](FaceKind k) HWY_ATTR { return kind == UInt(static_cast<uint32_t>(k)); };
+  const Mask lower = is(FaceKind::lowerHalf), upper = is(FaceKind::upperHalf), sphere = is(FaceKind::sphere);
+  const Float second = load(hits.u, i), third = load(hits.v, i), both = second + third;
+  const Float inset(kInset), rest(1 - kInset);
+  const Float u = min(max(select(lower, both, second), inset), rest);
+  const Float v = min(max(select(upper, both, third), inset), rest);
+  const Float scale = select(lower | upper, Float(1), min(Float(1), rest / (u + v)));
+  store(select(sphere, second, u * scale), hits.u, i);
+  store(select(sphere, third, v * scale), hits.v, i);
+  store(select(id == UInt(kMiss), id, id & UInt(kFacePrimitiveMask)), hits.primitive, i);
+  prefetchAttributes(scene, hits.primitive + i);
+}
+
+}  // namespace
+
+template <class S>
+void extendBvh(const StageContext<S>& context, Wave<S>& wave) {
+  const auto& scene = *context.scene;
+  const auto& rays = wave.rays;
+  const size_t count = rays.size;
+  context.counters->raysClosest += count;
+  wave.hits.size = 0;
+  wave.hits.claim(count);
+  auto& hits = wave.hits;
+  size_t next = 0;
+  // Rays from the eye stay together; those of Markov chains, each through a pixel of its own, do not.
+  if (context.walk == Walk::camera && context.depth == 1 && context.chains == nullptr) {
+    walkBvh<BvhPacket, 8>(
+        *scene.bvh,
+        [&](BvhPacket& packet) HWY_ATTR {
+          if (next >= count) return false;
+          const Mask rest = firstLanes(count - next);  // the lanes behind the last ray repeat the first
+          const auto lanes = [&](const Column<S>& column) HWY_ATTR {
+            return select(rest, to<Float>(load(column, next)), Float(static_cast<float>(column[next])));
+          };
+          packet.begin(next, {lanes(rays.originX), lanes(rays.originY), lanes(rays.originZ)},
+                       {lanes(rays.directionX), lanes(rays.directionY), lanes(rays.directionZ)});
+          next += kLanes;
+          return true;
+        },
+        [&](const BvhPacket& packet) HWY_ATTR {
+          store(packet.id, hits.primitive, packet.index);
+          store(packet.second, hits.u, packet.index);
+          store(packet.third, hits.v, packet.index);
+          for (size_t k = 0; k < kLanes; ++k) prefetchPrimitive(scene, hits.primitive[packet.index + k]);
+        });
+  } else {
+    walkBvh<BvhRay<false>, 32>(
+        *scene.bvh,
+        [&](BvhRay<false>& ray) HWY_ATTR {
+          if (next >= count) return false;
+          const auto of = [&](const Column<S>& column) { return static_cast<float>(column[next]); };
+          ray.begin(next, of(rays.originX), of(rays.originY), of(rays.originZ), of(rays.directionX),
+                    of(rays.directionY), of(rays.directionZ), std::numeric_limits<float>::infinity());
+          ++next;
+          return true;
+        },
+        [&](const BvhRay<false>& ray) HWY_ATTR {
+          hits.primitive[ray.index] = ray.id;
+          hits.u[ray.index] = ray.second;
+          hits.v[ray.index] = ray.third;
+          prefetchPrimitive(scene, ray.id);
+        });
+  }
+  for (size_t i = 0; i < count; i += kLanes) finish(scene, hits, i);
+}
+
+WAVECREST_SIMD_END
+
+WAVECREST_INSTANTIATE_STORAGE_STAGE(extendBvh)

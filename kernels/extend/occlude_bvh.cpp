@@ -1,0 +1,48 @@
+// occlude, large scenes: adds the contribution of each shadow ray that nothing in the hierarchy of bvh.h blocks.
+//
+// in: ShadowRays [n]. out: Radiance grows, or on light walks that splat, the film; ShadowRays empty.
+#include "kernels/extend/bvh_ray.h"
+#include "kernels/stage_declarations.h"
+
+WAVECREST_SIMD_BEGIN
+
+template <class S>
+void occludeBvh(const StageContext<S>& context, Wave<S>& wave) {
+  auto& shadow = wave.shadowRays;
+  const size_t count = shadow.size;
+  context.counters->raysShadow += count;
+  const bool splatting = !context.contributesToLanes();
+  // Rays end in any order, but contributions are added in theirs: what a ray sees takes the place of its origin.
+  float* const visible = shadow.originX;
+  size_t next = 0;
+  walkBvh<BvhRay<true>, 32>(
+      *context.scene->bvh,
+      [&](BvhRay<true>& ray) HWY_ATTR {
+        if (next >= count) return false;
+        // Just short of 1: nothing at the segment's end may block it.
+        ray.begin(next, shadow.originX[next], shadow.originY[next], shadow.originZ[next], shadow.directionX[next],
+                  shadow.directionY[next], shadow.directionZ[next], 0x1.fffffep-1f);
+        ++next;
+        return true;
+      },
+      [&](const BvhRay<true>& ray) HWY_ATTR {
+        visible[ray.index] = ray.id == kMiss ? 1.0f : 0.0f;
+        if (splatting) __builtin_prefetch(context.splats.sums + 3 * size_t{shadow.target[ray.index]}, 1);
+      });
+  for (size_t i = 0; i < count; i += kLanes) {
+    const Mask clear = (load(visible + i) > Float(0)) & firstLanes(count - i);
+    if (none(clear)) continue;
+    const UInt target = load(shadow.target, i);
+    const auto contribution = loadVec3(shadow.red, shadow.green, shadow.blue, i);
+    if (splatting) {
+      addSplats(context, target, clear, contribution);
+    } else {
+      addRadiance(wave.radiance, target, clear, contribution);
+    }
+  }
+  shadow.size = 0;
+}
+
+WAVECREST_SIMD_END
+
+WAVECREST_INSTANTIATE_STORAGE_STAGE(occludeBvh)

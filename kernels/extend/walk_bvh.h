@@ -1,0 +1,82 @@
+// Rays through the hierarchy of bvh.h, many at a time.
+//
+// A ray of its own spends its time waiting for memory and for branches that cannot be foreseen. Here some thirty
+// walkers, each a ray or a packet of rays, are under way at once: one takes a step, asks for what its next step reads,
+// and makes room for the others. A step has no branch but the end of its loop: walkers are kept in one list for each
+// kind of entry that they stand at, and a node's children go to the walker's stack sorted in a register.
+//
+// A walker has `at`, the entry that it stands at; `stack`, the entries that it has still to visit, of which `waiting`
+// are in use; `index`; and visit(BvhNode), visit(BvhFaces) and visit(BvhSpheres).
+#pragma once
+
+#include <cstring>
+
+#include "kernels/extend/bvh_lanes.h"
+
+WAVECREST_SIMD_BEGIN
+
+// Distances along a ray are found by a division that must not give NaN: directions of zero count as tiny.
+constexpr float kLeastDirection = 1e-18f;
+
+WAVECREST_INLINE void prefetchEntry(const BvhView& bvh, uint32_t reference) {
+  const char* const there = reinterpret_cast<const char*>(&bvh.at<BvhNode>(reference));
+  __builtin_prefetch(there);
+  __builtin_prefetch(there + 64);
+  __builtin_prefetch(there + 128);
+}
+
+// Walks for as long as begin(walker) finds something to do. end(walker): takes what was found. kUnderWay: at most 255.
+template <class Walker, size_t kUnderWay, class Begin, class End>
+WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End& end) {
+  Walker walkers[kUnderWay];
+  // Which walkers stand at which kind of entry; BvhEntry::end: those that have nowhere to go.
+  constexpr size_t kEntries = 4;
+  uint8_t lists[kEntries][kUnderWay], current[kUnderWay];
+  size_t sizes[kEntries] = {};
+  const auto stand = [&](uint8_t i, uint32_t reference) HWY_ATTR {
+    walkers[i].at = reference;
+    const uint32_t entry = reference >> kBvhEntryShift;
+    lists[entry][sizes[entry]++] = i;
+  };
+  const auto goOn = [&](uint8_t i) HWY_ATTR {
+    const uint32_t reference = walkers[i].stack[--walkers[i].waiting];
+    prefetchEntry(bvh, reference);
+    stand(i, reference);
+  };
+  const auto enter = [&](uint8_t i) HWY_ATTR {
+    Walker& walker = walkers[i];
+    walker.stack[0] = kBvhEnd;
+    walker.waiting = 1;
+    if (!begin(walker)) return;
+    stand(i, bvh.root);
+  };
+  // Moves the list aside, so that walkers may join it again.
+  const auto take = [&](BvhEntry entry) HWY_ATTR {
+    const auto which = static_cast<size_t>(entry);
+    std::memcpy(current, lists[which], kUnderWay);
+    const size_t size = sizes[which];
+    sizes[which] = 0;
+    return size;
+  };
+  const auto visitAll = [&](BvhEntry entry, const auto* record) HWY_ATTR {
+    using Record = std::remove_pointer_t<decltype(record)>;
+    for (size_t k = 0, size = take(entry); k < size; ++k) {
+      Walker& walker = walkers[current[k]];
+      walker.visit(bvh.at<Record>(walker.at));
+      goOn(current[k]);
+    }
+  };
+
+  for (size_t i = 0; i < kUnderWay; ++i) enter(static_cast<uint8_t>(i));
+  while (sizes[0] + sizes[1] + sizes[2] + sizes[3] > 0) {
+    visitAll(BvhEntry::node, static_cast<const BvhNode*>(nullptr));
+    visitAll(BvhEntry::faces, static_cast<const BvhFaces*>(nullptr));
+    visitAll(BvhEntry::spheres, static_cast<const BvhSpheres*>(nullptr));
+    for (size_t k = 0, size = take(BvhEntry::end); k < size; ++k) {
+      end(walkers[current[k]]);
+      enter(current[k]);
+    }
+  }
+}
+
+WAVECREST_SIMD_END
