@@ -42,6 +42,12 @@ Box boxOf(const std::array<Corner, 3>& corners) {
   }
   return box;
 }
+// Along the longest axis, rounded up.
+float sizeOf(const Box& box) {
+  float size = 0;
+  for (size_t axis = 0; axis < 3; ++axis) size = std::max(size, box.high[axis] - box.low[axis]);
+  return std::nextafter(size, kInfinity);
+}
 Box boxOfSphere(const PrimitiveRecord<double>& record) {
   Box box;
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -189,6 +195,7 @@ BvhFaces makeFaces(const Branch& leaf, const Pieces& pieces, const PrimitiveReco
     const uint32_t id = pieces.ids[leaf.item[std::min<size_t>(slot, leaf.count - 1)]];
     const auto corners = cornersOf(primitives[id & kFacePrimitiveMask], kindOf(id));
     faces.id[slot] = id;
+    faces.size[slot] = sizeOf(boxOf(corners));
     for (size_t k = 0; k < 3; ++k) {
       for (size_t axis = 0; axis < 3; ++axis) faces.corner[k][axis][slot] = corners[k][axis];
     }

@@ -5,8 +5,9 @@
 // Leaves hold up to four triangles, or spheres, in columns. A mesh of a million triangles has 10 MB of nodes and 50 MB
 // of leaves.
 //
-// Watertightness: boxes are widened by a bound on the rounding of their test (bvh.cpp), and the edge functions of two
-// triangles that share an edge are exact negatives of each other, so no ray passes between them.
+// Watertightness: boxes are widened by a bound on the rounding of their test (bvh.cpp), and so are triangles by that of
+// their edge functions (bvh_lanes.h); triangles that share a corner agree on its place relative to a ray's origin. So
+// no ray passes between them, not even through a corner.
 #pragma once
 
 #include <cstddef>
@@ -43,8 +44,9 @@ enum class FaceKind : uint32_t { triangle, lowerHalf, upperHalf, sphere };
 constexpr uint32_t kFaceKindShift = 30, kFacePrimitiveMask = (1u << kFaceKindShift) - 1;
 
 // Slots past the last primitive repeat it. id: index into SceneView::primitives, FaceKind in the upper two bits.
-struct alignas(32) BvhFaces {
+struct alignas(64) BvhFaces {
   float corner[3][3][kLeafSize];  // [corner][axis][slot]
+  float size[kLeafSize];          // greatest difference of two corners along an axis
   uint32_t id[kLeafSize];
 };
 struct alignas(32) BvhSpheres {

@@ -16,6 +16,8 @@ template <size_t kCount>
 WAVECREST_INLINE Vec3<FloatGroup<kCount>> loadPoints(const float (&a)[3][kCount]) {
   return {loadGroup<kCount>(a[0]), loadGroup<kCount>(a[1]), loadGroup<kCount>(a[2])};
 }
+// The end of a ray that has none: finite, so that no hit is at infinity.
+constexpr float kFarthest = std::numeric_limits<float>::max();
 // Where in BvhNode::bounds the planes are through which rays enter that go in the direction d: 0, or 3 rows on.
 WAVECREST_INLINE uint32_t nearPlanes(float d) { return std::signbit(d) ? 3 * kBvhWidth : 0; }
 
@@ -65,8 +67,9 @@ struct alignas(64) BvhRay {
     using Group = FloatGroup<kLeafSize>;
     const Vec3<Group> o = broadcast<kLeafSize>(origin), d = broadcast<kLeafSize>(direction);
     MaskGroup<kLeafSize> met;
-    const FaceHit<Group> hit = intersectFaces(loadPoints(faces.corner[0]) - o, loadPoints(faces.corner[1]) - o,
-                                              loadPoints(faces.corner[2]) - o, d, met);
+    const FaceHit<Group> hit =
+        intersectFaces(loadPoints(faces.corner[0]) - o, loadPoints(faces.corner[1]) - o,
+                       loadPoints(faces.corner[2]) - o, loadGroup<kLeafSize>(faces.size), d, met);
     keep(met, hit.t, faces.id, [&](size_t slot) HWY_ATTR {
       HWY_ALIGN float sum[kLeafSize], weights[2][kLeafSize];
       store(hit.sum, sum);
@@ -126,7 +129,7 @@ struct BvhPacket {
     index = static_cast<uint32_t>(first);
     origin = o;
     direction = d;
-    end = std::numeric_limits<float>::infinity();
+    end = kFarthest;
     t = Float(end);
     second = third = Float(0);
     id = UInt(kMiss);
@@ -168,7 +171,8 @@ struct BvhPacket {
         return Vec3<Float>{c[0][slot], c[1][slot], c[2][slot]} - origin;
       };
       Mask met;
-      const FaceHit<Float> hit = intersectFaces(corner(0), corner(1), corner(2), direction, met);
+      const FaceHit<Float> hit =
+          intersectFaces(corner(0), corner(1), corner(2), Float(faces.size[slot]), direction, met);
       met = met & (hit.t > Float(0));
       if (any(met)) keep(met, hit.t, hit.second / hit.sum, hit.third / hit.sum, face);
     });

@@ -85,7 +85,7 @@ void extendBvh(const StageContext<S>& context, Wave<S>& wave) {
           if (next >= count) return false;
           const auto of = [&](const Column<S>& column) { return static_cast<float>(column[next]); };
           ray.begin(next, of(rays.originX), of(rays.originY), of(rays.originZ), of(rays.directionX),
-                    of(rays.directionY), of(rays.directionZ), std::numeric_limits<float>::infinity());
+                    of(rays.directionY), of(rays.directionZ), kFarthest);
           ++next;
           return true;
         },

@@ -1,4 +1,4 @@
-// Both intersectors against a brute-force reference in double, on random quads, triangles and spheres.
+// Every intersector against a brute-force reference in double, on random quads, triangles and spheres.
 //
 // A ray is compared only where rounding cannot decide: away from edges, silhouettes, grazing incidence and near ties.
 // Everything else must agree exactly in the primitive, and in the point to a few units of rounding.

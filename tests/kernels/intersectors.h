@@ -1,5 +1,5 @@
-// Both intersectors behind one pair of stages, as tests run them: Embree, and the small-scene intersector on each
-// instruction set; and batches of rays to send through.
+// Every intersector behind one pair of stages, as tests run them: Embree, and on each instruction set those of small
+// and of large scenes; and batches of rays to send through.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,29 @@ namespace wavecrest {
 struct Intersector {
   std::string name;
   Stage<float> extend, occlude;
+  Stage<double> extendPrecise;
+  uint32_t depth = 2;  // that stages are told: at 1 the hierarchy takes rays in packets
 };
 
 inline std::vector<Intersector> allIntersectors() {
-  std::vector<Intersector> list{{"embree", extendEmbree<float>, occludeEmbree<float>}};
+  std::vector<Intersector> list{{"embree", extendEmbree<float>, occludeEmbree<float>, extendEmbree<double>}};
   for (const Isa isa : availableIsas()) {
     const auto& stages = findStages<float>(
         isa, Precision::floating, chooseSpecialization(featuresOf(Specialization::smooth), Precision::floating));
-    list.push_back({"small_" + std::string(toString(isa)), stages.extendSmall, stages.occludeSmall});
+    const auto& precise = findStages<double>(isa, Precision::doubled, Specialization::general);
+    const std::string suffix = "_" + std::string(toString(isa));
+    list.push_back({"packets" + suffix, stages.extendBvh, stages.occludeBvh, precise.extendBvh, 1});
+    list.push_back({"bvh" + suffix, stages.extendBvh, stages.occludeBvh, precise.extendBvh});
+    list.push_back({"small" + suffix, stages.extendSmall, stages.occludeSmall, precise.extendSmall});
   }
   return list;
 }
 
-// Embree, and the widest of the small-scene intersectors.
+// Embree, and the widest of each of the others.
 inline std::vector<Intersector> fastestIntersectors() {
   std::vector<Intersector> all = allIntersectors();
-  return {all.front(), all.back()};
+  all.erase(all.begin() + 1, all.end() - 3);
+  return all;
 }
 
 // One ray as the intersectors see it.
@@ -94,7 +101,7 @@ class RayBatch {
   }
   // Closest hits of all rays, in wave.hits. Returns how many there are of kMiss.
   size_t extend(const Intersector& intersector, const SceneView<float>& scene) {
-    run(intersector.extend, scene);
+    run(intersector.extend, intersector.depth, scene);
     size_t misses = 0;
     for (size_t i = 0; i < wave.hits.size; ++i) misses += wave.hits.primitive[i] == kMiss ? 1 : 0;
     return misses;
@@ -117,7 +124,7 @@ class RayBatch {
       shadow.target[i] = static_cast<uint32_t>(i);
       wave.radiance.red[i] = wave.radiance.green[i] = wave.radiance.blue[i] = 0;
     }
-    run(intersector.occlude, scene);
+    run(intersector.occlude, intersector.depth, scene);
     std::vector<bool> blocked(count);
     for (size_t i = 0; i < count; ++i) blocked[i] = wave.radiance.red[i] == 0.0f;
     return blocked;
@@ -126,10 +133,11 @@ class RayBatch {
   Wave<float> wave;
 
  private:
-  void run(Stage<float> stage, const SceneView<float>& scene) {
+  void run(Stage<float> stage, uint32_t depth, const SceneView<float>& scene) {
     StageCounters counters;
     StageContext<float> context;
     context.scene = &scene;
+    context.depth = depth;
     context.counters = &counters;
     stage(context, wave);
   }

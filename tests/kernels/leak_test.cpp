@@ -1,4 +1,4 @@
-// Leaks: no ray that starts inside a closed room may find a way out, through either intersector.
+// Leaks: no ray that starts inside a closed room may find a way out, through any intersector.
 //
 // The slow test sends 10^8 rays through the shell of the Cornell box, the other 10^7; edges and corners, where
 // neighbouring walls meet and rounding decides, are also aimed at on purpose.

@@ -29,7 +29,7 @@ struct Fixture {
     scene.view.materials = scene.materials.data();
     scene.setCamera(pinholeCamera(eye, Point{-0.5, 0.5, 0.7} * spread, {spread / 32, 0, 0}, {0, -spread / 32, 0}, 32));
     if constexpr (sizeof(S) == sizeof(double)) {
-      extend = chosen.name == "embree" ? extendEmbree<double> : stages.extendSmall;
+      extend = chosen.extendPrecise;
     } else {
       extend = chosen.extend;
     }

@@ -1,6 +1,6 @@
 // A small scene put together from kernel records alone, for the tests of stages and intersectors.
 //
-// In: primitives in double, in SceneView order or not. Out: a SceneView in S with both intersectors behind it.
+// In: primitives in double, in SceneView order or not. Out: a SceneView in S with every intersector behind it.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "kernels/extend/bvh.h"
 #include "kernels/extend/embree_scene.h"
 #include "kernels/extend/small_scene.h"
 #include "kernels/stages.h"
@@ -108,6 +109,7 @@ class StageScene {
     }
     small = std::make_unique<SmallScene>(precise.data(), precise.size());
     embree = std::make_unique<EmbreeScene>(records.data(), counts[0], counts[1], counts[2]);
+    bvh = std::make_unique<Bvh>(precise.data(), precise.size(), precise.front().p0);
     materials.resize(1);
     std::fill_n(materials[0].reflectance, 3, 0.8f);
     view.primitives = records.data();
@@ -117,6 +119,7 @@ class StageScene {
     view.firstPrimitive[2] = counts[0] + counts[1];
     view.small = &small->view();
     view.embree = embree->handle();
+    view.bvh = &bvh->view();
     view.radius = 4;
   }
 
@@ -151,6 +154,7 @@ class StageScene {
   std::vector<uint32_t> pixels;
   std::unique_ptr<SmallScene> small;
   std::unique_ptr<EmbreeScene> embree;
+  std::unique_ptr<Bvh> bvh;
   SceneView<S> view;
 
  private:

@@ -1,0 +1,279 @@
+// The hierarchy of large scenes: that its boxes hold what lies below them, that no ray leaves a closed mesh of many
+// triangles, and that a hit depends on nothing but the ray.
+//
+// That its hits are the right ones is tested beside the other intersectors (extend_test, leak_test).
+#include "kernels/extend/bvh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "tests/effort.h"
+#include "tests/kernels/closed_bodies.h"
+#include "tests/kernels/intersectors.h"
+
+namespace wavecrest {
+namespace {
+
+// A sphere of two triangles to a cell of latitude and longitude, with bumps from every corner; closed.
+ClosedBody bumpySphere(size_t rows, double bumps) {
+  ClosedBody body{.walls = {}, .center = {0.3, -0.2, 0.1}, .reach = 0.3, .corners = {}, .edges = {}, .size = 2};
+  const size_t columns = 2 * rows;
+  RandomPoints random(3);
+  for (size_t row = 0; row <= rows; ++row) {
+    const double theta = std::numbers::pi * static_cast<double>(row) / static_cast<double>(rows);
+    for (size_t column = 0; column < columns; ++column) {
+      const double phi = 2 * std::numbers::pi * static_cast<double>(column) / static_cast<double>(columns);
+      const bool pole = row == 0 || row == rows;
+      const Point p{pole ? 0 : std::sin(theta) * std::cos(phi), std::cos(theta),
+                    pole ? 0 : std::sin(theta) * std::sin(phi)};
+      const double size = pole ? 1 : 1 + random.uniform(-bumps, bumps);
+      body.corners.push_back(roundedToFloat(body.center + turned(p) * size));
+    }
+  }
+  const auto index = [&](size_t row, size_t column) { return row * columns + column % columns; };
+  for (size_t row = 0; row < rows; ++row) {
+    for (size_t column = 0; column < columns; ++column) {
+      const size_t a = index(row, column), b = index(row, column + 1), c = index(row + 1, column + 1),
+                   d = index(row + 1, column);
+      const auto at = [&](size_t i) { return body.corners[i]; };
+      if (row > 0) body.walls.push_back(trianglePrimitive(at(a), at(b), at(c)));
+      if (row + 1 < rows) body.walls.push_back(trianglePrimitive(at(a), at(c), at(d)));
+      if (row > 0) body.edges.push_back({a, b});
+      body.edges.push_back({a, d});
+      body.edges.push_back({a, c});
+    }
+  }
+  return body;
+}
+
+std::vector<PrimitiveRecord<double>> crowd(size_t count) {
+  RandomPoints random(9);
+  std::vector<PrimitiveRecord<double>> list;
+  for (size_t i = 0; i < count; ++i) {
+    const Point p = random.inCube(1), e1 = random.direction() * random.uniform(0.01, 0.3);
+    const Point e2 = normalized(cross(e1, random.direction())) * random.uniform(0.01, 0.3);
+    if (i % 3 == 0) list.push_back(facePrimitive(PrimitiveKind::quad, p, e1, e2));
+    if (i % 3 == 1) list.push_back(facePrimitive(PrimitiveKind::triangle, p, e1, e2));
+    if (i % 3 == 2) list.push_back(spherePrimitive(p, random.uniform(0.01, 0.1)));
+  }
+  return list;
+}
+
+// ---- the boxes ------------------------------------------------------------------------------------------------------
+
+struct Bounds {
+  double low[3], high[3];
+};
+
+class Contents {
+ public:
+  // Visits everything below the reference; all of it must lie strictly within the boxes.
+  void check(const BvhView& bvh, uint32_t reference, std::vector<Bounds> boxes) {
+    switch (entryOf(reference)) {
+      case BvhEntry::node: {
+        const auto& node = bvh.at<BvhNode>(reference);
+        for (size_t i = 0; i < kBvhWidth && node.children[i] != kBvhEnd; ++i) {
+          Bounds box;
+          for (size_t axis = 0; axis < 3; ++axis) {
+            const auto plane = [&](size_t row) {
+              return double{node.corner[axis]} + double{node.scale[axis]} * node.bounds[row][i];
+            };
+            box.low[axis] = plane(axis);
+            box.high[axis] = plane(3 + axis);
+          }
+          boxes.push_back(box);
+          check(bvh, node.children[i], boxes);
+          boxes.pop_back();
+        }
+        break;
+      }
+      case BvhEntry::faces: {
+        const auto& faces = bvh.at<BvhFaces>(reference);
+        for (size_t slot = 0; slot < kLeafSize; ++slot) {
+          ++slots[faces.id[slot]];
+          for (const auto& corner : faces.corner) {
+            for (size_t axis = 0; axis < 3; ++axis) checkPoint(boxes, axis, corner[axis][slot], corner[axis][slot]);
+          }
+        }
+        break;
+      }
+      case BvhEntry::spheres: {
+        const auto& spheres = bvh.at<BvhSpheres>(reference);
+        for (size_t slot = 0; slot < kLeafSize; ++slot) {
+          ++slots[spheres.id[slot]];
+          for (size_t axis = 0; axis < 3; ++axis) {
+            const double c = spheres.center[axis][slot], r = spheres.radius[slot];
+            checkPoint(boxes, axis, c - r, c + r);
+          }
+        }
+        break;
+      }
+      case BvhEntry::end:
+        ADD_FAILURE() << "the end is no child";
+    }
+  }
+  std::map<uint32_t, size_t> slots;  // how many hold each id
+
+ private:
+  static void checkPoint(const std::vector<Bounds>& boxes, size_t axis, double low, double high) {
+    for (const Bounds& box : boxes) {
+      ASSERT_LT(box.low[axis], low);
+      ASSERT_GT(box.high[axis], high);
+    }
+  }
+};
+
+TEST(BvhTest, boxesHoldEverythingBelowThem) {
+  for (const size_t count : {1u, 2u, 4u, 5u, 30u, 3000u}) {
+    const auto list = crowd(count);
+    const StageScene<float> scene(list);
+    Contents contents;
+    contents.check(scene.bvh->view(), scene.bvh->view().root, {});
+    size_t quads = 0;
+    for (const auto& record : list) quads += record.kind == static_cast<uint32_t>(PrimitiveKind::quad) ? 1 : 0;
+    EXPECT_EQ(contents.slots.size(), count + quads) << "each quad is two triangles, and nothing else is missing";
+    for (const auto& [id, times] : contents.slots) EXPECT_LE(times, kLeafSize);
+  }
+}
+
+// ---- what a hit depends on ------------------------------------------------------------------------------------------
+
+class BvhRaysTest : public testing::TestWithParam<Isa> {
+ protected:
+  // The hits of all rays, in their order.
+  struct Found {
+    uint32_t primitive;
+    float u, v;
+    bool operator==(const Found& other) const {  // u and v of a miss say nothing
+      return primitive == other.primitive && (primitive == kMiss || (u == other.u && v == other.v));
+    }
+  };
+  static std::vector<Found> hits(const Intersector& intersector, const StageScene<float>& scene,
+                                 const std::vector<TestRay>& rays) {
+    std::vector<Found> list;
+    RayBatch batch;
+    for (size_t first = 0; first < rays.size(); first += RayBatch::kCapacity) {
+      batch.clear();
+      for (size_t i = first; i < std::min(rays.size(), first + RayBatch::kCapacity); ++i) batch.push(rays[i]);
+      batch.extend(intersector, scene.view);
+      for (size_t i = 0; i < batch.wave.hits.size; ++i) {
+        list.push_back({batch.wave.hits.primitive[i], batch.wave.hits.u[i], batch.wave.hits.v[i]});
+      }
+    }
+    return list;
+  }
+  Intersector named(const std::string& name) const {
+    for (const Intersector& one : allIntersectors()) {
+      if (one.name == name + "_" + std::string(toString(GetParam()))) return one;
+    }
+    throw std::logic_error("no intersector of that name");
+  }
+  // Half from one point in directions that differ little, as from a camera; half from anywhere; some along the axes.
+  static std::vector<TestRay> manyRays(size_t count) {
+    RandomPoints random(31);
+    std::vector<TestRay> rays;
+    while (rays.size() < count) {
+      switch (rays.size() / 64 % 3) {
+        case 0:
+          rays.push_back(aimedRay({0.1, 0.2, -3}, random.inCube(0.05) + Point{0.3, 0, 0}));
+          break;
+        case 1:
+          rays.push_back(aimedRay(random.inCube(2), random.inCube(1)));
+          break;
+        default:
+          rays.push_back({roundedToFloat(random.inCube(1)), {rays.size() % 2 == 0 ? 1.0 : -1.0, 0, 0}});
+      }
+    }
+    return rays;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Kernels, BvhRaysTest, testing::ValuesIn(availableIsas()),
+                         [](const auto& instance) { return std::string(toString(instance.param)); });
+
+TEST_P(BvhRaysTest, packetsFindWhatSingleRaysFind) {
+  const StageScene<float> scene(crowd(effort(3000, 600)));
+  const auto rays = manyRays(effort(50'003, 3'003));  // no whole packet at the end
+  const auto single = hits(named("bvh"), scene, rays), packets = hits(named("packets"), scene, rays);
+  size_t found = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    found += single[i].primitive != kMiss ? 1 : 0;
+    ASSERT_EQ(single[i], packets[i]) << "ray " << i;
+  }
+  EXPECT_GT(found, rays.size() / 4);
+  EXPECT_LT(found, rays.size());
+}
+
+TEST_P(BvhRaysTest, hitsDoNotDependOnTheOtherRays) {
+  const StageScene<float> scene(crowd(effort(3000, 600)));
+  const auto rays = manyRays(effort(20'000, 2'000));
+  std::vector<size_t> order(rays.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::shuffle(order.begin(), order.end(), std::mt19937(4));
+  std::vector<TestRay> shuffled;
+  for (const size_t i : order) shuffled.push_back(rays[i]);
+  for (const char* name : {"bvh", "packets"}) {
+    const auto straight = hits(named(name), scene, rays), mixed = hits(named(name), scene, shuffled);
+    for (size_t i = 0; i < order.size(); ++i) ASSERT_EQ(mixed[i], straight[order[i]]) << name << " ray " << order[i];
+  }
+}
+
+// Many faces in one place cannot be told apart by boxes; the first of them is hit.
+TEST_P(BvhRaysTest, ofEqualFacesTheFirstIsHit) {
+  std::vector<PrimitiveRecord<double>> list(1000, trianglePrimitive({-1, -1, 0}, {1, -1, 0}, {0, 1, 0}));
+  const StageScene<float> scene(list);
+  const std::vector<TestRay> rays(40, aimedRay({0.1, 0.1, -2}, {0.01, -0.02, 0}));
+  for (const char* name : {"bvh", "packets"}) {
+    for (const Found& found : hits(named(name), scene, rays)) ASSERT_EQ(found.primitive, 0u) << name;
+  }
+}
+
+TEST_P(BvhRaysTest, raysThatAreNoRaysMissAndHarmNoOther) {
+  const StageScene<float> scene(crowd(300));
+  auto rays = manyRays(2'000);
+  const auto want = hits(named("bvh"), scene, rays);
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+  const TestRay broken[] = {
+      {{nan, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {nan, nan, nan}}, {{0, 0, 0}, {0, 0, 0}}, {{infinite, 0, 0}, {-1, 0, 0}}};
+  for (size_t i = 0; i < 100; ++i) rays[i * 20] = broken[i % std::size(broken)];
+  for (const char* name : {"bvh", "packets"}) {
+    const auto got = hits(named(name), scene, rays);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      if (i % 20 == 0 && i < 2000) {
+        ASSERT_EQ(got[i].primitive, kMiss) << name << " ray " << i;
+      } else {
+        ASSERT_EQ(got[i], want[i]) << name << " ray " << i;
+      }
+    }
+  }
+}
+
+// ---- watertightness -------------------------------------------------------------------------------------------------
+
+TEST_P(BvhRaysTest, noRayLeavesAClosedMesh) {
+  RandomPoints random(41);
+  for (const double bumps : {0.0, 0.05}) {
+    const ClosedBody body = bumpySphere(effort(100, 20), bumps);
+    const StageScene<float> scene(body.walls);
+    for (const char* name : {"bvh", "packets"}) {
+      std::vector<TestRay> rays;
+      const auto start = [&] { return body.center + random.inCube(body.reach); };
+      for (const Point& corner : body.corners) rays.push_back(aimedRay(start(), corner));
+      for (const auto& edge : body.edges) {
+        const Point &a = body.corners[edge[0]], &b = body.corners[edge[1]];
+        rays.push_back(aimedRay(start(), a + (b - a) * random.uniform(0, 1)));
+      }
+      while (rays.size() < effort(1'000'000, 50'000)) rays.push_back(roundedRay(start(), random.direction()));
+      size_t leaks = 0;
+      for (const Found& found : hits(named(name), scene, rays)) leaks += found.primitive == kMiss ? 1 : 0;
+      EXPECT_EQ(leaks, 0u) << name << " bumps " << bumps;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest
