@@ -15,7 +15,7 @@
 namespace wavecrest {
 
 struct MemoryUse {
-  size_t scene = 0;          // primitives, attributes, materials, textures, lights, and Embree's hierarchy
+  size_t scene = 0;          // primitives, attributes, materials, textures, lights, and the hierarchy
   size_t waves = 0;          // columns of one wave per thread
   size_t film = 0;           // sums of the pixels
   size_t splats = 0;         // sums of t = 1: one per thread, and the image's

@@ -100,7 +100,7 @@ struct Pipeline {
   bool bidirectional() const { return lightPass.has_value(); }
 };
 
-// The two intersectors offer the same pair of stages.
+// All intersectors offer the same pair of stages.
 template <class S>
 struct Intersector {
   Stage<S> extend, occlude;

@@ -19,9 +19,9 @@ namespace wavecrest {
 
 // How numbers are kept and computed. Users trade speed for accuracy: `floating` is the default; `doubled` does shading,
 // throughput, densities and MIS weights in double and recomputes hit points in double; `fast` replaces divisions and
-// square roots by reciprocal estimates with one Newton step, and lets Embree intersect without its watertight tests: a
-// fifth to a third more rays per second in large meshes, and of random rays in a closed mesh of 871,000 triangles one
-// in a million slips through an edge.
+// square roots by reciprocal estimates with one Newton step, and where a render asks for Embree lets it intersect
+// without its watertight tests: of random rays in a closed mesh of 871,000 triangles one in a million then slips
+// through an edge.
 enum class Precision { floating, doubled, fast };
 constexpr std::array<std::string_view, 3> kPrecisionNames{"float", "double", "fast"};
 

@@ -1,9 +1,10 @@
-// The small-scene intersector against Embree over the number of primitives: where the lines cross is kSmallSceneLimit
-// (engine/compile/compiled_scene.h). Names read crossover/STAGE/INTERSECTOR/quads:N.
+// The intersectors over the number of primitives: where those of small and of large scenes cross is kSmallSceneLimit
+// (engine/compile/compiled_scene.h), and beyond it stands how the cost of a hierarchy grows. Names read
+// crossover/STAGE/INTERSECTOR/quads:N.
 //
 // The scene is a closed room with randomly placed parallelograms in it; the rays are those of real paths after their
-// second bounce, at the best instruction set in float. Both intersectors are checked against the scalar small-scene
-// one before they are timed.
+// second bounce, at the best instruction set in float. All are checked before they are timed: against the scalar
+// small-scene intersector, or where that would take too long, against the scalar walk of the hierarchy.
 #include <benchmark/benchmark.h>
 
 #include <fmt/core.h>
@@ -56,31 +57,44 @@ Scene randomQuads(size_t count) {
   return scene;
 }
 
+constexpr size_t kMostForSmall = 512;  // primitives
+
 struct Rays {
-  WaveCapture<float> small, embree;
-  explicit Rays(const Scene& scene) : small(scene, settings(Accel::small)), embree(scene, settings(Accel::embree)) {
-    small.plan().scene->view.embree = embree.plan().scene->view.embree;
+  std::unique_ptr<WaveCapture<float>> small, bvh, embree;
+  explicit Rays(const Scene& scene) {
+    bvh = capture(scene, Accel::bvh);
+    embree = capture(scene, Accel::embree);
+    bvh->plan().scene->view.embree = embree->plan().scene->view.embree;
+    if (scene.shapes.size() > kMostForSmall) return;
+    small = capture(scene, Accel::small);
+    bvh->plan().scene->view.small = small->plan().scene->view.small;
   }
-  static RenderSettings settings(Accel accel) {
+  static std::unique_ptr<WaveCapture<float>> capture(const Scene& scene, Accel accel) {
     RenderSettings settings;
     settings.isa = bestIsa();
     settings.accel = accel;
-    return settings;
+    return std::make_unique<WaveCapture<float>>(scene, settings);
   }
 };
 
-void measure(benchmark::State& state, size_t quads, bool extend, bool useEmbree) {
+Stage<float> stageOf(Isa isa, Accel accel, bool extend) {
+  const auto& stages = findStages<float>(isa, Precision::floating, Specialization::diffuse);
+  if (accel == Accel::small) return extend ? stages.extendSmall : stages.occludeSmall;
+  if (accel == Accel::bvh) return extend ? stages.extendBvh : stages.occludeBvh;
+  return extend ? extendEmbree<float> : occludeEmbree<float>;
+}
+
+void measure(benchmark::State& state, size_t quads, bool extend, Accel accel) {
   Rays rays(randomQuads(quads));
-  const Wave<float> input = rays.small.before(extend ? "extend" : "occlude", 3);
-  const StageContext<float> context = rays.small.context(3);
-  const auto stagesOf = [](Isa isa) { return findStages<float>(isa, Precision::floating, Specialization::diffuse); };
-  const Stages<float> best = stagesOf(bestIsa()), twin = stagesOf(availableIsas().front());
-  const Stage<float> run = extend ? (useEmbree ? extendEmbree<float> : best.extendSmall)
-                                  : (useEmbree ? occludeEmbree<float> : best.occludeSmall);
-  Wave<float> expected = rays.small.makeWave(), wave = rays.small.makeWave();
+  WaveCapture<float>& source = *rays.bvh;
+  const Wave<float> input = source.before(extend ? "extend" : "occlude", 3);
+  const StageContext<float> context = source.context(3);
+  const Stage<float> run = stageOf(bestIsa(), accel, extend);
+  const Stage<float> twin = stageOf(availableIsas().front(), rays.small ? Accel::small : Accel::bvh, extend);
+  Wave<float> expected = source.makeWave(), wave = source.makeWave();
   expected.copyFrom(input);
   wave.copyFrom(input);
-  (extend ? twin.extendSmall : twin.occludeSmall)(context, expected);
+  twin(context, expected);
   run(context, wave);
   const Agreement agreement = compareWaves(expected, wave, 1e-2);
   if (agreement.differingFraction() > kAllowedDifference) {
@@ -102,11 +116,12 @@ void measure(benchmark::State& state, size_t quads, bool extend, bool useEmbree)
 
 void registerCrossoverBenchmarks() {
   for (const bool extend : {true, false}) {
-    for (const size_t quads : {8, 16, 32, 48, 64, 96, 128, 192, 256, 384, 512}) {
-      for (const bool useEmbree : {false, true}) {
+    for (const size_t quads : {8, 16, 32, 48, 64, 96, 128, 192, 256, 384, 512, 4096, 32768, 262144}) {
+      for (const Accel accel : {Accel::small, Accel::bvh, Accel::embree}) {
+        if (accel == Accel::small && quads > kMostForSmall) continue;
         registerBenchmark(fmt::format("crossover/{}/{}/quads:{}", extend ? "extend" : "occlude",
-                                      useEmbree ? "embree" : "small", quads),
-                          [=](benchmark::State& state) { measure(state, quads, extend, useEmbree); });
+                                      kAccelNames[static_cast<size_t>(accel)], quads),
+                          [=](benchmark::State& state) { measure(state, quads, extend, accel); });
       }
     }
   }

@@ -46,13 +46,15 @@ struct StageUnderTest {
   double tolerance;
 };
 
-// The scene in both forms, so that both intersectors can be called on one context.
+// The scene in every form, so that all intersectors can be called on one context.
 template <class S>
 struct Source {
-  WaveCapture<S> small, embree;
+  WaveCapture<S> small, bvh, embree;
   Source(Precision precision, size_t waveSize)
       : small(cornellBox(), settings(precision, waveSize, Accel::small)),
+        bvh(cornellBox(), settings(precision, waveSize, Accel::bvh)),
         embree(cornellBox(), settings(precision, waveSize, Accel::embree)) {
+    small.plan().scene->view.bvh = bvh.plan().scene->view.bvh;
     small.plan().scene->view.embree = embree.plan().scene->view.embree;
   }
   static RenderSettings settings(Precision precision, size_t waveSize, Accel accel) {
@@ -142,9 +144,11 @@ void registerPrecision(Precision precision) {
   };
   add("generateCameraPaths", "generate", &Stages<S>::generateCameraPaths);
   add("extendSmall", "extend", &Stages<S>::extendSmall);
+  add("extendBvh", "extend", &Stages<S>::extendBvh);
   add("arrive", "arrive", &Stages<S>::arrive);
   add("nextEvent", "next event", &Stages<S>::nextEvent);
   add("occludeSmall", "occlude", &Stages<S>::occludeSmall);
+  add("occludeBvh", "occlude", &Stages<S>::occludeBvh);
   add("scatter", "scatter", &Stages<S>::scatter);
   if (precision == Precision::fast) return;  // Embree knows no precision; double differs in the columns it reads
 

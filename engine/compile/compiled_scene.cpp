@@ -85,7 +85,7 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film) {
 }
 
 template <class S>
-std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertight) {
+std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree) {
   auto compiled = std::make_unique<CompiledScene<S>>();
   const bool textured = (sceneFeatures(scene) & kTextures) != 0;
   auto& primitives = compiled->primitives = compilePrimitives<S>(scene, textured);
@@ -116,7 +116,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   } else {
     compiled->embree =
         std::make_unique<EmbreeScene>(primitives.records.data(), primitives.counts.quads, primitives.counts.triangles,
-                                      primitives.counts.spheres, watertight);
+                                      primitives.counts.spheres, watertightEmbree);
     view.embree = compiled->embree->handle();
   }
   view.primitives = primitives.records.data();

@@ -14,11 +14,12 @@
 
 namespace wavecrest {
 
-// small: a loop over all primitives. bvh: an own hierarchy, faster than Embree on incoherent rays and as watertight.
+// small: a loop over all primitives, for small scenes. bvh: our own hierarchy, for all others. embree: what bvh is
+// measured against, and an independent check of it.
 enum class Accel { automatic, embree, small, bvh };
 constexpr std::array<std::string_view, 4> kAccelNames{"auto", "embree", "small", "bvh"};
 
-// Scenes of up to this many primitives are faster without a hierarchy (measured: bench/micro, extend).
+// Scenes of up to this many primitives are faster without a hierarchy (measured: bench/micro, crossover).
 constexpr uint32_t kSmallSceneLimit = 96;
 
 // What a scene asks of the kernels, before anything is compiled: Feature bits.
@@ -45,7 +46,7 @@ struct CompiledScene {
 
 // Builds everything; threads bounds the hierarchy's build. Throws SceneError where the scene cannot be rendered.
 template <class S>
-std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertight = true);
+std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree = true);
 
 // The camera of a sensor over its full film.
 CameraView compileCamera(const Sensor& sensor, const FilmSettings& film);

@@ -116,7 +116,8 @@ Box unionOf(const Box* boxes, size_t count) {
 void layBoxes(const Box* boxes, size_t count, double margin, BvhNode& node) {
   const Box all = unionOf(boxes, count);
   for (size_t axis = 0; axis < 3; ++axis) {
-    const double corner = node.corner[axis] = std::nextafter(static_cast<float>(all.low[axis] - margin), -kInfinity);
+    const double lowest = std::max(all.low[axis] - margin, double{std::numeric_limits<float>::lowest()});
+    const double corner = node.corner[axis] = std::nextafter(static_cast<float>(lowest), -kInfinity);
     const double extent = std::max(all.high[axis] + margin - corner, double{std::numeric_limits<float>::min()} * kGrid);
     const double scale = std::exp2(std::ceil(std::log2(extent / kGrid)));
     node.scale[axis] = static_cast<float>(scale);

@@ -1,4 +1,5 @@
-// The general intersector: Embree 3 (or 4, chosen by the headers that are installed) behind the interface of a stage.
+// Another intersector of large scenes, beside bvh.h: Embree 3 (or 4, chosen by the headers that are installed) behind
+// the interface of a stage.
 //
 // Geometries: quads, triangles and spheres, in that order, so Embree's (geometry, primitive) pair maps to an index into
 // SceneView::primitives by one addition. Rays go in packets; Embree's stream interface is not used (gone in Embree 4).

@@ -147,7 +147,7 @@ TEST(ChainAllocation, isNoneForAnyStep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(PathTracing, WaveAllocationTest,
-                         testing::Combine(testing::Values(Accel::embree, Accel::small),
+                         testing::Combine(testing::Values(Accel::embree, Accel::small, Accel::bvh),
                                           testing::ValuesIn(kAllSamplerKinds)),
                          [](const auto& instance) {
                            return std::string(kAccelNames[static_cast<size_t>(std::get<0>(instance.param))]) + "_" +

@@ -43,7 +43,7 @@ std::vector<MethodVariant> methodVariants() {
     if (entry.method == Method::pt) continue;
     if (entry.method == Method::mlt) {
       list.push_back(
-          {entry.method, {Precision::floating, SamplerKind::independent, Accel::embree}, MetropolisVariant::pssmlt});
+          {entry.method, {Precision::floating, SamplerKind::independent, Accel::bvh}, MetropolisVariant::pssmlt});
       list.push_back(
           {entry.method, {Precision::floating, SamplerKind::independent, Accel::small}, MetropolisVariant::pathspace});
     }

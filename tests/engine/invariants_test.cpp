@@ -173,6 +173,8 @@ TEST_P(PathLeakTest, closedCornellBox) { expectNoLeak(closedCornellBox(48, 48));
 INSTANTIATE_TEST_SUITE_P(PathTracing, PathLeakTest,
                          testing::Values(LeakCase{"embree_float", Accel::embree, Precision::floating},
                                          LeakCase{"embree_double", Accel::embree, Precision::doubled},
+                                         LeakCase{"bvh_float", Accel::bvh, Precision::floating},
+                                         LeakCase{"bvh_double", Accel::bvh, Precision::doubled},
                                          LeakCase{"small_float", Accel::small, Precision::floating},
                                          LeakCase{"small_double", Accel::small, Precision::doubled},
                                          LeakCase{"small_fast", Accel::small, Precision::fast}),

@@ -170,7 +170,12 @@ inline std::vector<Variant> allVariants() {
   std::vector<Variant> list;
   for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
     for (const SamplerKind sampler : kAllSamplerKinds) {
-      for (const Accel accel : {Accel::embree, Accel::small}) list.push_back({precision, sampler, accel});
+      for (const Accel accel : {Accel::embree, Accel::small, Accel::bvh}) {
+        // Embree and the hierarchy know no precision but that of the columns.
+        if (accel == Accel::embree && precision == Precision::doubled) continue;
+        if (accel == Accel::bvh && precision == Precision::fast) continue;
+        list.push_back({precision, sampler, accel});
+      }
     }
   }
   return list;
