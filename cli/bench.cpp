@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "engine/load/load.h"
+#include "engine/version.h"
 #include "metrics/image/atomic_file.h"
 #include "scenes/scene_list.h"
 

@@ -8,8 +8,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "wavecrest_version.h"  // generated: kVersion, kCommit
-
 namespace wavecrest {
 
 enum ExitCode : int {

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "engine/load/load.h"
 #include "engine/scene/scene_error.h"
+#include "engine/version.h"
 #include "metrics/image/image.h"
 #include "scenes/scene_list.h"
 
