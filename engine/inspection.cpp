@@ -102,6 +102,11 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
   const auto compiled = compileScene<float>(scene, settings.accel);
   out.primitives = compiled->primitives.counts;
   out.bounds = boundPrimitives(compiled->primitives.records);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (double* coordinate : {&out.bounds.center[axis], &out.bounds.low[axis], &out.bounds.high[axis]}) {
+      *coordinate += compiled->origin[axis];
+    }
+  }
   out.accel = compiled->small != nullptr ? Accel::small : Accel::embree;
 
   for (const MethodEntry& entry : kMethods) {
