@@ -1,7 +1,6 @@
 // wavecrest: one program, one file per subcommand.
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <exception>
 
 #include "cli/commands.h"
@@ -13,25 +12,20 @@
 
 int main(int argc, char** argv) {
   using namespace wavecrest;
-  CLI::App app{"wavecrest measures light-transport methods against each other", "wavecrest"};
-  app.set_version_flag("--version", std::string(kVersion));
-  app.require_subcommand(1);
+  CommandLine program("wavecrest measures light-transport methods against each other", "wavecrest");
+  program.setVersion(kVersion);
   int exitCode = kExitDone;
-  addCompareCommand(app, exitCode);
-  addConvergeCommand(app, exitCode);
-  addReferenceCommand(app, exitCode);
-  addRenderCommand(app, exitCode);
-  addInspectCommand(app, exitCode);
-  addReportCommand(app, exitCode);
-  addBenchCommand(app, exitCode);
-  addScenesCommand(app, exitCode);
+  addCompareCommand(program, exitCode);
+  addConvergeCommand(program, exitCode);
+  addReferenceCommand(program, exitCode);
+  addRenderCommand(program, exitCode);
+  addInspectCommand(program, exitCode);
+  addReportCommand(program, exitCode);
+  addBenchCommand(program, exitCode);
+  addScenesCommand(program, exitCode);
 
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
-    app.exit(error);
-    return asked ? kExitDone : kExitUsage;
+    program.parse({argv + 1, argv + argc}, exitCode);
   } catch (const UsageError& error) {
     fmt::print(stderr, "wavecrest: error: {}\n", error.what());
     return kExitUsage;
