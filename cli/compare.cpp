@@ -133,6 +133,7 @@ int compare(const CompareOptions& options) {
   const bool withMaps = !options.mapFolder.empty();
   if (withMaps) std::filesystem::create_directories(options.mapFolder);
   std::vector<Measured> all;
+  all.reserve(metrics.size());
   for (const Metric* metric : metrics) all.push_back({metric, metric->measure(reference, test, withMaps)});
   if (options.json) {
     fmt::print("{}\n", toJson(all, test.nonFinitePixels).dump(2));

@@ -2,6 +2,9 @@
 #include <fmt/core.h>
 
 #include <exception>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/commands.h"
 #include "engine/load/load.h"
@@ -10,8 +13,10 @@
 #include "metrics/image/image.h"
 #include "scenes/scene_list.h"
 
-int main(int argc, char** argv) {
-  using namespace wavecrest;
+namespace wavecrest {
+namespace {
+
+int run(std::vector<std::string> arguments) {
   CommandLine program("wavecrest measures light-transport methods against each other", "wavecrest");
   program.setVersion(kVersion);
   int exitCode = kExitDone;
@@ -25,7 +30,7 @@ int main(int argc, char** argv) {
   addScenesCommand(program, exitCode);
 
   try {
-    program.parse({argv + 1, argv + argc}, exitCode);
+    program.parse(std::move(arguments), exitCode);
   } catch (const UsageError& error) {
     fmt::print(stderr, "wavecrest: error: {}\n", error.what());
     return kExitUsage;
@@ -51,3 +56,8 @@ int main(int argc, char** argv) {
   }
   return exitCode;
 }
+
+}  // namespace
+}  // namespace wavecrest
+
+int main(int argc, char** argv) { return wavecrest::run({argv + 1, argv + argc}); }

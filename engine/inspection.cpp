@@ -11,6 +11,8 @@ template <class... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;
 };
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that lints, does not find by itself
 
 bool isRough(const TexturedFloat& alpha) { return alpha.texture != kNone || alpha.value >= double{kSmallestAlpha}; }
 
