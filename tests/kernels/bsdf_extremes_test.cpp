@@ -1,5 +1,6 @@
 // The ends of every parameter's range: results stay finite, and nothing jumps where one kind of kernel takes over from
 // another.
+#include "tests/effort.h"
 #include "tests/kernels/bsdf_cases.h"
 #include "tests/kernels/isa_test.h"
 
@@ -103,7 +104,7 @@ struct Average {
 };
 Average averageOf(const BsdfEntries& entries, const BsdfCase& bsdf, const Direction& fix) {
   Average average;
-  constexpr size_t kDraws = 20000;
+  constexpr size_t kDraws = effort(20000, 1000);
   forEachDraw(entries, {.material = &bsdf.record}, fix, kDraws, 4, [&](const BsdfDraw& draw) {
     average.weight += draw.weight[0] / kDraws;
     average.cosine += draw.weight[0] * draw.gen[2] / kDraws;
