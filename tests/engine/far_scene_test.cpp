@@ -144,7 +144,9 @@ TEST(FarScene, isMovedOnlyAlongAxesOnWhichItIsFar) {
   const auto originAt = [](const Double3& by) {
     return compileScene<float>(moved(crowdedRoom(kPinhole), by), Accel::small)->origin;
   };
-  const double radius = inspectScene(crowdedRoom(kPinhole), {.isa = bestIsa()}).bounds.radius;
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  const double radius = inspectScene(crowdedRoom(kPinhole), settings).bounds.radius;
   EXPECT_EQ(originAt({std::floor(8 * radius), 0, 0}), (Double3{0, 0, 0}));
   EXPECT_EQ(originAt({std::ceil(8 * radius), 0, -1024}), (Double3{std::ceil(8 * radius), 0, -1024}));
 }

@@ -85,7 +85,7 @@ size_t drawCount(Precision precision) {
   return precision == Precision::floating ? effort(1'000'000, 20'000) : effort(200'000, 20'000);
 }
 
-// Of what is integrated over the sphere: everything, or one direction of every fourth material. That all materials run
+// Of what is integrated over the sphere: everything, or one direction of every eighth material. That all materials run
 // under sanitizers is for the tests below, which take a few draws of each.
 struct IntegratedCase {
   const BsdfCase* bsdf;
@@ -93,7 +93,7 @@ struct IntegratedCase {
 };
 std::vector<IntegratedCase> integratedCases() {
   std::vector<IntegratedCase> list;
-  for (size_t i = 0; i < bsdfCases().size(); i += effort(1, 4)) {
+  for (size_t i = 0; i < bsdfCases().size(); i += effort(1, 8)) {
     const std::vector<Direction> fixes = fixDirections(bsdfCases()[i]);
     for (size_t k = 0; k < effort(fixes.size(), 1); ++k) list.push_back({&bsdfCases()[i], fixes[k]});
   }
