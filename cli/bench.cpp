@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "engine/load/load.h"
+#include "engine/version.h"
 #include "metrics/image/atomic_file.h"
 #include "scenes/scene_list.h"
 
@@ -72,17 +73,16 @@ void runBench(const BenchOptions& options) {
 
 }  // namespace
 
-void addBenchCommand(CLI::App& app, int& exitCode) {
+void addBenchCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = app.add_subcommand("bench", "measure speed, where it goes, and what it buys");
-  command->add_option("scenes", options->scenes, "built-in scenes or XML files; default: two Cornell boxes");
-  command->add_option("--methods", options->methods, "methods, separated by commas; default: all")->delimiter(',');
-  command->add_option("--duration", options->duration, "render time per scene and method, about")
-      ->capture_default_str();
-  command->add_option("--json", options->json, "write all figures as JSON");
-  command->add_option("--size", options->size, "film size, WIDTHxHEIGHT");
-  command->add_option("--threads", options->threads, "most threads; default: all cores")->check(CLI::Range(1, 4096));
-  command->callback([options, &exitCode] {
+  const Command command = program.add("bench", "measure speed, where it goes, and what it buys");
+  command.add("scenes", options->scenes, "built-in scenes or XML files; default: two Cornell boxes");
+  command.add("--methods", options->methods, "methods, separated by commas; default: all").separatedByCommas();
+  command.add("--duration", options->duration, "render time per scene and method, about").showDefault();
+  command.add("--json", options->json, "write all figures as JSON");
+  command.add("--size", options->size, "film size, WIDTHxHEIGHT");
+  command.add("--threads", options->threads, "most threads; default: all cores").between(1, 4096);
+  command.run([options, &exitCode] {
     runBench(*options);
     exitCode = kExitDone;
   });

@@ -4,11 +4,9 @@
 // as exceptions, and main() turns them into one line on stderr and the exit code of their kind.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <stdexcept>
-#include <string_view>
 
-#include "wavecrest_version.h"  // generated: kVersion, kCommit
+#include "cli/command_line.h"
 
 namespace wavecrest {
 
@@ -28,13 +26,13 @@ struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-void addCompareCommand(CLI::App& app, int& exitCode);
-void addBenchCommand(CLI::App& app, int& exitCode);
-void addInspectCommand(CLI::App& app, int& exitCode);
-void addConvergeCommand(CLI::App& app, int& exitCode);
-void addReferenceCommand(CLI::App& app, int& exitCode);
-void addRenderCommand(CLI::App& app, int& exitCode);
-void addReportCommand(CLI::App& app, int& exitCode);
-void addScenesCommand(CLI::App& app, int& exitCode);
+void addCompareCommand(CommandLine& program, int& exitCode);
+void addBenchCommand(CommandLine& program, int& exitCode);
+void addInspectCommand(CommandLine& program, int& exitCode);
+void addConvergeCommand(CommandLine& program, int& exitCode);
+void addReferenceCommand(CommandLine& program, int& exitCode);
+void addRenderCommand(CommandLine& program, int& exitCode);
+void addReportCommand(CommandLine& program, int& exitCode);
+void addScenesCommand(CommandLine& program, int& exitCode);
 
 }  // namespace wavecrest

@@ -22,7 +22,7 @@ struct CompareOptions {
   std::vector<std::string> metrics;
   bool json = false, gammaCorrected = false;
   double exposure = 0;
-  std::vector<CLI::Option*> thresholds;  // in the order of metricList()
+  std::vector<Option> thresholds;  // in the order of metricList()
   std::vector<double> limits;
 };
 
@@ -37,7 +37,7 @@ std::string metricNames() {
   return names;
 }
 
-bool hasThreshold(const CompareOptions& options, size_t metric) { return options.thresholds[metric]->count() > 0; }
+bool hasThreshold(const CompareOptions& options, size_t metric) { return options.thresholds[metric].given(); }
 
 // What was named, or the defaults; a metric with a threshold is always measured.
 std::vector<const Metric*> chosenMetrics(const CompareOptions& options) {
@@ -133,6 +133,7 @@ int compare(const CompareOptions& options) {
   const bool withMaps = !options.mapFolder.empty();
   if (withMaps) std::filesystem::create_directories(options.mapFolder);
   std::vector<Measured> all;
+  all.reserve(metrics.size());
   for (const Metric* metric : metrics) all.push_back({metric, metric->measure(reference, test, withMaps)});
   if (options.json) {
     fmt::print("{}\n", toJson(all, test.nonFinitePixels).dump(2));
@@ -146,25 +147,24 @@ int compare(const CompareOptions& options) {
 
 }  // namespace
 
-void addCompareCommand(CLI::App& app, int& exitCode) {
-  CLI::App* command = app.add_subcommand("compare", "measure a test image against a reference");
+void addCompareCommand(CommandLine& program, int& exitCode) {
+  const Command command = program.add("compare", "measure a test image against a reference");
   auto options = std::make_shared<CompareOptions>();
-  command->add_option("REFERENCE", options->reference, "EXR, PFM, HDR or PNG")->required();
-  command->add_option("TEST", options->test, "image of the same size")->required();
-  command->add_option("--metrics", options->metrics, "which of " + metricNames())->delimiter(',');
-  command->add_flag("--json", options->json, "print one JSON object");
-  command->add_option("--map", options->mapFolder, "write a false-colour PNG of each metric into this folder");
-  command->add_option("--exposure", options->exposure, "stops applied before conversion to 8 bits")
-      ->check(CLI::Range(-100.0, 100.0));
-  command->add_flag("--gamma", options->gammaCorrected, "rmse and relmse on gamma-corrected 8-bit values");
+  command.add("REFERENCE", options->reference, "EXR, PFM, HDR or PNG").required();
+  command.add("TEST", options->test, "image of the same size").required();
+  command.add("--metrics", options->metrics, "which of " + metricNames()).separatedByCommas();
+  command.addFlag("--json", options->json, "print one JSON object");
+  command.add("--map", options->mapFolder, "write a false-colour PNG of each metric into this folder");
+  command.add("--exposure", options->exposure, "stops applied before conversion to 8 bits").between(-100.0, 100.0);
+  command.addFlag("--gamma", options->gammaCorrected, "rmse and relmse on gamma-corrected 8-bit values");
   options->limits.resize(metricList().size());
   for (size_t i = 0; i < metricList().size(); ++i) {
     const Metric& metric = metricList()[i];
-    options->thresholds.push_back(command->add_option(
+    options->thresholds.push_back(command.add(
         "--" + std::string(metric.threshold), options->limits[i],
         fmt::format("exit code 4 if {} is {} than this", metric.title, metric.higherIsBetter ? "less" : "more")));
   }
-  command->callback([options, &exitCode] { exitCode = compare(*options); });
+  command.run([options, &exitCode] { exitCode = compare(*options); });
 }
 
 }  // namespace wavecrest

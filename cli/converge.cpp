@@ -320,35 +320,34 @@ int runConverge(ConvergeOptions options) {
 
 }  // namespace
 
-void addConvergeCommand(CLI::App& app, int& exitCode) {
+void addConvergeCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<ConvergeOptions>();
-  CLI::App* command = app.add_subcommand("converge", "measure how methods converge: scenes x methods x seeds");
+  const Command command = program.add("converge", "measure how methods converge: scenes x methods x seeds");
   const auto defining = [&](const char* name, const char* description) {
-    return command->add_option(name, options->defining[name], description);
+    return command.add(name, options->defining[name], description);
   };
   defining("scenes", "built-in scenes or XML files; default: the nine");
-  defining("--methods", "methods, separated by commas; default: all")->delimiter(',');
-  defining("--profile", "quick, standard or paper; default: quick")->expected(1);
-  defining("--time", "render time of each run; default: the profile's")->expected(1);
-  defining("--snapshot-every", "interval between snapshots, or log; default: the profile's")->expected(1);
-  defining("--spp", "iterations of each run instead of time; snapshots after 1, 2, 4, ...")->expected(1);
-  defining("--seeds", "runs of each method, seeds 1 to N; default: the profile's")->expected(1);
-  defining("--size", "film size, WIDTHxHEIGHT; default: the profile's")->expected(1);
-  defining("--precision", "float, double or fast; default: float")->expected(1);
-  defining("--sampler", "independent or sobol; default: independent")->expected(1);
-  defining("--images", "keep images of 'all' snapshots, or of the 'last' of each run; default: all")->expected(1);
-  command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
-  command->add_option("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512")->capture_default_str();
-  command->add_option("--out", options->out, "folder of results.sqlite, images and references")->capture_default_str();
-  command->add_option("--reference", options->reference,
-                      "folder of SCENE.exr; default: those that come with the scenes");
-  command->add_option("--shard", options->shard, "i/n: do only the i-th of n parts")->capture_default_str();
-  command->add_option("--progress", options->progress, "auto, bar, jsonl or none")->capture_default_str();
-  command->add_flag("--resume", options->resume, "go on with the campaign in --out, if there is one");
-  command->add_flag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
-  command->callback([options, command, &exitCode] {
+  defining("--methods", "methods, separated by commas; default: all").separatedByCommas();
+  defining("--profile", "quick, standard or paper; default: quick").oneValue();
+  defining("--time", "render time of each run; default: the profile's").oneValue();
+  defining("--snapshot-every", "interval between snapshots, or log; default: the profile's").oneValue();
+  defining("--spp", "iterations of each run instead of time; snapshots after 1, 2, 4, ...").oneValue();
+  defining("--seeds", "runs of each method, seeds 1 to N; default: the profile's").oneValue();
+  defining("--size", "film size, WIDTHxHEIGHT; default: the profile's").oneValue();
+  defining("--precision", "float, double or fast; default: float").oneValue();
+  defining("--sampler", "independent or sobol; default: independent").oneValue();
+  defining("--images", "keep images of 'all' snapshots, or of the 'last' of each run; default: all").oneValue();
+  command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
+  command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
+  command.add("--out", options->out, "folder of results.sqlite, images and references").showDefault();
+  command.add("--reference", options->reference, "folder of SCENE.exr; default: those that come with the scenes");
+  command.add("--shard", options->shard, "i/n: do only the i-th of n parts").showDefault();
+  command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
+  command.addFlag("--resume", options->resume, "go on with the campaign in --out, if there is one");
+  command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
+  command.run([options, command, &exitCode] {
     for (const char* name : kDefiningOptions) {
-      if (command->get_option(name)->count() == 0) options->defining.erase(name);
+      if (!command.given(name)) options->defining.erase(name);
     }
     try {
       exitCode = runConverge(*options);

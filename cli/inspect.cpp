@@ -167,17 +167,16 @@ int runInspect(const InspectOptions& options) {
 
 }  // namespace
 
-void addInspectCommand(CLI::App& app, int& exitCode) {
+void addInspectCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<InspectOptions>();
-  CLI::App* command = app.add_subcommand("inspect", "what is in a scene, and what each method can do in it");
-  addSceneOptions(*command, options->scene);
-  command->add_flag("--json", options->json, "as JSON");
-  command->add_option("--precision", options->precision, "of the render that is planned")->capture_default_str();
-  command->add_option("--accel", options->accel, "auto, small, bvh or embree")->capture_default_str();
-  command->add_option("--threads", options->threads, "of the render that is planned; default: all cores")
-      ->check(CLI::Range(1, 4096));
-  command->add_option("--wave", options->wave, "paths per wave")->capture_default_str()->check(CLI::Range(16, 1 << 20));
-  command->callback([options, &exitCode] { exitCode = runInspect(*options); });
+  const Command command = program.add("inspect", "what is in a scene, and what each method can do in it");
+  addSceneOptions(command, options->scene);
+  command.addFlag("--json", options->json, "as JSON");
+  command.add("--precision", options->precision, "of the render that is planned").showDefault();
+  command.add("--accel", options->accel, "auto, small, bvh or embree").showDefault();
+  command.add("--threads", options->threads, "of the render that is planned; default: all cores").between(1, 4096);
+  command.add("--wave", options->wave, "paths per wave").showDefault().between(16, 1 << 20);
+  command.run([options, &exitCode] { exitCode = runInspect(*options); });
 }
 
 }  // namespace wavecrest

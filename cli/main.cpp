@@ -1,36 +1,36 @@
 // wavecrest: one program, one file per subcommand.
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <exception>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/commands.h"
 #include "engine/load/load.h"
 #include "engine/scene/scene_error.h"
+#include "engine/version.h"
 #include "metrics/image/image.h"
 #include "scenes/scene_list.h"
 
-int main(int argc, char** argv) {
-  using namespace wavecrest;
-  CLI::App app{"wavecrest measures light-transport methods against each other", "wavecrest"};
-  app.set_version_flag("--version", std::string(kVersion));
-  app.require_subcommand(1);
+namespace wavecrest {
+namespace {
+
+int run(std::vector<std::string> arguments) {
+  CommandLine program("wavecrest measures light-transport methods against each other", "wavecrest");
+  program.setVersion(kVersion);
   int exitCode = kExitDone;
-  addCompareCommand(app, exitCode);
-  addConvergeCommand(app, exitCode);
-  addReferenceCommand(app, exitCode);
-  addRenderCommand(app, exitCode);
-  addInspectCommand(app, exitCode);
-  addReportCommand(app, exitCode);
-  addBenchCommand(app, exitCode);
-  addScenesCommand(app, exitCode);
+  addCompareCommand(program, exitCode);
+  addConvergeCommand(program, exitCode);
+  addReferenceCommand(program, exitCode);
+  addRenderCommand(program, exitCode);
+  addInspectCommand(program, exitCode);
+  addReportCommand(program, exitCode);
+  addBenchCommand(program, exitCode);
+  addScenesCommand(program, exitCode);
 
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
-    app.exit(error);
-    return asked ? kExitDone : kExitUsage;
+    program.parse(std::move(arguments), exitCode);
   } catch (const UsageError& error) {
     fmt::print(stderr, "wavecrest: error: {}\n", error.what());
     return kExitUsage;
@@ -56,3 +56,8 @@ int main(int argc, char** argv) {
   }
   return exitCode;
 }
+
+}  // namespace
+}  // namespace wavecrest
+
+int main(int argc, char** argv) { return wavecrest::run({argv + 1, argv + argc}); }

@@ -70,7 +70,8 @@ uint64_t parseMemory(const std::string& text) {
   if (error != std::errc() || next == text.data() || next == end) return fail();
   const std::string_view unit(next, static_cast<size_t>(end - next));
   const bool binary = unit.size() > 1 && unit[1] == 'i';
-  if (unit.substr(1) != "" && unit.substr(1) != "B" && unit.substr(1) != "iB") return fail();
+  const std::string_view rest = unit.substr(1);
+  if (!rest.empty() && rest != "B" && rest != "iB") return fail();
   const size_t power = std::string_view("KMGT").find(unit[0]);
   if (power == std::string_view::npos) return fail();
   const double bytes = number * std::pow(binary ? 1024.0 : 1000.0, static_cast<double>(power + 1));

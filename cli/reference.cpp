@@ -103,31 +103,27 @@ int runReference(const ReferenceOptions& options) {
 
 }  // namespace
 
-void addReferenceCommand(CLI::App& app, int& exitCode) {
+void addReferenceCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<ReferenceOptions>();
-  CLI::App* command = app.add_subcommand("reference", "render a scene's reference image, or go on with it");
-  addSceneOptions(*command, options->scene);
-  command->add_option("-m,--method", options->method, "auto: by the scene's classes of paths; or a method")
-      ->capture_default_str();
+  const Command command = program.add("reference", "render a scene's reference image, or go on with it");
+  addSceneOptions(command, options->scene);
+  command.add("-m,--method", options->method, "auto: by the scene's classes of paths; or a method").showDefault();
   command
-      ->add_option(
-          "--until-relative-error", options->relativeError,
-          "stop when a pixel is off by this share of its value, in the mean; 0.01 if nothing else is asked for")
-      ->check(CLI::Range(1e-9, 1.0));
-  command->add_option("--time", options->time, "stop after this much render time in all: 10m, 6h");
-  command->add_option("--spp", options->spp, "stop after N iterations of each half")->check(CLI::PositiveNumber);
-  command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
-  command->add_option("--seed", options->seed, "seed of both halves, which differ in its high word")
-      ->check(CLI::Range(uint64_t{0}, uint64_t{0xffffffff}));
-  command->add_option("--sampler", options->sampler, "independent or sobol")->capture_default_str();
-  command->add_option("--precision", options->precision, "float, double or fast")->capture_default_str();
-  command->add_option("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512")->capture_default_str();
-  command->add_option("--radius", options->radius, "first merge radius of ppm, bpm and vcm")
-      ->capture_default_str()
-      ->check(CLI::Range(1e-9, 10.0));
-  command->add_option("-o,--output", options->output, "EXR file; default: SCENE.reference.exr; goes on if it exists");
-  command->add_flag("--quiet", options->quiet, "print the result only");
-  command->callback([options, &exitCode] { exitCode = runReference(*options); });
+      .add("--until-relative-error", options->relativeError,
+           "stop when a pixel is off by this share of its value, in the mean; 0.01 if nothing else is asked for")
+      .between(1e-9, 1.0);
+  command.add("--time", options->time, "stop after this much render time in all: 10m, 6h");
+  command.add("--spp", options->spp, "stop after N iterations of each half").positive();
+  command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
+  command.add("--seed", options->seed, "seed of both halves, which differ in its high word")
+      .between(uint64_t{0}, uint64_t{0xffffffff});
+  command.add("--sampler", options->sampler, "independent or sobol").showDefault();
+  command.add("--precision", options->precision, "float, double or fast").showDefault();
+  command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
+  command.add("--radius", options->radius, "first merge radius of ppm, bpm and vcm").showDefault().between(1e-9, 10.0);
+  command.add("-o,--output", options->output, "EXR file; default: SCENE.reference.exr; goes on if it exists");
+  command.addFlag("--quiet", options->quiet, "print the result only");
+  command.run([options, &exitCode] { exitCode = runReference(*options); });
 }
 
 }  // namespace wavecrest

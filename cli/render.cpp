@@ -143,15 +143,15 @@ void checkOutputs(const RenderOptions& options) {
 // Edges of the longest path: 1 to 64, or -1 for as many as roulette allows.
 std::string checkMaxDepth(const std::string& word) {
   int depth = 0;
-  const bool valid = CLI::detail::lexical_cast(word, depth) &&
-                     (depth == -1 || (depth >= 1 && depth <= static_cast<int>(kUnlimitedDepth)));
+  const bool valid =
+      readNumber(word, depth) && (depth == -1 || (depth >= 1 && depth <= static_cast<int>(kUnlimitedDepth)));
   return valid ? std::string() : fmt::format("'{}' is no depth; expected 1 to {}, or -1", word, kUnlimitedDepth);
 }
 
 // CLI11's ranges let NaN through.
 std::string checkFinite(const std::string& word) {
   double number = 0;
-  const bool valid = CLI::detail::lexical_cast(word, number) && std::isfinite(number);
+  const bool valid = readNumber(word, number) && std::isfinite(number);
   return valid ? std::string() : fmt::format("'{}' is no finite number", word);
 }
 
@@ -217,54 +217,42 @@ int runRender(const RenderOptions& options) {
 
 }  // namespace
 
-void addRenderCommand(CLI::App& app, int& exitCode) {
+void addRenderCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App* command = app.add_subcommand("render", "render a scene by one method");
-  addSceneOptions(*command, options->scene);
-  command->add_option("-m,--method", options->method, "light-transport method")->capture_default_str();
-  command->add_option("--time", options->time, "stop after this much render time: 6s, 2m, 1h30m");
-  command->add_option("--spp", options->spp, "stop after N iterations: paths, of mlt mutations, per pixel")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--threads", options->threads, "worker threads; default: all cores")->check(CLI::Range(1, 4096));
-  command->add_option("--seed", options->seed, "seed of all random numbers")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--sampler", options->sampler, "independent or sobol")->capture_default_str();
-  command->add_option("--max-depth", options->maxDepth, "edges of the longest path; -1: unlimited")
-      ->check(checkMaxDepth);
-  command->add_option("--rr-depth", options->rrDepth, "first vertex where roulette may end a path")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--precision", options->precision, "float, double or fast")->capture_default_str();
-  command->add_option("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512")->capture_default_str();
-  command->add_option("--accel", options->accel, "intersector: auto, small, bvh or embree")->capture_default_str();
-  command->add_option("--wave", options->wave, "paths per wave")->capture_default_str()->check(CLI::Range(16, 1 << 20));
-  command
-      ->add_option("--radius", options->radius,
-                   "first merge radius of ppm, bpm and vcm, relative to the bounding sphere")
-      ->capture_default_str()
-      ->check(checkFinite)
-      ->check(CLI::Range(1e-9, 10.0));
-  command->add_option("--radius-alpha", options->radiusAlpha, "how slowly the radius shrinks, 0 to 1")
-      ->capture_default_str()
-      ->check(checkFinite)
-      ->check(CLI::Range(0.0, 1.0));
-  command->add_option("--memory", options->memory,
-                      "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
-  command->add_option("--mlt", options->mlt,
-                      "what the chains of mlt walk in: pssmlt, mmlt or pathspace; default: mmlt");
-  command->add_option("--chains", options->chains, "Markov chains of mlt")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1 << 24));
-  command->add_option("--bootstrap", options->bootstrap, "independent samples from which chains start")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1 << 28));
-  command->add_flag("--no-direct-pass", options->noDirectPass, "mmlt and pathspace: chains render direct light too");
-  command->add_option("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");
-  command->add_option("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable")
-      ->allow_extra_args(false);
-  command->add_option("--stats", options->stats, "write statistics as JSON");
-  command->add_option("--progress", options->progress, "auto, bar, jsonl or none")->capture_default_str();
-  command->callback([options, &exitCode] { exitCode = runRender(*options); });
+  const Command command = program.add("render", "render a scene by one method");
+  addSceneOptions(command, options->scene);
+  command.add("-m,--method", options->method, "light-transport method").showDefault();
+  command.add("--time", options->time, "stop after this much render time: 6s, 2m, 1h30m");
+  command.add("--spp", options->spp, "stop after N iterations: paths, of mlt mutations, per pixel").positive();
+  command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
+  command.add("--seed", options->seed, "seed of all random numbers").showDefault().notNegative();
+  command.add("--sampler", options->sampler, "independent or sobol").showDefault();
+  command.add("--max-depth", options->maxDepth, "edges of the longest path; -1: unlimited").checkedBy(checkMaxDepth);
+  command.add("--rr-depth", options->rrDepth, "first vertex where roulette may end a path").positive();
+  command.add("--precision", options->precision, "float, double or fast").showDefault();
+  command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
+  command.add("--accel", options->accel, "intersector: auto, small, bvh or embree").showDefault();
+  command.add("--wave", options->wave, "paths per wave").showDefault().between(16, 1 << 20);
+  command.add("--radius", options->radius, "first merge radius of ppm, bpm and vcm, relative to the bounding sphere")
+      .showDefault()
+      .checkedBy(checkFinite)
+      .between(1e-9, 10.0);
+  command.add("--radius-alpha", options->radiusAlpha, "how slowly the radius shrinks, 0 to 1")
+      .showDefault()
+      .checkedBy(checkFinite)
+      .between(0.0, 1.0);
+  command.add("--memory", options->memory, "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
+  command.add("--mlt", options->mlt, "what the chains of mlt walk in: pssmlt, mmlt or pathspace; default: mmlt");
+  command.add("--chains", options->chains, "Markov chains of mlt").showDefault().between(1, 1 << 24);
+  command.add("--bootstrap", options->bootstrap, "independent samples from which chains start")
+      .showDefault()
+      .between(1, 1 << 28);
+  command.addFlag("--no-direct-pass", options->noDirectPass, "mmlt and pathspace: chains render direct light too");
+  command.add("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");
+  command.add("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable").repeatable();
+  command.add("--stats", options->stats, "write statistics as JSON");
+  command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
+  command.run([options, &exitCode] { exitCode = runRender(*options); });
 }
 
 }  // namespace wavecrest

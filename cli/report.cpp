@@ -24,20 +24,19 @@ struct ReportOptions {
 
 }  // namespace
 
-void addReportCommand(CLI::App& app, int& exitCode) {
-  CLI::App* command = app.add_subcommand("report", "rebuild DIR/report.html from the results in DIR");
+void addReportCommand(CommandLine& program, int& exitCode) {
+  const Command command = program.add("report", "rebuild DIR/report.html from the results in DIR");
   auto options = std::make_shared<ReportOptions>();
   command
-      ->add_option("DIR", options->paths,
-                   "folder of a campaign, or of renders with stats and a reference per scene; several folders or "
-                   "results files are the parts of one campaign, reported in the first")
-      ->required();
-  command->add_flag(
-      "--csv", options->files.csv,
-      "also write DIR/measurements.csv, every score of every snapshot, and DIR/summary.csv and claims.csv");
-  command->add_flag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");
-  command->add_flag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
-  command->callback([options, &exitCode] {
+      .add("DIR", options->paths,
+           "folder of a campaign, or of renders with stats and a reference per scene; several folders or "
+           "results files are the parts of one campaign, reported in the first")
+      .required();
+  command.addFlag("--csv", options->files.csv,
+                  "also write DIR/measurements.csv, every score of every snapshot, and DIR/summary.csv and claims.csv");
+  command.addFlag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");
+  command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
+  command.run([options, &exitCode] {
     exitCode = kExitDone;
     const std::vector<std::filesystem::path> paths(options->paths.begin(), options->paths.end());
     try {

@@ -9,11 +9,11 @@
 
 namespace wavecrest {
 
-void addSceneOptions(CLI::App& command, SceneOptions& options) {
-  command.add_option("scene", options.scene, "built-in scene or path of an XML file")->required();
-  command.add_option("--size", options.size, "film size, WIDTHxHEIGHT");
-  command.add_option("-D", options.defines, "value of a scene's $name: NAME=VALUE")->allow_extra_args(false);
-  command.add_flag("--lenient", options.lenient, "skip what a scene asks and wavecrest lacks, with a warning");
+void addSceneOptions(const Command& command, SceneOptions& options) {
+  command.add("scene", options.scene, "built-in scene or path of an XML file").required();
+  command.add("--size", options.size, "film size, WIDTHxHEIGHT");
+  command.add("-D", options.defines, "value of a scene's $name: NAME=VALUE").repeatable();
+  command.addFlag("--lenient", options.lenient, "skip what a scene asks and wavecrest lacks, with a warning");
 }
 
 Scene loadScene(const SceneOptions& options) {

@@ -1,10 +1,10 @@
 // Options of the commands that load a scene: which one, and how it is read.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/command_line.h"
 #include "engine/scene/scene.h"
 
 namespace wavecrest {
@@ -15,7 +15,7 @@ struct SceneOptions {
   bool lenient = false;
 };
 
-void addSceneOptions(CLI::App& command, SceneOptions& options);
+void addSceneOptions(const Command& command, SceneOptions& options);
 
 // Loads it; what --lenient skipped goes to stderr. Throws UsageError, or LoadError for a scene that cannot be read.
 Scene loadScene(const SceneOptions& options);

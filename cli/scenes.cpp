@@ -6,9 +6,9 @@
 
 namespace wavecrest {
 
-void addScenesCommand(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("scenes", "list the built-in scenes");
-  command->callback([] {
+void addScenesCommand(CommandLine& program, int&) {
+  const Command command = program.add("scenes", "list the built-in scenes");
+  command.run([] {
     for (const SceneEntry& scene : builtInScenes()) fmt::print("{:<24} {}\n", scene.name, scene.description);
   });
 }

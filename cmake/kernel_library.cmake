@@ -32,17 +32,29 @@ function(add_kernel_library name)
   endforeach()
 endfunction()
 
-# add_lane_executable(NAME SOURCES source... LANE_SOURCES source... LIBRARIES library...): an executable of plain sources
-# and of lane sources, which are compiled once per instruction set and register their entry points (kernels/simd/
-# isa_table.h). For tests and microbenchmarks.
-function(add_lane_executable name)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LANE_SOURCES;LIBRARIES")
-  add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE wavecrest_options wavecrest_isa ${ARG_LIBRARIES})
+# add_lane_sources(NAME source...): object libraries NAME_<instruction set> of lane sources, which register their entry
+# points (kernels/simd/isa_table.h).
+function(add_lane_sources name)
   foreach(isa IN LISTS WAVECREST_ISAS)
-    add_library(${name}_${isa} OBJECT ${ARG_LANE_SOURCES})
+    add_library(${name}_${isa} OBJECT ${ARGN})
     target_compile_definitions(${name}_${isa} PRIVATE ${WAVECREST_ISA_DEFINES_${isa}})
     target_link_libraries(${name}_${isa} PRIVATE wavecrest_options wavecrest_lane_options)
-    target_sources(${name} PRIVATE $<TARGET_OBJECTS:${name}_${isa}>)
+  endforeach()
+endfunction()
+
+# add_lane_executable(NAME SOURCES source... LANE_SOURCES source... LANES name... LIBRARIES library...): an executable of
+# plain sources, of lane sources of its own and of those that several share. For tests and microbenchmarks.
+function(add_lane_executable name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LANE_SOURCES;LANES;LIBRARIES")
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE wavecrest_options wavecrest_isa ${ARG_LIBRARIES})
+  if(ARG_LANE_SOURCES)
+    add_lane_sources(${name} ${ARG_LANE_SOURCES})
+    list(APPEND ARG_LANES ${name})
+  endif()
+  foreach(lanes IN LISTS ARG_LANES)
+    foreach(isa IN LISTS WAVECREST_ISAS)
+      target_sources(${name} PRIVATE $<TARGET_OBJECTS:${lanes}_${isa}>)
+    endforeach()
   endforeach()
 endfunction()

@@ -1,5 +1,6 @@
-# The generated header wavecrest_version.h: the project's version, and the commit that is built. Configuring again after
-# each commit keeps the latter true: results are filed under it.
+# Library wavecrest_version, what engine/version.h declares: the project's version, and the commit that is built.
+# Configuring again after each commit keeps the latter true: results are filed under it. A unit of its own, so that
+# a commit costs no more than this file and a link.
 execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} rev-parse --short=12 HEAD
                 OUTPUT_VARIABLE WAVECREST_COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} rev-parse --path-format=absolute --git-path logs/HEAD
@@ -9,10 +10,13 @@ if(NOT WAVECREST_COMMIT)
 elseif(EXISTS "${commit_log}")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${commit_log}")
 endif()
-file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/wavecrest_version.h CONTENT
-"#pragma once
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/version.cpp CONTENT
+"#include \"engine/version.h\"
+
 namespace wavecrest {
-inline constexpr const char* kVersion = \"@PROJECT_VERSION@\";
-inline constexpr const char* kCommit = \"@WAVECREST_COMMIT@\";
+const char* const kVersion = \"@PROJECT_VERSION@\";
+const char* const kCommit = \"@WAVECREST_COMMIT@\";
 }
 " @ONLY)
+add_library(wavecrest_version STATIC ${PROJECT_BINARY_DIR}/generated/version.cpp)
+target_link_libraries(wavecrest_version PRIVATE wavecrest_options)

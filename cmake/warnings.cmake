@@ -8,6 +8,11 @@ target_compile_options(wavecrest_options INTERFACE
 target_compile_options(wavecrest_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-restrict>)
 
+# Its default of 128 MB makes g++ look for garbage time and again in what it will need to the end: a twelfth of the time
+# of large files. Without, they take a quarter more memory, 700 MB at most.
+target_compile_options(wavecrest_options INTERFACE
+  $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>)
+
 # optimize_lightly(): for folders whose code waits for files and people, or tests other code. -O3 takes half as long
 # again to compile them as -O1, and nobody would notice what it gains.
 macro(optimize_lightly)

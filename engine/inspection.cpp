@@ -11,6 +11,8 @@ template <class... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;
 };
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that lints, does not find by itself
 
 bool isRough(const TexturedFloat& alpha) { return alpha.texture != kNone || alpha.value >= double{kSmallestAlpha}; }
 
@@ -102,6 +104,11 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
   const auto compiled = compileScene<float>(scene, settings.accel);
   out.primitives = compiled->primitives.counts;
   out.bounds = boundPrimitives(compiled->primitives.records);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (double* coordinate : {&out.bounds.center[axis], &out.bounds.low[axis], &out.bounds.high[axis]}) {
+      *coordinate += compiled->origin[axis];
+    }
+  }
   out.accel = compiled->accel();
 
   for (const MethodEntry& entry : kMethods) {

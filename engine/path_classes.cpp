@@ -39,7 +39,7 @@ std::vector<Prefix> reachablePrefixes(const SceneLinks& links, LightKindOfPath l
       add(extended(start, event == EventKind::diffuse));
     }
   }
-  for (size_t i = 0; i < found.size(); ++i) {
+  for (size_t i = 0; i < found.size(); ++i) {  // NOLINT(modernize-loop-convert): it grows
     const Prefix path = found[i];
     const auto last = static_cast<size_t>(path.lastIsD ? EventKind::diffuse : EventKind::specular);
     for (const EventKind event : {EventKind::diffuse, EventKind::specular}) {

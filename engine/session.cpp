@@ -2,8 +2,6 @@
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/flow_graph.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
@@ -12,9 +10,11 @@
 
 #include "engine/chains/chain_session.h"
 #include "engine/flush_to_zero.h"
+#include "engine/for_each.h"
 #include "engine/render_clock.h"
 #include "engine/render_plan.h"
 #include "engine/stage_rows.h"
+#include "engine/task_order.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
 
@@ -81,11 +81,6 @@ class TypedSession final : public Session {
   // Light vertices that the camera paths of a wave are joined with.
   LightStore<S>* partnersOf(size_t waveIndex, Worker& worker);
   void collectSplats();
-
-  // Runs body(i) for i in [0, count) on the session's threads.
-  static void forEach(size_t count, const std::function<void(size_t)>& body) {
-    oneapi::tbb::parallel_for(size_t{0}, count, body, oneapi::tbb::simple_partitioner());
-  }
 
   const RenderSettings settings_;
   oneapi::tbb::task_arena arena_;
@@ -213,19 +208,25 @@ void TypedSession<S>::renderWaves(const Finished& finished) {
   // The graph has a token per wave. A token that has been traced goes back to the queue, behind all others, so that
   // waves advance together; the run ends when none is put back.
   namespace flow = oneapi::tbb::flow;
+  TaskOrder order;
   flow::graph graph;
   flow::queue_node<size_t> ready(graph);
   flow::function_node<size_t, flow::continue_msg, flow::rejecting> tracing(graph, settings_.threads, [&](size_t wave) {
+    const TaskOrder::Task task(order);
+    observe(&camera_[wave]);
     if (finished(camera_[wave].next)) return flow::continue_msg();
     Worker& mine = worker();
     if (plan_.pipeline.lightPass) traceLight(wave, mine);
     traceCamera(wave, mine);
-    if (!finished(camera_[wave].next)) ready.try_put(wave);
+    if (finished(camera_[wave].next)) return flow::continue_msg();
+    publish(&camera_[wave]);
+    ready.try_put(wave);
     return flow::continue_msg();
   });
   flow::make_edge(ready, tracing);
   for (size_t wave = 0; wave < camera_.size(); ++wave) ready.try_put(wave);
   graph.wait_for_all();
+  order.wait();
 }
 
 template <class S>

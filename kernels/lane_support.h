@@ -258,12 +258,15 @@ WAVECREST_SIMD_END
   WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)             \
   WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)              \
   WAVECREST_SIMD_END
-// For a stage that depends on how columns are kept alone.
-#define WAVECREST_INSTANTIATE_STORAGE_STAGE(STAGE)                         \
-  WAVECREST_SIMD_BEGIN                                                     \
-  template void STAGE<float>(const StageContext<float>&, Wave<float>&);    \
-  template void STAGE<double>(const StageContext<double>&, Wave<double>&); \
+// And for a stage that no feature changes: one for each precision, whatever the set.
+#define WAVECREST_INSTANTIATE_COMMON_STAGE(STAGE)             \
+  WAVECREST_SIMD_BEGIN                                        \
+  WAVECREST_INSTANTIATE_FOR_PRECISION(STAGE, FloatPrecision)  \
+  WAVECREST_INSTANTIATE_FOR_PRECISION(STAGE, FastPrecision)   \
+  WAVECREST_INSTANTIATE_FOR_PRECISION(STAGE, DoublePrecision) \
   WAVECREST_SIMD_END
+#define WAVECREST_INSTANTIATE_FOR_PRECISION(STAGE, PRECISION) \
+  template void STAGE<PRECISION>(const StageContext<PRECISION::Storage>&, Wave<PRECISION::Storage>&);
 #define WAVECREST_INSTANTIATE(STAGE, PRECISION, SPECIALIZATION)                                                       \
   template void STAGE<PRECISION, featuresOf(Specialization::SPECIALIZATION)>(const StageContext<PRECISION::Storage>&, \
                                                                              Wave<PRECISION::Storage>&);

@@ -13,17 +13,17 @@ constexpr Stages<typename P::Storage> makeStages() {
   Stages<typename P::Storage> stages{.isa = kIsa,
                                      .lanes = kLanes,
                                      .generateCameraPaths = generateCameraPaths<P, kFeatures>,
-                                     .extendSmall = extendSmall<P, kFeatures>,
-                                     .occludeSmall = occludeSmall<P, kFeatures>,
-                                     .extendBvh = extendBvh<typename P::Storage>,
-                                     .occludeBvh = occludeBvh<typename P::Storage>,
+                                     .extendSmall = extendSmall<P>,
+                                     .occludeSmall = occludeSmall<P>,
+                                     .extendBvh = extendBvh<P>,
+                                     .occludeBvh = occludeBvh<P>,
                                      .arrive = arrive<P, kFeatures>,
                                      .nextEvent = nextEvent<P, kFeatures>,
                                      .scatter = scatter<P, kFeatures>,
                                      .scatterSpecular = scatterSpecular<P, kFeatures>,
-                                     .proposeMutations = proposeMutations<P, kFeatures>,
-                                     .recordVertices = recordVertices<P, kFeatures>,
-                                     .acceptMutations = acceptMutations<P, kFeatures>};
+                                     .proposeMutations = proposeMutations<P>,
+                                     .recordVertices = recordVertices<P>,
+                                     .acceptMutations = acceptMutations<P>};
   if constexpr (has(kFeatures, kBidirectional)) {
     stages.generateLightPaths = generateLightPaths<P, kFeatures>;
     stages.storeLightVertices = storeLightVertices<P, kFeatures>;
@@ -32,7 +32,7 @@ constexpr Stages<typename P::Storage> makeStages() {
     stages.merge = merge<P, kFeatures>;
     stages.admitWalks = admitWalks<P, kFeatures>;
     stages.takeEnds = takeEnds<P, kFeatures>;
-    stages.proposePaths = proposePaths<P, kFeatures>;
+    stages.proposePaths = proposePaths<P>;
     stages.beginEyeWalks = beginEyeWalks<P, kFeatures>;
     stages.beginLightWalks = beginLightWalks<P, kFeatures>;
     stages.recordMisses = recordMisses<P, kFeatures>;
@@ -40,8 +40,8 @@ constexpr Stages<typename P::Storage> makeStages() {
     stages.walkPaths = walkPaths<P, kFeatures>;
     stages.joinPaths = joinPaths<P, kFeatures>;
     stages.evaluatePaths = evaluatePaths<P, kFeatures>;
-    stages.weighPaths = weighPaths<P, kFeatures>;
-    stages.commitPaths = commitPaths<P, kFeatures>;
+    stages.weighPaths = weighPaths<P>;
+    stages.commitPaths = commitPaths<P>;
   }
   return stages;
 }

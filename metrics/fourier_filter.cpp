@@ -92,7 +92,7 @@ void FourierFilter::transformRows(const FourierFilterJob& job, size_t batch, flo
     for (size_t i = 0; i < kLanes; ++i) {
       const size_t k = std::min(group * kLanes + i, width_);  // columns beyond w + 1 are fillers
       const float* z = data + k * kFftElement;
-      const float* mirrored = data + (length - k) % length * kFftElement;
+      const float* mirrored = data + (length - k) % length * kFftElement;  // NOLINT(*UndefinedBinaryOperatorResult)
       float ar[kLanes], ai[kLanes], br[kLanes], bi[kLanes];
       for (size_t lane = 0; lane < kLanes; ++lane) {
         const float re = z[lane], im = z[kLanes + lane], mre = mirrored[lane], mim = mirrored[kLanes + lane];

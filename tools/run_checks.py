@@ -102,25 +102,32 @@ def step_long(tally):
         test(tally, "release", "--label-regex", "^long$")
 
 
-# Unit tests: metrics, loader, intersectors and stages, allocation, results and reports. Not those that render whole
-# images, nor scenes_test, whose fixture generates the dragon. Not yet those of lanes, chains and sessions: they compile, but
-# nobody has seen them through to the end under sanitizers.
+# Unit and kernel tests, and the sessions, with fewer cases than elsewhere (tests/effort.h). Not those that render whole
+# images, nor scenes_test, whose fixture generates the dragon.
 SANITIZED_TESTS = (
     "allocation_test",
     "bench_report_test",
+    "bsdf_test",
     "campaign_test",
+    "chains_test",
     "claims_test",
+    "kernels_test",
     "load_fuzz_test",
     "load_test",
     "metrics_test",
     "results_test",
+    "session_test",
     "stages_test",
 )
+
+# Whatever runs on several threads: sessions of all methods, the photon map, chains, snapshots and references.
+THREADED_TESTS = ("campaign_render_test", "render_test", "session_test")
+THREADED_CASES = "Determinism|IterationsTogether|Snapshots|Reference|MeasuredRun"
 
 
 def step_sanitizers(tally):
     if build(tally, "asan-ubsan", "-DWAVECREST_BENCH=OFF", targets=SANITIZED_TESTS):
-        selection = ("--label-regex", "^(unit|kernel)$", "--exclude-regex", "_NOT_BUILT$")
+        selection = ("--label-regex", "^(unit|kernel|session)$", "--exclude-regex", "_NOT_BUILT$")
         test(tally, "asan-ubsan", *selection, UBSAN_OPTIONS="print_stacktrace=1")
 
 
@@ -128,6 +135,13 @@ def step_fuzz(tally):
     """Ten thousand damaged files through loader and compiler; needs no kernels, so it builds in a minute."""
     if build(tally, "asan-ubsan", "-DWAVECREST_BENCH=OFF", targets=("load_fuzz_test",)):
         test(tally, "asan-ubsan", "--tests-regex", "^fuzz[.]load[.]all$", UBSAN_OPTIONS="print_stacktrace=1")
+
+
+def step_tsan(tally):
+    """Data races of whatever runs on several threads (tools/tsan.supp says what is left out, and why)."""
+    if build(tally, "tsan", "-DWAVECREST_BENCH=OFF", targets=THREADED_TESTS):
+        options = f"suppressions={ROOT}/tools/tsan.supp second_deadlock_stack=1"
+        test(tally, "tsan", "--tests-regex", THREADED_CASES, "--exclude-regex", "_NOT_BUILT$", TSAN_OPTIONS=options)
 
 
 def step_lint(tally):
@@ -146,11 +160,12 @@ STEPS = {
     "long": step_long,
     "sanitizers": step_sanitizers,
     "fuzz": step_fuzz,
+    "tsan": step_tsan,
     "lint": step_lint,
     "tidy": step_tidy,
 }
-# To ask for: pictures of all scenes, ten thousand damaged files, and clang-tidy over the whole tree, take longer than all
-# else together.
+# To ask for: pictures of all scenes, ten thousand damaged files, data races, and clang-tidy over the whole tree, which
+# take longer than all else together.
 DEFAULT_STEPS = ("release", "sanitizers", "lint")
 
 

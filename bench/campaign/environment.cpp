@@ -5,7 +5,7 @@
 #include <array>
 #include <fstream>
 
-#include "wavecrest_version.h"
+#include "engine/version.h"
 
 namespace wavecrest {
 

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "bench/film_image.h"
-#include "wavecrest_version.h"
+#include "engine/version.h"
 
 namespace wavecrest {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <sys/resource.h>
 
-#include "wavecrest_version.h"
+#include "engine/version.h"
 
 namespace wavecrest {
 namespace {

@@ -1,5 +1,7 @@
 #include "bench/claims/claim_list.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -30,7 +32,7 @@ ConditionKind parseKind(const std::string& id, const std::string& word) {
 
 void requireKeys(const std::string& id, const json& object, const std::set<std::string>& known) {
   for (const auto& [key, value] : object.items()) {
-    if (!known.contains(key)) throw ClaimListError("claim " + id + ": unknown key '" + key + "'");
+    if (!known.contains(key)) throw ClaimListError(fmt::format("claim {}: unknown key '{}'", id, key));
   }
 }
 

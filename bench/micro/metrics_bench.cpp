@@ -45,7 +45,7 @@ void reportPixels(benchmark::State& state, double usualSeconds) {
 void ssim(benchmark::State& state) {
   const auto& pair = roomPair();
   const PreparedSsim prepared(pair.reference);
-  const double golden = test::goldenFigures("ssim.json", pair.name)["ssim_mean"];
+  const double golden = test::goldenFigure("ssim.json", pair.name, "ssim_mean");
   if (!checkScore(state, prepared.compare(pair.test).mean, golden, 1e-6)) return;
   for (auto _ : state) benchmark::DoNotOptimize(prepared.compare(pair.test).mean);
   reportPixels(state, kScikitImageSeconds);
@@ -55,7 +55,7 @@ BENCHMARK(ssim)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseReal
 void flip(benchmark::State& state) {
   const auto& pair = roomPair();
   const PreparedFlip prepared(pair.reference);
-  const double golden = test::goldenFigures("flip.json", pair.name)["flip_map_mean_double"];
+  const double golden = test::goldenFigure("flip.json", pair.name, "flip_map_mean_double");
   if (!checkScore(state, prepared.compare(pair.test).mean, golden, 2e-5)) return;
   for (auto _ : state) benchmark::DoNotOptimize(prepared.compare(pair.test).mean);
   reportPixels(state, kFlipEvaluatorSeconds);
@@ -65,7 +65,7 @@ BENCHMARK(flip)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseReal
 void hdrvdp2(benchmark::State& state) {
   const auto& pair = roomPair();
   const PreparedHdrVdp2 prepared(pair.reference);
-  const double golden = test::goldenFigures("hdrvdp2.json", pair.name)["Q"];
+  const double golden = test::goldenFigure("hdrvdp2.json", pair.name, "Q");
   if (!checkScore(state, prepared.compare(pair.test).q, golden, 1e-4)) return;
   for (auto _ : state) benchmark::DoNotOptimize(prepared.compare(pair.test).q);
   reportPixels(state, kOctaveHdrVdpSeconds);

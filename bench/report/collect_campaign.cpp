@@ -94,6 +94,7 @@ ReportSeries seriesOf(const CampaignResults& results, const Group& group, const 
     if (object.is_object()) stats.push_back(std::move(object));
   }
   std::vector<const nlohmann::json*> objects;
+  objects.reserve(stats.size());
   for (const nlohmann::json& object : stats) objects.push_back(&object);
   if (!objects.empty()) addSeriesFacts(series, objects);
   series.bias = biasOf(results, group);

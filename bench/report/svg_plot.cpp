@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
-#include <regex>
 
 #include "bench/report/assets.h"
 #include "bench/report/html_text.h"
@@ -167,8 +165,8 @@ void drawBand(std::string& svg, const PlotCurve& curve, const Frame& frame) {
     append(svg, "{}{:.1f} {:.1f}", command, frame.pixelX(point.x), frame.pixelY(point.high));
     command = 'L';
   }
-  for (const PlotPoint& point : std::views::reverse(curve.points)) {
-    append(svg, "L{:.1f} {:.1f}", frame.pixelX(point.x), frame.pixelY(point.low));
+  for (auto point = curve.points.rbegin(); point != curve.points.rend(); ++point) {
+    append(svg, "L{:.1f} {:.1f}", frame.pixelX(point->x), frame.pixelY(point->low));
   }
   svg += "z\"/>";
 }
@@ -221,11 +219,14 @@ void drawEndLabels(std::string& svg, const std::vector<PlotCurve>& curves, const
 std::string withoutVariables(std::string_view css) {
   std::string result(css);
   const std::string block = result.substr(0, result.find('}'));
-  const std::regex declaration("(--\\w+): ([^;]+);");
-  for (std::sregex_iterator match(block.begin(), block.end(), declaration), end; match != end; ++match) {
-    const std::string use = fmt::format("var({})", (*match)[1].str());
+  size_t end = 0;  // of a declaration, which is `--name: value;`
+  for (size_t begin = block.find("--"); begin != std::string::npos; begin = block.find("--", end)) {
+    const size_t colon = block.find(": ", begin);
+    end = block.find(';', begin);
+    const std::string use = fmt::format("var({})", block.substr(begin, colon - begin));
+    const std::string value = block.substr(colon + 2, end - colon - 2);
     for (size_t at = result.find(use); at != std::string::npos; at = result.find(use, at))
-      result.replace(at, use.size(), (*match)[2].str());
+      result.replace(at, use.size(), value);
   }
   return result.substr(result.find('}') + 1);
 }

@@ -120,7 +120,9 @@ void mergeCampaign(CampaignResults& all, const CampaignResults& part, const fs::
     const auto [known, added] = all.campaign.try_emplace(key, value);
     if (added || known->second == value) continue;
     if (!kEnvironmentKeys.contains(key)) {
-      fail(path, "its " + key + " is '" + value + "', not '" + known->second + "'", first);
+      fail(path,
+           std::string("its ").append(key).append(" is '").append(value).append("', not '").append(known->second) + "'",
+           first);
     }
     addDistinct(known->second, value);
   }

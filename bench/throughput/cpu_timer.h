@@ -4,10 +4,9 @@
 // cost is measured once and subtracted.
 #pragma once
 
-#include <time.h>
-
 #include <algorithm>
 #include <array>
+#include <ctime>
 
 namespace wavecrest {
 

@@ -1,8 +1,6 @@
 #include "engine/chains/chain_session.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "engine/chains/bootstrap.h"
 #include "engine/chains/chain_worker.h"
 #include "engine/flush_to_zero.h"
+#include "engine/for_each.h"
 #include "engine/render_clock.h"
 #include "engine/stage_rows.h"
 
@@ -72,10 +71,6 @@ class ChainSession final : public Session {
   uint64_t stepsInTime(uint64_t most, double now) const;
   void addPending(size_t wave, std::vector<int64_t>& sums) const;
   void collectSplats();
-
-  static void forEach(size_t count, const std::function<void(size_t)>& body) {
-    oneapi::tbb::parallel_for(size_t{0}, count, body, oneapi::tbb::simple_partitioner());
-  }
 
   const RenderSettings settings_;
   oneapi::tbb::task_arena arena_;

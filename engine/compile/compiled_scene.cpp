@@ -40,7 +40,7 @@ uint32_t sceneFeatures(const Scene& scene) {
   return features;
 }
 
-CameraView compileCamera(const Sensor& sensor, const FilmSettings& film) {
+CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const Double3& origin) {
   CameraView camera;
   camera.width = film.width;
   camera.height = film.height;
@@ -50,11 +50,11 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film) {
   const double halfHeight = halfWidth * film.height / film.width;
   // Mitsuba's camera looks along +z with +x to the left of the image, so raster x runs against x.
   if (camera.parallel) {
-    assign(camera.origin, transformPoint(sensor.toWorld, {halfWidth, halfHeight, sensor.nearClip}));
+    assign(camera.origin, transformPoint(sensor.toWorld, {halfWidth, halfHeight, sensor.nearClip}) - origin);
     assign(camera.corner, {0, 0, 0});
   } else {
     camera.pixelDistance = film.width / (2 * halfWidth);
-    assign(camera.origin, transformPoint(sensor.toWorld, {0, 0, 0}));
+    assign(camera.origin, transformPoint(sensor.toWorld, {0, 0, 0}) - origin);
     const auto [shiftX, shiftY] = sensor.principalPointOffset;  // in widths and heights of the film
     assign(camera.corner,
            transformVector(sensor.toWorld, {halfWidth * (1 - 2 * shiftX), halfHeight * (1 - 2 * shiftY), 1}));
@@ -93,24 +93,29 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
     const SourceLocation where = scene.shapes.empty() ? SourceLocation{scene.name} : scene.shapes.front().source;
     throw SceneError(where, "no shape of the scene has a surface; expected one of positive area");
   }
-  const BoundingSphere bounds = boundPrimitives(primitives.records);
-  compiled->lights = compileLights(scene, bounds, primitives);
+  BoundingSphere bounds = boundPrimitives(primitives.records);
+  const Double3 origin = compiled->origin = originOf(bounds);
+  if (origin != Double3{}) {
+    primitives = compilePrimitives<S>(scene, textured, origin);
+    bounds = boundPrimitives(primitives.records);
+  }
+  compiled->lights = compileLights(scene, bounds, primitives, origin);
   for (const Material& material : scene.materials) compiled->materials.push_back(compileMaterial(material, scene));
 
   compiled->textures = compileTextures(scene);
   bindLightTextures(scene, primitives, compiled->lights, compiled->textures);
 
   SceneView<S>& view = compiled->view;
-  view.camera = compileCamera(scene.sensor, scene.film);
+  view.camera = compileCamera(scene.sensor, scene.film, origin);
   if (accel == Accel::automatic) {
     accel = primitives.counts.total() <= kSmallSceneLimit ? Accel::small : Accel::bvh;
   }
   if (accel == Accel::small) {
-    const Primitives<double> precise = compilePrimitives<double>(scene, false);
+    const Primitives<double> precise = compilePrimitives<double>(scene, false, origin);
     compiled->small = std::make_unique<SmallScene>(precise.records.data(), precise.records.size());
     view.small = &compiled->small->view();
   } else if (accel == Accel::bvh) {
-    const Primitives<double> precise = compilePrimitives<double>(scene, false);
+    const Primitives<double> precise = compilePrimitives<double>(scene, false, origin);
     compiled->bvh = std::make_unique<Bvh>(precise.records.data(), precise.records.size(), view.camera.origin);
     view.bvh = &compiled->bvh->view();
   } else {

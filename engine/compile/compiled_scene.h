@@ -27,6 +27,7 @@ uint32_t sceneFeatures(const Scene& scene);
 
 template <class S>
 struct CompiledScene {
+  Double3 origin{};  // of all coordinates below, in those of the scene (originOf)
   Primitives<S> primitives;
   std::vector<MaterialRecord> materials;
   Textures textures;
@@ -48,7 +49,7 @@ struct CompiledScene {
 template <class S>
 std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree = true);
 
-// The camera of a sensor over its full film.
-CameraView compileCamera(const Sensor& sensor, const FilmSettings& film);
+// The camera of a sensor over its full film, relative to `origin`.
+CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const Double3& origin = {});
 
 }  // namespace wavecrest

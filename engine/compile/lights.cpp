@@ -68,7 +68,8 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radianc
 template <class S>
 class Collector {
  public:
-  Collector(const Scene& scene, const BoundingSphere& bounds) : scene_(scene), bounds_(bounds) {}
+  Collector(const Scene& scene, const BoundingSphere& bounds, const Double3& origin)
+      : scene_(scene), bounds_(bounds), origin_(origin) {}
 
   void addPrimitives(Primitives<S>& primitives) {
     for (size_t i = 0; i < primitives.shapeOf.size(); ++i) {
@@ -114,14 +115,14 @@ class Collector {
   void visit(const AreaEmitter&) {}  // by primitive
   void visit(const PointEmitter& point) {
     LightRecord<S> light = blank();
-    assign(light.p0, point.position);
+    assign(light.p0, point.position - origin_);
     assign(light.radiance, point.intensity);
     light.kind = static_cast<uint32_t>(LightKind::point);
     add(light, 4 * std::numbers::pi * luminance(point.intensity));
   }
   void visit(const SpotEmitter& spot) {
     LightRecord<S> light = blank();
-    assign(light.p0, spot.position);
+    assign(light.p0, spot.position - origin_);
     assign(light.normal, spot.direction);
     assign(light.radiance, spot.intensity);
     const double cosTotal = std::cos(spot.cutoffAngle * std::numbers::pi / 180);
@@ -167,6 +168,7 @@ class Collector {
 
   const Scene& scene_;
   const BoundingSphere& bounds_;
+  const Double3 origin_;
   Lights<S> lights_;
   std::vector<double> power_;
   SourceLocation location_;
@@ -213,14 +215,15 @@ template void bindLightTextures(const Scene&, const Primitives<float>&, Lights<f
 template void bindLightTextures(const Scene&, const Primitives<double>&, Lights<double>&, Textures&);
 
 template <class S>
-Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives) {
-  Collector<S> collector(scene, bounds);
+Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives,
+                        const Double3& origin) {
+  Collector<S> collector(scene, bounds, origin);
   collector.addPrimitives(primitives);
   collector.addOthers();
   return collector.finish();
 }
-template Lights<float> compileLights(const Scene&, const BoundingSphere&, Primitives<float>&);
-template Lights<double> compileLights(const Scene&, const BoundingSphere&, Primitives<double>&);
+template Lights<float> compileLights(const Scene&, const BoundingSphere&, Primitives<float>&, const Double3&);
+template Lights<double> compileLights(const Scene&, const BoundingSphere&, Primitives<double>&, const Double3&);
 
 std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights) {
   const size_t count = weights.size();

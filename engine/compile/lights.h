@@ -18,9 +18,10 @@ struct Lights {
 
 // Each emitting primitive becomes a light of its own, so that picking a light by power also picks the place on a mesh
 // by area. Sets `light` of the emitting primitives. Throws SceneError, with the emitter's file and line, for
-// more than one infinite light.
+// more than one infinite light. Bounds and primitives are relative to `origin`, and so are the lights.
 template <class S>
-Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives);
+Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives,
+                        const Double3& origin = {});
 
 // Gives each textured light a texture of its own in the coordinates of its primitive, which is what sampling a light
 // knows; appended to the textures. Throws SceneError for a textured sphere.

@@ -21,6 +21,8 @@ template <class... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;
 };
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that lints, does not find by itself
 
 // ---- which kernel ---------------------------------------------------------------------------------------------------
 

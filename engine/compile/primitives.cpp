@@ -143,7 +143,8 @@ Mesh tessellated(const Cylinder& cylinder) {
 template <class S>
 class Collector {
  public:
-  Collector(const Scene& scene, bool textured) : scene_(scene), textured_(textured) {
+  Collector(const Scene& scene, bool textured, const Double3& origin)
+      : scene_(scene), textured_(textured), origin_(origin) {
     for (const Shape& shape : scene.shapes) emits_ = emits_ || shape.emitter != kNone;
   }
 
@@ -208,32 +209,44 @@ class Collector {
     }
   }
 
-  void addFace(PrimitiveKind kind, const Mesh& mesh, const std::array<uint32_t, 3>& corners) {
+  void addFace(PrimitiveKind kind, const Mesh& mesh, const Double3& origin, const std::array<uint32_t, 3>& corners) {
     const Double3 p0 = position(mesh, corners[0]);
     const Double3 e1 = position(mesh, corners[1]) - p0, e2 = position(mesh, corners[2]) - p0;
     const Double3 across = cross(e1, e2);
     const double area = length(across);
     if (!(area > 0)) return;  // zero area: cannot be hit
-    addAttributes(add(kind, p0, e1, e2, across * (1 / area)), mesh, corners);
+    addAttributes(add(kind, p0 - origin, e1, e2, across * (1 / area)), mesh, corners);
   }
 
-  void visit(const Mesh& mesh) {
+  void addMesh(const Mesh& mesh, const Double3& origin) {
     const MeshFaces faces = pairFaces(mesh);
-    for (const Parallelogram& q : faces.quads) addFace(PrimitiveKind::quad, mesh, {q.corner, q.alongU, q.alongV});
+    for (const Parallelogram& q : faces.quads) {
+      addFace(PrimitiveKind::quad, mesh, origin, {q.corner, q.alongU, q.alongV});
+    }
     triangles_.reserve(triangles_.size() + faces.triangles.size());
-    for (const uint32_t t : faces.triangles) addFace(PrimitiveKind::triangle, mesh, mesh.triangles[t]);
+    for (const uint32_t t : faces.triangles) addFace(PrimitiveKind::triangle, mesh, origin, mesh.triangles[t]);
   }
+
+  void visit(const Mesh& mesh) { addMesh(mesh, origin_); }
   void visit(const Rectangle& r) {
     PrimitiveRecord<S>& record =
-        add(PrimitiveKind::quad, r.corner, r.edgeU, r.edgeV, normalized(cross(r.edgeU, r.edgeV)));
+        add(PrimitiveKind::quad, r.corner - origin_, r.edgeU, r.edgeV, normalized(cross(r.edgeU, r.edgeV)));
     if (!textured_) return;
     Mesh corners;
     corners.uvs =
         r.mirrored ? std::vector<Float2>{{1, 0}, {0, 0}, {1, 1}} : std::vector<Float2>{{0, 0}, {1, 0}, {0, 1}};
     addAttributes(record, corners, {0, 1, 2});
   }
-  void visit(const Disk& disk) { visit(tessellated(disk)); }
-  void visit(const Cylinder& cylinder) { visit(tessellated(cylinder)); }
+  // Moved before their vertices are rounded to float.
+  void visit(Disk disk) {
+    disk.center = disk.center - origin_;
+    addMesh(tessellated(disk), {});
+  }
+  void visit(Cylinder cylinder) {
+    cylinder.p0 = cylinder.p0 - origin_;
+    cylinder.p1 = cylinder.p1 - origin_;
+    addMesh(tessellated(cylinder), {});
+  }
   void visit(const Sphere& sphere) {
     const auto axis = [&](size_t j) {
       const Matrix4& m = sphere.toWorld;
@@ -241,11 +254,13 @@ class Collector {
     };
     const Double3 x = axis(0), z = axis(2);
     const double handedness = dot(cross(z, x), axis(1)) < 0 ? -1 : 1;
-    add(PrimitiveKind::sphere, sphere.center, {sphere.radius, sphere.flipNormals ? -1.0 : 1.0, handedness}, z, x);
+    add(PrimitiveKind::sphere, sphere.center - origin_, {sphere.radius, sphere.flipNormals ? -1.0 : 1.0, handedness}, z,
+        x);
   }
 
   const Scene& scene_;
   const bool textured_;
+  const Double3 origin_;
   bool emits_ = false;
   uint32_t shape_ = 0;
   Primitives<S> out_;
@@ -256,11 +271,11 @@ class Collector {
 }  // namespace
 
 template <class S>
-Primitives<S> compilePrimitives(const Scene& scene, bool textured) {
-  return Collector<S>(scene, textured).collect();
+Primitives<S> compilePrimitives(const Scene& scene, bool textured, const Double3& origin) {
+  return Collector<S>(scene, textured, origin).collect();
 }
-template Primitives<float> compilePrimitives(const Scene&, bool);
-template Primitives<double> compilePrimitives(const Scene&, bool);
+template Primitives<float> compilePrimitives(const Scene&, bool, const Double3&);
+template Primitives<double> compilePrimitives(const Scene&, bool, const Double3&);
 
 template <class S>
 BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<S>>& records) {
@@ -295,5 +310,15 @@ BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<S>>& records) {
 }
 template BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<float>>&);
 template BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<double>>&);
+
+Double3 originOf(const BoundingSphere& bounds) {
+  constexpr double kFarRadii = 8;
+  Double3 origin{};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const double center = bounds.center[axis];
+    if (std::abs(center) > kFarRadii * bounds.radius) origin[axis] = static_cast<float>(center);
+  }
+  return origin;
+}
 
 }  // namespace wavecrest

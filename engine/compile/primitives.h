@@ -24,8 +24,9 @@ struct Primitives {
 // Rectangles become quads, meshes triangles, and coplanar triangle pairs of small meshes that form a parallelogram
 // (each face of a cube) become quads again. Records are computed in double and rounded once to S.
 // Attributes are kept where shading needs them: for smooth meshes, and for all that may be textured if `textured`.
+// Positions are relative to `origin`.
 template <class S>
-Primitives<S> compilePrimitives(const Scene& scene, bool textured);
+Primitives<S> compilePrimitives(const Scene& scene, bool textured, const Double3& origin = {});
 
 // Bounding sphere of all primitives: centre and half diagonal of the bounding box, times 1.0001.
 struct BoundingSphere {
@@ -34,5 +35,11 @@ struct BoundingSphere {
 };
 template <class S>
 BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<S>>& records);
+
+// Where kernels have their origin, so that float resolves a scene that is far from its own: on each axis 0, or the
+// centre of the box if that is farther away than eight radii of the scene. Nearer scenes lose three bits of 24 at most
+// and keep the coordinates they were written in. Centres are rounded to float, which takes nothing from the vertices of
+// meshes: their difference from it is exact, and what met in a corner still does.
+Double3 originOf(const BoundingSphere& bounds);
 
 }  // namespace wavecrest

@@ -127,7 +127,7 @@ std::string Parameters::string(std::string_view name, std::string_view fallback)
 }
 
 std::string Parameters::requiredString(std::string_view name) {
-  const std::string value = string(name, "");
+  std::string value = string(name, "");
   if (value.empty()) {
     throw LoadError(locationOf(name), describe() + " has no " + inQuotes(name) + "; expected a <string> of that name");
   }

@@ -36,6 +36,7 @@ struct alignas(64) BvhRay {
     index = static_cast<uint32_t>(ray);
     id = kMiss;
     t = end;
+    second = third = 0;
     const float o[3] = {ox, oy, oz}, d[3] = {dx, dy, dz};
     for (size_t axis = 0; axis < 3; ++axis) {
       const float size = std::abs(d[axis]);

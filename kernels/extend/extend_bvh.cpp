@@ -45,60 +45,70 @@ WAVECREST_INLINE void finish(const SceneView<S>& scene, Hits& hits, size_t i) {
   prefetchAttributes(scene, hits.primitive + i);
 }
 
-}  // namespace
+// Rays in packets of a block; those behind the last ray repeat the first of their packet.
+template <class S>
+WAVECREST_INLINE void walkTogether(const SceneView<S>& scene, const Rays<S>& rays, Hits& hits) {
+  size_t next = 0;
+  walkBvh<BvhPacket, 8>(
+      *scene.bvh,
+      [&](BvhPacket& packet) HWY_ATTR {
+        if (next >= rays.size) return false;
+        const Mask present = firstLanes(rays.size - next);
+        const auto lanes = [&](const Column<S>& column) HWY_ATTR {
+          return select(present, to<Float>(load(column, next)), Float(static_cast<float>(column[next])));
+        };
+        packet.begin(next, {lanes(rays.originX), lanes(rays.originY), lanes(rays.originZ)},
+                     {lanes(rays.directionX), lanes(rays.directionY), lanes(rays.directionZ)});
+        next += kLanes;
+        return true;
+      },
+      [&](const BvhPacket& packet) HWY_ATTR {
+        store(packet.id, hits.primitive, packet.index);
+        store(packet.second, hits.u, packet.index);
+        store(packet.third, hits.v, packet.index);
+        for (size_t k = 0; k < kLanes; ++k) prefetchPrimitive(scene, hits.primitive[packet.index + k]);
+      });
+}
 
 template <class S>
-void extendBvh(const StageContext<S>& context, Wave<S>& wave) {
+WAVECREST_INLINE void walkAlone(const SceneView<S>& scene, const Rays<S>& rays, Hits& hits) {
+  size_t next = 0;
+  walkBvh<BvhRay<false>, 32>(
+      *scene.bvh,
+      [&](BvhRay<false>& ray) HWY_ATTR {
+        if (next >= rays.size) return false;
+        const auto of = [&](const Column<S>& column) { return static_cast<float>(column[next]); };
+        ray.begin(next, of(rays.originX), of(rays.originY), of(rays.originZ), of(rays.directionX), of(rays.directionY),
+                  of(rays.directionZ), kFarthest);
+        ++next;
+        return true;
+      },
+      [&](const BvhRay<false>& ray) HWY_ATTR {
+        hits.primitive[ray.index] = ray.id;
+        hits.u[ray.index] = ray.second;
+        hits.v[ray.index] = ray.third;
+        prefetchPrimitive(scene, ray.id);
+      });
+}
+
+}  // namespace
+
+template <class P>
+void extendBvh(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   const auto& scene = *context.scene;
-  const auto& rays = wave.rays;
-  const size_t count = rays.size;
+  const size_t count = wave.rays.size;
   context.counters->raysClosest += count;
   wave.hits.size = 0;
   wave.hits.claim(count);
-  auto& hits = wave.hits;
-  size_t next = 0;
   // Rays from the eye stay together; those of Markov chains, each through a pixel of its own, do not.
   if (context.walk == Walk::camera && context.depth == 1 && context.chains == nullptr) {
-    walkBvh<BvhPacket, 8>(
-        *scene.bvh,
-        [&](BvhPacket& packet) HWY_ATTR {
-          if (next >= count) return false;
-          const Mask rest = firstLanes(count - next);  // the lanes behind the last ray repeat the first
-          const auto lanes = [&](const Column<S>& column) HWY_ATTR {
-            return select(rest, to<Float>(load(column, next)), Float(static_cast<float>(column[next])));
-          };
-          packet.begin(next, {lanes(rays.originX), lanes(rays.originY), lanes(rays.originZ)},
-                       {lanes(rays.directionX), lanes(rays.directionY), lanes(rays.directionZ)});
-          next += kLanes;
-          return true;
-        },
-        [&](const BvhPacket& packet) HWY_ATTR {
-          store(packet.id, hits.primitive, packet.index);
-          store(packet.second, hits.u, packet.index);
-          store(packet.third, hits.v, packet.index);
-          for (size_t k = 0; k < kLanes; ++k) prefetchPrimitive(scene, hits.primitive[packet.index + k]);
-        });
+    walkTogether(scene, wave.rays, wave.hits);
   } else {
-    walkBvh<BvhRay<false>, 32>(
-        *scene.bvh,
-        [&](BvhRay<false>& ray) HWY_ATTR {
-          if (next >= count) return false;
-          const auto of = [&](const Column<S>& column) { return static_cast<float>(column[next]); };
-          ray.begin(next, of(rays.originX), of(rays.originY), of(rays.originZ), of(rays.directionX),
-                    of(rays.directionY), of(rays.directionZ), kFarthest);
-          ++next;
-          return true;
-        },
-        [&](const BvhRay<false>& ray) HWY_ATTR {
-          hits.primitive[ray.index] = ray.id;
-          hits.u[ray.index] = ray.second;
-          hits.v[ray.index] = ray.third;
-          prefetchPrimitive(scene, ray.id);
-        });
+    walkAlone(scene, wave.rays, wave.hits);
   }
-  for (size_t i = 0; i < count; i += kLanes) finish(scene, hits, i);
+  for (size_t i = 0; i < count; i += kLanes) finish(scene, wave.hits, i);
 }
 
 WAVECREST_SIMD_END
 
-WAVECREST_INSTANTIATE_STORAGE_STAGE(extendBvh)
+WAVECREST_INSTANTIATE_COMMON_STAGE(extendBvh)

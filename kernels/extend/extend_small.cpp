@@ -60,7 +60,7 @@ WAVECREST_INLINE Closest closestHit(const SmallSceneView& scene, Vec3<Float> ori
 
 }  // namespace
 
-template <class P, uint32_t kFeatures>
+template <class P>
 void extendSmall(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   const SmallSceneView scene = *context.scene->small;
   const auto& rays = wave.rays;
@@ -80,4 +80,4 @@ void extendSmall(const StageContext<typename P::Storage>& context, Wave<typename
 
 WAVECREST_SIMD_END
 
-WAVECREST_INSTANTIATE_STAGE(extendSmall)
+WAVECREST_INSTANTIATE_COMMON_STAGE(extendSmall)

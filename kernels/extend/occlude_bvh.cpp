@@ -6,8 +6,8 @@
 
 WAVECREST_SIMD_BEGIN
 
-template <class S>
-void occludeBvh(const StageContext<S>& context, Wave<S>& wave) {
+template <class P>
+void occludeBvh(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   auto& shadow = wave.shadowRays;
   const size_t count = shadow.size;
   context.counters->raysShadow += count;
@@ -45,4 +45,4 @@ void occludeBvh(const StageContext<S>& context, Wave<S>& wave) {
 
 WAVECREST_SIMD_END
 
-WAVECREST_INSTANTIATE_STORAGE_STAGE(occludeBvh)
+WAVECREST_INSTANTIATE_COMMON_STAGE(occludeBvh)

@@ -35,7 +35,7 @@ WAVECREST_INLINE void prefetchPixels(const SplatSink& splats, const uint32_t* pi
 
 }  // namespace
 
-template <class P, uint32_t kFeatures>
+template <class P>
 void occludeSmall(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   const SmallSceneView scene = *context.scene->small;
   auto& shadow = wave.shadowRays;
@@ -61,4 +61,4 @@ void occludeSmall(const StageContext<typename P::Storage>& context, Wave<typenam
 
 WAVECREST_SIMD_END
 
-WAVECREST_INSTANTIATE_STAGE(occludeSmall)
+WAVECREST_INSTANTIATE_COMMON_STAGE(occludeSmall)

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstring>
+#include <type_traits>
 
 #include "kernels/extend/bvh_lanes.h"
 
@@ -58,8 +59,7 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
     sizes[which] = 0;
     return size;
   };
-  const auto visitAll = [&](BvhEntry entry, const auto* record) HWY_ATTR {
-    using Record = std::remove_pointer_t<decltype(record)>;
+  const auto visitAll = [&]<class Record>(BvhEntry entry, std::type_identity<Record>) HWY_ATTR {
     for (size_t k = 0, size = take(entry); k < size; ++k) {
       Walker& walker = walkers[current[k]];
       walker.visit(bvh.at<Record>(walker.at));
@@ -69,9 +69,9 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
 
   for (size_t i = 0; i < kUnderWay; ++i) enter(static_cast<uint8_t>(i));
   while (sizes[0] + sizes[1] + sizes[2] + sizes[3] > 0) {
-    visitAll(BvhEntry::node, static_cast<const BvhNode*>(nullptr));
-    visitAll(BvhEntry::faces, static_cast<const BvhFaces*>(nullptr));
-    visitAll(BvhEntry::spheres, static_cast<const BvhSpheres*>(nullptr));
+    visitAll(BvhEntry::node, std::type_identity<BvhNode>());
+    visitAll(BvhEntry::faces, std::type_identity<BvhFaces>());
+    visitAll(BvhEntry::spheres, std::type_identity<BvhSpheres>());
     for (size_t k = 0, size = take(BvhEntry::end); k < size; ++k) {
       end(walkers[current[k]]);
       enter(current[k]);

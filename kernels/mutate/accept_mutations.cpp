@@ -97,7 +97,7 @@ WAVECREST_INLINE void addEstimates(ChainState& state, Mask large, Float estimate
 
 }  // namespace
 
-template <class P, uint32_t kFeatures>
+template <class P>
 void acceptMutations(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   ChainState& state = *context.chains;
   const Chains& chains = state.columns;
@@ -146,4 +146,4 @@ void acceptMutations(const StageContext<typename P::Storage>& context, Wave<type
 
 WAVECREST_SIMD_END
 
-WAVECREST_INSTANTIATE_STAGE(acceptMutations)
+WAVECREST_INSTANTIATE_COMMON_STAGE(acceptMutations)

@@ -37,7 +37,7 @@ WAVECREST_INLINE void chooseStrategy(const StageContext<S>& context, UInt lane, 
 
 }  // namespace
 
-template <class P, uint32_t kFeatures>
+template <class P>
 void proposeMutations(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   const ChainState& state = *context.chains;
   const Chains& chains = state.columns;
@@ -63,4 +63,4 @@ void proposeMutations(const StageContext<typename P::Storage>& context, Wave<typ
 
 WAVECREST_SIMD_END
 
-WAVECREST_INSTANTIATE_STAGE(proposeMutations)
+WAVECREST_INSTANTIATE_COMMON_STAGE(proposeMutations)

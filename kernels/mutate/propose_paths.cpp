@@ -193,11 +193,11 @@ WAVECREST_NOINLINE void proposeWave(const StageContext<S>& context, const Wave<S
 
 }  // namespace
 
-template <class P, uint32_t kFeatures>
+template <class P>
 void proposePaths(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   proposeWave(context, wave);
 }
 
 WAVECREST_SIMD_END
 
-WAVECREST_INSTANTIATE_BIDIRECTIONAL_STAGE(proposePaths)
+WAVECREST_INSTANTIATE_COMMON_STAGE(proposePaths)

@@ -6,7 +6,7 @@
 
 WAVECREST_SIMD_BEGIN
 
-template <class P, uint32_t kFeatures>
+template <class P>
 void recordVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   uint32_t* const vertices = context.chains->columns.proposedCamera;
   const uint32_t* const lanes = wave.paths.lane;
@@ -15,4 +15,4 @@ void recordVertices(const StageContext<typename P::Storage>& context, Wave<typen
 
 WAVECREST_SIMD_END
 
-WAVECREST_INSTANTIATE_STAGE(recordVertices)
+WAVECREST_INSTANTIATE_COMMON_STAGE(recordVertices)

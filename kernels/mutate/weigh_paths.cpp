@@ -285,17 +285,17 @@ WAVECREST_NOINLINE void commitWave(const StageContext<S>& context, const Wave<S>
 
 }  // namespace
 
-template <class P, uint32_t kFeatures>
+template <class P>
 void weighPaths(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   weighWave<typename P::Real>(context, wave);
 }
 
-template <class P, uint32_t kFeatures>
+template <class P>
 void commitPaths(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   commitWave(context, wave);
 }
 
 WAVECREST_SIMD_END
 
-WAVECREST_INSTANTIATE_BIDIRECTIONAL_STAGE(weighPaths)
-WAVECREST_INSTANTIATE_BIDIRECTIONAL_STAGE(commitPaths)
+WAVECREST_INSTANTIATE_COMMON_STAGE(weighPaths)
+WAVECREST_INSTANTIATE_COMMON_STAGE(commitPaths)

@@ -38,7 +38,7 @@ class RowResizer {
   // scratch holds a row of the source's width; returns out, or a row of the plane itself when sizes agree.
   const float* row(const MetricKernels& kernels, const Plane& in, size_t y, float* scratch, float* out) const {
     if (vertical_.taps == 1 && horizontal_.taps == 1) return in.row(y);
-    std::vector<const float*>& sources = sources_();
+    std::vector<const float*>& sources = rowList();
     sources.clear();
     for (size_t tap = 0; tap < vertical_.taps; ++tap)
       sources.push_back(in.row(vertical_.indexByOutput[y * vertical_.taps + tap]));
@@ -50,7 +50,7 @@ class RowResizer {
   }
 
  private:
-  static std::vector<const float*>& sources_() {
+  static std::vector<const float*>& rowList() {
     thread_local std::vector<const float*> sources;
     return sources;
   }
@@ -151,7 +151,7 @@ void PreparedHdrVdp2::State::compareImages(const Image8& test, vdp::Workspace& w
 
 void PreparedHdrVdp2::State::makeMutualMasks(vdp::Workspace& workspace) const {
   for (size_t b = 0; b < settings.size(); ++b) {
-    const auto [width, height] = settings[b].size;
+    const size_t width = settings[b].size.width, height = settings[b].size.height;
     tbb::parallel_for(tbb::blocked_range<size_t>(0, height, 8), [&](const tbb::blocked_range<size_t>& range) {
       AlignedArray<float> scratch(roundUpToLanes(width) + 2 * kPlaneLanes);
       for (size_t y = range.begin(); y < range.end(); ++y) {

@@ -2,7 +2,8 @@
 //
 // Everything is a pure function of the numbers in this folder: the same bytes on every run. The build calls it with the
 // names of what it needs (scenes/CMakeLists.txt); scenes/fetch-dragon calls it for the dragons.
-#include <CLI/CLI.hpp>
+//
+//   wavecrest_generate_scenes --list | --output FOLDER NAME...
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -12,14 +13,19 @@
 #include "scenes/generate/assets.h"
 
 int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
   std::filesystem::path output;
   std::vector<std::string> names;
   bool list = false;
-  CLI::App app{"Writes the generated assets of wavecrest's scenes."};
-  app.add_option("-o,--output", output, "folder to write to, usually scenes/assets");
-  app.add_option("names", names, "file names of the assets to write, for instance pool_water.ply");
-  app.add_flag("--list", list, "print the names of all assets and exit");
-  CLI11_PARSE(app, argc, argv);
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i] == "--list") {
+      list = true;
+    } else if (arguments[i] == "--output" && i + 1 < arguments.size()) {
+      output = arguments[++i];
+    } else {
+      names.push_back(arguments[i]);
+    }
+  }
 
   try {
     if (list) {
@@ -27,7 +33,8 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (output.empty() || names.empty()) {
-      std::fprintf(stderr, "wavecrest_generate_scenes: error: expected --output FOLDER and the names of assets\n");
+      std::fprintf(stderr,
+                   "wavecrest_generate_scenes: error: expected --list, or --output FOLDER and the names of assets\n");
       return 2;
     }
     std::filesystem::create_directories(output);

@@ -1,4 +1,5 @@
 // Sampling of BSDFs against their densities, on every instruction set and precision.
+#include "tests/effort.h"
 #include "tests/kernels/bsdf_cases.h"
 #include "tests/kernels/isa_test.h"
 #include "tests/kernels/statistics.h"
@@ -80,7 +81,24 @@ bool counts(const BsdfDraw& draw) {
   return !draw.specular && std::max({draw.weight[0], draw.weight[1], draw.weight[2]}) > 0;
 }
 
-size_t drawCount(Precision precision) { return precision == Precision::floating ? 1'000'000 : 200'000; }
+size_t drawCount(Precision precision) {
+  return precision == Precision::floating ? effort(1'000'000, 20'000) : effort(200'000, 20'000);
+}
+
+// Of what is integrated over the sphere: everything, or one direction of every eighth material. That all materials run
+// under sanitizers is for the tests below, which take a few draws of each.
+struct IntegratedCase {
+  const BsdfCase* bsdf;
+  Direction fix;
+};
+std::vector<IntegratedCase> integratedCases() {
+  std::vector<IntegratedCase> list;
+  for (size_t i = 0; i < bsdfCases().size(); i += effort(1, 8)) {
+    const std::vector<Direction> fixes = fixDirections(bsdfCases()[i]);
+    for (size_t k = 0; k < effort(fixes.size(), 1); ++k) list.push_back({&bsdfCases()[i], fixes[k]});
+  }
+  return list;
+}
 
 // Significance 0.01 over all tests that this file makes, per test after Sidak, as a number of standard deviations.
 double sidakDeviations(size_t tests) {
@@ -129,19 +147,16 @@ void checkSampling(const BsdfEntries& entries, const BsdfQuery& query, const Dir
 }
 
 TEST_P(BsdfSamplingTest, drawsFollowTheDensityAndAddUpToTheAlbedo) {
-  size_t tests = 0;
-  for (const BsdfCase& bsdf : bsdfCases()) tests += fixDirections(bsdf).size() * kPrecisions.size();
-  const double maxDeviations = sidakDeviations(tests * availableIsas().size());
-  for (const BsdfCase& bsdf : bsdfCases()) {
-    for (const Direction& fix : fixDirections(bsdf)) {
-      const BsdfQuery exact{.material = &bsdf.record, .precision = Precision::doubled};
-      const Integrals integrals = integrate(IsaTable<BsdfEntries>::of(bestIsa()), exact, fix);
-      for (const Precision precision : kPrecisions) {
-        SCOPED_TRACE(bsdf.name + ", " + std::string(kPrecisionNames[static_cast<size_t>(precision)]) + ", cosine " +
-                     std::to_string(fix[2]));
-        checkSampling(entries<BsdfEntries>(), {.material = &bsdf.record, .precision = precision}, fix, integrals,
-                      maxDeviations);
-      }
+  const std::vector<IntegratedCase> cases = integratedCases();
+  const double maxDeviations = sidakDeviations(cases.size() * kPrecisions.size() * availableIsas().size());
+  for (const auto& [bsdf, fix] : cases) {
+    const BsdfQuery exact{.material = &bsdf->record, .precision = Precision::doubled};
+    const Integrals integrals = integrate(IsaTable<BsdfEntries>::of(bestIsa()), exact, fix);
+    for (const Precision precision : kPrecisions) {
+      SCOPED_TRACE(bsdf->name + ", " + std::string(kPrecisionNames[static_cast<size_t>(precision)]) + ", cosine " +
+                   std::to_string(fix[2]));
+      checkSampling(entries<BsdfEntries>(), {.material = &bsdf->record, .precision = precision}, fix, integrals,
+                    maxDeviations);
     }
   }
 }
@@ -158,7 +173,7 @@ TEST_P(BsdfSamplingTest, weightIsValueTimesCosineOverDensity) {
         const double tolerance = precision == Precision::doubled ? 1e-7 : 1e-2;
         double sumOfErrors = 0, terms = 0;
         for (const Direction& fix : fixDirections(bsdf)) {
-          auto draws = drawSamples(kernel, query, fix, 2000, 11);
+          auto draws = drawSamples(kernel, query, fix, effort(2000, 100), 11);
           std::erase_if(draws, [](const BsdfDraw& d) { return !counts(d); });
           std::vector<Direction> gens;
           for (const BsdfDraw& draw : draws) gens.push_back(draw.gen);
@@ -185,7 +200,7 @@ TEST_P(BsdfSamplingTest, noMaterialCreatesEnergy) {
   for (const BsdfCase& bsdf : bsdfCases()) {
     for (const Direction& fix : fixDirections(bsdf)) {
       const BsdfQuery query{.material = &bsdf.record, .walk = Walk::light};
-      const auto draws = drawSamples(entries<BsdfEntries>(), query, fix, 20000, 3);
+      const auto draws = drawSamples(entries<BsdfEntries>(), query, fix, effort(20000, 500), 3);
       for (size_t k = 0; k < 3; ++k) {
         double sum = 0, squares = 0;
         for (const BsdfDraw& draw : draws) {
@@ -205,7 +220,7 @@ struct DeltaMean {
   std::array<double, 3> mean{}, error{};
 };
 DeltaMean deltaMean(const BsdfEntries& entries, const BsdfQuery& query, const Direction& fix) {
-  constexpr size_t kDraws = 20000;
+  constexpr size_t kDraws = effort(20000, 1000);
   DeltaMean result;
   std::array<double, 3> squares{};
   forEachDraw(entries, query, fix, kDraws, 5, [&](const BsdfDraw& draw) {
@@ -231,7 +246,7 @@ TEST_P(BsdfSamplingTest, deltaLobesAloneCarryTheirShare) {
       for (size_t k = 0; k < 3; ++k) {
         EXPECT_NEAR(actual.mean[k], expected.mean[k], 5 * (actual.error[k] + expected.error[k]) + 1e-5);
       }
-      forEachDraw(entries<BsdfEntries>(), alone, fix, 1000, 6, [](const BsdfDraw& draw) {
+      forEachDraw(entries<BsdfEntries>(), alone, fix, effort(1000, 200), 6, [](const BsdfDraw& draw) {
         ASSERT_TRUE(draw.specular || draw.weight[0] + draw.weight[1] + draw.weight[2] == 0);
       });
     }

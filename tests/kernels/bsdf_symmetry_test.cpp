@@ -1,4 +1,5 @@
 // What must hold between the two ways of walking over a BSDF, and between instruction sets.
+#include "tests/effort.h"
 #include "tests/kernels/bsdf_cases.h"
 #include "tests/kernels/isa_test.h"
 
@@ -8,7 +9,7 @@ namespace {
 class BsdfSymmetryTest : public IsaTest {};
 WAVECREST_TEST_EVERY_ISA(BsdfSymmetryTest);
 
-constexpr size_t kPairs = 4000;
+constexpr size_t kPairs = effort(4000, 1000);
 
 // How far two computations of one value may lie apart. Part of the error is absolute: 1 - F next to total reflection is
 // the rounded difference of numbers near 1.
@@ -67,7 +68,7 @@ TEST_P(BsdfSymmetryTest, deltaLobesLeadBack) {
     SCOPED_TRACE(bsdf.name);
     const BsdfQuery query{.material = &bsdf.record, .precision = Precision::doubled};
     for (const Direction& fix : fixDirections(bsdf)) {
-      for (const BsdfDraw& draw : drawSamples(entries<BsdfEntries>(), query, fix, 200, 8)) {
+      for (const BsdfDraw& draw : drawSamples(entries<BsdfEntries>(), query, fix, effort(200, 20), 8)) {
         if (!draw.specular || draw.weight[0] == 0) continue;
         bool found = false;
         for (const BsdfDraw& back : drawSamples(entries<BsdfEntries>(), query, draw.gen, 200, 9)) {

@@ -9,6 +9,7 @@
 
 #include "kernels/columns/chains.h"
 #include "kernels/stages.h"
+#include "tests/effort.h"
 #include "tests/kernels/isa_test.h"
 #include "tests/kernels/statistics.h"
 
@@ -108,7 +109,7 @@ WAVECREST_TEST_EVERY_ISA(Stationary);
 // Chains are independent of each other, so where they are in the end is a sample of the target. They start at any lit
 // pixel, far from it.
 TEST_P(Stationary, chainsEndWhereTheTargetSays) {
-  constexpr size_t kChains = 20'011;
+  constexpr size_t kChains = effort(20'011, 4'003);
   ToyChains chains(GetParam(), kChains, toyTarget);
   const uint32_t steps = GetParam() == Isa::scalar ? 60 : 120;
   for (uint32_t step = 0; step < steps; ++step) chains.step(step);

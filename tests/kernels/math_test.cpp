@@ -4,6 +4,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/effort.h"
 #include "tests/kernels/isa_test.h"
 #include "tests/kernels/math_entries.h"
 
@@ -140,7 +141,7 @@ class MathTest : public IsaTest {
     const auto function = std::find_if(functions.begin(), functions.end(),
                                        [&](const auto& f) { return std::string_view(f.name) == test.name; });
     ASSERT_NE(function, functions.end()) << test.name;
-    constexpr size_t kCount = 1 << 16;
+    constexpr size_t kCount = effort(1 << 16, 1 << 11);
     const std::vector<T> a = arguments<T>(range, kCount, 1), b = arguments<T>(test.secondRange, kCount, 2);
     std::vector<T> out(kCount);
     function->run(a.data(), b.data(), out.data(), kCount);

@@ -1,6 +1,7 @@
 // Random numbers: the generator against published vectors, the same bits on every instruction set, and statistics.
 #include <cmath>
 
+#include "tests/effort.h"
 #include "tests/kernels/isa_test.h"
 #include "tests/kernels/sample_columns.h"
 #include "tests/kernels/statistics.h"
@@ -65,7 +66,7 @@ TEST_P(SamplerTest, numbersDoNotDependOnTheNeighbours) {
 
 TEST_P(SamplerTest, numbersLieOnTheGridBelowOne) {
   for (const SamplerKind kind : kAllSamplerKinds) {
-    for (const auto& column : drawPaths(settings(kind), 1 << 16, 0, Stream::camera, 0, GetParam())) {
+    for (const auto& column : drawPaths(settings(kind), effort(1 << 16, 1 << 12), 0, Stream::camera, 0, GetParam())) {
       for (const float u : column) {
         ASSERT_TRUE(u >= 0 && u < 1);
         const double onGrid = static_cast<double>(u) * 0x1p24;
@@ -82,7 +83,7 @@ class SamplerStatistics : public testing::TestWithParam<SamplerKind> {};
 INSTANTIATE_TEST_SUITE_P(EveryKind, SamplerStatistics, testing::ValuesIn(kAllSamplerKinds),
                          [](const auto& instance) { return std::string(toString(instance.param)); });
 
-constexpr size_t kSamples = 1 << 19;
+constexpr size_t kSamples = effort(1 << 19, 1 << 15);
 
 TEST_P(SamplerStatistics, eachNumberIsUniform) {
   for (const auto& column : drawPaths(settings(GetParam()), kSamples)) {

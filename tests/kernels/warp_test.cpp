@@ -3,6 +3,7 @@
 #include <functional>
 #include <numbers>
 
+#include "tests/effort.h"
 #include "tests/kernels/isa_test.h"
 #include "tests/kernels/sample_columns.h"
 #include "tests/kernels/statistics.h"
@@ -12,7 +13,7 @@ namespace wavecrest {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr size_t kSamples = 1 << 18;
+constexpr size_t kSamples = effort(1 << 18, 1 << 14);
 
 template <class T>
 struct Points {

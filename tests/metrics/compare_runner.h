@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -21,18 +20,14 @@ struct CompareRun {
 
 inline CompareRun runCompare(std::vector<std::string> arguments) {
   CompareRun run;
-  CLI::App app;
-  addCompareCommand(app, run.exitCode);
+  CommandLine program("", "wavecrest");
+  addCompareCommand(program, run.exitCode);
   arguments.insert(arguments.begin(), "compare");
-  std::reverse(arguments.begin(), arguments.end());  // CLI11 takes a stack
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   std::string thrown;
   try {
-    app.parse(arguments);
-  } catch (const CLI::ParseError& error) {
-    run.exitCode = kExitUsage;
-    thrown = error.what();
+    program.parse(arguments, run.exitCode);
   } catch (const UsageError& error) {
     run.exitCode = kExitUsage;
     thrown = error.what();

@@ -18,10 +18,12 @@ TEST(Flip, MatchesGoldenMeansAndMaximaOfAllPairsOnEveryIsa) {
     for (const auto& pair : test::goldenPairs()) {
       if (isa != bestIsa() && pair.test.width > 512) continue;  // the largest pair adds nothing but time
       SCOPED_TRACE(pair.name + " " + std::string(toString(isa)));
-      const auto figures = test::goldenFigures("flip.json", pair.name);
+      const auto golden = [&](const char* figure, auto... index) {
+        return test::goldenFigure("flip.json", pair.name, figure, index...);
+      };
       const FlipResult result = PreparedFlip(pair.reference, kFlipPixelsPerDegree, isa).compare(pair.test, true);
-      EXPECT_NEAR(result.mean, figures["flip_map_mean_double"], kTolerance);
-      EXPECT_NEAR(*std::max_element(result.map.begin(), result.map.end()), figures["flip_map_max"], 5 * kTolerance);
+      EXPECT_NEAR(result.mean, golden("flip_map_mean_double"), kTolerance);
+      EXPECT_NEAR(*std::max_element(result.map.begin(), result.map.end()), golden("flip_map_max"), 5 * kTolerance);
     }
   }
 }

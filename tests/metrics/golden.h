@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -15,11 +13,6 @@
 namespace wavecrest::test {
 
 inline std::string goldenPath(const std::string& name) { return std::string(WAVECREST_GOLDEN_DIR) + "/" + name; }
-
-inline nlohmann::json goldenJson(const std::string& name) {
-  std::ifstream stream(goldenPath(name));
-  return nlohmann::json::parse(stream);
-}
 
 inline Image8 codesOf(const Image& image) {
   Image8 codes{image.width, image.height, {}};
@@ -34,26 +27,11 @@ struct GoldenPair {
   Image8 reference, test;
 };
 
-inline const std::vector<GoldenPair>& goldenPairs() {
-  static const std::vector<GoldenPair> pairs = [] {
-    std::vector<GoldenPair> list;
-    const auto figures = goldenJson("rmse.json");
-    for (const auto& entry : figures["pairs"]) {
-      const std::string name = entry["pair"];
-      list.push_back({name, readCodes(goldenPath(name + "_ref.png")), readCodes(goldenPath(name + "_test.png"))});
-    }
-    return list;
-  }();
-  return pairs;
-}
+const std::vector<GoldenPair>& goldenPairs();
 
-// The figures of one pair in one golden file.
-inline nlohmann::json goldenFigures(const std::string& file, const std::string& pair) {
-  const auto figures = goldenJson(file);
-  for (const auto& entry : figures["pairs"])
-    if (entry["pair"] == pair) return entry;
-  throw std::runtime_error("no golden figures for " + pair);
-}
+// A figure of one pair in one golden file: a number, or one of a list.
+double goldenFigure(const std::string& file, const std::string& pair, const std::string& figure);
+double goldenFigure(const std::string& file, const std::string& pair, const std::string& figure, size_t index);
 
 inline Image toFloats(const Image8& codes) {
   Image image{codes.width, codes.height, 3, {}};

@@ -10,6 +10,7 @@
 #include "metrics/hdrvdp2/resize.h"
 #include "metrics/kernels/metric_kernels.h"
 #include "tests/metrics/golden.h"
+#include "tests/metrics/golden_json.h"
 
 namespace wavecrest::vdp {
 namespace {

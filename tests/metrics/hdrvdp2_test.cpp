@@ -19,10 +19,12 @@ TEST(HdrVdp2, MatchesGoldenScoresOfAllPairsOnEveryIsa) {
     for (const auto& pair : test::goldenPairs()) {
       if (isa != bestIsa() && pair.test.width > 512) continue;  // the largest pair adds nothing but time
       SCOPED_TRACE(pair.name + " " + std::string(toString(isa)));
-      const auto figures = test::goldenFigures("hdrvdp2.json", pair.name);
+      const auto golden = [&](const char* figure, auto... index) {
+        return test::goldenFigure("hdrvdp2.json", pair.name, figure, index...);
+      };
       const HdrVdp2Result result = PreparedHdrVdp2(pair.reference, isa).compare(pair.test);
-      EXPECT_NEAR(result.q, figures["Q"], kQTolerance);
-      EXPECT_NEAR(result.qMos, figures["Q_MOS"], kMosTolerance);
+      EXPECT_NEAR(result.q, golden("Q"), kQTolerance);
+      EXPECT_NEAR(result.qMos, golden("Q_MOS"), kMosTolerance);
     }
   }
 }

@@ -14,11 +14,13 @@ void expectRelative(double actual, double expected) { EXPECT_NEAR(actual / expec
 TEST(Rmse, MatchesGoldenFiguresOfAllPairs) {
   for (const auto& pair : test::goldenPairs()) {
     SCOPED_TRACE(pair.name);
-    const auto figures = test::goldenFigures("rmse.json", pair.name);
+    const auto golden = [&](const char* figure, auto... index) {
+      return test::goldenFigure("rmse.json", pair.name, figure, index...);
+    };
     const RmseResult linear = rmse(pair.reference, pair.test, CodeScale::linear);
-    expectRelative(linear.rmse, figures["rmse_linear"]);
-    for (size_t c = 0; c < 3; ++c) expectRelative(linear.channels[c], figures["rmse_linear_rgb"][c]);
-    expectRelative(rmse(pair.reference, pair.test, CodeScale::gammaCorrected).rmse, figures["rmse_encoded"]);
+    expectRelative(linear.rmse, golden("rmse_linear"));
+    for (size_t c = 0; c < 3; ++c) expectRelative(linear.channels[c], golden("rmse_linear_rgb", c));
+    expectRelative(rmse(pair.reference, pair.test, CodeScale::gammaCorrected).rmse, golden("rmse_encoded"));
   }
 }
 

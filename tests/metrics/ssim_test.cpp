@@ -14,10 +14,12 @@ TEST(Ssim, MatchesGoldenFiguresOfAllPairsOnEveryIsa) {
   for (const Isa isa : availableIsas()) {
     for (const auto& pair : test::goldenPairs()) {
       SCOPED_TRACE(pair.name + " " + std::string(toString(isa)));
-      const auto figures = test::goldenFigures("ssim.json", pair.name);
+      const auto golden = [&](const char* figure, auto... index) {
+        return test::goldenFigure("ssim.json", pair.name, figure, index...);
+      };
       const SsimResult result = PreparedSsim(pair.reference, isa).compare(pair.test);
-      EXPECT_NEAR(result.mean, figures["ssim_mean"], 1e-6);
-      for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(result.channels[c], figures["ssim_rgb"][c], 1e-6);
+      EXPECT_NEAR(result.mean, golden("ssim_mean"), 1e-6);
+      for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(result.channels[c], golden("ssim_rgb", c), 1e-6);
     }
   }
 }

@@ -1,0 +1,80 @@
+// CommandLine, Command and Option: what the subcommands use of CLI11. Its header alone takes as long to compile as a
+// command, so one file includes it (command_line.cpp).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace wavecrest {
+
+// A handle; the command line owns the option. Checks that fail end the program with kExitUsage.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+  Option required() const;
+  Option showDefault() const;  // in --help: the value that the variable has now
+  Option oneValue() const;
+  Option repeatable() const;  // one value each time
+  Option separatedByCommas() const;
+  Option positive() const;
+  Option notNegative() const;
+  Option between(int low, int high) const;
+  Option between(uint64_t low, uint64_t high) const;
+  Option between(double low, double high) const;
+  // check returns what is wrong with a word, or nothing.
+  Option checkedBy(std::function<std::string(const std::string&)> check) const;
+  bool given() const;
+
+ private:
+  CLI::Option* option_;
+};
+
+// A handle; the command line owns the subcommand. Options write to variables that must live as long as that.
+class Command {
+ public:
+  explicit Command(CLI::App* app) : app_(app) {}
+  // name: -s,--long, or plain for what is told by its place.
+  Option add(const std::string& name, std::string& value, const std::string& description) const;
+  Option add(const std::string& name, std::vector<std::string>& value, const std::string& description) const;
+  Option add(const std::string& name, int& value, const std::string& description) const;
+  Option add(const std::string& name, uint32_t& value, const std::string& description) const;
+  Option add(const std::string& name, uint64_t& value, const std::string& description) const;
+  Option add(const std::string& name, double& value, const std::string& description) const;
+  void addFlag(const std::string& name, bool& value, const std::string& description) const;
+  bool given(const std::string& name) const;       // in the arguments, once they are read
+  void run(std::function<void()> callback) const;  // then
+
+ private:
+  CLI::App* app_;
+};
+
+class CommandLine {
+ public:
+  CommandLine(const std::string& description, const std::string& name);
+  ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  void setVersion(const std::string& version);
+  Command add(const std::string& name, const std::string& description);
+  // Reads the arguments and runs the command that they name, whose exceptions pass. False if there was nothing to run:
+  // exitCode is then kExitDone after --help and --version, and kExitUsage after a message on stderr.
+  bool parse(std::vector<std::string> arguments, int& exitCode);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
+
+// Whether a word is a number, all of it, which is then assigned.
+bool readNumber(const std::string& word, int& number);
+bool readNumber(const std::string& word, double& number);
+
+}  // namespace wavecrest
