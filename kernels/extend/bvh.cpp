@@ -96,13 +96,13 @@ struct Counts {
 void countBranches(const Branch& branch, Counts& counts) {
   ++(branch.leaf ? counts.leaves : counts.nodes);
   if (branch.leaf) return;
-  for (uint32_t i = 0; i < branch.count; ++i) countBranches(*branch.child[i], counts);
+  for (uint32_t i = 0; i < branch.count; ++i) countBranches(*asNode(branch).child[i], counts);
 }
 // The most references that a walk from the branch leaves on its stack.
 size_t stackNeed(const Branch& branch) {
   if (branch.leaf) return 1;
   size_t deepest = 0;
-  for (uint32_t i = 0; i < branch.count; ++i) deepest = std::max(deepest, stackNeed(*branch.child[i]));
+  for (uint32_t i = 0; i < branch.count; ++i) deepest = std::max(deepest, stackNeed(*asNode(branch).child[i]));
   return branch.count - 1 + deepest;
 }
 
@@ -140,7 +140,7 @@ class Layout {
   // The reference of a hierarchy. makeLeaf(branch): its leaf.
   template <class MakeLeaf>
   uint32_t add(const Branch& root, BvhEntry leaf, const MakeLeaf& makeLeaf) {
-    using Leaf = decltype(makeLeaf(root));
+    using Leaf = decltype(makeLeaf(asLeaf(root)));
     const uint32_t reference = reserve<Leaf>(root, leaf);
     lay<Leaf>(root, reference, leaf, makeLeaf);
     return reference;
@@ -173,15 +173,16 @@ class Layout {
   template <class Leaf, class MakeLeaf>
   void lay(const Branch& branch, uint32_t reference, BvhEntry leaf, const MakeLeaf& makeLeaf) {
     if (branch.leaf) {
-      new (place(reference)) Leaf(makeLeaf(branch));
+      new (place(reference)) Leaf(makeLeaf(asLeaf(branch)));
       return;
     }
+    const BranchNode& from = asNode(branch);
     auto& node = *new (place(reference)) BvhNode;
-    layBoxes(branch.box, branch.count, margin_, node);
+    layBoxes(from.box, from.count, margin_, node);
     for (size_t i = 0; i < kBvhWidth; ++i) {
-      node.children[i] = i < branch.count ? reserve<Leaf>(*branch.child[i], leaf) : kBvhEnd;
+      node.children[i] = i < from.count ? reserve<Leaf>(*from.child[i], leaf) : kBvhEnd;
     }
-    for (size_t i = 0; i < branch.count; ++i) lay<Leaf>(*branch.child[i], node.children[i], leaf, makeLeaf);
+    for (size_t i = 0; i < from.count; ++i) lay<Leaf>(*from.child[i], node.children[i], leaf, makeLeaf);
   }
   void* place(uint32_t reference) const { return arena_ + size_t{reference & kBvhOffsetMask} * kBvhUnit; }
 
@@ -190,7 +191,7 @@ class Layout {
   double margin_;
 };
 
-BvhFaces makeFaces(const Branch& leaf, const Pieces& pieces, const PrimitiveRecord<double>* primitives) {
+BvhFaces makeFaces(const BranchLeaf& leaf, const Pieces& pieces, const PrimitiveRecord<double>* primitives) {
   BvhFaces faces;
   for (size_t slot = 0; slot < kLeafSize; ++slot) {
     const uint32_t id = pieces.ids[leaf.item[std::min<size_t>(slot, leaf.count - 1)]];
@@ -203,7 +204,7 @@ BvhFaces makeFaces(const Branch& leaf, const Pieces& pieces, const PrimitiveReco
   }
   return faces;
 }
-BvhSpheres makeSpheres(const Branch& leaf, const Pieces& pieces, const PrimitiveRecord<double>* primitives) {
+BvhSpheres makeSpheres(const BranchLeaf& leaf, const Pieces& pieces, const PrimitiveRecord<double>* primitives) {
   BvhSpheres spheres;
   for (size_t slot = 0; slot < kLeafSize; ++slot) {
     const uint32_t id = pieces.ids[leaf.item[std::min<size_t>(slot, leaf.count - 1)]];
@@ -270,11 +271,11 @@ Bvh::Bvh(const PrimitiveRecord<double>* primitives, size_t count, const double (
   view_.arena = arena_.get();
   if (faceTree) {
     view_.root = layout.add(faceTree->root(), BvhEntry::faces,
-                            [&](const Branch& leaf) { return makeFaces(leaf, faces, primitives); });
+                            [&](const BranchLeaf& leaf) { return makeFaces(leaf, faces, primitives); });
   }
   if (sphereTree) {
     const uint32_t root = layout.add(sphereTree->root(), BvhEntry::spheres,
-                                     [&](const Branch& leaf) { return makeSpheres(leaf, spheres, primitives); });
+                                     [&](const BranchLeaf& leaf) { return makeSpheres(leaf, spheres, primitives); });
     const auto bounds = [](const Pieces& pieces) { return unionOf(pieces.boxes.data(), pieces.boxes.size()); };
     view_.root = faceTree ? layout.join(view_.root, bounds(faces), root, bounds(spheres)) : root;
   }

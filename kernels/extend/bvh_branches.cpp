@@ -11,28 +11,32 @@ namespace {
 
 constexpr unsigned kMostDepth = 28;  // below it Embree halves what is left: some five levels more
 
-Branch* newBranch(RTCThreadLocalAllocator allocator, bool leaf, size_t count) {
-  auto* const branch = new (rtcThreadLocalAlloc(allocator, sizeof(Branch), 16)) Branch;
+// The builder keeps untyped pointers: always to a Branch.
+template <class Kind>
+Kind* newBranch(RTCThreadLocalAllocator allocator, bool leaf, size_t count) {
+  auto* const branch = new (rtcThreadLocalAlloc(allocator, sizeof(Kind), 16)) Kind;
   branch->leaf = leaf;
   branch->count = static_cast<uint32_t>(count);
   return branch;
 }
+BranchNode& nodeAt(void* node) { return static_cast<BranchNode&>(*static_cast<Branch*>(node)); }
+
 void* createNode(RTCThreadLocalAllocator allocator, unsigned children, void*) {
-  return newBranch(allocator, false, children);
+  return static_cast<Branch*>(newBranch<BranchNode>(allocator, false, children));
 }
 void setChildren(void* node, void** children, unsigned count, void*) {
-  for (unsigned i = 0; i < count; ++i) static_cast<Branch*>(node)->child[i] = static_cast<const Branch*>(children[i]);
+  for (unsigned i = 0; i < count; ++i) nodeAt(node).child[i] = static_cast<const Branch*>(children[i]);
 }
 void setBounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
   for (unsigned i = 0; i < count; ++i) {
     const RTCBounds& b = *bounds[i];
-    static_cast<Branch*>(node)->box[i] = {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+    nodeAt(node).box[i] = {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
   }
 }
 void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* items, size_t count, void*) {
-  Branch* const leaf = newBranch(allocator, true, count);
+  auto* const leaf = newBranch<BranchLeaf>(allocator, true, count);
   for (size_t i = 0; i < count; ++i) leaf->item[i] = items[i].primID;
-  return leaf;
+  return static_cast<Branch*>(leaf);
 }
 
 }  // namespace

@@ -14,14 +14,20 @@ struct Box {
   float low[3], high[3];
 };
 
-// A node with the boxes of its children, or a leaf of up to kLeafSize boxes of the input.
+// A leaf of up to kLeafSize boxes of the input, or a node with the boxes of its children.
 struct Branch {
-  uint32_t count;
   bool leaf;
-  const Branch* child[kBvhWidth];
-  Box box[kBvhWidth];
+  uint32_t count;
+};
+struct BranchLeaf : Branch {
   uint32_t item[kLeafSize];
 };
+struct BranchNode : Branch {
+  const Branch* child[kBvhWidth];
+  Box box[kBvhWidth];
+};
+inline const BranchLeaf& asLeaf(const Branch& branch) { return static_cast<const BranchLeaf&>(branch); }
+inline const BranchNode& asNode(const Branch& branch) { return static_cast<const BranchNode&>(branch); }
 
 class BranchTree {
  public:
