@@ -40,19 +40,15 @@ BsdfSample<typename P::Real> sampleGeneral(const BsdfInput<P>& input, Mask activ
   const Real one(1);
   const Real opacity = input.opacity();
   const Mask partial = active & (opacity < one);
+  if (none(partial)) return sampleOpaque<P, kAll>(input, active, fix, u);
+
+  // The probability that the surface is there; among delta lobes alone it counts only if the surface has one.
   Real pick = opacity;
-  Float rest = u.a;
-  Mask passes = noLanes();
-  if (any(partial)) {
-    // The probability that the surface is there; among delta lobes alone it counts only if the surface has one.
-    if (input.lobes == Lobes::specularOnly) pick = zeroUnless(opaqueHasDelta<P, kAll>(input, active), opacity);
-    passes = partial & (to<Real>(u.a) >= pick);
-    // What is left of u.a decides between the surface's lobes.
-    rest = select(partial, min(u.a / max(toFloat(pick), Float(0x1p-24f)), Float(0x1.fffffep-1f)), u.a);
-  }
-  // In one place: a second would double the time that this file takes to compile.
-  BsdfSample<Real> sample = sampleOpaque<P, kAll>(input, active, fix, {rest, u.b, u.c, u.d});
-  if (none(partial)) return sample;
+  if (input.lobes == Lobes::specularOnly) pick = zeroUnless(opaqueHasDelta<P, kAll>(input, active), opacity);
+  const Mask passes = partial & (to<Real>(u.a) >= pick);
+  // What is left of u.a decides between the surface's lobes.
+  const Float rest = min(u.a / max(toFloat(pick), Float(0x1p-24f)), Float(0x1.fffffep-1f));
+  BsdfSample<Real> sample = sampleOpaque<P, kAll>(input, active, fix, {select(partial, rest, u.a), u.b, u.c, u.d});
   sample.pdf = select(partial, sample.pdf * pick, sample.pdf);
   sample.pdfReverse = select(partial, sample.pdfReverse * pick, sample.pdfReverse);
   const Real absent = one - pick;

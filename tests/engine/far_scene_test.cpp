@@ -159,7 +159,7 @@ struct Placement {
 };
 
 // Cubes of six rectangles, whose corners are exact, and of twelve triangles, whose vertices are rounded to float where
-// they are, so that a wall is two triangles which may see each other.
+// they are: a wall is then two triangles which may see each other, unless rounding has left them a parallelogram.
 class FarCubeTest : public testing::TestWithParam<std::tuple<Placement, Accel>> {
  protected:
   double scale() const { return std::get<0>(GetParam()).scale; }
@@ -196,7 +196,9 @@ class FarCubeTest : public testing::TestWithParam<std::tuple<Placement, Accel>> 
     constexpr Precision kPrecision = sizeof(S) == sizeof(double) ? Precision::doubled : Precision::floating;
     constexpr size_t kPaths = 1024;
     const auto compiled = compileScene<S>(cube(triangles), std::get<1>(GetParam()));
-    ASSERT_EQ(compiled->primitives.records.size(), triangles ? 12u : 6u);
+    if (!triangles) {
+      ASSERT_EQ(compiled->primitives.records.size(), 6u);
+    }
     const auto& stages = findStages<S>(bestIsa(), kPrecision, chooseSpecialization(0, kPrecision));
     const Stage<S> extend = compiled->small != nullptr ? stages.extendSmall : extendEmbree<S>;
     const FilmArea area = FilmArea::make(0, 0, 32, 32);
