@@ -9,7 +9,7 @@ namespace wavecrest {
 
 void forEach(size_t count, const std::function<void(size_t)>& body) {
   TaskOrder order;
-  const auto task = [&](size_t i) {
+  const auto task = [&](size_t i) WAVECREST_TASK_ENTRY {
     const TaskOrder::Task scope(order);
     body(i);
   };

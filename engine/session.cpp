@@ -208,11 +208,9 @@ void TypedSession<S>::renderWaves(const Finished& finished) {
   // The graph has a token per wave. A token that has been traced goes back to the queue, behind all others, so that
   // waves advance together; the run ends when none is put back.
   namespace flow = oneapi::tbb::flow;
-  TaskOrder order;
   flow::graph graph;
   flow::queue_node<size_t> ready(graph);
-  flow::function_node<size_t, flow::continue_msg, flow::rejecting> tracing(graph, settings_.threads, [&](size_t wave) {
-    const TaskOrder::Task task(order);
+  const auto trace = [&](size_t wave) {
     observe(&camera_[wave]);
     if (finished(camera_[wave].next)) return flow::continue_msg();
     Worker& mine = worker();
@@ -222,7 +220,13 @@ void TypedSession<S>::renderWaves(const Finished& finished) {
     publish(&camera_[wave]);
     ready.try_put(wave);
     return flow::continue_msg();
-  });
+  };
+  TaskOrder order;
+  const auto task = [&](size_t wave) WAVECREST_TASK_ENTRY {
+    const TaskOrder::Task scope(order);
+    return trace(wave);
+  };
+  flow::function_node<size_t, flow::continue_msg, flow::rejecting> tracing(graph, settings_.threads, task);
   flow::make_edge(ready, tracing);
   for (size_t wave = 0; wave < camera_.size(); ++wave) ready.try_put(wave);
   graph.wait_for_all();

@@ -7,6 +7,10 @@
 
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>
+// For the function that TBB calls, which finds its captures in TBB's memory before it has made a Task.
+#define WAVECREST_TASK_ENTRY __attribute__((no_sanitize_thread))
+#else
+#define WAVECREST_TASK_ENTRY
 #endif
 
 namespace wavecrest {
