@@ -79,7 +79,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
 // The number that makes sampling take the delta lobe of an event, if the surface has it: lobes share [0, 1) in the
 // order reflection, refraction, absence of the surface.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE Float numberOfEvent(const BsdfInput<P>& bsdf, UInt event) {
+WAVECREST_INLINE Float numberOfEvent(const BsdfInputOf<P, kFeatures>& bsdf, UInt event) {
   const Float last(0x1.fffffep-1f);
   Float refracts = last;
   if constexpr (has(kFeatures, kLayeredBsdfs)) refracts = last * min(to<Float>(bsdf.opacity()), Float(1));
@@ -89,7 +89,7 @@ WAVECREST_INLINE Float numberOfEvent(const BsdfInput<P>& bsdf, UInt event) {
 
 // The event that sampling by the number u.a led to.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE UInt eventOf(const BsdfInput<P>& bsdf, Vec3<typename P::Real> fix,
+WAVECREST_INLINE UInt eventOf(const BsdfInputOf<P, kFeatures>& bsdf, Vec3<typename P::Real> fix,
                               const BsdfSample<typename P::Real>& sample, [[maybe_unused]] Float number) {
   using Real = typename P::Real;
   UInt event =

@@ -16,7 +16,7 @@ struct ShadingLanes {
   Vec3<Real> fix;  // in the frame, after turning a two-sided surface towards it
   Real side;       // -1 where a two-sided surface was turned, else 1
   Real fixCosine;  // fix . geometric normal, signed
-  BsdfInput<P> bsdf;
+  BsdfInputOf<P, kFeatures> bsdf;
 
   WAVECREST_INLINE Vec3<Real> toLocal(Vec3<Real> v) const {
     const Vec3<Real> local = frame.toLocal(v);
@@ -59,17 +59,17 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
                                .fix = {},
                                .side = Real(1),
                                .fixCosine = dot(vertex.fix, vertex.normal),
-                               .bsdf = BsdfInput<P>(scene.materials, at(scene.primitives->material))};
+                               .bsdf = BsdfInputOf<P, kFeatures>(scene.materials, at(scene.primitives->material))};
   if constexpr (has(kFeatures, kTextures)) {
     const MaterialRecord& slots = *scene.materials;
     const auto factor = [&](const uint32_t& slot) HWY_ATTR {
       return to<Real>(textureFactor(scene.textures, scene.texels, s.bsdf.at(slot), vertex.u, vertex.v));
     };
-    s.bsdf.reflectanceFactor = factor(slots.reflectanceTexture);
-    s.bsdf.specularFactor = factor(slots.specularTexture);
-    s.bsdf.transmittanceFactor = factor(slots.transmittanceTexture);
-    s.bsdf.alphaFactor = factor(slots.alphaTexture).x;
-    s.bsdf.opacityFactor = factor(slots.opacityTexture).x;
+    s.bsdf.textures.reflectance = factor(slots.reflectanceTexture);
+    s.bsdf.textures.specular = factor(slots.specularTexture);
+    s.bsdf.textures.transmittance = factor(slots.transmittanceTexture);
+    s.bsdf.textures.alpha = factor(slots.alphaTexture).x;
+    s.bsdf.textures.opacity = factor(slots.opacityTexture).x;
   }
   s.fix = s.frame.toLocal(vertex.fix);
   const Mask twoSided = (s.bsdf.at(scene.materials->flags) & UInt(kTwoSided)) == UInt(kTwoSided);
