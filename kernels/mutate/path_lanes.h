@@ -57,6 +57,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
                            .fix = fix,
                            .normal = normalAt(v, at),
                            .shadingNormal = {},
+                           .baseNormal = {},
                            .offset = gather(v.offset, at),
                            .u = Float(0),
                            .v = Float(0),
@@ -64,6 +65,9 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
   vertex.shadingNormal = vertex.normal;
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = gatherVec3(v.shadingX, v.shadingY, v.shadingZ, at);
+  }
+  if constexpr (has(kFeatures, kNormalMaps)) {
+    if (scene.normalMaps) vertex.baseNormal = gatherVec3(v.baseX, v.baseY, v.baseZ, at);
   }
   if constexpr (has(kFeatures, kTextures)) {
     vertex.u = gather(v.uvU, at);
@@ -114,11 +118,11 @@ WAVECREST_INLINE WalkStep<typename P::Real> walkOn(const ShadingLanes<P, kFeatur
                                                    Mask same, UInt event) {
   using Real = typename P::Real;
   u.a = select(same, numberOfEvent<P, kFeatures>(shading.bsdf, event), u.a);
-  const auto sample = sampleBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, u);
+  const auto sample = shading.sampled(active, u);
   WalkStep<Real> step{shading.toWorld(sample.gen), eventOf<P, kFeatures>(shading.bsdf, shading.fix, sample, u.a),
                       noLanes()};
-  step.alive = active & shading.sidesAgree(step.direction, sample.gen) & (maxComponent(sample.weight) > Real(0)) &
-               (sample.pdf > Real(0)) & (!same | (step.event == event));
+  step.alive =
+      active & (maxComponent(sample.weight) > Real(0)) & (sample.pdf > Real(0)) & (!same | (step.event == event));
   return step;
 }
 

@@ -192,6 +192,7 @@ class TwinComparison {
     const uint32_t features = kSpecializationFeatures[static_cast<size_t>(specialization)];
     return {.shadingNormals = (features & kShadingNormals) != 0,
             .textures = (features & kTextures) != 0,
+            .normalMaps = (features & kNormalMaps) != 0,
             .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
             .connections = (features & kBidirectional) != 0};
   }
