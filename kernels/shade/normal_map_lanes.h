@@ -34,6 +34,32 @@ struct NormalMapLanes {
     return select(flips & away, base * (upright + upright) - normal, normal);
   }
 
+  // The two normals of a point are each other's mirror images.
+  WAVECREST_INLINE Vec3<Real> otherOf(Vec3<Real> normal) const {
+    const Real height = dot(base, normal);
+    return base * (height + height) - normal;
+  }
+  // Whether w faces `normal` rather than its mirror image.
+  WAVECREST_INLINE Mask sees(Vec3<Real> w, Vec3<Real> normal) const {
+    const Vec3<Real> seen = normalFor(w);
+    return dot(seen, normal) >= dot(seen, otherOf(normal));
+  }
+  // The probability with which a walk that comes from the light at w samples with `normal`. A normal that faces away
+  // from the light scatters none of it. The mirror image is for directions behind the mapped normal; of a cosine
+  // hemisphere they have about sin^2 of its tilt, and where two densities share out disjoint sets, variance is least
+  // with shares like the roots of their measures.
+  WAVECREST_INLINE Real lightShare(Vec3<Real> normal, Vec3<Real> w) const {
+    const Real zero(0), one(1), height = dot(base, mapped);
+    const Mask turned = turns(w);
+    const Vec3<Real> first = mapped - base * zeroUnless(turned, height + height), second = otherOf(first);
+    const Real facing = select(turned, -dot(w, base), dot(w, base));
+    const Mask firstIsLit = (dot(w, first) * facing) > zero;
+    const Mask secondIsLit = flips & ((dot(w, second) * facing) > zero);
+    const Real tilt = sqrt(max(one - height * height, zero));
+    const Real share = zeroUnless(secondIsLit, select(firstIsLit, tilt / (one + tilt), one));
+    return select(dot(normal, first) >= dot(normal, second), one - share, share);
+  }
+
   // What the map does to f between light and eye, with normal = N(toEye): 0 where the two normals disagree about the
   // light, else the shadowing term, G1 of a rough surface that the map might have come from.
   WAVECREST_INLINE Real lightFactor(Vec3<Real> normal, Vec3<Real> toLight, Vec3<Real> toEye) const {

@@ -46,69 +46,118 @@ struct ShadingLanes {
     return out;
   }
 
-  // A direction to go on.
+  // A direction to go on. gen is in this frame; the weight of a light walk is such that METHODS 3.9 with this frame's
+  // cosines makes it f c(omega_l) / pdf with those that count.
   WAVECREST_INLINE BsdfSample<Real> sampled(Mask active, const Uniform4& u) const {
-    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, fix, u);
     if constexpr (has(kFeatures, kNormalMaps)) {
-      if (map.present) applyMap(active, sample);
+      if (map.present) return bsdf.walk == Walk::camera ? sampledFromEye(active, u) : sampledFromLight(active, u);
     }
-    return sample;
+    return sampleBsdf<P, kFeatures>(bsdf, active, fix, u);
   }
 
  private:
-  // The same vertex as a walk that comes from `direction` samples it, with fix and gen as here.
-  struct OtherEnd {
-    Mask differs;  // in whose normal
-    BsdfValue<Real> value;
-    Vec3<Real> normal;
-    Real fixZ;
+  // The vertex with the other of its two normals (normal_map_lanes.h).
+  struct View {
+    Frame<Real> frame;
+    Vec3<Real> fix;
+    Real side;
+    WAVECREST_INLINE Vec3<Real> toLocal(Vec3<Real> v) const {
+      const Vec3<Real> local = frame.toLocal(v);
+      return {local.x, local.y, local.z * side};
+    }
+    WAVECREST_INLINE Vec3<Real> toWorld(Vec3<Real> v) const { return frame.toWorld({v.x, v.y, v.z * side}); }
   };
-  WAVECREST_INLINE OtherEnd otherEnd(Mask mapped, Vec3<Real> direction) const {
-    OtherEnd out{noLanes(), zeroBsdfValue<Real>(), map.normalFor(direction), fix.z};
-    out.differs =
-        andNot(mapped, (out.normal.x == frame.n.x) & (out.normal.y == frame.n.y) & (out.normal.z == frame.n.z));
-    if (none(out.differs)) return out;
-    const Frame<Real> turned = Frame<Real>::fromNormal(out.normal);
-    Vec3<Real> gen = turned.toLocal(direction), back = turned.toLocal(map.fix);
-    const Real turnedSide = select(isTwoSided() & (gen.z < Real(0)), Real(-1), Real(1));
-    gen.z = gen.z * turnedSide;
-    back.z = back.z * turnedSide;
-    out.value = evalBsdf<P, kFeatures>(bsdf, out.differs, back, gen);
-    out.fixZ = back.z;
-    return out;
+  WAVECREST_INLINE View otherView() const {
+    View view{Frame<Real>::fromNormal(map.otherOf(frame.n)), {}, Real(1)};
+    view.fix = view.frame.toLocal(map.fix);
+    const Mask twoSided = (bsdf.at(bsdf.materials->flags) & UInt(kTwoSided)) == UInt(kTwoSided);
+    view.side = select(twoSided & (view.fix.z < Real(0)), Real(-1), Real(1));
+    view.fix.z = view.fix.z * view.side;
+    return view;
   }
-  WAVECREST_INLINE Mask isTwoSided() const {
-    return (bsdf.at(bsdf.materials->flags) & UInt(kTwoSided)) == UInt(kTwoSided);
-  }
-  WAVECREST_INLINE Real lightFactor(const OtherEnd& other, Vec3<Real> direction) const {
-    return bsdf.walk == Walk::camera ? map.lightFactor(frame.n, direction, map.fix)
-                                     : map.lightFactor(other.normal, map.fix, direction);
+  // seesThis: the eye faces the normal of this frame.
+  WAVECREST_INLINE Real lightFactor(Mask seesThis, Vec3<Real> direction) const {
+    const Vec3<Real> seen = select(seesThis, frame.n, map.otherOf(frame.n));
+    return bsdf.walk == Walk::camera ? map.lightFactor(seen, direction, map.fix)
+                                     : map.lightFactor(seen, map.fix, direction);
   }
 
   WAVECREST_INLINE void applyMap(Mask active, Vec3<Real> direction, Scattering<Real>& out) const {
     const Mask mapped = active & map.lanes;
-    const OtherEnd other = otherEnd(mapped, direction);
-    out.pdfReverse = select(other.differs, other.value.pdfReverse, out.pdfReverse);
-    if (bsdf.walk == Walk::light) {
-      out.f = select(other.differs, other.value.f, out.f);
-      out.lightCosine = select(other.differs, abs(other.fixZ), out.lightCosine);
+    if (none(mapped)) return;
+    const bool camera = bsdf.walk == Walk::camera;
+    const Real one(1), share = map.lightShare(frame.n, camera ? direction : map.fix);
+    const Mask seesThis = camera ? mapped : mapped & map.sees(direction, frame.n);
+    const Mask both = andNot(mapped, seesThis & (share >= one));
+    if (any(both)) {
+      const View other = otherView();
+      const BsdfValue<Real> value = evalBsdf<P, kFeatures>(bsdf, both, other.fix, other.toLocal(direction));
+      const auto mixed = [&](Real a, Real b) HWY_ATTR { return select(both, a * share + b * (one - share), a); };
+      if (camera) {
+        out.pdfReverse = mixed(out.pdfReverse, value.pdfReverse);
+      } else {
+        const Mask seesOther = andNot(mapped, seesThis);
+        out.f = select(seesOther, value.f, out.f);
+        out.lightCosine = select(seesOther, abs(other.fix.z), out.lightCosine);
+        out.pdfReverse = select(seesOther, value.pdfReverse, out.pdfReverse);
+        out.pdf = mixed(out.pdf, value.pdf);
+      }
     }
-    out.f = select(mapped, out.f * lightFactor(other, direction), out.f);
+    out.f = select(mapped, out.f * lightFactor(seesThis, direction), out.f);
   }
 
-  // A delta lobe joins the two directions that one normal does: where the other end has another normal, it never comes
-  // back this way, and from a light there is no f.
-  WAVECREST_INLINE void applyMap(Mask active, BsdfSample<Real>& sample) const {
+  // Lanes that went on straight through an absent surface, whatever its normal.
+  static WAVECREST_INLINE Mask passes(const BsdfSample<Real>& sample, Vec3<Real> fix) {
+    return sample.specular & (sample.gen.x == -fix.x) & (sample.gen.y == -fix.y) & (sample.gen.z == -fix.z);
+  }
+
+  WAVECREST_INLINE BsdfSample<Real> sampledFromEye(Mask active, const Uniform4& u) const {
+    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, fix, u);
+    const Mask mapped = andNot(active & map.lanes, passes(sample, fix));
+    if (none(mapped)) return sample;
     const Vec3<Real> direction = toWorld(sample.gen);
-    const Mask passes = (sample.gen.x == -fix.x) & (sample.gen.y == -fix.y) & (sample.gen.z == -fix.z);
-    const Mask mapped = andNot(active & map.lanes, sample.specular & passes);
-    const OtherEnd other = otherEnd(mapped, direction);
-    sample.pdfReverse = select(other.differs, zeroUnless(!sample.specular, other.value.pdfReverse), sample.pdfReverse);
-    if (bsdf.walk == Walk::light) {  // scatter turns the weight's |cos gen| into the light's cosine, by this frame
-      const Real scale = abs(sample.gen.z * other.fixZ) / (max(abs(fix.z), Real(1e-12f)) * sample.pdf);
-      sample.weight = select(other.differs, zeroUnless(!sample.specular, other.value.f * scale), sample.weight);
+    const Mask finite = andNot(mapped, sample.specular);
+    const Real back = sample.pdfReverse * map.lightShare(frame.n, direction);
+    sample.pdfReverse = select(mapped, back, sample.pdfReverse);
+    if (any(finite)) sample.pdfReverse = select(finite, scattering(finite, direction).pdfReverse, sample.pdfReverse);
+    sample.weight = select(mapped, sample.weight * lightFactor(mapped, direction), sample.weight);
+    return sample;
+  }
+
+  WAVECREST_INLINE BsdfSample<Real> sampledFromLight(Mask active, const Uniform4& u) const {
+    const Real one(1), tiny(1e-12f);
+    const View other = otherView();
+    const Real share = select(map.lanes, map.lightShare(frame.n, map.fix), one);
+    const Mask drawsOther = active & (to<Real>(u.b) >= share);
+    const Real drawn = select(drawsOther, one - share, share);
+    // What is left of u.b goes into the direction.
+    const Float rest = toFloat(select(drawsOther, to<Real>(u.b) - share, to<Real>(u.b)) / drawn);
+    const Uniform4 numbers{u.a, min(max(rest, Float(0)), Float(0x1.fffffep-1f)), u.c, u.d};
+    const Vec3<Real> from = select(drawsOther, other.fix, fix);
+    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, from, numbers);
+    const Mask mapped = andNot(active & map.lanes, passes(sample, from));
+    const Vec3<Real> direction = select(drawsOther, other.toWorld(sample.gen), toWorld(sample.gen));
+    const Vec3<Real> gen = select(drawsOther, toLocal(direction), sample.gen);
+
+    const Mask seesThis = mapped & map.sees(direction, frame.n);
+    // A delta lobe joins its two directions by the drawn normal alone, which must be the one that the eye faces.
+    const Mask delta = mapped & sample.specular, joins = andNot(drawsOther, seesThis) | andNot(seesThis, drawsOther);
+    const Real turn = abs(from.z * gen.z) / max(abs(sample.gen.z * fix.z), tiny);  // of cosines to this frame's
+    const Real factor = zeroUnless(joins, turn * lightFactor(seesThis, direction) / drawn);
+    sample.weight = select(delta, sample.weight * factor, sample.weight);
+    sample.pdfReverse = select(delta, sample.pdfReverse * turn, sample.pdfReverse);
+    sample.pdf = select(delta, sample.pdf * drawn, sample.pdf);
+
+    const Mask finite = andNot(mapped, sample.specular);
+    if (any(finite)) {
+      const Scattering<Real> all = scattering(finite, direction);
+      const Real scale = all.lightCosine * abs(gen.z) / max(abs(fix.z) * all.pdf, tiny);
+      sample.weight = select(finite, all.f * scale, sample.weight);
+      sample.pdfReverse = select(finite, all.pdfReverse, sample.pdfReverse);
+      sample.pdf = select(finite, all.pdf, sample.pdf);
     }
-    sample.weight = select(mapped, sample.weight * lightFactor(other, direction), sample.weight);
+    sample.gen = gen;
+    return sample;
   }
 };
 
