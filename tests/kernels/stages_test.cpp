@@ -82,7 +82,7 @@ void mapNormals(StageScene<S>& scene) {
                                      .height = kSize,
                                      .offset = 0,
                                      .wrap = static_cast<uint32_t>(WrapMode::repeat),
-                                     .nearest = 0,
+                                     .nearest = 1,
                                      .toUv = {3, 0, 0, 0, 3, 0},
                                      .color0 = {},
                                      .color1 = {}};
