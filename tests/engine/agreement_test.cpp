@@ -89,8 +89,9 @@ Texture wavesTexture() {
   bitmap->width = bitmap->height = 16;
   bitmap->channels = 1;
   for (uint32_t i = 0; i < 16 * 16; ++i) {
-    bitmap->pixels.push_back(0.5f + 0.5f * std::sin(0.8f * static_cast<float>(i % 16)) *
-                                        std::cos(0.4f * static_cast<float>(i / 16)));
+    const uint32_t x = i % 16, y = i / 16;
+    bitmap->pixels.push_back(0.5f +
+                             0.5f * std::sin(0.8f * static_cast<float>(x)) * std::cos(0.4f * static_cast<float>(y)));
   }
   return {.kind = BitmapTexture{.bitmap = bitmap}, .toUv = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}};
 }

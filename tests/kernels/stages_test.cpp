@@ -121,7 +121,7 @@ StageScene<S> makeRoom(bool spheres, bool specular, bool maps) {
     list.push_back(spherePrimitive(p(0.4, -0.6, -0.3), 0.35));
     list.push_back(spherePrimitive(p(-0.5, 0.3, -0.4), 0.15));
     list[9].light = 4;
-    for (const size_t i : {8, 9}) {  // texture coordinates about z, from x
+    for (const size_t i : {8u, 9u}) {  // texture coordinates about z, from x
       list[i].e1[2] = list[i].e2[2] = list[i].normal[0] = 1;
     }
   }
