@@ -11,10 +11,11 @@
 namespace wavecrest {
 namespace {
 
-ColumnNeeds columnNeeds(Specialization specialization) {
+ColumnNeeds columnNeeds(const Scene& scene, Specialization specialization) {
   const uint32_t features = featuresOf(specialization);
   return {.shadingNormals = (features & kShadingNormals) != 0,
           .textures = (features & kTextures) != 0,
+          .normalMaps = (features & sceneFeatures(scene) & kNormalMaps) != 0,
           .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
           .connections = (features & kBidirectional) != 0};
 }
@@ -62,7 +63,7 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
     }
   }
   plan.specialization = specializationFor(scene, settings);
-  plan.needs = columnNeeds(plan.specialization);
+  plan.needs = columnNeeds(scene, plan.specialization);
   plan.scene = compileScene<S>(scene, settings.accel, settings.precision != Precision::fast);
   const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, plan.specialization);
   plan.isa = stages.isa;

@@ -52,6 +52,11 @@ enum MaterialFlags : uint32_t {
   kHasDelta = 2,   // some lobe is a delta: smooth reflection or refraction, or opacity below 1
   kHasFinite = 4,  // some lobe is not
   kNonlinear = 8,  // plastic: internal scattering shifts colour
+  // Of materials with a bump or normal map (kernels/shade/normal_map_lanes.h).
+  kMapped = 16,
+  kFlipsNormals = 32,
+  kSoftensTerminator = 64,
+  kMirrorsBack = 128,  // instead of kTwoSided where two-sidedness is around the map
 };
 
 // Roughness below which a surface is treated as smooth: lobes narrower than about 0.1 degrees.
@@ -159,6 +164,7 @@ struct SceneView {
   uint32_t lightCount = 0;
   uint32_t infiniteLight = kNoIndex;  // the constant or environment light that rays leaving the scene see
   bool spheres = false;               // some primitive is a sphere
+  bool normalMaps = false;            // some material has a bump or normal map
   double center[3]{}, radius = 0;     // bounding sphere
   CameraView camera;
   const SmallSceneView* small = nullptr;  // one of these three

@@ -29,12 +29,13 @@ constexpr std::array<std::string_view, 3> kPrecisionNames{"float", "double", "fa
 enum Feature : uint32_t {
   kSpecularBsdfs = 1,    // mirror, conductor, dielectric, rough conductor
   kLayeredBsdfs = 2,     // plastic, rough dielectric, thin dielectric, phong, opacity
-  kTextures = 4,         // textures, bump and normal maps
+  kTextures = 4,         // textures
   kShadingNormals = 8,   // interpolated vertex normals
   kCurvedShapes = 16,    // analytic spheres, as geometry or as lights
   kRareLights = 32,      // spot, directional, environment map
   kLens = 64,            // thin lens, orthographic, filters other than box
   kBidirectional = 128,  // light paths, connections, merging: the whole MIS recursion
+  kNormalMaps = 256,     // bump and normal maps
 };
 
 // What kernels are instantiated for: feature sets, in the order in which a scene and method try them; the last has all.
@@ -51,8 +52,8 @@ enum class Specialization {
 constexpr size_t kSpecializationCount = 7;
 constexpr std::array<std::string_view, kSpecializationCount> kSpecializationNames{
     "diffuse", "smooth", "plain", "diffuse-bidirectional", "smooth-bidirectional", "plain-bidirectional", "general"};
-constexpr uint32_t kAllFeatures = 255;
-constexpr uint32_t kPlainFeatures = kAllFeatures & ~(kTextures | kShadingNormals | kBidirectional);
+constexpr uint32_t kAllFeatures = 511;
+constexpr uint32_t kPlainFeatures = kAllFeatures & ~(kTextures | kShadingNormals | kNormalMaps | kBidirectional);
 constexpr uint32_t kSmoothFeatures = kSpecularBsdfs | kCurvedShapes;
 constexpr std::array<uint32_t, kSpecializationCount> kSpecializationFeatures{0,
                                                                              kSmoothFeatures,

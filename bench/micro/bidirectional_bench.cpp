@@ -25,7 +25,8 @@ namespace {
 constexpr size_t kWave = 2048;
 constexpr double kPhotonsPerQuery = 10;
 constexpr size_t kTiles = 32;
-constexpr ColumnNeeds kNeeds{.shadingNormals = false, .textures = false, .rouletteScale = true, .connections = true};
+constexpr ColumnNeeds kNeeds{
+    .shadingNormals = false, .textures = false, .normalMaps = false, .rouletteScale = true, .connections = true};
 constexpr Specialization kKernels = Specialization::diffuseBidirectional;
 
 // The unit square z = 0, facing up, and z = 1, facing down; a camera in the middle looks at the floor.

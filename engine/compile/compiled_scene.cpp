@@ -134,6 +134,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   view.lightTable = compiled->lights.table.data();
   view.lightCount = static_cast<uint32_t>(compiled->lights.records.size());
   view.infiniteLight = compiled->lights.infinite;
+  view.normalMaps = (sceneFeatures(scene) & kNormalMaps) != 0;
   view.spheres = primitives.counts.spheres != 0;
   view.firstPrimitive[1] = primitives.counts.quads;
   view.firstPrimitive[2] = primitives.counts.quads + primitives.counts.triangles;

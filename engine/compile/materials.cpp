@@ -183,6 +183,22 @@ class Compiler {
 
 }  // namespace
 
+namespace {
+
+bool hasNormalMap(const Material& material) { return material.bumpTexture != kNone || material.normalTexture != kNone; }
+
+uint32_t sidesOf(const Material& material) {
+  if (!hasNormalMap(material)) return material.twoSided ? uint32_t{kTwoSided} : 0u;
+  const NormalMapping& mapping = material.normalMapping;
+  uint32_t flags = kMapped;
+  if (mapping.flipInvalidNormals) flags |= kFlipsNormals;
+  if (mapping.shadowing) flags |= kSoftensTerminator;
+  if (material.twoSided) flags |= mapping.aroundTwoSided ? kTwoSided : kMirrorsBack;
+  return flags;
+}
+
+}  // namespace
+
 uint32_t materialFeatures(const Material& material) {
   uint32_t features = featureOf(kindOf(material));
   if (material.opacity) features |= kLayeredBsdfs | kSpecularBsdfs;
@@ -194,10 +210,8 @@ uint32_t materialFeatures(const Material& material) {
                  [&](const Plastic& p) { return textured(p.diffuseReflectance, p.specularReflectance, p.alpha); },
                  [&](const Phong& p) { return textured(p.diffuseReflectance, p.specularReflectance); }},
       material.kind);
-  if (anyTexture || material.bumpTexture != kNone || material.normalTexture != kNone ||
-      (material.opacity && textured(*material.opacity))) {
-    features |= kTextures;
-  }
+  if (anyTexture || (material.opacity && textured(*material.opacity))) features |= kTextures;
+  if (hasNormalMap(material)) features |= kTextures | kNormalMaps;
   return features;
 }
 
@@ -206,7 +220,7 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
   const BsdfKind kind = kindOf(material);
   record.kind = static_cast<uint32_t>(kind);
   record.flags = lobesOf(kind);
-  if (material.twoSided) record.flags |= kTwoSided;
+  record.flags |= sidesOf(material);
   for (uint32_t* texture : {&record.reflectanceTexture, &record.specularTexture, &record.transmittanceTexture,
                             &record.alphaTexture, &record.opacityTexture}) {
     *texture = kNone;

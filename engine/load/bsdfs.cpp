@@ -179,31 +179,19 @@ void readMask(LoadContext& context, Parameters& parameters, Material& material) 
   material.opacity = opacity;
 }
 
-// Bump and normal maps are Blinn's (1978): normals that face away stay as they are, and nothing softens the terminator.
-// Mitsuba does both since 3.7.1 unless told otherwise; a file that asks for them by name is refused, one that leaves
-// the choice to the program is told. What they do depends on which end of a path is the eye: a normal is flipped for
-// the eye's direction and the shadowing term is one of the light's. So a vertex of a light path would not know its
-// frame before it knows where the path goes on, and the methods could not agree.
-void requireClassicalPerturbation(LoadContext& context, Parameters& parameters) {
-  bool said = true;
-  for (const char* name : {"flip_invalid_normals", "use_shadowing_function"}) {
-    said = said && parameters.has(name);
-    if (parameters.boolean(name, false)) {
-      context.unsupported(parameters.locationOf(name), std::string(name) + " is not supported; expected false");
-    }
-  }
-  if (said) return;
-  context.warn(parameters.location(),
-               "bump and normal maps neither flip normals that face away nor soften shadows, as Mitsuba 3.7.1 does "
-               "unless flip_invalid_normals and use_shadowing_function are false");
+// What bump and normal maps have in common; the nested BSDF has been read.
+void readNormalMapping(Parameters& parameters, Material& material) {
+  if (material.bumpTexture != kNone || material.normalTexture != kNone) failTwice(parameters);
+  material.normalMapping = {.flipInvalidNormals = parameters.boolean("flip_invalid_normals", true),
+                            .shadowing = parameters.boolean("use_shadowing_function", true),
+                            .aroundTwoSided = material.twoSided};
 }
 
 void readBumpMap(LoadContext& context, Parameters& parameters, Material& material) {
   const uint32_t texture = scalarTextureOf(context, textureOf(context, parameters.onlyObject("texture")));
   const double scale = parameters.real("scale", 1);
-  requireClassicalPerturbation(context, parameters);
   readBsdf(context, parameters.onlyObject("bsdf"), material);
-  if (material.bumpTexture != kNone || material.normalTexture != kNone) failTwice(parameters);
+  readNormalMapping(parameters, material);
   material.bumpTexture = texture;
   material.bumpScale = scale;
 }
@@ -213,9 +201,8 @@ void readNormalMap(LoadContext& context, Parameters& parameters, Material& mater
   if (!parameters.has("normalmap")) {
     throw LoadError(parameters.location(), "normalmap has no texture; expected one with name=\"normalmap\"");
   }
-  requireClassicalPerturbation(context, parameters);
   readBsdf(context, parameters.onlyObject("bsdf"), material);
-  if (material.bumpTexture != kNone || material.normalTexture != kNone) failTwice(parameters);
+  readNormalMapping(parameters, material);
   material.normalTexture = texture;
 }
 

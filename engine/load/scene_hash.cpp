@@ -78,7 +78,11 @@ class Hasher {
     all(m.intIor, m.extIor, m.diffuseReflectance, m.specularReflectance, m.alpha, m.nonlinear, m.distribution);
   }
   void add(const Phong& m) { all(m.diffuseReflectance, m.specularReflectance, m.exponent); }
-  void add(const Material& m) { all(m.kind, m.twoSided, m.opacity, m.bumpTexture, m.bumpScale, m.normalTexture); }
+  void add(const NormalMapping& m) { all(m.flipInvalidNormals, m.shadowing, m.aroundTwoSided); }
+  void add(const Material& m) {
+    all(m.kind, m.twoSided, m.opacity, m.bumpTexture, m.bumpScale, m.normalTexture);
+    if (m.bumpTexture != kNone || m.normalTexture != kNone) add(m.normalMapping);
+  }
 
   void add(const Mesh& s) { all(s.positions, s.normals, s.uvs, s.triangles); }
   void add(const Rectangle& s) { all(s.corner, s.edgeU, s.edgeV, s.mirrored); }

@@ -99,6 +99,13 @@ struct Phong {  // Mitsuba 0.6 `phong`
   double exponent = 30;
 };
 
+// How a bump or normal map is applied (Mitsuba 3's parameters).
+struct NormalMapping {
+  bool flipInvalidNormals = true;  // mirror a normal that faces away from the eye where the surface does not
+  bool shadowing = true;           // soften the terminator
+  bool aroundTwoSided = false;     // the map is around `twosided`, not within it
+};
+
 struct Material {
   std::string id;
   std::variant<Diffuse, Conductor, Dielectric, Plastic, Phong> kind;
@@ -107,6 +114,7 @@ struct Material {
   uint32_t bumpTexture = kNone;          // `bumpmap`
   double bumpScale = 1;
   uint32_t normalTexture = kNone;  // `normalmap`
+  NormalMapping normalMapping;     // of either
   SourceLocation source;
 };
 

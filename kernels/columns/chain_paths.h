@@ -29,6 +29,7 @@ struct PathVertices : Columns<PathVertices<S>> {
   Column<S> normalX, normalY, normalZ;        // geometric
   Column<S> offset;
   Column<S> shadingX, shadingY, shadingZ;  // dropped where the scene has no shading normals
+  Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
   Column<float> uvU, uvV;                  // dropped where the scene has no textures
   Column<uint32_t> primitive;              // of x_0: the light
   Column<uint32_t> event;                  // PathEvent
@@ -36,7 +37,8 @@ struct PathVertices : Columns<PathVertices<S>> {
   Column<S> eye, light, eyeChoice, lightChoice;
   auto all() {
     return std::tie(positionX, positionY, positionZ, normalX, normalY, normalZ, offset, shadingX, shadingY, shadingZ,
-                    uvU, uvV, primitive, event, stepR, stepG, stepB, eye, light, eyeChoice, lightChoice);
+                    baseX, baseY, baseZ, uvU, uvV, primitive, event, stepR, stepG, stepB, eye, light, eyeChoice,
+                    lightChoice);
   }
 };
 
@@ -74,6 +76,9 @@ struct PathStore {
   static void dropColumns(PathVertices<S>& vertices, const ColumnNeeds& needs) {
     if (!needs.shadingNormals) {
       for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ}) column->drop();
+    }
+    if (!needs.normalMaps) {
+      for (Column<S>* column : {&vertices.baseX, &vertices.baseY, &vertices.baseZ}) column->drop();
     }
     if (!needs.textures) {
       vertices.uvU.drop();

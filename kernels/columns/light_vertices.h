@@ -15,6 +15,7 @@ struct LightVertices : Columns<LightVertices<S>> {
   Column<S> fixX, fixY, fixZ;  // unit direction back along the light path
   Column<S> normalX, normalY, normalZ;
   Column<S> shadingX, shadingY, shadingZ;  // dropped where the scene has no shading normals
+  Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
   Column<S> offset;
   Column<S> throughputR, throughputG, throughputB;
   Column<S> dVCM, dVC, dVM;
@@ -24,8 +25,8 @@ struct LightVertices : Columns<LightVertices<S>> {
   Column<uint32_t> lane;   // of the path, in its wave
   auto all() {
     return std::tie(positionX, positionY, positionZ, fixX, fixY, fixZ, normalX, normalY, normalZ, shadingX, shadingY,
-                    shadingZ, offset, throughputR, throughputG, throughputB, dVCM, dVC, dVM, uvU, uvV, primitive, depth,
-                    lane);
+                    shadingZ, baseX, baseY, baseZ, offset, throughputR, throughputG, throughputB, dVCM, dVC, dVM, uvU,
+                    uvV, primitive, depth, lane);
   }
 };
 
@@ -62,6 +63,9 @@ class LightStore {
       : lanes_(lanes), keepsPhotons_(use.merged), rayOfLane_(lanes) {
     if (!needs.shadingNormals) {
       for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ}) column->drop();
+    }
+    if (!needs.normalMaps) {
+      for (Column<S>* column : {&vertices.baseX, &vertices.baseY, &vertices.baseZ}) column->drop();
     }
     if (!needs.textures) {
       vertices.uvU.drop();
@@ -140,8 +144,9 @@ class LightStore {
   void dropConnectedColumns() {
     for (Column<S>* column :
          {&vertices.fixX, &vertices.fixY, &vertices.fixZ, &vertices.normalX, &vertices.normalY, &vertices.normalZ,
-          &vertices.shadingX, &vertices.shadingY, &vertices.shadingZ, &vertices.offset, &vertices.throughputR,
-          &vertices.throughputG, &vertices.throughputB, &vertices.dVCM, &vertices.dVC, &vertices.dVM}) {
+          &vertices.shadingX, &vertices.shadingY, &vertices.shadingZ, &vertices.baseX, &vertices.baseY, &vertices.baseZ,
+          &vertices.offset, &vertices.throughputR, &vertices.throughputG, &vertices.throughputB, &vertices.dVCM,
+          &vertices.dVC, &vertices.dVM}) {
       column->drop();
     }
     for (Column<float>* column : {&vertices.uvU, &vertices.uvV}) column->drop();

@@ -35,8 +35,11 @@ struct Surfaces : Columns<Surfaces<S>> {
   Column<S> normalX, normalY, normalZ;     // geometric normal, unit
   Column<S> offset;                        // bound on the position's error along the normal
   Column<S> shadingX, shadingY, shadingZ;  // shading normal; dropped where the scene has none
+  Column<S> baseX, baseY, baseZ;           // the same without bump and normal maps; dropped without those
   Column<float> uvU, uvV;                  // texture coordinates; dropped where the scene has no textures
-  auto all() { return std::tie(normalX, normalY, normalZ, offset, shadingX, shadingY, shadingZ, uvU, uvV); }
+  auto all() {
+    return std::tie(normalX, normalY, normalZ, offset, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV);
+  }
 };
 
 // What a path carries along. dVCM, dVC and dVM are the partial sums of the MIS recursion of Georgiev's technical report

@@ -9,6 +9,7 @@ namespace wavecrest {
 struct ColumnNeeds {
   bool shadingNormals = true;
   bool textures = true;
+  bool normalMaps = true;
   bool rouletteScale = true;
   bool connections = true;
 };
@@ -31,6 +32,9 @@ struct Wave {
   Wave(size_t capacity, const ColumnNeeds& needs) {
     if (!needs.shadingNormals) {
       for (Column<S>* column : {&surfaces.shadingX, &surfaces.shadingY, &surfaces.shadingZ}) column->drop();
+    }
+    if (!needs.normalMaps) {
+      for (Column<S>* column : {&surfaces.baseX, &surfaces.baseY, &surfaces.baseZ}) column->drop();
     }
     if (!needs.textures) {
       surfaces.uvU.drop();

@@ -48,8 +48,7 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
                         (y < Real(static_cast<float>(splats.height)));
     if (none(active & onFilm)) continue;
 
-    const Vec3<Real> gen = shading.toLocal(view.direction);
-    const auto bsdf = evalBsdf<P, kFeatures>(shading.bsdf, active & onFilm, shading.fix, gen);
+    const auto bsdf = shading.scattering(active & onFilm, view.direction);
     const Real genCosine = abs(dot(view.direction, shading.normal));
     const Real fixCosine = abs(shading.fixCosine);
     const Real pdfA = view.pdf * genCosine;
@@ -58,12 +57,11 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
     const Real wLight = pdfA * Real(context.mis.camN > 0 ? 1 / context.mis.camN : 0.0) *
                         behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
     // f c(omega_l) / n(omega_l): omega_l is fix, the light's side.
-    Real scale = pdfA * abs(shading.fix.z) * reciprocal<P>(max(fixCosine, Real(1e-6f)) * (Real(1) + wLight));
+    Real scale = pdfA * bsdf.lightCosine * reciprocal<P>(max(fixCosine, Real(1e-6f)) * (Real(1) + wLight));
     if constexpr (has(kFeatures, kLens)) scale = scale * (column.weight * row.weight);
     const Vec3<Real> contribution =
         loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * bsdf.f * scale;
-    const Mask lit = active & onFilm & (fixCosine > Real(1e-6f)) & shading.sidesAgree(view.direction, gen) &
-                     (maxComponent(contribution) > Real(0));
+    const Mask lit = active & onFilm & (fixCosine > Real(1e-6f)) & (maxComponent(contribution) > Real(0));
     if (none(lit)) continue;
 
     const Vec3<Real> origin = offsetOrigin(shading.position, shading.normal, shading.offset, view.direction);

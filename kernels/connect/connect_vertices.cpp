@@ -69,9 +69,8 @@ void connectVertices(const StageContext<typename P::Storage>& context, Wave<type
     const Real dist2 = length2(segment);
     const Real inverseDistance = reciprocalSqrt<P>(max(dist2, Real(1e-37f)));
     const Vec3<Real> towards = segment * inverseDistance;  // from the camera vertex to the light vertex
-    const Vec3<Real> zGen = z.toLocal(towards), yGen = y.toLocal(-towards);
-    const auto zBsdf = evalBsdf<P, kFeatures>(z.bsdf, active, z.fix, zGen);
-    const auto yBsdf = evalBsdf<P, kFeatures>(y.bsdf, active, y.fix, yGen);
+    const auto zBsdf = z.scattering(active, towards);
+    const auto yBsdf = y.scattering(active, -towards);
 
     const Real inverseDist2 = inverseDistance * inverseDistance;
     const Real zCosine = abs(dot(towards, z.normal)), yCosine = abs(dot(towards, y.normal));
@@ -85,8 +84,8 @@ void connectVertices(const StageContext<typename P::Storage>& context, Wave<type
 
     // c_z(omega_l) at the camera's end; c_y(omega_l) / n_y(omega_l) n_y(to z) at the light's (METHODS 3.9).
     const Real yFix = max(abs(y.fixCosine), Real(1e-6f));
-    const Real scale =
-        abs(zGen.z) * abs(y.fix.z) * yCosine * inverseDist2 * reciprocal<P>(yFix * (Real(1) + wLight + wCamera));
+    const Real scale = zBsdf.lightCosine * yBsdf.lightCosine * yCosine * inverseDist2 *
+                       reciprocal<P>(yFix * (Real(1) + wLight + wCamera));
     const auto& paths = wave.paths;
     const Vec3<Real> contribution =
         gatherVec3(paths.throughputR, paths.throughputG, paths.throughputB, camera) * zBsdf.f *
@@ -94,8 +93,7 @@ void connectVertices(const StageContext<typename P::Storage>& context, Wave<type
 
     // Points closer than the offsets that keep their segment off the surfaces cannot be told apart.
     const Real apart = Real(4) * (z.offset + y.offset);
-    const Mask lit = active & (dist2 > apart * apart) & z.sidesAgree(towards, zGen) & y.sidesAgree(-towards, yGen) &
-                     (maxComponent(contribution) > Real(0));
+    const Mask lit = active & (dist2 > apart * apart) & (maxComponent(contribution) > Real(0));
     if (none(lit)) continue;
     const Vec3<Real> origin = offsetOrigin(z.position, z.normal, z.offset, towards);
     const Vec3<Real> end = offsetOrigin(y.position, y.normal, y.offset, -towards);

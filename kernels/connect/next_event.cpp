@@ -33,8 +33,7 @@ void nextEvent(const StageContext<typename P::Storage>& context, Wave<typename P
     }
     const auto sample = sampleLight<P, kFeatures>(scene, light, shading.position, u, more);
 
-    const Vec3<Real> gen = shading.toLocal(sample.direction);
-    const auto bsdf = evalBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, gen);
+    const auto bsdf = shading.scattering(active, sample.direction);
     // wLight: the BSDF's choice could also have met the light, unless it is a delta light.
     const Real inversePdf = reciprocal<P>(sample.pdf);
     Real wLight(0), wCamera(0);
@@ -44,12 +43,11 @@ void nextEvent(const StageContext<typename P::Storage>& context, Wave<typename P
       wCamera = sample.emissionPdf * abs(dot(sample.direction, shading.normal)) * inversePdf *
                 behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
     }
-    const Real scale = abs(gen.z) * inversePdf * reciprocal<P>(Real(1) + others(context.mis, wLight + wCamera));
+    const Real scale = bsdf.lightCosine * inversePdf * reciprocal<P>(Real(1) + others(context.mis, wLight + wCamera));
     const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     const Vec3<Real> contribution = throughput * bsdf.f * sample.radiance * scale;
 
-    const Mask lit =
-        active & sample.valid & shading.sidesAgree(sample.direction, gen) & (maxComponent(contribution) > Real(0));
+    const Mask lit = active & sample.valid & (maxComponent(contribution) > Real(0));
     if (none(lit)) continue;
     const Vec3<Real> origin = offsetOrigin(shading.position, shading.normal, shading.offset, sample.direction);
     appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);

@@ -61,6 +61,12 @@ WAVECREST_INLINE void appendColumns(const StageContext<S>& context, const Wave<S
     appendVec3(loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i), m, vertices.shadingX,
                vertices.shadingY, vertices.shadingZ, out);
   }
+  if constexpr (has(kFeatures, kNormalMaps)) {
+    if (context.scene->normalMaps) {
+      appendVec3(loadVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, i), m, vertices.baseX, vertices.baseY,
+                 vertices.baseZ, out);
+    }
+  }
   if constexpr (has(kFeatures, kTextures)) {
     append(load(surfaces.uvU, i), m, vertices.uvU, out);
     append(load(surfaces.uvV, i), m, vertices.uvV, out);

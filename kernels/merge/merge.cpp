@@ -174,8 +174,7 @@ class Merger {
                             (at(photons.records->depth) <= longest);
       context_.counters->merges += countTrue(accepted);
       const Vec3<Real> direction = at(photons.records->direction);
-      const Vec3<Real> gen = shading.toLocal(direction);
-      const auto bsdf = evalBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, gen);
+      const auto bsdf = shading.scattering(active, direction);
       Real weight(1);
       if (context_.mis.mergeWeights) {
         const MisSums<Real> light{at(photons.records->dVCM), Real(0), at(photons.records->dVM)};
@@ -185,11 +184,10 @@ class Merger {
         const Real wCamera = behindMerge(context_.mis, 1, camera, bsdf.pdfReverse);
         weight = reciprocal<P>(Real(1) + wLight + wCamera);
       }
-      const Real scale = Real(context_.mis.mergeNorm) * weight * abs(gen.z);
+      const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine;
       const Vec3<Real> contribution = gatherVec3(paths.throughputR, paths.throughputG, paths.throughputB, vertex) *
                                       bsdf.f * at(photons.records->power) * scale;
-      const Mask lit = accepted & shading.sidesAgree(direction, gen);
-      addRadiance(wave_.radiance, gather(paths.lane, vertex), lit, contribution);
+      addRadiance(wave_.radiance, gather(paths.lane, vertex), accepted, contribution);
     }
   }
 

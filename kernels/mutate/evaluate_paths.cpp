@@ -17,28 +17,26 @@ namespace {
 // Scattering at a vertex, in both directions. step: f c / pdf towards the light's side. Densities per solid angle;
 // those of a delta lobe P eta_gen^2 |cos gen|, in one measure for both directions, with its probabilities P as choices.
 template <class Real>
-struct Scattering {
+struct TwoWayScattering {
   Vec3<Real> step;
   Real eyePdf, lightPdf, eyeChoice, lightChoice;
 };
 
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE Scattering<typename P::Real> scatteringOf(const ShadingLanes<P, kFeatures>& shading, Mask active,
-                                                           Vec3<typename P::Real> towardsLight, UInt event) {
+WAVECREST_INLINE TwoWayScattering<typename P::Real> scatteringOf(const ShadingLanes<P, kFeatures>& shading, Mask active,
+                                                                 Vec3<typename P::Real> towardsLight, UInt event) {
   using Real = typename P::Real;
   const Real zero(0);
-  const Vec3<Real> gen = shading.toLocal(towardsLight);
-  const Mask agree = active & shading.sidesAgree(towardsLight, gen);
-  const auto value = evalBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, gen);
-  const Mask scatters = agree & (value.pdf > zero);
-  Scattering<Real> out{zeroUnless(scatters, value.f * (abs(gen.z) / select(scatters, value.pdf, Real(1)))), value.pdf,
-                       value.pdfReverse, value.pdf, value.pdfReverse};
+  const auto value = shading.scattering(active, towardsLight);
+  const Mask scatters = active & (value.pdf > zero);
+  TwoWayScattering<Real> out{zeroUnless(scatters, value.f * (value.lightCosine / select(scatters, value.pdf, Real(1)))),
+                             value.pdf, value.pdfReverse, value.pdf, value.pdfReverse};
   if constexpr (!onlyDiffuse(kFeatures)) {
     const Mask delta = active & (event != eventCode(PathEvent::scattered));
     if (any(delta)) {
       const Uniform4 u{numberOfEvent<P, kFeatures>(shading.bsdf, event), Float(0), Float(0), Float(0)};
-      const auto sample = sampleBsdf<P, kFeatures>(shading.bsdf, delta, shading.fix, u);
-      const Mask found = agree & (eventOf<P, kFeatures>(shading.bsdf, shading.fix, sample, u.a) == event);
+      const auto sample = shading.sampled(delta, u);
+      const Mask found = active & (eventOf<P, kFeatures>(shading.bsdf, shading.fix, sample, u.a) == event);
       out.step = select(delta, zeroUnless(found, sample.weight), out.step);
       out.eyePdf = select(delta, sample.pdf * abs(sample.gen.z), out.eyePdf);
       out.lightPdf =

@@ -57,6 +57,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
                            .fix = fix,
                            .normal = normalAt(v, at),
                            .shadingNormal = {},
+                           .baseNormal = {},
                            .offset = gather(v.offset, at),
                            .u = Float(0),
                            .v = Float(0),
@@ -64,6 +65,9 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
   vertex.shadingNormal = vertex.normal;
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = gatherVec3(v.shadingX, v.shadingY, v.shadingZ, at);
+  }
+  if constexpr (has(kFeatures, kNormalMaps)) {
+    if (scene.normalMaps) vertex.baseNormal = gatherVec3(v.baseX, v.baseY, v.baseZ, at);
   }
   if constexpr (has(kFeatures, kTextures)) {
     vertex.u = gather(v.uvU, at);
@@ -79,7 +83,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
 // The number that makes sampling take the delta lobe of an event, if the surface has it: lobes share [0, 1) in the
 // order reflection, refraction, absence of the surface.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE Float numberOfEvent(const BsdfInput<P>& bsdf, UInt event) {
+WAVECREST_INLINE Float numberOfEvent(const BsdfInputOf<P, kFeatures>& bsdf, UInt event) {
   const Float last(0x1.fffffep-1f);
   Float refracts = last;
   if constexpr (has(kFeatures, kLayeredBsdfs)) refracts = last * min(to<Float>(bsdf.opacity()), Float(1));
@@ -89,7 +93,7 @@ WAVECREST_INLINE Float numberOfEvent(const BsdfInput<P>& bsdf, UInt event) {
 
 // The event that sampling by the number u.a led to.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE UInt eventOf(const BsdfInput<P>& bsdf, Vec3<typename P::Real> fix,
+WAVECREST_INLINE UInt eventOf(const BsdfInputOf<P, kFeatures>& bsdf, Vec3<typename P::Real> fix,
                               const BsdfSample<typename P::Real>& sample, [[maybe_unused]] Float number) {
   using Real = typename P::Real;
   UInt event =
@@ -114,11 +118,11 @@ WAVECREST_INLINE WalkStep<typename P::Real> walkOn(const ShadingLanes<P, kFeatur
                                                    Mask same, UInt event) {
   using Real = typename P::Real;
   u.a = select(same, numberOfEvent<P, kFeatures>(shading.bsdf, event), u.a);
-  const auto sample = sampleBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, u);
+  const auto sample = shading.sampled(active, u);
   WalkStep<Real> step{shading.toWorld(sample.gen), eventOf<P, kFeatures>(shading.bsdf, shading.fix, sample, u.a),
                       noLanes()};
-  step.alive = active & shading.sidesAgree(step.direction, sample.gen) & (maxComponent(sample.weight) > Real(0)) &
-               (sample.pdf > Real(0)) & (!same | (step.event == event));
+  step.alive =
+      active & (maxComponent(sample.weight) > Real(0)) & (sample.pdf > Real(0)) & (!same | (step.event == event));
   return step;
 }
 

@@ -42,6 +42,12 @@ WAVECREST_INLINE void copyVertices(const Wave<S>& from, size_t i, Mask m, Wave<S
     appendVec3(loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i), m, to.surfaces.shadingX,
                to.surfaces.shadingY, to.surfaces.shadingZ, out);
   }
+  if constexpr (has(kFeatures, kNormalMaps)) {
+    if (surfaces.baseX.needed()) {
+      appendVec3(loadVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, i), m, to.surfaces.baseX, to.surfaces.baseY,
+                 to.surfaces.baseZ, out);
+    }
+  }
   if constexpr (has(kFeatures, kTextures)) {
     append(load(surfaces.uvU, i), m, to.surfaces.uvU, out);
     append(load(surfaces.uvV, i), m, to.surfaces.uvV, out);

@@ -354,6 +354,11 @@ void recordPathVertices(const StageContext<typename P::Storage>& context, Wave<t
       storeWhere(loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i), active, v.shadingX, v.shadingY,
                  v.shadingZ, at);
     }
+    if constexpr (has(kFeatures, kNormalMaps)) {
+      if (context.scene->normalMaps) {
+        storeWhere(loadVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, i), active, v.baseX, v.baseY, v.baseZ, at);
+      }
+    }
     if constexpr (has(kFeatures, kTextures)) {
       storeWhere(load(surfaces.uvU, i), active, v.uvU, at);
       storeWhere(load(surfaces.uvV, i), active, v.uvV, at);

@@ -164,7 +164,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     }
     mis.dVCM = mis.dVCM * toArea * inverseCosine;
 
-    Interpolated<Real> shading{surface.normal, Float(0), Float(0)};
+    Interpolated<Real> shading{surface.normal, surface.normal, Float(0), Float(0)};
     if constexpr (has(kFeatures, kShadingNormals | kTextures)) {
       shading = interpolate<P, kFeatures>(scene, at, hit, surface);
     }
@@ -192,6 +192,9 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     }
     appendVec3(throughput, hit, paths.throughputR, paths.throughputG, paths.throughputB, out);
     appendMis<kFeatures>(mis, hit, paths, out);
+    if constexpr (has(kFeatures, kNormalMaps)) {
+      if (scene.normalMaps) appendVec3(shading.base, hit, surfaces.baseX, surfaces.baseY, surfaces.baseZ, out);
+    }
     append(lane, hit, paths.lane, out);
     append(primitive, hit, wave.hits.primitive, out);
     if constexpr (hasRouletteScale(kFeatures)) {

@@ -7,8 +7,9 @@
 
 WAVECREST_SIMD_BEGIN
 
-template <class P>
-WAVECREST_INLINE Vec3<typename P::Real> conductorReflectance(const BsdfInput<P>& input, typename P::Real cosine) {
+template <class P, bool kTextured>
+WAVECREST_INLINE Vec3<typename P::Real> conductorReflectance(const BsdfInput<P, kTextured>& input,
+                                                             typename P::Real cosine) {
   using Real = typename P::Real;
   return input.specular() *
          fresnelConductor<P>(cosine, to<Real>(input.at(input.materials->eta)), to<Real>(input.at(input.materials->k)));
@@ -19,15 +20,15 @@ struct ConductorBsdf {
   static constexpr uint32_t kFeature = kSpecularBsdfs;
   static constexpr bool kHasDelta = true;
 
-  template <class P>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>&, Vec3<typename P::Real>,
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>&, Vec3<typename P::Real>,
                                                            Vec3<typename P::Real>) {
     return zeroBsdfValue<typename P::Real>();
   }
 
-  template <class P>
-  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                              const Uniform4&) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,
+                                                              Vec3<typename P::Real> fix, const Uniform4&) {
     using Real = typename P::Real;
     const Mask front = fix.z > Real(0);
     return {.gen = {-fix.x, -fix.y, fix.z},

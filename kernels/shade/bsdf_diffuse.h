@@ -11,18 +11,18 @@ struct DiffuseBsdf {
   static constexpr uint32_t kFeature = 0;
   static constexpr bool kHasDelta = false;
 
-  template <class P>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                           Vec3<typename P::Real> gen) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>& input,
+                                                           Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
     const Mask front = (fix.z > Real(0)) & (gen.z > Real(0));
     return {zeroUnless(front, input.reflectance() * Real(kInvPi)), zeroUnless(front, gen.z * Real(kInvPi)),
             zeroUnless(front, fix.z * Real(kInvPi))};
   }
 
-  template <class P>
-  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                              const Uniform4& u) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,
+                                                              Vec3<typename P::Real> fix, const Uniform4& u) {
     using Real = typename P::Real;
     BsdfSample<Real> sample;
     sample.gen = cosineHemisphere<Real>(to<Real>(u.b), to<Real>(u.c));

@@ -11,12 +11,16 @@
 //   static constexpr BsdfKind kKind;
 //   static constexpr uint32_t kFeature;  // Feature bit that its kernels need; 0: part of every feature set
 //   static constexpr bool kHasDelta;     // may sample a delta lobe
-//   template <class P> static BsdfValue<Real> eval(const BsdfInput<P>&, Vec3<Real> fix, Vec3<Real> gen);
-//   template <class P> static BsdfSample<Real> sample(const BsdfInput<P>&, Vec3<Real> fix, const Uniform4& u);
+//   template <class P, bool kTextured>
+//   static BsdfValue<Real> eval(const BsdfInput<P, kTextured>&, Vec3<Real> fix, Vec3<Real> gen);
+//   template <class P, bool kTextured>
+//   static BsdfSample<Real> sample(const BsdfInput<P, kTextured>&, Vec3<Real> fix, const Uniform4& u);
 // in a file of its own, and a place in bsdf_list.h. eval covers the non-delta lobes only. sample uses u.a, u.b and u.c;
 // u.d is left to roulette. Where fix or gen lie on sides that the BSDF does not join, the weight and f are zero and the
 // densities are meaningless but finite.
 #pragma once
+
+#include <type_traits>
 
 #include "kernels/lane_support.h"
 
@@ -41,8 +45,18 @@ struct BsdfSample {
 // Which lobes sample() chooses from. specularOnly: the delta lobes, with their probabilities renormalised.
 enum class Lobes { all, specularOnly };
 
-// What a BSDF may ask about the surface. Constants come from the material record of each lane, times a texture.
-template <class P>
+// Values of the textures in a material's slots: 1 where a slot has none.
+template <class Real>
+struct TextureFactors {
+  Vec3<Real> reflectance, specular, transmittance;
+  Real alpha, opacity;
+};
+// The same in feature sets without textures, where constants stand alone.
+struct NoTextureFactors {};
+
+// What a BSDF may ask about the surface. Constants come from the material record of each lane; with kTextured they are
+// multiplied by textures.
+template <class P, bool kTextured>
 struct BsdfInput {
   using Real = typename P::Real;
   const MaterialRecord* materials;
@@ -50,25 +64,43 @@ struct BsdfInput {
   UInt kind;
   Walk walk = Walk::camera;  // from the eye, so that gen points to the light's side, or from a light
   Lobes lobes = Lobes::all;
-  // Values of the textures in the slots: 1 without textures, which costs nothing.
-  Vec3<Real> reflectanceFactor, specularFactor, transmittanceFactor;
-  Real alphaFactor, opacityFactor;
+  std::conditional_t<kTextured, TextureFactors<Real>, NoTextureFactors> textures;
 
   WAVECREST_INLINE BsdfInput(const MaterialRecord* base, UInt index) : materials(base), at(base, index) {
     kind = at(base->kind);
-    const Real one(1);
-    reflectanceFactor = specularFactor = transmittanceFactor = {one, one, one};
-    alphaFactor = opacityFactor = one;
+    if constexpr (kTextured) {
+      const Real one(1);
+      textures.reflectance = textures.specular = textures.transmittance = {one, one, one};
+      textures.alpha = textures.opacity = one;
+    }
   }
-  WAVECREST_INLINE Vec3<Real> reflectance() const { return to<Real>(at(materials->reflectance)) * reflectanceFactor; }
-  WAVECREST_INLINE Vec3<Real> specular() const { return to<Real>(at(materials->specular)) * specularFactor; }
+  WAVECREST_INLINE Vec3<Real> reflectance() const {
+    const auto constant = to<Real>(at(materials->reflectance));
+    if constexpr (kTextured) return constant * textures.reflectance;
+    return constant;
+  }
+  WAVECREST_INLINE Vec3<Real> specular() const {
+    const auto constant = to<Real>(at(materials->specular));
+    if constexpr (kTextured) return constant * textures.specular;
+    return constant;
+  }
   WAVECREST_INLINE Vec3<Real> transmittance() const {
-    return to<Real>(at(materials->transmittance)) * transmittanceFactor;
+    const auto constant = to<Real>(at(materials->transmittance));
+    if constexpr (kTextured) return constant * textures.transmittance;
+    return constant;
   }
-  WAVECREST_INLINE Real alpha() const { return to<Real>(at(materials->alpha)) * alphaFactor; }
+  WAVECREST_INLINE Real alpha() const {
+    const auto constant = to<Real>(at(materials->alpha));
+    if constexpr (kTextured) return constant * textures.alpha;
+    return constant;
+  }
   // Interior over exterior index of a dielectric boundary.
   WAVECREST_INLINE Real eta() const { return to<Real>(at(materials->eta[0])); }
-  WAVECREST_INLINE Real opacity() const { return to<Real>(at(materials->opacity)) * opacityFactor; }
+  WAVECREST_INLINE Real opacity() const {
+    const auto constant = to<Real>(at(materials->opacity));
+    if constexpr (kTextured) return constant * textures.opacity;
+    return constant;
+  }
 };
 
 // Vertices whose BSDF has more than delta lobes: only those can be joined by next event, connections and merges.
@@ -86,8 +118,8 @@ WAVECREST_INLINE BsdfValue<Real> zeroBsdfValue() {
 
 // Change of radiance across a refracting boundary, in the direction of a camera walk; a light walk carries power, which
 // does not change (Veach 1997, 5.2).
-template <class P>
-WAVECREST_INLINE typename P::Real radianceScale(const BsdfInput<P>& input, typename P::Real etaRatio) {
+template <class P, bool kTextured>
+WAVECREST_INLINE typename P::Real radianceScale(const BsdfInput<P, kTextured>& input, typename P::Real etaRatio) {
   return input.walk == Walk::camera ? etaRatio * etaRatio : typename P::Real(1);
 }
 

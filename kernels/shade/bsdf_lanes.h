@@ -19,9 +19,14 @@ WAVECREST_INLINE BsdfSample<Real> select(Mask m, const BsdfSample<Real>& yes, co
           select(m, yes.etaRatio, no.etaRatio), (yes.specular & m) | andNot(no.specular, m)};
 }
 
+// What BSDFs of a feature set see of a surface.
+template <class P, uint32_t kFeatures>
+using BsdfInputOf = BsdfInput<P, has(kFeatures, kTextures)>;
+
 // Calls function(Bsdf{}, mask of its lanes) for each kind of the feature set that some active lane has.
-template <uint32_t kFeatures, class P, class Function, class... Bsdfs>
-WAVECREST_INLINE void forEachBsdf(const BsdfInput<P>& input, Mask active, Function&& function, BsdfList<Bsdfs...>) {
+template <uint32_t kFeatures, class P, bool kTextured, class Function, class... Bsdfs>
+WAVECREST_INLINE void forEachBsdf(const BsdfInput<P, kTextured>& input, Mask active, Function&& function,
+                                  BsdfList<Bsdfs...>) {
   const auto visit = [&](auto bsdf) HWY_ATTR {
     using Bsdf = decltype(bsdf);
     if constexpr (Bsdf::kFeature == 0 || has(kFeatures, Bsdf::kFeature)) {
@@ -38,7 +43,7 @@ constexpr bool onlyDiffuse(uint32_t features) { return (features & (kSpecularBsd
 // ---- the BSDF without its opacity -----------------------------------------------------------------------------------
 
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE BsdfValue<typename P::Real> evalOpaque(const BsdfInput<P>& input, Mask active,
+WAVECREST_INLINE BsdfValue<typename P::Real> evalOpaque(const BsdfInputOf<P, kFeatures>& input, Mask active,
                                                         Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
   BsdfValue<typename P::Real> value = zeroBsdfValue<typename P::Real>();
   forEachBsdf<kFeatures>(
@@ -51,7 +56,7 @@ WAVECREST_INLINE BsdfValue<typename P::Real> evalOpaque(const BsdfInput<P>& inpu
 
 // Lanes whose BSDF has no lobe to choose from get weight 0.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE BsdfSample<typename P::Real> sampleOpaque(const BsdfInput<P>& input, Mask active,
+WAVECREST_INLINE BsdfSample<typename P::Real> sampleOpaque(const BsdfInputOf<P, kFeatures>& input, Mask active,
                                                            Vec3<typename P::Real> fix, const Uniform4& u) {
   using Real = typename P::Real;
   const Real zero(0), one(1);
@@ -68,7 +73,7 @@ WAVECREST_INLINE BsdfSample<typename P::Real> sampleOpaque(const BsdfInput<P>& i
 
 // Lanes with a delta lobe, opacity aside.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE Mask opaqueHasDelta(const BsdfInput<P>& input, Mask active) {
+WAVECREST_INLINE Mask opaqueHasDelta(const BsdfInputOf<P, kFeatures>& input, Mask active) {
   Mask delta = noLanes();
   forEachBsdf<kFeatures>(
       input, active,
@@ -81,18 +86,18 @@ WAVECREST_INLINE Mask opaqueHasDelta(const BsdfInput<P>& input, Mask active) {
 
 // ---- what stages call -----------------------------------------------------------------------------------------------
 
-// The general set's evaluation and sampling, opacity included. Every stage shares one copy of them, in
-// bsdf_general.cpp: a dozen BSDFs inlined into each stage would cost minutes of compile time for a few per cent of
-// speed.
-template <class P>
-BsdfValue<typename P::Real> evalGeneral(const BsdfInput<P>& input, Mask active, const Vec3<typename P::Real>& fix,
-                                        const Vec3<typename P::Real>& gen);
-template <class P>
-BsdfSample<typename P::Real> sampleGeneral(const BsdfInput<P>& input, Mask active, const Vec3<typename P::Real>& fix,
-                                           const Uniform4& u);
+// Evaluation and sampling of the sets that have every BSDF, opacity included; kTextured: with textures (general) or
+// without (plain). Every stage shares one copy of them, in bsdf_general.cpp: a dozen BSDFs inlined into each stage
+// would cost minutes of compile time for a few per cent of speed.
+template <class P, bool kTextured>
+BsdfValue<typename P::Real> evalGeneral(const BsdfInput<P, kTextured>& input, Mask active,
+                                        const Vec3<typename P::Real>& fix, const Vec3<typename P::Real>& gen);
+template <class P, bool kTextured>
+BsdfSample<typename P::Real> sampleGeneral(const BsdfInput<P, kTextured>& input, Mask active,
+                                           const Vec3<typename P::Real>& fix, const Uniform4& u);
 
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE BsdfValue<typename P::Real> evalBsdf(const BsdfInput<P>& input, Mask active,
+WAVECREST_INLINE BsdfValue<typename P::Real> evalBsdf(const BsdfInputOf<P, kFeatures>& input, Mask active,
                                                       Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
   if constexpr (onlyDiffuse(kFeatures)) {
     return DiffuseBsdf::eval<P>(input, fix, gen);
@@ -104,7 +109,7 @@ WAVECREST_INLINE BsdfValue<typename P::Real> evalBsdf(const BsdfInput<P>& input,
 }
 
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE BsdfSample<typename P::Real> sampleBsdf(const BsdfInput<P>& input, Mask active,
+WAVECREST_INLINE BsdfSample<typename P::Real> sampleBsdf(const BsdfInputOf<P, kFeatures>& input, Mask active,
                                                          Vec3<typename P::Real> fix, const Uniform4& u) {
   if constexpr (onlyDiffuse(kFeatures)) {
     return DiffuseBsdf::sample<P>(input, fix, u);

@@ -16,9 +16,9 @@ struct PhongBsdf {
   static constexpr uint32_t kFeature = kLayeredBsdfs;
   static constexpr bool kHasDelta = false;
 
-  template <class P>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                           Vec3<typename P::Real> gen) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>& input,
+                                                           Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
     const Real zero(0), one(1);
     const Mask front = (fix.z > zero) & (gen.z > zero);
@@ -34,9 +34,9 @@ struct PhongBsdf {
             zeroUnless(front, mulAdd(diffuse, fix.z, fromLobe))};
   }
 
-  template <class P>
-  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                              const Uniform4& u) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,
+                                                              Vec3<typename P::Real> fix, const Uniform4& u) {
     using Real = typename P::Real;
     const Real one(1);
     const Real u1 = to<Real>(u.b), u2 = to<Real>(u.c);

@@ -13,8 +13,8 @@
 WAVECREST_SIMD_BEGIN
 
 // rho / (eta^2 (1 - X F_inside)): albedo of the base as seen through a boundary that lets everything pass.
-template <class P>
-WAVECREST_INLINE Vec3<typename P::Real> baseAlbedo(const BsdfInput<P>& input) {
+template <class P, bool kTextured>
+WAVECREST_INLINE Vec3<typename P::Real> baseAlbedo(const BsdfInput<P, kTextured>& input) {
   using Real = typename P::Real;
   const Real one(1);
   const Vec3<Real> rho = input.reflectance();
@@ -28,8 +28,9 @@ WAVECREST_INLINE Vec3<typename P::Real> baseAlbedo(const BsdfInput<P>& input) {
 }
 
 // Probability of the specular lobe where the boundary reflects the given share of the light.
-template <class P>
-WAVECREST_INLINE typename P::Real specularProbability(const BsdfInput<P>& input, typename P::Real reflectance) {
+template <class P, bool kTextured>
+WAVECREST_INLINE typename P::Real specularProbability(const BsdfInput<P, kTextured>& input,
+                                                      typename P::Real reflectance) {
   using Real = typename P::Real;
   const Real one(1);
   const Real weight = to<Real>(input.at(input.materials->specularPick));
@@ -42,9 +43,9 @@ struct PlasticBsdf {
   static constexpr uint32_t kFeature = kLayeredBsdfs;
   static constexpr bool kHasDelta = true;
 
-  template <class P>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                           Vec3<typename P::Real> gen) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>& input,
+                                                           Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
     const Real zero(0), one(1);
     const Mask front = (fix.z > zero) & (gen.z > zero);
@@ -56,9 +57,9 @@ struct PlasticBsdf {
     return {zeroUnless(front, baseAlbedo(input) * transmitted), zeroUnless(front, pdf), zeroUnless(front, pdfReverse)};
   }
 
-  template <class P>
-  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                              const Uniform4& u) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,
+                                                              Vec3<typename P::Real> fix, const Uniform4& u) {
     using Real = typename P::Real;
     const Real one(1), tiny(1e-30f);
     const Real fixFresnel = fresnelDielectric<P>(abs(fix.z), input.eta()).reflectance;

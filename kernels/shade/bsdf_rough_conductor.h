@@ -15,9 +15,9 @@ struct RoughConductor {
   static constexpr uint32_t kFeature = kThisFeature;
   static constexpr bool kHasDelta = false;
 
-  template <class P>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                           Vec3<typename P::Real> gen) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>& input,
+                                                           Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
     const auto normals = Normals<P>::fromAlpha(input.alpha());
     const Vec3<Real> h = fix + gen;
@@ -32,9 +32,9 @@ struct RoughConductor {
             zeroUnless(front, Real(0.5) * density * byGen * normals.densityFactor(gen))};
   }
 
-  template <class P>
-  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                              const Uniform4& u) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,
+                                                              Vec3<typename P::Real> fix, const Uniform4& u) {
     using Real = typename P::Real;
     const auto normals = Normals<P>::fromAlpha(input.alpha());
     const Vec3<Real> m = normals.sampleVisible(fix, to<Real>(u.b), to<Real>(u.c));

@@ -21,9 +21,9 @@ struct RoughDielectric {
   static constexpr uint32_t kFeature = kLayeredBsdfs;
   static constexpr bool kHasDelta = false;
 
-  template <class P>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                           Vec3<typename P::Real> gen) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>& input,
+                                                           Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
     const Real zero(0), one(1);
     const auto normals = Normals<P>::fromAlpha(input.alpha());
@@ -52,9 +52,9 @@ struct RoughDielectric {
             zeroUnless(possible, Real(2) * k * byGen * normals.densityFactor(gen))};
   }
 
-  template <class P>
-  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                              const Uniform4& u) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,
+                                                              Vec3<typename P::Real> fix, const Uniform4& u) {
     using Real = typename P::Real;
     const Real zero(0), one(1);
     const auto normals = Normals<P>::fromAlpha(input.alpha());
@@ -92,8 +92,8 @@ struct RoughDielectric {
 
  private:
   // Index on the far side of the boundary over that on fix's side.
-  template <class P>
-  static WAVECREST_INLINE typename P::Real etaBeyond(const BsdfInput<P>& input, Vec3<typename P::Real> fix) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE typename P::Real etaBeyond(const BsdfInput<P, kTextured>& input, Vec3<typename P::Real> fix) {
     using Real = typename P::Real;
     return select(fix.z > Real(0), input.eta(), reciprocal<P>(input.eta()));
   }

@@ -16,15 +16,15 @@ struct RoughPlastic {
   static constexpr uint32_t kFeature = kLayeredBsdfs;
   static constexpr bool kHasDelta = false;
 
-  template <class P>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                           Vec3<typename P::Real> gen) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>& input,
+                                                           Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
     return evalFrom(input, Side<P>::from(input, fix), fix, gen);
   }
 
-  template <class P>
-  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                              const Uniform4& u) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,
+                                                              Vec3<typename P::Real> fix, const Uniform4& u) {
     using Real = typename P::Real;
     const auto fixSide = Side<P>::from(input, fix);
     const Real u1 = to<Real>(u.b), u2 = to<Real>(u.c);
@@ -47,15 +47,17 @@ struct RoughPlastic {
     using Real = typename P::Real;
     Real transmittance, pick;
 
-    static WAVECREST_INLINE Side from(const BsdfInput<P>& input, Vec3<Real> v) {
+    template <bool kTextured>
+    static WAVECREST_INLINE Side from(const BsdfInput<P, kTextured>& input, Vec3<Real> v) {
       const Real transmittance = roughTransmittance(input, abs(v.z));
       return {transmittance, specularProbability(input, Real(1) - transmittance)};
     }
   };
 
   // The record's table, interpolated linearly.
-  template <class P>
-  static WAVECREST_INLINE typename P::Real roughTransmittance(const BsdfInput<P>& input, typename P::Real cosine) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE typename P::Real roughTransmittance(const BsdfInput<P, kTextured>& input,
+                                                              typename P::Real cosine) {
     using Real = typename P::Real;
     const Real x = min(cosine, Real(1)) * Real(static_cast<float>(kTransmittanceSize - 1));
     const UInt index = min(toUInt(toFloat(x)), UInt(kTransmittanceSize - 2));
@@ -64,9 +66,10 @@ struct RoughPlastic {
     return mulAdd(high - low, x - to<Real>(toFloat(index)), low);
   }
 
-  template <class P>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> evalFrom(const BsdfInput<P>& input, const Side<P>& fixSide,
-                                                               Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> evalFrom(const BsdfInput<P, kTextured>& input,
+                                                               const Side<P>& fixSide, Vec3<typename P::Real> fix,
+                                                               Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
     const Real one(1), half(0.5);
     const auto normals = Normals<P>::fromAlpha(input.alpha());

@@ -14,15 +14,15 @@ struct ThinDielectricBsdf {
   static constexpr uint32_t kFeature = kLayeredBsdfs;
   static constexpr bool kHasDelta = true;
 
-  template <class P>
-  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P>&, Vec3<typename P::Real>,
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>&, Vec3<typename P::Real>,
                                                            Vec3<typename P::Real>) {
     return zeroBsdfValue<typename P::Real>();
   }
 
-  template <class P>
-  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P>& input, Vec3<typename P::Real> fix,
-                                                              const Uniform4& u) {
+  template <class P, bool kTextured>
+  static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,
+                                                              Vec3<typename P::Real> fix, const Uniform4& u) {
     using Real = typename P::Real;
     const Real one(1);
     const Real single = fresnelDielectric<P>(abs(fix.z), input.eta()).reflectance;

@@ -10,6 +10,7 @@ WAVECREST_SIMD_BEGIN
 template <class Real>
 struct Interpolated {
   Vec3<Real> normal;  // shading normal, unit
+  Vec3<Real> base;    // the same without bump and normal maps
   Float u, v;         // texture coordinates
 };
 
@@ -22,10 +23,10 @@ struct Tangents {
 };
 
 // n' of a height field over the surface: the normal of p + h n (Blinn 1978), with the slopes of h by differences within
-// a texel.
+// a texel; on the side of the geometric normal.
 template <class Real>
 WAVECREST_INLINE Vec3<Real> bumped(const TextureRecord* textures, const float* texels, UInt id, Real scale, Float u,
-                                   Float v, Vec3<Real> normal, const Tangents<Real>& tangents) {
+                                   Float v, Vec3<Real> normal, Vec3<Real> geometric, const Tangents<Real>& tangents) {
   constexpr float kStep = 1e-4f;
   const auto height = [&](Float s, Float t) HWY_ATTR { return evalTexture(textures, texels, id, s, t).x; };
   const Float step(kStep);
@@ -35,7 +36,7 @@ WAVECREST_INLINE Vec3<Real> bumped(const TextureRecord* textures, const float* t
   const Vec3<Real> dv = mulAdd(normal, hv - dot(normal, tangents.dpDv), tangents.dpDv);
   const Vec3<Real> across = cross(du, dv);
   const Real length = sqrt(max(length2(across), Real(1e-37f)));
-  const Vec3<Real> turned = across * (copySign(Real(1), dot(across, normal)) / length);
+  const Vec3<Real> turned = across * (copySign(Real(1), dot(across, geometric)) / length);
   return turned;
 }
 
@@ -81,7 +82,7 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
                                                             const RecordLanes<PrimitiveRecord<typename P::Storage>>& at,
                                                             Mask hit, const SurfacePoint<typename P::Real>& surface) {
   using Real = typename P::Real;
-  Interpolated<Real> out{surface.normal, to<Float>(surface.u), to<Float>(surface.v)};
+  Interpolated<Real> out{surface.normal, surface.normal, to<Float>(surface.u), to<Float>(surface.v)};
   const UInt index = at(scene.primitives->attributes);
   const Mask attributed = andNot(hit, index == UInt(kNoIndex));
   const Real b1 = surface.u, b2 = surface.v, b0 = Real(1) - b1 - b2;
@@ -118,7 +119,8 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
     }
   }
 
-  if (has(kFeatures, kTextures) && scene.textures != nullptr) {
+  out.base = out.normal;
+  if (has(kFeatures, kNormalMaps) && scene.normalMaps) {
     const RecordLanes<MaterialRecord> material(scene.materials, at(scene.primitives->material));
     const UInt bumpMap = material(scene.materials->bumpTexture), normalMap = material(scene.materials->normalTexture);
     const Mask bump = andNot(hit, bumpMap == UInt(kNoIndex)), map = andNot(hit, normalMap == UInt(kNoIndex));
@@ -126,7 +128,7 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
       const Real scale = to<Real>(material(scene.materials->bumpScale));
       out.normal = select(bump,
                           bumped(scene.textures, scene.texels, select(bump, bumpMap, UInt(0u)), scale, out.u, out.v,
-                                 out.normal, tangents),
+                                 out.normal, surface.normal, tangents),
                           out.normal);
     }
     if (any(map)) {

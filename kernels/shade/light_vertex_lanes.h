@@ -16,6 +16,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> gatherLightShading(const SceneView<t
                            .fix = gatherVec3(vertices.fixX, vertices.fixY, vertices.fixZ, index),
                            .normal = gatherVec3(vertices.normalX, vertices.normalY, vertices.normalZ, index),
                            .shadingNormal = {},
+                           .baseNormal = {},
                            .offset = gather(vertices.offset, index),
                            .u = Float(0),
                            .v = Float(0),
@@ -23,6 +24,9 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> gatherLightShading(const SceneView<t
   vertex.shadingNormal = vertex.normal;
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = gatherVec3(vertices.shadingX, vertices.shadingY, vertices.shadingZ, index);
+  }
+  if constexpr (has(kFeatures, kNormalMaps)) {
+    if (scene.normalMaps) vertex.baseNormal = gatherVec3(vertices.baseX, vertices.baseY, vertices.baseZ, index);
   }
   if constexpr (has(kFeatures, kTextures)) {
     vertex.u = gather(vertices.uvU, index);

@@ -44,13 +44,12 @@ WAVECREST_INLINE void scatterBy(const StageContext<typename P::Storage>& context
     shading.bsdf.lobes = lobes;
     const UInt lane = select(active, load(paths.lane, i), UInt(0u));
     const Uniform4 u = draw(context, pathOf(context, wave, lane), Block::scatter);
-    const auto sample = sampleBsdf<P, kFeatures>(shading.bsdf, active, shading.fix, u);
+    const auto sample = shading.sampled(active, u);
     const Vec3<Real> direction = shading.toWorld(sample.gen);
     const Real genCosine = abs(dot(direction, shading.normal));
 
     Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * sample.weight;
-    Mask alive = active & shading.sidesAgree(direction, sample.gen) & (maxComponent(throughput) > Real(0)) &
-                 (sample.pdf > Real(0));
+    Mask alive = active & (maxComponent(throughput) > Real(0)) & (sample.pdf > Real(0));
     if (lobes == Lobes::specularOnly) alive = alive & sample.specular;
     if constexpr (has(kFeatures, kBidirectional) && has(kFeatures, kShadingNormals | kTextures)) {
       if (context.walk == Walk::light) {  // METHODS 3.9: the non-symmetry of interpolated normals (Veach 1997, 5.3)

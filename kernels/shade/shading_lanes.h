@@ -2,10 +2,19 @@
 #pragma once
 
 #include "kernels/shade/bsdf_lanes.h"
+#include "kernels/shade/normal_map_lanes.h"
 #include "kernels/shade/surface_lanes.h"
 #include "kernels/shade/texture_lanes.h"
 
 WAVECREST_SIMD_BEGIN
+
+// Scattering between `fix` and a direction at a vertex. Densities as in BsdfValue.
+template <class Real>
+struct Scattering {
+  Vec3<Real> f;
+  Real pdf, pdfReverse;
+  Real lightCosine;  // c(omega_l) = |omega_l . N_s|, which f is multiplied by
+};
 
 template <class P, uint32_t kFeatures>
 struct ShadingLanes {
@@ -16,7 +25,8 @@ struct ShadingLanes {
   Vec3<Real> fix;  // in the frame, after turning a two-sided surface towards it
   Real side;       // -1 where a two-sided surface was turned, else 1
   Real fixCosine;  // fix . geometric normal, signed
-  BsdfInput<P> bsdf;
+  BsdfInputOf<P, kFeatures> bsdf;
+  std::conditional_t<has(kFeatures, kNormalMaps), NormalMapLanes<Real>, NoNormalMaps> map;
 
   WAVECREST_INLINE Vec3<Real> toLocal(Vec3<Real> v) const {
     const Vec3<Real> local = frame.toLocal(v);
@@ -24,17 +34,130 @@ struct ShadingLanes {
   }
   WAVECREST_INLINE Vec3<Real> toWorld(Vec3<Real> v) const { return frame.toWorld({v.x, v.y, v.z * side}); }
 
-  // Lanes where the geometric and the shading normal agree on which side gen lies; elsewhere light would leak through
-  // the surface (Veach 1997, 5.3), so f is taken as zero.
-  WAVECREST_INLINE Mask sidesAgree(Vec3<Real> gen, Vec3<Real> genLocal) const {
-    if constexpr (has(kFeatures, kShadingNormals | kTextures)) {
-      const Real geometric = dot(gen, normal) * side;
-      const Mask genAgrees = (geometric * genLocal.z) > Real(0);
-      const Mask fixAgrees = (fixCosine * side * fix.z) > Real(0);
-      return genAgrees & fixAgrees;
-    } else {
-      return gen.x == gen.x;
+  // By the lobes that are not deltas. The shading normal alone decides what f is, as in Mitsuba 3: where the geometric
+  // normal has a direction on the other side, the ray goes through the surface.
+  WAVECREST_INLINE Scattering<Real> scattering(Mask active, Vec3<Real> direction) const {
+    const Vec3<Real> gen = toLocal(direction);
+    const BsdfValue<Real> value = evalBsdf<P, kFeatures>(bsdf, active, fix, gen);
+    Scattering<Real> out{value.f, value.pdf, value.pdfReverse, abs(bsdf.walk == Walk::camera ? gen.z : fix.z)};
+    if constexpr (has(kFeatures, kNormalMaps)) {
+      if (map.present) applyMap(active, direction, out);
     }
+    return out;
+  }
+
+  // A direction to go on. gen is in this frame; the weight of a light walk is such that METHODS 3.9 with this frame's
+  // cosines makes it f c(omega_l) / pdf with those that count.
+  WAVECREST_INLINE BsdfSample<Real> sampled(Mask active, const Uniform4& u) const {
+    if constexpr (has(kFeatures, kNormalMaps)) {
+      if (map.present) return bsdf.walk == Walk::camera ? sampledFromEye(active, u) : sampledFromLight(active, u);
+    }
+    return sampleBsdf<P, kFeatures>(bsdf, active, fix, u);
+  }
+
+ private:
+  // The vertex with the other of its two normals (normal_map_lanes.h).
+  struct View {
+    Frame<Real> frame;
+    Vec3<Real> fix;
+    Real side;
+    WAVECREST_INLINE Vec3<Real> toLocal(Vec3<Real> v) const {
+      const Vec3<Real> local = frame.toLocal(v);
+      return {local.x, local.y, local.z * side};
+    }
+    WAVECREST_INLINE Vec3<Real> toWorld(Vec3<Real> v) const { return frame.toWorld({v.x, v.y, v.z * side}); }
+  };
+  WAVECREST_INLINE View otherView() const {
+    View view{Frame<Real>::fromNormal(map.otherOf(frame.n)), {}, Real(1)};
+    view.fix = view.frame.toLocal(map.fix);
+    const Mask twoSided = (bsdf.at(bsdf.materials->flags) & UInt(kTwoSided)) == UInt(kTwoSided);
+    view.side = select(twoSided & (view.fix.z < Real(0)), Real(-1), Real(1));
+    view.fix.z = view.fix.z * view.side;
+    return view;
+  }
+  // seesThis: the eye faces the normal of this frame.
+  WAVECREST_INLINE Real lightFactor(Mask seesThis, Vec3<Real> direction) const {
+    const Vec3<Real> seen = select(seesThis, frame.n, map.otherOf(frame.n));
+    return bsdf.walk == Walk::camera ? map.lightFactor(seen, direction, map.fix)
+                                     : map.lightFactor(seen, map.fix, direction);
+  }
+
+  WAVECREST_INLINE void applyMap(Mask active, Vec3<Real> direction, Scattering<Real>& out) const {
+    const Mask mapped = active & map.lanes;
+    if (none(mapped)) return;
+    const bool camera = bsdf.walk == Walk::camera;
+    const Real one(1), share = map.lightShare(frame.n, camera ? direction : map.fix);
+    const Mask seesThis = camera ? mapped : mapped & map.sees(direction, frame.n);
+    const Mask both = andNot(mapped, seesThis & (share >= one));
+    if (any(both)) {
+      const View other = otherView();
+      const BsdfValue<Real> value = evalBsdf<P, kFeatures>(bsdf, both, other.fix, other.toLocal(direction));
+      const auto mixed = [&](Real a, Real b) HWY_ATTR { return select(both, a * share + b * (one - share), a); };
+      if (camera) {
+        out.pdfReverse = mixed(out.pdfReverse, value.pdfReverse);
+      } else {
+        const Mask seesOther = andNot(mapped, seesThis);
+        out.f = select(seesOther, value.f, out.f);
+        out.lightCosine = select(seesOther, abs(other.fix.z), out.lightCosine);
+        out.pdfReverse = select(seesOther, value.pdfReverse, out.pdfReverse);
+        out.pdf = mixed(out.pdf, value.pdf);
+      }
+    }
+    out.f = select(mapped, out.f * lightFactor(seesThis, direction), out.f);
+  }
+
+  // Lanes that went on straight through an absent surface, whatever its normal.
+  static WAVECREST_INLINE Mask passes(const BsdfSample<Real>& sample, Vec3<Real> fix) {
+    return sample.specular & (sample.gen.x == -fix.x) & (sample.gen.y == -fix.y) & (sample.gen.z == -fix.z);
+  }
+
+  WAVECREST_INLINE BsdfSample<Real> sampledFromEye(Mask active, const Uniform4& u) const {
+    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, fix, u);
+    const Mask mapped = andNot(active & map.lanes, passes(sample, fix));
+    if (none(mapped)) return sample;
+    const Vec3<Real> direction = toWorld(sample.gen);
+    const Mask finite = andNot(mapped, sample.specular);
+    const Real back = sample.pdfReverse * map.lightShare(frame.n, direction);
+    sample.pdfReverse = select(mapped, back, sample.pdfReverse);
+    if (any(finite)) sample.pdfReverse = select(finite, scattering(finite, direction).pdfReverse, sample.pdfReverse);
+    sample.weight = select(mapped, sample.weight * lightFactor(mapped, direction), sample.weight);
+    return sample;
+  }
+
+  WAVECREST_INLINE BsdfSample<Real> sampledFromLight(Mask active, const Uniform4& u) const {
+    const Real one(1), tiny(1e-12f);
+    const View other = otherView();
+    const Real share = select(map.lanes, map.lightShare(frame.n, map.fix), one);
+    const Mask drawsOther = active & (to<Real>(u.b) >= share);
+    const Real drawn = select(drawsOther, one - share, share);
+    // What is left of u.b goes into the direction.
+    const Float rest = toFloat(select(drawsOther, to<Real>(u.b) - share, to<Real>(u.b)) / drawn);
+    const Uniform4 numbers{u.a, min(max(rest, Float(0)), Float(0x1.fffffep-1f)), u.c, u.d};
+    const Vec3<Real> from = select(drawsOther, other.fix, fix);
+    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, from, numbers);
+    const Mask mapped = andNot(active & map.lanes, passes(sample, from));
+    const Vec3<Real> direction = select(drawsOther, other.toWorld(sample.gen), toWorld(sample.gen));
+    const Vec3<Real> gen = select(drawsOther, toLocal(direction), sample.gen);
+
+    const Mask seesThis = mapped & map.sees(direction, frame.n);
+    // A delta lobe joins its two directions by the drawn normal alone, which must be the one that the eye faces.
+    const Mask delta = mapped & sample.specular, joins = andNot(drawsOther, seesThis) | andNot(seesThis, drawsOther);
+    const Real turn = abs(from.z * gen.z) / max(abs(sample.gen.z * fix.z), tiny);  // of cosines to this frame's
+    const Real factor = zeroUnless(joins, turn * lightFactor(seesThis, direction) / drawn);
+    sample.weight = select(delta, sample.weight * factor, sample.weight);
+    sample.pdfReverse = select(delta, sample.pdfReverse * turn, sample.pdfReverse);
+    sample.pdf = select(delta, sample.pdf * drawn, sample.pdf);
+
+    const Mask finite = andNot(mapped, sample.specular);
+    if (any(finite)) {
+      const Scattering<Real> all = scattering(finite, direction);
+      const Real scale = all.lightCosine * abs(gen.z) / max(abs(fix.z) * all.pdf, tiny);
+      sample.weight = select(finite, all.f * scale, sample.weight);
+      sample.pdfReverse = select(finite, all.pdfReverse, sample.pdfReverse);
+      sample.pdf = select(finite, all.pdf, sample.pdf);
+    }
+    sample.gen = gen;
+    return sample;
   }
 };
 
@@ -42,6 +165,7 @@ struct ShadingLanes {
 template <class Real>
 struct VertexLanes {
   Vec3<Real> position, fix, normal, shadingNormal;
+  Vec3<Real> baseNormal;  // the shading normal without its map, in feature sets with normal maps
   Real offset;
   Float u, v;  // texture coordinates
   UInt primitive;
@@ -59,21 +183,36 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
                                .fix = {},
                                .side = Real(1),
                                .fixCosine = dot(vertex.fix, vertex.normal),
-                               .bsdf = BsdfInput<P>(scene.materials, at(scene.primitives->material))};
+                               .bsdf = BsdfInputOf<P, kFeatures>(scene.materials, at(scene.primitives->material)),
+                               .map = {}};
+  const UInt flags = s.bsdf.at(scene.materials->flags);
+  const auto flagged = [&](MaterialFlags flag) HWY_ATTR { return (flags & UInt(flag)) == UInt(flag); };
+  if constexpr (has(kFeatures, kNormalMaps)) {
+    if (scene.normalMaps && any(flagged(kMapped))) {
+      s.map = {.present = true,
+               .lanes = flagged(kMapped),
+               .flips = flagged(kFlipsNormals),
+               .softens = flagged(kSoftensTerminator),
+               .mirrorsBack = flagged(kMirrorsBack),
+               .fix = vertex.fix,
+               .base = vertex.baseNormal,
+               .mapped = vertex.shadingNormal};
+      s.frame = Frame<Real>::fromNormal(select(s.map.lanes, s.map.normalFor(vertex.fix), vertex.shadingNormal));
+    }
+  }
   if constexpr (has(kFeatures, kTextures)) {
     const MaterialRecord& slots = *scene.materials;
     const auto factor = [&](const uint32_t& slot) HWY_ATTR {
       return to<Real>(textureFactor(scene.textures, scene.texels, s.bsdf.at(slot), vertex.u, vertex.v));
     };
-    s.bsdf.reflectanceFactor = factor(slots.reflectanceTexture);
-    s.bsdf.specularFactor = factor(slots.specularTexture);
-    s.bsdf.transmittanceFactor = factor(slots.transmittanceTexture);
-    s.bsdf.alphaFactor = factor(slots.alphaTexture).x;
-    s.bsdf.opacityFactor = factor(slots.opacityTexture).x;
+    s.bsdf.textures.reflectance = factor(slots.reflectanceTexture);
+    s.bsdf.textures.specular = factor(slots.specularTexture);
+    s.bsdf.textures.transmittance = factor(slots.transmittanceTexture);
+    s.bsdf.textures.alpha = factor(slots.alphaTexture).x;
+    s.bsdf.textures.opacity = factor(slots.opacityTexture).x;
   }
   s.fix = s.frame.toLocal(vertex.fix);
-  const Mask twoSided = (s.bsdf.at(scene.materials->flags) & UInt(kTwoSided)) == UInt(kTwoSided);
-  s.side = select(twoSided & (s.fix.z < Real(0)), Real(-1), Real(1));
+  s.side = select(flagged(kTwoSided) & (s.fix.z < Real(0)), Real(-1), Real(1));
   s.fix.z = s.fix.z * s.side;
   return s;
 }
@@ -89,6 +228,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename
                            .fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i),
                            .normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i),
                            .shadingNormal = {},
+                           .baseNormal = {},
                            .offset = load(surfaces.offset, i),
                            .u = Float(0),
                            .v = Float(0),
@@ -96,6 +236,9 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename
   vertex.shadingNormal = vertex.normal;
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i);
+  }
+  if constexpr (has(kFeatures, kNormalMaps)) {
+    if (scene.normalMaps) vertex.baseNormal = loadVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, i);
   }
   if constexpr (has(kFeatures, kTextures)) {
     vertex.u = load(surfaces.uvU, i);
@@ -115,6 +258,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> gatherShading(const SceneView<typena
                            .fix = -gatherVec3(rays.directionX, rays.directionY, rays.directionZ, index),
                            .normal = gatherVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, index),
                            .shadingNormal = {},
+                           .baseNormal = {},
                            .offset = gather(surfaces.offset, index),
                            .u = Float(0),
                            .v = Float(0),
@@ -122,6 +266,9 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> gatherShading(const SceneView<typena
   vertex.shadingNormal = vertex.normal;
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = gatherVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, index);
+  }
+  if constexpr (has(kFeatures, kNormalMaps)) {
+    if (scene.normalMaps) vertex.baseNormal = gatherVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, index);
   }
   if constexpr (has(kFeatures, kTextures)) {
     vertex.u = gather(surfaces.uvU, index);

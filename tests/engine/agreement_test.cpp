@@ -89,25 +89,31 @@ Texture wavesTexture() {
   bitmap->width = bitmap->height = 16;
   bitmap->channels = 1;
   for (uint32_t i = 0; i < 16 * 16; ++i) {
-    bitmap->pixels.push_back(0.5f + 0.5f * std::sin(0.8f * static_cast<float>(i % 16)) *
-                                        std::cos(0.4f * static_cast<float>(i / 16)));
+    const uint32_t x = i % 16, y = i / 16;
+    bitmap->pixels.push_back(0.5f +
+                             0.5f * std::sin(0.8f * static_cast<float>(x)) * std::cos(0.4f * static_cast<float>(y)));
   }
   return {.kind = BitmapTexture{.bitmap = bitmap}, .toUv = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}};
 }
 
-TEST(Agreement, onBumpsAndTextures) {
+Scene bumpyRoom(double scale) {
   Scene scene =
       roomScene({.light = RoomLight::quad, .materials = RoomMaterials::rough, .width = kWidth, .height = kHeight});
   scene.textures.push_back(wavesTexture());
   for (Material& material : scene.materials) {
     material.bumpTexture = 0;
-    material.bumpScale = 0.05;
+    material.bumpScale = scale;
     if (auto* diffuse = std::get_if<Diffuse>(&material.kind); diffuse != nullptr && diffuse->reflectance.value[0] > 0) {
       diffuse->reflectance.texture = 0;
     }
   }
-  expectAgreement(scene, {Method::lt, Method::bpt, Method::vcm});
+  return scene;
 }
+
+TEST(Agreement, onBumpsAndTextures) { expectAgreement(bumpyRoom(0.05), {Method::lt, Method::bpt, Method::vcm}); }
+
+// So steep that eye and light often face different normals.
+TEST(Agreement, onSteepBumps) { expectAgreement(bumpyRoom(0.5), {Method::lt, Method::bpt, Method::vcm}); }
 
 // ---- camera and film ------------------------------------------------------------------------------------------------
 

@@ -80,7 +80,7 @@ TEST(Specialization, isTheFirstThatCoversTheScene) {
 
 // Whatever else a scene has: without textures and shading normals it does not pay for them.
 TEST(Specialization, hasTexturesAndShadingNormalsOnlyWhereTheSceneDoes) {
-  constexpr uint32_t kDear = kTextures | kShadingNormals;
+  constexpr uint32_t kDear = kTextures | kShadingNormals | kNormalMaps;
   if (!isCompiled(Precision::floating, Specialization::plain)) GTEST_SKIP() << "only general kernels are compiled";
   for (uint32_t features = 0; features <= kAllFeatures; ++features) {
     const uint32_t chosen = featuresOf(chooseSpecialization(features, Precision::floating));

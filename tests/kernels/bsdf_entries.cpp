@@ -51,8 +51,8 @@ void storeLanes(Vec3<Real> a, size_t first, size_t count, Assign&& assign) {
 }
 
 template <class P>
-BsdfInput<P> inputOf(const BsdfQuery& query) {
-  BsdfInput<P> input(query.material, UInt(0u));
+BsdfInputOf<P, kAllFeatures> inputOf(const BsdfQuery& query) {
+  BsdfInputOf<P, kAllFeatures> input(query.material, UInt(0u));
   input.walk = query.walk;
   input.lobes = query.specularOnly ? Lobes::specularOnly : Lobes::all;
   return input;
@@ -62,7 +62,7 @@ template <class P>
 void evalBlocks(const BsdfQuery& query, std::span<const Direction> fix, std::span<const Direction> gen,
                 BsdfEvaluation* out) {
   using Real = typename P::Real;
-  const BsdfInput<P> input = inputOf<P>(query);
+  const BsdfInputOf<P, kAllFeatures> input = inputOf<P>(query);
   for (size_t i = 0; i < fix.size(); i += kLanes) {
     const auto value = evalBsdf<P, kAllFeatures>(input, firstLanes(fix.size() - i), loadDirections<Real>(fix, i),
                                                  loadDirections<Real>(gen, i));
@@ -76,7 +76,7 @@ template <class P>
 void sampleBlocks(const BsdfQuery& query, std::span<const Direction> fix, std::span<const std::array<float, 3>> u,
                   BsdfDraw* out) {
   using Real = typename P::Real;
-  const BsdfInput<P> input = inputOf<P>(query);
+  const BsdfInputOf<P, kAllFeatures> input = inputOf<P>(query);
   const size_t count = fix.size();
   for (size_t i = 0; i < count; i += kLanes) {
     const auto number = [&](size_t k) { return loadLanes<Float>(i, count, [&](size_t item) { return u[item][k]; }); };

@@ -133,7 +133,7 @@ TEST(Columns, droppedColumnsCostNothing) {
 // ---- the wave -------------------------------------------------------------------------------------------------------
 
 constexpr ColumnNeeds kPlainest{
-    .shadingNormals = false, .textures = false, .rouletteScale = false, .connections = false};
+    .shadingNormals = false, .textures = false, .normalMaps = false, .rouletteScale = false, .connections = false};
 
 // Every queue of a wave has the wave's capacity and columns of its own.
 template <class Queue>
@@ -153,10 +153,11 @@ using StorageTypes = testing::Types<float, double>;
 TYPED_TEST_SUITE(WaveTest, StorageTypes);
 
 TYPED_TEST(WaveTest, bindsEveryQueueForEveryNeed) {
-  for (unsigned needs = 0; needs < 16; ++needs) {
+  for (unsigned needs = 0; needs < 32; ++needs) {
     for (const size_t capacity : {1u, 15u, 16u, 17u, 2048u}) {
       Wave<TypeParam> wave(capacity, {.shadingNormals = (needs & 1) != 0,
                                       .textures = (needs & 2) != 0,
+                                      .normalMaps = (needs & 16) != 0,
                                       .rouletteScale = (needs & 4) != 0,
                                       .connections = (needs & 8) != 0});
       expectBound(wave.rays, capacity);
@@ -180,6 +181,7 @@ TYPED_TEST(WaveTest, eachNeedCostsItsColumns) {
   };
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.shadingNormals = true; }), 3 * kReal);
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.textures = true; }), 2 * sizeof(float));
+  EXPECT_EQ(extra([](ColumnNeeds& n) { n.normalMaps = true; }), 3 * kReal);
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.rouletteScale = true; }), kReal);
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.connections = true; }), 2 * kReal + 3 * sizeof(uint32_t));
 }

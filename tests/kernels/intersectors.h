@@ -86,7 +86,11 @@ class RayBatch {
   static constexpr size_t kCapacity = 2048;
 
   RayBatch()
-      : wave(kCapacity, {.shadingNormals = false, .textures = false, .rouletteScale = false, .connections = false}) {}
+      : wave(kCapacity, {.shadingNormals = false,
+                         .textures = false,
+                         .normalMaps = false,
+                         .rouletteScale = false,
+                         .connections = false}) {}
 
   bool full() const { return wave.rays.size == kCapacity; }
   void clear() { wave.rays.size = 0; }

@@ -63,10 +63,47 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& r, LightKind kind, double are
   return light;
 }
 
+// A map of normals that lean up to 60 degrees, over red and rough metal: those flip, and red is two-sided around its
+// map.
+template <class S>
+void mapNormals(StageScene<S>& scene) {
+  constexpr uint32_t kSize = 8;
+  static const std::vector<float> texels = [] {
+    std::vector<float> list;
+    for (uint32_t i = 0; i < kSize * kSize; ++i) {
+      const double x = 1.2 * std::sin(2.1 * i), y = 1.2 * std::cos(0.7 * i);
+      const double scale = 0.5 / std::sqrt(x * x + y * y + 1);
+      for (const double component : {x, y, 1.0}) list.push_back(static_cast<float>(0.5 + scale * component));
+    }
+    return list;
+  }();
+  static const TextureRecord texture{.kind = static_cast<uint32_t>(TextureKind::bitmap),
+                                     .width = kSize,
+                                     .height = kSize,
+                                     .offset = 0,
+                                     .wrap = static_cast<uint32_t>(WrapMode::repeat),
+                                     .nearest = 1,
+                                     .toUv = {3, 0, 0, 0, 3, 0},
+                                     .color0 = {},
+                                     .color1 = {}};
+  for (MaterialRecord& m : scene.materials) {
+    for (uint32_t* slot : {&m.reflectanceTexture, &m.specularTexture, &m.transmittanceTexture, &m.alphaTexture,
+                           &m.opacityTexture, &m.normalTexture, &m.bumpTexture}) {
+      *slot = kNoIndex;
+    }
+  }
+  scene.materials[kTwoSidedRed].flags = kHasFinite | kMapped | kFlipsNormals | kSoftensTerminator | kMirrorsBack;
+  scene.materials[kRoughMetal].flags = kHasFinite | kMapped | kFlipsNormals;
+  for (const RoomMaterial mapped : {kTwoSidedRed, kRoughMetal}) scene.materials[mapped].normalTexture = 0;
+  scene.view.textures = &texture;
+  scene.view.texels = texels.data();
+  scene.view.normalMaps = true;
+}
+
 // A turned room of quads, open towards the camera; two triangles in it, and two spheres where the feature set has them.
 // Lights: a quad, a triangle, a sphere, a point and the environment. Diffuse unless `specular`.
 template <class S>
-StageScene<S> makeRoom(bool spheres, bool specular) {
+StageScene<S> makeRoom(bool spheres, bool specular, bool maps) {
   const auto p = [](double x, double y, double z) { return turned({x, y, z}); };
   std::vector<PrimitiveRecord<double>> list{
       quadPrimitive(p(-1, -1, 1), p(1, -1, 1), p(-1, -1, -1)),                     // floor
@@ -84,6 +121,9 @@ StageScene<S> makeRoom(bool spheres, bool specular) {
     list.push_back(spherePrimitive(p(0.4, -0.6, -0.3), 0.35));
     list.push_back(spherePrimitive(p(-0.5, 0.3, -0.4), 0.15));
     list[9].light = 4;
+    for (const size_t i : {8u, 9u}) {  // texture coordinates about z, from x
+      list[i].e1[2] = list[i].e2[2] = list[i].normal[0] = 1;
+    }
   }
   for (uint32_t i = 0; i < list.size(); ++i) list[i].material = i % 2;
   if (specular) {
@@ -95,6 +135,7 @@ StageScene<S> makeRoom(bool spheres, bool specular) {
   StageScene<S> scene(std::move(list));
   scene.materials = roomMaterials();
   scene.view.materials = scene.materials.data();
+  if (maps) mapNormals(scene);
 
   LightRecord<S> point{}, sky{};
   const Point at = p(0.2, 0.5, 0.8);
@@ -157,7 +198,8 @@ template <class S>
 class TwinComparison {
  public:
   TwinComparison(Isa isa, Precision precision, Specialization specialization)
-      : scene_(makeRoom<S>(covers(specialization, kCurvedShapes), covers(specialization, kSpecularBsdfs))),
+      : scene_(makeRoom<S>(covers(specialization, kCurvedShapes), covers(specialization, kSpecularBsdfs),
+                           covers(specialization, kNormalMaps))),
         twin_(findStages<S>(Isa::scalar, precision, specialization)),
         stages_(findStages<S>(isa, precision, specialization)),
         needs_(columnNeeds(specialization)) {}
@@ -192,6 +234,7 @@ class TwinComparison {
     const uint32_t features = kSpecializationFeatures[static_cast<size_t>(specialization)];
     return {.shadingNormals = (features & kShadingNormals) != 0,
             .textures = (features & kTextures) != 0,
+            .normalMaps = (features & kNormalMaps) != 0,
             .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
             .connections = (features & kBidirectional) != 0};
   }

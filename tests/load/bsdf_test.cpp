@@ -162,29 +162,30 @@ TEST(Bsdf, BumpMapTakesTextureAndScale) {
   EXPECT_EQ(material.bumpScale, 3);
 }
 
-TEST(Bsdf, BumpAndNormalMapsAreClassical) {
-  const auto bumpmap = [](const std::string& parameter) {
-    return R"(<bsdf type="bumpmap">)" + parameter + R"(<texture type="checkerboard"/><bsdf type="diffuse"/></bsdf>)";
+TEST(Bsdf, MapsFlipNormalsAndSoftenShadowsUnlessToldOtherwise) {
+  const auto mappingOf = [](const std::string& parameter) {
+    return materialOf(R"(<bsdf type="bumpmap">)" + parameter +
+                      R"(<texture type="checkerboard"/><bsdf type="diffuse"/></bsdf>)")
+        .normalMapping;
   };
-  EXPECT_EQ(materialOf(bumpmap(R"(<boolean name="use_shadowing_function" value="false"/>)")).bumpTexture, 1u);
-  expectBsdfError(bumpmap(R"(<boolean name="use_shadowing_function" value="true"/>)"), "expected false");
-  expectBsdfError(bumpmap(R"(<boolean name="flip_invalid_normals" value="true"/>)"), "expected false");
+  EXPECT_TRUE(mappingOf("").flipInvalidNormals);
+  EXPECT_TRUE(mappingOf("").shadowing);
+  const NormalMapping unflipped = mappingOf(R"(<boolean name="flip_invalid_normals" value="false"/>)");
+  EXPECT_FALSE(unflipped.flipInvalidNormals);
+  EXPECT_TRUE(unflipped.shadowing);
+  const NormalMapping hard = mappingOf(R"(<boolean name="use_shadowing_function" value="false"/>)");
+  EXPECT_TRUE(hard.flipInvalidNormals);
+  EXPECT_FALSE(hard.shadowing);
 }
 
-TEST(Bsdf, MapsThatLeaveFlippingAndShadowingOpenGiveAWarning) {
-  const auto warnings = [](const std::string& parameters) {
-    return loadBody(
-               std::string(kSphere) + R"(<bsdf type="bumpmap" id="b">)" + parameters +
-               R"(<texture type="checkerboard"/><bsdf type="diffuse"/></bsdf><shape type="cube"><ref id="b"/></shape>)")
-        .warnings;
-  };
-  const std::string flip = R"(<boolean name="flip_invalid_normals" value="false"/>)",
-                    shadow = R"(<boolean name="use_shadowing_function" value="false"/>)";
-  EXPECT_TRUE(warnings(flip + shadow).empty());
-  for (const std::string& parameters : {std::string(), flip, shadow}) {
-    ASSERT_EQ(warnings(parameters).size(), 1u) << parameters;
-    EXPECT_NE(warnings(parameters)[0].find("neither flip"), std::string::npos);
-  }
+TEST(Bsdf, MapsKnowWhetherTwoSidednessIsAroundThem) {
+  const std::string map = R"(<bsdf type="normalmap"><texture type="checkerboard" name="normalmap"/>)";
+  const Material within = materialOf(R"(<bsdf type="twosided">)" + map + R"(<bsdf type="diffuse"/></bsdf></bsdf>)");
+  EXPECT_TRUE(within.twoSided);
+  EXPECT_FALSE(within.normalMapping.aroundTwoSided);
+  const Material around = materialOf(map + R"(<bsdf type="twosided"><bsdf type="diffuse"/></bsdf></bsdf>)");
+  EXPECT_TRUE(around.twoSided);
+  EXPECT_TRUE(around.normalMapping.aroundTwoSided);
 }
 
 TEST(Bsdf, NormalMapTakesItsTexture) {
