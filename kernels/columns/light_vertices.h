@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "kernels/columns/wave.h"
@@ -48,6 +50,40 @@ struct LightVertexUse {
   bool connected = true, merged = true;
 };
 
+// The box around points; without any, low is above high.
+template <class S>
+struct Bounds {
+  std::array<S, 3> low, high;
+};
+
+template <class S>
+Bounds<S> boundsOf(const LightVertices<S>& v) {
+  constexpr S kInfinity = std::numeric_limits<S>::infinity();
+  constexpr size_t kAbreast = 16;  // independent minima and maxima, which the compiler keeps in registers
+  Bounds<S> bounds{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  const S* const columns[3] = {v.positionX, v.positionY, v.positionZ};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const S* const column = columns[axis];
+    std::array<S, kAbreast> low, high;
+    low.fill(kInfinity);
+    high.fill(-kInfinity);
+    const size_t whole = v.size / kAbreast * kAbreast;
+    for (size_t i = 0; i < whole; i += kAbreast) {
+      for (size_t k = 0; k < kAbreast; ++k) {
+        low[k] = std::min(low[k], column[i + k]);
+        high[k] = std::max(high[k], column[i + k]);
+      }
+    }
+    for (size_t i = whole; i < v.size; ++i) {
+      low[0] = std::min(low[0], column[i]);
+      high[0] = std::max(high[0], column[i]);
+    }
+    bounds.low[axis] = *std::min_element(low.begin(), low.end());
+    bounds.high[axis] = *std::max_element(high.begin(), high.end());
+  }
+  return bounds;
+}
+
 // The light vertices of one wave, in the order (depth, lane): columns for connections, records for merging. Positions
 // are columns in either case, because a photon map is built from them alone.
 //
@@ -77,8 +113,18 @@ class LightStore {
   PhotonRecord<S>* photons() { return photons_; }
   const PhotonRecord<S>* photons() const { return photons_; }
 
+  // The box around the vertices, once findBounds() has looked at them: right after they are stored, because then the
+  // caches still have them.
+  void findBounds() {
+    if (boundedSize_ == vertices.size) return;
+    bounds_ = boundsOf(vertices);
+    boundedSize_ = vertices.size;
+  }
+  const Bounds<S>& bounds() const { return bounds_; }
+
   // Forgets the vertices of the previous wave.
   void clear() {
+    boundedSize_ = kNotBounded;
     vertices.size = 0;
     depths_ = 0;
     roomUsed_ = 0;
@@ -86,6 +132,7 @@ class LightStore {
 
   // Begins the vertices of the next depth (1, 2, ...), with room for `count` of them.
   void beginDepth(size_t count) {
+    boundedSize_ = kNotBounded;
     ++depths_;
     if (firstOfDepth_.size() <= depths_) firstOfDepth_.resize(depths_ + 8);
     firstOfDepth_[depths_] = vertices.size;
@@ -199,6 +246,9 @@ class LightStore {
   bool keepsPhotons_;
   PhotonRecord<S>* photons_ = nullptr;
   size_t depths_ = 0, roomUsed_ = 0;
+  static constexpr size_t kNotBounded = ~size_t{0};
+  size_t boundedSize_ = kNotBounded;  // how many vertices bounds_ is of
+  Bounds<S> bounds_{};
   std::vector<size_t> firstOfDepth_;  // by depth
   std::vector<uint32_t> rayOfLane_;
   Arena arena_;

@@ -47,7 +47,7 @@ struct BsdfInput {
   using Real = typename P::Real;
   const MaterialRecord* materials;
   RecordLanes<MaterialRecord> at;
-  UInt kind;
+  UInt kind, flags;
   Walk walk = Walk::camera;  // from the eye, so that gen points to the light's side, or from a light
   Lobes lobes = Lobes::all;
   // Values of the textures in the slots: 1 without textures, which costs nothing.
@@ -56,11 +56,14 @@ struct BsdfInput {
 
   WAVECREST_INLINE BsdfInput(const MaterialRecord* base, UInt index) : materials(base), at(base, index) {
     kind = at(base->kind);
+    const FourColumns<Float> first = at.four(base->reflectance[0]);
+    albedo_ = {first.a, first.b, first.c};
+    flags = bits(first.d);
     const Real one(1);
     reflectanceFactor = specularFactor = transmittanceFactor = {one, one, one};
     alphaFactor = opacityFactor = one;
   }
-  WAVECREST_INLINE Vec3<Real> reflectance() const { return to<Real>(at(materials->reflectance)) * reflectanceFactor; }
+  WAVECREST_INLINE Vec3<Real> reflectance() const { return to<Real>(albedo_) * reflectanceFactor; }
   WAVECREST_INLINE Vec3<Real> specular() const { return to<Real>(at(materials->specular)) * specularFactor; }
   WAVECREST_INLINE Vec3<Real> transmittance() const {
     return to<Real>(at(materials->transmittance)) * transmittanceFactor;
@@ -69,6 +72,9 @@ struct BsdfInput {
   // Interior over exterior index of a dielectric boundary.
   WAVECREST_INLINE Real eta() const { return to<Real>(at(materials->eta[0])); }
   WAVECREST_INLINE Real opacity() const { return to<Real>(at(materials->opacity)) * opacityFactor; }
+
+ private:
+  Vec3<Float> albedo_;  // diffuse reflectance of the record
 };
 
 // Vertices whose BSDF has more than delta lobes: only those can be joined by next event, connections and merges.
