@@ -166,7 +166,6 @@ void TypedSession<S>::traceLight(size_t waveIndex, Worker& worker) {
   wave.pathCount = pathsOf(waveIndex, memory_.lightPaths);
   wave.iterationBits = 0;
   tracePass(*plan_.pipeline.lightPass, lightDone_[waveIndex], store, worker);
-  if (plan_.pipeline.photonMap) store->findBounds();
   worker.lightPaths += wave.pathCount;
   ++lightDone_[waveIndex];
 }

@@ -113,10 +113,18 @@ class LightStore {
   PhotonRecord<S>* photons() { return photons_; }
   const PhotonRecord<S>* photons() const { return photons_; }
 
-  // The box around the vertices, once findBounds() has looked at them: right after they are stored, because then the
-  // caches still have them.
+  // The box around the vertices: what storing them has included, or what findBounds() finds where somebody else has
+  // written them.
+  void include(const Bounds<S>& added, size_t count) {
+    if (boundedSize_ == 0) bounds_ = added;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      bounds_.low[axis] = std::min(bounds_.low[axis], added.low[axis]);
+      bounds_.high[axis] = std::max(bounds_.high[axis], added.high[axis]);
+    }
+    boundedSize_ += count;
+  }
   void findBounds() {
-    if (boundedSize_ == vertices.size) return;
+    if (boundedSize_ == vertices.size && boundedSize_ != 0) return;
     bounds_ = boundsOf(vertices);
     boundedSize_ = vertices.size;
   }
@@ -124,7 +132,7 @@ class LightStore {
 
   // Forgets the vertices of the previous wave.
   void clear() {
-    boundedSize_ = kNotBounded;
+    boundedSize_ = 0;
     vertices.size = 0;
     depths_ = 0;
     roomUsed_ = 0;
@@ -132,7 +140,6 @@ class LightStore {
 
   // Begins the vertices of the next depth (1, 2, ...), with room for `count` of them.
   void beginDepth(size_t count) {
-    boundedSize_ = kNotBounded;
     ++depths_;
     if (firstOfDepth_.size() <= depths_) firstOfDepth_.resize(depths_ + 8);
     firstOfDepth_[depths_] = vertices.size;
@@ -246,8 +253,7 @@ class LightStore {
   bool keepsPhotons_;
   PhotonRecord<S>* photons_ = nullptr;
   size_t depths_ = 0, roomUsed_ = 0;
-  static constexpr size_t kNotBounded = ~size_t{0};
-  size_t boundedSize_ = kNotBounded;  // how many vertices bounds_ is of
+  size_t boundedSize_ = 0;  // how many vertices bounds_ is of
   Bounds<S> bounds_{};
   std::vector<size_t> firstOfDepth_;  // by depth
   std::vector<uint32_t> rayOfLane_;

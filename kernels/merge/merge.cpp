@@ -30,41 +30,17 @@ class Merger {
   Merger(const StageContext<S>& context, Wave<S>& wave)
       : context_(context), wave_(wave), map_(*context.photons), capacity_(wave.pairs.capacity()) {}
 
-  // Lists the candidates of every vertex, and shades whenever the list is full.
+  // Lists the candidates of every vertex, and shades whenever the list is full. Buckets and photons are all over
+  // memory: some blocks are searched together, so that all of them have asked for what they will read before the first
+  // reads.
   void run() {
-    const uint32_t* const start = map_.bucketStart.data();
-    const UInt bucketMask(map_.grid.bucketMask);
-    for (size_t i = 0; i < wave_.rays.size; i += kLanes) {
-      const Mask querying = queries(i);
-      if (none(querying)) continue;
-      const Vec3<Real> position = loadVec3(wave_.rays.originX, wave_.rays.originY, wave_.rays.originZ, i);
-      const Real reach(context_.mis.radius * kReach);
-      const Cells low = cellsOf(position - Vec3<Real>{reach, reach, reach});
-      const Cells high = cellsOf(position + Vec3<Real>{reach, reach, reach});
-      const Mask twoAlongY = low.y != high.y, twoAlongZ = low.z != high.z;
-      // At most 1 wherever there are photons; far beyond them cell numbers run out of bits.
-      const UInt moreAlongX = select(querying, min(high.x - low.x, UInt(1u)), UInt(0u));
-      const Mask wide = moreAlongX == UInt(1u);
-      // All look-ups before the first that is used: buckets are all over memory.
-      const UInt zero(0u);
-      UInt bucket[4]{zero, zero, zero, zero}, first[4]{zero, zero, zero, zero}, last[4]{zero, zero, zero, zero};
-      Mask searched[4]{querying, querying & twoAlongY, querying & twoAlongZ, querying & twoAlongY & twoAlongZ};
-      for (uint32_t run = 0; run < 4; ++run) {
-        if (none(searched[run])) continue;
-        bucket[run] =
-            select(searched[run], (hash(low.y + UInt(run & 1), low.z + UInt(run >> 1)) + low.x) & bucketMask, zero);
-        const FourColumns<UInt> starts = gatherFour(start, bucket[run]);
-        first[run] = starts.a;
-        last[run] = select(wide, starts.c, starts.b);
-      }
-      for (uint32_t run = 0; run < 4; ++run) {
-        if (none(searched[run])) continue;
-        const UInt vertex = laneIndex(static_cast<uint32_t>(i)) | UInt(run << kRunShift);
-        list(vertex, first[run], last[run], searched[run]);
-        // After the last bucket comes the first.
-        const Mask wraps = searched[run] & (bucket[run] == bucketMask) & (low.x != high.x);
-        if (any(wraps)) list(vertex, UInt(start[0]), UInt(start[1]), wraps);
-      }
+    constexpr size_t kTogether = 4;
+    Search searches[kTogether];
+    for (size_t i = 0; i < wave_.rays.size; i += kTogether * kLanes) {
+      const size_t blocks = std::min(kTogether, (wave_.rays.size - i + kLanes - 1) / kLanes);
+      for (size_t k = 0; k < blocks; ++k) locate(i + k * kLanes, searches[k]);
+      for (size_t k = 0; k < blocks; ++k) lookUp(searches[k]);
+      for (size_t k = 0; k < blocks; ++k) list(i + k * kLanes, searches[k]);
     }
     shade();
   }
@@ -79,6 +55,67 @@ class Merger {
       return toUInt(to<Float>(floor((coordinate - Real(origin)) * Real(grid.inverseCell))));
     };
     return {cell(p.x, grid.origin[0]), cell(p.y, grid.origin[1]), cell(p.z, grid.origin[2])};
+  }
+
+  // The runs of photons that the vertices of a block look at, one for each row of cells: y and z of the lower cell, or
+  // one more.
+  static constexpr uint32_t kRuns = 4;
+  struct Search {
+    UInt bucket[kRuns], first[kRuns], last[kRuns];
+    Mask searched[kRuns];
+    Mask wide;  // two cells along x
+  };
+  template <class T>
+  static WAVECREST_INLINE void prefetch(const T* base, UInt index) {
+    HWY_ALIGN uint32_t at[kLanes];
+    store(index, at);
+    for (const uint32_t lane : at) __builtin_prefetch(base + lane);
+  }
+
+  // Which buckets.
+  WAVECREST_INLINE void locate(size_t i, Search& search) const {
+    const Mask querying = queries(i);
+    const Vec3<Real> position = loadVec3(wave_.rays.originX, wave_.rays.originY, wave_.rays.originZ, i);
+    const Real reach(context_.mis.radius * kReach);
+    const Cells low = cellsOf(position - Vec3<Real>{reach, reach, reach});
+    const Cells high = cellsOf(position + Vec3<Real>{reach, reach, reach});
+    const Mask twoAlongY = low.y != high.y, twoAlongZ = low.z != high.z;
+    search.wide = querying & (low.x != high.x);
+    search.searched[0] = querying;
+    search.searched[1] = querying & twoAlongY;
+    search.searched[2] = querying & twoAlongZ;
+    search.searched[3] = querying & twoAlongY & twoAlongZ;
+    const UInt bucketMask(map_.grid.bucketMask);
+    for (uint32_t run = 0; run < kRuns; ++run) {
+      if (none(search.searched[run])) continue;
+      const UInt bucket = (hash(low.y + UInt(run & 1), low.z + UInt(run >> 1)) + low.x) & bucketMask;
+      search.bucket[run] = select(search.searched[run], bucket, UInt(0u));
+      prefetch(map_.bucketStart.data(), search.bucket[run]);
+    }
+  }
+
+  // Which photons.
+  WAVECREST_INLINE void lookUp(Search& search) const {
+    for (uint32_t run = 0; run < kRuns; ++run) {
+      if (none(search.searched[run])) continue;
+      const FourColumns<UInt> starts = gatherFour(map_.bucketStart.data(), search.bucket[run]);
+      search.first[run] = starts.a;
+      search.last[run] = select(search.wide, starts.c, starts.b);
+      prefetch(map_.keys, search.first[run]);
+    }
+  }
+
+  WAVECREST_INLINE void list(size_t i, const Search& search) {
+    const uint32_t* const start = map_.bucketStart.data();
+    for (uint32_t run = 0; run < kRuns; ++run) {
+      const Mask searched = search.searched[run];
+      if (none(searched)) continue;
+      const UInt vertex = laneIndex(static_cast<uint32_t>(i)) | UInt(run << kRunShift);
+      list(vertex, search.first[run], search.last[run], searched);
+      // After the last bucket comes the first.
+      const Mask wraps = searched & search.wide & (search.bucket[run] == UInt(map_.grid.bucketMask));
+      if (any(wraps)) list(vertex, UInt(start[0]), UInt(start[1]), wraps);
+    }
   }
 
   static WAVECREST_INLINE UInt hash(UInt y, UInt z) {

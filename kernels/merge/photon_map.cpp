@@ -16,6 +16,8 @@ namespace {
 constexpr uint32_t kPartitions = 64;
 // Each stream's next lines are asked for so many photons before they are written.
 constexpr size_t kPhotonsAhead = 8;
+// Photons whose buckets are found before they are counted: they are still in the first cache then.
+constexpr size_t kCountedAtOnce = 1024;
 constexpr uint32_t kMinBuckets = 1u << 12;
 // Entries of bucketStart after the last bucket's: searches read four from the bucket on.
 constexpr size_t kStartsBeyond = 4;
@@ -75,10 +77,16 @@ void PhotonMap<S>::countBuckets(Stores stores, const ForEach& forEach) {
   forEach(storeCount, [&](size_t i) {
     const LightVertices<S>& v = stores[i]->vertices;
     std::array<uint32_t, kPartitions> counts{};
-    for (size_t k = 0; k < v.size; ++k) {
-      const uint32_t bucket = bucketOf(grid, v.positionX[k], v.positionY[k], v.positionZ[k]);
-      buckets_[firstVertex_[i] + k] = bucket;
-      ++counts[bucket >> partitionShift];
+    // Apart, so that the compiler can do the first with vectors.
+    uint32_t* const buckets = buckets_ + firstVertex_[i];
+    const PhotonGrid<S> place = grid;
+    const S* const x = v.positionX;
+    const S* const y = v.positionY;
+    const S* const z = v.positionZ;
+    for (size_t begin = 0; begin < v.size; begin += kCountedAtOnce) {
+      const size_t end = std::min(begin + kCountedAtOnce, v.size);
+      for (size_t k = begin; k < end; ++k) buckets[k] = bucketOf(place, x[k], y[k], z[k]);
+      for (size_t k = begin; k < end; ++k) ++counts[buckets[k] >> partitionShift];
     }
     for (uint32_t p = 0; p < kPartitions; ++p) offsets_[p * storeCount + i + 1] = counts[p];
   });
@@ -115,6 +123,8 @@ void PhotonMap<S>::sortPartition(size_t partition, size_t storeCount) {
   const uint32_t firstBucket = static_cast<uint32_t>(partition) * perPartition, count = end - first;
   // Counts, then a running sum that leaves in start[b] where bucket b ends. Dealing from the last photon to the first
   // moves each end down to where its bucket begins, and keeps the order within it.
+  constexpr uint32_t kKeysPerLine = 64 / sizeof(PhotonKey<S>);
+  for (uint32_t k = first; k < end; k += kKeysPerLine) __builtin_prefetch(keys_ + k, 1);
   std::fill_n(start, perPartition, 0);
   for (uint32_t k = 0; k < count; ++k) ++start[bucket[k] - firstBucket];
   uint32_t place = first;
