@@ -84,7 +84,7 @@ struct alignas(16 * sizeof(S)) VertexRow {
 };
 
 // Rows of the live paths' vertices. Written by the first stage of a depth that joins them (packVertexRows), emptied by
-// arrive. Dropped without connections.
+// those that put other vertices into the wave (arrive, takeEnds). Dropped without connections.
 template <class S>
 struct VertexRows : Columns<VertexRows<S>> {
   Column<VertexRow<S>> row;
