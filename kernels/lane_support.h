@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/sampling/random_lanes.h"
+#include "kernels/simd/interleave.h"
 #include "kernels/simd/vec3.h"
 #include "kernels/stages.h"
 
@@ -165,10 +166,17 @@ class RecordLanes {
   WAVECREST_INLINE Float operator()(const float (&field)[kSize], UInt element) const {
     return gather(field, wordIndex_ + element);
   }
-  template <class S>
-  WAVECREST_INLINE auto operator()(const S (&field)[3]) const {
-    return Vec3<decltype((*this)(field[0]))>{(*this)(field[0]), (*this)(field[1]), (*this)(field[2])};
+  WAVECREST_INLINE Vec3<Double> operator()(const double (&field)[3]) const {
+    return {(*this)(field[0]), (*this)(field[1]), (*this)(field[2])};
   }
+  // Reads one word more: of a record's last field that is padding, which alignment gives it.
+  WAVECREST_INLINE Vec3<Float> operator()(const float (&field)[3]) const {
+    const FourColumns<Float> row = four(field[0]);
+    return {row.a, row.b, row.c};
+  }
+  // A field and the three numbers after it.
+  WAVECREST_INLINE FourColumns<Float> four(const float& first) const { return gatherFour(&first, wordIndex_); }
+  WAVECREST_INLINE FourColumns<Double> four(const double& first) const { return gatherFour(&first, longIndex_); }
 
  private:
   UInt wordIndex_, longIndex_;

@@ -67,9 +67,9 @@ constexpr uint32_t kTransmittanceSize = 64;
 
 // Slots of a material that may be textured hold 1, or a constant by which the texture's value is multiplied.
 struct alignas(128) MaterialRecord {
-  uint32_t kind;           // BsdfKind
-  uint32_t flags;          // MaterialFlags
   float reflectance[3];    // diffuse albedo
+  uint32_t flags;          // MaterialFlags; here, because lanes read both at once
+  uint32_t kind;           // BsdfKind
   float specular[3];       // specular reflectance factor
   float transmittance[3];  // specular transmittance factor
   float eta[3], k[3];      // conductor: complex IOR; dielectric, plastic: eta[0] = interior / exterior

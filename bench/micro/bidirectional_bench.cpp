@@ -219,6 +219,7 @@ void measureMerge(benchmark::State& state, Stage<float> merge, Stage<float> twin
   size_t tile = 0;
   for (auto _ : state) {
     Wave<float>& next = *waves[tile++ % kTiles];
+    next.vertexRows.size = 0;  // as arrive leaves them
     timer.start();
     merge(context, next);
     state.SetIterationTime(timer.seconds());

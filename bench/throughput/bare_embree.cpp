@@ -59,6 +59,7 @@ class Comparison {
       return true;
     });
   }
+  bool possible() const { return used_.tracesWholeMethod(); }
   size_t waveCount() const { return used_.waveCount(); }
   BareEmbree result() const { return {closest_.rates(), anyHit_.rates()}; }
 
@@ -140,11 +141,12 @@ class Comparison {
 
 }  // namespace
 
-BareEmbree measureBareEmbree(const Scene& scene, const RenderSettings& settings, double seconds) {
+std::optional<BareEmbree> measureBareEmbree(const Scene& scene, const RenderSettings& settings, double seconds) {
   RenderSettings own = settings;
   own.precision = Precision::floating;
   const FlushToZero flushToZero;
   Comparison comparison(scene, own);
+  if (!comparison.possible()) return std::nullopt;
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
   size_t wave = 0;

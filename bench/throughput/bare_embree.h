@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "engine/render_settings.h"
 
@@ -31,6 +32,7 @@ struct BareEmbree {
 };
 
 // Takes waves from all over the film until `seconds` have passed, at least one. Precision is float: Embree's.
-BareEmbree measureBareEmbree(const Scene& scene, const RenderSettings& settings, double seconds);
+// Nothing for a method with light paths or chains.
+std::optional<BareEmbree> measureBareEmbree(const Scene& scene, const RenderSettings& settings, double seconds);
 
 }  // namespace wavecrest

@@ -15,7 +15,7 @@ namespace wavecrest {
 struct MethodResult {
   Method method{};
   Speed speed;
-  BareEmbree bareEmbree;
+  std::optional<BareEmbree> bareEmbree;  // where it can be measured
   PolicyTable policies;
 };
 

@@ -90,10 +90,13 @@ Json toJson(const SceneResult& result) {
   Json methods = Json::array();
   for (const MethodResult& row : result.methods) {
     Json method = speedJson(row.speed);
-    method["bare_embree"] = {{"closest", ratesJson(row.bareEmbree.closest)},
-                             {"any_hit", ratesJson(row.bareEmbree.anyHit)},
-                             {"rays_per_second", row.bareEmbree.raysPerSecond()},
-                             {"render_ratio", row.speed.raysPerCpuSecond / row.bareEmbree.raysPerSecond()}};
+    if (row.bareEmbree) {
+      const BareEmbree& embree = *row.bareEmbree;
+      method["bare_embree"] = {{"closest", ratesJson(embree.closest)},
+                               {"any_hit", ratesJson(embree.anyHit)},
+                               {"rays_per_second", embree.raysPerSecond()},
+                               {"render_ratio", row.speed.raysPerCpuSecond / embree.raysPerSecond()}};
+    }
     method["policies"] = policiesJson(row.policies);
     Json entry = {{"method", std::string(toString(row.method))}};
     entry.update(method);

@@ -92,7 +92,7 @@ std::string toText(const SceneResult& result) {
   for (const MethodResult& method : result.methods) {
     line(text, "{} {} {}x{}", result.scene, toString(method.method), result.width, result.height);
     addSpeed(text, method.speed, result.threads);
-    addBareEmbree(text, method.bareEmbree, method.speed);
+    if (method.bareEmbree) addBareEmbree(text, *method.bareEmbree, method.speed);
     addPolicies(text, method.policies);
   }
   addErrors(text, result);

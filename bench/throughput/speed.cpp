@@ -15,7 +15,12 @@ std::vector<uint32_t> threadCounts(uint32_t most) {
   return counts;
 }
 
-std::vector<StageShare> stageShares(const std::vector<Slice>& slices, const StageTimes& times,
+// The part of a slice's time that a stage took: the session's clock goes on while another program has the core, but so
+// it does in the other stages.
+double shareOf(const Slice& slice, size_t stage) { return slice.stages[stage].seconds / slice.seconds; }
+
+// times: of each stage in CPU time, if they could be measured apart. slices: of one thread.
+std::vector<StageShare> stageShares(const std::vector<Slice>& slices, const std::optional<StageTimes>& times,
                                     double pathsPerCpuSecond) {
   std::vector<StageShare> shares;
   for (size_t i = 0; i < slices.front().stages.size(); ++i) {
@@ -25,9 +30,14 @@ std::vector<StageShare> stageShares(const std::vector<Slice>& slices, const Stag
     share.itemsPerPath = medianOf(slices, [&](const Slice& s) { return items(s) / static_cast<double>(s.paths); });
     share.laneUse =
         medianOf(slices, [&](const Slice& s) { return items(s) / static_cast<double>(s.stages[i].laneSlots); });
-    share.nsPerPath = 1e9 * times.seconds[i] / static_cast<double>(times.paths);
+    if (times) {
+      share.nsPerPath = 1e9 * times->seconds[i] / static_cast<double>(times->paths);
+      share.share = 1e-9 * share.nsPerPath * pathsPerCpuSecond;
+    } else {
+      share.share = medianOf(slices, [i](const Slice& s) { return shareOf(s, i); });
+      share.nsPerPath = 1e9 * share.share / pathsPerCpuSecond;
+    }
     share.nsPerItem = share.itemsPerPath > 0 ? share.nsPerPath / share.itemsPerPath : 0;
-    share.share = 1e-9 * share.nsPerPath * pathsPerCpuSecond;
   }
   return shares;
 }

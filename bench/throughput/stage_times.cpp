@@ -8,9 +8,10 @@
 
 namespace wavecrest {
 
-StageTimes measureStageTimes(const Scene& scene, const RenderSettings& settings, double seconds) {
+std::optional<StageTimes> measureStageTimes(const Scene& scene, const RenderSettings& settings, double seconds) {
   const FlushToZero flushToZero;
   WaveCapture<float> capture(scene, settings);
+  if (!capture.tracesWholeMethod()) return std::nullopt;
   Wave<float> wave = capture.makeWave();
   const size_t stages = capture.plan().pipeline.cameraPass.stageCount();
   StageTimes times{.paths = 0, .seconds = std::vector<double>(stages)};

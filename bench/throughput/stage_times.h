@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/render_settings.h"
@@ -17,6 +18,7 @@ struct StageTimes {
 };
 
 // Traces waves from all over the film until `seconds` have passed, at least one of them. Precision float or fast.
-StageTimes measureStageTimes(const Scene& scene, const RenderSettings& settings, double seconds);
+// Nothing for a method with light paths or chains, whose stages need what a session has built before them.
+std::optional<StageTimes> measureStageTimes(const Scene& scene, const RenderSettings& settings, double seconds);
 
 }  // namespace wavecrest

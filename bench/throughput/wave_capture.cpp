@@ -27,6 +27,7 @@ StageContext<S> WaveCapture<S>::context(uint32_t depth) {
 
 template <class S>
 void WaveCapture<S>::trace(Wave<S>& wave, size_t index, const Observer& observer) {
+  if (!tracesWholeMethod()) throw std::logic_error("WaveCapture: a method with light paths or chains");
   wave.firstPath = index * pixelsPerWave();
   wave.pathCount = std::min(pixelsPerWave(), pixels_.size() - wave.firstPath) << iterationBits_;
   wave.iterationBits = iterationBits_;

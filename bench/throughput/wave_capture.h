@@ -1,7 +1,8 @@
 // WaveCapture: real waves of a render, stopped at the stage one wants to look at.
 //
-// in: a scene and settings, as for a session. out: waves as they are right before a stage of the pipeline runs, and the
-// context to run stages on them. For microbenchmarks, and for recording the rays that a render traces.
+// in: a scene and settings, as for a session, of a method without light paths and chains. out: waves as they are right
+// before a stage of the pipeline runs, and the context to run stages on them. For microbenchmarks, and for recording
+// the rays that a render traces.
 #pragma once
 
 #include <functional>
@@ -16,6 +17,9 @@ template <class S>
 class WaveCapture {
  public:
   WaveCapture(const Scene& scene, const RenderSettings& settings);
+
+  // Whether camera paths are all that the method traces: only then do waves come without what is built before them.
+  bool tracesWholeMethod() const { return !plan_.pipeline.lightPass && !plan_.pipeline.chains; }
 
   // Called with the name of the stage that is about to run, its depth and the wave; returns whether to go on.
   using Observer = std::function<bool(std::string_view stage, uint32_t depth, Wave<S>& wave)>;

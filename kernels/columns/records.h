@@ -76,6 +76,24 @@ struct VertexPairs : Columns<VertexPairs> {
   auto all() { return std::tie(camera, light); }
 };
 
+// A camera vertex as joining it with light vertices reads it, sixteen numbers in one place: what pairs it with comes to
+// it again and again. material: index into SceneView::materials, exact as a number.
+template <class S>
+struct alignas(16 * sizeof(S)) VertexRow {
+  S position[3], offset;
+  S fix[3], material;  // fix: unit direction back along the path
+  S normal[3], dVCM;   // dVCM, dVC: as in PathStates
+  S throughput[3], dVC;
+};
+
+// Rows of the live paths' vertices. Written by the first stage of a depth that joins them (packVertexRows), emptied by
+// those that put other vertices into the wave (arrive, takeEnds). Dropped without connections.
+template <class S>
+struct VertexRows : Columns<VertexRows<S>> {
+  Column<VertexRow<S>> row;
+  auto all() { return std::tie(row); }
+};
+
 // Radiance gathered by each lane of the wave in this iteration.
 template <class S>
 struct Radiance : Columns<Radiance<S>> {

@@ -22,6 +22,7 @@ struct Wave {
   PathStates<S> paths;
   ShadowRays<S> shadowRays;
   VertexPairs pairs;
+  VertexRows<S> vertexRows;
   Radiance<S> radiance;
   size_t firstPath = 0;  // index of lane 0 in the iteration's order of paths
   size_t pathCount = 0;  // lanes in use when the wave began
@@ -47,6 +48,7 @@ struct Wave {
       paths.light.drop();
       pairs.camera.drop();
       pairs.light.drop();
+      vertexRows.row.drop();
     }
     size_t bytes = 0;
     forEachQueue([&](auto& queue) { bytes += queue.bytes(capacity); });
@@ -62,6 +64,7 @@ struct Wave {
     surfaces.size = other.surfaces.size;
     paths.size = other.paths.size;
     shadowRays.size = other.shadowRays.size;
+    vertexRows.size = other.vertexRows.size;
     radiance.size = other.radiance.size;
     firstPath = other.firstPath;
     pathCount = other.pathCount;
@@ -83,6 +86,7 @@ struct Wave {
     function(paths);
     function(shadowRays);
     function(pairs);
+    function(vertexRows);
     function(radiance);
   }
 

@@ -6,6 +6,9 @@
 //
 // Deep light vertices are rare, so the pairs are first packed: 16 lanes then work on 16 pairs, whatever the depth. The
 // packing begins at the light vertices, which get fewer from depth to depth. Depths are called in order from 1.
+//
+// The light's end comes in order and its columns are copied; the camera's end is read as a row. Neither is gathered
+// column by column, which would cost several times the arithmetic.
 #include <algorithm>
 
 #include "kernels/shade/light_vertex_lanes.h"
@@ -24,46 +27,18 @@ WAVECREST_INLINE void placeLanes(const StageContext<S>& context, const Wave<S>& 
   for (uint32_t i = 0; i < wave.rays.size; ++i) rayOfLane[lane[i]] = i;
 }
 
-// The pairs of light vertices of this depth and the camera vertices of their lanes, in the order of lanes.
-template <class S>
-WAVECREST_INLINE size_t packPairs(const StageContext<S>& context, Wave<S>& wave) {
-  const size_t first = context.light->firstOf(context.lightDepth), end = context.light->firstOf(context.lightDepth + 1);
-  size_t out = 0;
-  for (size_t i = first; i < end; i += kLanes) {
-    const Mask active = firstLanes(end - i);
-    const UInt lane = select(active, loadUnaligned(context.light->vertices.lane + i), UInt(0u));
-    const UInt camera = gather(static_cast<const uint32_t*>(context.light->rayOfLane()), lane);
-    const Mask paired = andNot(active, camera == UInt(kNoIndex));
-    append(camera, paired, wave.pairs.camera, out);
-    append(laneIndex(static_cast<uint32_t>(i)), paired, wave.pairs.light, out);
-    out += countTrue(paired);
-  }
-  return out;
-}
-
-}  // namespace
-
+// Weighted contributions of packed pairs, as shadow rays from index `out` on; returns the index after the last.
 template <class P, uint32_t kFeatures>
-void connectVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+size_t joinPacked(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
+                  const PackedLightVertices<P, kFeatures>& packed, size_t out) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
-  const auto& vertices = context.light->vertices;
   auto& shadow = wave.shadowRays;
-  shadow.size = 0;
-  // k = len_L + 1 + len_C
-  if (context.depth + context.lightDepth + 1 > context.limits.maxDepth) return;
-  if (context.lightDepth == 1) placeLanes(context, wave);
-  const size_t count = packPairs(context, wave);
-  context.counters->connections += count;
-  shadow.claim(count);
-  size_t out = 0;
-
-  for (size_t i = 0; i < count; i += kLanes) {
-    const Mask active = firstLanes(count - i);
-    const UInt camera = select(active, load(wave.pairs.camera, i), UInt(0u));
-    const UInt light = select(active, load(wave.pairs.light, i), UInt(0u));
-    const auto z = gatherShading<P, kFeatures>(scene, wave, camera);
-    const auto y = gatherLightShading<P, kFeatures>(scene, vertices, light);
+  for (size_t i = 0; i < packed.size(); i += kLanes) {
+    const Mask active = firstLanes(packed.size() - i);
+    const auto row = gatherRows<P, kFeatures>(scene, wave, packed.camera(i, active));
+    const auto& z = row.shading;
+    const auto y = packed.shading(scene, i, active);
 
     const Vec3<Real> segment = y.position - z.position;
     const Real dist2 = length2(segment);
@@ -74,22 +49,17 @@ void connectVertices(const StageContext<typename P::Storage>& context, Wave<type
 
     const Real inverseDist2 = inverseDistance * inverseDistance;
     const Real zCosine = abs(dot(towards, z.normal)), yCosine = abs(dot(towards, y.normal));
-    const MisSums<Real> zMis{gather(wave.paths.dVCM, camera), gather(wave.paths.dVC, camera),
-                             gather(wave.paths.dVM, camera)};
-    const Real wLight =
-        zBsdf.pdf * yCosine * inverseDist2 *
-        behindConnection(context.mis, context.lightDepth, gatherLightMis(vertices, light), yBsdf.pdfReverse);
+    const Real wLight = zBsdf.pdf * yCosine * inverseDist2 *
+                        behindConnection(context.mis, context.lightDepth, packed.mis(i), yBsdf.pdfReverse);
     const Real wCamera =
-        yBsdf.pdf * zCosine * inverseDist2 * behindConnection(context.mis, context.depth, zMis, zBsdf.pdfReverse);
+        yBsdf.pdf * zCosine * inverseDist2 *
+        behindConnection(context.mis, context.depth, MisSums<Real>{row.dVCM, row.dVC, Real(0)}, zBsdf.pdfReverse);
 
     // c_z(omega_l) at the camera's end; c_y(omega_l) / n_y(omega_l) n_y(to z) at the light's (METHODS 3.9).
     const Real yFix = max(abs(y.fixCosine), Real(1e-6f));
     const Real scale = zBsdf.lightCosine * yBsdf.lightCosine * yCosine * inverseDist2 *
                        reciprocal<P>(yFix * (Real(1) + wLight + wCamera));
-    const auto& paths = wave.paths;
-    const Vec3<Real> contribution =
-        gatherVec3(paths.throughputR, paths.throughputG, paths.throughputB, camera) * zBsdf.f *
-        gatherVec3(vertices.throughputR, vertices.throughputG, vertices.throughputB, light) * yBsdf.f * scale;
+    const Vec3<Real> contribution = row.throughput * zBsdf.f * packed.throughput(i) * yBsdf.f * scale;
 
     // Points closer than the offsets that keep their segment off the surfaces cannot be told apart.
     const Real apart = Real(4) * (z.offset + y.offset);
@@ -100,9 +70,43 @@ void connectVertices(const StageContext<typename P::Storage>& context, Wave<type
     appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
     appendVec3(to<Float>(end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
     appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
-    append(gather(paths.lane, camera), lit, shadow.target, out);
+    append(packed.lane(i), lit, shadow.target, out);
     out += countTrue(lit);
   }
+  return out;
+}
+
+}  // namespace
+
+template <class P, uint32_t kFeatures>
+void connectVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  auto& shadow = wave.shadowRays;
+  shadow.size = 0;
+  // k = len_L + 1 + len_C
+  if (context.depth + context.lightDepth + 1 > context.limits.maxDepth) return;
+  if (context.lightDepth == 1) placeLanes(context, wave);
+  packVertexRows(*context.scene, wave);
+
+  const auto& vertices = context.light->vertices;
+  const size_t first = context.light->firstOf(context.lightDepth), end = context.light->firstOf(context.lightDepth + 1);
+  shadow.claim(std::min(end - first, wave.rays.size));
+  PackedLightVertices<P, kFeatures> packed;
+  size_t out = 0;
+  const auto join = [&] {
+    context.counters->connections += packed.size();
+    out = joinPacked<P, kFeatures>(context, wave, packed, out);
+    packed.clear();
+  };
+  for (size_t i = first; i < end; i += kLanes) {
+    const Mask active = firstLanes(end - i);
+    const UInt lane = select(active, loadUnaligned(vertices.lane + i), UInt(0u));
+    const UInt camera = gather(static_cast<const uint32_t*>(context.light->rayOfLane()), lane);
+    const Mask paired = andNot(active, camera == UInt(kNoIndex));
+    if (none(paired)) continue;
+    if (!packed.hasRoom()) join();
+    packed.push(vertices, i, paired, camera);
+  }
+  join();
   shadow.size = out;
 }
 

@@ -2,7 +2,9 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: the next depth of the context's light
 // store [<= n], in lane order; nothing else changes. The caller has begun the depth, so there is room.
+#include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "kernels/columns/light_vertices.h"
 #include "kernels/mis_lanes.h"
@@ -36,10 +38,11 @@ WAVECREST_INLINE void prefetchColumns(size_t out, const Column<Items>&... column
 }
 
 template <class S>
-WAVECREST_INLINE void appendPosition(const Rays<S>& rays, size_t i, Mask m, LightVertices<S>& vertices, size_t out) {
+WAVECREST_INLINE auto appendPosition(const Rays<S>& rays, size_t i, Mask m, LightVertices<S>& vertices, size_t out) {
   prefetchColumns(out, vertices.positionX, vertices.positionY, vertices.positionZ);
-  appendVec3(loadVec3(rays.originX, rays.originY, rays.originZ, i), m, vertices.positionX, vertices.positionY,
-             vertices.positionZ, out);
+  const auto position = loadVec3(rays.originX, rays.originY, rays.originZ, i);
+  appendVec3(position, m, vertices.positionX, vertices.positionY, vertices.positionZ, out);
+  return position;
 }
 
 // What connections need beside the position.
@@ -81,6 +84,39 @@ WAVECREST_INLINE void appendColumns(const StageContext<S>& context, const Wave<S
   append(UInt(context.depth), m, vertices.depth, out);
   append(load(paths.lane, i), m, vertices.lane, out);
 }
+
+// The box around the positions of several blocks.
+template <class Real>
+class BoundsLanes {
+ public:
+  WAVECREST_INLINE BoundsLanes() {
+    const Real infinity(std::numeric_limits<double>::infinity());
+    low_ = {infinity, infinity, infinity};
+    high_ = {-infinity, -infinity, -infinity};
+  }
+  WAVECREST_INLINE void include(Vec3<Real> p, Mask m) {
+    low_ = {min(low_.x, select(m, p.x, low_.x)), min(low_.y, select(m, p.y, low_.y)),
+            min(low_.z, select(m, p.z, low_.z))};
+    high_ = {max(high_.x, select(m, p.x, high_.x)), max(high_.y, select(m, p.y, high_.y)),
+             max(high_.z, select(m, p.z, high_.z))};
+  }
+  WAVECREST_INLINE Bounds<typename Real::Storage> overLanes() const {
+    using S = typename Real::Storage;
+    Bounds<S> bounds;
+    const Real* const columns[2][3] = {{&low_.x, &low_.y, &low_.z}, {&high_.x, &high_.y, &high_.z}};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      HWY_ALIGN S low[kLanes], high[kLanes];
+      store(*columns[0][axis], low);
+      store(*columns[1][axis], high);
+      bounds.low[axis] = *std::min_element(low, low + kLanes);
+      bounds.high[axis] = *std::max_element(high, high + kLanes);
+    }
+    return bounds;
+  }
+
+ private:
+  Vec3<Real> low_, high_;
+};
 
 // The same vertices as records: the block is transposed by fours, then each lane's pieces go to its record.
 template <class P, uint32_t kFeatures>
@@ -127,13 +163,15 @@ void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<t
   auto& vertices = store.vertices;
   const bool columns = store.keepsColumns(), photons = store.keepsPhotons();
   size_t out = vertices.size;
+  BoundsLanes<typename P::Real> bounds;
   for (size_t i = 0; i < wave.rays.size; i += kLanes) {
     const Mask joinable = joinableVertices<kFeatures>(*context.scene, wave, i);
-    appendPosition(wave.rays, i, joinable, vertices, out);
+    bounds.include(appendPosition(wave.rays, i, joinable, vertices, out), joinable);
     if (columns) appendColumns<kFeatures>(context, wave, i, joinable, vertices, out);
     if (photons) appendPhotons<P, kFeatures>(context, wave, i, joinable, store.photons() + out);
     out += countTrue(joinable);
   }
+  store.include(bounds.overLanes(), out - vertices.size);
   context.counters->lightVertices += out - vertices.size;
   vertices.claim(out - vertices.size);
 }

@@ -37,8 +37,9 @@ WAVECREST_INLINE Closest closestHit(const SmallSceneView& scene, Vec3<Float> ori
     const auto uncentred = [](Float x, Float scale) HWY_ATTR {
       return min(max(mulAdd(x, scale, Float(0.5f)), Float(kInset)), Float(1 - kInset));
     };
-    best.u = uncentred(best.u, at(scene.limits->uScale));
-    best.v = uncentred(best.v, at(scene.limits->vScale));
+    const auto limits = at.four(scene.limits->uScale);
+    best.u = uncentred(best.u, limits.a);
+    best.v = uncentred(best.v, limits.b);
   }
   for (const uint32_t end = index + scene.triangleCount; index < end; ++index) {
     const PlaneHit hit = intersectPlane(scene.planes[index], origin, direction);

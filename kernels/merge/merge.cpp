@@ -24,42 +24,23 @@ template <class P, uint32_t kFeatures>
 class Merger {
   using Real = typename P::Real;
   using S = typename P::Storage;
+  static constexpr uint32_t kRowNumbers = sizeof(VertexRow<S>) / sizeof(S);
 
  public:
   Merger(const StageContext<S>& context, Wave<S>& wave)
       : context_(context), wave_(wave), map_(*context.photons), capacity_(wave.pairs.capacity()) {}
 
-  // Lists the candidates of every vertex, and shades whenever the list is full.
+  // Lists the candidates of every vertex, and shades whenever the list is full. Buckets and photons are all over
+  // memory: some blocks are searched together, so that all of them have asked for what they will read before the first
+  // reads.
   void run() {
-    const uint32_t* const start = map_.bucketStart.data();
-    const UInt bucketMask(map_.grid.bucketMask);
-    for (size_t i = 0; i < wave_.rays.size; i += kLanes) {
-      const Mask querying = queries(i);
-      if (none(querying)) continue;
-      const Vec3<Real> position = loadVec3(wave_.rays.originX, wave_.rays.originY, wave_.rays.originZ, i);
-      const Real reach(context_.mis.radius * kReach);
-      const Cells low = cellsOf(position - Vec3<Real>{reach, reach, reach});
-      const Cells high = cellsOf(position + Vec3<Real>{reach, reach, reach});
-      const Mask twoAlongY = low.y != high.y, twoAlongZ = low.z != high.z;
-      // At most 1 wherever there are photons; far beyond them cell numbers run out of bits.
-      const UInt moreAlongX = select(querying, min(high.x - low.x, UInt(1u)), UInt(0u));
-      // All look-ups before the first that is used: buckets are all over memory.
-      UInt bucket[4]{low.x, low.x, low.x, low.x}, first[4]{low.x, low.x, low.x, low.x},
-          last[4]{low.x, low.x, low.x, low.x};
-      Mask searched[4]{querying, querying & twoAlongY, querying & twoAlongZ, querying & twoAlongY & twoAlongZ};
-      for (uint32_t run = 0; run < 4; ++run) {
-        bucket[run] =
-            select(searched[run], (hash(low.y + UInt(run & 1), low.z + UInt(run >> 1)) + low.x) & bucketMask, UInt(0u));
-        first[run] = gather(start, bucket[run]);
-        last[run] = gather(start, bucket[run] + UInt(1u) + moreAlongX);
-      }
-      for (uint32_t run = 0; run < 4; ++run) {
-        const UInt vertex = laneIndex(static_cast<uint32_t>(i)) | UInt(run << kRunShift);
-        list(vertex, first[run], last[run], searched[run]);
-        // After the last bucket comes the first.
-        const Mask wraps = searched[run] & (bucket[run] == bucketMask) & (low.x != high.x);
-        if (any(wraps)) list(vertex, UInt(start[0]), UInt(start[1]), wraps);
-      }
+    constexpr size_t kTogether = 4;
+    Search searches[kTogether];
+    for (size_t i = 0; i < wave_.rays.size; i += kTogether * kLanes) {
+      const size_t blocks = std::min(kTogether, (wave_.rays.size - i + kLanes - 1) / kLanes);
+      for (size_t k = 0; k < blocks; ++k) locate(i + k * kLanes, searches[k]);
+      for (size_t k = 0; k < blocks; ++k) lookUp(searches[k]);
+      for (size_t k = 0; k < blocks; ++k) list(i + k * kLanes, searches[k]);
     }
     shade();
   }
@@ -74,6 +55,67 @@ class Merger {
       return toUInt(to<Float>(floor((coordinate - Real(origin)) * Real(grid.inverseCell))));
     };
     return {cell(p.x, grid.origin[0]), cell(p.y, grid.origin[1]), cell(p.z, grid.origin[2])};
+  }
+
+  // The runs of photons that the vertices of a block look at, one for each row of cells: y and z of the lower cell, or
+  // one more.
+  static constexpr uint32_t kRuns = 4;
+  struct Search {
+    UInt bucket[kRuns], first[kRuns], last[kRuns];
+    Mask searched[kRuns];
+    Mask wide;  // two cells along x
+  };
+  template <class T>
+  static WAVECREST_INLINE void prefetch(const T* base, UInt index) {
+    HWY_ALIGN uint32_t at[kLanes];
+    store(index, at);
+    for (const uint32_t lane : at) __builtin_prefetch(base + lane);
+  }
+
+  // Which buckets.
+  WAVECREST_INLINE void locate(size_t i, Search& search) const {
+    const Mask querying = queries(i);
+    const Vec3<Real> position = loadVec3(wave_.rays.originX, wave_.rays.originY, wave_.rays.originZ, i);
+    const Real reach(context_.mis.radius * kReach);
+    const Cells low = cellsOf(position - Vec3<Real>{reach, reach, reach});
+    const Cells high = cellsOf(position + Vec3<Real>{reach, reach, reach});
+    const Mask twoAlongY = low.y != high.y, twoAlongZ = low.z != high.z;
+    search.wide = querying & (low.x != high.x);
+    search.searched[0] = querying;
+    search.searched[1] = querying & twoAlongY;
+    search.searched[2] = querying & twoAlongZ;
+    search.searched[3] = querying & twoAlongY & twoAlongZ;
+    const UInt bucketMask(map_.grid.bucketMask);
+    for (uint32_t run = 0; run < kRuns; ++run) {
+      if (none(search.searched[run])) continue;
+      const UInt bucket = (hash(low.y + UInt(run & 1), low.z + UInt(run >> 1)) + low.x) & bucketMask;
+      search.bucket[run] = select(search.searched[run], bucket, UInt(0u));
+      prefetch(map_.bucketStart.data(), search.bucket[run]);
+    }
+  }
+
+  // Which photons.
+  WAVECREST_INLINE void lookUp(Search& search) const {
+    for (uint32_t run = 0; run < kRuns; ++run) {
+      if (none(search.searched[run])) continue;
+      const FourColumns<UInt> starts = gatherFour(map_.bucketStart.data(), search.bucket[run]);
+      search.first[run] = starts.a;
+      search.last[run] = select(search.wide, starts.c, starts.b);
+      prefetch(map_.keys, search.first[run]);
+    }
+  }
+
+  WAVECREST_INLINE void list(size_t i, const Search& search) {
+    const uint32_t* const start = map_.bucketStart.data();
+    for (uint32_t run = 0; run < kRuns; ++run) {
+      const Mask searched = search.searched[run];
+      if (none(searched)) continue;
+      const UInt vertex = laneIndex(static_cast<uint32_t>(i)) | UInt(run << kRunShift);
+      list(vertex, search.first[run], search.last[run], searched);
+      // After the last bucket comes the first.
+      const Mask wraps = searched & search.wide & (search.bucket[run] == UInt(map_.grid.bucketMask));
+      if (any(wraps)) list(vertex, UInt(start[0]), UInt(start[1]), wraps);
+    }
   }
 
   static WAVECREST_INLINE UInt hash(UInt y, UInt z) {
@@ -113,10 +155,13 @@ class Merger {
     }
   }
 
-  // Of the listed candidates keeps those within the radius, each found through its own cell; packs vertex and photon to
+  WAVECREST_INLINE Vec3<Real> positionOf(UInt key) const {
+    return RecordLanes<PhotonKey<S>>(map_.keys, key)(map_.keys->position);
+  }
+
+  // Of the listed candidates keeps those within the radius, each found through its own cell; packs vertex and key to
   // the front of the list.
   size_t selectNear() {
-    const auto& rays = wave_.rays;
     const Real radius(context_.mis.radius);
     const Real reach(context_.mis.radius * kReach);
     size_t out = 0;
@@ -124,17 +169,17 @@ class Merger {
       const Mask active = firstLanes(count_ - i);
       const UInt camera = select(active, load(wave_.pairs.camera, i), UInt(0u));
       const UInt vertex = camera & UInt(kIndexMask), run = shiftRight<kRunShift>(camera);
-      const RecordLanes<PhotonKey<S>> at(map_.keys, select(active, load(wave_.pairs.light, i), UInt(0u)));
-      const Vec3<Real> p = at(map_.keys->position);
-      const auto z = gatherVec3(rays.originX, rays.originY, rays.originZ, vertex);
+      const UInt key = select(active, load(wave_.pairs.light, i), UInt(0u));
+      const Vec3<Real> p = positionOf(key);
+      const FourColumns<Real> place = gatherFour(wave_.vertexRows.row[0].position, vertex * UInt(kRowNumbers));
+      const Vec3<Real> z{place.a, place.b, place.c};
       Mask near = active & (length2(p - z) <= radius * radius);
       if (none(near)) continue;
       const Cells low = cellsOf(z - Vec3<Real>{reach, reach, reach}), own = cellsOf(p);
       near = near & ((own.x == low.x) | (own.x == low.x + UInt(1u))) & (own.y == low.y + (run & UInt(1u))) &
              (own.z == low.z + shiftRight<1>(run));
-      const UInt photon = at(map_.keys->photon);
       append(vertex, near, wave_.pairs.camera, out);
-      append(photon, near, wave_.pairs.light, out);
+      append(key, near, wave_.pairs.light, out);
       out += countTrue(near);
     }
     return out;
@@ -146,7 +191,7 @@ class Merger {
   };
   WAVECREST_INLINE void fetch(size_t i, size_t count, Photons& photons) const {
     for (size_t k = 0; k < kLanes; ++k) {
-      photons.records[k] = map_.recordOf(wave_.pairs.light[i + std::min(k, count - 1)]);
+      photons.records[k] = map_.recordOf(map_.keys[wave_.pairs.light[i + std::min(k, count - 1)]].photon);
     }
   }
 
@@ -155,7 +200,6 @@ class Merger {
     count_ = 0;
     const auto& scene = *context_.scene;
     const auto& paths = wave_.paths;
-    const auto& rays = wave_.rays;
     const Real radius(context_.mis.radius);
     // k = len_L + len_C
     const Real longest(static_cast<float>(context_.limits.maxDepth - context_.depth));
@@ -165,28 +209,27 @@ class Merger {
       fetch(i, near - i, photons);
       const UInt vertex = select(active, load(wave_.pairs.camera, i), UInt(0u));
       const RecordLanes<PhotonRecord<S>> at(photons.records, laneIndex());
-      const auto shading = gatherShading<P, kFeatures>(scene, wave_, vertex);
-      const Vec3<Real> between =
-          at(photons.records->position) - gatherVec3(rays.originX, rays.originY, rays.originZ, vertex);
+      const auto row = gatherRows<P, kFeatures>(scene, wave_, vertex);
+      const auto& shading = row.shading;
+      const Vec3<Real> between = at(photons.records->position) - shading.position;
+      const FourColumns<Real> sums = at.four(photons.records->dVCM);  // dVCM, dVM, depth
       // On the same side of the surface, and not beyond the path length.
       const Mask accepted = active & (dot(shading.normal, at(photons.records->normal)) > Real(0.1f)) &
-                            (abs(dot(between, shading.normal)) <= radius * Real(0.5f)) &
-                            (at(photons.records->depth) <= longest);
+                            (abs(dot(between, shading.normal)) <= radius * Real(0.5f)) & (sums.c <= longest);
       context_.counters->merges += countTrue(accepted);
       const Vec3<Real> direction = at(photons.records->direction);
       const auto bsdf = shading.scattering(active, direction);
       Real weight(1);
       if (context_.mis.mergeWeights) {
-        const MisSums<Real> light{at(photons.records->dVCM), Real(0), at(photons.records->dVM)};
-        const MisSums<Real> camera{gather(paths.dVCM, vertex), Real(0), gather(paths.dVM, vertex)};
+        const MisSums<Real> light{sums.a, Real(0), sums.b};
+        const MisSums<Real> camera{row.dVCM, Real(0), gather(paths.dVM, vertex)};
         // Where connections compete (kVC > 0) every edge may be one; else kVC is 0 and the switch does not matter.
         const Real wLight = behindMerge(context_.mis, 1, light, bsdf.pdf);
         const Real wCamera = behindMerge(context_.mis, 1, camera, bsdf.pdfReverse);
         weight = reciprocal<P>(Real(1) + wLight + wCamera);
       }
       const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine;
-      const Vec3<Real> contribution = gatherVec3(paths.throughputR, paths.throughputG, paths.throughputB, vertex) *
-                                      bsdf.f * at(photons.records->power) * scale;
+      const Vec3<Real> contribution = row.throughput * bsdf.f * at(photons.records->power) * scale;
       addRadiance(wave_.radiance, gather(paths.lane, vertex), accepted, contribution);
     }
   }
@@ -203,6 +246,7 @@ class Merger {
 template <class P, uint32_t kFeatures>
 void merge(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   if (context.depth + 1 > context.limits.maxDepth || context.photons->size == 0) return;
+  packVertexRows(*context.scene, wave);
   Merger<P, kFeatures>(context, wave).run();
 }
 

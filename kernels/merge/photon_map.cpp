@@ -16,7 +16,11 @@ namespace {
 constexpr uint32_t kPartitions = 64;
 // Each stream's next lines are asked for so many photons before they are written.
 constexpr size_t kPhotonsAhead = 8;
+// Photons whose buckets are found before they are counted: they are still in the first cache then.
+constexpr size_t kCountedAtOnce = 1024;
 constexpr uint32_t kMinBuckets = 1u << 12;
+// Entries of bucketStart after the last bucket's: searches read four from the bucket on.
+constexpr size_t kStartsBeyond = 4;
 
 // Iterations differ a little in how many photons they have: some room, so that memory is allocated once.
 constexpr size_t withRoom(size_t count) { return count + count / 16; }
@@ -28,39 +32,6 @@ constexpr double kPhotonsPerCell = 0.5;
 // About every second bucket is filled: searches of a hashed grid read what else is in their buckets, but with more of
 // them the table outgrows the caches.
 constexpr size_t bucketCount(size_t photons) { return std::max<size_t>(std::bit_ceil(photons), kMinBuckets); }
-
-template <class S>
-struct Bounds {
-  std::array<S, 3> low, high;
-};
-
-template <class S>
-Bounds<S> boundsOf(const LightVertices<S>& v) {
-  constexpr S kInfinity = std::numeric_limits<S>::infinity();
-  constexpr size_t kAbreast = 16;  // independent minima and maxima, which the compiler keeps in registers
-  Bounds<S> bounds{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  const S* const columns[3] = {v.positionX, v.positionY, v.positionZ};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const S* const column = columns[axis];
-    std::array<S, kAbreast> low, high;
-    low.fill(kInfinity);
-    high.fill(-kInfinity);
-    const size_t whole = v.size / kAbreast * kAbreast;
-    for (size_t i = 0; i < whole; i += kAbreast) {
-      for (size_t k = 0; k < kAbreast; ++k) {
-        low[k] = std::min(low[k], column[i + k]);
-        high[k] = std::max(high[k], column[i + k]);
-      }
-    }
-    for (size_t i = whole; i < v.size; ++i) {
-      low[0] = std::min(low[0], column[i]);
-      high[0] = std::max(high[0], column[i]);
-    }
-    bounds.low[axis] = *std::min_element(low.begin(), low.end());
-    bounds.high[axis] = *std::max_element(high.begin(), high.end());
-  }
-  return bounds;
-}
 
 template <class S>
 uint32_t bucketOf(const PhotonGrid<S>& grid, S x, S y, S z) {
@@ -75,16 +46,15 @@ uint32_t bucketOf(const PhotonGrid<S>& grid, S x, S y, S z) {
 
 template <class S>
 void PhotonMap<S>::placeGrid(Stores stores, double radius, const ForEach& forEach) {
-  std::vector<Bounds<S>> bounds(stores.size());
-  forEach(stores.size(), [&](size_t i) { bounds[i] = boundsOf(stores[i]->vertices); });
+  forEach(stores.size(), [&](size_t i) { stores[i]->findBounds(); });
   // A shade wider than the diameter, so that rounding cannot put the far end of a query into a third cell.
   double cell = 2 * radius * (1 + 1e-4);
   double extent[3];
   for (size_t axis = 0; axis < 3; ++axis) {
     S low = std::numeric_limits<S>::infinity(), high = -low;
-    for (const Bounds<S>& b : bounds) {
-      low = std::min(low, b.low[axis]);
-      high = std::max(high, b.high[axis]);
+    for (const LightStore<S>* store : stores) {
+      low = std::min(low, store->bounds().low[axis]);
+      high = std::max(high, store->bounds().high[axis]);
     }
     // A margin below keeps every cell that a query touches at or above zero.
     grid.origin[axis] = low - static_cast<S>(4 * radius);
@@ -107,10 +77,16 @@ void PhotonMap<S>::countBuckets(Stores stores, const ForEach& forEach) {
   forEach(storeCount, [&](size_t i) {
     const LightVertices<S>& v = stores[i]->vertices;
     std::array<uint32_t, kPartitions> counts{};
-    for (size_t k = 0; k < v.size; ++k) {
-      const uint32_t bucket = bucketOf(grid, v.positionX[k], v.positionY[k], v.positionZ[k]);
-      buckets_[firstVertex_[i] + k] = bucket;
-      ++counts[bucket >> partitionShift];
+    // Apart, so that the compiler can do the first with vectors.
+    uint32_t* const buckets = buckets_ + firstVertex_[i];
+    const PhotonGrid<S> place = grid;
+    const S* const x = v.positionX;
+    const S* const y = v.positionY;
+    const S* const z = v.positionZ;
+    for (size_t begin = 0; begin < v.size; begin += kCountedAtOnce) {
+      const size_t end = std::min(begin + kCountedAtOnce, v.size);
+      for (size_t k = begin; k < end; ++k) buckets[k] = bucketOf(place, x[k], y[k], z[k]);
+      for (size_t k = begin; k < end; ++k) ++counts[buckets[k] >> partitionShift];
     }
     for (uint32_t p = 0; p < kPartitions; ++p) offsets_[p * storeCount + i + 1] = counts[p];
   });
@@ -145,15 +121,22 @@ void PhotonMap<S>::sortPartition(size_t partition, size_t storeCount) {
   uint32_t* const start = bucketStart.data() + partition * perPartition;
   const uint32_t* const bucket = dealtBuckets_ + first;
   const uint32_t firstBucket = static_cast<uint32_t>(partition) * perPartition, count = end - first;
-  std::vector<uint32_t> next(perPartition, 0);
-  for (uint32_t k = 0; k < count; ++k) ++next[bucket[k] - firstBucket];
+  // Counts, then a running sum that leaves in start[b] where bucket b ends. Dealing from the last photon to the first
+  // moves each end down to where its bucket begins, and keeps the order within it.
+  constexpr uint32_t kKeysPerLine = 64 / sizeof(PhotonKey<S>);
+  for (uint32_t k = first; k < end; k += kKeysPerLine) __builtin_prefetch(keys_ + k, 1);
+  std::fill_n(start, perPartition, 0);
+  for (uint32_t k = 0; k < count; ++k) ++start[bucket[k] - firstBucket];
   uint32_t place = first;
-  for (uint32_t b = 0; b < perPartition; ++b) {
-    start[b] = place;
-    place += next[b];
-    next[b] = start[b];
+  for (uint32_t b = 0; b < perPartition; b += 4) {
+    const uint32_t one = start[b], two = one + start[b + 1], three = two + start[b + 2], four = three + start[b + 3];
+    start[b] = place + one;
+    start[b + 1] = place + two;
+    start[b + 2] = place + three;
+    start[b + 3] = place + four;
+    place += four;
   }
-  for (uint32_t k = 0; k < count; ++k) keys_[next[bucket[k] - firstBucket]++] = dealt_[first + k];
+  for (uint32_t k = count; k-- > 0;) keys_[--start[bucket[k] - firstBucket]] = dealt_[first + k];
 }
 
 template <class S>
@@ -186,7 +169,7 @@ void PhotonMap<S>::build(Stores stores, double radius, const ForEach& forEach) {
   size = firstVertex_.back();
   reserve(size);
   const size_t buckets = bucketCount(size);
-  bucketStart.resize(buckets + 2);
+  bucketStart.resize(buckets + kStartsBeyond);
   if (size == 0) {
     grid = {.origin = {}, .inverseCell = 1, .bucketMask = static_cast<uint32_t>(buckets) - 1};
     std::fill(bucketStart.begin(), bucketStart.end(), 0);
@@ -196,7 +179,7 @@ void PhotonMap<S>::build(Stores stores, double radius, const ForEach& forEach) {
   countBuckets(stores, forEach);
   dealToPartitions(stores, forEach);
   forEach(kPartitions, [&](size_t partition) { sortPartition(partition, stores.size()); });
-  bucketStart[buckets] = bucketStart[buckets + 1] = static_cast<uint32_t>(size);
+  std::fill(bucketStart.begin() + static_cast<std::ptrdiff_t>(buckets), bucketStart.end(), static_cast<uint32_t>(size));
 }
 
 template <class S>
@@ -207,7 +190,7 @@ size_t PhotonMap<S>::arenaBytes(size_t capacity) {
 
 template <class S>
 size_t PhotonMap<S>::bytesFor(size_t count) {
-  return arenaBytes(withRoom(count)) + (bucketCount(count) + 2) * sizeof(uint32_t);
+  return arenaBytes(withRoom(count)) + (bucketCount(count) + kStartsBeyond) * sizeof(uint32_t);
 }
 
 template <class S>

@@ -51,7 +51,7 @@ struct PhotonMap {
   std::vector<const PhotonRecord<S>*> records;  // of each store
   uint32_t storeShift = 0;
   // The photons of buckets b and b + 1 are those from bucketStart[b] up to bucketStart[b + 2]; after the last bucket
-  // there is an empty one.
+  // there are some empty ones, because searches read four entries at once.
   std::vector<uint32_t> bucketStart;
 
   // Runs body(i) for i in [0, count), in any order and on any threads.

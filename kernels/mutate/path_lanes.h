@@ -61,7 +61,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
                            .offset = gather(v.offset, at),
                            .u = Float(0),
                            .v = Float(0),
-                           .primitive = gather(v.primitive, at)};
+                           .material = materialOf(scene, gather(v.primitive, at))};
   vertex.shadingNormal = vertex.normal;
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = gatherVec3(v.shadingX, v.shadingY, v.shadingZ, at);

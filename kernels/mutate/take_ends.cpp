@@ -57,6 +57,7 @@ WAVECREST_INLINE void copyVertices(const Wave<S>& from, size_t i, Mask m, Wave<S
 template <class S>
 void setSize(Wave<S>& wave, size_t size) {
   wave.rays.size = wave.paths.size = wave.hits.size = wave.surfaces.size = size;
+  wave.vertexRows.size = 0;
 }
 
 // Appends the lanes of m to a wave of ends.

@@ -204,6 +204,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
   }
   context.counters->misses += misses;
   rays.size = paths.size = wave.hits.size = surfaces.size = out;
+  wave.vertexRows.size = 0;
 }
 
 WAVECREST_SIMD_END

@@ -61,13 +61,16 @@ struct BsdfInput {
   using Real = typename P::Real;
   const MaterialRecord* materials;
   RecordLanes<MaterialRecord> at;
-  UInt kind;
+  UInt kind, flags;
   Walk walk = Walk::camera;  // from the eye, so that gen points to the light's side, or from a light
   Lobes lobes = Lobes::all;
   std::conditional_t<kTextured, TextureFactors<Real>, NoTextureFactors> textures;
 
   WAVECREST_INLINE BsdfInput(const MaterialRecord* base, UInt index) : materials(base), at(base, index) {
     kind = at(base->kind);
+    const FourColumns<Float> first = at.four(base->reflectance[0]);
+    albedo_ = {first.a, first.b, first.c};
+    flags = bits(first.d);
     if constexpr (kTextured) {
       const Real one(1);
       textures.reflectance = textures.specular = textures.transmittance = {one, one, one};
@@ -75,7 +78,7 @@ struct BsdfInput {
     }
   }
   WAVECREST_INLINE Vec3<Real> reflectance() const {
-    const auto constant = to<Real>(at(materials->reflectance));
+    const auto constant = to<Real>(albedo_);
     if constexpr (kTextured) return constant * textures.reflectance;
     return constant;
   }
@@ -101,6 +104,9 @@ struct BsdfInput {
     if constexpr (kTextured) return constant * textures.opacity;
     return constant;
   }
+
+ private:
+  Vec3<Float> albedo_;  // diffuse reflectance of the record
 };
 
 // Vertices whose BSDF has more than delta lobes: only those can be joined by next event, connections and merges.

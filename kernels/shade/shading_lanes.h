@@ -1,6 +1,8 @@
 // The vertex of each lane as BSDFs want it: material, shading frame and the direction back along the path in it.
 #pragma once
 
+#include <cstring>
+
 #include "kernels/shade/bsdf_lanes.h"
 #include "kernels/shade/normal_map_lanes.h"
 #include "kernels/shade/surface_lanes.h"
@@ -168,14 +170,18 @@ struct VertexLanes {
   Vec3<Real> baseNormal;  // the shading normal without its map, in feature sets with normal maps
   Real offset;
   Float u, v;  // texture coordinates
-  UInt primitive;
+  UInt material;
 };
+
+template <class S>
+WAVECREST_INLINE UInt materialOf(const SceneView<S>& scene, UInt primitive) {
+  return RecordLanes<PrimitiveRecord<S>>(scene.primitives, primitive)(scene.primitives->material);
+}
 
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P::Storage>& scene,
                                                       const VertexLanes<typename P::Real>& vertex) {
   using Real = typename P::Real;
-  const RecordLanes<PrimitiveRecord<typename P::Storage>> at(scene.primitives, vertex.primitive);
   ShadingLanes<P, kFeatures> s{.position = vertex.position,
                                .normal = vertex.normal,
                                .offset = vertex.offset,
@@ -183,10 +189,9 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
                                .fix = {},
                                .side = Real(1),
                                .fixCosine = dot(vertex.fix, vertex.normal),
-                               .bsdf = BsdfInputOf<P, kFeatures>(scene.materials, at(scene.primitives->material)),
+                               .bsdf = BsdfInputOf<P, kFeatures>(scene.materials, vertex.material),
                                .map = {}};
-  const UInt flags = s.bsdf.at(scene.materials->flags);
-  const auto flagged = [&](MaterialFlags flag) HWY_ATTR { return (flags & UInt(flag)) == UInt(flag); };
+  const auto flagged = [&](MaterialFlags flag) HWY_ATTR { return (s.bsdf.flags & UInt(flag)) == UInt(flag); };
   if constexpr (has(kFeatures, kNormalMaps)) {
     if (scene.normalMaps && any(flagged(kMapped))) {
       s.map = {.present = true,
@@ -232,7 +237,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename
                            .offset = load(surfaces.offset, i),
                            .u = Float(0),
                            .v = Float(0),
-                           .primitive = select(active, load(wave.hits.primitive, i), UInt(0u))};
+                           .material = materialOf(scene, select(active, load(wave.hits.primitive, i), UInt(0u)))};
   vertex.shadingNormal = vertex.normal;
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i);
@@ -247,23 +252,68 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename
   return shadingOf<P, kFeatures>(scene, vertex);
 }
 
-// The live paths' vertices at any indices.
-template <class P, uint32_t kFeatures>
-WAVECREST_INLINE ShadingLanes<P, kFeatures> gatherShading(const SceneView<typename P::Storage>& scene,
-                                                          const Wave<typename P::Storage>& wave, UInt index) {
-  using Real = typename P::Real;
+// The rows of the live paths' vertices, if no stage has written them at this depth yet.
+template <class S>
+WAVECREST_INLINE void packVertexRows(const SceneView<S>& scene, Wave<S>& wave) {
+  auto& rows = wave.vertexRows;
+  if (rows.size != 0) return;
   const auto& rays = wave.rays;
   const auto& surfaces = wave.surfaces;
-  VertexLanes<Real> vertex{.position = gatherVec3(rays.originX, rays.originY, rays.originZ, index),
-                           .fix = -gatherVec3(rays.directionX, rays.directionY, rays.directionZ, index),
-                           .normal = gatherVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, index),
+  const auto& paths = wave.paths;
+  const size_t count = rays.size;
+  rows.claim(count);
+  for (size_t i = 0; i < count; i += kLanes) {
+    const auto position = loadVec3(rays.originX, rays.originY, rays.originZ, i);
+    const auto fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
+    const auto normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
+    const auto throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
+    using Real = decltype(position.x);
+    const UInt primitive = select(firstLanes(count - i), load(wave.hits.primitive, i), UInt(0u));
+    constexpr size_t kPieces = 4;
+    HWY_ALIGN S pieces[kPieces][4 * kLanes];
+    storeInterleaved(position.x, position.y, position.z, load(surfaces.offset, i), pieces[0]);
+    storeInterleaved(fix.x, fix.y, fix.z, to<Real>(toFloat(materialOf(scene, primitive))), pieces[1]);
+    storeInterleaved(normal.x, normal.y, normal.z, load(paths.dVCM, i), pieces[2]);
+    storeInterleaved(throughput.x, throughput.y, throughput.z, load(paths.dVC, i), pieces[3]);
+    static_assert(sizeof(VertexRow<S>) == kPieces * 4 * sizeof(S));
+    // The tail of a column has room for whole blocks.
+    S* const out = rows.row[i].position;
+    for (size_t k = 0; k < kLanes; ++k) {
+      for (size_t piece = 0; piece < kPieces; ++piece) {
+        std::memcpy(out + 4 * (kPieces * k + piece), &pieces[piece][4 * k], 4 * sizeof(S));
+      }
+    }
+  }
+}
+
+// The live paths' vertices at any indices, and what else their rows hold.
+template <class P, uint32_t kFeatures>
+struct RowLanes {
+  using Real = typename P::Real;
+  ShadingLanes<P, kFeatures> shading;
+  Vec3<Real> throughput;
+  Real dVCM, dVC;
+};
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::Storage>& scene,
+                                                   const Wave<typename P::Storage>& wave, UInt index) {
+  using Real = typename P::Real;
+  using S = typename P::Storage;
+  const VertexRow<S>& row = *wave.vertexRows.row;
+  const UInt start = index * UInt(sizeof(row) / sizeof(S));
+  const FourColumns<Real> place = gatherFour(row.position, start), back = gatherFour(row.fix, start),
+                          side = gatherFour(row.normal, start), carried = gatherFour(row.throughput, start);
+  VertexLanes<Real> vertex{.position = {place.a, place.b, place.c},
+                           .fix = {back.a, back.b, back.c},
+                           .normal = {side.a, side.b, side.c},
                            .shadingNormal = {},
                            .baseNormal = {},
-                           .offset = gather(surfaces.offset, index),
+                           .offset = place.d,
                            .u = Float(0),
                            .v = Float(0),
-                           .primitive = gather(wave.hits.primitive, index)};
+                           .material = toUInt(to<Float>(back.d))};
   vertex.shadingNormal = vertex.normal;
+  const auto& surfaces = wave.surfaces;
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = gatherVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, index);
   }
@@ -274,7 +324,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> gatherShading(const SceneView<typena
     vertex.u = gather(surfaces.uvU, index);
     vertex.v = gather(surfaces.uvV, index);
   }
-  return shadingOf<P, kFeatures>(scene, vertex);
+  return {shadingOf<P, kFeatures>(scene, vertex), {carried.a, carried.b, carried.c}, side.d, carried.d};
 }
 
 WAVECREST_SIMD_END

@@ -131,9 +131,12 @@ class Recount : public WalkVisitor<float> {
     EXPECT_EQ(sorted, unsorted);
   }
 
-  // Records hold what columns do.
+  // Records hold what columns do, and the box that was kept along with them is theirs.
   void compareRecords() {
     const auto& v = walk_.light().vertices;
+    const Bounds<float> kept = walk_.light().bounds(), found = boundsOf(v);
+    EXPECT_EQ(kept.low, found.low);
+    EXPECT_EQ(kept.high, found.high);
     for (size_t i = 0; i < v.size; ++i) {
       const PhotonRecord<float>& record = walk_.light().photons()[i];
       EXPECT_EQ(std::tie(record.position[0], record.position[1], record.position[2]),

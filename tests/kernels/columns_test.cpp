@@ -166,6 +166,7 @@ TYPED_TEST(WaveTest, bindsEveryQueueForEveryNeed) {
       expectBound(wave.paths, capacity);
       expectBound(wave.shadowRays, capacity);
       expectBound(wave.pairs, capacity);
+      expectBound(wave.vertexRows, capacity);
       expectBound(wave.radiance, capacity);
     }
   }
@@ -183,7 +184,8 @@ TYPED_TEST(WaveTest, eachNeedCostsItsColumns) {
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.textures = true; }), 2 * sizeof(float));
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.normalMaps = true; }), 3 * kReal);
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.rouletteScale = true; }), kReal);
-  EXPECT_EQ(extra([](ColumnNeeds& n) { n.connections = true; }), 2 * kReal + 3 * sizeof(uint32_t));
+  EXPECT_EQ(extra([](ColumnNeeds& n) { n.connections = true; }),
+            2 * kReal + 3 * sizeof(uint32_t) + sizeof(VertexRow<TypeParam>));
 }
 
 // The bound that makes a wave of 2048 paths leave most of a core's L2 to the scene.

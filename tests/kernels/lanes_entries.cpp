@@ -2,6 +2,7 @@
 #include "tests/kernels/lanes_entries.h"
 
 #include "kernels/simd/double_lanes.h"
+#include "kernels/simd/interleave.h"
 #include "kernels/simd/isa_table.h"
 #include "kernels/simd/split_lanes.h"
 
@@ -90,6 +91,20 @@ constexpr LanesEntries kEntries = {
           storeUnaligned(gather(floats, i), floatsOut);
           storeUnaligned(gather(doubles, i), doublesOut);
           storeUnaligned(gather(uints, i), uintsOut);
+        },
+    .gatherFour =
+        [](const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index, float* floatsOut,
+           double* doublesOut, uint32_t* uintsOut) HWY_ATTR {
+          const UInt i = loadUnaligned(index);
+          const auto four = [](const auto& columns, auto* out) HWY_ATTR {
+            storeUnaligned(columns.a, out);
+            storeUnaligned(columns.b, out + kLanes);
+            storeUnaligned(columns.c, out + 2 * kLanes);
+            storeUnaligned(columns.d, out + 3 * kLanes);
+          };
+          four(gatherFour(floats, i), floatsOut);
+          four(gatherFour(doubles, i), doublesOut);
+          four(gatherFour(uints, i), uintsOut);
         },
     .storeScattered =
         [](const float* floats, const double* doubles, const uint32_t* index, float* floatsOut, double* doublesOut)

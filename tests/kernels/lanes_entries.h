@@ -29,6 +29,9 @@ struct LanesEntries {
   // Memory. flags[i] != 0 makes the mask; compress returns how many lanes it kept.
   void (*gather)(const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index,
                  float* floatsOut, double* doublesOut, uint32_t* uintsOut);
+  // Four columns, one after the other.
+  void (*gatherFour)(const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index,
+                     float* floatsOut, double* doublesOut, uint32_t* uintsOut);
   void (*storeScattered)(const float* floats, const double* doubles, const uint32_t* index, float* floatsOut,
                          double* doublesOut);
   size_t (*compress)(const uint32_t* flags, const float* floats, const double* doubles, const uint32_t* uints,
