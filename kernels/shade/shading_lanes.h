@@ -72,7 +72,7 @@ struct ShadingLanes {
   WAVECREST_INLINE View otherView() const {
     View view{Frame<Real>::fromNormal(map.otherOf(frame.n)), {}, Real(1)};
     view.fix = view.frame.toLocal(map.fix);
-    const Mask twoSided = (bsdf.at(bsdf.materials->flags) & UInt(kTwoSided)) == UInt(kTwoSided);
+    const Mask twoSided = (bsdf.flags & UInt(kTwoSided)) == UInt(kTwoSided);
     view.side = select(twoSided & (view.fix.z < Real(0)), Real(-1), Real(1));
     view.fix.z = view.fix.z * view.side;
     return view;
