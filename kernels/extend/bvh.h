@@ -61,9 +61,10 @@ struct BvhView {
   const std::byte* arena = nullptr;
   uint32_t root = kBvhEnd;
 
+  const std::byte* address(uint32_t reference) const { return arena + size_t{reference & kBvhOffsetMask} * kBvhUnit; }
   template <class Record>
   const Record& at(uint32_t reference) const {
-    return *reinterpret_cast<const Record*>(arena + size_t{reference & kBvhOffsetMask} * kBvhUnit);
+    return *reinterpret_cast<const Record*>(address(reference));
   }
 };
 

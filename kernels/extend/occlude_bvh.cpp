@@ -2,6 +2,7 @@
 //
 // in: ShadowRays [n]. out: Radiance grows, or on light walks that splat, the film; ShadowRays empty.
 #include "kernels/extend/bvh_ray.h"
+#include "kernels/extend/visible_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -30,15 +31,7 @@ void occludeBvh(const StageContext<typename P::Storage>& context, Wave<typename 
         if (splatting) __builtin_prefetch(context.splats.sums + 3 * size_t{shadow.target[ray.index]}, 1);
       });
   for (size_t i = 0; i < count; i += kLanes) {
-    const Mask clear = (load(visible + i) > Float(0)) & firstLanes(count - i);
-    if (none(clear)) continue;
-    const UInt target = load(shadow.target, i);
-    const auto contribution = loadVec3(shadow.red, shadow.green, shadow.blue, i);
-    if (splatting) {
-      addSplats(context, target, clear, contribution);
-    } else {
-      addRadiance(wave.radiance, target, clear, contribution);
-    }
+    addVisible(context, wave, (load(visible + i) > Float(0)) & firstLanes(count - i), i);
   }
   shadow.size = 0;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kernels/extend/small_lanes.h"
+#include "kernels/extend/visible_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -46,15 +47,7 @@ void occludeSmall(const StageContext<typename P::Storage>& context, Wave<typenam
     if (splatting) prefetchPixels(context.splats, shadow.target + i, std::min(kLanes, count - i));
     const Vec3<Float> origin = loadVec3(shadow.originX, shadow.originY, shadow.originZ, i);
     const Vec3<Float> direction = loadVec3(shadow.directionX, shadow.directionY, shadow.directionZ, i);
-    const Mask visible = andNot(firstLanes(count - i), blocked(scene, origin, direction));
-    if (none(visible)) continue;
-    const UInt target = load(shadow.target, i);
-    const auto contribution = loadVec3(shadow.red, shadow.green, shadow.blue, i);
-    if (splatting) {
-      addSplats(context, target, visible, contribution);
-    } else {
-      addRadiance(wave.radiance, target, visible, contribution);
-    }
+    addVisible(context, wave, andNot(firstLanes(count - i), blocked(scene, origin, direction)), i);
   }
   shadow.size = 0;
 }

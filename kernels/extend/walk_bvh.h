@@ -20,7 +20,7 @@ WAVECREST_SIMD_BEGIN
 constexpr float kLeastDirection = 1e-18f;
 
 WAVECREST_INLINE void prefetchEntry(const BvhView& bvh, uint32_t reference) {
-  const char* const there = reinterpret_cast<const char*>(&bvh.at<BvhNode>(reference));
+  const std::byte* const there = bvh.address(reference);
   __builtin_prefetch(there);
   __builtin_prefetch(there + 64);
   __builtin_prefetch(there + 128);
