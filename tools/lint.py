@@ -54,7 +54,7 @@ def check_format(fix):
 
 
 def compile_commands(build):
-    """One compile command per source file of the project, without compiler launcher and without GCC-only warnings."""
+    """One compile command per source file of the project, without compiler launcher, and deaf to what only g++ knows."""
     path = build / "compile_commands.json"
     if not path.exists():
         sys.exit(f"lint: {path} not found; configure first with cmake --preset {build.name}")
@@ -66,7 +66,7 @@ def compile_commands(build):
         words = shlex.split(entry["command"])
         if not re.search(r"(c\+\+|g\+\+|clang\+\+)(-[0-9]+)?$", words[0]):
             words = words[1:]  # a launcher such as ccache
-        words.append("-Wno-unknown-warning-option")
+        words += ["-Wno-unknown-warning-option", "-Wno-unused-command-line-argument"]
         if file not in chosen or PREFERRED_ISA in entry["command"]:
             output = words[words.index("-o") + 1]
             chosen[file] = {"directory": entry["directory"], "file": str(file), "output": output, "arguments": words}

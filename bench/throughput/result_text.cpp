@@ -66,9 +66,11 @@ void addPolicies(Text& text, const PolicyTable& table) {
   line(text, "  {:<9} {:<8} {:<21} {:>16} {:>15} {:>16} {:>11}", "precision", "isa", "kernels", "M paths/s core",
        "mean vs double", "pixels vs double", "bytes/path");
   for (const PolicyRow& row : table.rows) {
-    line(text, "  {:<9} {:<8} {:<21} {:>16.3f} {:>15.1e} {:>16.1e} {:>11}", nameOf(kPrecisionNames, row.precision),
-         toString(row.isa), nameOf(kSpecializationNames, row.specialization), millions(row.pathsPerCpuSecond),
-         row.meanDifference, row.pixelDifference, row.bytesPerPath);
+    // A slow policy may not get a turn within the duration.
+    const std::string speed = row.pathsPerCpuSecond > 0 ? fmt::format("{:.3f}", millions(row.pathsPerCpuSecond)) : "-";
+    line(text, "  {:<9} {:<8} {:<21} {:>16} {:>15.1e} {:>16.1e} {:>11}", nameOf(kPrecisionNames, row.precision),
+         toString(row.isa), nameOf(kSpecializationNames, row.specialization), speed, row.meanDifference,
+         row.pixelDifference, row.bytesPerPath);
   }
 }
 

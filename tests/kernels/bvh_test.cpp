@@ -215,6 +215,7 @@ TEST_P(BvhRaysTest, hitsDoNotDependOnTheOtherRays) {
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::shuffle(order.begin(), order.end(), std::mt19937(4));
   std::vector<TestRay> shuffled;
+  shuffled.reserve(rays.size());
   for (const size_t i : order) shuffled.push_back(rays[i]);
   for (const char* name : {"bvh", "packets"}) {
     const auto straight = hits(named(name), scene, rays), mixed = hits(named(name), scene, shuffled);
