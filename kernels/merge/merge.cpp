@@ -187,7 +187,7 @@ class Merger {
 
   // Photons of a block, copied out of the stores they are scattered over.
   struct Photons {
-    HWY_ALIGN PhotonRecord<S> records[kLanes];
+    PhotonRecord<S> records[kLanes];
   };
   WAVECREST_INLINE void fetch(size_t i, size_t count, Photons& photons) const {
     for (size_t k = 0; k < kLanes; ++k) {
