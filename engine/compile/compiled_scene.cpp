@@ -87,7 +87,8 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const D
 template <class S>
 std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree) {
   auto compiled = std::make_unique<CompiledScene<S>>();
-  const bool textured = (sceneFeatures(scene) & kTextures) != 0;
+  const uint32_t features = sceneFeatures(scene);
+  const bool textured = (features & kTextures) != 0;
   auto& primitives = compiled->primitives = compilePrimitives<S>(scene, textured);
   if (primitives.records.empty()) {
     const SourceLocation where = scene.shapes.empty() ? SourceLocation{scene.name} : scene.shapes.front().source;
@@ -110,19 +111,20 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   if (accel == Accel::automatic) {
     accel = primitives.counts.total() <= kSmallSceneLimit ? Accel::small : Accel::bvh;
   }
-  if (accel == Accel::small) {
-    const Primitives<double> precise = compilePrimitives<double>(scene, false, origin);
-    compiled->small = std::make_unique<SmallScene>(precise.records.data(), precise.records.size());
-    view.small = &compiled->small->view();
-  } else if (accel == Accel::bvh) {
-    const Primitives<double> precise = compilePrimitives<double>(scene, false, origin);
-    compiled->bvh = std::make_unique<Bvh>(precise.records.data(), precise.records.size(), view.camera.origin);
-    view.bvh = &compiled->bvh->view();
-  } else {
+  if (accel == Accel::embree) {
     compiled->embree =
         std::make_unique<EmbreeScene>(primitives.records.data(), primitives.counts.quads, primitives.counts.triangles,
                                       primitives.counts.spheres, watertightEmbree);
     view.embree = compiled->embree->handle();
+  } else {
+    const std::vector<PrimitiveRecord<double>> precise = compilePrimitives<double>(scene, false, origin).records;
+    if (accel == Accel::small) {
+      compiled->small = std::make_unique<SmallScene>(precise.data(), precise.size());
+      view.small = &compiled->small->view();
+    } else {
+      compiled->bvh = std::make_unique<Bvh>(precise.data(), precise.size(), view.camera.origin);
+      view.bvh = &compiled->bvh->view();
+    }
   }
   view.primitives = primitives.records.data();
   view.attributes = primitives.attributes.data();
@@ -134,7 +136,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   view.lightTable = compiled->lights.table.data();
   view.lightCount = static_cast<uint32_t>(compiled->lights.records.size());
   view.infiniteLight = compiled->lights.infinite;
-  view.normalMaps = (sceneFeatures(scene) & kNormalMaps) != 0;
+  view.normalMaps = (features & kNormalMaps) != 0;
   view.spheres = primitives.counts.spheres != 0;
   view.firstPrimitive[1] = primitives.counts.quads;
   view.firstPrimitive[2] = primitives.counts.quads + primitives.counts.triangles;

@@ -181,10 +181,6 @@ class Compiler {
   const Scene& scene_;
 };
 
-}  // namespace
-
-namespace {
-
 bool hasNormalMap(const Material& material) { return material.bumpTexture != kNone || material.normalTexture != kNone; }
 
 uint32_t sidesOf(const Material& material) {

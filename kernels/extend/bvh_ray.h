@@ -24,6 +24,7 @@ WAVECREST_INLINE uint32_t nearPlanes(float d) { return std::signbit(d) ? 3 * kBv
 // kAnyHit: whatever lies before the ray's end ends the walk.
 template <bool kAnyHit>
 struct alignas(64) BvhRay {
+  static constexpr size_t kUnderWay = 32;
   float origin[3], direction[3], inverse[3];
   uint32_t nearPlane[3];
   float t;              // nothing beyond counts: of the nearest hit so far, or the ray's end
@@ -115,6 +116,7 @@ struct alignas(64) BvhRay {
 // As many rays as there are lanes. Nodes are tested once for all of them, by the intervals that their origins and
 // directions span; leaves ray by ray.
 struct BvhPacket {
+  static constexpr size_t kUnderWay = 8;
   Vec3<Float> origin, direction, inverse;
   Float t, second, third;  // as of a single ray
   UInt id;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "kernels/extend/embree_packets.h"
+#include "kernels/extend/prefetch_hits.h"
 
 namespace wavecrest {
 namespace {
@@ -55,25 +56,6 @@ void addSpheres(RTCDevice device, RTCScene scene, const PrimitiveRecord<S>* reco
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, kSpheres);
   rtcReleaseGeometry(geometry);
-}
-
-// The next stage gathers the records of what was hit, which in a large scene are far from any cache. They come closer
-// while later packets are traced: a packet's primitives at once, what those point to one packet later.
-template <class S>
-void prefetchPrimitives(const SceneView<S>& scene, const uint32_t* hits, size_t count) {
-  for (size_t k = 0; k < count; ++k) {
-    if (hits[k] == kMiss) continue;
-    const auto* record = reinterpret_cast<const char*>(scene.primitives + hits[k]);
-    for (size_t byte = 0; byte < sizeof(PrimitiveRecord<S>); byte += 64) __builtin_prefetch(record + byte);
-  }
-}
-template <class S>
-void prefetchAttributes(const SceneView<S>& scene, const uint32_t* hits, size_t count) {
-  for (size_t k = 0; k < count; ++k) {
-    if (hits[k] == kMiss) continue;
-    const uint32_t index = scene.primitives[hits[k]].attributes;
-    if (index != kNoIndex) __builtin_prefetch(scene.attributes + index);
-  }
 }
 
 // The scalar form of addSplats (kernels/lane_support.h).
@@ -161,7 +143,9 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
       wave.hits.u[i + k] = u * scale;
       wave.hits.v[i + k] = v * scale;
     }
-    prefetchPrimitives(*context.scene, wave.hits.primitive + i, kWidth);
+    for (size_t k = 0; k < kWidth; ++k) {
+      if (wave.hits.primitive[i + k] != kMiss) prefetchPrimitive(*context.scene, wave.hits.primitive[i + k]);
+    }
     if (i != 0) prefetchAttributes(*context.scene, wave.hits.primitive + (i - kWidth), kWidth);
   }
 }

@@ -4,27 +4,16 @@
 // on the width of a block, nor on which rays are walked together.
 #include "kernels/extend/bvh_ray.h"
 #include "kernels/extend/offset.h"
+#include "kernels/extend/prefetch_hits.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Asks for the record that the next stage gathers, which in a large scene is far from any cache.
 template <class S>
-WAVECREST_INLINE void prefetchPrimitive(const SceneView<S>& scene, uint32_t id) {
-  if (id == kMiss) return;
-  const auto* record = reinterpret_cast<const char*>(scene.primitives + (id & kFacePrimitiveMask));
-  for (size_t byte = 0; byte < sizeof(PrimitiveRecord<S>); byte += 64) __builtin_prefetch(record + byte);
-}
-template <class S>
-WAVECREST_INLINE void prefetchAttributes(const SceneView<S>& scene, const uint32_t* primitives) {
-  if (scene.attributes == nullptr) return;
-  for (size_t k = 0; k < kLanes; ++k) {
-    if (primitives[k] == kMiss) continue;
-    const uint32_t index = scene.primitives[primitives[k]].attributes;
-    if (index != kNoIndex) __builtin_prefetch(scene.attributes + index);
-  }
+WAVECREST_INLINE void prefetchHit(const SceneView<S>& scene, uint32_t id) {
+  if (id != kMiss) prefetchPrimitive(scene, id & kFacePrimitiveMask);
 }
 
 // From weights of corners to coordinates of the primitive, kept off its edges (see kInset).
@@ -42,14 +31,14 @@ WAVECREST_INLINE void finish(const SceneView<S>& scene, Hits& hits, size_t i) {
   store(select(sphere, second, u * scale), hits.u, i);
   store(select(sphere, third, v * scale), hits.v, i);
   store(select(id == UInt(kMiss), id, id & UInt(kFacePrimitiveMask)), hits.primitive, i);
-  prefetchAttributes(scene, hits.primitive + i);
+  if (scene.attributes != nullptr) prefetchAttributes(scene, hits.primitive + i, kLanes);
 }
 
 // Rays in packets of a block; those behind the last ray repeat the first of their packet.
 template <class S>
 WAVECREST_INLINE void walkTogether(const SceneView<S>& scene, const Rays<S>& rays, Hits& hits) {
   size_t next = 0;
-  walkBvh<BvhPacket, 8>(
+  walkBvh<BvhPacket>(
       *scene.bvh,
       [&](BvhPacket& packet) HWY_ATTR {
         if (next >= rays.size) return false;
@@ -66,14 +55,14 @@ WAVECREST_INLINE void walkTogether(const SceneView<S>& scene, const Rays<S>& ray
         store(packet.id, hits.primitive, packet.index);
         store(packet.second, hits.u, packet.index);
         store(packet.third, hits.v, packet.index);
-        for (size_t k = 0; k < kLanes; ++k) prefetchPrimitive(scene, hits.primitive[packet.index + k]);
+        for (size_t k = 0; k < kLanes; ++k) prefetchHit(scene, hits.primitive[packet.index + k]);
       });
 }
 
 template <class S>
 WAVECREST_INLINE void walkAlone(const SceneView<S>& scene, const Rays<S>& rays, Hits& hits) {
   size_t next = 0;
-  walkBvh<BvhRay<false>, 32>(
+  walkBvh<BvhRay<false>>(
       *scene.bvh,
       [&](BvhRay<false>& ray) HWY_ATTR {
         if (next >= rays.size) return false;
@@ -87,7 +76,7 @@ WAVECREST_INLINE void walkAlone(const SceneView<S>& scene, const Rays<S>& rays, 
         hits.primitive[ray.index] = ray.id;
         hits.u[ray.index] = ray.second;
         hits.v[ray.index] = ray.third;
-        prefetchPrimitive(scene, ray.id);
+        prefetchHit(scene, ray.id);
       });
 }
 

@@ -16,7 +16,7 @@ void occludeBvh(const StageContext<typename P::Storage>& context, Wave<typename 
   // Rays end in any order, but contributions are added in theirs: what a ray sees takes the place of its origin.
   float* const visible = shadow.originX;
   size_t next = 0;
-  walkBvh<BvhRay<true>, 32>(
+  walkBvh<BvhRay<true>>(
       *context.scene->bvh,
       [&](BvhRay<true>& ray) HWY_ATTR {
         if (next >= count) return false;
@@ -28,7 +28,7 @@ void occludeBvh(const StageContext<typename P::Storage>& context, Wave<typename 
       },
       [&](const BvhRay<true>& ray) HWY_ATTR {
         visible[ray.index] = ray.id == kMiss ? 1.0f : 0.0f;
-        if (splatting) __builtin_prefetch(context.splats.sums + 3 * size_t{shadow.target[ray.index]}, 1);
+        if (splatting) prefetchPixels(context.splats, shadow.target + ray.index, 1);
       });
   for (size_t i = 0; i < count; i += kLanes) {
     addVisible(context, wave, (load(visible + i) > Float(0)) & firstLanes(count - i), i);

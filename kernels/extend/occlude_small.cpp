@@ -29,11 +29,6 @@ WAVECREST_INLINE Mask blocked(const SmallSceneView& scene, Vec3<Float> origin, V
   return hit;
 }
 
-// Asks for the pixels that a block will be splatted to, which lie all over the film, while its rays are traced.
-WAVECREST_INLINE void prefetchPixels(const SplatSink& splats, const uint32_t* pixels, size_t count) {
-  for (size_t k = 0; k < count; ++k) __builtin_prefetch(splats.sums + 3 * size_t{pixels[k]}, 1);
-}
-
 }  // namespace
 
 template <class P>

@@ -5,6 +5,11 @@
 
 WAVECREST_SIMD_BEGIN
 
+// Asks for the pixels that rays will be splatted to, which lie all over the film.
+WAVECREST_INLINE void prefetchPixels(const SplatSink& splats, const uint32_t* pixels, size_t count) {
+  for (size_t k = 0; k < count; ++k) __builtin_prefetch(splats.sums + 3 * size_t{pixels[k]}, 1);
+}
+
 // Adds the contributions of block i where `visible` holds, in ray order: to lanes, or on light walks to the film.
 template <class S>
 WAVECREST_INLINE void addVisible(const StageContext<S>& context, Wave<S>& wave, Mask visible, size_t i) {

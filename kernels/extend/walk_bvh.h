@@ -26,9 +26,11 @@ WAVECREST_INLINE void prefetchEntry(const BvhView& bvh, uint32_t reference) {
   __builtin_prefetch(there + 128);
 }
 
-// Walks for as long as begin(walker) finds something to do. end(walker): takes what was found. kUnderWay: at most 255.
-template <class Walker, size_t kUnderWay, class Begin, class End>
+// Walks for as long as begin(walker) finds something to do. end(walker): takes what was found. Walker::kUnderWay: at
+// most 255.
+template <class Walker, class Begin, class End>
 WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End& end) {
+  constexpr size_t kUnderWay = Walker::kUnderWay;
   Walker walkers[kUnderWay];
   // Which walkers stand at which kind of entry; BvhEntry::end: those that have nowhere to go.
   constexpr size_t kEntries = 4;
