@@ -51,10 +51,11 @@ def figures(program, about, samples):
         mean=None,
     )
     images = [sample.image for sample in samples if sample.image is not None]
-    if len(images) >= 2:
+    if images:
+        result.mean = float(np.mean(images))
+    if len(images) >= 2 and samples[0].seeded:
         result.relative_variance = relative_variance(images)
         result.efficiency = 1 / (result.relative_variance * cpu)
-        result.mean = float(np.mean(images))
     return result
 
 

@@ -5,7 +5,6 @@ import json
 import os
 import pathlib
 import re
-import struct
 import subprocess
 import sys
 import tempfile
@@ -31,12 +30,13 @@ class Job:
 
 @dataclasses.dataclass
 class Sample:
-    """One render. image is None where a program's scene is not ours."""
+    """One render. image is None where a program's scene is not ours; not seeded: the seed changed nothing."""
 
     paths: int
     cpu_seconds: float
     wall_seconds: float
     image: np.ndarray | None
+    seeded: bool = True
 
 
 class Child:
@@ -93,26 +93,38 @@ class Wavecrest:
 
 
 class SmallVcm:
-    """SmallVCM renders its own built-in scene 0 only: paths per second can be compared, images cannot."""
+    """SmallVCM renders its own four scenes, of which scenes/validation/smallvcm-N-*.xml are copies.
+
+    A job with such a file gets that scene, so images can be compared; any other job scene 0, whose speed alone can.
+    Whatever the job says, it renders SIZE up to DEPTH edges, roulette begins at the first vertex and its generator has
+    one seed, so there is no variance between rounds of one thread. merge radius: RADIUS of the bounding sphere.
+    """
+
+    SIZE, DEPTH, RR_DEPTH, RADIUS = (512, 512), 10, 1, 0.003
 
     def __init__(self, program, job):
         self.program, self.job = os.path.abspath(program), job
-        self.about = "SmallVCM, its scene 0"
+        named = re.match(r"smallvcm-(\d)", pathlib.Path(job.scene).name)
+        self.scene, self.comparable = (named[1], True) if named else ("0", False)
+        if self.comparable and (job.size, job.max_depth, job.rr_depth) != (self.SIZE, self.DEPTH, self.RR_DEPTH):
+            raise ValueError("SmallVCM's scenes need --size 512x512 --max-depth 10 --rr-depth 1 to be the same work")
+        self.about = f"SmallVCM, its scene {self.scene}"
         self.render(0)
 
     def render(self, seed):
-        del seed  # it has none on its command line
+        del seed
         with tempfile.TemporaryDirectory() as folder:
-            output = os.path.join(folder, "image.bmp")
-            command = [self.program, "-s", "0", "-a", self.job.method, "-i", str(self.job.spp), "-o", output]
+            output = os.path.join(folder, "image.hdr")
+            command = [self.program, "-s", self.scene, "-a", self.job.method, "-i", str(self.job.spp), "-o", output]
             start = time.perf_counter()
             process = subprocess.Popen(command, stdout=subprocess.DEVNULL, preexec_fn=self._limit_threads)
             _, status, usage = os.wait4(process.pid, 0)
             wall = time.perf_counter() - start
             if status != 0:
                 raise RuntimeError(f"{self.program} ended with wait status {status}")
-            width, height = bmp_size(output)  # set when it was built
-        return Sample(width * height * self.job.spp, usage.ru_utime + usage.ru_stime, wall, None)
+            image = read_rgbe(output)
+        paths = image.shape[0] * image.shape[1] * self.job.spp
+        return Sample(paths, usage.ru_utime + usage.ru_stime, wall, image if self.comparable else None, seeded=False)
 
     def _limit_threads(self):
         """It starts a thread per processor that it may run on."""
@@ -123,11 +135,17 @@ class SmallVcm:
         pass
 
 
-def bmp_size(path):
-    """Width and height from the header of a BMP file."""
+def read_rgbe(path):
+    """A Radiance picture of flat pixels, top row first, as (height, width, 3); within 1 %, as the format is."""
     with open(path, "rb") as file:
-        width, height = struct.unpack_from("<ii", file.read(26), 18)
-        return width, abs(height)
+        header, _, rest = file.read().partition(b"\n\n")
+    size, _, pixels = rest.partition(b"\n")
+    told = re.fullmatch(rb"-Y (\d+) \+X (\d+) *", size)
+    if not header.startswith(b"#?RADIANCE") or not told or len(pixels) != 4 * int(told[1]) * int(told[2]):
+        raise ValueError(f"{path}: expected a Radiance picture of flat pixels")
+    rgbe = np.frombuffer(pixels, np.uint8).reshape(int(told[1]), int(told[2]), 4)
+    scale = np.where(rgbe[..., 3:] == 0, 0, np.ldexp(1.0, rgbe[..., 3:].astype(int) - 136))
+    return ((rgbe[..., :3] + 0.5) * scale).astype(np.float32)
 
 
 def read_pfm(path):

@@ -13,7 +13,7 @@ sys.path[:0] = [str(ROOT / "bench" / "peers"), str(ROOT / "bench" / "peers" / "c
 import luxcore_scene  # noqa: E402
 import measure  # noqa: E402
 from mitsuba_support import scene_xml, variant  # noqa: E402
-from programs import Sample, read_pfm  # noqa: E402
+from programs import Job, Sample, SmallVcm, read_pfm, read_rgbe  # noqa: E402
 
 ROOM = ROOT / "tests" / "oracle" / "scenes" / "parts" / "room.xml"
 
@@ -51,6 +51,24 @@ class Measure(unittest.TestCase):
             file.write(b"PF\n1 2\n-1.0\n" + np.array([1, 2, 3, 4, 5, 6], "<f4").tobytes())
             file.flush()
             np.testing.assert_array_equal(read_pfm(file.name), [[[4, 5, 6]], [[1, 2, 3]]])
+
+    def test_rgbe_is_read_top_row_first_within_its_precision(self):
+        with tempfile.NamedTemporaryFile(suffix=".hdr") as file:
+            pixels = bytes((200, 100, 0, 129, 0, 0, 0, 0))  # two pixels, one above the other
+            file.write(b"#?RADIANCE\n# SmallVCM\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 1\n" + pixels)
+            file.flush()
+            np.testing.assert_allclose(read_rgbe(file.name), [[[1.566, 0.785, 0.004]], [[0, 0, 0]]], atol=5e-4)
+
+    def test_renders_of_one_seed_have_a_mean_and_no_variance(self):
+        samples = [Sample(100, 1.0, 1.0, np.full((4, 4, 3), 0.5), seeded=False) for _ in range(3)]
+        row = measure.figures("a", "a", samples)
+        self.assertAlmostEqual(row.mean, 0.5)
+        self.assertIsNone(row.relative_variance)
+
+    def test_smallvcm_refuses_its_scenes_at_other_work_than_its_own(self):
+        job = Job("smallvcm-1-ceiling.xml", "vcm", (256, 256), 16, 1, 10, 1)
+        with self.assertRaisesRegex(ValueError, "512x512"):
+            SmallVcm("smallvcm", job)
 
 
 class LuxcoreScene(unittest.TestCase):
