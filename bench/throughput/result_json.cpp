@@ -23,7 +23,7 @@ Json speedJson(const Speed& speed) {
                       {"seconds_per_item", 1e-9 * stage.nsPerItem},
                       {"seconds_per_path", 1e-9 * stage.nsPerPath},
                       {"share", stage.share},
-                      {"lane_use", stage.laneUse}});
+                      {"lane_use", stage.laneUse ? Json(*stage.laneUse) : Json()}});
   }
   for (const ScalingRow& row : speed.scaling) {
     scaling.push_back({{"threads", row.threads},

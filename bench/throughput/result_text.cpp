@@ -30,13 +30,14 @@ void addSpeed(Text& text, const Speed& speed, uint32_t threads) {
   line(text, "  {} kernels on {}, intersector {}; {} bytes/path",
        nameOf(kSpecializationNames, speed.facts.specialization), toString(speed.facts.isa),
        nameOf(kAccelNames, speed.facts.accel), speed.bytesPerPath);
-  line(text, "\n  {:<12} {:>12} {:>9} {:>9} {:>7} {:>9}", "stage", "items/path", "ns/item", "ns/path", "share",
+  line(text, "\n  {:<18} {:>10} {:>9} {:>9} {:>7} {:>9}", "stage", "items/path", "ns/item", "ns/path", "share",
        "lane use");
   for (const StageShare& stage : speed.stages) {
-    line(text, "  {:<12} {:>12.3f} {:>9.2f} {:>9.2f} {:>6.1f}% {:>8.1f}%", stage.name, stage.itemsPerPath,
-         stage.nsPerItem, stage.nsPerPath, 100 * stage.share, 100 * stage.laneUse);
+    const std::string laneUse = stage.laneUse ? fmt::format("{:.1f}%", 100 * *stage.laneUse) : "-";
+    line(text, "  {:<18} {:>10.3f} {:>9.2f} {:>9.2f} {:>6.1f}% {:>9}", stage.name, stage.itemsPerPath, stage.nsPerItem,
+         stage.nsPerPath, 100 * stage.share, laneUse);
   }
-  line(text, "  {:<12} {:>12} {:>9} {:>9.2f} {:>6.1f}%", "film, rest", "", "",
+  line(text, "  {:<18} {:>10} {:>9} {:>9.2f} {:>6.1f}%", "film, rest", "", "",
        1e9 * speed.restShare / speed.pathsPerCpuSecond, 100 * speed.restShare);
   line(text, "\n  {:<12} {:>12} {:>9} {:>16}", "threads", "M paths/s", "speedup", "CPU efficiency");
   for (const ScalingRow& row : speed.scaling) {

@@ -1,5 +1,7 @@
 #include "bench/throughput/speed.h"
 
+#include <algorithm>
+
 #include "bench/throughput/stage_times.h"
 #include "bench/throughput/turns.h"
 
@@ -28,8 +30,10 @@ std::vector<StageShare> stageShares(const std::vector<Slice>& slices, const std:
     share.name = slices.front().stages[i].name;
     const auto items = [i](const Slice& s) { return static_cast<double>(s.stages[i].items); };
     share.itemsPerPath = medianOf(slices, [&](const Slice& s) { return items(s) / static_cast<double>(s.paths); });
-    share.laneUse =
-        medianOf(slices, [&](const Slice& s) { return items(s) / static_cast<double>(s.stages[i].laneSlots); });
+    const auto slots = [i](const Slice& s) { return static_cast<double>(s.stages[i].laneSlots); };
+    if (std::all_of(slices.begin(), slices.end(), [&](const Slice& s) { return slots(s) > 0; })) {
+      share.laneUse = medianOf(slices, [&](const Slice& s) { return items(s) / slots(s); });
+    }
     if (times) {
       share.nsPerPath = 1e9 * times->seconds[i] / static_cast<double>(times->paths);
       share.share = 1e-9 * share.nsPerPath * pathsPerCpuSecond;

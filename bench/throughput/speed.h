@@ -1,6 +1,7 @@
 // Speed of a render: paths and rays per second, where the time goes, and how it grows with threads.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ struct StageShare {
   double itemsPerPath = 0;
   double nsPerItem = 0, nsPerPath = 0;  // CPU time on one thread
   double share = 0;                     // of all CPU time
-  double laneUse = 0;                   // items / lanes of the blocks they filled
+  std::optional<double> laneUse;        // items / lanes of the blocks they filled; of stages that work in blocks
 };
 
 struct ScalingRow {

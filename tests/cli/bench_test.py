@@ -19,16 +19,22 @@ STAGES = {
 class Bench(CommandTest):
     def test_the_stages_of_every_method_take_up_its_time(self):
         output = self.path("bench.json")
-        self.run_wavecrest(
+        told = self.run_wavecrest(
             "bench", "cornell-diffuse", "--methods", ",".join(STAGES), "--size", "24x16",
             "--duration", "1s", "--threads", "1", "--json", output, expect=DONE,
         )
+        self.assertNotRegex(told.stdout, r"\b(inf|nan)\b")
         methods = read_json(output)["scenes"][0]["methods"]
         self.assertEqual([entry["method"] for entry in methods], list(STAGES))
         for entry in methods:
             shares = {stage["name"]: stage["share"] for stage in entry["stages"]}
             for name in STAGES[entry["method"]]:
                 self.assertGreater(shares[name], 0, f"{entry['method']}: {name}")
+            for stage in entry["stages"]:
+                if stage["name"] == "photon map":  # not made of lanes
+                    self.assertIsNone(stage["lane_use"])
+                elif stage["items_per_path"] > 0:
+                    self.assertTrue(0 < stage["lane_use"] <= 1, f"{entry['method']}: {stage}")
             # Shares are medians over slices, so they add up to one only about.
             self.assertLess(sum(shares.values()), 1.3, entry["method"])
             self.assertEqual("bare_embree" in entry, entry["method"] == "pt", entry["method"])
