@@ -189,22 +189,28 @@ ReportScene collectScene(const CampaignResults& results, const SceneRecord& reco
   return scene;
 }
 
-// With what bench/claims says about it today: explanations are written once the results are known.
-ReportClaim shownClaim(const ClaimRecord& record) {
+std::string profileOf(const CampaignResults& results) {
+  const auto profile = results.campaign.find("profile");
+  return profile != results.campaign.end() ? profile->second : "";
+}
+
+// With what bench/claims says about it today: explanations are written once the results of the standard profile are
+// known, and speak of those.
+ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile) {
   ReportClaim shown{record.scene, record.statement, record.verdict, record.evidence};
-  if (const Claim* claim = findStudyClaim(record.id)) {
-    shown.id = claim->id;
-    shown.source = claim->source;
-    if (record.verdict != toString(ClaimVerdict::holds)) shown.explanation = claim->explanation;
-  }
+  const Claim* claim = findStudyClaim(record.id);
+  if (claim == nullptr) return shown;
+  shown.id = claim->id;
+  shown.source = claim->source;
+  if (claim->explanation.empty() || record.verdict == toString(ClaimVerdict::holds)) return shown;
+  shown.explanation = (profile == "standard" ? "" : "In the standard campaign: ") + claim->explanation;
   return shown;
 }
 
 std::string titleOf(const CampaignResults& results) {
   std::string title = results.scenes.size() == 1 ? "Convergence of " + results.scenes[0].name
                                                  : fmt::format("Convergence on {} scenes", results.scenes.size());
-  const auto profile = results.campaign.find("profile");
-  if (profile != results.campaign.end() && !profile->second.empty()) title += ", profile " + profile->second;
+  if (const std::string profile = profileOf(results); !profile.empty()) title += ", profile " + profile;
   return title;
 }
 
@@ -217,7 +223,7 @@ ConvergenceReport collectCampaign(const CampaignResults& results) {
   for (const SceneRecord& scene : results.scenes) report.scenes.push_back(collectScene(results, scene, report));
   // A scene whose runs are still to come has nothing to show.
   std::erase_if(report.scenes, [](const ReportScene& scene) { return scene.series.empty() && scene.refusals.empty(); });
-  for (const ClaimRecord& claim : results.claims) report.claims.push_back(shownClaim(claim));
+  for (const ClaimRecord& claim : results.claims) report.claims.push_back(shownClaim(claim, profileOf(results)));
   for (const auto& [key, value] : results.campaign) report.environment.push_back({key, value});
   return report;
 }

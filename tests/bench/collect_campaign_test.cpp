@@ -188,6 +188,22 @@ TEST_F(CollectCampaign, findingsAreJudgedOverAllParts) {
   }
 }
 
+TEST_F(CollectCampaign, explanationsOfTheStandardCampaignSayThatElsewhere) {
+  const auto explanation = [&](const std::string& profile, const std::string& verdict) {
+    const fs::path file = folder / (profile + verdict + ".sqlite");
+    ResultsStore store(file);
+    store.putCampaign({{"profile", profile}});
+    store.putScene({.name = "box", .hash = "1", .referenceFile = "", .width = kSide, .height = kSide});
+    store.putRun(run("pt", 1, 0.2));
+    store.putClaims({{"cornell-diffuse.all-converge", "box", "a", verdict, "0.1"}});
+    return collectReport(std::vector<fs::path>{file}).claims.at(0).explanation;
+  };
+  const std::string standard = explanation("standard", "undecided");
+  EXPECT_FALSE(standard.empty());
+  EXPECT_EQ(explanation("quick", "undecided"), "In the standard campaign: " + standard);
+  EXPECT_EQ(explanation("quick", "holds"), "");
+}
+
 TEST_F(CollectCampaign, refusesResultsWithoutAMeasurement) {
   writeStore("results.sqlite", {});
   EXPECT_THROW(collect(), ResultsError);
