@@ -31,7 +31,8 @@ struct RenderOptions {
   uint32_t threads = 0;
   uint64_t seed = 0;
   int maxDepth = 0, rrDepth = 0;  // 0: what the scene says
-  uint32_t wave = 2048, chains = MetropolisSettings().chains, bootstrap = MetropolisSettings().bootstrapSamples;
+  uint32_t wave = 2048, chains = MetropolisSettings().chains, bootstrap = MetropolisSettings().bootstrapSamples,
+           restart = 0;  // 0: by the number of samples
   double radius = 0.001, radiusAlpha = 0.75;
   std::vector<std::string> outputs;
   bool noDirectPass = false;
@@ -45,6 +46,7 @@ MetropolisSettings chosenChains(const RenderOptions& options) {
   settings.chains = options.chains;
   settings.directPass = !options.noDirectPass;
   settings.bootstrapSamples = options.bootstrap;
+  if (options.restart != 0) settings.restartSteps = options.restart;
   return settings;
 }
 
@@ -246,6 +248,8 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
   command.add("--chains", options->chains, "Markov chains of mlt").showDefault().between(1, 1 << 24);
   command.add("--bootstrap", options->bootstrap, "independent samples from which chains start")
       .showDefault()
+      .between(1, 1 << 28);
+  command.add("--restart", options->restart, "steps before chains start anew; default: 16 mutations to a sample")
       .between(1, 1 << 28);
   command.addFlag("--no-direct-pass", options->noDirectPass, "mmlt and pathspace: chains render direct light too");
   command.add("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");

@@ -18,11 +18,22 @@ struct MetropolisSettings {
   MetropolisVariant variant = MetropolisVariant::mmlt;
   uint32_t chains = 16384;
   uint32_t bootstrapSamples = 131072;  // independent samples from which chains start, and the image's brightness comes
-  uint32_t restartSteps = 10000;       // steps of a chain before all start anew from fresh samples
-  double largeStep = 0.3;              // probability of a step that forgets where the chain is
+  std::optional<uint32_t> restartSteps;      // steps before all chains start anew; unless set, epochSteps() says
+  double largeStep = 0.3;                    // probability of a step that forgets where the chain is
   uint32_t pathMutations = PathLaw().kinds;  // pathspace: kinds beside large steps (PathLaw)
   bool directPass = true;  // mmlt, pathspace: emitters in view and direct light by path tracing, the rest by chains
 };
+
+// Mutations to a bootstrap sample. The error of b falls only with the number of bootstraps, so they get a fixed part of
+// a render, however long it is: a sixteenth costs little and is no longer what limits an image
+// (engine/chains/README.md).
+constexpr uint64_t kMutationsPerBootstrapSample = 16;
+
+// Steps from one bootstrap, of so many samples, to the next.
+inline uint64_t epochSteps(const MetropolisSettings& settings, uint64_t samples) {
+  if (settings.restartSteps) return *settings.restartSteps;
+  return std::max<uint64_t>(kMutationsPerBootstrapSample * samples / settings.chains, 1);
+}
 
 // Limits of paths from what a scene file or a user says: depth in edges, -1 for as many as roulette allows; the first
 // vertex where roulette may end a path.

@@ -32,8 +32,8 @@ struct ChainStatistics {
   uint64_t directPaths = 0;  // of the separate pass for direct light
   uint64_t epochs = 0;
   double brightness = 0, brightnessError = 0;  // b, the mean luminance of what chains render, and its standard error
-  // b from the bootstraps and all large steps together. The image is scaled by the bootstraps' own, which chains start
-  // from: any other would bias it.
+  // b from the bootstraps and all large steps together; too small where chains are bound to lengths and b is uncertain
+  // (engine/chains/README.md). The image is scaled by the bootstraps' own, which chains start from.
   double pooledBrightness = 0, pooledError = 0;
   double largestShare =
       0;  // of one bootstrap sample in b, at most over epochs: large where chains start too much alike

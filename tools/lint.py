@@ -67,6 +67,7 @@ def compile_commands(build):
         if not re.search(r"(c\+\+|g\+\+|clang\+\+)(-[0-9]+)?$", words[0]):
             words = words[1:]  # a launcher such as ccache
         words += ["-Wno-unknown-warning-option", "-Wno-unused-command-line-argument"]
+        words += ["-Wno-pragma-clang-attribute"]  # Highway's, in headers that only name types
         if file not in chosen or PREFERRED_ISA in entry["command"]:
             output = words[words.index("-o") + 1]
             chosen[file] = {"directory": entry["directory"], "file": str(file), "output": output, "arguments": words}

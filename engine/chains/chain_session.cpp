@@ -337,7 +337,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
   const WorkerLimit limit(settings_.threads);
-  const uint64_t restart = settings_.metropolis.restartSteps;
+  const uint64_t restart = epochSteps(settings_.metropolis, targets_.size());
   const uint64_t goal = iterations ? stepsFor(*iterations) : std::numeric_limits<uint64_t>::max();
   const auto now = [&] {
     const double charged = renderSeconds_ + secondsSince(begin);

@@ -43,8 +43,8 @@ struct Chains : Columns<Chains> {
   }
 };
 
-// A chain that has rejected so many proposals in a row counts as stuck.
-constexpr uint32_t kStuckRejections = 1000;
+// A chain that has rejected so many proposals in a row counts as stuck; fewer than the steps of an epoch.
+constexpr uint32_t kStuckRejections = 100;
 
 // What acceptMutations counts.
 struct ChainCounters {

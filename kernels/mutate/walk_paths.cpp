@@ -88,18 +88,18 @@ WAVECREST_NOINLINE WalkStep<typename P::Real> leave(const StageContext<typename 
   const UInt zero(0u), one(1u);
   const bool camera = context.walk == Walk::camera;
   const Uniform4 u = draw(context, lane, Block::scatter);
-  Mask perturbed = active & isPerturbation(gather(paths.plans.kind, lane));
-  if (paths.current == nullptr) perturbed = noLanes();
+  const Mask perturbed = active & isPerturbation(gather(paths.plans.kind, lane));
+  const bool perturbs = paths.current != nullptr && any(perturbed);
   UInt event = zero;
   Mask same = noLanes();
   const UInt stride(static_cast<uint32_t>(paths.proposed.stride()));
-  if (any(perturbed)) {
+  if (perturbs) {
     event = gather(paths.current->vertices.event, select(perturbed, row, zero) * stride + lane);
     same = perturbed & (event != zero);
   }
   WalkStep<Real> step = walkOn<P, kFeatures>(shading, active, u, same, event);
   const Mask turns = andNot(perturbed, same);
-  if (none(turns)) return step;
+  if (!perturbs || none(turns)) return step;
 
   // From a row that is no delta: the current path's direction, turned.
   const auto& v = paths.current->vertices;

@@ -35,7 +35,7 @@ ConvergenceReport largeReport(size_t snapshots, uint32_t width, uint32_t height)
       ReportSeries series;
       series.method = series.label = method;
       series.finalImage = series.errorMap = picture;
-      for (const uint64_t seed : {1, 2}) {
+      for (const uint64_t seed : {1u, 2u}) {
         ReportRun run{.seed = seed};
         for (size_t k = 1; k <= snapshots; ++k) {
           const double value = (1 + 0.1 * static_cast<double>(seed)) / std::sqrt(static_cast<double>(k));

@@ -28,7 +28,7 @@ ReportImage sampleImage(const std::string& label, double noise) {
 ReportSeries sampleSeries(const std::string& method, double start, double bias) {
   ReportSeries series;
   series.method = series.label = method;
-  for (const uint64_t seed : {1, 2}) {
+  for (const uint64_t seed : {1u, 2u}) {
     ReportRun run{.seed = seed, .points = {}};
     for (int k = 0; k <= 8; ++k) {
       const double seconds = 0.1 * std::pow(10, k / 3.0);

@@ -113,7 +113,8 @@ class Statistics(CommandTest):
         kinds = {"pssmlt": small, "mmlt": small, "pathspace": {"large", "bidirectional", "lens", "multi_chain", "caustic"}}
         for variant, steps in kinds.items():
             options = ("--spp", "6", "--method", "mlt", "--mlt", variant, "--chains", "256", "--bootstrap", "4096")
-            stats = self.stats(*options)
+            stats = self.stats(*options, "--restart", "9")
+            self.assertEqual(stats["bootstrap_epochs"], 6 * 32 * 24 // 256 // 9)
             self.assertEqual((stats["mlt"], stats["chains"]), (variant, 256))
             self.assertEqual((stats["mutations"], stats["iterations"]), (6 * 32 * 24, 6))
             self.assertEqual({key[: -len("_steps")] for key in stats if key.endswith("_steps")}, steps)

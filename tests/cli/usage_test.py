@@ -68,6 +68,7 @@ class Usage(CommandTest):
             ("--mlt", "metropolis"),
             ("--chains", "0"),
             ("--bootstrap", "none"),
+            ("--restart", "0"),
         ]:
             with self.subTest(option=option, value=value):
                 wrong = f"{option}={value}" if option.startswith("--") else f"{option}{value}"

@@ -35,7 +35,8 @@ TEST_P(AnalyticTest, whiteFurnace) {
   for (const double rho : {0.2, 0.7, 1.0}) {
     const Scene scene = sceneFile("validation/furnace-sphere", kSide, kSide, albedo(rho));
     const auto truth = [&](uint32_t x, uint32_t y, size_t) -> std::optional<double> {
-      const double radius = std::hypot(x + 0.5 - kSide / 2, y + 0.5 - kSide / 2), edge = 0.7094 * kSide / 2;
+      constexpr double kCentre = kSide / 2.0;
+      const double radius = std::hypot(x + 0.5 - kCentre, y + 0.5 - kCentre), edge = 0.7094 * kCentre;
       if (std::abs(radius - edge) < 0.8) return std::nullopt;
       return radius < edge ? rho : 1.0;
     };

@@ -177,6 +177,24 @@ TEST_P(MetropolisTest, hasNoStartUpBias) {
   expectSameTruth(renderSeeds(scene, few, 96), renderSeeds(scene, other, 128, 2000), "restarts every third step");
 }
 
+// Bootstraps are as many as a render is long, so that b is never what limits it: over nine epochs its error falls to a
+// third.
+TEST_P(MetropolisTest, errorOfBrightnessFallsAsARenderGoesOn) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const auto session = Session::create(scene, settings());
+  const uint64_t samples = settings().metropolis.bootstrapSamples, perEpoch = kMutationsPerBootstrapSample * samples;
+  const auto after = [&](uint64_t epochs) {
+    session->renderUntil(epochs * perEpoch / (kWidth * kHeight), std::nullopt);
+    return *session->statistics().chains;
+  };
+  const ChainStatistics one = after(1), nine = after(9);
+  EXPECT_EQ(one.epochs, 1u);
+  EXPECT_EQ(nine.epochs, 9u);
+  // An estimated error is itself off by a few percent.
+  EXPECT_NEAR(nine.brightnessError / one.brightnessError, 1.0 / 3, 0.05);
+  EXPECT_NEAR(nine.brightness, one.brightness, 6 * one.brightnessError);
+}
+
 TEST_P(MetropolisTest, largeStepsAloneArePlainMonteCarlo) {
   const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
   RenderSettings independent = settings();

@@ -20,7 +20,7 @@ struct StrategyKey {
   bool merge;
   uint32_t s;  // light vertices, or for merging the index of the merged vertex
   uint32_t k;  // edges
-  auto operator<=>(const StrategyKey&) const = default;
+  auto operator<=>(const StrategyKey&) const = default;  // NOLINT(modernize-use-nullptr): it sees the 0 of a < b
 };
 
 // Sums up what each strategy adds, pixel by pixel.

@@ -21,7 +21,7 @@ struct BsdfCase {
 inline BsdfCase bsdfCase(std::string name, decltype(Material::kind) kind, bool back = false,
                          std::optional<double> opacity = {}) {
   Material material;
-  material.kind = std::move(kind);
+  material.kind = kind;
   if (opacity) material.opacity = TexturedFloat{*opacity};
   return {std::move(name), compileMaterial(material, Scene{}), back};
 }

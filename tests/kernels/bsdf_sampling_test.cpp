@@ -22,7 +22,8 @@ constexpr size_t kThetaCells = 72, kPhiCells = 72;
 constexpr size_t kParts = 4, kNodes = 3 * kParts;
 double nodePosition(size_t i) {  // in [0, 1]
   constexpr double kOffsets[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
-  return (static_cast<double>(i / 3) + kOffsets[i % 3]) / kParts;
+  const size_t part = i / 3;
+  return (static_cast<double>(part) + kOffsets[i % 3]) / kParts;
 }
 double nodeWeight(size_t i) {  // sums to 1
   return (i % 3 == 1 ? 4.0 / 9 : 5.0 / 18) / kParts;
@@ -176,6 +177,7 @@ TEST_P(BsdfSamplingTest, weightIsValueTimesCosineOverDensity) {
           auto draws = drawSamples(kernel, query, fix, effort(2000, 100), 11);
           std::erase_if(draws, [](const BsdfDraw& d) { return !counts(d); });
           std::vector<Direction> gens;
+          gens.reserve(draws.size());
           for (const BsdfDraw& draw : draws) gens.push_back(draw.gen);
           const auto values = evaluate(kernel, query, std::vector<Direction>(gens.size(), fix), gens);
           for (size_t i = 0; i < draws.size(); ++i) {

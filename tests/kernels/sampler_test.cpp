@@ -107,7 +107,7 @@ TEST_P(SamplerStatistics, numbersOfOneBlockAreIndependent) {
 
 TEST_P(SamplerStatistics, neighbouringPathsAreIndependent) {
   for (const auto& u : drawPaths(settings(GetParam()), kSamples)) {
-    for (const size_t distance : {1, 2, 16, 1024}) {
+    for (const size_t distance : {1u, 2u, 16u, 1024u}) {
       const size_t n = u.size() - distance;
       EXPECT_LT(std::abs(pairDeviations({u.data(), n}, {u.data() + distance, n})), kMaxDeviations) << distance;
     }
@@ -137,7 +137,7 @@ TEST_P(SamplerStatistics, blocksStreamsAndSeedsAreIndependent) {
 // Only the independent sampler promises this; the other is built to break it.
 TEST(IndependentSampler, iterationsAreIndependent) {
   const SampleColumns u = drawPaths(settings(SamplerKind::independent, 1, 0), kSamples);
-  for (const uint32_t iteration : {1, 2, 1024}) {
+  for (const uint32_t iteration : {1u, 2u, 1024u}) {
     const SampleColumns other = drawPaths(settings(SamplerKind::independent, 1, iteration), kSamples);
     for (size_t i = 0; i < 4; ++i) {
       for (size_t j = 0; j < 4; ++j) EXPECT_LT(std::abs(pairDeviations(u[i], other[j])), kMaxDeviations) << i << j;

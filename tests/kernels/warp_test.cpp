@@ -83,7 +83,7 @@ double deviations(const Points<T>& points, const Grid& grid) {
 }
 
 // Cells in (z, azimuth): solid angle is dz dphi.
-Grid aroundZ(double zLow, std::function<double(double z)> pdfW) {
+Grid aroundZ(double zLow, const std::function<double(double z)>& pdfW) {
   return {zLow,
           1,
           -kPi,

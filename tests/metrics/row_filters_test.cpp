@@ -23,7 +23,7 @@ TEST(RowFilters, WeightedSumIsTheDefinitionOnEveryIsa) {
   const auto data = randomFloats(kTaps * kRoom), taps = randomFloats(kTaps * kMaxFilterOutputs);
   for (const Isa isa : availableIsas()) {
     for (size_t outputs = 1; outputs <= kMaxFilterOutputs; ++outputs) {
-      for (size_t width : {1, 3, 15, 16, 17, 33, 63, 64, 65, 130}) {
+      for (size_t width : {1u, 3u, 15u, 16u, 17u, 33u, 63u, 64u, 65u, 130u}) {
         AlignedArray<float> results(outputs * kRoom);
         std::vector<const float*> sources, weights;
         std::vector<float*> out;
@@ -51,7 +51,7 @@ TEST(RowFilters, GatheredSumIsTheDefinitionOnEveryIsa) {
   constexpr size_t kTaps = 3;
   const auto data = randomFloats(100);
   for (const Isa isa : availableIsas()) {
-    for (size_t stride : {16, 48}) {
+    for (size_t stride : {16u, 48u}) {
       const auto weights = randomFloats(kTaps * stride);
       std::vector<uint32_t> indices;
       for (size_t i = 0; i < kTaps * stride; ++i) indices.push_back(static_cast<uint32_t>(i * 37 % 100));

@@ -18,8 +18,9 @@ TEST(Sky, SunStandsWhereTheScenesWantIt) {
   size_t brightest = 0;
   for (size_t i = 0; i < sky.pixels.size(); ++i)
     if (sky.pixels[i][0] > sky.pixels[brightest][0]) brightest = i;
-  const double theta = std::numbers::pi * (static_cast<double>(brightest / sky.width) + 0.5) / sky.height;
-  const double phi = 2 * std::numbers::pi * (static_cast<double>(brightest % sky.width) + 0.5) / sky.width;
+  const size_t x = brightest % sky.width, y = brightest / sky.width;
+  const double theta = std::numbers::pi * (static_cast<double>(y) + 0.5) / sky.height;
+  const double phi = 2 * std::numbers::pi * (static_cast<double>(x) + 0.5) / sky.width;
   const Vec3 direction{std::sin(phi) * std::sin(theta), std::cos(theta), -std::cos(phi) * std::sin(theta)};
   EXPECT_GT(dot(direction, Vec3{-0.4716, 0.6428, -0.6037}), std::cos(0.01));  // a pixel is 0.0123 wide
 }

@@ -59,7 +59,7 @@ TEST(SceneList, HasTheNineOfTheStudyInOrder) {
 TEST(SceneList, EveryFileThatASceneNamesExists) {
   int checked = 0;
   for (const auto& entry : fs::recursive_directory_iterator(sceneFolder())) {
-    const fs::path scene = entry.path();
+    const fs::path& scene = entry.path();
     if (scene.extension() != ".xml" || scene.parent_path().filename() == "parts") continue;
     for (const fs::path& file : namedFiles(scene, scene.parent_path())) {
       if (file.filename().string().starts_with("dragon_")) continue;  // fetched on request

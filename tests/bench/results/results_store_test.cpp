@@ -185,8 +185,8 @@ TEST(ReadResults, otherFilesAreRefused) {
 
 // A shard with one run.
 std::filesystem::path shard(const TemporaryFolder& folder, const std::string& name, const RunRecord& run,
-                            std::map<std::string, std::string> campaign, const SceneRecord& scene) {
-  const std::filesystem::path path = folder.path(name);
+                            const std::map<std::string, std::string>& campaign, const SceneRecord& scene) {
+  std::filesystem::path path = folder.path(name);
   ResultsStore store(path);
   store.putCampaign(campaign);
   store.putScene(scene);
