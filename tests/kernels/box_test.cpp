@@ -226,7 +226,10 @@ TEST_P(BoxHitTest, openBoxesOverlapWhatClosesThem) {
     for (size_t round = 0; round < effort(20, 2); ++round) {
       for (batch.clear(); !batch.full();) {
         const double along = random.uniform(0, 1), end = random.uniform(0, 1) < 0.5 ? 0 : 1;
-        const Point target = batch.wave.rays.size % 2 == 0 ? corner(lid, along, end) : corner(lid, end, along);
+        const Point edge = batch.wave.rays.size % 2 == 0 ? corner(lid, along, end) : corner(lid, end, along);
+        // On the edge or just beside it, within the box's wall or beyond.
+        const double beside = std::exp2(random.uniform(-26, -8)) * (random.uniform(0, 1) < 0.5 ? -1 : 1);
+        const Point target = edge + frame().edge[face / 2] * beside;
         batch.push(aimedRay(at(random.inCube(0.9)), target));
       }
       ASSERT_EQ(batch.extend(intersector(), scene.view), 0u) << "face " << face;
