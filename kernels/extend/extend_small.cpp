@@ -1,7 +1,7 @@
 // extend, small scenes: the closest hit of each ray by testing every primitive.
 //
 // in: Rays [n]. out: Hits [n], in ray order. Rays are in float under every precision policy. The order of the tests
-// decides ties, so the result does not depend on the width of a block.
+// decides ties, boxes first, so the result does not depend on the width of a block.
 #include "kernels/extend/offset.h"
 #include "kernels/extend/small_lanes.h"
 #include "kernels/stage_declarations.h"
@@ -10,53 +10,74 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Closest hits of one block. u, v: coordinates in the primitive; for a sphere u is the distance t.
+// Closest hits of one block.
 struct Closest {
-  Float t, u, v;
+  Float t;
   UInt primitive;
 
-  WAVECREST_INLINE void take(Mask closer, const PlaneHit& hit, uint32_t index) {
-    t = select(closer, hit.t, t);
-    u = select(closer, hit.u, u);
-    v = select(closer, hit.v, v);
-    primitive = select(closer, UInt(index), primitive);
+  WAVECREST_INLINE void take(Mask hit, Float distance, UInt index) {
+    const Mask closer = hit & (distance > Float(0)) & (distance < t);
+    t = select(closer, distance, t);
+    primitive = select(closer, index, primitive);
   }
 };
 
+template <bool kOpen>
+WAVECREST_INLINE void takeBox(Closest& best, const BoxForm& box, Vec3<Float> origin, Vec3<Float> direction) {
+  const BoxHit hit = intersectBox<kOpen>(box, origin, direction);
+  best.take(hit.hit, hit.t, hit.primitive);
+}
+
 WAVECREST_INLINE Closest closestHit(const SmallSceneView& scene, Vec3<Float> origin, Vec3<Float> direction) {
-  Closest best{Float(3.0e38f), Float(0), Float(0), UInt(kMiss)};
-  const auto nearer = [&](Float t) HWY_ATTR { return (t > Float(0)) & (t < best.t); };
-  uint32_t index = 0;
-  for (; index < scene.quadCount; ++index) {
-    const PlaneHit hit = intersectPlane(scene.planes[index], origin, direction);
-    best.take(insideQuad(hit, scene.limits[index]) & nearer(hit.t), hit, index);
+  Closest best{Float(3.0e38f), UInt(kMiss)};
+  uint32_t box = 0;
+  for (; box < scene.closedBoxCount; ++box) takeBox<false>(best, scene.boxes[box], origin, direction);
+  for (const uint32_t end = box + scene.openBoxCount; box < end; ++box) {
+    takeBox<true>(best, scene.boxes[box], origin, direction);
   }
-  if (index > 0) {  // from [-1, 1] with margin to [0, 1], kept off the edge
-    const UInt quad = min(best.primitive, UInt(index - 1));
-    const RecordLanes<PlaneLimits> at(scene.limits, quad);
-    const auto uncentred = [](Float x, Float scale) HWY_ATTR {
-      return min(max(mulAdd(x, scale, Float(0.5f)), Float(kInset)), Float(1 - kInset));
-    };
-    const auto limits = at.four(scene.limits->uScale);
-    best.u = uncentred(best.u, limits.a);
-    best.v = uncentred(best.v, limits.b);
+  uint32_t plane = 0;
+  for (; plane < scene.quadCount; ++plane) {
+    const PlaneLimits& limits = scene.limits[plane];
+    const PlaneHit hit = intersectPlane(scene.planes[plane], origin, direction);
+    best.take(insideQuad(hit, limits), hit.t, UInt(limits.primitive));
   }
-  for (const uint32_t end = index + scene.triangleCount; index < end; ++index) {
-    const PlaneHit hit = intersectPlane(scene.planes[index], origin, direction);
-    best.take(insideTriangle(hit, scene.limits[index]) & nearer(hit.t), hit, index);
+  for (const uint32_t end = plane + scene.triangleCount; plane < end; ++plane) {
+    const PlaneLimits& limits = scene.limits[plane];
+    const PlaneHit hit = intersectPlane(scene.planes[plane], origin, direction);
+    best.take(insideTriangle(hit, limits), hit.t, UInt(limits.primitive));
   }
-  if (scene.triangleCount > 0) {
-    const Mask triangle = (best.primitive < UInt(index)) & !(best.primitive < UInt(index - scene.triangleCount));
-    const Float u = max(best.u, Float(kInset)), v = max(best.v, Float(kInset));
-    const Float scale = min(Float(1), Float(1 - kInset) / (u + v));
-    best.u = select(triangle, u * scale, best.u);
-    best.v = select(triangle, v * scale, best.v);
-  }
-  for (uint32_t i = 0; i < scene.sphereCount; ++i, ++index) {
-    const Float t = intersectSphere(scene.spheres[i], origin, direction);
-    best.take(nearer(t), {t, t, Float(0), Float(0)}, index);
+  for (uint32_t i = 0; i < scene.sphereCount; ++i) {
+    best.take(allLanes(), intersectSphere(scene.spheres[i], origin, direction), UInt(scene.firstSphere + i));
   }
   return best;
+}
+
+struct HitCoordinates {
+  Float u, v;
+};
+
+// In the primitive that was hit, kept off its edges; for a sphere u is the distance t. Computed once for the closest
+// hit, from the point, instead of being kept for each candidate.
+WAVECREST_INLINE HitCoordinates coordinatesOf(const SmallSceneView& scene, const Closest& best, Vec3<Float> origin,
+                                              Vec3<Float> direction) {
+  HitCoordinates at{best.t, Float(0)};
+  if (scene.firstSphere == 0) return at;
+  const Vec3<Float> point = mulAdd(direction, best.t, origin);
+  const RecordLanes<FaceCoordinates> face(scene.coordinates, min(best.primitive, UInt(scene.firstSphere - 1)));
+  const auto along = [&](const FourColumns<Float>& row) HWY_ATTR {
+    return mulAdd(row.a, point.x, mulAdd(row.b, point.y, mulAdd(row.c, point.z, row.d)));
+  };
+  Float u = min(max(along(face.four(scene.coordinates->uAxis[0])), Float(kInset)), Float(1 - kInset));
+  Float v = min(max(along(face.four(scene.coordinates->vAxis[0])), Float(kInset)), Float(1 - kInset));
+  if (scene.triangleCount > 0) {
+    const Float scale = min(Float(1), Float(1 - kInset) / (u + v));
+    const Mask quad = best.primitive < UInt(scene.firstTriangle);
+    u = select(quad, u, u * scale);
+    v = select(quad, v, v * scale);
+  }
+  if (scene.sphereCount == 0) return {u, v};
+  const Mask sphere = !(best.primitive < UInt(scene.firstSphere));
+  return {select(sphere, best.t, u), zeroUnless(!sphere, v)};
 }
 
 }  // namespace
@@ -73,8 +94,9 @@ void extendSmall(const StageContext<typename P::Storage>& context, Wave<typename
     const Vec3<Float> origin = to<Float>(loadVec3(rays.originX, rays.originY, rays.originZ, i));
     const Vec3<Float> direction = to<Float>(loadVec3(rays.directionX, rays.directionY, rays.directionZ, i));
     const Closest best = closestHit(scene, origin, direction);
-    store(best.u, wave.hits.u, i);
-    store(best.v, wave.hits.v, i);
+    const HitCoordinates at = coordinatesOf(scene, best, origin, direction);
+    store(at.u, wave.hits.u, i);
+    store(at.v, wave.hits.v, i);
     store(best.primitive, wave.hits.primitive, i);
   }
 }

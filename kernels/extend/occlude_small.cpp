@@ -14,14 +14,23 @@ namespace {
 WAVECREST_INLINE Mask blocked(const SmallSceneView& scene, Vec3<Float> origin, Vec3<Float> direction) {
   Mask hit = noLanes();
   const auto within = [](Float t) HWY_ATTR { return (t > Float(0)) & (t < Float(1)); };
-  uint32_t index = 0;
-  for (; index < scene.quadCount; ++index) {
-    const PlaneHit at = intersectPlane(scene.planes[index], origin, direction);
-    hit = hit | (insideQuad(at, scene.limits[index]) & within(at.t));
+  uint32_t box = 0;
+  for (; box < scene.closedBoxCount; ++box) {
+    const BoxHit at = intersectBox<false>(scene.boxes[box], origin, direction);
+    hit = hit | (at.hit & within(at.t));
   }
-  for (const uint32_t end = index + scene.triangleCount; index < end; ++index) {
-    const PlaneHit at = intersectPlane(scene.planes[index], origin, direction);
-    hit = hit | (insideTriangle(at, scene.limits[index]) & within(at.t));
+  for (const uint32_t end = box + scene.openBoxCount; box < end; ++box) {
+    const BoxHit at = intersectBox<true>(scene.boxes[box], origin, direction);
+    hit = hit | (at.hit & within(at.t));
+  }
+  uint32_t plane = 0;
+  for (; plane < scene.quadCount; ++plane) {
+    const PlaneHit at = intersectPlane(scene.planes[plane], origin, direction);
+    hit = hit | (insideQuad(at, scene.limits[plane]) & within(at.t));
+  }
+  for (const uint32_t end = plane + scene.triangleCount; plane < end; ++plane) {
+    const PlaneHit at = intersectPlane(scene.planes[plane], origin, direction);
+    hit = hit | (insideTriangle(at, scene.limits[plane]) & within(at.t));
   }
   for (uint32_t i = 0; i < scene.sphereCount; ++i) {
     hit = hit | within(intersectSphere(scene.spheres[i], origin, direction));

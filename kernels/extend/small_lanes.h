@@ -10,6 +10,9 @@ WAVECREST_SIMD_BEGIN
 WAVECREST_INLINE Float dotForm(const float (&a)[3], Vec3<Float> b) {
   return mulAdd(Float(a[0]), b.x, mulAdd(Float(a[1]), b.y, Float(a[2]) * b.z));
 }
+WAVECREST_INLINE Float dotForm(const float (&a)[3], Vec3<Float> b, float offset) {
+  return mulAdd(Float(a[0]), b.x, mulAdd(Float(a[1]), b.y, mulAdd(Float(a[2]), b.z, Float(offset))));
+}
 
 struct PlaneHit {
   Float t, u, v;
@@ -26,16 +29,63 @@ WAVECREST_INLINE PlaneHit intersectPlane(const PlaneForm& plane, Vec3<Float> ori
   hit.slowness = abs(inverseSpeed);
   hit.t = gap * inverseSpeed;
   const Vec3<Float> point = mulAdd(direction, hit.t, origin);
-  hit.u = dotForm(plane.uAxis, point) + Float(plane.uOffset);
-  hit.v = dotForm(plane.vAxis, point) + Float(plane.vOffset);
+  hit.u = dotForm(plane.uAxis, point, plane.uOffset);
+  hit.v = dotForm(plane.vAxis, point, plane.vOffset);
   return hit;
 }
 WAVECREST_INLINE Mask insideQuad(const PlaneHit& hit, const PlaneLimits& limits) {
   return max(abs(hit.u), abs(hit.v)) <= mulAdd(hit.slowness, Float(limits.grazing), Float(1));
 }
 WAVECREST_INLINE Mask insideTriangle(const PlaneHit& hit, const PlaneLimits& limits) {
-  const Float margin = mulAdd(hit.slowness, Float(limits.grazing), Float(limits.margin));
-  return min(min(hit.u, hit.v), Float(1) - hit.u - hit.v) >= -margin;
+  const Float inside = min(min(hit.u, hit.v), Float(1) - hit.u - hit.v);
+  return mulAdd(hit.slowness, Float(limits.grazing), inside) >= Float(limits.least);
+}
+
+// ---- boxes ----------------------------------------------------------------------------------------------------------
+
+// Added to the speed across a slab, so that a ray along it has a finite t, beyond every other that matters, and 0 where
+// it starts in one of the slab's planes: then no comparison sees a NaN.
+constexpr float kParallelSpeed = 1e-20f;
+
+// Where the rays meet the two planes of a slab.
+struct SlabHit {
+  Float low, high;
+};
+WAVECREST_INLINE SlabHit intersectSlab(const SlabForm& slab, Vec3<Float> origin, Vec3<Float> direction) {
+  const Float inverse = approximateReciprocal(dotForm(slab.normal, direction, kParallelSpeed));
+  const Float along = dotForm(slab.normal, origin);
+  return {(Float(slab.low) - along) * inverse, (Float(slab.high) - along) * inverse};
+}
+
+struct BoxHit {
+  Mask hit;  // some face is met at t, which may be behind the origin
+  Float t;
+  UInt primitive;
+};
+
+// The first face that the rays meet: where they enter the box, or if that is behind them or missing, where they leave.
+template <bool kOpen>
+WAVECREST_INLINE BoxHit intersectBox(const BoxForm& box, Vec3<Float> origin, Vec3<Float> direction) {
+  const SlabHit a = intersectSlab(box.slabs[0], origin, direction);
+  const SlabHit b = intersectSlab(box.slabs[1], origin, direction);
+  const SlabHit c = intersectSlab(box.slabs[2], origin, direction);
+  const Float enter = max(max(min(a.low, a.high), min(b.low, b.high)), min(c.low, c.high));
+  const Float leave = min(min(max(a.low, a.high), max(b.low, b.high)), max(c.low, c.high));
+  Mask entering = enter > Float(0), hit = enter <= leave;
+  if constexpr (kOpen) {
+    entering = andNot(entering, enter == c.high);
+    hit = hit & (entering | !(leave == c.high));
+  }
+  const Float t = select(entering, enter, leave);
+  // On an edge two planes are met at the same t, and the last of these decides.
+  UInt primitive(box.primitives[2][0]);
+  const auto at = [&](Float plane, uint32_t face) HWY_ATTR { primitive = select(t == plane, UInt(face), primitive); };
+  if constexpr (!kOpen) at(c.high, box.primitives[2][1]);
+  at(b.high, box.primitives[1][1]);
+  at(b.low, box.primitives[1][0]);
+  at(a.high, box.primitives[0][1]);
+  at(a.low, box.primitives[0][0]);
+  return {hit, t, primitive};
 }
 
 WAVECREST_INLINE Float intersectSphere(const SphereForm& sphere, Vec3<Float> origin, Vec3<Float> direction) {

@@ -1,97 +1,137 @@
 #include "kernels/extend/small_scene.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+
+#include "kernels/extend/find_boxes.h"
+#include "kernels/extend/offset.h"
 
 namespace wavecrest {
 namespace {
-
-using D3 = std::array<double, 3>;
-
-D3 vec(const double (&a)[3]) { return {a[0], a[1], a[2]}; }
-double dot(const D3& a, const D3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-D3 cross(const D3& a, const D3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-D3 scaled(const D3& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-
-void assign(float (&out)[3], const D3& a) {
-  for (size_t i = 0; i < 3; ++i) out[i] = static_cast<float>(a[i]);
-}
 
 // Bound on the rounding error of axis . p + offset for points with coordinates up to `reach`: the point itself carries
 // some 8 roundings from origin + t direction with an approximate t, the sum 4 more.
 double coordinateError(const D3& axis, double offset, double reach) {
   const double magnitude = (std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2])) * reach + std::abs(offset);
-  return 16 * 0x1p-24 * magnitude;
+  return 16 * kUnitRoundoff * magnitude;
+}
+// The same of a distance from a plane, at the ray's origin.
+double gapError(const D3& normal, double reach) {
+  return 4 * kUnitRoundoff * (std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2])) * reach;
+}
+
+PrimitiveKind kindOf(const PrimitiveRecord<double>& primitive) { return static_cast<PrimitiveKind>(primitive.kind); }
+
+double reachOf(const PrimitiveRecord<double>* primitives, size_t count) {
+  double reach = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const auto& p = primitives[i];
+    for (size_t axis = 0; axis < 3; ++axis) {
+      reach = std::max(reach, std::abs(p.p0[axis]) + std::abs(p.e1[axis]) + std::abs(p.e2[axis]));
+    }
+  }
+  return reach;
+}
+
+// The dual basis of (e1, e2) in the plane: u . e1 = 1, u . e2 = 0; both are 0 at p0.
+struct DualBasis {
+  D3 u, v;
+  double uOffset, vOffset;
+};
+DualBasis dualBasis(const PrimitiveRecord<double>& primitive) {
+  const D3 e1 = vec(primitive.e1), e2 = vec(primitive.e2), n = vec(primitive.normal), p0 = vec(primitive.p0);
+  const D3 acrossU = cross(e2, n), acrossV = cross(n, e1);
+  const D3 u = acrossU * (1 / dot(e1, acrossU)), v = acrossV * (1 / dot(e2, acrossV));
+  return {u, v, -dot(u, p0), -dot(v, p0)};
+}
+
+FaceCoordinates coordinatesOf(const PrimitiveRecord<double>& primitive) {
+  const DualBasis basis = dualBasis(primitive);
+  FaceCoordinates coordinates;
+  assign(coordinates.uAxis, basis.u);
+  assign(coordinates.vAxis, basis.v);
+  coordinates.uOffset = static_cast<float>(basis.uOffset);
+  coordinates.vOffset = static_cast<float>(basis.vOffset);
+  return coordinates;
 }
 
 }  // namespace
 
 SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count) {
-  double reach = 0;
-  for (size_t i = 0; i < count; ++i) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const auto& p = primitives[i];
-      reach = std::max(reach, std::abs(p.p0[axis]) + std::abs(p.e1[axis]) + std::abs(p.e2[axis]));
+  const double reach = reachOf(primitives, count);
+  const auto ofKind = [&](PrimitiveKind kind) {
+    return static_cast<uint32_t>(
+        std::count_if(primitives, primitives + count, [kind](const auto& p) { return kindOf(p) == kind; }));
+  };
+  view_.firstTriangle = ofKind(PrimitiveKind::quad);
+  view_.triangleCount = ofKind(PrimitiveKind::triangle);
+  view_.firstSphere = view_.firstTriangle + view_.triangleCount;
+  view_.sphereCount = ofKind(PrimitiveKind::sphere);
+
+  std::vector<bool> inBox(count, false);
+  std::vector<FoundBox> boxes = findBoxes(primitives, view_.firstTriangle);
+  for (const bool open : {false, true}) {
+    for (const FoundBox& box : boxes) {
+      if (box.open() != open) continue;
+      ++(open ? view_.openBoxCount : view_.closedBoxCount);
+      addBox(box, reach);
+      for (const auto& pair : box.quad) {
+        for (const uint32_t quad : pair) {
+          if (quad != kNoIndex) inBox[quad] = true;
+        }
+      }
     }
   }
-  for (size_t i = 0; i < count; ++i) {
-    const auto& primitive = primitives[i];
-    switch (static_cast<PrimitiveKind>(primitive.kind)) {
-      case PrimitiveKind::quad:
-        ++view_.quadCount;
-        break;
-      case PrimitiveKind::triangle:
-        ++view_.triangleCount;
-        break;
-      case PrimitiveKind::sphere:
-        ++view_.sphereCount;
-        break;
-    }
-    if (static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere) {
-      SphereForm& sphere = spheres_.emplace_back();
-      assign(sphere.center, vec(primitive.p0));
-      sphere.radius = static_cast<float>(primitive.e1[0]);
-    } else {
-      addPlane(primitive, reach);
-    }
+  for (uint32_t i = 0; i < view_.firstSphere; ++i) {
+    coordinates_.push_back(coordinatesOf(primitives[i]));
+    if (!inBox[i]) addPlane(primitives[i], i, reach);
   }
+  view_.quadCount = static_cast<uint32_t>(planes_.size()) - view_.triangleCount;
+  for (size_t i = view_.firstSphere; i < count; ++i) {
+    SphereForm& sphere = spheres_.emplace_back();
+    assign(sphere.center, vec(primitives[i].p0));
+    sphere.radius = static_cast<float>(primitives[i].e1[0]);
+  }
+  view_.boxes = boxes_.data();
   view_.planes = planes_.data();
   view_.limits = limits_.data();
+  view_.coordinates = coordinates_.data();
   view_.spheres = spheres_.data();
 }
 
-void SmallScene::addPlane(const PrimitiveRecord<double>& primitive, double reach) {
-  const D3 p0 = vec(primitive.p0), e1 = vec(primitive.e1), e2 = vec(primitive.e2), n = vec(primitive.normal);
-  // The dual basis of (e1, e2) in the plane: uAxis . e1 = 1, uAxis . e2 = 0.
-  const D3 acrossU = cross(e2, n), acrossV = cross(n, e1);
-  D3 uAxis = scaled(acrossU, 1 / dot(e1, acrossU)), vAxis = scaled(acrossV, 1 / dot(e2, acrossV));
-  double uOffset = -dot(uAxis, p0), vOffset = -dot(vAxis, p0);
-  const double uError = coordinateError(uAxis, uOffset, reach), vError = coordinateError(vAxis, vOffset, reach);
+void SmallScene::addBox(const FoundBox& box, double reach) {
+  BoxForm& form = boxes_.emplace_back();
+  for (size_t axis = 0; axis < 3; ++axis) {
+    SlabForm& slab = form.slabs[axis];
+    // Faces reach out of an open side, so that they overlap whatever closes it.
+    const double overlap = axis == 2 && box.open() ? 4 * gapError(box.normal[axis], reach) : 0;
+    assign(slab.normal, box.normal[axis]);
+    slab.low = static_cast<float>(box.low[axis]);
+    slab.high = static_cast<float>(box.high[axis] + overlap);
+    std::copy_n(box.quad[axis], 2, form.primitives[axis]);
+  }
+}
 
-  const double gapError = 4 * 0x1p-24 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2])) * reach;
+void SmallScene::addPlane(const PrimitiveRecord<double>& primitive, uint32_t index, double reach) {
+  const D3 n = vec(primitive.normal);
+  DualBasis basis = dualBasis(primitive);
+  const double uError = coordinateError(basis.u, basis.uOffset, reach);
+  const double vError = coordinateError(basis.v, basis.vOffset, reach);
   PlaneLimits& limits = limits_.emplace_back();
-  limits.grazing =
-      static_cast<float>(4 * gapError * std::max(std::sqrt(dot(uAxis, uAxis)), std::sqrt(dot(vAxis, vAxis))));
-  limits.margin = static_cast<float>(2 * std::max(uError, vError));
-  if (static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::quad) {
+  limits.primitive = index;
+  limits.grazing = static_cast<float>(4 * gapError(n, reach) * std::max(length(basis.u), length(basis.v)));
+  limits.least = static_cast<float>(-2 * std::max(uError, vError));
+  if (kindOf(primitive) == PrimitiveKind::quad) {
     const double uHalf = 0.5 + uError, vHalf = 0.5 + vError;
-    uAxis = scaled(uAxis, 1 / uHalf);
-    vAxis = scaled(vAxis, 1 / vHalf);
-    uOffset = (uOffset - 0.5) / uHalf;
-    vOffset = (vOffset - 0.5) / vHalf;
-    limits.uScale = static_cast<float>(uHalf);
-    limits.vScale = static_cast<float>(vHalf);
+    basis = {basis.u * (1 / uHalf), basis.v * (1 / vHalf), (basis.uOffset - 0.5) / uHalf,
+             (basis.vOffset - 0.5) / vHalf};
   }
   PlaneForm& plane = planes_.emplace_back();
   assign(plane.normal, n);
-  plane.distance = static_cast<float>(dot(n, p0));
-  assign(plane.uAxis, uAxis);
-  assign(plane.vAxis, vAxis);
-  plane.uOffset = static_cast<float>(uOffset);
-  plane.vOffset = static_cast<float>(vOffset);
+  plane.distance = static_cast<float>(dot(n, vec(primitive.p0)));
+  assign(plane.uAxis, basis.u);
+  assign(plane.vAxis, basis.v);
+  plane.uOffset = static_cast<float>(basis.uOffset);
+  plane.vOffset = static_cast<float>(basis.vOffset);
 }
 
 }  // namespace wavecrest

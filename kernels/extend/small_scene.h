@@ -2,10 +2,14 @@
 //
 // Up to some hundred primitives a loop over all of them beats a hierarchy, because it has no branches and its data is
 // broadcast from L1. A parallelogram is its plane n.p = d and two affine maps of space onto its own coordinates; both
-// maps are centred and scaled so that the inside is max(|u|, |v|) <= 1.
+// maps are centred and scaled so that the inside is max(|u|, |v|) <= 1. Five or six quads that bound a parallelepiped
+// are one box, three slabs between parallel planes, at less than half the cost (kernels/extend/find_boxes.h).
 //
-// Watertightness: the inside is widened by a bound on the rounding error of u and v (PlaneForm::margin), so of two
-// primitives that share an edge at least one is hit by any ray through the edge.
+// Watertightness: the inside of a plane is widened by a bound on the rounding error of u and v, so of two primitives
+// that share an edge at least one is hit by any ray through the edge. A box has no edges to slip through: a ray that
+// starts inside leaves it where it leaves the first of its slabs, whichever that is. The gaps between the origin and
+// the two planes of a slab are rounded apart, as that of a plane is: a box far thicker than it is far from the origin
+// would lose in a shared centre and half width what kOffsetGamma allows for.
 #pragma once
 
 #include <cstddef>
@@ -16,43 +20,67 @@
 
 namespace wavecrest {
 
+struct FoundBox;
+
 struct PlaneForm {
   float normal[3], distance;
   float uAxis[3], uOffset;
   float vAxis[3], vOffset;
 };
-// Quad: the widened inside is max(|u|, |v|) <= 1, and hits report u * uScale + 0.5.
-// Triangle: u, v as they are; the inside is min(u, v, 1 - u - v) >= -margin.
+// The inside, widened: of a quad max(|u|, |v|) <= 1, of a triangle min(u, v, 1 - u - v) >= least.
 // grazing: how much either inside widens per 1 / |speed|, speed being the ray's speed towards the plane. The error of
 // the plane equation moves the hit of a grazing ray along the ray; where two faces meet at almost 180 degrees both
 // would otherwise miss it.
 struct PlaneLimits {
-  float uScale, vScale, margin, grazing;
+  float least, grazing;
+  uint32_t primitive;
+};
+// The points low <= normal . p <= high.
+struct SlabForm {
+  float normal[3], low, high;
+};
+struct BoxForm {
+  SlabForm slabs[3];
+  uint32_t primitives[3][2];  // of the faces at low and at high
+};
+// u = uAxis . p + uOffset, from 0 to 1 on the quad or triangle.
+struct FaceCoordinates {
+  float uAxis[3], uOffset;
+  float vAxis[3], vOffset;
 };
 struct SphereForm {
   float center[3], radius;
 };
 
-// Primitives in SceneView order: quads, then triangles, then spheres.
+// Boxes: those of six faces, then those whose face at slabs[2].high is missing. Planes: the quads that are no face of a
+// box, then the triangles. Coordinates: of all quads and triangles, in SceneView order. Spheres follow in that order.
 struct SmallSceneView {
+  const BoxForm* boxes;
   const PlaneForm* planes;
   const PlaneLimits* limits;
+  const FaceCoordinates* coordinates;
   const SphereForm* spheres;
+  uint32_t closedBoxCount, openBoxCount;
   uint32_t quadCount, triangleCount, sphereCount;
+  uint32_t firstTriangle, firstSphere;  // in SceneView order
 };
 
 // Owner of the arrays behind a SmallSceneView.
 class SmallScene {
  public:
-  // primitives: sorted by kind as above. Coordinates in double, so that the forms are right to float's last place.
+  // primitives: sorted by kind, as in SceneView. Coordinates in double, so that the forms are right to float's last
+  // place.
   SmallScene(const PrimitiveRecord<double>* primitives, size_t count);
   const SmallSceneView& view() const { return view_; }
 
  private:
-  void addPlane(const PrimitiveRecord<double>& primitive, double reach);
+  void addBox(const FoundBox& box, double reach);
+  void addPlane(const PrimitiveRecord<double>& primitive, uint32_t index, double reach);
 
+  std::vector<BoxForm> boxes_;
   std::vector<PlaneForm> planes_;
   std::vector<PlaneLimits> limits_;
+  std::vector<FaceCoordinates> coordinates_;
   std::vector<SphereForm> spheres_;
   SmallSceneView view_{};
 };

@@ -104,7 +104,20 @@ Point hitPoint(const PrimitiveRecord<double>& r, const TestRay& ray, float u, fl
 struct Mix {
   const char* name;
   size_t quads, triangles, spheres;
+  size_t boxes = 0, openBoxes = 0;  // of six and of five more quads
 };
+
+// Faces of a sheared box, the last of six left out if it is open.
+void addBox(bool open, RandomPoints& random, std::vector<PrimitiveRecord<double>>& list) {
+  const Point center = random.inCube(1);
+  Point edge[3];
+  for (Point& e : edge) e = random.direction() * random.uniform(0.2, 1);
+  for (size_t face = 0; face < (open ? 5u : 6u); ++face) {
+    const Point u = edge[(face / 2 + 1) % 3], v = edge[(face / 2 + 2) % 3];
+    const Point middle = center + edge[face / 2] * (face % 2 == 0 ? -0.5 : 0.5);
+    list.push_back(facePrimitive(PrimitiveKind::quad, middle - (u + v) * 0.5, u, v));
+  }
+}
 
 std::vector<PrimitiveRecord<double>> randomPrimitives(const Mix& mix, RandomPoints& random) {
   std::vector<PrimitiveRecord<double>> list;
@@ -114,10 +127,13 @@ std::vector<PrimitiveRecord<double>> randomPrimitives(const Mix& mix, RandomPoin
     return facePrimitive(kind, p, e1, across * random.uniform(0.2, 1) + e1 * random.uniform(-0.5, 0.5));
   };
   for (size_t i = 0; i < mix.quads; ++i) list.push_back(face(PrimitiveKind::quad));
+  for (size_t i = 0; i < mix.boxes; ++i) addBox(false, random, list);
+  for (size_t i = 0; i < mix.openBoxes; ++i) addBox(true, random, list);
   for (size_t i = 0; i < mix.triangles; ++i) list.push_back(face(PrimitiveKind::triangle));
   for (size_t i = 0; i < mix.spheres; ++i) list.push_back(spherePrimitive(random.inCube(1), random.uniform(0.1, 0.5)));
-  // The reference sees what the float records hold.
+  // The reference sees what the float records hold; of boxes that would move faces out of their planes.
   for (auto& r : list) {
+    if (mix.boxes + mix.openBoxes > 0) break;
     for (auto* field : {&r.p0, &r.e1, &r.e2}) {
       for (double& x : *field) x = static_cast<float>(x);
     }
@@ -189,14 +205,12 @@ INSTANTIATE_TEST_SUITE_P(
     Kernels, ExtendTest,
     testing::Combine(testing::ValuesIn(allIntersectors()),
                      testing::Values(Mix{"quads", 8, 0, 0}, Mix{"triangles", 0, 8, 0}, Mix{"spheres", 0, 0, 6},
-                                     Mix{"all", 5, 5, 4}, Mix{"crowded", 60, 60, 40})),
+                                     Mix{"all", 5, 5, 4}, Mix{"crowded", 60, 60, 40}, Mix{"boxes", 0, 0, 0, 3, 0},
+                                     Mix{"openBoxes", 0, 0, 0, 0, 3}, Mix{"boxesAndAll", 2, 2, 2, 2, 2})),
     [](const auto& instance) { return std::get<0>(instance.param).name + "_" + std::get<1>(instance.param).name; });
 
-// Rays that run within or parallel to the planes of axis-aligned faces have zeros and infinities in every formula.
-class AxisAlignedTest : public testing::TestWithParam<Intersector> {};
-
-TEST_P(AxisAlignedTest, raysAlongTheAxesHitTheFacesTheyMeet) {
-  // A cube of side 2 around the origin: x = -1, x = 1, y = -1, y = 1, z = -1, z = 1.
+// A cube of side 2 around the origin: x = -1, x = 1, y = -1, y = 1, z = -1, z = 1.
+std::vector<PrimitiveRecord<double>> cubeFaces() {
   std::vector<PrimitiveRecord<double>> faces;
   for (size_t axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
@@ -207,7 +221,14 @@ TEST_P(AxisAlignedTest, raysAlongTheAxesHitTheFacesTheyMeet) {
       faces.push_back(quadPrimitive(p, u, v));
     }
   }
-  const StageScene<float> scene(faces);
+  return faces;
+}
+
+// Rays that run within or parallel to the planes of axis-aligned faces have zeros and infinities in every formula.
+class AxisAlignedTest : public testing::TestWithParam<Intersector> {};
+
+TEST_P(AxisAlignedTest, raysAlongTheAxesHitTheFacesTheyMeet) {
+  const StageScene<float> scene(cubeFaces());
   RayBatch batch;
   std::vector<uint32_t> expected;
   for (uint32_t axis = 0; axis < 3; ++axis) {
@@ -224,8 +245,42 @@ TEST_P(AxisAlignedTest, raysAlongTheAxesHitTheFacesTheyMeet) {
   expected.push_back(kMiss);
   batch.push({{0.3, 2, 0.5}, {0, 1, 0}});  // leaves the cube behind
   expected.push_back(kMiss);
+  batch.push({{0.3, 2, 2}, {1, 0, 0}});  // parallel to two pairs of faces, beside both
+  expected.push_back(kMiss);
+  batch.push({{-3, 0.5, 0.25}, {1, 0, 0}});  // from outside
+  expected.push_back(0);
+  batch.push({{-3, 2, 0.25}, {1, 0, 0}});
+  expected.push_back(kMiss);
   batch.extend(GetParam(), scene.view);
   for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(batch.wave.hits.primitive[i], expected[i]) << i;
+}
+
+// A ray within the plane of a face meets that face nowhere, and the face at the other end, whose edge it is aimed at,
+// or nothing: never the faces behind it.
+TEST_P(AxisAlignedTest, raysInThePlaneOfAFaceMeetNothingButItsNeighbour) {
+  const StageScene<float> scene(cubeFaces());
+  RayBatch batch;
+  std::vector<uint32_t> ahead;
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      for (const double plane : {-1.0, 1.0}) {
+        for (const double start : {-3.0, 0.25, 3.0}) {
+          Point origin{0.5, 0.5, 0.5}, direction{0, 0, 0};
+          origin[(axis + 1) % 3] = plane;
+          origin[axis] = start;
+          direction[axis] = side;
+          batch.push({origin, direction});
+          const bool inside = std::abs(start) < 1, towards = start * side < 0;
+          ahead.push_back(inside ? 2 * axis + (side > 0 ? 1 : 0) : towards ? 2 * axis + (side > 0 ? 0 : 1) : kMiss);
+        }
+      }
+    }
+  }
+  batch.extend(GetParam(), scene.view);
+  for (size_t i = 0; i < ahead.size(); ++i) {
+    const uint32_t hit = batch.wave.hits.primitive[i];
+    EXPECT_TRUE(hit == kMiss || hit == ahead[i]) << i << " hits " << hit;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, AxisAlignedTest, testing::ValuesIn(allIntersectors()),

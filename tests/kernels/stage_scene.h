@@ -12,22 +12,15 @@
 #include <vector>
 
 #include "kernels/extend/bvh.h"
+#include "kernels/extend/double_vectors.h"
 #include "kernels/extend/embree_scene.h"
 #include "kernels/extend/small_scene.h"
 #include "kernels/stages.h"
 
 namespace wavecrest {
 
-using Point = std::array<double, 3>;
+using Point = D3;
 
-inline Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Point operator*(const Point& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline double length(const Point& a) { return std::sqrt(dot(a, a)); }
 inline Point normalized(const Point& a) { return a * (1 / length(a)); }
 
 // A square film whose raster (x, y) is seen in the direction corner + x across + y down. What only t = 1 reads is left

@@ -1,0 +1,161 @@
+#include "kernels/extend/find_boxes.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "kernels/extend/offset.h"
+
+namespace wavecrest {
+namespace {
+
+// Edges and centres that differ by this many roundings of the largest coordinate count as one: four corners, each
+// rounded to float, stand behind the last of a box's eight.
+constexpr double kSameCorner = 4 * kUnitRoundoff;
+// How far a corner may lie off the plane of its face, relative to |normal| . |corner|. Rays start from the quad and are
+// tested against the box, so this counts against kOffsetGamma, to which other roundings contribute 12 units.
+constexpr double kFlatness = 2 * kUnitRoundoff;
+constexpr double kDoubleError = 0x1p-48;  // of this computation
+
+struct Quad {
+  D3 center, e1, e2;
+};
+Quad quadOf(const PrimitiveRecord<double>& record) {
+  const D3 e1 = vec(record.e1), e2 = vec(record.e2);
+  return {vec(record.p0) + (e1 + e2) * 0.5, e1, e2};
+}
+
+double largest(const D3& a) { return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}); }
+
+bool parallel(const D3& a, const D3& b, double tolerance) {
+  return largest(a - b) <= tolerance || largest(a + b) <= tolerance;
+}
+// Whether two quads have the same corners, whatever their order.
+bool coincide(const Quad& a, const Quad& b, double tolerance) {
+  return largest(a.center - b.center) <= tolerance &&
+         ((parallel(a.e1, b.e1, tolerance) && parallel(a.e2, b.e2, tolerance)) ||
+          (parallel(a.e1, b.e2, tolerance) && parallel(a.e2, b.e1, tolerance)));
+}
+
+struct Parallelepiped {
+  D3 center, edge[3];
+
+  Quad face(size_t axis, size_t side) const {
+    return {center + edge[axis] * (side == 0 ? -0.5 : 0.5), edge[(axis + 1) % 3], edge[(axis + 2) % 3]};
+  }
+  double tolerance() const {
+    return kSameCorner * (largest(center) + (largest(edge[0]) + largest(edge[1]) + largest(edge[2])) / 2);
+  }
+};
+
+class BoxFinder {
+ public:
+  BoxFinder(const PrimitiveRecord<double>* quads, size_t count) : free_(count, true) {
+    quads_.reserve(count);
+    for (size_t i = 0; i < count; ++i) quads_.push_back(quadOf(quads[i]));
+  }
+
+  std::vector<FoundBox> find() {
+    std::vector<FoundBox> boxes;
+    for (size_t i = 0; i < quads_.size(); ++i) {
+      if (const std::optional<FoundBox> box = boxOn(i)) {
+        for (const auto& pair : box->quad) {
+          for (const uint32_t quad : pair) {
+            if (quad != kNoIndex) free_[quad] = false;
+          }
+        }
+        boxes.push_back(*box);
+      }
+    }
+    return boxes;
+  }
+
+ private:
+  // A box of which this quad is a face. Any other that shares an edge with it says where the opposite face would be.
+  std::optional<FoundBox> boxOn(size_t base) const {
+    const Quad& bottom = quads_[base];
+    for (size_t i = 0; i < quads_.size() && free_[base]; ++i) {
+      if (i == base || !free_[i]) continue;
+      for (const auto& [shared, across] : {std::pair{bottom.e1, bottom.e2}, std::pair{bottom.e2, bottom.e1}}) {
+        for (const double side : {-1.0, 1.0}) {
+          const D3 up = (quads_[i].center - bottom.center) * 2 - across * side;
+          const Parallelepiped shape{bottom.center + up * 0.5, {bottom.e1, bottom.e2, up}};
+          if (!coincide(quads_[i], {quads_[i].center, shared, up}, shape.tolerance())) continue;
+          if (const std::optional<FoundBox> box = boxOf(shape)) return box;
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<FoundBox> boxOf(const Parallelepiped& shape) const {
+    FoundBox box{};
+    size_t missing = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const D3 across = cross(shape.edge[(axis + 1) % 3], shape.edge[(axis + 2) % 3]);
+      const double volume = dot(across, shape.edge[axis]);
+      if (volume == 0) return std::nullopt;
+      box.normal[axis] = across * ((volume > 0 ? 1 : -1) / length(across));
+      for (size_t side = 0; side < 2; ++side) {
+        const Quad face = shape.face(axis, side);
+        const uint32_t quad = box.quad[axis][side] = freeQuadAt(face, shape.tolerance());
+        if (quad == kNoIndex && ++missing > 1) return std::nullopt;
+        double& bound = side == 0 ? box.low[axis] : box.high[axis];
+        bound = dot(box.normal[axis], quad == kNoIndex ? face.center : quads_[quad].center);
+        if (quad != kNoIndex && !liesIn(quads_[quad], box.normal[axis], bound)) return std::nullopt;
+      }
+    }
+    if (missing != 0) turnOpenSide(box);
+    return box;
+  }
+
+  uint32_t freeQuadAt(const Quad& face, double tolerance) const {
+    for (size_t i = 0; i < quads_.size(); ++i) {
+      if (free_[i] && coincide(quads_[i], face, tolerance)) return static_cast<uint32_t>(i);
+    }
+    return kNoIndex;
+  }
+
+  static bool liesIn(const Quad& quad, const D3& normal, double bound) {
+    for (const double u : {-0.5, 0.5}) {
+      for (const double v : {-0.5, 0.5}) {
+        const D3 corner = quad.center + quad.e1 * u + quad.e2 * v;
+        const double allowed = kFlatness * absDot(normal, corner) + kDoubleError * largest(corner);
+        if (std::abs(dot(normal, corner) - bound) > allowed) return false;
+      }
+    }
+    return true;
+  }
+
+  // Makes the missing face that at high[2].
+  static void turnOpenSide(FoundBox& box) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      auto& pair = box.quad[axis];
+      if (pair[0] == kNoIndex) {
+        std::swap(pair[0], pair[1]);
+        std::swap(box.low[axis], box.high[axis]);
+        box.low[axis] *= -1;
+        box.high[axis] *= -1;
+        box.normal[axis] = box.normal[axis] * -1;
+      }
+      if (pair[1] == kNoIndex && axis != 2) {
+        std::swap(box.normal[axis], box.normal[2]);
+        std::swap(box.low[axis], box.low[2]);
+        std::swap(box.high[axis], box.high[2]);
+        std::swap(box.quad[axis], box.quad[2]);
+        return;
+      }
+    }
+  }
+
+  std::vector<Quad> quads_;
+  std::vector<bool> free_;
+};
+
+}  // namespace
+
+std::vector<FoundBox> findBoxes(const PrimitiveRecord<double>* quads, size_t count) {
+  return BoxFinder(quads, count).find();
+}
+
+}  // namespace wavecrest
