@@ -14,74 +14,97 @@ using ULongTag = hn::ScalableTag<uint64_t>;
 constexpr size_t kPartLanes = hn::MaxLanes(DoubleTag());
 constexpr size_t kDoubleParts = kLanes / kPartLanes;
 
-// part(v, i): the i-th half of a 32-bit register, as wide as one 64-bit register has lanes; join is its inverse.
+// A value for each register of a Double.
+template <class V>
+struct Parts {
+  V part[kDoubleParts];
+};
+
+// split: the halves of a 32-bit register, each as wide as one 64-bit register has lanes; join is its inverse.
+//
+// mapParts and forEachPart call a function with the first parts of their operands, then with the second ones. Without a
+// loop, and functions must not capture operands by reference: g++ then keeps each Double in memory until it has inlined
+// and unrolled all of a kernel, which took most of the time to compile it and left half of its code to copy them.
 #if HWY_TARGET == HWY_SCALAR
 template <class V>
-WAVECREST_INLINE V part(V v, size_t) {
-  return v;
+WAVECREST_INLINE Parts<V> split(V v) {
+  return {{v}};
 }
 template <class Tag, class V>
-WAVECREST_INLINE V join(Tag, const V* parts) {
-  return parts[0];
+WAVECREST_INLINE V join(Tag, Parts<V> parts) {
+  return parts.part[0];
 }
+template <class Function, class... V>
+WAVECREST_INLINE auto mapParts(Function function, Parts<V>... a) {
+  return Parts<decltype(function(a.part[0]...))>{{function(a.part[0]...)}};
+}
+template <class Function, class... V>
+WAVECREST_INLINE void forEachPart(Function function, Parts<V>... a) {
+  function(a.part[0]...);
+}
+constexpr Parts<size_t> kFirstLanes{{0}};
 #else
 template <class V>
-WAVECREST_INLINE auto part(V v, size_t i) {
+WAVECREST_INLINE auto split(V v) {
   const hn::Half<hn::DFromV<V>> half;
-  return i == 0 ? hn::LowerHalf(half, v) : hn::UpperHalf(half, v);
+  return Parts<hn::Vec<decltype(half)>>{{hn::LowerHalf(half, v), hn::UpperHalf(half, v)}};
 }
 template <class Tag, class V>
-WAVECREST_INLINE auto join(Tag tag, const V* parts) {
-  return hn::Combine(tag, parts[1], parts[0]);
+WAVECREST_INLINE auto join(Tag tag, Parts<V> parts) {
+  return hn::Combine(tag, parts.part[1], parts.part[0]);
 }
+template <class Function, class... V>
+WAVECREST_INLINE auto mapParts(Function function, Parts<V>... a) {
+  return Parts<decltype(function(a.part[0]...))>{{function(a.part[0]...), function(a.part[1]...)}};
+}
+template <class Function, class... V>
+WAVECREST_INLINE void forEachPart(Function function, Parts<V>... a) {
+  function(a.part[0]...);
+  function(a.part[1]...);
+}
+constexpr Parts<size_t> kFirstLanes{{0, kPartLanes}};
 #endif
 
 struct Double {
   using Storage = double;
-  hn::Vec<DoubleTag> v[kDoubleParts];
+  Parts<hn::Vec<DoubleTag>> v;
   Double() = default;
-  WAVECREST_INLINE Double(double x) {
-    for (auto& part : v) part = hn::Set(DoubleTag(), x);
-  }
+  WAVECREST_INLINE Double(Parts<hn::Vec<DoubleTag>> x) : v(x) {}
+  WAVECREST_INLINE Double(double x)
+      : v(mapParts([x](size_t) HWY_ATTR { return hn::Set(DoubleTag(), x); }, kFirstLanes)) {}
 };
 
-template <class Function>
-WAVECREST_INLINE Double mapParts(Function&& function) {
-  Double result;
-  for (size_t i = 0; i < kDoubleParts; ++i) result.v[i] = function(i);
-  return result;
-}
-
 // A 32-bit lane mask as one 64-bit mask per register, and back.
-WAVECREST_INLINE hn::Mask<DoubleTag> maskPart(Mask m, size_t i) {
-  const auto lanes = hn::VecFromMask(IntTag(), hn::RebindMask(IntTag(), m.m));
-  return hn::RebindMask(DoubleTag(), hn::MaskFromVec(hn::PromoteTo(LongTag(), part(lanes, i))));
+WAVECREST_INLINE Parts<hn::Mask<DoubleTag>> splitMask(Mask m) {
+  return mapParts(
+      [](auto lanes) HWY_ATTR { return hn::RebindMask(DoubleTag(), hn::MaskFromVec(hn::PromoteTo(LongTag(), lanes))); },
+      split(hn::VecFromMask(IntTag(), hn::RebindMask(IntTag(), m.m))));
 }
-template <class Function>
-WAVECREST_INLINE Mask maskFromParts(Function&& function) {
-  const hn::Rebind<uint32_t, ULongTag> narrow;
-  hn::Vec<hn::Rebind<uint32_t, ULongTag>> parts[kDoubleParts];
-  for (size_t i = 0; i < kDoubleParts; ++i) {
-    parts[i] = hn::TruncateTo(narrow, hn::VecFromMask(ULongTag(), hn::RebindMask(ULongTag(), function(i))));
-  }
-  return {hn::RebindMask(FloatTag(), hn::MaskFromVec(join(UIntTag(), parts)))};
+WAVECREST_INLINE Mask joinMask(Parts<hn::Mask<DoubleTag>> m) {
+  const auto lanes = mapParts(
+      [](auto part) HWY_ATTR {
+        return hn::TruncateTo(hn::Rebind<uint32_t, ULongTag>(),
+                              hn::VecFromMask(ULongTag(), hn::RebindMask(ULongTag(), part)));
+      },
+      m);
+  return {hn::RebindMask(FloatTag(), hn::MaskFromVec(join(UIntTag(), lanes)))};
 }
 
-#define WAVECREST_DOUBLE_BINARY(NAME, OP)                                       \
-  WAVECREST_INLINE Double NAME(Double a, Double b) {                            \
-    return mapParts([&](size_t i) HWY_ATTR { return hn::OP(a.v[i], b.v[i]); }); \
+#define WAVECREST_DOUBLE_BINARY(NAME, OP)                                            \
+  WAVECREST_INLINE Double NAME(Double a, Double b) {                                 \
+    return mapParts([](auto x, auto y) HWY_ATTR { return hn::OP(x, y); }, a.v, b.v); \
   }
-#define WAVECREST_DOUBLE_COMPARE(NAME, OP)                                           \
-  WAVECREST_INLINE Mask NAME(Double a, Double b) {                                   \
-    return maskFromParts([&](size_t i) HWY_ATTR { return hn::OP(a.v[i], b.v[i]); }); \
+#define WAVECREST_DOUBLE_COMPARE(NAME, OP)                                                     \
+  WAVECREST_INLINE Mask NAME(Double a, Double b) {                                             \
+    return joinMask(mapParts([](auto x, auto y) HWY_ATTR { return hn::OP(x, y); }, a.v, b.v)); \
   }
-#define WAVECREST_DOUBLE_UNARY(NAME, OP)                                \
-  WAVECREST_INLINE Double NAME(Double a) {                              \
-    return mapParts([&](size_t i) HWY_ATTR { return hn::OP(a.v[i]); }); \
+#define WAVECREST_DOUBLE_UNARY(NAME, OP)                             \
+  WAVECREST_INLINE Double NAME(Double a) {                           \
+    return mapParts([](auto x) HWY_ATTR { return hn::OP(x); }, a.v); \
   }
-#define WAVECREST_DOUBLE_TERNARY(NAME, OP)                                              \
-  WAVECREST_INLINE Double NAME(Double a, Double b, Double c) {                          \
-    return mapParts([&](size_t i) HWY_ATTR { return hn::OP(a.v[i], b.v[i], c.v[i]); }); \
+#define WAVECREST_DOUBLE_TERNARY(NAME, OP)                                                           \
+  WAVECREST_INLINE Double NAME(Double a, Double b, Double c) {                                       \
+    return mapParts([](auto x, auto y, auto z) HWY_ATTR { return hn::OP(x, y, z); }, a.v, b.v, c.v); \
   }
 WAVECREST_DOUBLE_BINARY(operator+, Add)
 WAVECREST_DOUBLE_BINARY(operator-, Sub)
@@ -109,37 +132,36 @@ WAVECREST_DOUBLE_TERNARY(mulSub, MulSub)
 #undef WAVECREST_DOUBLE_TERNARY
 
 WAVECREST_INLINE Double select(Mask m, Double yes, Double no) {
-  return mapParts([&](size_t i) HWY_ATTR { return hn::IfThenElse(maskPart(m, i), yes.v[i], no.v[i]); });
+  return mapParts([](auto part, auto x, auto y) HWY_ATTR { return hn::IfThenElse(part, x, y); }, splitMask(m), yes.v,
+                  no.v);
 }
 WAVECREST_INLINE Double zeroUnless(Mask m, Double a) { return select(m, a, Double(0.0)); }
 
 WAVECREST_INLINE Double toDouble(Float a) {
-  return mapParts([&](size_t i) HWY_ATTR { return hn::PromoteTo(DoubleTag(), part(a.v, i)); });
+  return mapParts([](auto half) HWY_ATTR { return hn::PromoteTo(DoubleTag(), half); }, split(a.v));
 }
 WAVECREST_INLINE Float toFloat(Double a) {
-  const hn::Rebind<float, DoubleTag> narrow;
-  hn::Vec<hn::Rebind<float, DoubleTag>> parts[kDoubleParts];
-  for (size_t i = 0; i < kDoubleParts; ++i) parts[i] = hn::DemoteTo(narrow, a.v[i]);
-  return {join(FloatTag(), parts)};
+  return {
+      join(FloatTag(), mapParts([](auto x) HWY_ATTR { return hn::DemoteTo(hn::Rebind<float, DoubleTag>(), x); }, a.v))};
 }
 WAVECREST_INLINE Float toFloat(Float a) { return a; }
 
 WAVECREST_INLINE Double load(const double* p) {
-  return mapParts([&](size_t i) HWY_ATTR { return hn::Load(DoubleTag(), p + i * kPartLanes); });
+  return mapParts([p](size_t first) HWY_ATTR { return hn::Load(DoubleTag(), p + first); }, kFirstLanes);
 }
 WAVECREST_INLINE Double loadUnaligned(const double* p) {
-  return mapParts([&](size_t i) HWY_ATTR { return hn::LoadU(DoubleTag(), p + i * kPartLanes); });
+  return mapParts([p](size_t first) HWY_ATTR { return hn::LoadU(DoubleTag(), p + first); }, kFirstLanes);
 }
 WAVECREST_INLINE void store(Double a, double* p) {
-  for (size_t i = 0; i < kDoubleParts; ++i) hn::Store(a.v[i], DoubleTag(), p + i * kPartLanes);
+  forEachPart([p](auto x, size_t first) HWY_ATTR { hn::Store(x, DoubleTag(), p + first); }, a.v, kFirstLanes);
 }
 WAVECREST_INLINE void storeUnaligned(Double a, double* p) {
-  for (size_t i = 0; i < kDoubleParts; ++i) hn::StoreU(a.v[i], DoubleTag(), p + i * kPartLanes);
+  forEachPart([p](auto x, size_t first) HWY_ATTR { hn::StoreU(x, DoubleTag(), p + first); }, a.v, kFirstLanes);
 }
 WAVECREST_INLINE Double gather(const double* base, UInt index) {
-  const auto lanes = hn::BitCast(IntTag(), index.v);
-  return mapParts(
-      [&](size_t i) HWY_ATTR { return hn::GatherIndex(DoubleTag(), base, hn::PromoteTo(LongTag(), part(lanes, i))); });
+  return mapParts([base](auto half)
+                      HWY_ATTR { return hn::GatherIndex(DoubleTag(), base, hn::PromoteTo(LongTag(), half)); },
+                  split(hn::BitCast(IntTag(), index.v)));
 }
 // Lanes with equal indices: the last one wins.
 WAVECREST_INLINE void storeScattered(Double a, double* base, UInt index) {
@@ -149,7 +171,8 @@ WAVECREST_INLINE void storeScattered(Double a, double* base, UInt index) {
   store(index, indices);
   for (size_t i = 0; i < kLanes; ++i) base[indices[i]] = values[i];
 }
-WAVECREST_INLINE Double compress(Double a, Mask m) {
+// Shared, not inlined: a stage compresses a dozen columns.
+inline WAVECREST_NOINLINE Double compress(Double a, Mask m) {
   HWY_ALIGN double in[kLanes];
   HWY_ALIGN double out[kLanes] = {};
   HWY_ALIGN uint32_t source[kLanes];

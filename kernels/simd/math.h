@@ -95,10 +95,10 @@ WAVECREST_INLINE Real cos(Real x) {
 
 // ---- functions of Highway -------------------------------------------------------------------------------------------
 
-#define WAVECREST_HIGHWAY_FUNCTION(NAME, FUNCTION)                                         \
-  WAVECREST_INLINE Float NAME(Float a) { return {hn::FUNCTION(FloatTag(), a.v)}; }         \
-  WAVECREST_INLINE Double NAME(Double a) {                                                 \
-    return mapParts([&](size_t i) HWY_ATTR { return hn::FUNCTION(DoubleTag(), a.v[i]); }); \
+#define WAVECREST_HIGHWAY_FUNCTION(NAME, FUNCTION)                                      \
+  WAVECREST_INLINE Float NAME(Float a) { return {hn::FUNCTION(FloatTag(), a.v)}; }      \
+  WAVECREST_INLINE Double NAME(Double a) {                                              \
+    return mapParts([](auto x) HWY_ATTR { return hn::FUNCTION(DoubleTag(), x); }, a.v); \
   }
 WAVECREST_HIGHWAY_FUNCTION(log, Log)      // positive, finite a. 1 ulp.
 WAVECREST_HIGHWAY_FUNCTION(log2, Log2)    // positive, finite a. 2 ulp.
@@ -125,10 +125,10 @@ WAVECREST_INLINE Real atan2(Real y, Real x) {
 // 2^n for whole n: 0 at the format's exponent for zero, infinity at the one for infinity.
 WAVECREST_INLINE Float powerOf2(Float n) { return fromBits(shiftLeft<23>(toUInt(n + Float(127)))); }
 WAVECREST_INLINE Double powerOf2(Double n) {
-  const Double biased = n + Double(1023.0);
-  return mapParts([&](size_t i) HWY_ATTR {
-    return hn::BitCast(DoubleTag(), hn::ShiftLeft<52>(hn::ConvertTo(LongTag(), biased.v[i])));
-  });
+  return mapParts(
+      [](auto biased)
+          HWY_ATTR { return hn::BitCast(DoubleTag(), hn::ShiftLeft<52>(hn::ConvertTo(LongTag(), biased))); },
+      (n + Double(1023.0)).v);
 }
 
 // 2^a. Above 127.5 (1023.5) infinity, below -126.5 (-1022.5) zero: no subnormal results. 1.2 ulp.
