@@ -123,10 +123,11 @@ TEST_P(DirectLightTest, ofManyLightsOfDifferentPower) {
   Scene scene = planeScene();
   const uint32_t black = addDiffuse(scene, 0, 0, 0);
   std::vector<std::pair<Sphere, double>> lights;
-  for (int i = 0; i < 5; ++i) {
+  for (size_t i = 0; i < 5; ++i) {
+    const auto step = static_cast<double>(i);
     const Sphere light{
-        .center = {-0.8 + 0.4 * i, 0.8 + 0.1 * i, -0.5}, .radius = 0.1, .flipNormals = false, .toWorld = {}};
-    lights.push_back({light, std::pow(4.0, i - 2)});
+        .center = {-0.8 + 0.4 * step, 0.8 + 0.1 * step, -0.5}, .radius = 0.1, .flipNormals = false, .toWorld = {}};
+    lights.emplace_back(light, std::pow(4.0, step - 2));
     addShape(scene, light, black);
     makeLight(scene,
               {kRadiance[0] * lights[i].second, kRadiance[1] * lights[i].second, kRadiance[2] * lights[i].second});

@@ -2,7 +2,7 @@
 // meets the wall it has just left, although float at that distance cannot tell the wall from what is behind it.
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <bit>
 
 #include "engine/compile/vector_math.h"
 #include "engine/inspection.h"
@@ -107,7 +107,8 @@ TEST_P(FarSceneTest, hasTheImageOfTheSameSceneAtTheOrigin) {
   ASSERT_GT(sum, 0);
   const RgbImage far = render(moved(scene, {0x1p14, -0x1.8p13, 0x1p12}), settings(), 2);
   size_t different = 0;
-  for (size_t i = 0; i < near.size(); ++i) different += std::memcmp(&near[i], &far[i], sizeof(float)) != 0 ? 1 : 0;
+  for (size_t i = 0; i < near.size(); ++i)
+    different += std::bit_cast<uint32_t>(near[i]) != std::bit_cast<uint32_t>(far[i]) ? 1 : 0;
   EXPECT_EQ(different, 0u) << "of " << near.size();
 }
 

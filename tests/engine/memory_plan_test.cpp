@@ -60,6 +60,7 @@ TEST_P(MemoryPlanTest, isNearForManyWavesAndIterations) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, MemoryPlanTest, testing::ValuesIn([] {
                            std::vector<Method> methods;
+                           methods.reserve(std::size(kMethods));
                            for (const MethodEntry& entry : kMethods) methods.push_back(entry.method);
                            return methods;
                          }()),
