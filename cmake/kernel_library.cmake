@@ -9,30 +9,27 @@ set(WAVECREST_ISA_DEFINES_scalar HWY_COMPILE_ONLY_SCALAR)
 set(WAVECREST_ISA_DEFINES_sse4 HWY_COMPILE_ONLY_STATIC HWY_BASELINE_TARGETS=HWY_SSE4)
 set(WAVECREST_ISA_DEFINES_avx2 HWY_COMPILE_ONLY_STATIC HWY_BASELINE_TARGETS=HWY_AVX2)
 set(WAVECREST_ISA_DEFINES_avx512 HWY_COMPILE_ONLY_STATIC HWY_BASELINE_TARGETS=HWY_AVX3)
-# The scalar twin is what tests compare the others with: nobody waits for its renders, everybody for its compilation.
-set(WAVECREST_ISA_OPTIMIZATION_scalar -O1)
-set(WAVECREST_ISA_OPTIMIZATION_sse4 -O3)
-set(WAVECREST_ISA_OPTIMIZATION_avx2 -O3)
-set(WAVECREST_ISA_OPTIMIZATION_avx512 -O3)
 
 # Lane code is made of small structs passed by reference that all end up in registers. Checking each reference for null
 # and alignment, and each temporary for its scope, makes a sanitized compilation ten times longer and finds nothing.
 add_library(wavecrest_lane_options INTERFACE)
+target_compile_options(wavecrest_lane_options INTERFACE $<$<CONFIG:Release>:-O3>)  # also where the folder's own are lower
 if(WAVECREST_SANITIZE MATCHES "address")
   target_compile_options(wavecrest_lane_options INTERFACE
     -fno-sanitize-address-use-after-scope -fno-sanitize=null,alignment,object-size)
 endif()
 
-# What each lane source is compiled with.
+# What each lane source is compiled with, and what all of one instruction set read first.
 function(set_lane_options target isa)
   target_compile_definitions(${target} PRIVATE ${WAVECREST_ISA_DEFINES_${isa}})
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${WAVECREST_ISA_OPTIMIZATION_${isa}}>)
   target_link_libraries(${target} PRIVATE wavecrest_options wavecrest_lane_options)
 endfunction()
 foreach(isa IN LISTS WAVECREST_ISAS)
   if(NOT DEFINED WAVECREST_ISA_DEFINES_${isa})
     message(FATAL_ERROR "WAVECREST_ISAS: unknown instruction set '${isa}'; known: scalar sse4 avx2 avx512")
   endif()
+  precompile_headers(wavecrest_lane_headers_${isa} <hwy/highway.h> <hwy/contrib/math/math-inl.h>)
+  set_lane_options(wavecrest_lane_headers_${isa} ${isa})
 endforeach()
 
 # add_lane_sources(NAME source...): object libraries NAME_<instruction set> of lane sources. Those of tests and
@@ -41,6 +38,10 @@ function(add_lane_sources name)
   foreach(isa IN LISTS WAVECREST_ISAS)
     add_library(${name}_${isa} OBJECT ${ARGN})
     set_lane_options(${name}_${isa} ${isa})
+    reuse_headers(${name}_${isa} wavecrest_lane_headers_${isa})
+    if(WAVECREST_PRECOMPILE)  # g++ forgets what a precompiled header had silenced within its intrinsics
+      target_compile_options(${name}_${isa} PRIVATE -Wno-uninitialized)
+    endif()
   endforeach()
 endfunction()
 
