@@ -19,7 +19,7 @@ if(WAVECREST_SANITIZE MATCHES "address")
     -fno-sanitize-address-use-after-scope -fno-sanitize=null,alignment,object-size)
 endif()
 
-# What each lane source is compiled with, and what all of one instruction set read first.
+# What each lane source is compiled with.
 function(set_lane_options target isa)
   target_compile_definitions(${target} PRIVATE ${WAVECREST_ISA_DEFINES_${isa}})
   target_link_libraries(${target} PRIVATE wavecrest_options wavecrest_lane_options)
@@ -28,8 +28,6 @@ foreach(isa IN LISTS WAVECREST_ISAS)
   if(NOT DEFINED WAVECREST_ISA_DEFINES_${isa})
     message(FATAL_ERROR "WAVECREST_ISAS: unknown instruction set '${isa}'; known: scalar sse4 avx2 avx512")
   endif()
-  precompile_headers(wavecrest_lane_headers_${isa} <hwy/highway.h> <hwy/contrib/math/math-inl.h>)
-  set_lane_options(wavecrest_lane_headers_${isa} ${isa})
 endforeach()
 
 # add_lane_sources(NAME source...): object libraries NAME_<instruction set> of lane sources. Those of tests and
@@ -38,10 +36,6 @@ function(add_lane_sources name)
   foreach(isa IN LISTS WAVECREST_ISAS)
     add_library(${name}_${isa} OBJECT ${ARGN})
     set_lane_options(${name}_${isa} ${isa})
-    reuse_headers(${name}_${isa} wavecrest_lane_headers_${isa})
-    if(WAVECREST_PRECOMPILE)  # g++ forgets what a precompiled header had silenced within its intrinsics
-      target_compile_options(${name}_${isa} PRIVATE -Wno-uninitialized)
-    endif()
   endforeach()
 endfunction()
 

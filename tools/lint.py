@@ -66,9 +66,6 @@ def compile_commands(build):
         words = shlex.split(entry["command"])
         if not re.search(r"(c\+\+|g\+\+|clang\+\+)(-[0-9]+)?$", words[0]):
             words = words[1:]  # a launcher such as ccache
-        if "-Winvalid-pch" in words:  # followed by -include and g++'s precompiled header, which only g++ can read
-            at = words.index("-Winvalid-pch")
-            del words[at : at + 3]
         words += ["-Wno-unknown-warning-option", "-Wno-unused-command-line-argument"]
         words += ["-Wno-pragma-clang-attribute"]  # Highway's, in headers that only name types
         if file not in chosen or PREFERRED_ISA in entry["command"]:
