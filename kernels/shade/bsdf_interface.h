@@ -77,7 +77,6 @@ struct BsdfInput {
       textures.alpha = textures.opacity = one;
     }
   }
-  WAVECREST_INLINE Mask flagged(MaterialFlags flag) const { return (flags & UInt(flag)) == UInt(flag); }
   WAVECREST_INLINE Vec3<Real> reflectance() const {
     const auto constant = to<Real>(albedo_);
     if constexpr (kTextured) return constant * textures.reflectance;

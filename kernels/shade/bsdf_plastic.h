@@ -19,7 +19,7 @@ WAVECREST_INLINE Vec3<typename P::Real> baseAlbedo(const BsdfInput<P, kTextured>
   const Real one(1);
   const Vec3<Real> rho = input.reflectance();
   const Real inside = to<Real>(input.at(input.materials->internalDiffuse));
-  const Mask nonlinear = input.flagged(kNonlinear);
+  const Mask nonlinear = (input.flags & UInt(kNonlinear)) == UInt(kNonlinear);
   const Vec3<Real> again = select(nonlinear, rho, {one, one, one}) * inside;
   const Real inverseEta = reciprocal<P>(input.eta());
   const Real inverseEta2 = inverseEta * inverseEta;

@@ -18,38 +18,23 @@ struct Scattering {
   Real lightCosine;  // c(omega_l) = |omega_l . N_s|, which f is multiplied by
 };
 
-// The frame of a shading normal, turned where a two-sided surface is seen from behind: the direction back along the
-// path is then above it.
-template <class Real>
-struct FacingFrame {
+template <class P, uint32_t kFeatures>
+struct ShadingLanes {
+  using Real = typename P::Real;
+  Vec3<Real> position, normal;
+  Real offset;
   Frame<Real> frame;
-  Vec3<Real> fix;  // the direction back, in this frame
-  Real side;       // -1 where it was turned, else 1
+  Vec3<Real> fix;  // in the frame, after turning a two-sided surface towards it
+  Real side;       // -1 where a two-sided surface was turned, else 1
+  Real fixCosine;  // fix . geometric normal, signed
+  BsdfInputOf<P, kFeatures> bsdf;
+  std::conditional_t<has(kFeatures, kNormalMaps), NormalMapLanes<Real>, NoNormalMaps> map;
 
-  // fix: in world space.
-  static WAVECREST_INLINE FacingFrame of(Vec3<Real> normal, Vec3<Real> fix, Mask twoSided) {
-    const Frame<Real> frame = Frame<Real>::fromNormal(normal);
-    const Vec3<Real> local = frame.toLocal(fix);
-    const Real side = select(twoSided & (local.z < Real(0)), Real(-1), Real(1));
-    return {frame, {local.x, local.y, local.z * side}, side};
-  }
   WAVECREST_INLINE Vec3<Real> toLocal(Vec3<Real> v) const {
     const Vec3<Real> local = frame.toLocal(v);
     return {local.x, local.y, local.z * side};
   }
   WAVECREST_INLINE Vec3<Real> toWorld(Vec3<Real> v) const { return frame.toWorld({v.x, v.y, v.z * side}); }
-};
-
-template <class P, uint32_t kFeatures>
-struct ShadingLanes : FacingFrame<typename P::Real> {
-  using Real = typename P::Real;
-  using Map = std::conditional_t<has(kFeatures, kNormalMaps), NormalMapLanes<Real>, NoNormalMaps>;
-  using FacingFrame<Real>::frame, FacingFrame<Real>::fix, FacingFrame<Real>::toLocal, FacingFrame<Real>::toWorld;
-  Vec3<Real> position, normal;
-  Real offset;
-  Real fixCosine;  // fix . geometric normal, signed
-  BsdfInputOf<P, kFeatures> bsdf;
-  Map map;
 
   // By the lobes that are not deltas. The shading normal alone decides what f is, as in Mitsuba 3: where the geometric
   // normal has a direction on the other side, the ray goes through the surface.
@@ -74,8 +59,23 @@ struct ShadingLanes : FacingFrame<typename P::Real> {
 
  private:
   // The vertex with the other of its two normals (normal_map_lanes.h).
-  WAVECREST_INLINE FacingFrame<Real> otherFrame() const {
-    return FacingFrame<Real>::of(map.otherOf(frame.n), map.fix, bsdf.flagged(kTwoSided));
+  struct View {
+    Frame<Real> frame;
+    Vec3<Real> fix;
+    Real side;
+    WAVECREST_INLINE Vec3<Real> toLocal(Vec3<Real> v) const {
+      const Vec3<Real> local = frame.toLocal(v);
+      return {local.x, local.y, local.z * side};
+    }
+    WAVECREST_INLINE Vec3<Real> toWorld(Vec3<Real> v) const { return frame.toWorld({v.x, v.y, v.z * side}); }
+  };
+  WAVECREST_INLINE View otherView() const {
+    View view{Frame<Real>::fromNormal(map.otherOf(frame.n)), {}, Real(1)};
+    view.fix = view.frame.toLocal(map.fix);
+    const Mask twoSided = (bsdf.flags & UInt(kTwoSided)) == UInt(kTwoSided);
+    view.side = select(twoSided & (view.fix.z < Real(0)), Real(-1), Real(1));
+    view.fix.z = view.fix.z * view.side;
+    return view;
   }
   // seesThis: the eye faces the normal of this frame.
   WAVECREST_INLINE Real lightFactor(Mask seesThis, Vec3<Real> direction) const {
@@ -92,7 +92,7 @@ struct ShadingLanes : FacingFrame<typename P::Real> {
     const Mask seesThis = camera ? mapped : mapped & map.sees(direction, frame.n);
     const Mask both = andNot(mapped, seesThis & (share >= one));
     if (any(both)) {
-      const FacingFrame<Real> other = otherFrame();
+      const View other = otherView();
       const BsdfValue<Real> value = evalBsdf<P, kFeatures>(bsdf, both, other.fix, other.toLocal(direction));
       const auto mixed = [&](Real a, Real b) HWY_ATTR { return select(both, a * share + b * (one - share), a); };
       if (camera) {
@@ -128,7 +128,7 @@ struct ShadingLanes : FacingFrame<typename P::Real> {
 
   WAVECREST_INLINE BsdfSample<Real> sampledFromLight(Mask active, const Uniform4& u) const {
     const Real one(1), tiny(1e-12f);
-    const FacingFrame<Real> other = otherFrame();
+    const View other = otherView();
     const Real share = select(map.lanes, map.lightShare(frame.n, map.fix), one);
     const Mask drawsOther = active & (to<Real>(u.b) >= share);
     const Real drawn = select(drawsOther, one - share, share);
@@ -182,29 +182,29 @@ template <class P, uint32_t kFeatures>
 WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P::Storage>& scene,
                                                       const VertexLanes<typename P::Real>& vertex) {
   using Real = typename P::Real;
-  const BsdfInputOf<P, kFeatures> bsdf(scene.materials, vertex.material);
-  typename ShadingLanes<P, kFeatures>::Map map{};
-  Vec3<Real> normal = vertex.shadingNormal;
+  ShadingLanes<P, kFeatures> s{.position = vertex.position,
+                               .normal = vertex.normal,
+                               .offset = vertex.offset,
+                               .frame = Frame<Real>::fromNormal(vertex.shadingNormal),
+                               .fix = {},
+                               .side = Real(1),
+                               .fixCosine = dot(vertex.fix, vertex.normal),
+                               .bsdf = BsdfInputOf<P, kFeatures>(scene.materials, vertex.material),
+                               .map = {}};
+  const auto flagged = [&](MaterialFlags flag) HWY_ATTR { return (s.bsdf.flags & UInt(flag)) == UInt(flag); };
   if constexpr (has(kFeatures, kNormalMaps)) {
-    if (scene.normalMaps && any(bsdf.flagged(kMapped))) {
-      map = {.present = true,
-             .lanes = bsdf.flagged(kMapped),
-             .flips = bsdf.flagged(kFlipsNormals),
-             .softens = bsdf.flagged(kSoftensTerminator),
-             .mirrorsBack = bsdf.flagged(kMirrorsBack),
-             .fix = vertex.fix,
-             .base = vertex.baseNormal,
-             .mapped = vertex.shadingNormal};
-      normal = select(map.lanes, map.normalFor(vertex.fix), normal);
+    if (scene.normalMaps && any(flagged(kMapped))) {
+      s.map = {.present = true,
+               .lanes = flagged(kMapped),
+               .flips = flagged(kFlipsNormals),
+               .softens = flagged(kSoftensTerminator),
+               .mirrorsBack = flagged(kMirrorsBack),
+               .fix = vertex.fix,
+               .base = vertex.baseNormal,
+               .mapped = vertex.shadingNormal};
+      s.frame = Frame<Real>::fromNormal(select(s.map.lanes, s.map.normalFor(vertex.fix), vertex.shadingNormal));
     }
   }
-  ShadingLanes<P, kFeatures> s{FacingFrame<Real>::of(normal, vertex.fix, bsdf.flagged(kTwoSided)),
-                               vertex.position,
-                               vertex.normal,
-                               vertex.offset,
-                               dot(vertex.fix, vertex.normal),
-                               bsdf,
-                               map};
   if constexpr (has(kFeatures, kTextures)) {
     const MaterialRecord& slots = *scene.materials;
     const auto factor = [&](const uint32_t& slot) HWY_ATTR {
@@ -216,6 +216,9 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
     s.bsdf.textures.alpha = factor(slots.alphaTexture).x;
     s.bsdf.textures.opacity = factor(slots.opacityTexture).x;
   }
+  s.fix = s.frame.toLocal(vertex.fix);
+  s.side = select(flagged(kTwoSided) & (s.fix.z < Real(0)), Real(-1), Real(1));
+  s.fix.z = s.fix.z * s.side;
   return s;
 }
 
