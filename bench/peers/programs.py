@@ -97,10 +97,11 @@ class SmallVcm:
 
     A job with such a file gets that scene, so images can be compared; any other job scene 0, whose speed alone can.
     Whatever the job says, it renders SIZE up to DEPTH edges, roulette begins at the first vertex and its generator has
-    one seed, so there is no variance between rounds of one thread. merge radius: RADIUS of the bounding sphere.
+    one seed, so there is no variance between rounds of one thread. Its first merge radius is 0.003 of the bounding
+    sphere.
     """
 
-    SIZE, DEPTH, RR_DEPTH, RADIUS = (512, 512), 10, 1, 0.003
+    SIZE, DEPTH, RR_DEPTH = (512, 512), 10, 1
 
     def __init__(self, program, job):
         self.program, self.job = os.path.abspath(program), job

@@ -223,7 +223,8 @@ ConvergenceReport collectCampaign(const CampaignResults& results) {
   for (const SceneRecord& scene : results.scenes) report.scenes.push_back(collectScene(results, scene, report));
   // A scene whose runs are still to come has nothing to show.
   std::erase_if(report.scenes, [](const ReportScene& scene) { return scene.series.empty() && scene.refusals.empty(); });
-  for (const ClaimRecord& claim : results.claims) report.claims.push_back(shownClaim(claim, profileOf(results)));
+  const std::string profile = profileOf(results);
+  for (const ClaimRecord& claim : results.claims) report.claims.push_back(shownClaim(claim, profile));
   for (const auto& [key, value] : results.campaign) report.environment.push_back({key, value});
   return report;
 }

@@ -8,13 +8,6 @@
 #include "engine/scene/scene_error.h"
 
 namespace wavecrest {
-namespace {
-
-void assign(double (&out)[3], const Double3& a) {
-  for (size_t i = 0; i < 3; ++i) out[i] = a[i];
-}
-
-}  // namespace
 
 uint32_t sceneFeatures(const Scene& scene) {
   uint32_t features = 0;

@@ -15,11 +15,6 @@ namespace {
 constexpr double kDefensiveShare = 0.1;
 
 template <class S>
-void assign(S (&out)[3], const Double3& a) {
-  for (size_t i = 0; i < 3; ++i) out[i] = static_cast<S>(a[i]);
-}
-
-template <class S>
 Double3 widenedRecord(const S (&a)[3]) {
   return {a[0], a[1], a[2]};
 }

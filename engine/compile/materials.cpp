@@ -102,14 +102,11 @@ double average(const Rgb& colour) { return (colour[0] + colour[1] + colour[2]) /
 
 // ---- fields ---------------------------------------------------------------------------------------------------------
 
-void assign(float (&out)[3], const Rgb& colour) {
-  for (size_t i = 0; i < 3; ++i) out[i] = static_cast<float>(colour[i]);
-}
-void assign(float (&out)[3], uint32_t& texture, const TexturedRgb& colour) {
+void assignTextured(float (&out)[3], uint32_t& texture, const TexturedRgb& colour) {
   assign(out, colour.texture == kNone ? colour.value : Rgb{1, 1, 1});
   texture = colour.texture;
 }
-void assign(float& out, uint32_t& texture, const TexturedFloat& value) {
+void assignTextured(float& out, uint32_t& texture, const TexturedFloat& value) {
   out = value.texture == kNone ? static_cast<float>(value.value) : 1.0f;
   texture = value.texture;
 }
@@ -120,29 +117,29 @@ class Compiler {
   Compiler(MaterialRecord& record, const Scene& scene) : record_(record), scene_(scene) {}
 
   void operator()(const Diffuse& diffuse) {
-    assign(record_.reflectance, record_.reflectanceTexture, diffuse.reflectance);
+    assignTextured(record_.reflectance, record_.reflectanceTexture, diffuse.reflectance);
   }
 
   void operator()(const Conductor& conductor) {
     assign(record_.eta, conductor.perfectMirror ? Rgb{0, 0, 0} : conductor.eta);
     assign(record_.k, conductor.perfectMirror ? Rgb{1, 1, 1} : conductor.k);
-    assign(record_.specular, record_.specularTexture, conductor.specularReflectance);
-    assign(record_.alpha, record_.alphaTexture, conductor.alpha);
+    assignTextured(record_.specular, record_.specularTexture, conductor.specularReflectance);
+    assignTextured(record_.alpha, record_.alphaTexture, conductor.alpha);
   }
 
   void operator()(const Dielectric& dielectric) {
     record_.eta[0] = static_cast<float>(relativeIor(dielectric));
-    assign(record_.specular, record_.specularTexture, dielectric.specularReflectance);
-    assign(record_.transmittance, record_.transmittanceTexture, dielectric.specularTransmittance);
-    assign(record_.alpha, record_.alphaTexture, dielectric.alpha);
+    assignTextured(record_.specular, record_.specularTexture, dielectric.specularReflectance);
+    assignTextured(record_.transmittance, record_.transmittanceTexture, dielectric.specularTransmittance);
+    assignTextured(record_.alpha, record_.alphaTexture, dielectric.alpha);
   }
 
   void operator()(const Plastic& plastic) {
     const double eta = plastic.intIor / plastic.extIor;
     record_.eta[0] = static_cast<float>(eta);
-    assign(record_.reflectance, record_.reflectanceTexture, plastic.diffuseReflectance);
-    assign(record_.specular, record_.specularTexture, plastic.specularReflectance);
-    assign(record_.alpha, record_.alphaTexture, plastic.alpha);
+    assignTextured(record_.reflectance, record_.reflectanceTexture, plastic.diffuseReflectance);
+    assignTextured(record_.specular, record_.specularTexture, plastic.specularReflectance);
+    assignTextured(record_.alpha, record_.alphaTexture, plastic.alpha);
     if (plastic.nonlinear) record_.flags |= kNonlinear;
     const double diffuse = average(mean(plastic.diffuseReflectance, scene_));
     const double specular = average(mean(plastic.specularReflectance, scene_));
@@ -157,8 +154,8 @@ class Compiler {
   }
 
   void operator()(const Phong& phong) {
-    assign(record_.reflectance, record_.reflectanceTexture, phong.diffuseReflectance);
-    assign(record_.specular, record_.specularTexture, phong.specularReflectance);
+    assignTextured(record_.reflectance, record_.reflectanceTexture, phong.diffuseReflectance);
+    assignTextured(record_.specular, record_.specularTexture, phong.specularReflectance);
     record_.alpha = static_cast<float>(phong.exponent);
     const Rgb diffuse = mean(phong.diffuseReflectance, scene_), specular = mean(phong.specularReflectance, scene_);
     double brightest = 0;
@@ -226,7 +223,7 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
   record.bumpScale = static_cast<float>(material.bumpScale);
   record.opacity = 1;
   if (material.opacity) {
-    assign(record.opacity, record.opacityTexture, *material.opacity);
+    assignTextured(record.opacity, record.opacityTexture, *material.opacity);
     if (record.opacity < 1 || record.opacityTexture != kNone) record.flags |= kHasDelta;
   }
   std::visit(Compiler(record, scene), material.kind);

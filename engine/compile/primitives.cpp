@@ -170,10 +170,6 @@ class Collector {
   }
 
  private:
-  static void assign(S (&out)[3], const Double3& a) {
-    for (size_t i = 0; i < 3; ++i) out[i] = static_cast<S>(a[i]);
-  }
-
   PrimitiveRecord<S>& add(PrimitiveKind kind, const Double3& p0, const Double3& e1, const Double3& e2,
                           const Double3& normal) {
     auto& list = kind == PrimitiveKind::quad ? quads_ : kind == PrimitiveKind::triangle ? triangles_ : spheres_;

@@ -22,10 +22,6 @@ void appendRgb(const Bitmap& bitmap, double scale, std::vector<float>& out) {
   }
 }
 
-void assign(float (&out)[3], const Rgb& colour) {
-  for (size_t i = 0; i < 3; ++i) out[i] = static_cast<float>(colour[i]);
-}
-
 double luminanceAt(const std::vector<float>& texels, uint32_t width, uint32_t column, uint32_t row) {
   const float* rgb = &texels[3 * (size_t{row} * width + column)];
   return luminance({rgb[0], rgb[1], rgb[2]});

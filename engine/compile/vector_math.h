@@ -1,20 +1,11 @@
 // Small double-precision vector arithmetic for everything that prepares a scene.
 #pragma once
 
-#include <cmath>
-
 #include "engine/scene/scene.h"
+#include "kernels/double_vectors.h"
 
 namespace wavecrest {
 
-inline Double3 operator+(const Double3& a, const Double3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Double3 operator-(const Double3& a, const Double3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Double3 operator*(const Double3& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-inline double dot(const Double3& a, const Double3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Double3 cross(const Double3& a, const Double3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline double length(const Double3& a) { return std::sqrt(dot(a, a)); }
 inline Double3 normalized(const Double3& a) { return a * (1 / length(a)); }
 inline Double3 widened(const Float3& a) { return {a[0], a[1], a[2]}; }
 

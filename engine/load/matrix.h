@@ -3,15 +3,11 @@
 #pragma once
 
 #include "engine/scene/scene.h"
+#include "kernels/double_vectors.h"
 
 namespace wavecrest {
 
-Double3 operator+(const Double3& a, const Double3& b);
-Double3 operator-(const Double3& a, const Double3& b);
 Double3 operator*(double s, const Double3& a);
-double dot(const Double3& a, const Double3& b);
-Double3 cross(const Double3& a, const Double3& b);
-double length(const Double3& a);
 Double3 normalize(const Double3& a);
 
 Matrix4 identityMatrix();

@@ -22,36 +22,6 @@ struct Closest {
   }
 };
 
-template <bool kOpen>
-WAVECREST_INLINE void takeBox(Closest& best, const BoxForm& box, Vec3<Float> origin, Vec3<Float> direction) {
-  const BoxHit hit = intersectBox<kOpen>(box, origin, direction);
-  best.take(hit.hit, hit.t, hit.primitive);
-}
-
-WAVECREST_INLINE Closest closestHit(const SmallSceneView& scene, Vec3<Float> origin, Vec3<Float> direction) {
-  Closest best{Float(3.0e38f), UInt(kMiss)};
-  uint32_t box = 0;
-  for (; box < scene.closedBoxCount; ++box) takeBox<false>(best, scene.boxes[box], origin, direction);
-  for (const uint32_t end = box + scene.openBoxCount; box < end; ++box) {
-    takeBox<true>(best, scene.boxes[box], origin, direction);
-  }
-  uint32_t plane = 0;
-  for (; plane < scene.quadCount; ++plane) {
-    const PlaneLimits& limits = scene.limits[plane];
-    const PlaneHit hit = intersectPlane(scene.planes[plane], origin, direction);
-    best.take(insideQuad(hit, limits), hit.t, UInt(limits.primitive));
-  }
-  for (const uint32_t end = plane + scene.triangleCount; plane < end; ++plane) {
-    const PlaneLimits& limits = scene.limits[plane];
-    const PlaneHit hit = intersectPlane(scene.planes[plane], origin, direction);
-    best.take(insideTriangle(hit, limits), hit.t, UInt(limits.primitive));
-  }
-  for (uint32_t i = 0; i < scene.sphereCount; ++i) {
-    best.take(allLanes(), intersectSphere(scene.spheres[i], origin, direction), UInt(scene.firstSphere + i));
-  }
-  return best;
-}
-
 struct HitCoordinates {
   Float u, v;
 };
@@ -93,7 +63,8 @@ void extendSmall(const StageContext<typename P::Storage>& context, Wave<typename
   for (size_t i = 0; i < count; i += kLanes) {
     const Vec3<Float> origin = to<Float>(loadVec3(rays.originX, rays.originY, rays.originZ, i));
     const Vec3<Float> direction = to<Float>(loadVec3(rays.directionX, rays.directionY, rays.directionZ, i));
-    const Closest best = closestHit(scene, origin, direction);
+    Closest best{Float(3.0e38f), UInt(kMiss)};
+    intersectAll(scene, origin, direction, best);
     const HitCoordinates at = coordinatesOf(scene, best, origin, direction);
     store(at.u, wave.hits.u, i);
     store(at.v, wave.hits.v, i);

@@ -59,11 +59,7 @@ class BoxFinder {
     std::vector<FoundBox> boxes;
     for (size_t i = 0; i < quads_.size(); ++i) {
       if (const std::optional<FoundBox> box = boxOn(i)) {
-        for (const auto& pair : box->quad) {
-          for (const uint32_t quad : pair) {
-            if (quad != kNoIndex) free_[quad] = false;
-          }
-        }
+        box->forEachQuad([this](uint32_t quad) { free_[quad] = false; });
         boxes.push_back(*box);
       }
     }

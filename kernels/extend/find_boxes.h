@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/extend/double_vectors.h"
+#include "kernels/double_vectors.h"
 #include "kernels/scene_view.h"
 
 namespace wavecrest {
@@ -19,6 +19,15 @@ struct FoundBox {
   double low[3], high[3];
   uint32_t quad[3][2];  // which quads are the faces at low and high; quad[2][1] is kNoIndex if the box is open there
   bool open() const { return quad[2][1] == kNoIndex; }
+  // Calls function(quad) for every face that is there.
+  template <class Function>
+  void forEachQuad(Function function) const {
+    for (const auto& pair : quad) {
+      for (const uint32_t face : pair) {
+        if (face != kNoIndex) function(face);
+      }
+    }
+  }
 };
 
 // No quad is part of two boxes. Every corner of a face lies in the box's plane to kFlatness units of rounding.

@@ -29,8 +29,8 @@ WAVECREST_INLINE PlaneHit intersectPlane(const PlaneForm& plane, Vec3<Float> ori
   hit.slowness = abs(inverseSpeed);
   hit.t = gap * inverseSpeed;
   const Vec3<Float> point = mulAdd(direction, hit.t, origin);
-  hit.u = dotForm(plane.uAxis, point, plane.uOffset);
-  hit.v = dotForm(plane.vAxis, point, plane.vOffset);
+  hit.u = dotForm(plane.inside.uAxis, point, plane.inside.uOffset);
+  hit.v = dotForm(plane.inside.vAxis, point, plane.inside.vOffset);
   return hit;
 }
 WAVECREST_INLINE Mask insideQuad(const PlaneHit& hit, const PlaneLimits& limits) {
@@ -91,6 +91,39 @@ WAVECREST_INLINE BoxHit intersectBox(const BoxForm& box, Vec3<Float> origin, Vec
 WAVECREST_INLINE Float intersectSphere(const SphereForm& sphere, Vec3<Float> origin, Vec3<Float> direction) {
   const Vec3<Float> center{sphere.center[0], sphere.center[1], sphere.center[2]};
   return intersectSpheres(center, Float(sphere.radius), origin, direction);
+}
+
+// ---- all of a scene
+// ---------------------------------------------------------------------------------------------------
+
+// Calls taker.take(met, t, primitive) for each box, and each primitive that is in none: where met, the rays' lines meet
+// it at t.
+template <class Taker>
+WAVECREST_INLINE void intersectAll(const SmallSceneView& scene, Vec3<Float> origin, Vec3<Float> direction,
+                                   Taker& taker) {
+  uint32_t box = 0;
+  for (; box < scene.closedBoxCount; ++box) {
+    const BoxHit hit = intersectBox<false>(scene.boxes[box], origin, direction);
+    taker.take(hit.hit, hit.t, hit.primitive);
+  }
+  for (const uint32_t end = box + scene.openBoxCount; box < end; ++box) {
+    const BoxHit hit = intersectBox<true>(scene.boxes[box], origin, direction);
+    taker.take(hit.hit, hit.t, hit.primitive);
+  }
+  uint32_t plane = 0;
+  for (; plane < scene.quadCount; ++plane) {
+    const PlaneLimits& limits = scene.limits[plane];
+    const PlaneHit hit = intersectPlane(scene.planes[plane], origin, direction);
+    taker.take(insideQuad(hit, limits), hit.t, UInt(limits.primitive));
+  }
+  for (const uint32_t end = plane + scene.triangleCount; plane < end; ++plane) {
+    const PlaneLimits& limits = scene.limits[plane];
+    const PlaneHit hit = intersectPlane(scene.planes[plane], origin, direction);
+    taker.take(insideTriangle(hit, limits), hit.t, UInt(limits.primitive));
+  }
+  for (uint32_t i = 0; i < scene.sphereCount; ++i) {
+    taker.take(allLanes(), intersectSphere(scene.spheres[i], origin, direction), UInt(scene.firstSphere + i));
+  }
 }
 
 WAVECREST_SIMD_END

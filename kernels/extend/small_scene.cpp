@@ -44,8 +44,7 @@ DualBasis dualBasis(const PrimitiveRecord<double>& primitive) {
   return {u, v, -dot(u, p0), -dot(v, p0)};
 }
 
-FaceCoordinates coordinatesOf(const PrimitiveRecord<double>& primitive) {
-  const DualBasis basis = dualBasis(primitive);
+FaceCoordinates inFloat(const DualBasis& basis) {
   FaceCoordinates coordinates;
   assign(coordinates.uAxis, basis.u);
   assign(coordinates.vAxis, basis.v);
@@ -74,15 +73,11 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count) 
       if (box.open() != open) continue;
       ++(open ? view_.openBoxCount : view_.closedBoxCount);
       addBox(box, reach);
-      for (const auto& pair : box.quad) {
-        for (const uint32_t quad : pair) {
-          if (quad != kNoIndex) inBox[quad] = true;
-        }
-      }
+      box.forEachQuad([&inBox](uint32_t quad) { inBox[quad] = true; });
     }
   }
   for (uint32_t i = 0; i < view_.firstSphere; ++i) {
-    coordinates_.push_back(coordinatesOf(primitives[i]));
+    coordinates_.push_back(inFloat(dualBasis(primitives[i])));
     if (!inBox[i]) addPlane(primitives[i], i, reach);
   }
   view_.quadCount = static_cast<uint32_t>(planes_.size()) - view_.triangleCount;
@@ -128,10 +123,7 @@ void SmallScene::addPlane(const PrimitiveRecord<double>& primitive, uint32_t ind
   PlaneForm& plane = planes_.emplace_back();
   assign(plane.normal, n);
   plane.distance = static_cast<float>(dot(n, vec(primitive.p0)));
-  assign(plane.uAxis, basis.u);
-  assign(plane.vAxis, basis.v);
-  plane.uOffset = static_cast<float>(basis.uOffset);
-  plane.vOffset = static_cast<float>(basis.vOffset);
+  plane.inside = inFloat(basis);
 }
 
 }  // namespace wavecrest

@@ -22,10 +22,14 @@ namespace wavecrest {
 
 struct FoundBox;
 
-struct PlaneForm {
-  float normal[3], distance;
+// Two affine maps: u = uAxis . p + uOffset, and v likewise.
+struct FaceCoordinates {
   float uAxis[3], uOffset;
   float vAxis[3], vOffset;
+};
+struct PlaneForm {
+  float normal[3], distance;
+  FaceCoordinates inside;
 };
 // The inside, widened: of a quad max(|u|, |v|) <= 1, of a triangle min(u, v, 1 - u - v) >= least.
 // grazing: how much either inside widens per 1 / |speed|, speed being the ray's speed towards the plane. The error of
@@ -43,17 +47,13 @@ struct BoxForm {
   SlabForm slabs[3];
   uint32_t primitives[3][2];  // of the faces at low and at high
 };
-// u = uAxis . p + uOffset, from 0 to 1 on the quad or triangle.
-struct FaceCoordinates {
-  float uAxis[3], uOffset;
-  float vAxis[3], vOffset;
-};
 struct SphereForm {
   float center[3], radius;
 };
 
 // Boxes: those of six faces, then those whose face at slabs[2].high is missing. Planes: the quads that are no face of a
-// box, then the triangles. Coordinates: of all quads and triangles, in SceneView order. Spheres follow in that order.
+// box, then the triangles. Coordinates: of all quads and triangles, in SceneView order, from 0 to 1 on each. Spheres
+// follow in that order.
 struct SmallSceneView {
   const BoxForm* boxes;
   const PlaneForm* planes;

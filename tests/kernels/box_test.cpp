@@ -55,13 +55,7 @@ std::vector<FoundBox> boxesOf(const Quads& quads) { return findBoxes(quads.data(
 // Every quad that belongs to some box, sorted.
 std::vector<uint32_t> claimed(const std::vector<FoundBox>& boxes) {
   std::vector<uint32_t> list;
-  for (const FoundBox& box : boxes) {
-    for (const auto& pair : box.quad) {
-      for (const uint32_t quad : pair) {
-        if (quad != kNoIndex) list.push_back(quad);
-      }
-    }
-  }
+  for (const FoundBox& box : boxes) box.forEachQuad([&list](uint32_t quad) { list.push_back(quad); });
   std::sort(list.begin(), list.end());
   return list;
 }

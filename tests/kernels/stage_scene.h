@@ -11,8 +11,8 @@
 #include <memory>
 #include <vector>
 
+#include "kernels/double_vectors.h"
 #include "kernels/extend/bvh.h"
-#include "kernels/extend/double_vectors.h"
 #include "kernels/extend/embree_scene.h"
 #include "kernels/extend/small_scene.h"
 #include "kernels/stages.h"

@@ -1,4 +1,4 @@
-// Vectors in double, for what is computed once when an intersector is built.
+// Vectors in double, for what is computed once: when a scene is loaded, compiled, or put into an intersector.
 #pragma once
 
 #include <array>
@@ -23,8 +23,9 @@ inline double absDot(const D3& a, const D3& b) {
   return std::abs(a[0] * b[0]) + std::abs(a[1] * b[1]) + std::abs(a[2] * b[2]);
 }
 
-inline void assign(float (&out)[3], const D3& a) {
-  for (size_t i = 0; i < 3; ++i) out[i] = static_cast<float>(a[i]);
+template <class Real>
+void assign(Real (&out)[3], const D3& a) {
+  for (size_t i = 0; i < 3; ++i) out[i] = static_cast<Real>(a[i]);
 }
 
 }  // namespace wavecrest
