@@ -229,11 +229,13 @@ void measureMerge(benchmark::State& state, Stage<float> merge, Stage<float> twin
       static_cast<double>(counters.merges) / static_cast<double>(kWave * state.iterations());
 }
 
-// connectVertices or connectToCamera: shadow rays out.
-void measureConnection(benchmark::State& state, Stage<float> stage, Stage<float> twin, size_t items) {
+// connectVertices of a camera walk or connectToCamera of a light walk: shadow rays out.
+void measureConnection(benchmark::State& state, Walk walk, Stage<float> stage, Stage<float> twin, size_t items) {
   StageCounters counters;
   StageContext<float> context = contextFor(items, counters);
-  context.splats = {nullptr, 0, 0, 64, 64};
+  context.walk = walk;
+  std::vector<int64_t> sums(3 * 64 * 64);
+  context.splats = {sums.data(), 0, 0, 64, 64};
   Random random(5);
   Wave<float> wave(items, kNeeds);
   fillWave(wave, items, 1, random);
@@ -308,11 +310,11 @@ void registerBidirectionalBenchmarks() {
     for (const size_t items : {size_t{256}, kWave, size_t{16384}}) {
       registerBenchmark(fmt::format("connectVertices/{}/items:{}", toString(isa), items),
                         [=, &stages](benchmark::State& state) {
-                          measureConnection(state, stages.connectVertices, twin.connectVertices, items);
+                          measureConnection(state, Walk::camera, stages.connectVertices, twin.connectVertices, items);
                         });
       registerBenchmark(fmt::format("connectToCamera/{}/items:{}", toString(isa), items),
                         [=, &stages](benchmark::State& state) {
-                          measureConnection(state, stages.connectToCamera, twin.connectToCamera, items);
+                          measureConnection(state, Walk::light, stages.connectToCamera, twin.connectToCamera, items);
                         });
     }
     for (size_t pixels = 1000; pixels <= 10'000'000; pixels *= 100) {

@@ -49,10 +49,13 @@ template <class S>
 Wave<S> WaveCapture<S>::before(std::string_view stage, uint32_t depth) {
   Wave<S> wave = makeWave();
   bool found = false;
-  trace(wave, waveCount() / 2, [&](std::string_view name, uint32_t at, Wave<S>&) {
+  const auto untilStage = [&](std::string_view name, uint32_t at, Wave<S>&) {
     found = name == stage && at == depth;
     return !found;
-  });
+  };
+  for (size_t tried = 0; tried < waveCount() && !found; ++tried) {
+    trace(wave, (waveCount() / 2 + tried) % waveCount(), untilStage);
+  }
   if (!found) throw std::runtime_error("no path reached " + std::string(stage) + " at depth " + std::to_string(depth));
   return wave;
 }

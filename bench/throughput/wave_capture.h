@@ -28,8 +28,8 @@ class WaveCapture {
   // enough.
   void trace(Wave<S>& wave, size_t index, const Observer& observer);
 
-  // The middle wave of the film as it is right before `stage` runs at `depth` (0 for generate). Throws
-  // std::runtime_error if it never does.
+  // The middle wave of the film as it is right before `stage` runs at `depth` (0 for generate); where all of its paths
+  // have ended by then, the next that gets there. Throws std::runtime_error if none does.
   Wave<S> before(std::string_view stage, uint32_t depth);
 
   Wave<S> makeWave() const { return Wave<S>(settings_.waveSize, plan_.needs); }
