@@ -68,7 +68,7 @@ class Arena {
 template <class T>
 class Column {
  public:
-  operator T*() const { return data_; }
+  [[gnu::always_inline]] operator T*() const { return data_; }
   void drop() { needed_ = false; }
   bool needed() const { return needed_; }
   size_t bytesPerItem() const { return needed_ ? sizeof(T) : 0; }

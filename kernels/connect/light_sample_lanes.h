@@ -64,7 +64,8 @@ WAVECREST_INLINE void addRareLights(const SceneView<typename P::Storage>& scene,
                                     LightSample<typename P::Real>& sample) {
   using Real = typename P::Real;
   const Real discPdf(kInvPi / (scene.radius * scene.radius));
-  const auto far = [&](Vec3<Real> direction) HWY_ATTR { return mulAdd(direction, Real(3 * scene.radius), receiver); };
+  const auto far = [&](Vec3<Real> direction)
+                       WAVECREST_LAMBDA { return mulAdd(direction, Real(3 * scene.radius), receiver); };
 
   const Mask spot = light.kind == lightKind(LightKind::spot);
   if (any(spot)) {

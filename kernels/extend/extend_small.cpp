@@ -34,7 +34,7 @@ WAVECREST_INLINE HitCoordinates coordinatesOf(const SmallSceneView& scene, const
   if (scene.firstSphere == 0) return at;
   const Vec3<Float> point = mulAdd(direction, best.t, origin);
   const RecordLanes<FaceCoordinates> face(scene.coordinates, min(best.primitive, UInt(scene.firstSphere - 1)));
-  const auto along = [&](const FourColumns<Float>& row) HWY_ATTR {
+  const auto along = [&](const FourColumns<Float>& row) WAVECREST_LAMBDA {
     return mulAdd(row.a, point.x, mulAdd(row.b, point.y, mulAdd(row.c, point.z, row.d)));
   };
   Float u = min(max(along(face.four(scene.coordinates->uAxis[0])), Float(kInset)), Float(1 - kInset));

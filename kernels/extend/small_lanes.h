@@ -79,7 +79,8 @@ WAVECREST_INLINE BoxHit intersectBox(const BoxForm& box, Vec3<Float> origin, Vec
   const Float t = select(entering, enter, leave);
   // On an edge two planes are met at the same t, and the last of these decides.
   UInt primitive(box.primitives[2][0]);
-  const auto at = [&](Float plane, uint32_t face) HWY_ATTR { primitive = select(t == plane, UInt(face), primitive); };
+  const auto at = [&](Float plane, uint32_t face)
+                      WAVECREST_LAMBDA { primitive = select(t == plane, UInt(face), primitive); };
   if constexpr (!kOpen) at(c.high, box.primitives[2][1]);
   at(b.high, box.primitives[1][1]);
   at(b.low, box.primitives[1][0]);

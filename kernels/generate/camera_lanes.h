@@ -19,7 +19,7 @@ struct RayLanes {
 template <class Real>
 WAVECREST_INLINE void filterOffset(const CameraView& camera, Real& x, Real& y) {
   if (camera.filter == FilterKind::tent) {
-    const auto tent = [&](Real u) HWY_ATTR {
+    const auto tent = [&](Real u) WAVECREST_LAMBDA {
       const Real rising = sqrt(u + u) - Real(1), falling = Real(1) - sqrt(max(Real(2) - u - u, Real(0)));
       return mulAdd(select(u < Real(0.5f), rising, falling), Real(camera.filterScale), Real(0.5f));
     };
@@ -158,7 +158,7 @@ WAVECREST_INLINE SplatPixel<Real> splatPixel(const CameraView& camera, Real rast
   if (camera.filter == FilterKind::box) return {nearest, one};
   const Real fromNearest = raster - nearest - Real(0.5f);
   const double inverseScale = 1 / camera.filterScale;
-  const auto filter = [&](int step) HWY_ATTR {
+  const auto filter = [&](int step) WAVECREST_LAMBDA {
     const Real x = (fromNearest - Real(static_cast<float>(step))) * Real(inverseScale);
     if (camera.filter == FilterKind::tent) return max(one - abs(x), Real(0)) * Real(inverseScale);
     return exp(x * x * Real(-0.5)) * Real(inverseScale / std::sqrt(2 * kPi));

@@ -26,7 +26,7 @@ WAVECREST_INLINE CameraSample cameraSample(const StageContext<S>& context, const
   // u.a, u.b: place in the whole rectangle. Numbers have 24 bits, of which the pixel takes the upper ones.
   Uniform4 u = draw(context, lane, Block::scatter);
   const SplatSink& film = context.splats;
-  const auto split = [](Float number, uint32_t size, Float& rest) HWY_ATTR {
+  const auto split = [](Float number, uint32_t size, Float& rest) WAVECREST_LAMBDA {
     const Float place = number * Float(static_cast<float>(size));
     const UInt whole = min(toUInt(place), UInt(size - 1));
     rest = place - toFloat(whole);

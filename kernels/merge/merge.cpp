@@ -51,7 +51,7 @@ class Merger {
   };
   WAVECREST_INLINE Cells cellsOf(Vec3<Real> p) const {
     const auto& grid = map_.grid;
-    const auto cell = [&](Real coordinate, S origin) HWY_ATTR {
+    const auto cell = [&](Real coordinate, S origin) WAVECREST_LAMBDA {
       return toUInt(to<Float>(floor((coordinate - Real(origin)) * Real(grid.inverseCell))));
     };
     return {cell(p.x, grid.origin[0]), cell(p.y, grid.origin[1]), cell(p.z, grid.origin[2])};

@@ -30,7 +30,7 @@ WAVECREST_INLINE Contribution proposedContribution(const Wave<S>& wave, const Ch
   const Mask lit = active & finite & (luminance > Float(1e-37f));
   counters.dark += countTrue(andNot(active & finite, lit));
   const Float inverse = Float(1) / select(lit, luminance, Float(1));
-  const auto over = [&](Float x) HWY_ATTR { return zeroUnless(lit, x * inverse); };
+  const auto over = [&](Float x) WAVECREST_LAMBDA { return zeroUnless(lit, x * inverse); };
   return {{over(value.x), over(value.y), over(value.z)}, zeroUnless(lit, luminance)};
 }
 

@@ -27,7 +27,7 @@ template <class Record, class Function, size_t... kIndex>
 WAVECREST_INLINE void forEachColumnOf(Record& from, Record& to, Function&& function, std::index_sequence<kIndex...>) {
   const auto a = from.all();
   const auto b = to.all();
-  const auto visit = [&](const auto& in, const auto& out) HWY_ATTR {
+  const auto visit = [&](const auto& in, const auto& out) WAVECREST_LAMBDA {
     if (in.needed()) function(in, out);
   };
   (visit(std::get<kIndex>(a), std::get<kIndex>(b)), ...);
@@ -206,7 +206,7 @@ template <class Real, class S>
 WAVECREST_INLINE CausticRange<Real> causticRange(const StageContext<S>& context, const PathVertices<S>& v,
                                                  size_t rowStride, UInt edges, UInt start, Mask m, UInt lane) {
   const UInt zero(0u), one(1u), stride(static_cast<uint32_t>(rowStride));
-  const auto edgeFrom = [&](UInt row) HWY_ATTR {
+  const auto edgeFrom = [&](UInt row) WAVECREST_LAMBDA {
     return sqrt(length2(positionAt(v, (row + one) * stride + lane) - positionAt(v, row * stride + lane)));
   };
   const UInt last = select(m, edges - one, one);

@@ -13,7 +13,7 @@ struct SuitableKinds {
 };
 WAVECREST_INLINE SuitableKinds suitableKinds(const PathLaw& law, UInt edges, UInt causticStart) {
   const UInt zero(0u), one(1u);
-  const auto allowed = [&](uint32_t kind) HWY_ATTR { return UInt((law.kinds & kind) != 0 ? 1u : 0u); };
+  const auto allowed = [&](uint32_t kind) WAVECREST_LAMBDA { return UInt((law.kinds & kind) != 0 ? 1u : 0u); };
   SuitableKinds kinds{allowed(PathLaw::kFromEye), select(one < edges, allowed(PathLaw::kBidirectional), zero),
                       select(causticStart == zero, zero, allowed(PathLaw::kCaustic)), zero};
   kinds.count = kinds.fromEye + kinds.bidirectional + kinds.caustic;
@@ -32,7 +32,7 @@ WAVECREST_INLINE AddedRange addedRange(const PathLaw& law, UInt edges, UInt ligh
   UInt least = select(lightKept == zero, one, zero) + select(eyeFrom == edges + one, one, zero);
   least = max(least, select(deleted == zero, one, zero));
   // middle + added - deleted, never below zero.
-  const auto entry = [&](UInt more, UInt less) HWY_ATTR {
+  const auto entry = [&](UInt more, UInt less) WAVECREST_LAMBDA {
     const UInt sum = middle + more;
     return select(sum < less, zero, sum - less);
   };

@@ -100,7 +100,8 @@ WAVECREST_INLINE void keepRows(PathMutations<S>& paths, size_t count) {
       const UInt source = select(keeps, select(upper, r + from - to, r), zero);
       const UInt at = min(source, edges) * UInt(static_cast<uint32_t>(stride)) + lane;
       forEachColumn(paths.current->vertices, paths.proposed.vertices,
-                    [&](const auto& in, const auto& out) HWY_ATTR { store(gather(in, at), out, row * stride + i); });
+                    [&](const auto& in, const auto& out)
+                        WAVECREST_LAMBDA { store(gather(in, at), out, row * stride + i); });
     }
   }
 }

@@ -270,9 +270,9 @@ WAVECREST_NOINLINE void commitWave(const StageContext<S>& context, const Wave<S>
     const Mask accepted = firstLanes(count - i) & (load(context.chains->columns.rejections, i) == zero);
     if (none(accepted)) continue;
     const UInt edges = load(paths.proposed.headers.edges, i);
-    const auto replace = [&](size_t at, Mask m) HWY_ATTR {
+    const auto replace = [&](size_t at, Mask m) WAVECREST_LAMBDA {
       return [&, at, m](const auto& to, const auto& from)
-                 HWY_ATTR { store(select(m, load(from, at), load(to, at)), to, at); };
+                 WAVECREST_LAMBDA { store(select(m, load(from, at), load(to, at)), to, at); };
     };
     forEachColumn(paths.current->headers, paths.proposed.headers, replace(i, accepted));
     for (uint32_t row = 0;; ++row) {

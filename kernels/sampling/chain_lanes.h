@@ -49,7 +49,7 @@ WAVECREST_INLINE ChainNumbers chainNumbers(const SamplerSettings& sampler, UInt 
   const Mask perturbed = UInt(block / 4) < gather(chain.live[walk], lane);
   if (none(perturbed)) return numbers;
   const uint32_t* const current = chain.values + size_t{4} * chain.column(walk, block) * chain.stride;
-  const auto moved = [&](size_t row, UInt bits, UInt fresh) HWY_ATTR {
+  const auto moved = [&](size_t row, UInt bits, UInt fresh) WAVECREST_LAMBDA {
     const UInt kept = gather(current + row * chain.stride, lane);
     return select(perturbed, smallStep(kept, bits, chain.stepBits), fresh);
   };

@@ -36,7 +36,7 @@ inline WAVECREST_NOINLINE Uniform4 dependentUniform4(const SamplerSettings& samp
                                                      Stream stream) {
   if (sampler.kind == SamplerKind::chain) {
     const ChainNumbers numbers = chainNumbers(sampler, path, block, stream);
-    const auto unit = [](UInt number) HWY_ATTR { return toFloat(number) * Float(0x1p-24f); };
+    const auto unit = [](UInt number) WAVECREST_LAMBDA { return toFloat(number) * Float(0x1p-24f); };
     return {unit(numbers.a), unit(numbers.b), unit(numbers.c), unit(numbers.d)};
   }
   const SobolPoint bits = sobolBits(sampler, path, block, stream);

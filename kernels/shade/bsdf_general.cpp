@@ -42,16 +42,21 @@ BsdfSample<typename P::Real> sampleGeneral(const BsdfInput<P, kTextured>& input,
   const Real one(1);
   const Real opacity = input.opacity();
   const Mask partial = active & (opacity < one);
-  if (none(partial)) return sampleOpaque<P, kAll<kTextured>>(input, active, fix, u);
-
+  Uniform4 rest = u;
   // The probability that the surface is there; among delta lobes alone it counts only if the surface has one.
   Real pick = opacity;
-  if (input.lobes == Lobes::specularOnly) pick = zeroUnless(opaqueHasDelta<P, kAll<kTextured>>(input, active), opacity);
+  if (any(partial)) {
+    if (input.lobes == Lobes::specularOnly) {
+      pick = zeroUnless(opaqueHasDelta<P, kAll<kTextured>>(input, active), opacity);
+    }
+    // What is left of u.a decides between the surface's lobes.
+    const Float left = min(u.a / max(toFloat(pick), Float(0x1p-24f)), Float(0x1.fffffep-1f));
+    rest.a = select(partial, left, u.a);
+  }
+  BsdfSample<Real> sample = sampleOpaque<P, kAll<kTextured>>(input, active, fix, rest);
+  if (none(partial)) return sample;
+
   const Mask passes = partial & (to<Real>(u.a) >= pick);
-  // What is left of u.a decides between the surface's lobes.
-  const Float rest = min(u.a / max(toFloat(pick), Float(0x1p-24f)), Float(0x1.fffffep-1f));
-  BsdfSample<Real> sample =
-      sampleOpaque<P, kAll<kTextured>>(input, active, fix, {select(partial, rest, u.a), u.b, u.c, u.d});
   sample.pdf = select(partial, sample.pdf * pick, sample.pdf);
   sample.pdfReverse = select(partial, sample.pdfReverse * pick, sample.pdfReverse);
   const Real absent = one - pick;

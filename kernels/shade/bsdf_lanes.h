@@ -27,7 +27,7 @@ using BsdfInputOf = BsdfInput<P, has(kFeatures, kTextures)>;
 template <uint32_t kFeatures, class P, bool kTextured, class Function, class... Bsdfs>
 WAVECREST_INLINE void forEachBsdf(const BsdfInput<P, kTextured>& input, Mask active, Function&& function,
                                   BsdfList<Bsdfs...>) {
-  const auto visit = [&](auto bsdf) HWY_ATTR {
+  const auto visit = [&](auto bsdf) WAVECREST_LAMBDA {
     using Bsdf = decltype(bsdf);
     if constexpr (Bsdf::kFeature == 0 || has(kFeatures, Bsdf::kFeature)) {
       const Mask mine = active & (input.kind == UInt(static_cast<uint32_t>(Bsdf::kKind)));
@@ -49,12 +49,13 @@ WAVECREST_INLINE BsdfValue<typename P::Real> evalOpaque(const BsdfInputOf<P, kFe
   forEachBsdf<kFeatures>(
       input, active,
       [&](auto bsdf, Mask mine)
-          HWY_ATTR { value = select(mine, decltype(bsdf)::template eval<P>(input, fix, gen), value); },
+          WAVECREST_LAMBDA { value = select(mine, decltype(bsdf)::template eval<P>(input, fix, gen), value); },
       AllBsdfs{});
   return value;
 }
 
-// Lanes whose BSDF has no lobe to choose from get weight 0.
+// Lanes whose BSDF has no lobe to choose from get weight 0. What samples one kind is not forced inline: that made
+// bsdf_general.cpp a quarter longer to compile.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE BsdfSample<typename P::Real> sampleOpaque(const BsdfInputOf<P, kFeatures>& input, Mask active,
                                                            Vec3<typename P::Real> fix, const Uniform4& u) {
@@ -77,7 +78,7 @@ WAVECREST_INLINE Mask opaqueHasDelta(const BsdfInputOf<P, kFeatures>& input, Mas
   Mask delta = noLanes();
   forEachBsdf<kFeatures>(
       input, active,
-      [&](auto bsdf, Mask mine) HWY_ATTR {
+      [&](auto bsdf, Mask mine) WAVECREST_LAMBDA {
         if constexpr (decltype(bsdf)::kHasDelta) delta = delta | mine;
       },
       AllBsdfs{});

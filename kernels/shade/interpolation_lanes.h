@@ -28,7 +28,7 @@ template <class Real>
 WAVECREST_INLINE Vec3<Real> bumped(const TextureRecord* textures, const float* texels, UInt id, Real scale, Float u,
                                    Float v, Vec3<Real> normal, Vec3<Real> geometric, const Tangents<Real>& tangents) {
   constexpr float kStep = 1e-4f;
-  const auto height = [&](Float s, Float t) HWY_ATTR { return evalTexture(textures, texels, id, s, t).x; };
+  const auto height = [&](Float s, Float t) WAVECREST_LAMBDA { return evalTexture(textures, texels, id, s, t).x; };
   const Float step(kStep);
   const Real hu = to<Real>((height(u + step, v) - height(u - step, v)) * Float(0.5f / kStep)) * scale;
   const Real hv = to<Real>((height(u, v + step) - height(u, v - step)) * Float(0.5f / kStep)) * scale;

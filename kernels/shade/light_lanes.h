@@ -27,7 +27,7 @@ struct LightLanes {
 template <class S>
 WAVECREST_INLINE auto loadLight(const SceneView<S>& scene, UInt index) {
   const LightRecord<S>& fields = *scene.lights;
-  const auto load = [&](auto at) HWY_ATTR {
+  const auto load = [&](auto at) WAVECREST_LAMBDA {
     using Real = decltype(at(fields.pick));
     return LightLanes<Real>{at(fields.p0),       at(fields.e1),       at(fields.e2),          at(fields.normal),
                             at(fields.radiance), at(fields.pick),     at(fields.inverseArea), at(fields.radius),
@@ -49,7 +49,7 @@ struct MapPoint {
 };
 template <class Real>
 WAVECREST_INLINE MapPoint<Real> mapPoint(const EnvironmentView& map, Vec3<Real> direction) {
-  const auto row = [&](size_t i) HWY_ATTR {
+  const auto row = [&](size_t i) WAVECREST_LAMBDA {
     return dot(direction, Vec3<Real>{Real(map.toLocal[i][0]), Real(map.toLocal[i][1]), Real(map.toLocal[i][2])});
   };
   const Real x = row(0), y = row(1), z = row(2);
@@ -69,7 +69,7 @@ WAVECREST_INLINE Vec3<Real> mapRadiance(const EnvironmentView& map, const MapPoi
   const UInt column0 = min(left, width - UInt(1u));
   const UInt column1 = select(column0 == width - UInt(1u), UInt(0u), column0 + UInt(1u));
   const UInt row0 = min(toUInt(y0), height - UInt(1u)), row1 = min(row0 + UInt(1u), height - UInt(1u));
-  const auto texel = [&](UInt column, UInt row) HWY_ATTR {
+  const auto texel = [&](UInt column, UInt row) WAVECREST_LAMBDA {
     const UInt at = (row * width + column) * UInt(3u);
     return Vec3<Float>{gather(map.texels, at), gather(map.texels + 1, at), gather(map.texels + 2, at)};
   };
@@ -103,7 +103,7 @@ WAVECREST_INLINE Vec3<Real> sampleMap(const EnvironmentView& map, const Uniform4
   const Real theta = (to<Real>(toFloat(row)) + to<Real>(u.d)) * Real(kPi / map.height);
   const auto azimuth = sinCos(phi), polar = sinCos(theta);
   const Vec3<Real> local{azimuth.sin * polar.sin, polar.cos, -azimuth.cos * polar.sin};
-  const auto column3 = [&](size_t i) HWY_ATTR {  // the inverse of a rotation is its transpose
+  const auto column3 = [&](size_t i) WAVECREST_LAMBDA {  // the inverse of a rotation is its transpose
     return Real(map.toLocal[0][i]) * local.x + Real(map.toLocal[1][i]) * local.y + Real(map.toLocal[2][i]) * local.z;
   };
   return {column3(0), column3(1), column3(2)};

@@ -24,14 +24,15 @@ class PackedLightVertices {
 
   // The lanes of block i in m, and the camera vertex that each is to be joined with.
   WAVECREST_INLINE void push(const LightVertices<S>& v, size_t i, Mask m, UInt camera) {
-    const auto pack = [&](const auto& column, auto* to) HWY_ATTR {
+    const auto pack = [&](const auto& column, auto* to) WAVECREST_LAMBDA {
       storeUnaligned(compress(loadUnaligned(static_cast<decltype(to)>(column) + i), m), to + size_);
     };
-    const auto packVec3 = [&](const Column<S>& x, const Column<S>& y, const Column<S>& z, S(&to)[3][kItems]) HWY_ATTR {
-      pack(x, to[0]);
-      pack(y, to[1]);
-      pack(z, to[2]);
-    };
+    const auto packVec3 = [&](const Column<S>& x, const Column<S>& y, const Column<S>& z, S(&to)[3][kItems])
+                              WAVECREST_LAMBDA {
+                                pack(x, to[0]);
+                                pack(y, to[1]);
+                                pack(z, to[2]);
+                              };
     packVec3(v.positionX, v.positionY, v.positionZ, position_);
     packVec3(v.fixX, v.fixY, v.fixZ, fix_);
     packVec3(v.normalX, v.normalY, v.normalZ, normal_);

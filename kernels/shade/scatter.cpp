@@ -27,9 +27,10 @@ WAVECREST_INLINE typename P::Real specularJacobian(const ShadingLanes<P, kFeatur
   return sample.pdfReverse * reciprocal<P>(sample.pdf) * genCosine * cosines * sample.etaRatio * sample.etaRatio;
 }
 
+// Both stages share its code.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE void scatterBy(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
-                                Lobes lobes) {
+WAVECREST_NOINLINE void scatterBy(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
+                                  Lobes lobes) {
   using Real = typename P::Real;
   auto& rays = wave.rays;
   auto& paths = wave.paths;

@@ -94,7 +94,8 @@ struct ShadingLanes {
     if (any(both)) {
       const View other = otherView();
       const BsdfValue<Real> value = evalBsdf<P, kFeatures>(bsdf, both, other.fix, other.toLocal(direction));
-      const auto mixed = [&](Real a, Real b) HWY_ATTR { return select(both, a * share + b * (one - share), a); };
+      const auto mixed = [&](Real a, Real b)
+                             WAVECREST_LAMBDA { return select(both, a * share + b * (one - share), a); };
       if (camera) {
         out.pdfReverse = mixed(out.pdfReverse, value.pdfReverse);
       } else {
@@ -191,7 +192,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
                                .fixCosine = dot(vertex.fix, vertex.normal),
                                .bsdf = BsdfInputOf<P, kFeatures>(scene.materials, vertex.material),
                                .map = {}};
-  const auto flagged = [&](MaterialFlags flag) HWY_ATTR { return (s.bsdf.flags & UInt(flag)) == UInt(flag); };
+  const auto flagged = [&](MaterialFlags flag) WAVECREST_LAMBDA { return (s.bsdf.flags & UInt(flag)) == UInt(flag); };
   if constexpr (has(kFeatures, kNormalMaps)) {
     if (scene.normalMaps && any(flagged(kMapped))) {
       s.map = {.present = true,
@@ -207,7 +208,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
   }
   if constexpr (has(kFeatures, kTextures)) {
     const MaterialRecord& slots = *scene.materials;
-    const auto factor = [&](const uint32_t& slot) HWY_ATTR {
+    const auto factor = [&](const uint32_t& slot) WAVECREST_LAMBDA {
       return to<Real>(textureFactor(scene.textures, scene.texels, s.bsdf.at(slot), vertex.u, vertex.v));
     };
     s.bsdf.textures.reflectance = factor(slots.reflectanceTexture);

@@ -34,7 +34,7 @@ WAVECREST_INLINE SurfacePoint<typename P::Real> surfacePoint(
     const Real inverse = Real(1) / dot(e1, h);
     const Vec3<Real> s = rayOrigin - p0;
     // Clamped to where the primitive can be: a ray that grazes its plane is ill-conditioned.
-    const auto inside = [](Real x) HWY_ATTR { return min(max(x, Real(kInset)), Real(1 - kInset)); };
+    const auto inside = [](Real x) WAVECREST_LAMBDA { return min(max(x, Real(kInset)), Real(1 - kInset)); };
     u = inside(dot(s, h) * inverse);
     v = inside(dot(rayDirection, cross(s, e1)) * inverse);
     const Mask triangle = at(fields.kind) == UInt(static_cast<uint32_t>(PrimitiveKind::triangle));

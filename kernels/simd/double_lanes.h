@@ -71,18 +71,19 @@ struct Double {
   Double() = default;
   WAVECREST_INLINE Double(Parts<hn::Vec<DoubleTag>> x) : v(x) {}
   WAVECREST_INLINE Double(double x)
-      : v(mapParts([x](size_t) HWY_ATTR { return hn::Set(DoubleTag(), x); }, kFirstLanes)) {}
+      : v(mapParts([x](size_t) WAVECREST_LAMBDA { return hn::Set(DoubleTag(), x); }, kFirstLanes)) {}
 };
 
 // A 32-bit lane mask as one 64-bit mask per register, and back.
 WAVECREST_INLINE Parts<hn::Mask<DoubleTag>> splitMask(Mask m) {
   return mapParts(
-      [](auto lanes) HWY_ATTR { return hn::RebindMask(DoubleTag(), hn::MaskFromVec(hn::PromoteTo(LongTag(), lanes))); },
+      [](auto lanes)
+          WAVECREST_LAMBDA { return hn::RebindMask(DoubleTag(), hn::MaskFromVec(hn::PromoteTo(LongTag(), lanes))); },
       split(hn::VecFromMask(IntTag(), hn::RebindMask(IntTag(), m.m))));
 }
 WAVECREST_INLINE Mask joinMask(Parts<hn::Mask<DoubleTag>> m) {
   const auto lanes = mapParts(
-      [](auto part) HWY_ATTR {
+      [](auto part) WAVECREST_LAMBDA {
         return hn::TruncateTo(hn::Rebind<uint32_t, ULongTag>(),
                               hn::VecFromMask(ULongTag(), hn::RebindMask(ULongTag(), part)));
       },
@@ -90,21 +91,21 @@ WAVECREST_INLINE Mask joinMask(Parts<hn::Mask<DoubleTag>> m) {
   return {hn::RebindMask(FloatTag(), hn::MaskFromVec(join(UIntTag(), lanes)))};
 }
 
-#define WAVECREST_DOUBLE_BINARY(NAME, OP)                                            \
-  WAVECREST_INLINE Double NAME(Double a, Double b) {                                 \
-    return mapParts([](auto x, auto y) HWY_ATTR { return hn::OP(x, y); }, a.v, b.v); \
+#define WAVECREST_DOUBLE_BINARY(NAME, OP)                                                    \
+  WAVECREST_INLINE Double NAME(Double a, Double b) {                                         \
+    return mapParts([](auto x, auto y) WAVECREST_LAMBDA { return hn::OP(x, y); }, a.v, b.v); \
   }
-#define WAVECREST_DOUBLE_COMPARE(NAME, OP)                                                     \
-  WAVECREST_INLINE Mask NAME(Double a, Double b) {                                             \
-    return joinMask(mapParts([](auto x, auto y) HWY_ATTR { return hn::OP(x, y); }, a.v, b.v)); \
+#define WAVECREST_DOUBLE_COMPARE(NAME, OP)                                                             \
+  WAVECREST_INLINE Mask NAME(Double a, Double b) {                                                     \
+    return joinMask(mapParts([](auto x, auto y) WAVECREST_LAMBDA { return hn::OP(x, y); }, a.v, b.v)); \
   }
-#define WAVECREST_DOUBLE_UNARY(NAME, OP)                             \
-  WAVECREST_INLINE Double NAME(Double a) {                           \
-    return mapParts([](auto x) HWY_ATTR { return hn::OP(x); }, a.v); \
+#define WAVECREST_DOUBLE_UNARY(NAME, OP)                                     \
+  WAVECREST_INLINE Double NAME(Double a) {                                   \
+    return mapParts([](auto x) WAVECREST_LAMBDA { return hn::OP(x); }, a.v); \
   }
-#define WAVECREST_DOUBLE_TERNARY(NAME, OP)                                                           \
-  WAVECREST_INLINE Double NAME(Double a, Double b, Double c) {                                       \
-    return mapParts([](auto x, auto y, auto z) HWY_ATTR { return hn::OP(x, y, z); }, a.v, b.v, c.v); \
+#define WAVECREST_DOUBLE_TERNARY(NAME, OP)                                                                   \
+  WAVECREST_INLINE Double NAME(Double a, Double b, Double c) {                                               \
+    return mapParts([](auto x, auto y, auto z) WAVECREST_LAMBDA { return hn::OP(x, y, z); }, a.v, b.v, c.v); \
   }
 WAVECREST_DOUBLE_BINARY(operator+, Add)
 WAVECREST_DOUBLE_BINARY(operator-, Sub)
@@ -132,35 +133,35 @@ WAVECREST_DOUBLE_TERNARY(mulSub, MulSub)
 #undef WAVECREST_DOUBLE_TERNARY
 
 WAVECREST_INLINE Double select(Mask m, Double yes, Double no) {
-  return mapParts([](auto part, auto x, auto y) HWY_ATTR { return hn::IfThenElse(part, x, y); }, splitMask(m), yes.v,
-                  no.v);
+  return mapParts([](auto part, auto x, auto y) WAVECREST_LAMBDA { return hn::IfThenElse(part, x, y); }, splitMask(m),
+                  yes.v, no.v);
 }
 WAVECREST_INLINE Double zeroUnless(Mask m, Double a) { return select(m, a, Double(0.0)); }
 
 WAVECREST_INLINE Double toDouble(Float a) {
-  return mapParts([](auto half) HWY_ATTR { return hn::PromoteTo(DoubleTag(), half); }, split(a.v));
+  return mapParts([](auto half) WAVECREST_LAMBDA { return hn::PromoteTo(DoubleTag(), half); }, split(a.v));
 }
 WAVECREST_INLINE Float toFloat(Double a) {
-  return {
-      join(FloatTag(), mapParts([](auto x) HWY_ATTR { return hn::DemoteTo(hn::Rebind<float, DoubleTag>(), x); }, a.v))};
+  return {join(FloatTag(),
+               mapParts([](auto x) WAVECREST_LAMBDA { return hn::DemoteTo(hn::Rebind<float, DoubleTag>(), x); }, a.v))};
 }
 WAVECREST_INLINE Float toFloat(Float a) { return a; }
 
 WAVECREST_INLINE Double load(const double* p) {
-  return mapParts([p](size_t first) HWY_ATTR { return hn::Load(DoubleTag(), p + first); }, kFirstLanes);
+  return mapParts([p](size_t first) WAVECREST_LAMBDA { return hn::Load(DoubleTag(), p + first); }, kFirstLanes);
 }
 WAVECREST_INLINE Double loadUnaligned(const double* p) {
-  return mapParts([p](size_t first) HWY_ATTR { return hn::LoadU(DoubleTag(), p + first); }, kFirstLanes);
+  return mapParts([p](size_t first) WAVECREST_LAMBDA { return hn::LoadU(DoubleTag(), p + first); }, kFirstLanes);
 }
 WAVECREST_INLINE void store(Double a, double* p) {
-  forEachPart([p](auto x, size_t first) HWY_ATTR { hn::Store(x, DoubleTag(), p + first); }, a.v, kFirstLanes);
+  forEachPart([p](auto x, size_t first) WAVECREST_LAMBDA { hn::Store(x, DoubleTag(), p + first); }, a.v, kFirstLanes);
 }
 WAVECREST_INLINE void storeUnaligned(Double a, double* p) {
-  forEachPart([p](auto x, size_t first) HWY_ATTR { hn::StoreU(x, DoubleTag(), p + first); }, a.v, kFirstLanes);
+  forEachPart([p](auto x, size_t first) WAVECREST_LAMBDA { hn::StoreU(x, DoubleTag(), p + first); }, a.v, kFirstLanes);
 }
 WAVECREST_INLINE Double gather(const double* base, UInt index) {
   return mapParts([base](auto half)
-                      HWY_ATTR { return hn::GatherIndex(DoubleTag(), base, hn::PromoteTo(LongTag(), half)); },
+                      WAVECREST_LAMBDA { return hn::GatherIndex(DoubleTag(), base, hn::PromoteTo(LongTag(), half)); },
                   split(hn::BitCast(IntTag(), index.v)));
 }
 // Lanes with equal indices: the last one wins.

@@ -199,8 +199,9 @@ WAVECREST_INLINE size_t appendByFallingKey(MaskGroup<8> m, FloatGroup<8> keys, U
   const auto sortable = hn::Or(hn::AndNot(hn::BitCast(tag, keys.part[0]), hn::Set(tag, kKeyBits)), place);
   auto v = hn::IfThenElse(hn::RebindMask(tag, m.part[0]), sortable, hn::Set(tag, kAbsent));
   // Keeps the greater of each pair (v, w) in the lanes where `upper` holds.
-  const auto exchange = [&](auto w, auto upper) HWY_ATTR { v = hn::IfThenElse(upper, hn::Max(v, w), hn::Min(v, w)); };
-  const auto laneHasBit = [&](uint32_t bit) HWY_ATTR { return hn::TestBit(place, hn::Set(tag, bit)); };
+  const auto exchange = [&](auto w, auto upper)
+                            WAVECREST_LAMBDA { v = hn::IfThenElse(upper, hn::Max(v, w), hn::Min(v, w)); };
+  const auto laneHasBit = [&](uint32_t bit) WAVECREST_LAMBDA { return hn::TestBit(place, hn::Set(tag, bit)); };
   const auto odd = laneHasBit(1), upperPair = laneHasBit(2), upperHalf = laneHasBit(4);
   exchange(hn::Shuffle2301(v), odd);
   exchange(hn::Shuffle0123(v), upperPair);

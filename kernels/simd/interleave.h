@@ -41,7 +41,7 @@ WAVECREST_INLINE auto gatherFour(const T* base, UInt index) {
   HWY_ALIGN uint32_t start[kLanes];
   store(index, start);
   // The rows of lanes k, k + 4, k + 8, ..., one to each block of four numbers.
-  const auto blocks = [&](size_t k) HWY_ATTR {
+  const auto blocks = [&](size_t k) WAVECREST_LAMBDA {
     const hn::FixedTag<T, 4> row;
     if constexpr (kCount == 4) {
       return hn::LoadU(row, base + start[k]);

@@ -21,6 +21,10 @@
   namespace wavecrest::HWY_NAMESPACE {
 #define WAVECREST_INLINE HWY_INLINE
 #define WAVECREST_NOINLINE HWY_NOINLINE
+// For lambdas, between parameters and body. Those that are not always inlined are inlined after the passes that take
+// structs apart: what they get and capture then stays in memory through most of the optimiser, and a kernel takes up to
+// twice as long to compile. HWY_ATTR alone is for those that are better called.
+#define WAVECREST_LAMBDA HWY_ATTR __attribute__((always_inline))
 #define WAVECREST_SIMD_END \
   }                        \
   HWY_AFTER_NAMESPACE();

@@ -95,10 +95,10 @@ WAVECREST_INLINE Real cos(Real x) {
 
 // ---- functions of Highway -------------------------------------------------------------------------------------------
 
-#define WAVECREST_HIGHWAY_FUNCTION(NAME, FUNCTION)                                      \
-  WAVECREST_INLINE Float NAME(Float a) { return {hn::FUNCTION(FloatTag(), a.v)}; }      \
-  WAVECREST_INLINE Double NAME(Double a) {                                              \
-    return mapParts([](auto x) HWY_ATTR { return hn::FUNCTION(DoubleTag(), x); }, a.v); \
+#define WAVECREST_HIGHWAY_FUNCTION(NAME, FUNCTION)                                              \
+  WAVECREST_INLINE Float NAME(Float a) { return {hn::FUNCTION(FloatTag(), a.v)}; }              \
+  WAVECREST_INLINE Double NAME(Double a) {                                                      \
+    return mapParts([](auto x) WAVECREST_LAMBDA { return hn::FUNCTION(DoubleTag(), x); }, a.v); \
   }
 WAVECREST_HIGHWAY_FUNCTION(log, Log)      // positive, finite a. 1 ulp.
 WAVECREST_HIGHWAY_FUNCTION(log2, Log2)    // positive, finite a. 2 ulp.
@@ -127,7 +127,7 @@ WAVECREST_INLINE Float powerOf2(Float n) { return fromBits(shiftLeft<23>(toUInt(
 WAVECREST_INLINE Double powerOf2(Double n) {
   return mapParts(
       [](auto biased)
-          HWY_ATTR { return hn::BitCast(DoubleTag(), hn::ShiftLeft<52>(hn::ConvertTo(LongTag(), biased))); },
+          WAVECREST_LAMBDA { return hn::BitCast(DoubleTag(), hn::ShiftLeft<52>(hn::ConvertTo(LongTag(), biased))); },
       (n + Double(1023.0)).v);
 }
 
