@@ -35,6 +35,7 @@ endforeach()
 function(add_lane_sources name)
   foreach(isa IN LISTS WAVECREST_ISAS)
     add_library(${name}_${isa} OBJECT ${ARGN})
+    set_target_properties(${name}_${isa} PROPERTIES UNITY_BUILD OFF)  # the long ones are to be built in parallel
     set_lane_options(${name}_${isa} ${isa})
   endforeach()
 endfunction()

@@ -4,7 +4,7 @@ find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   add_custom_target(lint
     COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/lint.py format
-    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/lint.py tidy --build ${PROJECT_BINARY_DIR}
+    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/lint.py tidy
     USES_TERMINAL VERBATIM)
   add_custom_target(format
     COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/lint.py format --fix

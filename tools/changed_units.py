@@ -1,13 +1,15 @@
 """Which translation units clang-tidy has to read for a change: those that changed, and one for each changed header.
 
-In: compile commands as lint.py holds them, the dependencies that ninja recorded when it built them, and git. The base
-of a change is where it left main; on main itself the commit before, which for a merge is all that it brought.
+In: compile commands as lint.py holds them, the sources, and git. The base of a change is where it left main; on main
+itself the commit before, which for a merge is all that it brought.
 """
 
 import pathlib
+import re
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)  # the tree's own headers, named from its root
 
 
 def git(*arguments):
@@ -32,26 +34,22 @@ def changed_files(base):
     return {ROOT / name for name in names}
 
 
-def headers_by_object(build):
-    """Object file -> the files of this tree that its compilation read, from the log of a finished ninja build."""
-    text = subprocess.check_output(["ninja", "-C", str(build), "-t", "deps"], text=True)
-    found = {}
-    files = set()
-    for line in text.splitlines():
-        if line.startswith(" "):
-            path = pathlib.Path(build, line.strip())
-            if path.is_relative_to(ROOT) and not path.is_relative_to(ROOT / "build"):
-                files.add(path)
-        elif ":" in line:
-            files = found.setdefault(line.split(":")[0], set())
+def files_read(unit):
+    """The files of this tree that a unit includes, directly or not, itself among them."""
+    found = set()
+    waiting = [pathlib.Path(unit)]
+    while waiting:
+        path = waiting.pop()
+        if path not in found and path.is_file():
+            found.add(path)
+            waiting += [ROOT / name for name in INCLUDE.findall(path.read_text(encoding="utf-8"))]
     return found
 
 
-def units_of_change(entries, build, changed):
+def units_of_change(entries, changed):
     """The entries to read. A header is read in the unit that reads least else of ours; slow kernels come last."""
     chosen = [entry for entry in entries if pathlib.Path(entry["file"]) in changed]
-    by_object = headers_by_object(build)
-    reads = {entry["file"]: by_object.get(entry["output"], set()) for entry in entries}
+    reads = {entry["file"]: files_read(entry["file"]) for entry in entries}
     covered = set().union(*(reads[entry["file"]] for entry in chosen))
     order = sorted(entries, key=lambda entry: ("HWY_" in " ".join(entry["arguments"]), len(reads[entry["file"]])))
     for header in sorted(changed):
@@ -59,7 +57,7 @@ def units_of_change(entries, build, changed):
             continue
         unit = next((entry for entry in order if header in reads[entry["file"]]), None)
         if unit is None:
-            continue  # nothing that was built includes it
+            continue  # nothing includes it
         chosen.append(unit)
         covered |= reads[unit["file"]]
     return chosen

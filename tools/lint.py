@@ -1,8 +1,8 @@
 """The lint target: formatting of every source file, and clang-tidy over what changed or over every translation unit.
 
     lint.py format [--fix]             clang-format 14 on all C++ files that git knows
-    lint.py tidy [--build DIR] [FILE…] clang-tidy 14 with DIR/compile_commands.json (default build/release); FILEs are
-                                       substrings of paths, default all
+    lint.py tidy [--build DIR] [FILE…] clang-tidy 14 with DIR/compile_commands.json (default build/lint, which this
+                                       configures); FILEs are substrings of paths, default all
     lint.py tidy --changed             the units that differ from main, and one for each header that does
 
 Kernel files are compiled once per instruction set; tidy reads each once, as AVX2 where it can. Status 1 on any finding.
@@ -23,6 +23,7 @@ import tempfile
 import changed_units
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+LINT_BUILD = ROOT / "build" / "lint"
 VERSION = "14"  # other versions format and judge differently
 PREFERRED_ISA = "HWY_BASELINE_TARGETS=HWY_AVX2"
 MOST_CHANGED_UNITS = 24  # at some ten seconds each; a larger change has them spread over it
@@ -87,7 +88,7 @@ def check_tidy(build, substrings, changed):
         if base is None:
             print("lint: no earlier commit to compare with; clang-tidy reads nothing")
             return 0
-        entries = changed_units.units_of_change(entries, build, changed_units.changed_files(base))
+        entries = changed_units.units_of_change(entries, changed_units.changed_files(base))
         if not entries:
             print(f"lint: no translation unit differs from {base[:12]}")
             return 0
@@ -116,12 +117,14 @@ def main():
     formatting = commands.add_parser("format")
     formatting.add_argument("--fix", action="store_true", help="rewrite the files")
     tidy = commands.add_parser("tidy")
-    tidy.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release")
+    tidy.add_argument("--build", type=pathlib.Path, default=LINT_BUILD)
     tidy.add_argument("--changed", action="store_true", help="only what differs from main, or from the commit before")
     tidy.add_argument("files", nargs="*")
     arguments = parser.parse_args()
     if arguments.command == "format":
         sys.exit(check_format(arguments.fix))
+    if arguments.build == LINT_BUILD:
+        subprocess.run(["cmake", "--preset", "lint"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     sys.exit(check_tidy(arguments.build.resolve(), arguments.files, arguments.changed))
 
 

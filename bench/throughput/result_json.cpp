@@ -10,11 +10,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <size_t kCount, class Enum>
-std::string nameOf(const std::array<std::string_view, kCount>& names, Enum value) {
-  return std::string(names[static_cast<size_t>(value)]);
-}
-
 Json speedJson(const Speed& speed) {
   Json stages = Json::array(), scaling = Json::array();
   for (const StageShare& stage : speed.stages) {

@@ -16,11 +16,6 @@ void line(Text& text, fmt::format_string<Arguments...> format, Arguments&&... ar
   text.push_back('\n');
 }
 
-template <size_t kCount, class Enum>
-std::string_view nameOf(const std::array<std::string_view, kCount>& names, Enum value) {
-  return names[static_cast<size_t>(value)];
-}
-
 double millions(double perSecond) { return perSecond * 1e-6; }
 
 void addSpeed(Text& text, const Speed& speed, uint32_t threads) {

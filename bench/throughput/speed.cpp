@@ -8,7 +8,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kRounds = 7;
+constexpr size_t kScalingRounds = 7;
 
 std::vector<uint32_t> threadCounts(uint32_t most) {
   std::vector<uint32_t> counts;
@@ -57,7 +57,8 @@ Speed measureSpeed(const Scene& scene, const RenderSettings& settings, double se
     own.measureStages = true;
     sessions.push_back(Session::create(scene, own));
   }
-  const auto slices = renderInTurn(sessions, seconds / static_cast<double>((kRounds + 1) * sessions.size()), kRounds);
+  const auto slices =
+      renderInTurn(sessions, seconds / static_cast<double>((kScalingRounds + 1) * sessions.size()), kScalingRounds);
   const auto& one = slices.front();
   const auto& all = slices.back();
 

@@ -7,7 +7,6 @@
 namespace wavecrest {
 namespace {
 
-constexpr double kLengthRatio = 0.85;  // samples of length k + 1 to those of length k
 constexpr uint32_t kFewestSamples = 32;
 
 }  // namespace

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/chains/bootstrap.h"
 #include "engine/compile/lights.h"
 
 namespace wavecrest {
 namespace {
-
-constexpr double kLengthRatio = 0.85;  // new paths of length k + 1 to those of length k, as in the bootstrap
 
 // Preference for deletions by their edges (Veach and Guibas 1997, 5.3.1).
 double deletionWeight(uint32_t edges) {

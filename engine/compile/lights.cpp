@@ -61,9 +61,9 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radianc
 
 // Collects the records with their power (luminance of the flux), which decides how often each is picked.
 template <class S>
-class Collector {
+class LightCollector {
  public:
-  Collector(const Scene& scene, const BoundingSphere& bounds, const Double3& origin)
+  LightCollector(const Scene& scene, const BoundingSphere& bounds, const Double3& origin)
       : scene_(scene), bounds_(bounds), origin_(origin) {}
 
   void addPrimitives(Primitives<S>& primitives) {
@@ -212,7 +212,7 @@ template void bindLightTextures(const Scene&, const Primitives<double>&, Lights<
 template <class S>
 Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives,
                         const Double3& origin) {
-  Collector<S> collector(scene, bounds, origin);
+  LightCollector<S> collector(scene, bounds, origin);
   collector.addPrimitives(primitives);
   collector.addOthers();
   return collector.finish();

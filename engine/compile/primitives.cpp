@@ -141,9 +141,9 @@ Mesh tessellated(const Cylinder& cylinder) {
 
 // Collects the records of all shapes, one kind after the other.
 template <class S>
-class Collector {
+class PrimitiveCollector {
  public:
-  Collector(const Scene& scene, bool textured, const Double3& origin)
+  PrimitiveCollector(const Scene& scene, bool textured, const Double3& origin)
       : scene_(scene), textured_(textured), origin_(origin) {
     for (const Shape& shape : scene.shapes) emits_ = emits_ || shape.emitter != kNone;
   }
@@ -268,7 +268,7 @@ class Collector {
 
 template <class S>
 Primitives<S> compilePrimitives(const Scene& scene, bool textured, const Double3& origin) {
-  return Collector<S>(scene, textured, origin).collect();
+  return PrimitiveCollector<S>(scene, textured, origin).collect();
 }
 template Primitives<float> compilePrimitives(const Scene&, bool, const Double3&);
 template Primitives<double> compilePrimitives(const Scene&, bool, const Double3&);

@@ -97,7 +97,7 @@ template Pipeline<double> multiplexedMetropolis(const Stages<double>&, const Int
 // when it is weighed.
 template <class S>
 Pipeline<S> pathSpaceMetropolis(const Stages<S>& stages, const Intersector<S>& intersector) {
-  constexpr MisSettings kNone{.emission = false, .nextEvent = false};
+  constexpr MisSettings kNoStrategies{.emission = false, .nextEvent = false};
   const StageCall<S> extend{"extend", intersector.extend, pathItems<S>, intersector.lanes},
       arrive{"arrive", stages.arrive, pathItems<S>, stages.lanes},
       record{"record", stages.recordPathVertices, pathItems<S>, stages.lanes},
@@ -116,14 +116,14 @@ Pipeline<S> pathSpaceMetropolis(const Stages<S>& stages, const Intersector<S>& i
       .lightPass =
           Pass<S>{
               .walk = Walk::light,
-              .strategies = kNone,
+              .strategies = kNoStrategies,
               .generate = {"begin light", stages.beginLightWalks, generatedItems<S>, stages.lanes},
               .perDepth = {extend, arrive, record, walk},
           },
       .cameraPass =
           {
               .walk = Walk::camera,
-              .strategies = kNone,
+              .strategies = kNoStrategies,
               .generate = {"begin", stages.beginEyeWalks, generatedItems<S>, stages.lanes},
               .perDepth = {extend, {"miss", stages.recordMisses, pathItems<S>, 1}, arrive, record, walk},
           },
