@@ -8,8 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "engine/chains/bootstrap.h"
 #include "engine/chains/chain_worker.h"
+#include "engine/chains/epochs.h"
 #include "engine/flush_to_zero.h"
 #include "engine/for_each.h"
 #include "engine/render_clock.h"
@@ -77,24 +77,15 @@ class ChainSession final : public Session {
   Film film_;
   RenderPlan<S> plan_;
   MemoryPlan memory_;
-  BootstrapPlan bootstrap_;
+  Epochs epochs_;
   std::vector<ChainState> waves_;
   std::vector<PathStore<S>> paths_;  // of the waves, in path space; rows as long as those of proposals
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
-  std::vector<float> targets_;        // of the epoch's bootstrap samples, as far as they are traced
-  std::vector<char> bootstrapped_;    // which waves of them are
+  std::vector<char> bootstrapped_;    // which waves of the next epoch's bootstrap samples are traced
   std::vector<uint64_t> directDone_;  // direct light samples of each pixel, by wave
   uint64_t step_ = 0;                 // steps that every chain has taken
   double stepSeconds_ = 0;            // that the latest took
-  double referenceMean_ = 0;          // b of the first epoch that found light: the film is in units of it
-  bool dark_ = true;                  // the epoch's bootstrap found no light
-  struct Epoch {
-    Brightness brightness;
-    uint64_t steps = 0;
-  };
-  std::vector<Epoch> epochs_;
-  LargeStepSums bootstrapSums_;    // of all epochs
-  std::vector<StuckChain> stuck_;  // at the ends of epochs
+  std::vector<StuckChain> stuck_;     // at the ends of epochs
   double buildSeconds_ = 0, renderSeconds_ = 0, cpuSeconds_ = 0;
   std::atomic<double> progressSeconds_{0};
   std::atomic<uint64_t> progressPaths_{0};
@@ -112,9 +103,9 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
   memory_ = planMemory(plan_, settings, film_.area());
   const MetropolisSettings& metropolis = settings.metropolis;
   const bool multiplexed = plan_.pipeline.lightPass.has_value();
-  bootstrap_ = multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,
-                                               settings.limits.maxDepth)
-                           : plainBootstrap(metropolis.bootstrapSamples);
+  epochs_ = Epochs(multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,
+                                                   settings.limits.maxDepth)
+                               : plainBootstrap(metropolis.bootstrapSamples));
   const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings.limits.maxDepth);
   const size_t waves = (metropolis.chains + settings.waveSize - 1) / settings.waveSize;
   for (size_t wave = 0; wave < waves; ++wave) {
@@ -122,8 +113,7 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
     state.multiplexed = multiplexed;
     if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan_.pathLaws.law().maxEdges, plan_.needs);
   }
-  targets_.resize(bootstrap_.length.size());
-  bootstrapped_.resize((targets_.size() + settings.waveSize - 1) / settings.waveSize);
+  bootstrapped_.resize((epochs_.targets.size() + settings.waveSize - 1) / settings.waveSize);
   directDone_.resize((film_.area().pixels.size() + settings.waveSize - 1) / settings.waveSize);
   buildSeconds_ = secondsSince(begin);
 }
@@ -145,7 +135,8 @@ uint64_t ChainSession<S>::stepsFor(uint64_t iterations) const {
 template <class S>
 void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   const FlushToZero flushToZero;
-  const size_t first = wave * settings_.waveSize, count = std::min<size_t>(settings_.waveSize, targets_.size() - first);
+  std::vector<float>& targets = epochs_.targets;
+  const size_t first = wave * settings_.waveSize, count = std::min<size_t>(settings_.waveSize, targets.size() - first);
   // All steps are large, so no current numbers are kept.
   ChainState state(count, {});
   state.samples.values = nullptr;
@@ -156,7 +147,7 @@ void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   state.samples.largeStep = 2;
   for (size_t i = 0; i < count; ++i) {
     state.columns.source[i] = static_cast<uint32_t>(first + i);
-    state.columns.length[i] = bootstrap_.length[first + i];
+    state.columns.length[i] = epochs_.plan().length[first + i];
   }
   StageContext<S> context = chainContext(plan_, settings_, film_.area());
   context.sampler.iteration = static_cast<uint32_t>(epoch);
@@ -164,7 +155,7 @@ void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   mine.trace(context, state, count, false);
   // Moves every chain, from nowhere, to its sample; what it adds to the film is nothing.
   mine.decide(context, state, false);
-  for (size_t i = 0; i < count; ++i) targets_[first + i] = state.columns.target[i];
+  for (size_t i = 0; i < count; ++i) targets[first + i] = state.columns.target[i];
 }
 
 template <class S>
@@ -189,7 +180,7 @@ void ChainSession<S>::startChains(size_t wave, uint64_t epoch, const std::vector
   for (size_t i = 0; i < count; ++i) {
     const uint32_t sample = starts[firstChain(wave) + i];
     chains.source[i] = sample;
-    chains.length[i] = bootstrap_.length[sample];
+    chains.length[i] = epochs_.plan().length[sample];
     chains.target[i] = 0;
     chains.weight[i] = 0;
   }
@@ -254,22 +245,16 @@ bool ChainSession<S>::beginEpoch(uint64_t epoch, const Stop& stop) {
     for (size_t wave = 0; wave < waves_.size(); ++wave) addPending(wave, worker().splats);
     listStuckChains(stuck_);
   }
-  for (size_t i = 0; i < targets_.size(); ++i) {
-    bootstrapSums_.add(bootstrap_.length[i], static_cast<double>(targets_[i]));
-  }
-  const Brightness brightness = brightnessOf(bootstrap_, targets_);
-  epochs_.push_back({brightness});
-  dark_ = !(brightness.mean > 0);
-  if (dark_) {
+  epochs_.begin();
+  if (epochs_.dark()) {
     for (size_t wave = 0; wave < waves_.size(); ++wave) {
       std::fill_n(static_cast<float*>(waves_[wave].columns.target), chainCount(wave), 0.0f);
     }
     return true;
   }
-  if (referenceMean_ == 0) referenceMean_ = brightness.mean;
   const std::vector<uint32_t> starts =
-      startSamples(bootstrap_, targets_, settings_.metropolis.chains, startOffset(settings_.seed, epoch));
-  for (ChainState& state : waves_) state.splatFactor = static_cast<float>(brightness.mean / referenceMean_);
+      startSamples(epochs_.plan(), epochs_.targets, settings_.metropolis.chains, startOffset(settings_.seed, epoch));
+  for (ChainState& state : waves_) state.splatFactor = static_cast<float>(epochs_.scale());
   forEach(waves_.size(), [&](size_t wave) { startChains(wave, epoch, starts); });
   return true;
 }
@@ -328,7 +313,7 @@ void ChainSession<S>::collectSplats() {
   // b N_pix / M
   const double factor =
       step_ == 0 ? 0
-                 : referenceMean_ * static_cast<double>(film_.area().pixels.size()) / static_cast<double>(mutations());
+                 : epochs_.unit() * static_cast<double>(film_.area().pixels.size()) / static_cast<double>(mutations());
   film_.setSplats(std::move(sums), factor);
 }
 
@@ -337,7 +322,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
   const WorkerLimit limit(settings_.threads);
-  const uint64_t restart = epochSteps(settings_.metropolis, targets_.size());
+  const uint64_t restart = epochSteps(settings_.metropolis, epochs_.targets.size());
   const uint64_t goal = iterations ? stepsFor(*iterations) : std::numeric_limits<uint64_t>::max();
   const auto now = [&] {
     const double charged = renderSeconds_ + secondsSince(begin);
@@ -349,13 +334,13 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
     while (!stop()) {
       if (direct() && !traceDirect(stop)) return;
       if (step_ >= goal) return;
-      if (epochs_.size() <= step_ / restart && !beginEpoch(step_ / restart, stop)) return;
+      if (epochs_.count() <= step_ / restart && !beginEpoch(step_ / restart, stop)) return;
       const double before = now();
       const uint64_t steps = stepsInTime(std::min({kRoundSteps, restart - step_ % restart, goal - step_}), before);
       if (steps == 0) return;
-      if (!dark_) forEach(waves_.size(), [&](size_t wave) { advance(wave, steps); });
+      if (!epochs_.dark()) forEach(waves_.size(), [&](size_t wave) { advance(wave, steps); });
       step_ += steps;
-      epochs_.back().steps += steps;
+      epochs_.addSteps(steps);
       stepSeconds_ = (now() - before) / static_cast<double>(steps);
     }
   });
@@ -398,19 +383,11 @@ RenderStatistics ChainSession<S>::statistics() const {
     const size_t first = wave * settings_.waveSize, pixels = film_.area().pixels.size();
     chains.directPaths += directDone_[wave] * std::min<size_t>(settings_.waveSize, pixels - first);
   }
-  chains.epochs = epochs_.size();
-  double steps = 0, variance = 0;
-  for (const Epoch& epoch : epochs_) {
-    const auto count = static_cast<double>(epoch.steps);
-    steps += count;
-    chains.brightness += count * epoch.brightness.mean;
-    variance += count * count * epoch.brightness.standardError * epoch.brightness.standardError;
-    chains.largestShare = std::max(chains.largestShare, epoch.brightness.largestShare);
-  }
-  if (steps > 0) {
-    chains.brightness /= steps;
-    chains.brightnessError = std::sqrt(variance) / steps;
-  }
+  chains.epochs = epochs_.count();
+  const Brightness ofFilm = epochs_.ofFilm();
+  chains.brightness = ofFilm.mean;
+  chains.brightnessError = ofFilm.standardError;
+  chains.largestShare = ofFilm.largestShare;
   LargeStepSums largeSteps;
   for (const ChainState& state : waves_) {
     chains.counters += state.counters;
@@ -422,15 +399,7 @@ RenderStatistics ChainSession<S>::statistics() const {
       chains.bytes += PathStore<S>::bytesFor(settings_.waveSize, plan_.pathLaws.law().maxEdges, plan_.needs);
     }
   }
-  // In path space a large step may have any length, and says something about b as a whole.
-  Brightness all = brightnessOf(bootstrapSums_);
-  if (inPathSpace()) {
-    all = pooled(all, brightnessOf(largeSteps));
-  } else {
-    LargeStepSums both = bootstrapSums_;
-    both += largeSteps;
-    all = brightnessOf(both);
-  }
+  const Brightness all = epochs_.pooledWith(largeSteps, inPathSpace());
   chains.pooledBrightness = all.mean;
   chains.pooledError = all.standardError;
   chains.stuck = stuck_;

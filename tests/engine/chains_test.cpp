@@ -8,6 +8,7 @@
 
 #include "engine/chains/bootstrap.h"
 #include "engine/chains/chain_worker.h"
+#include "engine/chains/epochs.h"
 #include "tests/engine/test_scenes.h"
 
 namespace wavecrest {
@@ -57,6 +58,38 @@ TEST(Bootstrap, startsChainsInProportionToTheTarget) {
     }
   }
   for (size_t i = 0; i < 5; ++i) EXPECT_NEAR(total[i] / kOffsets, kChains * targets[i] / 8.0, 2.0 / kOffsets) << i;
+}
+
+// A dark epoch, one of b = 2, and one of b = 5 that goes on three times as long.
+TEST(Epochs, weighTheirBrightnessBySteps) {
+  Epochs epochs(plainBootstrap(2));
+  const auto begin = [&](float first, float second, uint64_t steps) {
+    epochs.targets = {first, second};
+    epochs.begin();
+    epochs.addSteps(steps);
+  };
+  begin(0, 0, 10);
+  EXPECT_TRUE(epochs.dark());
+  EXPECT_EQ(epochs.unit(), 0);
+  begin(1, 3, 10);
+  EXPECT_FALSE(epochs.dark());
+  EXPECT_DOUBLE_EQ(epochs.unit(), 2);
+  EXPECT_DOUBLE_EQ(epochs.scale(), 1);
+  begin(5, 5, 20);
+  epochs.addSteps(10);
+  EXPECT_DOUBLE_EQ(epochs.unit(), 2);
+  EXPECT_DOUBLE_EQ(epochs.scale(), 2.5);
+  EXPECT_EQ(epochs.count(), 3u);
+
+  const Brightness film = epochs.ofFilm();
+  EXPECT_DOUBLE_EQ(film.mean, (0 * 10 + 2 * 10 + 5 * 30) / 50.0);
+  EXPECT_DOUBLE_EQ(film.standardError, 10 * brightnessOf(plainBootstrap(2), {1, 3}).standardError / 50);
+  EXPECT_DOUBLE_EQ(film.largestShare, 0.75);
+  // Six samples of three bootstraps, and two more.
+  LargeStepSums largeSteps;
+  largeSteps.add(epochs.plan().length[0], 7);
+  largeSteps.add(epochs.plan().length[0], 11);
+  EXPECT_DOUBLE_EQ(epochs.pooledWith(largeSteps, false).mean, (0 + 0 + 1 + 3 + 5 + 5 + 7 + 11) / 8.0);
 }
 
 struct ChainCase {

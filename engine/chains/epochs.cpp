@@ -1,0 +1,38 @@
+#include "engine/chains/epochs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wavecrest {
+
+void Epochs::begin() {
+  for (size_t i = 0; i < targets.size(); ++i) sums_.add(plan_.length[i], static_cast<double>(targets[i]));
+  epochs_.push_back({brightnessOf(plan_, targets)});
+  if (unit_ == 0 && !dark()) unit_ = epochs_.back().brightness.mean;
+}
+
+Brightness Epochs::ofFilm() const {
+  Brightness all;
+  double steps = 0, variance = 0;
+  for (const Epoch& epoch : epochs_) {
+    const auto count = static_cast<double>(epoch.steps);
+    steps += count;
+    all.mean += count * epoch.brightness.mean;
+    variance += count * count * epoch.brightness.standardError * epoch.brightness.standardError;
+    all.largestShare = std::max(all.largestShare, epoch.brightness.largestShare);
+  }
+  if (steps > 0) {
+    all.mean /= steps;
+    all.standardError = std::sqrt(variance) / steps;
+  }
+  return all;
+}
+
+Brightness Epochs::pooledWith(const LargeStepSums& largeSteps, bool anyLength) const {
+  if (anyLength) return pooled(brightnessOf(sums_), brightnessOf(largeSteps));
+  LargeStepSums both = sums_;
+  both += largeSteps;
+  return brightnessOf(both);
+}
+
+}  // namespace wavecrest

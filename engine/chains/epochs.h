@@ -1,0 +1,53 @@
+// Epochs of chains: each begins with a bootstrap of its own, from which all chains start anew. What the bootstraps have
+// found out about b, and how long each epoch went on.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "engine/chains/bootstrap.h"
+
+namespace wavecrest {
+
+class Epochs {
+ public:
+  std::vector<float> targets;  // of the bootstrap samples of the epoch that is to begin
+
+  Epochs() = default;
+  explicit Epochs(BootstrapPlan plan) : targets(plan.length.size()), plan_(std::move(plan)) {}
+
+  // The same for every epoch.
+  const BootstrapPlan& plan() const { return plan_; }
+
+  // Begins the next epoch with the targets.
+  void begin();
+  // Its chains have taken so many steps more.
+  void addSteps(uint64_t steps) { epochs_.back().steps += steps; }
+
+  size_t count() const { return epochs_.size(); }
+  // Whether the latest bootstrap found no light.
+  bool dark() const { return !(epochs_.back().brightness.mean > 0); }
+  // b of the first epoch that found light, which the film is in units of, or 0.
+  double unit() const { return unit_; }
+  // What the latest epoch's contributions are to be multiplied by for that.
+  double scale() const { return epochs_.back().brightness.mean / unit_; }
+
+  // b as the film has it: the epochs' means, each weighted by its steps, and the largest share of all.
+  Brightness ofFilm() const;
+  // b by all samples that know it: those of the bootstraps and the chains' large steps. anyLength: these may have any
+  // length, and say something about b as a whole.
+  Brightness pooledWith(const LargeStepSums& largeSteps, bool anyLength) const;
+
+ private:
+  struct Epoch {
+    Brightness brightness;
+    uint64_t steps = 0;
+  };
+  BootstrapPlan plan_;
+  std::vector<Epoch> epochs_;
+  LargeStepSums sums_;  // of all bootstraps
+  double unit_ = 0;
+};
+
+}  // namespace wavecrest
