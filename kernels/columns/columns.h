@@ -16,10 +16,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
-#include <new>
 #include <stdexcept>
 #include <tuple>
+
+#include "kernels/columns/memory_block.h"
 
 namespace wavecrest {
 
@@ -36,9 +36,7 @@ class Arena {
  public:
   // Reserves nothing yet: measure with reserve() first, then allocate().
   Arena() = default;
-  explicit Arena(size_t bytes) : size_(bytes) {
-    block_.reset(static_cast<std::byte*>(::operator new(bytes, std::align_val_t(kColumnAlignment))));
-  }
+  explicit Arena(size_t bytes) : block_(bytes, kColumnAlignment), size_(bytes) {}
 
   template <class T>
   T* take(size_t items) {
@@ -57,10 +55,7 @@ class Arena {
   }
 
  private:
-  struct Free {
-    void operator()(std::byte* p) const { ::operator delete(p, std::align_val_t(kColumnAlignment)); }
-  };
-  std::unique_ptr<std::byte, Free> block_;
+  MemoryBlock block_;
   size_t size_ = 0, used_ = 0;
 };
 

@@ -1,13 +1,9 @@
 #include "kernels/extend/bvh.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -218,8 +214,6 @@ BvhSpheres makeSpheres(const BranchLeaf& leaf, const Pieces& pieces, const Primi
 
 }  // namespace
 
-void Bvh::Free::operator()(std::byte* p) const { std::free(p); }
-
 Bvh::Bvh(const PrimitiveRecord<double>* primitives, size_t count, const double (&eye)[3]) {
   Pieces faces, spheres;
   faces.ids.reserve(count);
@@ -259,13 +253,7 @@ Bvh::Bvh(const PrimitiveRecord<double>* primitives, size_t count, const double (
   const size_t used =
       nodes * sizeof(BvhNode) + faceCounts.leaves * sizeof(BvhFaces) + sphereCounts.leaves * sizeof(BvhSpheres);
   if (used / kBvhUnit > kBvhOffsetMask) throw std::runtime_error("the hierarchy is too large");
-  // Whole large pages, where the system gives them, save most of the address misses of incoherent rays.
-  constexpr size_t kLargePage = size_t{2} << 20;
-  bytes_ = used < kLargePage ? (used + sizeof(BvhNode) - 1) / sizeof(BvhNode) * sizeof(BvhNode)
-                             : (used + kLargePage - 1) / kLargePage * kLargePage;
-  arena_.reset(static_cast<std::byte*>(std::aligned_alloc(used < kLargePage ? sizeof(BvhNode) : kLargePage, bytes_)));
-  if (arena_ == nullptr) throw std::bad_alloc();
-  if (used >= kLargePage) madvise(arena_.get(), bytes_, MADV_HUGEPAGE);
+  arena_ = MemoryBlock(used, sizeof(BvhNode));
 
   Layout layout(arena_.get(), nodes, marginFor(all, eye));
   view_.arena = arena_.get();

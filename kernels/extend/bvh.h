@@ -12,8 +12,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 
+#include "kernels/columns/memory_block.h"
 #include "kernels/scene_view.h"
 
 namespace wavecrest {
@@ -75,14 +75,10 @@ class Bvh {
   // that fails.
   Bvh(const PrimitiveRecord<double>* primitives, size_t count, const double (&eye)[3]);
   const BvhView& view() const { return view_; }
-  size_t bytes() const { return bytes_; }
+  size_t bytes() const { return arena_.size(); }
 
  private:
-  struct Free {
-    void operator()(std::byte* p) const;
-  };
-  std::unique_ptr<std::byte, Free> arena_;
-  size_t bytes_ = 0;
+  MemoryBlock arena_;
   BvhView view_;
 };
 

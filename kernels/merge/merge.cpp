@@ -90,7 +90,7 @@ class Merger {
       if (none(search.searched[run])) continue;
       const UInt bucket = (hash(low.y + UInt(run & 1), low.z + UInt(run >> 1)) + low.x) & bucketMask;
       search.bucket[run] = select(search.searched[run], bucket, UInt(0u));
-      prefetch(map_.bucketStart.data(), search.bucket[run]);
+      prefetch(map_.bucketStart, search.bucket[run]);
     }
   }
 
@@ -98,7 +98,7 @@ class Merger {
   WAVECREST_INLINE void lookUp(Search& search) const {
     for (uint32_t run = 0; run < kRuns; ++run) {
       if (none(search.searched[run])) continue;
-      const FourColumns<UInt> starts = gatherFour(map_.bucketStart.data(), search.bucket[run]);
+      const FourColumns<UInt> starts = gatherFour(map_.bucketStart, search.bucket[run]);
       search.first[run] = starts.a;
       search.last[run] = select(search.wide, starts.c, starts.b);
       prefetch(map_.keys, search.first[run]);
@@ -106,7 +106,7 @@ class Merger {
   }
 
   WAVECREST_INLINE void list(size_t i, const Search& search) {
-    const uint32_t* const start = map_.bucketStart.data();
+    const uint32_t* const start = map_.bucketStart;
     for (uint32_t run = 0; run < kRuns; ++run) {
       const Mask searched = search.searched[run];
       if (none(searched)) continue;

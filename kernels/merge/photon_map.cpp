@@ -118,7 +118,7 @@ template <class S>
 void PhotonMap<S>::sortPartition(size_t partition, size_t storeCount) {
   const uint32_t perPartition = (grid.bucketMask + 1) / kPartitions;
   const uint32_t first = offsets_[partition * storeCount], end = offsets_[(partition + 1) * storeCount];
-  uint32_t* const start = bucketStart.data() + partition * perPartition;
+  uint32_t* const start = starts_ + partition * perPartition;
   const uint32_t* const bucket = dealtBuckets_ + first;
   const uint32_t firstBucket = static_cast<uint32_t>(partition) * perPartition, count = end - first;
   // Counts, then a running sum that leaves in start[b] where bucket b ends. Dealing from the last photon to the first
@@ -149,7 +149,9 @@ void PhotonMap<S>::reserve(size_t count) {
   dealt_ = arena_.take<PhotonKey<S>>(capacity_);
   dealtBuckets_ = arena_.take<uint32_t>(capacity_);
   buckets_ = arena_.take<uint32_t>(capacity_);
+  starts_ = arena_.take<uint32_t>(bucketCount(capacity_) + kStartsBeyond);
   keys = keys_;
+  bucketStart = starts_;
 }
 
 template <class S>
@@ -167,35 +169,35 @@ void PhotonMap<S>::build(Stores stores, double radius, const ForEach& forEach) {
     throw std::length_error("PhotonMap: more light vertices than 32 bits can tell apart");
   }
   size = firstVertex_.back();
-  reserve(size);
+  reserve(std::max<size_t>(size, 1));
   const size_t buckets = bucketCount(size);
-  bucketStart.resize(buckets + kStartsBeyond);
   if (size == 0) {
     grid = {.origin = {}, .inverseCell = 1, .bucketMask = static_cast<uint32_t>(buckets) - 1};
-    std::fill(bucketStart.begin(), bucketStart.end(), 0);
+    std::fill_n(starts_, buckets + kStartsBeyond, 0);
     return;
   }
   placeGrid(stores, radius, forEach);
   countBuckets(stores, forEach);
   dealToPartitions(stores, forEach);
   forEach(kPartitions, [&](size_t partition) { sortPartition(partition, stores.size()); });
-  std::fill(bucketStart.begin() + static_cast<std::ptrdiff_t>(buckets), bucketStart.end(), static_cast<uint32_t>(size));
+  std::fill_n(starts_ + buckets, kStartsBeyond, static_cast<uint32_t>(size));
 }
 
 template <class S>
 size_t PhotonMap<S>::arenaBytes(size_t capacity) {
   // Each array is rounded up to whole lines.
-  return capacity * 2 * (sizeof(PhotonKey<S>) + sizeof(uint32_t)) + 4 * kColumnAlignment;
+  const size_t starts = (bucketCount(capacity) + kStartsBeyond) * sizeof(uint32_t);
+  return capacity * 2 * (sizeof(PhotonKey<S>) + sizeof(uint32_t)) + starts + 5 * kColumnAlignment;
 }
 
 template <class S>
 size_t PhotonMap<S>::bytesFor(size_t count) {
-  return arenaBytes(withRoom(count)) + (bucketCount(count) + kStartsBeyond) * sizeof(uint32_t);
+  return arenaBytes(withRoom(count));
 }
 
 template <class S>
 size_t PhotonMap<S>::bytes() const {
-  return arenaBytes(capacity_) + bucketStart.capacity() * sizeof(uint32_t);
+  return arenaBytes(capacity_);
 }
 
 template struct PhotonMap<float>;

@@ -52,7 +52,7 @@ struct PhotonMap {
   uint32_t storeShift = 0;
   // The photons of buckets b and b + 1 are those from bucketStart[b] up to bucketStart[b + 2]; after the last bucket
   // there are some empty ones, because searches read four entries at once.
-  std::vector<uint32_t> bucketStart;
+  const uint32_t* bucketStart = nullptr;
 
   // Runs body(i) for i in [0, count), in any order and on any threads.
   using ForEach = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
@@ -83,8 +83,9 @@ struct PhotonMap {
   PhotonKey<S>* dealt_ = nullptr;     // by partition
   uint32_t* dealtBuckets_ = nullptr;  // of each of these
   uint32_t* buckets_ = nullptr;       // of each light vertex, store by store
-  std::vector<uint32_t> offsets_;     // of each (partition, store)
-  std::vector<size_t> firstVertex_;   // of each store
+  uint32_t* starts_ = nullptr;
+  std::vector<uint32_t> offsets_;    // of each (partition, store)
+  std::vector<size_t> firstVertex_;  // of each store
   Arena arena_;
 };
 

@@ -1,9 +1,12 @@
 // Columns: allocation, padding, claims, dropped columns, and the memory plan of a wave.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <tuple>
 
+#include "kernels/columns/memory_block.h"
 #include "kernels/columns/wave.h"
 #include "kernels/stages.h"
 
@@ -44,6 +47,18 @@ TEST(Arena, refusesMoreThanItHolds) {
 TEST(Arena, withoutMemoryHandsOutNothing) {
   Arena arena;
   EXPECT_THROW(arena.take<uint8_t>(1), std::length_error);
+}
+
+// Small ones are as long as asked for, to a line; large ones are whole large pages.
+TEST(MemoryBlock, isAlignedAndAsLongAsItsPages) {
+  const auto address = [](const MemoryBlock& block) { return reinterpret_cast<uintptr_t>(block.get()); };
+  const MemoryBlock small(65, 64), large(kLargePage + 1, 64);
+  EXPECT_EQ(small.size(), 128u);
+  EXPECT_EQ(address(small) % 64, 0u);
+  EXPECT_EQ(large.size(), 2 * kLargePage);
+  EXPECT_EQ(address(large) % kLargePage, 0u);
+  std::fill_n(large.get(), large.size(), std::byte{1});  // all of it can be written
+  EXPECT_EQ(MemoryBlock(0, 64).size(), 0u);
 }
 
 // A store of a whole block may begin at any item below capacity, and may begin at capacity when nothing is left.
