@@ -1,8 +1,9 @@
 """Oracle tests: wavecrest and Mitsuba 3 must show the same pictures of scenes of cases.json, but for noise.
 
-    oracle_test.py --wavecrest PROGRAM (--group NAME | --case NAME) --method METHOD --out FOLDER
+    oracle_test.py --wavecrest PROGRAM (--group NAME | --case NAME) [--method METHOD] --out FOLDER
 
-A group is one process, because starting Mitsuba takes longer than a small picture. Status 0 if all are the same.
+A group is one process, because starting Mitsuba takes longer than a small picture, and Mitsuba renders each scene once
+for all methods. Status 0 if all are the same.
 Otherwise 1, and FOLDER/NAME-METHOD of each scene that differs holds wavecrest.exr, mitsuba.exr (means over all renders)
 and z.exr (per 8 x 8 tile and channel, how many standard deviations wavecrest is too bright).
 """
@@ -19,7 +20,7 @@ import numpy as np
 import image_statistics
 import renderers
 
-RENDERS = 16  # of each program: enough for the variance of a tile to be known to 20 %
+SEEDS = range(1, 17)  # a render of each program by each: enough for the variance of a tile to be known to 20 %
 
 
 @dataclasses.dataclass
@@ -36,8 +37,8 @@ class Case:
     filters: bool = False  # the scene is about a reconstruction filter other than the box
 
 
-def read_cases(method, group=None, name=None):
-    """The cases of a group, or the one of this name, that are rendered by the method."""
+def read_cases(group=None, name=None, method=None):
+    """The cases of a group, or the one of this name, with all their methods or the one that is asked for."""
     with open(pathlib.Path(__file__).with_name("cases.json"), encoding="utf-8") as file:
         groups = json.load(file)["groups"]
     cases = []
@@ -48,7 +49,8 @@ def read_cases(method, group=None, name=None):
         for own in entry["cases"]:
             case = Case(**{**shared, "scene": f"{entry['folder']}/{own['name']}.xml", **own})
             case.scene = renderers.ROOT / case.scene
-            if name in (None, case.name) and method in case.methods:
+            case.methods = [each for each in case.methods if method in (None, each)]
+            if name in (None, case.name) and case.methods:
                 cases.append(case)
     if not cases:
         sys.exit(f"oracle_test: nothing in cases.json for --group {group} --case {name} --method {method}")
@@ -63,16 +65,13 @@ def leave_evidence(mitsuba, folder, ours, theirs, verdict):
     print(f"oracle_test: see wavecrest.exr, mitsuba.exr and z.exr in {folder}")
 
 
-def same_picture(wavecrest, case, method, out):
-    """Renders the case by both programs and says whether they agree; what they showed is kept if they do not."""
+def same_picture(wavecrest, case, method, mitsuba, theirs, out):
+    """Renders the case and says whether it agrees with Mitsuba's images; what they showed is kept if they do not."""
     folder = out / f"{case.name}-{method}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
 
-    mitsuba = renderers.MitsubaScene(case.scene, case.size, case.max_depth, any_filter=case.filters)
-    seeds = range(1, RENDERS + 1)
-    theirs = mitsuba.render(case.spp, seeds)
-    ours = renderers.render_wavecrest(wavecrest, case, method, seeds, folder, mitsuba.read_exr)
+    ours = renderers.render_wavecrest(wavecrest, case, method, SEEDS, folder, mitsuba.read_exr)
     if np.array_equal(ours[0], ours[1]):
         sys.exit(f"oracle_test: {case.name}: wavecrest gave the same image for two seeds; expected independent ones")
 
@@ -85,19 +84,24 @@ def same_picture(wavecrest, case, method, out):
     return verdict.equal
 
 
+def same_pictures(wavecrest, case, out):
+    """Whether all methods of a case agree with Mitsuba."""
+    mitsuba = renderers.MitsubaScene(case.scene, case.size, case.max_depth, any_filter=case.filters)
+    theirs = mitsuba.render(case.spp, SEEDS)
+    return all([same_picture(wavecrest, case, method, mitsuba, theirs, out) for method in case.methods])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--wavecrest", required=True, type=pathlib.Path)
     parser.add_argument("--group")
     parser.add_argument("--case")
-    parser.add_argument("--method", default="pt")
+    parser.add_argument("--method")
     parser.add_argument("--out", required=True, type=pathlib.Path)
     arguments = parser.parse_args()
 
-    equal = [
-        same_picture(arguments.wavecrest, case, arguments.method, arguments.out)
-        for case in read_cases(arguments.method, arguments.group, arguments.case)
-    ]
+    cases = read_cases(arguments.group, arguments.case, arguments.method)
+    equal = [same_pictures(arguments.wavecrest, case, arguments.out) for case in cases]
     sys.exit(0 if all(equal) else 1)
 
 
