@@ -17,30 +17,38 @@ std::vector<uint32_t> threadCounts(uint32_t most) {
   return counts;
 }
 
-// The part of a slice's time that a stage took: the session's clock goes on while another program has the core, but so
-// it does in the other stages.
-double shareOf(const Slice& slice, size_t stage) { return slice.stages[stage].seconds / slice.seconds; }
+// What a stage did in all slices together: it need not have run in each of them.
+RenderStatistics::StageRow totalOf(const std::vector<Slice>& slices, size_t stage) {
+  RenderStatistics::StageRow total{.name = slices.front().stages[stage].name};
+  for (const Slice& slice : slices) {
+    const RenderStatistics::StageRow& row = slice.stages[stage];
+    total.items += row.items;
+    total.laneSlots += row.laneSlots;
+    total.seconds += row.seconds;
+  }
+  return total;
+}
 
-// times: of each stage in CPU time, if they could be measured apart. slices: of one thread.
-std::vector<StageShare> stageShares(const std::vector<Slice>& slices, const std::optional<StageTimes>& times,
+// times: of each stage in CPU time, where they can be measured apart. Otherwise a stage's share is its part of the
+// slices' time: the session's clock goes on while another program has the core, but so it does in the other stages.
+// slices: of one thread.
+std::vector<StageShare> stageShares(const std::vector<Slice>& slices, const StageTimes& times,
                                     double pathsPerCpuSecond) {
+  double paths = 0, seconds = 0;
+  for (const Slice& slice : slices) {
+    paths += static_cast<double>(slice.paths);
+    seconds += slice.seconds;
+  }
   std::vector<StageShare> shares;
   for (size_t i = 0; i < slices.front().stages.size(); ++i) {
+    const RenderStatistics::StageRow total = totalOf(slices, i);
+    const auto items = static_cast<double>(total.items);
     StageShare& share = shares.emplace_back();
-    share.name = slices.front().stages[i].name;
-    const auto items = [i](const Slice& s) { return static_cast<double>(s.stages[i].items); };
-    share.itemsPerPath = medianOf(slices, [&](const Slice& s) { return items(s) / static_cast<double>(s.paths); });
-    const auto slots = [i](const Slice& s) { return static_cast<double>(s.stages[i].laneSlots); };
-    if (std::all_of(slices.begin(), slices.end(), [&](const Slice& s) { return slots(s) > 0; })) {
-      share.laneUse = medianOf(slices, [&](const Slice& s) { return items(s) / slots(s); });
-    }
-    if (times) {
-      share.nsPerPath = 1e9 * times->seconds[i] / static_cast<double>(times->paths);
-      share.share = 1e-9 * share.nsPerPath * pathsPerCpuSecond;
-    } else {
-      share.share = medianOf(slices, [i](const Slice& s) { return shareOf(s, i); });
-      share.nsPerPath = 1e9 * share.share / pathsPerCpuSecond;
-    }
+    share.name = total.name;
+    share.itemsPerPath = items / paths;
+    if (total.laneSlots != 0) share.laneUse = items / static_cast<double>(total.laneSlots);
+    share.share = times.possible() ? times.secondsPerPath(i) * pathsPerCpuSecond : total.seconds / seconds;
+    share.nsPerPath = 1e9 * share.share / pathsPerCpuSecond;
     share.nsPerItem = share.itemsPerPath > 0 ? share.nsPerPath / share.itemsPerPath : 0;
   }
   return shares;
@@ -57,8 +65,11 @@ Speed measureSpeed(const Scene& scene, const RenderSettings& settings, double se
     own.measureStages = true;
     sessions.push_back(Session::create(scene, own));
   }
-  const auto slices =
-      renderInTurn(sessions, seconds / static_cast<double>((kScalingRounds + 1) * sessions.size()), kScalingRounds);
+  StageTimes stageTimes(scene, settings);
+  const auto slices = renderInTurn(sessions, seconds / static_cast<double>((kScalingRounds + 1) * sessions.size()),
+                                   kScalingRounds, [&] {
+                                     if (stageTimes.possible()) stageTimes.measureFor(0.3 * seconds / kScalingRounds);
+                                   });
   const auto& one = slices.front();
   const auto& all = slices.back();
 
@@ -70,7 +81,7 @@ Speed measureSpeed(const Scene& scene, const RenderSettings& settings, double se
   speed.pathsPerCpuSecond = medianOf(one, [](const Slice& s) { return s.pathsPerCpuSecond(); });
   speed.raysPerPath = medianOf(one, [](const Slice& s) { return s.rays() / static_cast<double>(s.paths); });
   speed.raysPerCpuSecond = medianOf(one, [](const Slice& s) { return s.rays() / s.cpuSeconds; });
-  speed.stages = stageShares(one, measureStageTimes(scene, settings, 0.3 * seconds), speed.pathsPerCpuSecond);
+  speed.stages = stageShares(one, stageTimes, speed.pathsPerCpuSecond);
   speed.restShare = 1;
   for (const StageShare& stage : speed.stages) speed.restShare -= stage.share;
   const double baseWall = medianOf(one, [](const Slice& s) { return s.pathsPerSecond(); });

@@ -37,7 +37,7 @@ double median(std::vector<double> values) {
 }
 
 std::vector<std::vector<Slice>> renderInTurn(std::span<const std::unique_ptr<Session>> sessions, double sliceSeconds,
-                                             size_t rounds) {
+                                             size_t rounds, const std::function<void()>& afterRound) {
   std::vector<std::vector<Slice>> slices(sessions.size());
   for (const auto& session : sessions) renderSlice(*session, sliceSeconds);
   for (size_t round = 0; round < rounds; ++round) {
@@ -45,6 +45,7 @@ std::vector<std::vector<Slice>> renderInTurn(std::span<const std::unique_ptr<Ses
       const size_t i = round % 2 == 0 ? k : sessions.size() - 1 - k;
       slices[i].push_back(renderSlice(*sessions[i], sliceSeconds));
     }
+    afterRound();
   }
   return slices;
 }

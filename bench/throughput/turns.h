@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -29,8 +30,10 @@ struct Slice {
 };
 
 // slices[session][round]. Every session first renders one slice that is not kept: it fills caches and starts threads.
-std::vector<std::vector<Slice>> renderInTurn(std::span<const std::unique_ptr<Session>> sessions, double sliceSeconds,
-                                             size_t rounds);
+// afterRound: what else is to be measured in turn with the slices.
+std::vector<std::vector<Slice>> renderInTurn(
+    std::span<const std::unique_ptr<Session>> sessions, double sliceSeconds, size_t rounds,
+    const std::function<void()>& afterRound = [] {});
 
 template <class Projection>
 double medianOf(const std::vector<Slice>& slices, Projection&& projection) {

@@ -198,7 +198,6 @@ void ChainWorker<S>::traceDirect(StageContext<S> context, const FilmArea& area, 
   runPass<S>(pass, context, wave_, nullptr);
   directTally.ticks += readTicks() - begin;
   directTally.items += count;
-  directTally.laneSlots += count;
 }
 
 template <class S>

@@ -31,12 +31,12 @@ class Bench(CommandTest):
             for name in STAGES[entry["method"]]:
                 self.assertGreater(shares[name], 0, f"{entry['method']}: {name}")
             for stage in entry["stages"]:
-                if stage["name"] == "photon map":  # not made of lanes
+                if stage["name"] in ("photon map", "direct pass"):  # not made of lanes
                     self.assertIsNone(stage["lane_use"])
                 elif stage["items_per_path"] > 0:
                     self.assertTrue(0 < stage["lane_use"] <= 1, f"{entry['method']}: {stage}")
-            # Shares are medians over slices, so they add up to one only about.
-            self.assertLess(sum(shares.values()), 1.3, entry["method"])
+            if entry["method"] != "pt":  # whose stages and whole are measured in turn, not in one
+                self.assertLess(sum(shares.values()), 1 + 1e-6, entry["method"])
             self.assertEqual("bare_embree" in entry, entry["method"] == "pt", entry["method"])
 
 
