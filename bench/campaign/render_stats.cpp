@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <sys/resource.h>
 
+#include "bench/enumerator_name.h"
 #include "engine/version.h"
 
 namespace wavecrest {
@@ -12,11 +13,6 @@ uint64_t peakMemoryBytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
-}
-
-template <size_t kCount, class Enum>
-std::string nameOf(const std::array<std::string_view, kCount>& names, Enum value) {
-  return std::string(names[static_cast<size_t>(value)]);
 }
 
 // What only Metropolis light transport has.
@@ -31,7 +27,7 @@ nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainSta
         {{"chain", chain.chain}, {"rejections", chain.rejections}, {"edges", chain.edges}, {"pixel", chain.pixel}});
   }
   nlohmann::ordered_json stats = {
-      {"mlt", nameOf(kMetropolisVariantNames, settings.metropolis.variant)},
+      {"mlt", enumeratorName(kMetropolisVariantNames, settings.metropolis.variant)},
       {"chains", settings.metropolis.chains},
       {"direct_paths", chains.directPaths},
       {"chain_bytes", chains.bytes},
@@ -90,10 +86,10 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"height", scene.film.cropHeight != 0 ? scene.film.cropHeight : scene.film.height},
       {"threads", settings.threads},
       {"isa", std::string(toString(statistics.isa))},
-      {"precision", nameOf(kPrecisionNames, settings.precision)},
-      {"accel", nameOf(kAccelNames, statistics.accel)},
+      {"precision", enumeratorName(kPrecisionNames, settings.precision)},
+      {"accel", enumeratorName(kAccelNames, statistics.accel)},
       {"wave", settings.waveSize},
-      {"specialization", nameOf(kSpecializationNames, statistics.specialization)},
+      {"specialization", enumeratorName(kSpecializationNames, statistics.specialization)},
       {"iterations", statistics.iterations},
       {"camera_paths", statistics.paths},
       {"light_paths", statistics.lightPaths},

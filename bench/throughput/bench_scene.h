@@ -1,10 +1,8 @@
 // Everything that `wavecrest bench` finds out about one scene, as plain data, and how it is shown.
 #pragma once
 
-#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "bench/throughput/bare_embree.h"
@@ -34,12 +32,6 @@ struct SceneResult {
 // per scene out of the first method's share.
 SceneResult benchScene(const Scene& scene, const RenderSettings& settings, const std::vector<Method>& methods,
                        double seconds);
-
-// The name of an enumerator, from the list of all of them.
-template <size_t kCount, class Enum>
-std::string_view nameOf(const std::array<std::string_view, kCount>& names, Enum value) {
-  return names[static_cast<size_t>(value)];
-}
 
 // Tables for a terminal.
 std::string toText(const SceneResult& result);

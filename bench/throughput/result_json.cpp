@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/enumerator_name.h"
 #include "bench/throughput/bench_scene.h"
 
 namespace wavecrest {
@@ -27,8 +28,8 @@ Json speedJson(const Speed& speed) {
                        {"cpu_efficiency", row.cpuEfficiency}});
   }
   return {{"isa", std::string(toString(speed.facts.isa))},
-          {"specialization", nameOf(kSpecializationNames, speed.facts.specialization)},
-          {"accel", nameOf(kAccelNames, speed.facts.accel)},
+          {"specialization", enumeratorName(kSpecializationNames, speed.facts.specialization)},
+          {"accel", enumeratorName(kAccelNames, speed.facts.accel)},
           {"paths_per_second", speed.pathsPerSecond},
           {"paths_per_cpu_second", speed.pathsPerCpuSecond},
           {"rays_per_path", speed.raysPerPath},
@@ -50,9 +51,9 @@ Json ratesJson(const RayRates& rates) {
 Json policiesJson(const PolicyTable& table) {
   Json rows = Json::array();
   for (const PolicyRow& row : table.rows) {
-    rows.push_back({{"precision", nameOf(kPrecisionNames, row.precision)},
+    rows.push_back({{"precision", enumeratorName(kPrecisionNames, row.precision)},
                     {"isa", std::string(toString(row.isa))},
-                    {"specialization", nameOf(kSpecializationNames, row.specialization)},
+                    {"specialization", enumeratorName(kSpecializationNames, row.specialization)},
                     {"paths_per_cpu_second", row.pathsPerCpuSecond},
                     {"mean_difference", row.meanDifference},
                     {"pixel_difference", row.pixelDifference},

@@ -3,6 +3,7 @@
 
 #include <iterator>
 
+#include "bench/enumerator_name.h"
 #include "bench/throughput/bench_scene.h"
 
 namespace wavecrest {
@@ -23,8 +24,8 @@ void addSpeed(Text& text, const Speed& speed, uint32_t threads) {
        millions(speed.pathsPerSecond), threads, threads == 1 ? "" : "s", millions(speed.pathsPerCpuSecond),
        speed.raysPerPath, millions(speed.raysPerSecond), millions(speed.raysPerCpuSecond));
   line(text, "  {} kernels on {}, intersector {}; {} bytes/path",
-       nameOf(kSpecializationNames, speed.facts.specialization), toString(speed.facts.isa),
-       nameOf(kAccelNames, speed.facts.accel), speed.bytesPerPath);
+       enumeratorName(kSpecializationNames, speed.facts.specialization), toString(speed.facts.isa),
+       enumeratorName(kAccelNames, speed.facts.accel), speed.bytesPerPath);
   line(text, "\n  {:<18} {:>10} {:>9} {:>9} {:>7} {:>9}", "stage", "items/path", "ns/item", "ns/path", "share",
        "lane use");
   for (const StageShare& stage : speed.stages) {
@@ -64,8 +65,8 @@ void addPolicies(Text& text, const PolicyTable& table) {
   for (const PolicyRow& row : table.rows) {
     // A slow policy may not get a turn within the duration.
     const std::string speed = row.pathsPerCpuSecond > 0 ? fmt::format("{:.3f}", millions(row.pathsPerCpuSecond)) : "-";
-    line(text, "  {:<9} {:<8} {:<21} {:>16} {:>15.1e} {:>16.1e} {:>11}", nameOf(kPrecisionNames, row.precision),
-         toString(row.isa), nameOf(kSpecializationNames, row.specialization), speed, row.meanDifference,
+    line(text, "  {:<9} {:<8} {:<21} {:>16} {:>15.1e} {:>16.1e} {:>11}", enumeratorName(kPrecisionNames, row.precision),
+         toString(row.isa), enumeratorName(kSpecializationNames, row.specialization), speed, row.meanDifference,
          row.pixelDifference, row.bytesPerPath);
   }
 }
