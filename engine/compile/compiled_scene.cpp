@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "engine/compile/materials.h"
-#include "engine/compile/vector_math.h"
 #include "engine/scene/scene_error.h"
+#include "engine/scene/vector_math.h"
 
 namespace wavecrest {
 

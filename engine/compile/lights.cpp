@@ -4,8 +4,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "engine/compile/vector_math.h"
 #include "engine/scene/scene_error.h"
+#include "engine/scene/vector_math.h"
 #include "kernels/extend/offset.h"
 
 namespace wavecrest {

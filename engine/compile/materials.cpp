@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/compile/rough_boundary.h"
-#include "engine/compile/vector_math.h"
+#include "engine/scene/vector_math.h"
 #include "kernels/stages.h"
 
 namespace wavecrest {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "engine/compile/vector_math.h"
+#include "engine/scene/vector_math.h"
 
 namespace wavecrest {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/compile/vector_math.h"
+#include "engine/scene/vector_math.h"
 
 namespace wavecrest {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "engine/compile/lights.h"
-#include "engine/compile/vector_math.h"
+#include "engine/scene/vector_math.h"
 
 namespace wavecrest {
 namespace {

@@ -79,7 +79,7 @@ Geometry readCylinder(LoadContext& context, Parameters& parameters, const Matrix
   if (!(length(p1 - p0) > 0) || !std::isfinite(length(p1 - p0))) {
     throw LoadError(parameters.locationOf("p1"), "cylinder has no length; expected p0 and p1 to differ");
   }
-  const Double3 axis = normalize(p1 - p0);
+  const Double3 axis = normalized(p1 - p0);
   Double3 s, t;
   basisAround(axis, s, t);
   const Double3 u = transformVector(toWorld, s), v = transformVector(toWorld, t), w = transformVector(toWorld, axis);
@@ -95,8 +95,8 @@ Geometry readCylinder(LoadContext& context, Parameters& parameters, const Matrix
                   .p1 = transformPoint(toWorld, p1),
                   .radius = radius * length(u),
                   .flipNormals = mirrored != parameters.boolean("flip_normals", false),
-                  .phi0 = normalize(u),
-                  .phi90 = normalize(v)};
+                  .phi0 = normalized(u),
+                  .phi90 = normalized(v)};
 }
 
 // Four vertices per face, so that each has its own texture coordinates; faces in Mitsuba's order -y +y +x +z -x -z.

@@ -6,9 +6,6 @@
 
 namespace wavecrest {
 
-Double3 operator*(double s, const Double3& a) { return {s * a[0], s * a[1], s * a[2]}; }
-Double3 normalize(const Double3& a) { return (1 / length(a)) * a; }
-
 Matrix4 identityMatrix() { return {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}; }
 
 Matrix4 multiply(const Matrix4& a, const Matrix4& b) {
@@ -35,7 +32,7 @@ Matrix4 scaling(const Double3& factors) {
 
 // Rodrigues' formula: R = cos(a) I + (1 - cos(a)) n n^T + sin(a) [n]_x.
 Matrix4 rotation(const Double3& axis, double degrees) {
-  const Double3 n = normalize(axis);
+  const Double3 n = normalized(axis);
   const double angle = degrees * (std::numbers::pi / 180), s = std::sin(angle), c = std::cos(angle);
   Matrix4 m = identityMatrix();
   for (size_t i = 0; i < 3; ++i) {
@@ -49,7 +46,7 @@ Matrix4 rotation(const Double3& axis, double degrees) {
 }
 
 Matrix4 lookAt(const Double3& origin, const Double3& target, const Double3& up) {
-  const Double3 forward = normalize(target - origin), left = normalize(cross(up, forward)),
+  const Double3 forward = normalized(target - origin), left = normalized(cross(up, forward)),
                 newUp = cross(forward, left);
   Matrix4 m = identityMatrix();
   for (size_t i = 0; i < 3; ++i) {
@@ -59,18 +56,6 @@ Matrix4 lookAt(const Double3& origin, const Double3& target, const Double3& up) 
     m[i][3] = origin[i];
   }
   return m;
-}
-
-Double3 transformPoint(const Matrix4& m, const Double3& p) {
-  Double3 q{};
-  for (size_t i = 0; i < 3; ++i) q[i] = m[i][0] * p[0] + m[i][1] * p[1] + m[i][2] * p[2] + m[i][3];
-  return q;
-}
-
-Double3 transformVector(const Matrix4& m, const Double3& v) {
-  Double3 w{};
-  for (size_t i = 0; i < 3; ++i) w[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
-  return w;
 }
 
 double determinant3(const Matrix4& m) {

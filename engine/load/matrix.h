@@ -1,14 +1,9 @@
-// Vectors and 4x4 matrices in double precision, acting on column vectors: what placing shapes, lights and cameras
-// needs.
+// 4x4 matrices in double precision, acting on column vectors: what placing shapes, lights and cameras needs.
 #pragma once
 
-#include "engine/scene/scene.h"
-#include "kernels/double_vectors.h"
+#include "engine/scene/vector_math.h"
 
 namespace wavecrest {
-
-Double3 operator*(double s, const Double3& a);
-Double3 normalize(const Double3& a);
 
 Matrix4 identityMatrix();
 Matrix4 multiply(const Matrix4& a, const Matrix4& b);
@@ -18,8 +13,6 @@ Matrix4 rotation(const Double3& axis, double degrees);
 // Camera space to world: +z from origin to target, +y near up, +x to the left (right-handed), as Mitsuba's look_at.
 Matrix4 lookAt(const Double3& origin, const Double3& target, const Double3& up);
 
-Double3 transformPoint(const Matrix4& m, const Double3& p);
-Double3 transformVector(const Matrix4& m, const Double3& v);
 double determinant3(const Matrix4& m);  // of the linear part
 // A matrix proportional to the inverse transpose of the linear part, for normals: the cofactors times the sign of the
 // determinant. Needs no division, so it holds for singular matrices too.

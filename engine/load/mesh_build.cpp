@@ -52,7 +52,7 @@ void fillMissingNormals(Mesh& mesh) {
   for (const std::array<uint32_t, 3>& t : mesh.triangles) {
     const Double3 p[3] = {toDouble(mesh.positions[t[0]]), toDouble(mesh.positions[t[1]]),
                           toDouble(mesh.positions[t[2]])};
-    const Double3 normal = normalize(cross(p[1] - p[0], p[2] - p[0]));
+    const Double3 normal = normalized(cross(p[1] - p[0], p[2] - p[0]));
     for (size_t i = 0; i < 3; ++i) {
       const double angle = angleBetween(p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
       sums[t[i]] = sums[t[i]] + angle * normal;

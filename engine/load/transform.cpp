@@ -61,7 +61,7 @@ Matrix4 readLookAt(const XmlElement& element) {
   Double3 upward = up ? parseTriple(*up, where) : Double3{0, 0, 0};
   if (upward == Double3{0, 0, 0}) {
     // Any direction across the view axis: the one Duff et al. (2017, "Building an Orthonormal Basis, Revisited") give.
-    const Double3 d = normalize(to - from);
+    const Double3 d = normalized(to - from);
     const double sign = std::copysign(1.0, d[2]), a = -1 / (sign + d[2]), b = d[0] * d[1] * a;
     upward = {1 + sign * d[0] * d[0] * a, sign * b, -sign * d[0]};
   }

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "engine/compile/compiled_scene.h"
-#include "engine/compile/vector_math.h"
+#include "engine/scene/vector_math.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
 

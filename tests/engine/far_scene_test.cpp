@@ -4,8 +4,8 @@
 
 #include <bit>
 
-#include "engine/compile/vector_math.h"
 #include "engine/inspection.h"
+#include "engine/scene/vector_math.h"
 #include "tests/effort.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/compile/vector_math.h"
+#include "engine/scene/vector_math.h"
 #include "kernels/scene_view.h"
 
 namespace wavecrest {

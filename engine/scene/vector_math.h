@@ -1,4 +1,4 @@
-// Small double-precision vector arithmetic for everything that prepares a scene.
+// Double-precision vectors and their transforms, for everything that prepares a scene.
 #pragma once
 
 #include "engine/scene/scene.h"
