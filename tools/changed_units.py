@@ -4,6 +4,7 @@ In: compile commands as lint.py holds them, the sources, and git. The base of a 
 itself the commit before, which for a merge is all that it brought.
 """
 
+import functools
 import pathlib
 import re
 import subprocess
@@ -34,6 +35,12 @@ def changed_files(base):
     return {ROOT / name for name in names}
 
 
+@functools.cache
+def includes_of(path):
+    """The files of this tree that a file includes itself."""
+    return [ROOT / name for name in INCLUDE.findall(path.read_text(encoding="utf-8"))]
+
+
 def files_read(unit):
     """The files of this tree that a unit includes, directly or not, itself among them."""
     found = set()
@@ -42,7 +49,7 @@ def files_read(unit):
         path = waiting.pop()
         if path not in found and path.is_file():
             found.add(path)
-            waiting += [ROOT / name for name in INCLUDE.findall(path.read_text(encoding="utf-8"))]
+            waiting += includes_of(path)
     return found
 
 

@@ -34,8 +34,7 @@ constexpr size_t paddedItems(size_t capacity) {
 // One aligned block of memory handed out front to back; everything a wave needs is bound from one arena.
 class Arena {
  public:
-  // Reserves nothing yet: measure with reserve() first, then allocate().
-  Arena() = default;
+  Arena() = default;  // of no bytes
   explicit Arena(size_t bytes) : block_(bytes, kColumnAlignment), size_(bytes) {}
 
   template <class T>
