@@ -1,7 +1,7 @@
 """Runs the steps of ./check and counts every test case, build and lint run as one item that passed or failed.
 
-In: the source tree; --steps picks some. Out: the tools' own output, a list of what failed, and as the last line
-`N passed, N failed`; status 1 if anything failed. Test counts come from ctest's JUnit file, never from its text: a test
+In: the source tree; --steps picks some. Out: the tools' own output, how long each step took, what failed and the end of
+what it said, and as the last line `N passed, N failed`; status 1 if anything failed. Test counts come from ctest's JUnit file, never from its text: a test
 that could not start (missing executable, failed fixture) is a failure here, one that said "skip" is listed and not counted.
 """
 
@@ -17,19 +17,25 @@ import xml.etree.ElementTree as ElementTree
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 JOBS = os.cpu_count() or 1
 TEST_TIMEOUT_SECONDS = 600
+SHOWN_LINES = 12  # of what a failed test said, in the summary
 
 
 class Tally:
-    """What has passed, failed and been skipped so far, by name."""
+    """What has passed, failed and been skipped so far, by name, and the seconds that each step took."""
 
     def __init__(self):
         self.passed = []
-        self.failed = []
+        self.failed = []  # with what it said last, if anything
         self.skipped = []
+        self.seconds = {}
 
     def record(self, name, held):
         (self.passed if held else self.failed).append(name)
         return held
+
+    def end(self, name, start, outcome):
+        self.seconds[name] = time.monotonic() - start
+        print(f"=== {name}: {outcome} in {self.seconds[name]:.0f} s", flush=True)
 
 
 def run(tally, name, command, **environment):
@@ -37,7 +43,7 @@ def run(tally, name, command, **environment):
     print(f"\n=== {name}: {' '.join(map(str, command))}", flush=True)
     start = time.monotonic()
     status = subprocess.run(command, cwd=ROOT, env={**os.environ, **environment}, check=False).returncode
-    print(f"=== {name}: {'done' if status == 0 else 'FAILED'} in {time.monotonic() - start:.0f} s", flush=True)
+    tally.end(name, start, "done" if status == 0 else "FAILED")
     return tally.record(name, status == 0)
 
 
@@ -62,7 +68,8 @@ def read_junit(tally, step, path):
         elif case.get("status") == "disabled" or reason.startswith("SKIP_"):
             tally.skipped.append(name)
         else:
-            tally.failed.append(f"{name}{f' ({reason})' if reason else ''}")
+            said = (case.findtext("system-out") or "").rstrip().splitlines()[-SHOWN_LINES:]
+            tally.failed.append("\n    ".join([f"{name}{f' ({reason})' if reason else ''}", *said]))
             failures += 1
     return failures
 
@@ -84,7 +91,7 @@ def test(tally, preset, *selection, **environment):
         failures = 1
     if status != 0 and failures == 0:  # no test found, or ctest itself failed
         tally.failed.append(f"{step}: ctest ended with status {status}")
-    print(f"=== {step}: {time.monotonic() - start:.0f} s", flush=True)
+    tally.end(step, start, "done" if status == 0 and failures == 0 else "FAILED")
 
 
 def step_release(tally):
@@ -181,6 +188,8 @@ def main():
         STEPS[step](tally)
 
     print(f"\n=== summary after {(time.monotonic() - start) / 60:.1f} minutes")
+    for name, seconds in tally.seconds.items():
+        print(f"{seconds:6.0f} s  {name}")
     for name in tally.skipped:
         print(f"skipped: {name}")
     for name in tally.failed:
