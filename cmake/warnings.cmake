@@ -18,13 +18,18 @@ target_compile_options(wavecrest_options INTERFACE
 macro(optimize_lightly)
   add_compile_options($<$<CONFIG:Release>:-O1>)
 endmacro()
+# The files of such a folder that do matter.
+function(optimize_fully)
+  set_source_files_properties(${ARGN} PROPERTIES
+    COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
 
 if(WAVECREST_ONLY_GENERAL_KERNELS)
   target_compile_definitions(wavecrest_options INTERFACE WAVECREST_ONLY_GENERAL_KERNELS)
 endif()
 if(WAVECREST_SANITIZE)
-  # Without optimisation, and lines but no variables for the debugger: the checks multiply what an optimiser has to read,
-  # so that -O1 takes up to six times the compile time, and the tests do less work anyway (tests/effort.h).
+  # Without optimisation but in lanes (kernel_library.cmake), and lines but no variables for the debugger: the checks
+  # multiply what an optimiser has to read, and the tests do less work anyway (tests/effort.h).
   target_compile_options(wavecrest_options INTERFACE
     -fsanitize=${WAVECREST_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -O0 -g1)
   target_link_options(wavecrest_options INTERFACE -fsanitize=${WAVECREST_SANITIZE})
