@@ -88,17 +88,20 @@ size_t drawCount(Precision precision) {
 
 // Of what is integrated over the sphere: everything, or one direction of every eighth material. That all materials run
 // under sanitizers is for the tests below, which take a few draws of each.
-struct IntegratedCase {
-  const BsdfCase* bsdf;
-  Direction fix;
-};
-std::vector<IntegratedCase> integratedCases() {
-  std::vector<IntegratedCase> list;
-  for (size_t i = 0; i < bsdfCases().size(); i += effort(1, 8)) {
-    const std::vector<Direction> fixes = fixDirections(bsdfCases()[i]);
-    for (size_t k = 0; k < effort(fixes.size(), 1); ++k) list.push_back({&bsdfCases()[i], fixes[k]});
-  }
+std::vector<BsdfCase> integratedCases() {
+  std::vector<BsdfCase> list;
+  for (size_t i = 0; i < bsdfCases().size(); i += effort(1, 8)) list.push_back(bsdfCases()[i]);
   return list;
+}
+std::vector<Direction> integratedDirections(const BsdfCase& bsdf) {
+  std::vector<Direction> fixes = fixDirections(bsdf);
+  fixes.resize(effort(fixes.size(), 1));
+  return fixes;
+}
+size_t integralCount() {
+  size_t count = 0;
+  for (const BsdfCase& bsdf : integratedCases()) count += integratedDirections(bsdf).size();
+  return count;
 }
 
 // Significance 0.01 over all tests that this file makes, per test after Sidak, as a number of standard deviations.
@@ -147,20 +150,30 @@ void checkSampling(const BsdfEntries& entries, const BsdfQuery& query, const Dir
   }
 }
 
-TEST_P(BsdfSamplingTest, drawsFollowTheDensityAndAddUpToTheAlbedo) {
-  const std::vector<IntegratedCase> cases = integratedCases();
-  const double maxDeviations = sidakDeviations(cases.size() * kPrecisions.size() * availableIsas().size());
-  for (const auto& [bsdf, fix] : cases) {
-    const BsdfQuery exact{.material = &bsdf->record, .precision = Precision::doubled};
+// A material on all instruction sets, because the integrals take longer than the draws.
+class BsdfDrawsTest : public testing::TestWithParam<BsdfCase> {};
+
+TEST_P(BsdfDrawsTest, followTheDensityAndAddUpToTheAlbedo) {
+  const double maxDeviations = sidakDeviations(integralCount() * kPrecisions.size() * availableIsas().size());
+  for (const Direction& fix : integratedDirections(GetParam())) {
+    const BsdfQuery exact{.material = &GetParam().record, .precision = Precision::doubled};
     const Integrals integrals = integrate(IsaTable<BsdfEntries>::of(bestIsa()), exact, fix);
-    for (const Precision precision : kPrecisions) {
-      SCOPED_TRACE(bsdf->name + ", " + std::string(kPrecisionNames[static_cast<size_t>(precision)]) + ", cosine " +
-                   std::to_string(fix[2]));
-      checkSampling(entries<BsdfEntries>(), {.material = &bsdf->record, .precision = precision}, fix, integrals,
-                    maxDeviations);
+    for (const Isa isa : availableIsas()) {
+      for (const Precision precision : kPrecisions) {
+        SCOPED_TRACE(std::string(toString(isa)) + ", " + std::string(kPrecisionNames[static_cast<size_t>(precision)]) +
+                     ", cosine " + std::to_string(fix[2]));
+        checkSampling(IsaTable<BsdfEntries>::of(isa), {.material = &GetParam().record, .precision = precision}, fix,
+                      integrals, maxDeviations);
+      }
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Materials, BsdfDrawsTest, testing::ValuesIn(integratedCases()), [](const auto& instance) {
+  std::string name = instance.param.name;
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+});
 
 // A draw's weight and densities are those of evaluation, and nothing is drawn where evaluation sees nothing.
 TEST_P(BsdfSamplingTest, weightIsValueTimesCosineOverDensity) {
