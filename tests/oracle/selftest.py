@@ -1,5 +1,6 @@
 """Tests of the oracle harness itself: an oracle that cannot fail, or that cries wolf, is worth nothing."""
 
+import functools
 import unittest
 
 import numpy as np
@@ -75,7 +76,9 @@ class Statistics(unittest.TestCase):
 class MitsubaAgainstItself(unittest.TestCase):
     """With the real oracle and the sizes of the real tests."""
 
-    def render(self, scene, seeds, **defaults):
+    @staticmethod
+    @functools.cache
+    def render(scene, seeds, **defaults):
         return renderers.MitsubaScene(SCENES / scene, (96, 96), -1, defaults).render(64, seeds)
 
     def test_other_seeds_pass(self):
