@@ -17,7 +17,19 @@ std::vector<uint32_t> threadCounts(uint32_t most) {
   return counts;
 }
 
-// What a stage did in all slices together: it need not have run in each of them.
+// What was done in all slices together: a short one may have no path, and a stage need not run in each.
+struct Totals {
+  double paths = 0, rays = 0, seconds = 0;
+};
+Totals totalsOf(const std::vector<Slice>& slices) {
+  Totals totals;
+  for (const Slice& slice : slices) {
+    totals.paths += static_cast<double>(slice.paths);
+    totals.rays += slice.rays();
+    totals.seconds += slice.seconds;
+  }
+  return totals;
+}
 RenderStatistics::StageRow totalOf(const std::vector<Slice>& slices, size_t stage) {
   RenderStatistics::StageRow total{.name = slices.front().stages[stage].name};
   for (const Slice& slice : slices) {
@@ -34,20 +46,16 @@ RenderStatistics::StageRow totalOf(const std::vector<Slice>& slices, size_t stag
 // slices: of one thread.
 std::vector<StageShare> stageShares(const std::vector<Slice>& slices, const StageTimes& times,
                                     double pathsPerCpuSecond) {
-  double paths = 0, seconds = 0;
-  for (const Slice& slice : slices) {
-    paths += static_cast<double>(slice.paths);
-    seconds += slice.seconds;
-  }
+  const Totals all = totalsOf(slices);
   std::vector<StageShare> shares;
   for (size_t i = 0; i < slices.front().stages.size(); ++i) {
     const RenderStatistics::StageRow total = totalOf(slices, i);
     const auto items = static_cast<double>(total.items);
     StageShare& share = shares.emplace_back();
     share.name = total.name;
-    share.itemsPerPath = items / paths;
+    share.itemsPerPath = items / all.paths;
     if (total.laneSlots != 0) share.laneUse = items / static_cast<double>(total.laneSlots);
-    share.share = times.possible() ? times.secondsPerPath(i) * pathsPerCpuSecond : total.seconds / seconds;
+    share.share = times.possible() ? times.secondsPerPath(i) * pathsPerCpuSecond : total.seconds / all.seconds;
     share.nsPerPath = 1e9 * share.share / pathsPerCpuSecond;
     share.nsPerItem = share.itemsPerPath > 0 ? share.nsPerPath / share.itemsPerPath : 0;
   }
@@ -79,7 +87,7 @@ Speed measureSpeed(const Scene& scene, const RenderSettings& settings, double se
   speed.pathsPerSecond = medianOf(all, [](const Slice& s) { return s.pathsPerSecond(); });
   speed.raysPerSecond = medianOf(all, [](const Slice& s) { return s.rays() / s.seconds; });
   speed.pathsPerCpuSecond = medianOf(one, [](const Slice& s) { return s.pathsPerCpuSecond(); });
-  speed.raysPerPath = medianOf(one, [](const Slice& s) { return s.rays() / static_cast<double>(s.paths); });
+  speed.raysPerPath = totalsOf(one).rays / totalsOf(one).paths;
   speed.raysPerCpuSecond = medianOf(one, [](const Slice& s) { return s.rays() / s.cpuSeconds; });
   speed.stages = stageShares(one, stageTimes, speed.pathsPerCpuSecond);
   speed.restShare = 1;
