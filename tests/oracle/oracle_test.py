@@ -36,6 +36,10 @@ class Case:
     options: tuple = ()  # further arguments for wavecrest
     filters: bool = False  # the scene is about a reconstruction filter other than the box
 
+    def samples(self, method):
+        """Samples per pixel of a render here: methods of many strategies take longer to a sample and leave less noise."""
+        return self.spp // 2 if method in ("bpt", "vcm") else self.spp
+
 
 def read_cases(group=None, name=None, method=None):
     """The cases of a group, or the one of this name, with all their methods or the one that is asked for."""

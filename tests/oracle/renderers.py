@@ -53,7 +53,7 @@ def render_wavecrest(program, case, method, seeds, folder, read_exr):
     images = []
     for seed in seeds:
         output = folder / f"wavecrest-{seed}.exr"
-        command = [program, "render", case.scene, "--method", method, "--spp", case.spp, "--seed", seed]
+        command = [program, "render", case.scene, "--method", method, "--spp", case.samples(method), "--seed", seed]
         if case.size:
             command += ["--size", f"{case.size[0]}x{case.size[1]}"]
         command += ["--max-depth", case.max_depth, "--rr-depth", RUSSIAN_ROULETTE_DEPTH, "--progress", "none", "-o", output, *case.options]
