@@ -15,8 +15,9 @@ target_compile_options(wavecrest_options INTERFACE
 
 # optimize_lightly(): for folders whose code waits for files and people, or tests other code. -O3 takes half as long
 # again to compile them as -O1, and nobody would notice what it gains.
+set(WAVECREST_LIGHT_OPTIMIZATION $<$<CONFIG:Release>:-O1>)
 macro(optimize_lightly)
-  add_compile_options($<$<CONFIG:Release>:-O1>)
+  add_compile_options(${WAVECREST_LIGHT_OPTIMIZATION})
 endmacro()
 # The files of such a folder that do matter.
 function(optimize_fully)

@@ -1,8 +1,9 @@
 """Runs the steps of ./check and counts every test case, build and lint run as one item that passed or failed.
 
 In: the source tree; --steps picks some. Out: the tools' own output, how long each step took, what failed and the end of
-what it said, and as the last line `N passed, N failed`; status 1 if anything failed. Test counts come from ctest's JUnit file, never from its text: a test
-that could not start (missing executable, failed fixture) is a failure here, one that said "skip" is listed and not counted.
+what it said, and as the last line `N passed, N failed`; status 1 if anything failed. Test counts come from ctest's
+JUnit file, never from its text: a test that could not start (missing executable, failed fixture) is a failure here, one
+that said "skip" is listed and not counted.
 """
 
 import argparse

@@ -1,7 +1,5 @@
 #include "bench/throughput/speed.h"
 
-#include <algorithm>
-
 #include "bench/throughput/stage_times.h"
 #include "bench/throughput/turns.h"
 
@@ -87,7 +85,8 @@ Speed measureSpeed(const Scene& scene, const RenderSettings& settings, double se
   speed.pathsPerSecond = medianOf(all, [](const Slice& s) { return s.pathsPerSecond(); });
   speed.raysPerSecond = medianOf(all, [](const Slice& s) { return s.rays() / s.seconds; });
   speed.pathsPerCpuSecond = medianOf(one, [](const Slice& s) { return s.pathsPerCpuSecond(); });
-  speed.raysPerPath = totalsOf(one).rays / totalsOf(one).paths;
+  const Totals byOne = totalsOf(one);
+  speed.raysPerPath = byOne.rays / byOne.paths;
   speed.raysPerCpuSecond = medianOf(one, [](const Slice& s) { return s.rays() / s.cpuSeconds; });
   speed.stages = stageShares(one, stageTimes, speed.pathsPerCpuSecond);
   speed.restShare = 1;
