@@ -159,8 +159,8 @@ class Merger {
     return RecordLanes<PhotonKey<S>>(map_.keys, key)(map_.keys->position);
   }
 
-  // Of the listed candidates keeps those within the radius, each found through its own cell; packs vertex and key to
-  // the front of the list.
+  // Of the listed candidates keeps those within the radius, each found through its own cell; packs vertex and photon to
+  // the front of the list, and asks for the photons' records.
   size_t selectNear() {
     const Real radius(context_.mis.radius);
     const Real reach(context_.mis.radius * kReach);
@@ -180,7 +180,11 @@ class Merger {
              (own.z == low.z + shiftRight<1>(run));
       append(vertex, near, wave_.pairs.camera, out);
       append(key, near, wave_.pairs.light, out);
-      out += countTrue(near);
+      for (const size_t end = out + countTrue(near); out < end; ++out) {
+        const uint32_t photon = map_.keys[wave_.pairs.light[out]].photon;
+        wave_.pairs.light[out] = photon;
+        __builtin_prefetch(&map_.recordOf(photon));
+      }
     }
     return out;
   }
@@ -191,7 +195,7 @@ class Merger {
   };
   WAVECREST_INLINE void fetch(size_t i, size_t count, Photons& photons) const {
     for (size_t k = 0; k < kLanes; ++k) {
-      photons.records[k] = map_.recordOf(map_.keys[wave_.pairs.light[i + std::min(k, count - 1)]].photon);
+      photons.records[k] = map_.recordOf(wave_.pairs.light[i + std::min(k, count - 1)]);
     }
   }
 
