@@ -35,8 +35,8 @@ WAVECREST_DECLARE_STAGE(takeEnds)                 // mutate/take_ends.cpp
 WAVECREST_DECLARE_COMMON_STAGE(proposePaths)      // mutate/propose_paths.cpp
 WAVECREST_DECLARE_STAGE(beginEyeWalks)            // mutate/walk_paths.cpp
 WAVECREST_DECLARE_STAGE(beginLightWalks)          // mutate/walk_paths.cpp
-WAVECREST_DECLARE_STAGE(recordMisses)             // mutate/walk_paths.cpp
-WAVECREST_DECLARE_STAGE(recordPathVertices)       // mutate/walk_paths.cpp
+WAVECREST_DECLARE_STAGE(recordMisses)             // mutate/record_walks.cpp
+WAVECREST_DECLARE_STAGE(recordPathVertices)       // mutate/record_walks.cpp
 WAVECREST_DECLARE_STAGE(walkPaths)                // mutate/walk_paths.cpp
 WAVECREST_DECLARE_STAGE(joinPaths)                // mutate/join_paths.cpp
 WAVECREST_DECLARE_STAGE(evaluatePaths)            // mutate/evaluate_paths.cpp

@@ -47,6 +47,21 @@ WAVECREST_INLINE auto normalAt(const PathVertices<S>& v, UInt at) {
   return gatherVec3(v.normalX, v.normalY, v.normalZ, at);
 }
 
+// Rows of the wave's walks: where each begins, and which way it goes.
+template <class S>
+WAVECREST_INLINE UInt originRow(const PathMutations<S>& paths, Walk walk, UInt lane) {
+  const UInt zero(0u), one(1u);
+  if (walk == Walk::light) {
+    const UInt kept = gather(paths.plans.lightKept, lane);
+    return select(kept == zero, zero, kept - one);
+  }
+  const UInt edges = gather(paths.proposed.headers.edges, lane), to = gather(paths.plans.eyeTo, lane);
+  return min(to, edges);  // a new lens is row `edges`
+}
+WAVECREST_INLINE UInt rowAt(Walk walk, UInt origin, uint32_t depth) {
+  return walk == Walk::light ? origin + UInt(depth) : origin - UInt(depth);
+}
+
 // A surface vertex, with `fix` the direction to the neighbour that a walk comes from.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename P::Storage>& scene,
