@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "engine/chains/chain_waves.h"
 #include "engine/chains/chain_worker.h"
 #include "engine/chains/epochs.h"
 #include "engine/flush_to_zero.h"
@@ -46,15 +47,8 @@ class ChainSession final : public Session {
 
  private:
   ChainWorker<S>& worker();
-  // The first chain of a wave, and the number of its chains.
-  size_t firstChain(size_t wave) const { return wave * settings_.waveSize; }
-  size_t chainCount(size_t wave) const {
-    return std::min<size_t>(settings_.waveSize, settings_.metropolis.chains - firstChain(wave));
-  }
   uint64_t stepsFor(uint64_t iterations) const;
   uint64_t mutations() const { return step_ * settings_.metropolis.chains; }
-  bool inPathSpace() const { return plan_.pipeline.chains->inPathSpace(); }
-  PathStore<S>* pathsOf(size_t wave) { return paths_.empty() ? nullptr : &paths_[wave]; }
   bool direct() const { return plan_.pipeline.chains->directPass && settings_.metropolis.directPass; }
 
   // Whether a render is to end: its time is over, or somebody asked for it. Looked at before every wave.
@@ -65,11 +59,8 @@ class ChainSession final : public Session {
   bool beginEpoch(uint64_t epoch, const Stop& stop);
   bool traceDirect(const Stop& stop);
   void bootstrapWave(size_t wave, uint64_t epoch);
-  void listStuckChains(std::vector<StuckChain>& list) const;
-  void startChains(size_t wave, uint64_t epoch, const std::vector<uint32_t>& starts);
-  void advance(size_t wave, uint64_t steps);
+  void advance(uint64_t steps);
   uint64_t stepsInTime(uint64_t most, double now) const;
-  void addPending(size_t wave, std::vector<int64_t>& sums) const;
   void collectSplats();
 
   const RenderSettings settings_;
@@ -78,8 +69,7 @@ class ChainSession final : public Session {
   RenderPlan<S> plan_;
   MemoryPlan memory_;
   Epochs epochs_;
-  std::vector<ChainState> waves_;
-  std::vector<PathStore<S>> paths_;  // of the waves, in path space; rows as long as those of proposals
+  std::optional<ChainWaves<S>> chains_;  // from the plan on
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
   std::vector<char> bootstrapped_;    // which waves of the next epoch's bootstrap samples are traced
   std::vector<uint64_t> directDone_;  // direct light samples of each pixel, by wave
@@ -106,13 +96,7 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
   epochs_ = Epochs(multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,
                                                    settings.limits.maxDepth)
                                : plainBootstrap(metropolis.bootstrapSamples));
-  const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings.limits.maxDepth);
-  const size_t waves = (metropolis.chains + settings.waveSize - 1) / settings.waveSize;
-  for (size_t wave = 0; wave < waves; ++wave) {
-    ChainState& state = waves_.emplace_back(chainCount(wave), kept);
-    state.multiplexed = multiplexed;
-    if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan_.pathLaws.law().maxEdges, plan_.needs);
-  }
+  chains_.emplace(plan_, settings_, film_.area());
   bootstrapped_.resize((epochs_.targets.size() + settings.waveSize - 1) / settings.waveSize);
   directDone_.resize((film_.area().pixels.size() + settings.waveSize - 1) / settings.waveSize);
   buildSeconds_ = secondsSince(begin);
@@ -169,108 +153,31 @@ bool ChainSession<S>::bootstrap(uint64_t epoch, const Stop& stop) {
 }
 
 template <class S>
-void ChainSession<S>::startChains(size_t wave, uint64_t epoch, const std::vector<uint32_t>& starts) {
-  const FlushToZero flushToZero;
-  ChainState& state = waves_[wave];
-  Chains& chains = state.columns;
-  const size_t count = chainCount(wave);
-  const ChainCounters before = state.counters;
-  const LargeStepSums largeBefore = state.largeSteps;
-  // Replays the samples and accepts them all.
-  for (size_t i = 0; i < count; ++i) {
-    const uint32_t sample = starts[firstChain(wave) + i];
-    chains.source[i] = sample;
-    chains.length[i] = epochs_.plan().length[sample];
-    chains.target[i] = 0;
-    chains.weight[i] = 0;
-  }
-  state.samples.stream = Stream::bootstrap;
-  state.samples.largeStep = 2;
-  StageContext<S> context = chainContext(plan_, settings_, film_.area());
-  context.sampler.iteration = static_cast<uint32_t>(epoch);
-  ChainWorker<S>& mine = worker();
-  mine.trace(context, state, count, false, pathsOf(wave));
-  mine.decide(context, state, false);
-
-  // From here on chains are themselves. The start is no step and has no weight.
-  state.counters = before;
-  state.largeSteps = largeBefore;
-  state.samples.stream = Stream::chain;
-  state.samples.largeStep = static_cast<float>(settings_.metropolis.largeStep);
-  for (size_t i = 0; i < count; ++i) {
-    chains.source[i] = static_cast<uint32_t>(firstChain(wave) + i);
-    chains.weight[i] = 0;
-    chains.rejections[i] = 0;
-    if (inPathSpace()) chains.length[i] = 0;  // of any length from now on
-  }
-}
-
-// Adds what is due to the states that the chains of a wave are in.
-template <class S>
-void ChainSession<S>::addPending(size_t wave, std::vector<int64_t>& sums) const {
-  const ChainState& state = waves_[wave];
-  const Chains& chains = state.columns;
-  for (size_t i = 0; i < chainCount(wave); ++i) {
-    if (!(chains.target[i] > 0)) continue;
-    const double visits = static_cast<double>(chains.weight[i]) * static_cast<double>(state.splatFactor);
-    const double colour[3] = {chains.red[i], chains.green[i], chains.blue[i]};
-    for (size_t c = 0; c < 3; ++c) {
-      sums[3 * size_t{chains.pixel[i]} + c] += static_cast<int64_t>(colour[c] * visits * kSplatScale + 0.5);
-    }
-  }
-}
-
-template <class S>
-void ChainSession<S>::listStuckChains(std::vector<StuckChain>& list) const {
-  for (size_t wave = 0; wave < waves_.size(); ++wave) {
-    const Chains& chains = waves_[wave].columns;
-    for (size_t i = 0; i < chainCount(wave); ++i) {
-      if (chains.rejections[i] < kStuckRejections) continue;
-      const uint32_t edges = inPathSpace()              ? paths_[wave].headers.edges[i]
-                             : waves_[wave].multiplexed ? chains.length[i]
-                                                        : chains.cameraVertices[i];
-      list.push_back({static_cast<uint32_t>(firstChain(wave) + i), chains.rejections[i], edges, chains.pixel[i]});
-    }
-  }
-  std::stable_sort(list.begin(), list.end(),
-                   [](const StuckChain& a, const StuckChain& b) { return a.rejections > b.rejections; });
-  if (list.size() > kListedStuckChains) list.resize(kListedStuckChains);
-}
-
-template <class S>
 bool ChainSession<S>::beginEpoch(uint64_t epoch, const Stop& stop) {
   if (!bootstrap(epoch, stop)) return false;
   std::fill(bootstrapped_.begin(), bootstrapped_.end(), 0);  // the next epoch has samples of its own
   if (epoch != 0) {
-    for (size_t wave = 0; wave < waves_.size(); ++wave) addPending(wave, worker().splats);
-    listStuckChains(stuck_);
+    chains_->addPending(worker().splats);
+    chains_->listStuck(stuck_);
   }
   epochs_.begin();
   if (epochs_.dark()) {
-    for (size_t wave = 0; wave < waves_.size(); ++wave) {
-      std::fill_n(static_cast<float*>(waves_[wave].columns.target), chainCount(wave), 0.0f);
-    }
+    chains_->clear();
     return true;
   }
   const std::vector<uint32_t> starts =
       startSamples(epochs_.plan(), epochs_.targets, settings_.metropolis.chains, startOffset(settings_.seed, epoch));
-  for (ChainState& state : waves_) state.splatFactor = static_cast<float>(epochs_.scale());
-  forEach(waves_.size(), [&](size_t wave) { startChains(wave, epoch, starts); });
+  forEach(chains_->size(),
+          [&](size_t wave) { chains_->start(wave, epoch, epochs_.plan(), starts, epochs_.scale(), worker()); });
   return true;
 }
 
 template <class S>
-void ChainSession<S>::advance(size_t wave, uint64_t steps) {
-  const FlushToZero flushToZero;
-  ChainState& state = waves_[wave];
-  ChainWorker<S>& mine = worker();
-  StageContext<S> context = chainContext(plan_, settings_, film_.area());
-  for (uint64_t step = step_; step < step_ + steps; ++step) {
-    context.sampler.iteration = static_cast<uint32_t>(step);
-    mine.trace(context, state, chainCount(wave), settings_.measureStages, pathsOf(wave));
-    mine.decide(context, state, settings_.measureStages);
-    progressPaths_.fetch_add(chainCount(wave), std::memory_order_relaxed);
-  }
+void ChainSession<S>::advance(uint64_t steps) {
+  forEach(chains_->size(), [&](size_t wave) {
+    chains_->advance(wave, step_, steps, worker());
+    progressPaths_.fetch_add(steps * chains_->chainCount(wave), std::memory_order_relaxed);
+  });
 }
 
 // One direct sample of each pixel for every so many mutations of it, beginning with the first step.
@@ -309,7 +216,7 @@ void ChainSession<S>::collectSplats() {
   for (const auto& worker : workers_) {
     for (size_t i = 0; i < sums.size(); ++i) sums[i] += worker->splats[i];
   }
-  for (size_t wave = 0; wave < waves_.size(); ++wave) addPending(wave, sums);
+  chains_->addPending(sums);
   // b N_pix / M
   const double factor =
       step_ == 0 ? 0
@@ -338,7 +245,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
       const double before = now();
       const uint64_t steps = stepsInTime(std::min({kRoundSteps, restart - step_ % restart, goal - step_}), before);
       if (steps == 0) return;
-      if (!epochs_.dark()) forEach(waves_.size(), [&](size_t wave) { advance(wave, steps); });
+      if (!epochs_.dark()) advance(steps);
       step_ += steps;
       epochs_.addSteps(steps);
       stepSeconds_ = (now() - before) / static_cast<double>(steps);
@@ -388,22 +295,13 @@ RenderStatistics ChainSession<S>::statistics() const {
   chains.brightness = ofFilm.mean;
   chains.brightnessError = ofFilm.standardError;
   chains.largestShare = ofFilm.largestShare;
-  LargeStepSums largeSteps;
-  for (const ChainState& state : waves_) {
-    chains.counters += state.counters;
-    largeSteps += state.largeSteps;
-    chains.bytes += state.bytes();
-  }
-  if (inPathSpace()) {
-    for (size_t wave = 0; wave < waves_.size(); ++wave) {
-      chains.bytes += PathStore<S>::bytesFor(settings_.waveSize, plan_.pathLaws.law().maxEdges, plan_.needs);
-    }
-  }
-  const Brightness all = epochs_.pooledWith(largeSteps, inPathSpace());
+  chains.counters = chains_->counters();
+  chains.bytes = chains_->bytes();
+  const Brightness all = epochs_.pooledWith(chains_->largeSteps(), plan_.pipeline.chains->inPathSpace());
   chains.pooledBrightness = all.mean;
   chains.pooledError = all.standardError;
   chains.stuck = stuck_;
-  listStuckChains(chains.stuck);
+  chains_->listStuck(chains.stuck);
   out.counters.nonFinite += chains.counters.nonFinite;
   out.memory.scene = sceneBytes(*plan_.scene);
   out.memory.film = filmBytes(film_.area().pixels.size());

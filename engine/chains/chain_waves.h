@@ -1,0 +1,54 @@
+// The chains of a render, in waves that workers advance: the states they are in, and in path space their paths.
+#pragma once
+
+#include <vector>
+
+#include "engine/chains/bootstrap.h"
+#include "engine/chains/chain_worker.h"
+#include "engine/session.h"
+#include "kernels/columns/chain_paths.h"
+
+namespace wavecrest {
+
+template <class S>
+class ChainWaves {
+ public:
+  // As many chains as the settings say, in waves of their size, which are nowhere at first. All three must outlive them.
+  ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
+
+  // Waves, and the chains of one.
+  size_t size() const { return states_.size(); }
+  size_t chainCount(size_t wave) const;
+
+  // The chains of a wave start anew, chain m from sample starts[m] of an epoch's bootstrap. What they add to the film
+  // from now on is multiplied by splatFactor.
+  void start(size_t wave, uint64_t epoch, const BootstrapPlan& bootstrap, const std::vector<uint32_t>& starts,
+             double splatFactor, ChainWorker<S>& worker);
+  // No sample has found light to start from: all chains are nowhere.
+  void clear();
+  // The chains of a wave take steps first, first + 1, ...
+  void advance(size_t wave, uint64_t first, uint64_t steps, ChainWorker<S>& worker);
+
+  // Adds what is due to the states that chains are in: a state is splatted when its chain leaves it.
+  void addPending(std::vector<int64_t>& splats) const;
+  // Adds the chains that have been rejected at least kStuckRejections times in a row; keeps those that were rejected
+  // most, kListedStuckChains of them.
+  void listStuck(std::vector<StuckChain>& list) const;
+
+  ChainCounters counters() const;
+  LargeStepSums largeSteps() const;
+  size_t bytes() const;
+
+ private:
+  size_t firstChain(size_t wave) const { return wave * settings_.waveSize; }
+  bool inPathSpace() const { return plan_.pipeline.chains->inPathSpace(); }
+  PathStore<S>* pathsOf(size_t wave) { return paths_.empty() ? nullptr : &paths_[wave]; }
+
+  const RenderPlan<S>& plan_;
+  const RenderSettings& settings_;
+  const FilmArea& area_;
+  std::vector<ChainState> states_;
+  std::vector<PathStore<S>> paths_;  // in path space; rows as long as those of proposals
+};
+
+}  // namespace wavecrest
