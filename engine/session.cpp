@@ -90,6 +90,7 @@ class TypedSession final : public Session {
   uint64_t endIteration_ = 0;                           // of this renderUntil
   std::vector<uint64_t> lightDone_;                     // next iteration of each wave
   std::vector<CameraProgress> camera_;                  // of each wave
+  Arena storeMemory_;
   std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each light wave, where a photon map gathers them
   PhotonMap<S> photons_;
   std::optional<uint64_t> photonIteration_;  // which iteration the map is of
@@ -114,7 +115,9 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
   if (plan_.pipeline.photonMap) {
     for (size_t i = 0; i < lightDone_.size(); ++i) {
       stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs, plan_.lightUse));
-      stores_.back()->reserve(memory_.verticesPerWave);
+      LightStore<S>& store = *stores_.back();
+      if (i == 0) storeMemory_ = Arena(lightDone_.size() * store.arenaBytes(memory_.verticesPerWave));
+      store.reserve(memory_.verticesPerWave, storeMemory_);
     }
   }
   buildSeconds_ = secondsSince(begin);

@@ -156,6 +156,12 @@ class LightStore {
   void reserve(size_t capacity) {
     if (capacity > vertices.capacity()) grow(capacity);
   }
+  // The same in memory that outlives the store, of which it takes arenaBytes(capacity): merging reads photons in no
+  // order, and many stores side by side lie on large pages. A store that outgrows this gets memory of its own.
+  void reserve(size_t capacity, Arena& shared) {
+    if (capacity > vertices.capacity()) moveTo(shared, capacity);
+  }
+  size_t arenaBytes(size_t capacity) const { return vertices.bytes(capacity) + photonBytes(capacity); }
 
   // Becomes the vertices of paths first, first + 1, ... of an iteration, `used` of them, counted around after the last
   // of its lightPaths: what camera paths are joined with where there are not as many of them.
@@ -189,7 +195,7 @@ class LightStore {
   size_t bytes() const { return bytesFor(vertices.capacity()); }
   // The same for a store of this capacity.
   size_t bytesFor(size_t capacity) const {
-    return vertices.bytes(capacity) + photonBytes(capacity) + lanes_ * sizeof(uint32_t);
+    return arenaBytes(capacity) + lanes_ * sizeof(uint32_t);
   }
 
  private:
@@ -208,8 +214,12 @@ class LightStore {
   }
 
   void grow(size_t capacity) {
+    Arena arena(arenaBytes(capacity));
+    moveTo(arena, capacity);
+    arena_ = std::move(arena);
+  }
+  void moveTo(Arena& arena, size_t capacity) {
     LightVertices<S> larger = vertices;  // the same columns dropped
-    Arena arena(larger.bytes(capacity) + photonBytes(capacity));
     const size_t size = vertices.size;
     larger.bind(arena, capacity);
     copyColumns(vertices.all(), larger.all(), 0, 0, size, Indices());
@@ -220,7 +230,6 @@ class LightStore {
     }
     vertices = larger;
     vertices.size = size;
-    arena_ = std::move(arena);
   }
 
   // Appends what the lanes [begin, begin + count) of another store have at a depth, as lanes from `target` on; whether
