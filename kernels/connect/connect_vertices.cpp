@@ -30,13 +30,14 @@ WAVECREST_INLINE void placeLanes(const StageContext<S>& context, const Wave<S>& 
 // Weighted contributions of packed pairs, as shadow rays from index `out` on; returns the index after the last.
 template <class P, uint32_t kFeatures>
 size_t joinPacked(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
-                  const PackedLightVertices<P, kFeatures>& packed, size_t out) {
+                  PackedLightVertices<P, kFeatures>& packed, size_t out) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
   auto& shadow = wave.shadowRays;
+  packed.close();
   for (size_t i = 0; i < packed.size(); i += kLanes) {
     const Mask active = firstLanes(packed.size() - i);
-    const auto row = gatherRows<P, kFeatures>(scene, wave, packed.camera(i, active));
+    const auto row = gatherRows<P, kFeatures>(scene, wave, packed.camera(i));
     const auto& z = row.shading;
     const auto y = packed.shading(scene, i, active);
 

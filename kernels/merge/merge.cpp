@@ -24,7 +24,6 @@ template <class P, uint32_t kFeatures>
 class Merger {
   using Real = typename P::Real;
   using S = typename P::Storage;
-  static constexpr uint32_t kRowNumbers = sizeof(VertexRow<S>) / sizeof(S);
 
  public:
   Merger(const StageContext<S>& context, Wave<S>& wave)
@@ -155,8 +154,10 @@ class Merger {
     }
   }
 
-  WAVECREST_INLINE Vec3<Real> positionOf(UInt key) const {
-    return RecordLanes<PhotonKey<S>>(map_.keys, key)(map_.keys->position);
+  // Whole blocks of the list are read: those that its end leaves open get pairs of the first vertex and photon.
+  WAVECREST_INLINE void closeList(size_t end) const {
+    storeUnaligned(UInt(0u), wave_.pairs.camera + end);
+    storeUnaligned(UInt(0u), wave_.pairs.light + end);
   }
 
   // Of the listed candidates keeps those within the radius, each found through its own cell; packs vertex and photon to
@@ -164,15 +165,29 @@ class Merger {
   size_t selectNear() {
     const Real radius(context_.mis.radius);
     const Real reach(context_.mis.radius * kReach);
-    size_t out = 0;
+    closeList(count_);
+    size_t out = 0, asked = 0;
+    // Of pairs that were packed some time ago, as what is read one by one waits for what is written as a vector.
+    const auto ask = [&](size_t end) WAVECREST_LAMBDA {
+      for (; asked < end; ++asked) {
+        const uint32_t photon = map_.keys[wave_.pairs.light[asked]].photon;
+        wave_.pairs.light[asked] = photon;
+        __builtin_prefetch(&map_.recordOf(photon));
+      }
+    };
     for (size_t i = 0; i < count_; i += kLanes) {
       const Mask active = firstLanes(count_ - i);
-      const UInt camera = select(active, load(wave_.pairs.camera, i), UInt(0u));
+      const uint32_t* const cameras = wave_.pairs.camera + i;
+      const uint32_t* const keys = wave_.pairs.light + i;
+      const auto photonAt = [&](size_t k) WAVECREST_LAMBDA { return map_.keys[keys[k]].position; };
+      const auto vertexAt = [&](size_t k) WAVECREST_LAMBDA {
+        return wave_.vertexRows.row[cameras[k] & kIndexMask].position;
+      };
+      const FourColumns<Real> ofPhoton = loadFour(photonAt), ofVertex = loadFour(vertexAt);
+      const Vec3<Real> p{ofPhoton.a, ofPhoton.b, ofPhoton.c}, z{ofVertex.a, ofVertex.b, ofVertex.c};
+      const UInt camera = load(wave_.pairs.camera, i), key = load(wave_.pairs.light, i);
       const UInt vertex = camera & UInt(kIndexMask), run = shiftRight<kRunShift>(camera);
-      const UInt key = select(active, load(wave_.pairs.light, i), UInt(0u));
-      const Vec3<Real> p = positionOf(key);
-      const FourColumns<Real> place = gatherFour(wave_.vertexRows.row[0].position, vertex * UInt(kRowNumbers));
-      const Vec3<Real> z{place.a, place.b, place.c};
+      const size_t packed = out;
       Mask near = active & (length2(p - z) <= radius * radius);
       if (none(near)) continue;
       const Cells low = cellsOf(z - Vec3<Real>{reach, reach, reach}), own = cellsOf(p);
@@ -180,12 +195,11 @@ class Merger {
              (own.z == low.z + shiftRight<1>(run));
       append(vertex, near, wave_.pairs.camera, out);
       append(key, near, wave_.pairs.light, out);
-      for (const size_t end = out + countTrue(near); out < end; ++out) {
-        const uint32_t photon = map_.keys[wave_.pairs.light[out]].photon;
-        wave_.pairs.light[out] = photon;
-        __builtin_prefetch(&map_.recordOf(photon));
-      }
+      out += countTrue(near);
+      ask(packed);
     }
+    ask(out);
+    closeList(out);
     return out;
   }
 
@@ -211,9 +225,9 @@ class Merger {
     for (size_t i = 0; i < near; i += kLanes) {
       const Mask active = firstLanes(near - i);
       fetch(i, near - i, photons);
-      const UInt vertex = select(active, load(wave_.pairs.camera, i), UInt(0u));
+      const UInt vertex = load(wave_.pairs.camera, i);
       const RecordLanes<PhotonRecord<S>> at(photons.records, laneIndex());
-      const auto row = gatherRows<P, kFeatures>(scene, wave_, vertex);
+      const auto row = gatherRows<P, kFeatures>(scene, wave_, wave_.pairs.camera + i);
       const auto& shading = row.shading;
       const Vec3<Real> between = at(photons.records->position) - shading.position;
       const FourColumns<Real> sums = at.four(photons.records->dVCM);  // dVCM, dVM, depth

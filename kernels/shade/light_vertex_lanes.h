@@ -57,7 +57,9 @@ class PackedLightVertices {
   // Forgets all.
   void clear() { size_ = 0; }
 
-  UInt camera(size_t i, Mask active) const { return select(active, load(camera_ + i), UInt(0u)); }
+  // Of a whole block: lanes past the last have vertex 0, once the list is closed.
+  const uint32_t* camera(size_t i) const { return camera_ + i; }
+  void close() { storeUnaligned(UInt(0u), camera_ + size_); }
   UInt lane(size_t i) const { return load(lane_ + i); }
   Vec3<Real> throughput(size_t i) const { return vec3(throughput_, i); }
   MisSums<Real> mis(size_t i) const { return {load(dVCM_ + i), load(dVC_ + i), Real(0)}; }

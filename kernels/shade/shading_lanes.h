@@ -287,7 +287,7 @@ WAVECREST_INLINE void packVertexRows(const SceneView<S>& scene, Wave<S>& wave) {
   }
 }
 
-// The live paths' vertices at any indices, and what else their rows hold.
+// The live paths' vertices at any indices, and what else their rows hold. index: of a vertex for every lane.
 template <class P, uint32_t kFeatures>
 struct RowLanes {
   using Real = typename P::Real;
@@ -297,13 +297,13 @@ struct RowLanes {
 };
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::Storage>& scene,
-                                                   const Wave<typename P::Storage>& wave, UInt index) {
+                                                   const Wave<typename P::Storage>& wave, const uint32_t* index) {
   using Real = typename P::Real;
-  using S = typename P::Storage;
-  const VertexRow<S>& row = *wave.vertexRows.row;
-  const UInt start = index * UInt(sizeof(row) / sizeof(S));
-  const FourColumns<Real> place = gatherFour(row.position, start), back = gatherFour(row.fix, start),
-                          side = gatherFour(row.normal, start), carried = gatherFour(row.throughput, start);
+  const VertexRow<typename P::Storage>* const rows = wave.vertexRows.row;
+  const FourColumns<Real> place = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].position; }),
+                          back = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].fix; }),
+                          side = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].normal; }),
+                          carried = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].throughput; });
   VertexLanes<Real> vertex{.position = {place.a, place.b, place.c},
                            .fix = {back.a, back.b, back.c},
                            .normal = {side.a, side.b, side.c},
@@ -314,16 +314,17 @@ WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::S
                            .v = Float(0),
                            .material = toUInt(to<Float>(back.d))};
   vertex.shadingNormal = vertex.normal;
+  const UInt at = loadUnaligned(index);
   const auto& surfaces = wave.surfaces;
   if constexpr (has(kFeatures, kShadingNormals)) {
-    vertex.shadingNormal = gatherVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, index);
+    vertex.shadingNormal = gatherVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, at);
   }
   if constexpr (has(kFeatures, kNormalMaps)) {
-    if (scene.normalMaps) vertex.baseNormal = gatherVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, index);
+    if (scene.normalMaps) vertex.baseNormal = gatherVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, at);
   }
   if constexpr (has(kFeatures, kTextures)) {
-    vertex.u = gather(surfaces.uvU, index);
-    vertex.v = gather(surfaces.uvV, index);
+    vertex.u = gather(surfaces.uvU, at);
+    vertex.v = gather(surfaces.uvV, at);
   }
   return {shadingOf<P, kFeatures>(scene, vertex), {carried.a, carried.b, carried.c}, side.d, carried.d};
 }

@@ -2,6 +2,8 @@
 // anywhere read into four vectors.
 #pragma once
 
+#include <type_traits>
+
 #include "kernels/simd/double_lanes.h"
 
 WAVECREST_SIMD_BEGIN
@@ -26,55 +28,71 @@ struct FourColumns {
   Real a, b, c, d;
 };
 
-// Lane i gets the four numbers from base[index[i]] on. One load a lane and a transposition by fours: on machines whose
-// gathers are microcoded this costs less than the gather of a single column. Rows need no alignment.
+// Lane k gets the four numbers from rowAt(k) on, of any type. One load a lane and a transposition by fours: on machines
+// whose gathers are microcoded this costs less than the gather of a single column. Rows need no alignment.
 #if HWY_TARGET == HWY_SCALAR
-template <class T>
-WAVECREST_INLINE auto gatherFour(const T* base, UInt index) {
-  using Real = decltype(gather(base, index));
-  return FourColumns<Real>{gather(base, index), gather(base + 1, index), gather(base + 2, index),
-                           gather(base + 3, index)};
+template <class RowAt>
+WAVECREST_INLINE auto loadFour(const RowAt& rowAt) {
+  const auto* const row = rowAt(0);
+  return FourColumns<decltype(loadUnaligned(row))>{loadUnaligned(row), loadUnaligned(row + 1), loadUnaligned(row + 2),
+                                                   loadUnaligned(row + 3)};
 }
 #else
-template <class T, size_t kCount = kLanes>
-WAVECREST_INLINE auto gatherFour(const T* base, UInt index) {
-  HWY_ALIGN uint32_t start[kLanes];
-  store(index, start);
-  // The rows of lanes k, k + 4, k + 8, ..., one to each block of four numbers.
-  const auto blocks = [&](size_t k) WAVECREST_LAMBDA {
-    const hn::FixedTag<T, 4> row;
-    if constexpr (kCount == 4) {
-      return hn::LoadU(row, base + start[k]);
-    } else {
-      const hn::FixedTag<T, 8> pair;
-      const auto low = hn::Combine(pair, hn::LoadU(row, base + start[k + 4]), hn::LoadU(row, base + start[k]));
-      if constexpr (kCount == 8) {
-        return low;
-      } else {
-        static_assert(kCount == 16);
-        const auto high = hn::Combine(pair, hn::LoadU(row, base + start[k + 12]), hn::LoadU(row, base + start[k + 8]));
-        return hn::Combine(hn::FixedTag<T, kCount>(), high, low);
-      }
+template <class RowAt, size_t kCount = kLanes>
+WAVECREST_INLINE auto loadFour(const RowAt& rowAt) {
+  using T = std::remove_cvref_t<decltype(*rowAt(0))>;
+  using Real = decltype(loadUnaligned(rowAt(0)));
+  if constexpr (std::is_same_v<T, double>) {
+    HWY_ALIGN double columns[4][kLanes];
+    for (size_t k = 0; k < kLanes; ++k) {
+      for (size_t column = 0; column < 4; ++column) columns[column][k] = rowAt(k)[column];
     }
-  };
-  const hn::ScalableTag<T> tag;
-  const hn::RepartitionToWide<hn::ScalableTag<T> > wide;
-  const auto row0 = blocks(0), row1 = blocks(1), row2 = blocks(2), row3 = blocks(3);
-  const auto low01 = hn::BitCast(wide, hn::InterleaveLower(tag, row0, row1));
-  const auto low23 = hn::BitCast(wide, hn::InterleaveLower(tag, row2, row3));
-  const auto high01 = hn::BitCast(wide, hn::InterleaveUpper(tag, row0, row1));
-  const auto high23 = hn::BitCast(wide, hn::InterleaveUpper(tag, row2, row3));
-  using Real = decltype(gather(base, index));
-  return FourColumns<Real>{{hn::BitCast(tag, hn::InterleaveLower(wide, low01, low23))},
-                           {hn::BitCast(tag, hn::InterleaveUpper(wide, low01, low23))},
-                           {hn::BitCast(tag, hn::InterleaveLower(wide, high01, high23))},
-                           {hn::BitCast(tag, hn::InterleaveUpper(wide, high01, high23))}};
+    return FourColumns<Real>{load(columns[0]), load(columns[1]), load(columns[2]), load(columns[3])};
+  } else {
+    // The rows of lanes k, k + 4, k + 8, ..., one to each block of four numbers.
+    const auto blocks = [&](size_t k) WAVECREST_LAMBDA {
+      const hn::FixedTag<T, 4> row;
+      if constexpr (kCount == 4) {
+        return hn::LoadU(row, rowAt(k));
+      } else {
+        const hn::FixedTag<T, 8> pair;
+        const auto low = hn::Combine(pair, hn::LoadU(row, rowAt(k + 4)), hn::LoadU(row, rowAt(k)));
+        if constexpr (kCount == 8) {
+          return low;
+        } else {
+          static_assert(kCount == 16);
+          const auto high = hn::Combine(pair, hn::LoadU(row, rowAt(k + 12)), hn::LoadU(row, rowAt(k + 8)));
+          return hn::Combine(hn::FixedTag<T, kCount>(), high, low);
+        }
+      }
+    };
+    const hn::ScalableTag<T> tag;
+    const hn::RepartitionToWide<hn::ScalableTag<T> > wide;
+    const auto row0 = blocks(0), row1 = blocks(1), row2 = blocks(2), row3 = blocks(3);
+    const auto low01 = hn::BitCast(wide, hn::InterleaveLower(tag, row0, row1));
+    const auto low23 = hn::BitCast(wide, hn::InterleaveLower(tag, row2, row3));
+    const auto high01 = hn::BitCast(wide, hn::InterleaveUpper(tag, row0, row1));
+    const auto high23 = hn::BitCast(wide, hn::InterleaveUpper(tag, row2, row3));
+    return FourColumns<Real>{{hn::BitCast(tag, hn::InterleaveLower(wide, low01, low23))},
+                             {hn::BitCast(tag, hn::InterleaveUpper(wide, low01, low23))},
+                             {hn::BitCast(tag, hn::InterleaveLower(wide, high01, high23))},
+                             {hn::BitCast(tag, hn::InterleaveUpper(wide, high01, high23))}};
+  }
 }
 #endif
-#if HWY_TARGET != HWY_SCALAR
-WAVECREST_INLINE FourColumns<Double> gatherFour(const double* base, UInt index) {
-  return {gather(base, index), gather(base + 1, index), gather(base + 2, index), gather(base + 3, index)};
+
+// The same of rows base + index[k]. Where indices are in memory for some time already, loadFour can read them there one
+// by one, which costs less than taking a vector apart; not right behind the store of a vector, which it would wait for.
+template <class T>
+WAVECREST_INLINE auto gatherFour(const T* base, UInt index) {
+  if constexpr (std::is_same_v<T, double>) {
+    return FourColumns<Double>{gather(base, index), gather(base + 1, index), gather(base + 2, index),
+                               gather(base + 3, index)};
+  } else {
+    HWY_ALIGN uint32_t start[kLanes];
+    store(index, start);
+    return loadFour([&](size_t k) WAVECREST_LAMBDA { return base + start[k]; });
+  }
 }
-#endif
 
 WAVECREST_SIMD_END
