@@ -38,7 +38,9 @@ class Merger {
     for (size_t i = 0; i < wave_.rays.size; i += kTogether * kLanes) {
       const size_t blocks = std::min(kTogether, (wave_.rays.size - i + kLanes - 1) / kLanes);
       for (size_t k = 0; k < blocks; ++k) locate(i + k * kLanes, searches[k]);
+      for (size_t k = 0; k < blocks; ++k) prefetch(map_.bucketStart, searches[k].bucket, searches[k]);
       for (size_t k = 0; k < blocks; ++k) lookUp(searches[k]);
+      for (size_t k = 0; k < blocks; ++k) prefetch(map_.keys, searches[k].first, searches[k]);
       for (size_t k = 0; k < blocks; ++k) list(i + k * kLanes, searches[k]);
     }
     shade();
@@ -57,18 +59,20 @@ class Merger {
   }
 
   // The runs of photons that the vertices of a block look at, one for each row of cells: y and z of the lower cell, or
-  // one more.
+  // one more. In memory, where lanes are read one by one.
   static constexpr uint32_t kRuns = 4;
+  using LaneNumbers = uint32_t[kLanes];
   struct Search {
-    UInt bucket[kRuns], first[kRuns], last[kRuns];
+    HWY_ALIGN LaneNumbers bucket[kRuns], first[kRuns], last[kRuns];
     Mask searched[kRuns];
     Mask wide;  // two cells along x
   };
   template <class T>
-  static WAVECREST_INLINE void prefetch(const T* base, UInt index) {
-    HWY_ALIGN uint32_t at[kLanes];
-    store(index, at);
-    for (const uint32_t lane : at) __builtin_prefetch(base + lane);
+  static WAVECREST_INLINE void prefetch(const T* base, const LaneNumbers (&index)[kRuns], const Search& search) {
+    for (uint32_t run = 0; run < kRuns; ++run) {
+      if (none(search.searched[run])) continue;
+      for (const uint32_t lane : index[run]) __builtin_prefetch(base + lane);
+    }
   }
 
   // Which buckets.
@@ -88,8 +92,7 @@ class Merger {
     for (uint32_t run = 0; run < kRuns; ++run) {
       if (none(search.searched[run])) continue;
       const UInt bucket = (hash(low.y + UInt(run & 1), low.z + UInt(run >> 1)) + low.x) & bucketMask;
-      search.bucket[run] = select(search.searched[run], bucket, UInt(0u));
-      prefetch(map_.bucketStart, search.bucket[run]);
+      store(select(search.searched[run], bucket, UInt(0u)), search.bucket[run]);
     }
   }
 
@@ -97,10 +100,10 @@ class Merger {
   WAVECREST_INLINE void lookUp(Search& search) const {
     for (uint32_t run = 0; run < kRuns; ++run) {
       if (none(search.searched[run])) continue;
-      const FourColumns<UInt> starts = gatherFour(map_.bucketStart, search.bucket[run]);
-      search.first[run] = starts.a;
-      search.last[run] = select(search.wide, starts.c, starts.b);
-      prefetch(map_.keys, search.first[run]);
+      const uint32_t* const bucket = search.bucket[run];
+      const auto starts = loadFour([&](size_t k) WAVECREST_LAMBDA { return map_.bucketStart + bucket[k]; });
+      store(starts.a, search.first[run]);
+      store(select(search.wide, starts.c, starts.b), search.last[run]);
     }
   }
 
@@ -110,9 +113,9 @@ class Merger {
       const Mask searched = search.searched[run];
       if (none(searched)) continue;
       const UInt vertex = laneIndex(static_cast<uint32_t>(i)) | UInt(run << kRunShift);
-      list(vertex, search.first[run], search.last[run], searched);
+      list(vertex, load(search.first[run]), load(search.last[run]), searched);
       // After the last bucket comes the first.
-      const Mask wraps = searched & search.wide & (search.bucket[run] == UInt(map_.grid.bucketMask));
+      const Mask wraps = searched & search.wide & (load(search.bucket[run]) == UInt(map_.grid.bucketMask));
       if (any(wraps)) list(vertex, UInt(start[0]), UInt(start[1]), wraps);
     }
   }
