@@ -41,6 +41,7 @@ class Merger {
       for (size_t k = 0; k < blocks; ++k) prefetch(map_.bucketStart, searches[k].bucket, searches[k]);
       for (size_t k = 0; k < blocks; ++k) lookUp(searches[k]);
       for (size_t k = 0; k < blocks; ++k) prefetch(map_.keys, searches[k].first, searches[k]);
+      for (size_t k = 0; k < blocks; ++k) prefetch(map_.keys, searches[k].final, searches[k]);
       for (size_t k = 0; k < blocks; ++k) list(i + k * kLanes, searches[k]);
     }
     shade();
@@ -63,7 +64,8 @@ class Merger {
   static constexpr uint32_t kRuns = 4;
   using LaneNumbers = uint32_t[kLanes];
   struct Search {
-    HWY_ALIGN LaneNumbers bucket[kRuns], first[kRuns], last[kRuns];
+    HWY_ALIGN LaneNumbers bucket[kRuns];
+    HWY_ALIGN LaneNumbers first[kRuns], end[kRuns], final[kRuns];  // final: the last before the end, if there is one
     Mask searched[kRuns];
     Mask wide;  // two cells along x
   };
@@ -102,8 +104,10 @@ class Merger {
       if (none(search.searched[run])) continue;
       const uint32_t* const bucket = search.bucket[run];
       const auto starts = loadFour([&](size_t k) WAVECREST_LAMBDA { return map_.bucketStart + bucket[k]; });
-      store(starts.a, search.first[run]);
-      store(select(search.wide, starts.c, starts.b), search.last[run]);
+      const UInt first = starts.a, end = select(search.wide, starts.c, starts.b);
+      store(first, search.first[run]);
+      store(end, search.end[run]);
+      store(select(first < end, end - UInt(1u), first), search.final[run]);
     }
   }
 
@@ -113,7 +117,7 @@ class Merger {
       const Mask searched = search.searched[run];
       if (none(searched)) continue;
       const UInt vertex = laneIndex(static_cast<uint32_t>(i)) | UInt(run << kRunShift);
-      list(vertex, load(search.first[run]), load(search.last[run]), searched);
+      list(vertex, load(search.first[run]), load(search.end[run]), searched);
       // After the last bucket comes the first.
       const Mask wraps = searched & search.wide & (load(search.bucket[run]) == UInt(map_.grid.bucketMask));
       if (any(wraps)) list(vertex, UInt(start[0]), UInt(start[1]), wraps);
