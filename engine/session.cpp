@@ -87,9 +87,9 @@ class TypedSession final : public Session {
   Film film_;
   RenderPlan<S> plan_;
   MemoryPlan memory_;
-  uint64_t endIteration_ = 0;                           // of this renderUntil
-  std::vector<uint64_t> lightDone_;                     // next iteration of each wave
-  std::vector<CameraProgress> camera_;                  // of each wave
+  uint64_t endIteration_ = 0;           // of this renderUntil
+  std::vector<uint64_t> lightDone_;     // next iteration of each wave
+  std::vector<CameraProgress> camera_;  // of each wave
   Arena storeMemory_;
   std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each light wave, where a photon map gathers them
   PhotonMap<S> photons_;

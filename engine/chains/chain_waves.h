@@ -13,7 +13,8 @@ namespace wavecrest {
 template <class S>
 class ChainWaves {
  public:
-  // As many chains as the settings say, in waves of their size, which are nowhere at first. All three must outlive them.
+  // As many chains as the settings say, in waves of their size, which are nowhere at first. All three must outlive
+  // them.
   ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
 
   // Waves, and the chains of one.

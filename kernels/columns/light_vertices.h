@@ -159,7 +159,9 @@ class LightStore {
   // The same in memory that outlives the store, of which it takes arenaBytes(capacity): merging reads photons in no
   // order, and many stores side by side lie on large pages. A store that outgrows this gets memory of its own.
   void reserve(size_t capacity, Arena& shared) {
-    if (capacity > vertices.capacity()) moveTo(shared, capacity);
+    if (capacity <= vertices.capacity()) return;
+    moveTo(shared, capacity);
+    sharedBytes_ += arenaBytes(capacity);
   }
   size_t arenaBytes(size_t capacity) const { return vertices.bytes(capacity) + photonBytes(capacity); }
 
@@ -192,11 +194,10 @@ class LightStore {
   // The capacity that the depths begun since clear() have asked for.
   size_t roomUsed() const { return roomUsed_; }
 
-  size_t bytes() const { return bytesFor(vertices.capacity()); }
-  // The same for a store of this capacity.
-  size_t bytesFor(size_t capacity) const {
-    return arenaBytes(capacity) + lanes_ * sizeof(uint32_t);
-  }
+  // Memory of its own, and what it took of others', though it may have outgrown that.
+  size_t bytes() const { return sharedBytes_ + ownBytes_ + lanes_ * sizeof(uint32_t); }
+  // The same for a store that has reserved this capacity.
+  size_t bytesFor(size_t capacity) const { return arenaBytes(capacity) + lanes_ * sizeof(uint32_t); }
 
  private:
   size_t photonBytes(size_t capacity) const { return keepsPhotons_ ? capacity * sizeof(PhotonRecord<S>) : 0; }
@@ -217,6 +218,7 @@ class LightStore {
     Arena arena(arenaBytes(capacity));
     moveTo(arena, capacity);
     arena_ = std::move(arena);
+    ownBytes_ = arenaBytes(capacity);
   }
   void moveTo(Arena& arena, size_t capacity) {
     LightVertices<S> larger = vertices;  // the same columns dropped
@@ -267,6 +269,7 @@ class LightStore {
   bool keepsPhotons_;
   PhotonRecord<S>* photons_ = nullptr;
   size_t depths_ = 0, roomUsed_ = 0;
+  size_t sharedBytes_ = 0, ownBytes_ = 0;
   size_t boundedSize_ = 0;  // how many vertices bounds_ is of
   Bounds<S> bounds_{};
   std::vector<size_t> firstOfDepth_;  // by depth

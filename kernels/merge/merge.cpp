@@ -187,9 +187,8 @@ class Merger {
       const uint32_t* const cameras = wave_.pairs.camera + i;
       const uint32_t* const keys = wave_.pairs.light + i;
       const auto photonAt = [&](size_t k) WAVECREST_LAMBDA { return map_.keys[keys[k]].position; };
-      const auto vertexAt = [&](size_t k) WAVECREST_LAMBDA {
-        return wave_.vertexRows.row[cameras[k] & kIndexMask].position;
-      };
+      const auto vertexAt = [&](size_t k)
+                                WAVECREST_LAMBDA { return wave_.vertexRows.row[cameras[k] & kIndexMask].position; };
       const FourColumns<Real> ofPhoton = loadFour(photonAt), ofVertex = loadFour(vertexAt);
       const Vec3<Real> p{ofPhoton.a, ofPhoton.b, ofPhoton.c}, z{ofVertex.a, ofVertex.b, ofVertex.c};
       const UInt camera = load(wave_.pairs.camera, i), key = load(wave_.pairs.light, i);

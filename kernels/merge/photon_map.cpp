@@ -26,8 +26,8 @@ constexpr size_t kStartsBeyond = 4;
 constexpr size_t withRoom(size_t count) { return count + count / 16; }
 
 // Where photons are few for the radius, cells are wider than a search. A search looks at (1 + 2r / c)^2 runs and at the
-// photons on about (c + 2r)^2 of a surface: with n photons on a unit of area the sum is least at c^3 = k r / n, and k is
-// twice what a run costs in photons. Measured: 2.5 and 9 are slower by a percent or two.
+// photons on about (c + 2r)^2 of a surface: with n photons on a unit of area the sum is least at c^3 = k r / n, and k
+// is twice what a run costs in photons. Measured: 2.5 and 9 are slower by a percent or two.
 constexpr double kTwiceRunInPhotons = 5;
 
 // About every second bucket is filled: searches of a hashed grid read what else is in their buckets, but with more of

@@ -1,4 +1,5 @@
-// recordMisses, recordPathVertices: what the rays of walks meet becomes the new vertices of proposed paths (METHODS 7.6).
+// recordMisses, recordPathVertices: what the rays of walks meet becomes the new vertices of proposed paths
+// (METHODS 7.6).
 //
 // in: Rays, Hits, PathStates [n] after extend, and Surfaces after arrive. out: rows of PathVertices, and how many edges
 // each walk has reached.

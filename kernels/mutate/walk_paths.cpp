@@ -1,10 +1,10 @@
 // beginEyeWalks, beginLightWalks, walkPaths: the walks that make the new vertices of proposed paths (METHODS 7.6).
 //
 // in: the proposals' plans and kept rows. out: Rays, PathStates [<= pathCount] in the order of the plans; the rows of
-// new lenses and lights. What the rays hit becomes rows in record_walks.cpp. Walks from the eye come first; a light walk
-// begins only where the eye's has reached its end. Rays are traced by extend and arrive as in any method. Bidirectional
-// mutations sample the BSDF; perturbations take the delta lobes that the current path took, and turn its directions
-// elsewhere.
+// new lenses and lights. What the rays hit becomes rows in record_walks.cpp. Walks from the eye come first; a light
+// walk begins only where the eye's has reached its end. Rays are traced by extend and arrive as in any method.
+// Bidirectional mutations sample the BSDF; perturbations take the delta lobes that the current path took, and turn its
+// directions elsewhere.
 #include <algorithm>
 
 #include "kernels/generate/camera_lanes.h"

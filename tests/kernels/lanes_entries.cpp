@@ -9,6 +9,14 @@
 WAVECREST_SIMD_BEGIN
 namespace {
 
+template <class V, class T>
+WAVECREST_INLINE void storeFour(const FourColumns<V>& columns, T* out) {
+  storeUnaligned(columns.a, out);
+  storeUnaligned(columns.b, out + kLanes);
+  storeUnaligned(columns.c, out + 2 * kLanes);
+  storeUnaligned(columns.d, out + 3 * kLanes);
+}
+
 // The table's row for an expression of a, b and c.
 #define WAVECREST_OPERATION(T, NAME, EXPRESSION)                                                       \
   LaneOperation<T> {                                                                                   \
@@ -96,15 +104,16 @@ constexpr LanesEntries kEntries = {
         [](const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index, float* floatsOut,
            double* doublesOut, uint32_t* uintsOut) HWY_ATTR {
           const UInt i = loadUnaligned(index);
-          const auto four = [](const auto& columns, auto* out) HWY_ATTR {
-            storeUnaligned(columns.a, out);
-            storeUnaligned(columns.b, out + kLanes);
-            storeUnaligned(columns.c, out + 2 * kLanes);
-            storeUnaligned(columns.d, out + 3 * kLanes);
-          };
-          four(gatherFour(floats, i), floatsOut);
-          four(gatherFour(doubles, i), doublesOut);
-          four(gatherFour(uints, i), uintsOut);
+          storeFour(gatherFour(floats, i), floatsOut);
+          storeFour(gatherFour(doubles, i), doublesOut);
+          storeFour(gatherFour(uints, i), uintsOut);
+        },
+    .loadFour =
+        [](const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index, float* floatsOut,
+           double* doublesOut, uint32_t* uintsOut) HWY_ATTR {
+          storeFour(loadFour([&](size_t k) WAVECREST_LAMBDA { return floats + index[k]; }), floatsOut);
+          storeFour(loadFour([&](size_t k) WAVECREST_LAMBDA { return doubles + index[k]; }), doublesOut);
+          storeFour(loadFour([&](size_t k) WAVECREST_LAMBDA { return uints + index[k]; }), uintsOut);
         },
     .storeScattered =
         [](const float* floats, const double* doubles, const uint32_t* index, float* floatsOut, double* doublesOut)

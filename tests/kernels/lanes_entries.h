@@ -29,9 +29,11 @@ struct LanesEntries {
   // Memory. flags[i] != 0 makes the mask; compress returns how many lanes it kept.
   void (*gather)(const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index,
                  float* floatsOut, double* doublesOut, uint32_t* uintsOut);
-  // Four columns, one after the other.
+  // Four columns, one after the other; by indices in a vector, and in memory.
   void (*gatherFour)(const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index,
                      float* floatsOut, double* doublesOut, uint32_t* uintsOut);
+  void (*loadFour)(const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index,
+                   float* floatsOut, double* doublesOut, uint32_t* uintsOut);
   void (*storeScattered)(const float* floats, const double* doubles, const uint32_t* index, float* floatsOut,
                          double* doublesOut);
   size_t (*compress)(const uint32_t* flags, const float* floats, const double* doubles, const uint32_t* uints,

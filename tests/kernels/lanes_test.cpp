@@ -238,26 +238,28 @@ TEST_P(LanesTest, gatherReadsTheIndexedValues) {
   EXPECT_TRUE(floatsOut.intact() && doublesOut.intact() && uintsOut.intact());
 }
 
-TEST_P(LanesTest, gatherFourReadsRowsIntoColumns) {
+TEST_P(LanesTest, rowsAreReadIntoColumns) {
   const size_t n = lanes().lanes;
   const std::vector<float> floats = realInputs<float>(1003, 5);
   const std::vector<double> doubles = realInputs<double>(1003, 6);
   const std::vector<uint32_t> uints = uintInputs(1003, 7);
   std::vector<uint32_t> index(n);
   for (size_t i = 0; i < n; ++i) index[i] = static_cast<uint32_t>((i * 7919 + 13) % 1000);
-  GuardedColumn<float> floatsOut(4 * n);
-  GuardedColumn<double> doublesOut(4 * n);
-  GuardedColumn<uint32_t> uintsOut(4 * n);
-  lanes().gatherFour(floats.data(), doubles.data(), uints.data(), index.data(), floatsOut.data(), doublesOut.data(),
-                     uintsOut.data());
-  for (size_t column = 0; column < 4; ++column) {
-    for (size_t i = 0; i < n; ++i) {
-      EXPECT_EQ(floatsOut[column * n + i], floats[index[i] + column]);
-      EXPECT_EQ(doublesOut[column * n + i], doubles[index[i] + column]);
-      EXPECT_EQ(uintsOut[column * n + i], uints[index[i] + column]);
+  for (const auto read : {lanes().gatherFour, lanes().loadFour}) {
+    GuardedColumn<float> floatsOut(4 * n);
+    GuardedColumn<double> doublesOut(4 * n);
+    GuardedColumn<uint32_t> uintsOut(4 * n);
+    read(floats.data(), doubles.data(), uints.data(), index.data(), floatsOut.data(), doublesOut.data(),
+         uintsOut.data());
+    for (size_t column = 0; column < 4; ++column) {
+      for (size_t i = 0; i < n; ++i) {
+        EXPECT_EQ(floatsOut[column * n + i], floats[index[i] + column]);
+        EXPECT_EQ(doublesOut[column * n + i], doubles[index[i] + column]);
+        EXPECT_EQ(uintsOut[column * n + i], uints[index[i] + column]);
+      }
     }
+    EXPECT_TRUE(floatsOut.intact() && doublesOut.intact() && uintsOut.intact());
   }
-  EXPECT_TRUE(floatsOut.intact() && doublesOut.intact() && uintsOut.intact());
 }
 
 TEST_P(LanesTest, storeScatteredKeepsTheLastOfEqualIndices) {
