@@ -13,7 +13,7 @@ WAVECREST_INLINE void storeInterleaved(Float a, Float b, Float c, Float d, float
   hn::StoreInterleaved4(a.v, b.v, c.v, d.v, FloatTag(), p);
 }
 WAVECREST_INLINE void storeInterleaved(Double a, Double b, Double c, Double d, double* p) {
-  HWY_ALIGN double values[4][kLanes];
+  HWY_ALIGN double values[4][kLanes]{};  // clang-tidy does not see that store fills them
   store(a, values[0]);
   store(b, values[1]);
   store(c, values[2]);
