@@ -136,12 +136,10 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
         wave.hits.v[i + k] = 0;
         continue;
       }
-      // Off the edges, see kInset.
-      const float u = std::clamp(packet.hit.u[k], kInset, 1 - kInset),
-                  v = std::clamp(packet.hit.v[k], kInset, 1 - kInset);
-      const float scale = geometry == kTriangles ? std::min(1.0f, (1 - kInset) / (u + v)) : 1.0f;
-      wave.hits.u[i + k] = u * scale;
-      wave.hits.v[i + k] = v * scale;
+      float u = packet.hit.u[k], v = packet.hit.v[k];
+      moveInsideEdges(u, v, geometry == kTriangles);
+      wave.hits.u[i + k] = u;
+      wave.hits.v[i + k] = v;
     }
     for (size_t k = 0; k < kWidth; ++k) {
       if (wave.hits.primitive[i + k] != kMiss) prefetchPrimitive(*context.scene, wave.hits.primitive[i + k]);

@@ -3,7 +3,7 @@
 // in: Rays [n]. out: Hits [n], in ray order. Rays are in float under every precision policy. The result does not depend
 // on the width of a block, nor on which rays are walked together.
 #include "kernels/extend/bvh_ray.h"
-#include "kernels/extend/offset.h"
+#include "kernels/extend/inset_lanes.h"
 #include "kernels/extend/prefetch_hits.h"
 #include "kernels/stage_declarations.h"
 
@@ -16,7 +16,7 @@ WAVECREST_INLINE void prefetchHit(const SceneView<S>& scene, uint32_t id) {
   if (id != kMiss) prefetchPrimitive(scene, id & kFacePrimitiveMask);
 }
 
-// From weights of corners to coordinates of the primitive, kept off its edges (see kInset).
+// From weights of corners to coordinates of the primitive, kept off its edges.
 template <class S>
 WAVECREST_INLINE void finish(const SceneView<S>& scene, Hits& hits, size_t i) {
   const UInt id = load(hits.primitive, i);
@@ -24,12 +24,9 @@ WAVECREST_INLINE void finish(const SceneView<S>& scene, Hits& hits, size_t i) {
   const auto is = [&](FaceKind k) HWY_ATTR { return kind == UInt(static_cast<uint32_t>(k)); };
   const Mask lower = is(FaceKind::lowerHalf), upper = is(FaceKind::upperHalf), sphere = is(FaceKind::sphere);
   const Float second = load(hits.u, i), third = load(hits.v, i), both = second + third;
-  const Float inset(kInset), rest(1 - kInset);
-  const Float u = min(max(select(lower, both, second), inset), rest);
-  const Float v = min(max(select(upper, both, third), inset), rest);
-  const Float scale = select(lower | upper, Float(1), min(Float(1), rest / (u + v)));
-  store(select(sphere, second, u * scale), hits.u, i);
-  store(select(sphere, third, v * scale), hits.v, i);
+  const auto at = insideEdges(select(lower, both, second), select(upper, both, third), !(lower | upper));
+  store(select(sphere, second, at.u), hits.u, i);
+  store(select(sphere, third, at.v), hits.v, i);
   store(select(id == UInt(kMiss), id, id & UInt(kFacePrimitiveMask)), hits.primitive, i);
   if (scene.attributes != nullptr) prefetchAttributes(scene, hits.primitive + i, kLanes);
 }

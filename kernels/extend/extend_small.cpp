@@ -2,7 +2,7 @@
 //
 // in: Rays [n]. out: Hits [n], in ray order. Rays are in float under every precision policy. The order of the tests
 // decides ties, boxes first, so the result does not depend on the width of a block.
-#include "kernels/extend/offset.h"
+#include "kernels/extend/inset_lanes.h"
 #include "kernels/extend/small_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -22,32 +22,22 @@ struct Closest {
   }
 };
 
-struct HitCoordinates {
-  Float u, v;
-};
-
 // In the primitive that was hit, kept off its edges; for a sphere u is the distance t. Computed once for the closest
 // hit, from the point, instead of being kept for each candidate.
-WAVECREST_INLINE HitCoordinates coordinatesOf(const SmallSceneView& scene, const Closest& best, Vec3<Float> origin,
-                                              Vec3<Float> direction) {
-  HitCoordinates at{best.t, Float(0)};
-  if (scene.firstSphere == 0) return at;
+WAVECREST_INLINE HitCoordinates<Float> coordinatesOf(const SmallSceneView& scene, const Closest& best,
+                                                     Vec3<Float> origin, Vec3<Float> direction) {
+  if (scene.firstSphere == 0) return {best.t, Float(0)};
   const Vec3<Float> point = mulAdd(direction, best.t, origin);
   const RecordLanes<FaceCoordinates> face(scene.coordinates, min(best.primitive, UInt(scene.firstSphere - 1)));
   const auto along = [&](const FourColumns<Float>& row) WAVECREST_LAMBDA {
     return mulAdd(row.a, point.x, mulAdd(row.b, point.y, mulAdd(row.c, point.z, row.d)));
   };
-  Float u = min(max(along(face.four(scene.coordinates->uAxis[0])), Float(kInset)), Float(1 - kInset));
-  Float v = min(max(along(face.four(scene.coordinates->vAxis[0])), Float(kInset)), Float(1 - kInset));
-  if (scene.triangleCount > 0) {
-    const Float scale = min(Float(1), Float(1 - kInset) / (u + v));
-    const Mask quad = best.primitive < UInt(scene.firstTriangle);
-    u = select(quad, u, u * scale);
-    v = select(quad, v, v * scale);
-  }
-  if (scene.sphereCount == 0) return {u, v};
+  const Float u = along(face.four(scene.coordinates->uAxis[0])), v = along(face.four(scene.coordinates->vAxis[0]));
+  const auto at =
+      scene.triangleCount == 0 ? insideQuad(u, v) : insideEdges(u, v, !(best.primitive < UInt(scene.firstTriangle)));
+  if (scene.sphereCount == 0) return at;
   const Mask sphere = !(best.primitive < UInt(scene.firstSphere));
-  return {select(sphere, best.t, u), zeroUnless(!sphere, v)};
+  return {select(sphere, best.t, at.u), zeroUnless(!sphere, at.v)};
 }
 
 }  // namespace

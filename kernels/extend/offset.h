@@ -4,6 +4,8 @@
 // (Pharr, Jakob, Humphreys, "Physically Based Rendering", 3.9.4).
 #pragma once
 
+#include <algorithm>
+
 namespace wavecrest {
 
 constexpr double kUnitRoundoff = 0x1p-24;
@@ -13,5 +15,14 @@ constexpr double kOffsetGamma = 16 * kUnitRoundoff;
 // Hits are moved this far (relative to the edge) inside their quad or triangle. Rounding then cannot put a path's
 // vertex beyond a neighbouring wall, from where it would leave a closed scene.
 constexpr float kInset = 0x1p-18f;
+
+// The scalar twin of insideEdges in inset_lanes.h.
+inline void moveInsideEdges(float& u, float& v, bool triangle) {
+  u = std::clamp(u, kInset, 1 - kInset);
+  v = std::clamp(v, kInset, 1 - kInset);
+  const float scale = triangle ? std::min(1.0f, (1 - kInset) / (u + v)) : 1.0f;
+  u *= scale;
+  v *= scale;
+}
 
 }  // namespace wavecrest

@@ -209,15 +209,24 @@ class Merger {
     return out;
   }
 
-  // Photons of a block, copied out of the stores they are scattered over.
-  struct Photons {
-    PhotonRecord<S> records[kLanes];
-  };
-  WAVECREST_INLINE void fetch(size_t i, size_t count, Photons& photons) const {
-    for (size_t k = 0; k < kLanes; ++k) {
-      photons.records[k] = map_.recordOf(wave_.pairs.light[i + std::min(k, count - 1)]);
+  // The photons of a block of the list, scattered over the stores. Lanes past the last repeat it.
+  class PhotonLanes {
+   public:
+    WAVECREST_INLINE PhotonLanes(const PhotonMap<S>& map, const uint32_t* photons, size_t count) {
+      for (size_t k = 0; k < kLanes; ++k) record_[k] = &map.recordOf(photons[std::min(k, count - 1)]);
     }
-  }
+    WAVECREST_INLINE Vec3<Real> operator()(S (PhotonRecord<S>::*field)[3]) const {
+      const auto row = loadFour([&](size_t k) WAVECREST_LAMBDA { return record_[k]->*field; });
+      return {row.a, row.b, row.c};
+    }
+    // A field and the three numbers after it.
+    WAVECREST_INLINE FourColumns<Real> four(S PhotonRecord<S>::*first) const {
+      return loadFour([&](size_t k) WAVECREST_LAMBDA { return &(record_[k]->*first); });
+    }
+
+   private:
+    const PhotonRecord<S>* record_[kLanes];
+  };
 
   void shade() {
     const size_t near = selectNear();
@@ -227,21 +236,20 @@ class Merger {
     const Real radius(context_.mis.radius);
     // k = len_L + len_C
     const Real longest(static_cast<float>(context_.limits.maxDepth - context_.depth));
-    Photons photons;
+    using Photon = PhotonRecord<S>;
     for (size_t i = 0; i < near; i += kLanes) {
       const Mask active = firstLanes(near - i);
-      fetch(i, near - i, photons);
+      const PhotonLanes photons(map_, wave_.pairs.light + i, near - i);
       const UInt vertex = load(wave_.pairs.camera, i);
-      const RecordLanes<PhotonRecord<S>> at(photons.records, laneIndex());
       const auto row = gatherRows<P, kFeatures>(scene, wave_, wave_.pairs.camera + i);
       const auto& shading = row.shading;
-      const Vec3<Real> between = at(photons.records->position) - shading.position;
-      const FourColumns<Real> sums = at.four(photons.records->dVCM);  // dVCM, dVM, depth
+      const Vec3<Real> between = photons(&Photon::position) - shading.position;
+      const FourColumns<Real> sums = photons.four(&Photon::dVCM);  // dVCM, dVM, depth
       // On the same side of the surface, and not beyond the path length.
-      const Mask accepted = active & (dot(shading.normal, at(photons.records->normal)) > Real(0.1f)) &
+      const Mask accepted = active & (dot(shading.normal, photons(&Photon::normal)) > Real(0.1f)) &
                             (abs(dot(between, shading.normal)) <= radius * Real(0.5f)) & (sums.c <= longest);
       context_.counters->merges += countTrue(accepted);
-      const Vec3<Real> direction = at(photons.records->direction);
+      const Vec3<Real> direction = photons(&Photon::direction);
       const auto bsdf = shading.scattering(active, direction);
       Real weight(1);
       if (context_.mis.mergeWeights) {
@@ -253,7 +261,7 @@ class Merger {
         weight = reciprocal<P>(Real(1) + wLight + wCamera);
       }
       const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine;
-      const Vec3<Real> contribution = row.throughput * bsdf.f * at(photons.records->power) * scale;
+      const Vec3<Real> contribution = row.throughput * bsdf.f * photons(&Photon::power) * scale;
       addRadiance(wave_.radiance, gather(paths.lane, vertex), accepted, contribution);
     }
   }

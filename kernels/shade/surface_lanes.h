@@ -5,6 +5,7 @@
 // starts `offset` off the surface cannot meet the surface it starts on (kernels/extend/offset.h).
 #pragma once
 
+#include "kernels/extend/inset_lanes.h"
 #include "kernels/extend/offset.h"
 #include "kernels/lane_support.h"
 
@@ -34,13 +35,10 @@ WAVECREST_INLINE SurfacePoint<typename P::Real> surfacePoint(
     const Real inverse = Real(1) / dot(e1, h);
     const Vec3<Real> s = rayOrigin - p0;
     // Clamped to where the primitive can be: a ray that grazes its plane is ill-conditioned.
-    const auto inside = [](Real x) WAVECREST_LAMBDA { return min(max(x, Real(kInset)), Real(1 - kInset)); };
-    u = inside(dot(s, h) * inverse);
-    v = inside(dot(rayDirection, cross(s, e1)) * inverse);
-    const Mask triangle = at(fields.kind) == UInt(static_cast<uint32_t>(PrimitiveKind::triangle));
-    const Real scale = select(triangle, min(Real(1), Real(1 - kInset) / (u + v)), Real(1));
-    u = u * scale;
-    v = v * scale;
+    const auto inside = insideEdges(dot(s, h) * inverse, dot(rayDirection, cross(s, e1)) * inverse,
+                                    at(fields.kind) == UInt(static_cast<uint32_t>(PrimitiveKind::triangle)));
+    u = inside.u;
+    v = inside.v;
   }
   surface.u = u;
   surface.v = v;
