@@ -129,8 +129,9 @@ void fillStore(LightStore<float>& store, size_t count, float z, Random& random) 
   }
 }
 
-// Light vertices of waves on the floor, and the map over them.
+// Light vertices of waves on the floor, side by side as a session has them, and the map over them.
 struct PhotonField {
+  Arena memory;
   std::vector<std::unique_ptr<LightStore<float>>> stores;
   std::vector<LightStore<float>*> pointers;
   PhotonMap<float> map;
@@ -139,6 +140,8 @@ struct PhotonField {
     Random random(count);
     for (size_t first = 0; first < count; first += kWave) {
       stores.push_back(std::make_unique<LightStore<float>>(kWave, kNeeds));
+      if (first == 0) memory = Arena((count + kWave - 1) / kWave * stores[0]->arenaBytes(kWave));
+      stores.back()->reserve(kWave, memory);
       fillStore(*stores.back(), std::min(kWave, count - first), 0, random);
       pointers.push_back(stores.back().get());
     }
