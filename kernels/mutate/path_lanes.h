@@ -68,16 +68,16 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
                                                         const PathVertices<typename P::Storage>& v, UInt at,
                                                         Vec3<typename P::Real> fix, Walk walk) {
   using Real = typename P::Real;
+  const Vec3<Real> normal = normalAt(v, at);
   VertexLanes<Real> vertex{.position = positionAt(v, at),
                            .fix = fix,
-                           .normal = normalAt(v, at),
-                           .shadingNormal = {},
-                           .baseNormal = {},
+                           .normal = normal,
+                           .shadingNormal = normal,
+                           .baseNormal = normal,
                            .offset = gather(v.offset, at),
                            .u = Float(0),
                            .v = Float(0),
                            .material = materialOf(scene, gather(v.primitive, at))};
-  vertex.shadingNormal = vertex.normal;
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = gatherVec3(v.shadingX, v.shadingY, v.shadingZ, at);
   }

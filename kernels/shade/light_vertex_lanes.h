@@ -68,13 +68,12 @@ class PackedLightVertices {
     VertexLanes<Real> vertex{.position = vec3(position_, i),
                              .fix = vec3(fix_, i),
                              .normal = vec3(normal_, i),
-                             .shadingNormal = {},
-                             .baseNormal = {},
+                             .shadingNormal = vec3(normal_, i),
+                             .baseNormal = vec3(normal_, i),
                              .offset = load(offset_ + i),
                              .u = Float(0),
                              .v = Float(0),
                              .material = materialOf(scene, select(active, load(primitive_ + i), UInt(0u)))};
-    vertex.shadingNormal = vertex.normal;
     if constexpr (has(kFeatures, kShadingNormals)) vertex.shadingNormal = vec3(shadingNormal_, i);
     if constexpr (has(kFeatures, kNormalMaps)) {
       if (scene.normalMaps) vertex.baseNormal = vec3(baseNormal_, i);

@@ -14,12 +14,12 @@ WAVECREST_SIMD_BEGIN
 
 template <class Real>
 struct NormalMapLanes {
-  bool present = false;                // some lane has a map; else the rest means nothing
-  Mask lanes = noLanes();              // that have one
-  Mask flips = noLanes();              // N(w) faces w
-  Mask softens = noLanes();            // the terminator
-  Mask mirrorsBack = noLanes();        // two-sided around the map: the back is the front's mirror image
-  Vec3<Real> fix{}, base{}, mapped{};  // direction back along the walk; normals without and with the map
+  bool present = false;          // some lane has a map; else the rest is not set
+  Mask lanes;                    // that have one
+  Mask flips;                    // N(w) faces w
+  Mask softens;                  // the terminator
+  Mask mirrorsBack;              // two-sided around the map: the back is the front's mirror image
+  Vec3<Real> fix, base, mapped;  // direction back along the walk; normals without and with the map
 
   // Where two-sidedness turns what is seen from w.
   WAVECREST_INLINE Mask turns(Vec3<Real> w) const { return mirrorsBack & (dot(w, base) < Real(0)); }

@@ -18,6 +18,16 @@ struct Scattering {
   Real lightCosine;  // c(omega_l) = |omega_l . N_s|, which f is multiplied by
 };
 
+// What a vertex is, before its material is known: of a live path, or of a stored light vertex.
+template <class Real>
+struct VertexLanes {
+  Vec3<Real> position, fix, normal, shadingNormal;
+  Vec3<Real> baseNormal;  // the shading normal without its map, in feature sets with normal maps
+  Real offset;
+  Float u, v;  // texture coordinates
+  UInt material;
+};
+
 template <class P, uint32_t kFeatures>
 struct ShadingLanes {
   using Real = typename P::Real;
@@ -29,6 +39,17 @@ struct ShadingLanes {
   Real fixCosine;  // fix . geometric normal, signed
   BsdfInputOf<P, kFeatures> bsdf;
   std::conditional_t<has(kFeatures, kNormalMaps), NormalMapLanes<Real>, NoNormalMaps> map;
+
+  // Without maps, textures and other sides yet. A constructor, because g++ first clears all of an aggregate in memory.
+  WAVECREST_INLINE ShadingLanes(const VertexLanes<Real>& vertex, const BsdfInputOf<P, kFeatures>& input)
+      : position(vertex.position),
+        normal(vertex.normal),
+        offset(vertex.offset),
+        frame(Frame<Real>::fromNormal(vertex.shadingNormal)),
+        fix(frame.toLocal(vertex.fix)),
+        side(Real(1)),
+        fixCosine(dot(vertex.fix, vertex.normal)),
+        bsdf(input) {}
 
   WAVECREST_INLINE Vec3<Real> toLocal(Vec3<Real> v) const {
     const Vec3<Real> local = frame.toLocal(v);
@@ -164,16 +185,6 @@ struct ShadingLanes {
   }
 };
 
-// What a vertex is, before its material is known: of a live path, or of a stored light vertex.
-template <class Real>
-struct VertexLanes {
-  Vec3<Real> position, fix, normal, shadingNormal;
-  Vec3<Real> baseNormal;  // the shading normal without its map, in feature sets with normal maps
-  Real offset;
-  Float u, v;  // texture coordinates
-  UInt material;
-};
-
 template <class S>
 WAVECREST_INLINE UInt materialOf(const SceneView<S>& scene, UInt primitive) {
   return RecordLanes<PrimitiveRecord<S>>(scene.primitives, primitive)(scene.primitives->material);
@@ -183,15 +194,7 @@ template <class P, uint32_t kFeatures>
 WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P::Storage>& scene,
                                                       const VertexLanes<typename P::Real>& vertex) {
   using Real = typename P::Real;
-  ShadingLanes<P, kFeatures> s{.position = vertex.position,
-                               .normal = vertex.normal,
-                               .offset = vertex.offset,
-                               .frame = Frame<Real>::fromNormal(vertex.shadingNormal),
-                               .fix = {},
-                               .side = Real(1),
-                               .fixCosine = dot(vertex.fix, vertex.normal),
-                               .bsdf = BsdfInputOf<P, kFeatures>(scene.materials, vertex.material),
-                               .map = {}};
+  ShadingLanes<P, kFeatures> s(vertex, BsdfInputOf<P, kFeatures>(scene.materials, vertex.material));
   const auto flagged = [&](MaterialFlags flag) WAVECREST_LAMBDA { return (s.bsdf.flags & UInt(flag)) == UInt(flag); };
   if constexpr (has(kFeatures, kNormalMaps)) {
     if (scene.normalMaps && any(flagged(kMapped))) {
@@ -204,6 +207,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
                .base = vertex.baseNormal,
                .mapped = vertex.shadingNormal};
       s.frame = Frame<Real>::fromNormal(select(s.map.lanes, s.map.normalFor(vertex.fix), vertex.shadingNormal));
+      s.fix = s.frame.toLocal(vertex.fix);
     }
   }
   if constexpr (has(kFeatures, kTextures)) {
@@ -217,7 +221,6 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
     s.bsdf.textures.alpha = factor(slots.alphaTexture).x;
     s.bsdf.textures.opacity = factor(slots.opacityTexture).x;
   }
-  s.fix = s.frame.toLocal(vertex.fix);
   s.side = select(flagged(kTwoSided) & (s.fix.z < Real(0)), Real(-1), Real(1));
   s.fix.z = s.fix.z * s.side;
   return s;
@@ -230,16 +233,16 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename
   using Real = typename P::Real;
   const auto& rays = wave.rays;
   const auto& surfaces = wave.surfaces;
+  const auto normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
   VertexLanes<Real> vertex{.position = loadVec3(rays.originX, rays.originY, rays.originZ, i),
                            .fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i),
-                           .normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i),
-                           .shadingNormal = {},
-                           .baseNormal = {},
+                           .normal = normal,
+                           .shadingNormal = normal,
+                           .baseNormal = normal,
                            .offset = load(surfaces.offset, i),
                            .u = Float(0),
                            .v = Float(0),
                            .material = materialOf(scene, select(active, load(wave.hits.primitive, i), UInt(0u)))};
-  vertex.shadingNormal = vertex.normal;
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i);
   }
@@ -304,16 +307,16 @@ WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::S
                           back = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].fix; }),
                           side = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].normal; }),
                           carried = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].throughput; });
+  const Vec3<Real> normal{side.a, side.b, side.c};
   VertexLanes<Real> vertex{.position = {place.a, place.b, place.c},
                            .fix = {back.a, back.b, back.c},
-                           .normal = {side.a, side.b, side.c},
-                           .shadingNormal = {},
-                           .baseNormal = {},
+                           .normal = normal,
+                           .shadingNormal = normal,
+                           .baseNormal = normal,
                            .offset = place.d,
                            .u = Float(0),
                            .v = Float(0),
                            .material = toUInt(to<Float>(back.d))};
-  vertex.shadingNormal = vertex.normal;
   const UInt at = loadUnaligned(index);
   const auto& surfaces = wave.surfaces;
   if constexpr (has(kFeatures, kShadingNormals)) {
