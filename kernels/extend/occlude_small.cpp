@@ -18,6 +18,9 @@ struct Blocked {
   WAVECREST_INLINE void take(Mask met, Float t, UInt) { rays = rays | (met & (t > Float(0)) & (t < Float(1))); }
 };
 
+// Pixels lie all over the film: those of so many rays are asked for ahead.
+constexpr size_t kPixelsAhead = 128;
+
 }  // namespace
 
 template <class P>
@@ -27,8 +30,13 @@ void occludeSmall(const StageContext<typename P::Storage>& context, Wave<typenam
   const size_t count = shadow.size;
   context.counters->raysShadow += count;
   const bool splatting = !context.contributesToLanes();
+  size_t asked = 0;  // rays whose pixels are on their way
   for (size_t i = 0; i < count; i += kLanes) {
-    if (splatting) prefetchPixels(context.splats, shadow.target + i, std::min(kLanes, count - i));
+    if (splatting) {
+      const size_t next = std::min(i + kPixelsAhead, count);
+      prefetchPixels(context.splats, shadow.target + asked, next - asked);
+      asked = next;
+    }
     const Vec3<Float> origin = loadVec3(shadow.originX, shadow.originY, shadow.originZ, i);
     const Vec3<Float> direction = loadVec3(shadow.directionX, shadow.directionY, shadow.directionZ, i);
     Blocked blocked{noLanes()};

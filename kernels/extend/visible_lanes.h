@@ -7,7 +7,11 @@ WAVECREST_SIMD_BEGIN
 
 // Asks for the pixels that rays will be splatted to, which lie all over the film.
 WAVECREST_INLINE void prefetchPixels(const SplatSink& splats, const uint32_t* pixels, size_t count) {
-  for (size_t k = 0; k < count; ++k) __builtin_prefetch(splats.sums + 3 * size_t{pixels[k]}, 1);
+  for (size_t k = 0; k < count; ++k) {
+    const int64_t* const sums = splats.sums + 3 * size_t{pixels[k]};
+    __builtin_prefetch(sums, 1);
+    __builtin_prefetch(sums + 2, 1);  // three of eight pixels lie on two lines
+  }
 }
 
 // Adds the contributions of block i where `visible` holds, in ray order: to lanes, or on light walks to the film.
