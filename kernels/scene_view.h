@@ -83,6 +83,14 @@ struct alignas(128) MaterialRecord {
   float roughTransmittance[kTransmittanceSize];  // rough plastic: share of light that enters, shadowing included
 };
 
+// The records of a scene that has few materials, word by word: word w of material m at [w][m]. A block of lanes has a
+// word of all of them in one register, and looks its own up there. Without the last array of the records.
+constexpr size_t kFewMaterials = 16;  // the widest block of lanes
+struct alignas(64) MaterialTable {
+  static constexpr size_t kWords = offsetof(MaterialRecord, roughTransmittance) / sizeof(uint32_t);
+  uint32_t words[kWords][kFewMaterials];
+};
+
 enum class TextureKind : uint32_t { checkerboard, bitmap };
 enum class WrapMode : uint32_t { repeat, mirror, clamp };
 
@@ -156,6 +164,8 @@ struct SceneView {
   const PrimitiveRecord<S>* primitives = nullptr;
   const AttributeRecord* attributes = nullptr;
   const MaterialRecord* materials = nullptr;
+  const MaterialTable* materialTable = nullptr;  // the same; none if they are more than kFewMaterials
+  uint32_t materialCount = 0;
   const LightRecord<S>* lights = nullptr;
   const TextureRecord* textures = nullptr;
   const float* texels = nullptr;

@@ -106,24 +106,23 @@ void fillStore(LightStore<float>& store, size_t count, float z, Random& random) 
     v.positionX[i] = random.uniform(0, 1);
     v.positionY[i] = random.uniform(0, 1);
     v.positionZ[i] = z;
-    const float up = z == 0 ? 1.0f : -1.0f, tilt = random.uniform(-0.7, 0.7);
-    v.fixX[i] = tilt;
-    v.fixY[i] = 0;
-    v.fixZ[i] = up * std::sqrt(1 - tilt * tilt);
-    v.normalX[i] = v.normalY[i] = 0;
-    v.normalZ[i] = up;
-    v.offset[i] = 1e-6f;
-    v.throughputR[i] = v.throughputG[i] = v.throughputB[i] = 1;
-    v.dVCM[i] = v.dVC[i] = v.dVM[i] = random.uniform(0, 1);
-    v.primitive[i] = z == 0 ? 0 : 1;
-    v.depth[i] = 1;
     v.lane[i] = i;
-    store.photons()[i] = {.position = {v.positionX[i], v.positionY[i], v.positionZ[i]},
-                          .direction = {v.fixX[i], v.fixY[i], v.fixZ[i]},
+    const float up = z == 0 ? 1.0f : -1.0f, tilt = random.uniform(-0.7, 0.7), density = random.uniform(0, 1);
+    const float cosine = std::sqrt(1 - tilt * tilt);
+    v.row[i] = {.position = {v.positionX[i], v.positionY[i], z},
+                .offset = 1e-6f,
+                .fix = {tilt, 0, up * cosine},
+                .material = 0,
+                .normal = {0, 0, up},
+                .dVCM = density,
+                .throughput = {1, 1, 1},
+                .dVC = density};
+    store.photons()[i] = {.position = {v.positionX[i], v.positionY[i], z},
+                          .direction = {tilt, 0, up * cosine},
                           .normal = {0, 0, up},
-                          .power = {1 / (up * v.fixZ[i]), 1 / (up * v.fixZ[i]), 1 / (up * v.fixZ[i])},
-                          .dVCM = v.dVCM[i],
-                          .dVM = v.dVM[i],
+                          .power = {1 / cosine, 1 / cosine, 1 / cosine},
+                          .dVCM = density,
+                          .dVM = density,
                           .depth = 1,
                           .unused = 0};
   }

@@ -122,6 +122,9 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   view.primitives = primitives.records.data();
   view.attributes = primitives.attributes.data();
   view.materials = compiled->materials.data();
+  view.materialCount = static_cast<uint32_t>(compiled->materials.size());
+  compiled->materialTable = tabulate(compiled->materials);
+  view.materialTable = compiled->materialTable.get();
   view.textures = compiled->textures.records.data();
   view.texels = compiled->textures.texels.data();
   view.environment = compiled->lights.environment.view;

@@ -30,6 +30,7 @@ struct CompiledScene {
   Double3 origin{};  // of all coordinates below, in those of the scene (originOf)
   Primitives<S> primitives;
   std::vector<MaterialRecord> materials;
+  std::unique_ptr<MaterialTable> materialTable;  // if they are few
   Textures textures;
   Lights<S> lights;
   // One of these three.

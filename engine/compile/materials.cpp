@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "engine/compile/rough_boundary.h"
 #include "engine/scene/vector_math.h"
@@ -228,6 +229,17 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
   }
   std::visit(Compiler(record, scene), material.kind);
   return record;
+}
+
+std::unique_ptr<MaterialTable> tabulate(std::span<const MaterialRecord> records) {
+  if (records.size() > kFewMaterials) return nullptr;
+  auto table = std::make_unique<MaterialTable>();
+  for (size_t material = 0; material < records.size(); ++material) {
+    uint32_t words[MaterialTable::kWords];
+    std::memcpy(words, &records[material], sizeof(words));
+    for (size_t w = 0; w < MaterialTable::kWords; ++w) table->words[w][material] = words[w];
+  }
+  return table;
 }
 
 double diffuseFresnelReflectance(double eta) {

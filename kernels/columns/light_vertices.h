@@ -13,22 +13,15 @@ namespace wavecrest {
 
 template <class S>
 struct LightVertices : Columns<LightVertices<S>> {
-  Column<S> positionX, positionY, positionZ;
-  Column<S> fixX, fixY, fixZ;  // unit direction back along the light path
-  Column<S> normalX, normalY, normalZ;
-  Column<S> shadingX, shadingY, shadingZ;  // dropped where the scene has no shading normals
-  Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
-  Column<S> offset;
-  Column<S> throughputR, throughputG, throughputB;
-  Column<S> dVCM, dVC, dVM;
-  Column<float> uvU, uvV;  // dropped where the scene has no textures
-  Column<uint32_t> primitive;
-  Column<uint32_t> depth;  // edges from the light
-  Column<uint32_t> lane;   // of the path, in its wave
+  Column<S> positionX, positionY, positionZ;  // of photons: dropped without merges
+  Column<VertexRow<S>> row;                   // dropped without connections, as are all below
+  Column<S> shadingX, shadingY, shadingZ;     // dropped where the scene has no shading normals
+  Column<S> baseX, baseY, baseZ;              // dropped where it has no normal maps
+  Column<float> uvU, uvV;                     // dropped where the scene has no textures
+  Column<uint32_t> lane;                      // of the path, in its wave
   auto all() {
-    return std::tie(positionX, positionY, positionZ, fixX, fixY, fixZ, normalX, normalY, normalZ, shadingX, shadingY,
-                    shadingZ, baseX, baseY, baseZ, offset, throughputR, throughputG, throughputB, dVCM, dVC, dVM, uvU,
-                    uvV, primitive, depth, lane);
+    return std::tie(positionX, positionY, positionZ, row, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV,
+                    lane);
   }
 };
 
@@ -85,8 +78,8 @@ Bounds<S> boundsOf(const LightVertices<S>& v) {
   return bounds;
 }
 
-// The light vertices of one wave, in the order (depth, lane): columns for connections, records for merging. Positions
-// are columns in either case, because a photon map is built from them alone.
+// The light vertices of one wave, in the order (depth, lane): rows for connections; for merging photons, with columns
+// of their positions, because a photon map is built from those alone.
 //
 // Grows between stages to what a wave needs and keeps that memory, so a steady state allocates nothing.
 // Path i of an iteration is lane i % lanes of store i / lanes.
@@ -108,12 +101,15 @@ class LightStore {
       vertices.uvV.drop();
     }
     if (!use.connected) dropConnectedColumns();
+    if (!use.merged) {
+      for (Column<S>* column : {&vertices.positionX, &vertices.positionY, &vertices.positionZ}) column->drop();
+    }
   }
 
-  // Whether vertices have all their columns, and whether they are photons as well.
-  bool keepsColumns() const { return vertices.lane.needed(); }
+  // Whether vertices can be connected, and whether they are photons.
+  bool keepsRows() const { return vertices.row.needed(); }
   bool keepsPhotons() const { return keepsPhotons_; }
-  // One per vertex.
+  // One per vertex, if they are.
   PhotonRecord<S>* photons() { return photons_; }
   const PhotonRecord<S>* photons() const { return photons_; }
 
@@ -203,15 +199,14 @@ class LightStore {
   size_t photonBytes(size_t capacity) const { return keepsPhotons_ ? capacity * sizeof(PhotonRecord<S>) : 0; }
 
   void dropConnectedColumns() {
-    for (Column<S>* column :
-         {&vertices.fixX, &vertices.fixY, &vertices.fixZ, &vertices.normalX, &vertices.normalY, &vertices.normalZ,
-          &vertices.shadingX, &vertices.shadingY, &vertices.shadingZ, &vertices.baseX, &vertices.baseY, &vertices.baseZ,
-          &vertices.offset, &vertices.throughputR, &vertices.throughputG, &vertices.throughputB, &vertices.dVCM,
-          &vertices.dVC, &vertices.dVM}) {
+    vertices.row.drop();
+    for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ, &vertices.baseX,
+                              &vertices.baseY, &vertices.baseZ}) {
       column->drop();
     }
-    for (Column<float>* column : {&vertices.uvU, &vertices.uvV}) column->drop();
-    for (Column<uint32_t>* column : {&vertices.primitive, &vertices.depth, &vertices.lane}) column->drop();
+    vertices.uvU.drop();
+    vertices.uvV.drop();
+    vertices.lane.drop();
   }
 
   void grow(size_t capacity) {
@@ -255,12 +250,12 @@ class LightStore {
 
   using Tuple = decltype(std::declval<LightVertices<S>&>().all());
   using Indices = std::make_index_sequence<std::tuple_size_v<Tuple>>;
-  // Items [source, source + count) of one set of columns to [target, ...) of another.
+  // Items [source, source + count) of one set of columns to [target, ...) of another, as far as both have them.
   template <size_t... kIndex>
   static void copyColumns(Tuple from, Tuple to, size_t source, size_t target, size_t count,
                           std::index_sequence<kIndex...>) {
     const auto copy = [=](auto& a, auto& b) {
-      if (a.needed() && count != 0) std::memcpy(&b[target], &a[source], count * sizeof(a[0]));
+      if (a.needed() && b.needed() && count != 0) std::memcpy(&b[target], &a[source], count * sizeof(a[0]));
     };
     (copy(std::get<kIndex>(from), std::get<kIndex>(to)), ...);
   }

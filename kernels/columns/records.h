@@ -76,13 +76,13 @@ struct VertexPairs : Columns<VertexPairs> {
   auto all() { return std::tie(camera, light); }
 };
 
-// A camera vertex as joining it with light vertices reads it, sixteen numbers in one place: what pairs it with comes to
-// it again and again. material: index into SceneView::materials, exact as a number.
+// A vertex as joining it with one of the other walk reads it, sixteen numbers in one place: what pairs it with comes to
+// it in no order, again and again. material: index into SceneView::materials, exact as a number.
 template <class S>
 struct alignas(16 * sizeof(S)) VertexRow {
   S position[3], offset;
   S fix[3], material;  // fix: unit direction back along the path
-  S normal[3], dVCM;   // dVCM, dVC: as in PathStates
+  S normal[3], dVCM;   // dVCM, dVC, throughput: as in PathStates
   S throughput[3], dVC;
 };
 

@@ -3,13 +3,11 @@
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: the next depth of the context's light
 // store [<= n], in lane order; nothing else changes. The caller has begun the depth, so there is room.
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include "kernels/columns/light_vertices.h"
 #include "kernels/mis_lanes.h"
-#include "kernels/shade/shading_lanes.h"
-#include "kernels/simd/interleave.h"
+#include "kernels/shade/vertex_row_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -23,7 +21,7 @@ WAVECREST_INLINE Mask joinableVertices(const SceneView<S>& scene, const Wave<S>&
   if constexpr (has(kFeatures, kSpecularBsdfs)) {
     const UInt primitive = select(active, load(wave.hits.primitive, i), UInt(0u));
     const RecordLanes<PrimitiveRecord<S>> at(scene.primitives, primitive);
-    const RecordLanes<MaterialRecord> material(scene.materials, at(scene.primitives->material));
+    const MaterialLanes material(scene, at(scene.primitives->material));
     return active & hasNonDeltaLobes(material(scene.materials->kind));
   } else {
     return active;
@@ -45,21 +43,14 @@ WAVECREST_INLINE auto appendPosition(const Rays<S>& rays, size_t i, Mask m, Ligh
   return position;
 }
 
-// What connections need beside the position.
+// What connections read.
 template <uint32_t kFeatures, class S>
-WAVECREST_INLINE void appendColumns(const StageContext<S>& context, const Wave<S>& wave, size_t i, Mask m,
-                                    LightVertices<S>& vertices, size_t out) {
-  const auto& rays = wave.rays;
+WAVECREST_INLINE void appendRows(const StageContext<S>& context, const Wave<S>& wave, size_t i, Mask m,
+                                 LightVertices<S>& vertices, size_t out) {
   const auto& surfaces = wave.surfaces;
-  const auto& paths = wave.paths;
-  prefetchColumns(out, vertices.fixX, vertices.fixY, vertices.fixZ, vertices.normalX, vertices.normalY,
-                  vertices.normalZ, vertices.offset, vertices.throughputR, vertices.throughputG, vertices.throughputB,
-                  vertices.dVCM, vertices.dVC, vertices.dVM, vertices.primitive, vertices.depth, vertices.lane);
-  appendVec3(-loadVec3(rays.directionX, rays.directionY, rays.directionZ, i), m, vertices.fixX, vertices.fixY,
-             vertices.fixZ, out);
-  appendVec3(loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i), m, vertices.normalX, vertices.normalY,
-             vertices.normalZ, out);
-  append(load(surfaces.offset, i), m, vertices.offset, out);
+  RecordBlock<S> rows;
+  makeRows(*context.scene, wave, i, rows);
+  rows.append(m, vertices.row + out, kRecordsAhead);
   if constexpr (has(kFeatures, kShadingNormals)) {
     appendVec3(loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i), m, vertices.shadingX,
                vertices.shadingY, vertices.shadingZ, out);
@@ -74,15 +65,8 @@ WAVECREST_INLINE void appendColumns(const StageContext<S>& context, const Wave<S
     append(load(surfaces.uvU, i), m, vertices.uvU, out);
     append(load(surfaces.uvV, i), m, vertices.uvV, out);
   }
-  appendVec3(loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i), m, vertices.throughputR,
-             vertices.throughputG, vertices.throughputB, out);
-  const auto mis = loadMis<kFeatures>(paths, i);
-  append(mis.dVCM, m, vertices.dVCM, out);
-  append(mis.dVC, m, vertices.dVC, out);
-  append(mis.dVM, m, vertices.dVM, out);
-  append(load(wave.hits.primitive, i), m, vertices.primitive, out);
-  append(UInt(context.depth), m, vertices.depth, out);
-  append(load(paths.lane, i), m, vertices.lane, out);
+  prefetchColumns(out, vertices.lane);
+  append(load(wave.paths.lane, i), m, vertices.lane, out);
 }
 
 // The box around the positions of several blocks.
@@ -118,7 +102,7 @@ class BoundsLanes {
   Vec3<Real> low_, high_;
 };
 
-// The same vertices as records: the block is transposed by fours, then each lane's pieces go to its record.
+// What merging reads.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE void appendPhotons(const StageContext<typename P::Storage>& context,
                                     const Wave<typename P::Storage>& wave, size_t i, Mask m,
@@ -137,22 +121,12 @@ WAVECREST_INLINE void appendPhotons(const StageContext<typename P::Storage>& con
   const Vec3<Real> power = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * scale;
   const auto mis = loadMis<kFeatures>(paths, i);
 
-  constexpr size_t kPieces = 4;
-  HWY_ALIGN S pieces[kPieces][4 * kLanes];
-  storeInterleaved(position.x, position.y, position.z, fix.x, pieces[0]);
-  storeInterleaved(fix.y, fix.z, normal.x, normal.y, pieces[1]);
-  storeInterleaved(normal.z, power.x, power.y, power.z, pieces[2]);
-  storeInterleaved(mis.dVCM, mis.dVM, Real(static_cast<float>(context.depth)), Real(0), pieces[3]);
-  static_assert(sizeof(PhotonRecord<S>) == kPieces * 4 * sizeof(S));
-  HWY_ALIGN uint32_t source[kLanes];
-  store(compress(laneIndex(), m), source);
-  for (size_t k = 0, count = countTrue(m); k < count; ++k) {
-    auto* const record = reinterpret_cast<S*>(out + k);
-    __builtin_prefetch(out + k + kRecordsAhead, 1);
-    for (size_t piece = 0; piece < kPieces; ++piece) {
-      std::memcpy(record + 4 * piece, &pieces[piece][4 * source[k]], 4 * sizeof(S));
-    }
-  }
+  RecordBlock<S> records;
+  records.set(0, position.x, position.y, position.z, fix.x);
+  records.set(1, fix.y, fix.z, normal.x, normal.y);
+  records.set(2, normal.z, power.x, power.y, power.z);
+  records.set(3, mis.dVCM, mis.dVM, Real(static_cast<float>(context.depth)), Real(0));
+  records.append(m, out, kRecordsAhead);
 }
 
 }  // namespace
@@ -161,17 +135,19 @@ template <class P, uint32_t kFeatures>
 void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   LightStore<typename P::Storage>& store = *context.light;
   auto& vertices = store.vertices;
-  const bool columns = store.keepsColumns(), photons = store.keepsPhotons();
+  const bool rows = store.keepsRows(), photons = store.keepsPhotons();
   size_t out = vertices.size;
   BoundsLanes<typename P::Real> bounds;
   for (size_t i = 0; i < wave.rays.size; i += kLanes) {
     const Mask joinable = joinableVertices<kFeatures>(*context.scene, wave, i);
-    bounds.include(appendPosition(wave.rays, i, joinable, vertices, out), joinable);
-    if (columns) appendColumns<kFeatures>(context, wave, i, joinable, vertices, out);
-    if (photons) appendPhotons<P, kFeatures>(context, wave, i, joinable, store.photons() + out);
+    if (rows) appendRows<kFeatures>(context, wave, i, joinable, vertices, out);
+    if (photons) {
+      bounds.include(appendPosition(wave.rays, i, joinable, vertices, out), joinable);
+      appendPhotons<P, kFeatures>(context, wave, i, joinable, store.photons() + out);
+    }
     out += countTrue(joinable);
   }
-  store.include(bounds.overLanes(), out - vertices.size);
+  if (photons) store.include(bounds.overLanes(), out - vertices.size);
   context.counters->lightVertices += out - vertices.size;
   vertices.claim(out - vertices.size);
 }

@@ -8,7 +8,7 @@
 
 #include "kernels/merge/photon_map.h"
 #include "kernels/mis_lanes.h"
-#include "kernels/shade/shading_lanes.h"
+#include "kernels/shade/vertex_row_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -144,7 +144,7 @@ class Merger {
       const auto& scene = *context_.scene;
       const UInt primitive = select(querying, load(wave_.hits.primitive, i), UInt(0u));
       const RecordLanes<PrimitiveRecord<S>> at(scene.primitives, primitive);
-      const RecordLanes<MaterialRecord> material(scene.materials, at(scene.primitives->material));
+      const MaterialLanes material(scene, at(scene.primitives->material));
       querying = querying & hasNonDeltaLobes(material(scene.materials->kind));
     }
     return querying;
@@ -241,7 +241,7 @@ class Merger {
       const Mask active = firstLanes(near - i);
       const PhotonLanes photons(map_, wave_.pairs.light + i, near - i);
       const UInt vertex = load(wave_.pairs.camera, i);
-      const auto row = gatherRows<P, kFeatures>(scene, wave_, wave_.pairs.camera + i);
+      const auto row = gatherRows<P, kFeatures>(scene, wave_.vertexRows.row, wave_.surfaces, wave_.pairs.camera + i);
       const auto& shading = row.shading;
       const Vec3<Real> between = photons(&Photon::position) - shading.position;
       const FourColumns<Real> sums = photons.four(&Photon::dVCM);  // dVCM, dVM, depth

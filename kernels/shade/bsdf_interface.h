@@ -60,15 +60,16 @@ template <class P, bool kTextured>
 struct BsdfInput {
   using Real = typename P::Real;
   const MaterialRecord* materials;
-  RecordLanes<MaterialRecord> at;
+  MaterialLanes at;
   UInt kind, flags;
   Walk walk = Walk::camera;  // from the eye, so that gen points to the light's side, or from a light
   Lobes lobes = Lobes::all;
   std::conditional_t<kTextured, TextureFactors<Real>, NoTextureFactors> textures;
 
-  WAVECREST_INLINE BsdfInput(const MaterialRecord* base, UInt index) : materials(base), at(base, index) {
-    kind = at(base->kind);
-    const FourColumns<Float> first = at.four(base->reflectance[0]);
+  WAVECREST_INLINE BsdfInput(const SceneView<typename P::Storage>& scene, UInt index)
+      : materials(scene.materials), at(scene, index) {
+    kind = at(materials->kind);
+    const FourColumns<Float> first = at.four(materials->reflectance[0]);
     albedo_ = {first.a, first.b, first.c};
     flags = bits(first.d);
     if constexpr (kTextured) {

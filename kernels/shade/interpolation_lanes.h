@@ -121,7 +121,7 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
 
   out.base = out.normal;
   if (has(kFeatures, kNormalMaps) && scene.normalMaps) {
-    const RecordLanes<MaterialRecord> material(scene.materials, at(scene.primitives->material));
+    const MaterialLanes material(scene, at(scene.primitives->material));
     const UInt bumpMap = material(scene.materials->bumpTexture), normalMap = material(scene.materials->normalTexture);
     const Mask bump = andNot(hit, bumpMap == UInt(kNoIndex)), map = andNot(hit, normalMap == UInt(kNoIndex));
     if (any(bump)) {

@@ -1,8 +1,6 @@
 // The vertex of each lane as BSDFs want it: material, shading frame and the direction back along the path in it.
 #pragma once
 
-#include <cstring>
-
 #include "kernels/shade/bsdf_lanes.h"
 #include "kernels/shade/normal_map_lanes.h"
 #include "kernels/shade/surface_lanes.h"
@@ -194,7 +192,7 @@ template <class P, uint32_t kFeatures>
 WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P::Storage>& scene,
                                                       const VertexLanes<typename P::Real>& vertex) {
   using Real = typename P::Real;
-  ShadingLanes<P, kFeatures> s(vertex, BsdfInputOf<P, kFeatures>(scene.materials, vertex.material));
+  ShadingLanes<P, kFeatures> s(vertex, BsdfInputOf<P, kFeatures>(scene, vertex.material));
   const auto flagged = [&](MaterialFlags flag) WAVECREST_LAMBDA { return (s.bsdf.flags & UInt(flag)) == UInt(flag); };
   if constexpr (has(kFeatures, kNormalMaps)) {
     if (scene.normalMaps && any(flagged(kMapped))) {
@@ -254,82 +252,6 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename
     vertex.v = load(surfaces.uvV, i);
   }
   return shadingOf<P, kFeatures>(scene, vertex);
-}
-
-// The rows of the live paths' vertices, if no stage has written them at this depth yet.
-template <class S>
-WAVECREST_INLINE void packVertexRows(const SceneView<S>& scene, Wave<S>& wave) {
-  auto& rows = wave.vertexRows;
-  if (rows.size != 0) return;
-  const auto& rays = wave.rays;
-  const auto& surfaces = wave.surfaces;
-  const auto& paths = wave.paths;
-  const size_t count = rays.size;
-  rows.claim(count);
-  for (size_t i = 0; i < count; i += kLanes) {
-    const auto position = loadVec3(rays.originX, rays.originY, rays.originZ, i);
-    const auto fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
-    const auto normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
-    const auto throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
-    using Real = decltype(position.x);
-    const UInt primitive = select(firstLanes(count - i), load(wave.hits.primitive, i), UInt(0u));
-    constexpr size_t kPieces = 4;
-    HWY_ALIGN S pieces[kPieces][4 * kLanes];
-    storeInterleaved(position.x, position.y, position.z, load(surfaces.offset, i), pieces[0]);
-    storeInterleaved(fix.x, fix.y, fix.z, to<Real>(toFloat(materialOf(scene, primitive))), pieces[1]);
-    storeInterleaved(normal.x, normal.y, normal.z, load(paths.dVCM, i), pieces[2]);
-    storeInterleaved(throughput.x, throughput.y, throughput.z, load(paths.dVC, i), pieces[3]);
-    static_assert(sizeof(VertexRow<S>) == kPieces * 4 * sizeof(S));
-    // The tail of a column has room for whole blocks.
-    S* const out = rows.row[i].position;
-    for (size_t k = 0; k < kLanes; ++k) {
-      for (size_t piece = 0; piece < kPieces; ++piece) {
-        std::memcpy(out + 4 * (kPieces * k + piece), &pieces[piece][4 * k], 4 * sizeof(S));
-      }
-    }
-  }
-}
-
-// The live paths' vertices at any indices, and what else their rows hold. index: of a vertex for every lane.
-template <class P, uint32_t kFeatures>
-struct RowLanes {
-  using Real = typename P::Real;
-  ShadingLanes<P, kFeatures> shading;
-  Vec3<Real> throughput;
-  Real dVCM, dVC;
-};
-template <class P, uint32_t kFeatures>
-WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::Storage>& scene,
-                                                   const Wave<typename P::Storage>& wave, const uint32_t* index) {
-  using Real = typename P::Real;
-  const VertexRow<typename P::Storage>* const rows = wave.vertexRows.row;
-  const FourColumns<Real> place = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].position; }),
-                          back = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].fix; }),
-                          side = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].normal; }),
-                          carried = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].throughput; });
-  const Vec3<Real> normal{side.a, side.b, side.c};
-  VertexLanes<Real> vertex{.position = {place.a, place.b, place.c},
-                           .fix = {back.a, back.b, back.c},
-                           .normal = normal,
-                           .shadingNormal = normal,
-                           .baseNormal = normal,
-                           .offset = place.d,
-                           .u = Float(0),
-                           .v = Float(0),
-                           .material = toUInt(to<Float>(back.d))};
-  const UInt at = loadUnaligned(index);
-  const auto& surfaces = wave.surfaces;
-  if constexpr (has(kFeatures, kShadingNormals)) {
-    vertex.shadingNormal = gatherVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, at);
-  }
-  if constexpr (has(kFeatures, kNormalMaps)) {
-    if (scene.normalMaps) vertex.baseNormal = gatherVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, at);
-  }
-  if constexpr (has(kFeatures, kTextures)) {
-    vertex.u = gather(surfaces.uvU, at);
-    vertex.v = gather(surfaces.uvV, at);
-  }
-  return {shadingOf<P, kFeatures>(scene, vertex), {carried.a, carried.b, carried.c}, side.d, carried.d};
 }
 
 WAVECREST_SIMD_END

@@ -2,6 +2,7 @@
 // anywhere read into four vectors.
 #pragma once
 
+#include <cstring>
 #include <type_traits>
 
 #include "kernels/simd/double_lanes.h"
@@ -20,6 +21,39 @@ WAVECREST_INLINE void storeInterleaved(Double a, Double b, Double c, Double d, d
   store(d, values[3]);
   for (size_t i = 0; i < 4 * kLanes; ++i) p[i] = values[i % 4][i / 4];
 }
+
+// Records of sixteen numbers, one for each lane: numbers are set for all lanes, records are copied out lane by lane.
+template <class S>
+class RecordBlock {
+ public:
+  // Numbers 4 piece to 4 piece + 3.
+  template <class Real>
+  WAVECREST_INLINE void set(size_t piece, Real a, Real b, Real c, Real d) {
+    storeInterleaved(a, b, c, d, pieces_[piece]);
+  }
+  template <class Record>
+  WAVECREST_INLINE void copy(size_t lane, Record& out) const {
+    static_assert(sizeof(Record) == 4 * kPieces * sizeof(S));
+    S* const numbers = reinterpret_cast<S*>(&out);
+    for (size_t piece = 0; piece < kPieces; ++piece) {
+      std::memcpy(numbers + 4 * piece, &pieces_[piece][4 * lane], 4 * sizeof(S));
+    }
+  }
+  // The records of the lanes in m, one after the other, which asks for the place of the one `ahead` of each.
+  template <class Record>
+  WAVECREST_INLINE void append(Mask m, Record* out, size_t ahead) const {
+    HWY_ALIGN uint32_t source[kLanes];
+    store(compress(laneIndex(), m), source);
+    for (size_t k = 0, count = countTrue(m); k < count; ++k) {
+      __builtin_prefetch(out + k + ahead, 1);
+      copy(source[k], out[k]);
+    }
+  }
+
+ private:
+  static constexpr size_t kPieces = 4;
+  HWY_ALIGN S pieces_[kPieces][4 * kLanes];
+};
 
 // ---- rows to columns ------------------------------------------------------------------------------------------------
 

@@ -225,6 +225,11 @@ WAVECREST_INLINE Float gather(const float* base, UInt index) {
 WAVECREST_INLINE UInt gather(const uint32_t* base, UInt index) {
   return {hn::GatherIndex(UIntTag(), base, hn::BitCast(IntTag(), index.v))};
 }
+// Of kLanes numbers, aligned. index: below kLanes.
+WAVECREST_INLINE UInt lookUp(const uint32_t* numbers, UInt index) {
+  const UIntTag tag;
+  return {hn::TableLookupLanes(hn::Load(tag, numbers), hn::IndicesFromVec(tag, index.v))};
+}
 // Lanes with equal indices: the last one wins.
 WAVECREST_INLINE void storeScattered(Float a, float* base, UInt index) {
   hn::ScatterIndex(a.v, FloatTag(), base, hn::BitCast(IntTag(), index.v));

@@ -51,7 +51,7 @@ class Recount : public WalkVisitor<float> {
     std::vector<uint32_t> lanes;
     for (size_t i = light.firstOf(depth); i < light.firstOf(depth + 1); ++i) {
       lanes.push_back(light.vertices.lane[i]);
-      EXPECT_EQ(light.vertices.depth[i], depth);
+      EXPECT_EQ(light.photons()[i].depth, static_cast<float>(depth));
     }
     EXPECT_EQ(lanes, expectedStored_) << "depth " << depth;
     stored += lanes.size();
@@ -93,7 +93,7 @@ class Recount : public WalkVisitor<float> {
 
   void merging(uint32_t depth, Wave<float>& wave, StageContext<float>& context) override {
     if (depth == 1) {
-      compareRecords();
+      comparePhotons();
       buildMap();
     }
     context.photons = &map_;
@@ -131,26 +131,32 @@ class Recount : public WalkVisitor<float> {
     EXPECT_EQ(sorted, unsorted);
   }
 
-  // Records hold what columns do, and the box that was kept along with them is theirs.
-  void compareRecords() {
+  // Photons hold what rows do, and the box that was kept along with them is theirs.
+  void comparePhotons() {
     const auto& v = walk_.light().vertices;
     const Bounds<float> kept = walk_.light().bounds(), found = boundsOf(v);
     EXPECT_EQ(kept.low, found.low);
     EXPECT_EQ(kept.high, found.high);
     for (size_t i = 0; i < v.size; ++i) {
-      const PhotonRecord<float>& record = walk_.light().photons()[i];
-      EXPECT_EQ(std::tie(record.position[0], record.position[1], record.position[2]),
-                std::tie(v.positionX[i], v.positionY[i], v.positionZ[i]));
-      EXPECT_EQ(std::tie(record.direction[0], record.direction[1], record.direction[2]),
-                std::tie(v.fixX[i], v.fixY[i], v.fixZ[i]));
-      EXPECT_EQ(std::tie(record.normal[0], record.normal[1], record.normal[2]),
-                std::tie(v.normalX[i], v.normalY[i], v.normalZ[i]));
-      EXPECT_EQ(std::tie(record.dVCM, record.dVM), std::tie(v.dVCM[i], v.dVM[i]));
-      EXPECT_EQ(record.depth, static_cast<float>(v.depth[i]));
-      const float cosine = std::abs(v.fixX[i] * v.normalX[i] + v.fixY[i] * v.normalY[i] + v.fixZ[i] * v.normalZ[i]);
+      const PhotonRecord<float>& photon = walk_.light().photons()[i];
+      const VertexRow<float>& row = v.row[i];
+      EXPECT_EQ(photon.position[0], v.positionX[i]);
+      EXPECT_EQ(photon.position[1], v.positionY[i]);
+      EXPECT_EQ(photon.position[2], v.positionZ[i]);
+      float cosine = 0;
+      for (size_t c = 0; c < 3; ++c) {
+        EXPECT_EQ(photon.position[c], row.position[c]);
+        EXPECT_EQ(photon.direction[c], row.fix[c]);
+        EXPECT_EQ(photon.normal[c], row.normal[c]);
+        cosine += row.fix[c] * row.normal[c];
+      }
+      EXPECT_EQ(photon.dVCM, row.dVCM);
+      EXPECT_LT(row.material, static_cast<float>(walk_.scene().materialCount));
+      cosine = std::abs(cosine);
       if (cosine < 1e-3f) continue;  // a sum of three products that cancel, rounded in another order
-      const float throughput[3] = {v.throughputR[i], v.throughputG[i], v.throughputB[i]};
-      for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(record.power[c] * cosine, throughput[c], 1e-3f * throughput[c]);
+      for (size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(photon.power[c] * cosine, row.throughput[c], 1e-3f * row.throughput[c]);
+      }
     }
   }
 
@@ -162,12 +168,14 @@ class Recount : public WalkVisitor<float> {
     for (size_t i = 0; i < wave.rays.size; ++i) {
       if (!hasFiniteLobe(walk_.scene(), wave.hits.primitive[i])) continue;
       for (size_t k = 0; k < v.size; ++k) {
-        if (v.depth[k] + depth > walk_.limits().maxDepth) continue;
+        if (walk_.light().photons()[k].depth + static_cast<float>(depth) > static_cast<float>(walk_.limits().maxDepth))
+          continue;
         const float x = v.positionX[k] - wave.rays.originX[i], y = v.positionY[k] - wave.rays.originY[i],
                     z = v.positionZ[k] - wave.rays.originZ[i];
         const float nx = wave.surfaces.normalX[i], ny = wave.surfaces.normalY[i], nz = wave.surfaces.normalZ[i];
         const bool near = x * x + y * y + z * z <= radius * radius;
-        const bool alike = nx * v.normalX[k] + ny * v.normalY[k] + nz * v.normalZ[k] > 0.1f;
+        const auto& n = v.row[k].normal;
+        const bool alike = nx * n[0] + ny * n[1] + nz * n[2] > 0.1f;
         const bool flat = std::abs(x * nx + y * ny + z * nz) <= 0.5f * radius;
         count += near && alike && flat ? 1 : 0;
       }

@@ -91,8 +91,7 @@ class StrategyImages : public WalkVisitor<float> {
       stores_.push_back(std::make_unique<LightStore<float>>(all.size, BidirectionalWalk<float>::kNeeds));
       LightStore<float>& some = *stores_.back();
       some.beginDepth(all.size);
-      for (size_t i = 0; i < all.size; ++i) {
-        if (all.depth[i] != depth) continue;
+      for (size_t i = walk_.light().firstOf(depth); i < walk_.light().firstOf(depth + 1); ++i) {
         const size_t target = some.vertices.claim(1);
         forEachColumn(all, some.vertices, [&](size_t, auto& from, auto& to) { to[target] = from[i]; });
         some.photons()[target] = walk_.light().photons()[i];

@@ -52,7 +52,10 @@ void storeLanes(Vec3<Real> a, size_t first, size_t count, Assign&& assign) {
 
 template <class P>
 BsdfInputOf<P, kAllFeatures> inputOf(const BsdfQuery& query) {
-  BsdfInputOf<P, kAllFeatures> input(query.material, UInt(0u));
+  SceneView<typename P::Storage> scene;
+  scene.materials = query.material;
+  scene.materialCount = 1;
+  BsdfInputOf<P, kAllFeatures> input(scene, UInt(0u));
   input.walk = query.walk;
   input.lobes = query.specularOnly ? Lobes::specularOnly : Lobes::all;
   return input;
@@ -110,6 +113,22 @@ constexpr BsdfEntries kEntries = {
         [](const BsdfQuery& query, std::span<const Direction> fix, std::span<const std::array<float, 3>> u,
            BsdfDraw* out) {
           withPolicy(query.precision, [&](auto policy) { sampleBlocks<decltype(policy)>(query, fix, u, out); });
+        },
+    .readMaterials =
+        [](const SceneView<float>& scene, const uint32_t* index, uint32_t element, MaterialWords* out) {
+          const MaterialLanes material(scene, loadUnaligned(index));
+          const auto* const words = reinterpret_cast<const uint32_t*>(scene.materials);
+          for (size_t w = 0; w < MaterialTable::kWords; ++w) storeUnaligned(material(words[w]), out->words[w]);
+          storeUnaligned(material(scene.materials->roughTransmittance, UInt(element)), out->transmittance);
+          const Vec3<Float> specular = material(scene.materials->specular);
+          storeUnaligned(specular.x, out->specular[0]);
+          storeUnaligned(specular.y, out->specular[1]);
+          storeUnaligned(specular.z, out->specular[2]);
+          const FourColumns<Float> reflectance = material.four(scene.materials->reflectance[0]);
+          storeUnaligned(reflectance.a, out->reflectance[0]);
+          storeUnaligned(reflectance.b, out->reflectance[1]);
+          storeUnaligned(reflectance.c, out->reflectance[2]);
+          storeUnaligned(reflectance.d, out->reflectance[3]);
         },
     .fresnelDielectric =
         [](Precision precision, double cosine, double eta) {

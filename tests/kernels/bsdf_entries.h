@@ -33,6 +33,13 @@ struct BsdfQuery {
   bool specularOnly = false;
 };
 
+struct MaterialWords {
+  static constexpr size_t kMaxLanes = 16;
+  uint32_t words[MaterialTable::kWords][kMaxLanes];
+  float transmittance[kMaxLanes];
+  float specular[3][kMaxLanes], reflectance[4][kMaxLanes];  // as a vector, and as four numbers
+};
+
 struct BsdfEntries {
   size_t lanes;
   void (*eval)(const BsdfQuery& query, std::span<const Direction> fix, std::span<const Direction> gen,
@@ -40,6 +47,9 @@ struct BsdfEntries {
   // u holds the numbers a, b and c of each draw.
   void (*sample)(const BsdfQuery& query, std::span<const Direction> fix, std::span<const std::array<float, 3>> u,
                  BsdfDraw* out);
+  // Of the material of each lane: its record's words before the last array, word by word, and what MaterialLanes reads
+  // of that array's element.
+  void (*readMaterials)(const SceneView<float>& scene, const uint32_t* index, uint32_t element, MaterialWords* out);
   double (*fresnelDielectric)(Precision precision, double cosine, double eta);
   double (*fresnelConductor)(Precision precision, double cosine, double eta, double k);
 };

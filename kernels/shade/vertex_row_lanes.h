@@ -1,0 +1,86 @@
+// Vertices as rows of sixteen numbers, and rows read back into lanes in any order. One load a lane brings four numbers;
+// gathering columns one by one would cost several times the arithmetic of what joins two vertices.
+#pragma once
+
+#include "kernels/shade/shading_lanes.h"
+#include "kernels/simd/interleave.h"
+
+WAVECREST_SIMD_BEGIN
+
+// The rows of block i of the live paths' vertices.
+template <class S>
+WAVECREST_INLINE void makeRows(const SceneView<S>& scene, const Wave<S>& wave, size_t i, RecordBlock<S>& rows) {
+  const auto& rays = wave.rays;
+  const auto& surfaces = wave.surfaces;
+  const auto& paths = wave.paths;
+  const auto position = loadVec3(rays.originX, rays.originY, rays.originZ, i);
+  const auto fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
+  const auto normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
+  const auto throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
+  using Real = decltype(position.x);
+  const UInt primitive = select(firstLanes(rays.size - i), load(wave.hits.primitive, i), UInt(0u));
+  rows.set(0, position.x, position.y, position.z, load(surfaces.offset, i));
+  rows.set(1, fix.x, fix.y, fix.z, to<Real>(toFloat(materialOf(scene, primitive))));
+  rows.set(2, normal.x, normal.y, normal.z, load(paths.dVCM, i));
+  rows.set(3, throughput.x, throughput.y, throughput.z, load(paths.dVC, i));
+}
+
+// The rows of the live paths' vertices, if no stage has written them at this depth yet.
+template <class S>
+WAVECREST_INLINE void packVertexRows(const SceneView<S>& scene, Wave<S>& wave) {
+  auto& rows = wave.vertexRows;
+  if (rows.size != 0) return;
+  const size_t count = wave.rays.size;
+  rows.claim(count);
+  RecordBlock<S> block;
+  for (size_t i = 0; i < count; i += kLanes) {
+    makeRows(scene, wave, i, block);
+    // The tail of a column has room for whole blocks.
+    for (size_t k = 0; k < kLanes; ++k) block.copy(k, rows.row[i + k]);
+  }
+}
+
+// Vertices at any indices, and what else their rows hold.
+template <class P, uint32_t kFeatures>
+struct RowLanes {
+  using Real = typename P::Real;
+  ShadingLanes<P, kFeatures> shading;
+  Vec3<Real> throughput;
+  Real dVCM, dVC;
+};
+
+// index: of a row for every lane. columns: what rows do not hold, at the same indices, as Surfaces or LightVertices.
+template <class P, uint32_t kFeatures, class Columns>
+WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::Storage>& scene,
+                                                   const VertexRow<typename P::Storage>* rows, const Columns& columns,
+                                                   const uint32_t* index) {
+  using Real = typename P::Real;
+  const FourColumns<Real> place = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].position; }),
+                          back = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].fix; }),
+                          side = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].normal; }),
+                          carried = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].throughput; });
+  const Vec3<Real> normal{side.a, side.b, side.c};
+  VertexLanes<Real> vertex{.position = {place.a, place.b, place.c},
+                           .fix = {back.a, back.b, back.c},
+                           .normal = normal,
+                           .shadingNormal = normal,
+                           .baseNormal = normal,
+                           .offset = place.d,
+                           .u = Float(0),
+                           .v = Float(0),
+                           .material = toUInt(to<Float>(back.d))};
+  const UInt at = loadUnaligned(index);
+  if constexpr (has(kFeatures, kShadingNormals)) {
+    vertex.shadingNormal = gatherVec3(columns.shadingX, columns.shadingY, columns.shadingZ, at);
+  }
+  if constexpr (has(kFeatures, kNormalMaps)) {
+    if (scene.normalMaps) vertex.baseNormal = gatherVec3(columns.baseX, columns.baseY, columns.baseZ, at);
+  }
+  if constexpr (has(kFeatures, kTextures)) {
+    vertex.u = gather(columns.uvU, at);
+    vertex.v = gather(columns.uvV, at);
+  }
+  return {shadingOf<P, kFeatures>(scene, vertex), {carried.a, carried.b, carried.c}, side.d, carried.d};
+}
+
+WAVECREST_SIMD_END

@@ -1,0 +1,61 @@
+// MaterialLanes: every field of every lane's material, whether they are gathered or looked up in a table.
+#include <bit>
+#include <cstring>
+#include <vector>
+
+#include "engine/compile/materials.h"
+#include "tests/kernels/bsdf_entries.h"
+#include "tests/kernels/isa_test.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr size_t kWords = sizeof(MaterialRecord) / sizeof(uint32_t);
+constexpr uint32_t kElement = 37;  // of roughTransmittance
+
+// Word w of material m; as a float, a number like any other.
+uint32_t wordOf(size_t material, size_t w) { return static_cast<uint32_t>(0x3f800000 + 1000 * w + material); }
+
+std::vector<MaterialRecord> distinctMaterials(size_t count) {
+  std::vector<MaterialRecord> materials(count);
+  for (size_t m = 0; m < count; ++m) {
+    uint32_t words[kWords];
+    for (size_t w = 0; w < kWords; ++w) words[w] = wordOf(m, w);
+    std::memcpy(&materials[m], words, sizeof(words));
+  }
+  return materials;
+}
+
+class MaterialLanesTest : public IsaTest {};
+WAVECREST_TEST_EVERY_ISA(MaterialLanesTest);
+
+TEST_P(MaterialLanesTest, readEveryFieldOfAnyNumberOfMaterials) {
+  for (const size_t count : {1, 2, 4, 5, 8, 9, 16, 17, 100}) {
+    const std::vector<MaterialRecord> materials = distinctMaterials(count);
+    const std::unique_ptr<MaterialTable> table = tabulate(materials);
+    EXPECT_EQ(table != nullptr, count <= kFewMaterials);
+    SceneView<float> scene;
+    scene.materials = materials.data();
+    scene.materialTable = table.get();
+    scene.materialCount = static_cast<uint32_t>(count);
+    uint32_t index[MaterialWords::kMaxLanes];
+    for (size_t i = 0; i < MaterialWords::kMaxLanes; ++i) index[i] = static_cast<uint32_t>((7 * i + count - 1) % count);
+    MaterialWords read;
+    entries<BsdfEntries>().readMaterials(scene, index, kElement, &read);
+    for (size_t i = 0; i < entries<BsdfEntries>().lanes; ++i) {
+      const MaterialRecord& expected = materials[index[i]];
+      for (size_t w = 0; w < MaterialTable::kWords; ++w) {
+        EXPECT_EQ(read.words[w][i], wordOf(index[i], w)) << count << " materials, word " << w << ", lane " << i;
+      }
+      EXPECT_EQ(read.transmittance[i], expected.roughTransmittance[kElement]);
+      for (size_t c = 0; c < 3; ++c) {
+        EXPECT_EQ(read.specular[c][i], expected.specular[c]);
+        EXPECT_EQ(read.reflectance[c][i], expected.reflectance[c]);
+      }
+      EXPECT_EQ(std::bit_cast<uint32_t>(read.reflectance[3][i]), expected.flags);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest
