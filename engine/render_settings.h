@@ -12,6 +12,7 @@
 namespace wavecrest {
 
 constexpr uint32_t kUnlimitedDepth = 64;  // edges; roulette ends paths long before
+static_assert(kUnlimitedDepth <= kMostEdges);
 
 // Markov chains. Their number is a setting, not a consequence of threads or waves, so that images depend on neither.
 struct MetropolisSettings {

@@ -94,4 +94,14 @@ WAVECREST_INLINE MisSums<Real> scatterSpecularMis(const MisSums<Real>& mis, Real
   return {Real(0), mis.dVC * jacobian, mis.dVM * jacobian};
 }
 
+// The one of dVC and dVM that a VertexRow keeps, and dVM by it.
+template <class Real>
+WAVECREST_INLINE Real keptBehind(const MisSettings& settings, const MisSums<Real>& mis) {
+  return settings.connect ? mis.dVC : mis.dVM;
+}
+template <class Real>
+WAVECREST_INLINE Real mergeSum(const MisSettings& settings, Real behind) {
+  return behind * Real(settings.connect ? settings.kVC : 1.0);
+}
+
 WAVECREST_SIMD_END

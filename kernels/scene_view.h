@@ -83,6 +83,10 @@ struct alignas(128) MaterialRecord {
   float roughTransmittance[kTransmittanceSize];  // rough plastic: share of light that enters, shadowing included
 };
 
+// A vertex keeps its material and its depth in one number of 32 bits.
+constexpr uint32_t kMaterialBits = 20, kMaxMaterials = 1u << kMaterialBits,
+                   kMostEdges = (1u << (32 - kMaterialBits)) - 1;
+
 // The records of a scene that has few materials, word by word: word w of material m at [w][m]. A block of lanes has a
 // word of all of them in one register, and looks its own up there. Without the last array of the records.
 constexpr size_t kFewMaterials = 16;  // the widest block of lanes

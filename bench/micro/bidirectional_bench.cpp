@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include <bit>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -112,19 +113,11 @@ void fillStore(LightStore<float>& store, size_t count, float z, Random& random) 
     v.row[i] = {.position = {v.positionX[i], v.positionY[i], z},
                 .offset = 1e-6f,
                 .fix = {tilt, 0, up * cosine},
-                .material = 0,
+                .tag = std::bit_cast<float>(1u << kMaterialBits),  // material 0, one edge from the light
                 .normal = {0, 0, up},
                 .dVCM = density,
                 .throughput = {1, 1, 1},
-                .dVC = density};
-    store.photons()[i] = {.position = {v.positionX[i], v.positionY[i], z},
-                          .direction = {tilt, 0, up * cosine},
-                          .normal = {0, 0, up},
-                          .power = {1 / cosine, 1 / cosine, 1 / cosine},
-                          .dVCM = density,
-                          .dVM = density,
-                          .depth = 1,
-                          .unused = 0};
+                .behind = density};
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "engine/compile/materials.h"
 #include "engine/scene/scene_error.h"
@@ -94,6 +95,9 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
     bounds = boundPrimitives(primitives.records);
   }
   compiled->lights = compileLights(scene, bounds, primitives, origin);
+  if (scene.materials.size() > kMaxMaterials) {
+    throw SceneError(SourceLocation{scene.name}, "more than " + std::to_string(kMaxMaterials) + " materials");
+  }
   for (const Material& material : scene.materials) compiled->materials.push_back(compileMaterial(material, scene));
 
   compiled->textures = compileTextures(scene);

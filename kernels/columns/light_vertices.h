@@ -13,31 +13,17 @@ namespace wavecrest {
 
 template <class S>
 struct LightVertices : Columns<LightVertices<S>> {
-  Column<S> positionX, positionY, positionZ;  // of photons: dropped without merges
-  Column<VertexRow<S>> row;                   // dropped without connections, as are all below
+  Column<VertexRow<S>> row;
+  Column<S> positionX, positionY, positionZ;  // dropped without merges; all below are without connections
   Column<S> shadingX, shadingY, shadingZ;     // dropped where the scene has no shading normals
   Column<S> baseX, baseY, baseZ;              // dropped where it has no normal maps
   Column<float> uvU, uvV;                     // dropped where the scene has no textures
   Column<uint32_t> lane;                      // of the path, in its wave
   auto all() {
-    return std::tie(positionX, positionY, positionZ, row, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV,
+    return std::tie(row, positionX, positionY, positionZ, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV,
                     lane);
   }
 };
-
-// What merging reads of a light vertex. A record, not columns: searches come to photons in no order, and in float one
-// photon is one cache line.
-template <class S>
-struct alignas(64) PhotonRecord {
-  S position[3];
-  S direction[3];  // back along the light path
-  S normal[3];
-  S power[3];  // throughput over the cosine to the normal of the direction
-  S dVCM, dVM;
-  S depth;   // edges from the light
-  S unused;  // sixteen numbers, so that records are written as a transposed block of lanes
-};
-static_assert(sizeof(PhotonRecord<float>) == 64);
 
 // What camera paths do with light vertices.
 struct LightVertexUse {
@@ -78,8 +64,8 @@ Bounds<S> boundsOf(const LightVertices<S>& v) {
   return bounds;
 }
 
-// The light vertices of one wave, in the order (depth, lane): rows for connections; for merging photons, with columns
-// of their positions, because a photon map is built from those alone.
+// The light vertices of one wave, in the order (depth, lane): rows, which connections and merges read; for merging also
+// columns of positions, because a photon map is built from those alone.
 //
 // Grows between stages to what a wave needs and keeps that memory, so a steady state allocates nothing.
 // Path i of an iteration is lane i % lanes of store i / lanes.
@@ -88,8 +74,7 @@ class LightStore {
  public:
   LightVertices<S> vertices;
 
-  LightStore(size_t lanes, const ColumnNeeds& needs, LightVertexUse use = {})
-      : lanes_(lanes), keepsPhotons_(use.merged), rayOfLane_(lanes) {
+  LightStore(size_t lanes, const ColumnNeeds& needs, LightVertexUse use = {}) : lanes_(lanes), rayOfLane_(lanes) {
     if (!needs.shadingNormals) {
       for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ}) column->drop();
     }
@@ -106,12 +91,9 @@ class LightStore {
     }
   }
 
-  // Whether vertices can be connected, and whether they are photons.
-  bool keepsRows() const { return vertices.row.needed(); }
-  bool keepsPhotons() const { return keepsPhotons_; }
-  // One per vertex, if they are.
-  PhotonRecord<S>* photons() { return photons_; }
-  const PhotonRecord<S>* photons() const { return photons_; }
+  // Whether vertices can be connected, and merged.
+  bool keepsLanes() const { return vertices.lane.needed(); }
+  bool keepsPositions() const { return vertices.positionX.needed(); }
 
   // The box around the vertices: what storing them has included, or what findBounds() finds where somebody else has
   // written them.
@@ -159,7 +141,7 @@ class LightStore {
     moveTo(shared, capacity);
     sharedBytes_ += arenaBytes(capacity);
   }
-  size_t arenaBytes(size_t capacity) const { return vertices.bytes(capacity) + photonBytes(capacity); }
+  size_t arenaBytes(size_t capacity) const { return vertices.bytes(capacity); }
 
   // Becomes the vertices of paths first, first + 1, ... of an iteration, `used` of them, counted around after the last
   // of its lightPaths: what camera paths are joined with where there are not as many of them.
@@ -196,10 +178,7 @@ class LightStore {
   size_t bytesFor(size_t capacity) const { return arenaBytes(capacity) + lanes_ * sizeof(uint32_t); }
 
  private:
-  size_t photonBytes(size_t capacity) const { return keepsPhotons_ ? capacity * sizeof(PhotonRecord<S>) : 0; }
-
   void dropConnectedColumns() {
-    vertices.row.drop();
     for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ, &vertices.baseX,
                               &vertices.baseY, &vertices.baseZ}) {
       column->drop();
@@ -220,11 +199,6 @@ class LightStore {
     const size_t size = vertices.size;
     larger.bind(arena, capacity);
     copyColumns(vertices.all(), larger.all(), 0, 0, size, Indices());
-    if (keepsPhotons_) {
-      auto* const photons = arena.take<PhotonRecord<S>>(capacity);
-      std::copy_n(photons_, size, photons);
-      photons_ = photons;
-    }
     vertices = larger;
     vertices.size = size;
   }
@@ -261,8 +235,6 @@ class LightStore {
   }
 
   size_t lanes_;
-  bool keepsPhotons_;
-  PhotonRecord<S>* photons_ = nullptr;
   size_t depths_ = 0, roomUsed_ = 0;
   size_t sharedBytes_ = 0, ownBytes_ = 0;
   size_t boundedSize_ = 0;  // how many vertices bounds_ is of

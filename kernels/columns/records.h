@@ -76,15 +76,20 @@ struct VertexPairs : Columns<VertexPairs> {
   auto all() { return std::tie(camera, light); }
 };
 
-// A vertex as joining it with one of the other walk reads it, sixteen numbers in one place: what pairs it with comes to
-// it in no order, again and again. material: index into SceneView::materials, exact as a number.
+// A vertex as joining it with one of the other walk reads it, sixteen numbers in one place, in float one cache line:
+// what pairs it with comes to it in no order, again and again.
+//   tag: index into SceneView::materials, and for light vertices the edges from the light (kernels/shade/vertex_tag.h)
+//   fix: unit direction back along the path
+//   dVCM, throughput: as in PathStates
+//   behind: dVC where light vertices are connected, else dVM; where they are merged as well, dVM is kVC dVC
 template <class S>
 struct alignas(16 * sizeof(S)) VertexRow {
   S position[3], offset;
-  S fix[3], material;  // fix: unit direction back along the path
-  S normal[3], dVCM;   // dVCM, dVC, throughput: as in PathStates
-  S throughput[3], dVC;
+  S fix[3], tag;
+  S normal[3], dVCM;
+  S throughput[3], behind;
 };
+static_assert(sizeof(VertexRow<float>) == 64);
 
 // Rows of the live paths' vertices. Written by the first stage of a depth that joins them (packVertexRows), emptied by
 // those that put other vertices into the wave (arrive, takeEnds). Dropped without connections.

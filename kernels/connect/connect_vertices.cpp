@@ -80,11 +80,11 @@ size_t joinPairs(const StageContext<typename P::Storage>& context, Wave<typename
     const Real inverseDist2 = inverseDistance * inverseDistance;
     const Real zCosine = abs(dot(towards, z.normal)), yCosine = abs(dot(towards, y.normal));
     const Real wLight = zBsdf.pdf * yCosine * inverseDist2 *
-                        behindConnection(context.mis, context.lightDepth, MisSums<Real>{yRow.dVCM, yRow.dVC, Real(0)},
-                                         yBsdf.pdfReverse);
+                        behindConnection(context.mis, context.lightDepth,
+                                         MisSums<Real>{yRow.dVCM, yRow.behind, Real(0)}, yBsdf.pdfReverse);
     const Real wCamera =
         yBsdf.pdf * zCosine * inverseDist2 *
-        behindConnection(context.mis, context.depth, MisSums<Real>{zRow.dVCM, zRow.dVC, Real(0)}, zBsdf.pdfReverse);
+        behindConnection(context.mis, context.depth, MisSums<Real>{zRow.dVCM, zRow.behind, Real(0)}, zBsdf.pdfReverse);
 
     // c_z(omega_l) at the camera's end; c_y(omega_l) / n_y(omega_l) n_y(to z) at the light's (METHODS 3.9).
     const Real yFix = max(abs(y.fixCosine), Real(1e-6f));
@@ -116,7 +116,7 @@ void connectVertices(const StageContext<typename P::Storage>& context, Wave<type
   // k = len_L + 1 + len_C
   if (context.depth + context.lightDepth + 1 > context.limits.maxDepth) return;
   if (context.lightDepth == 1) placeLanes(context, wave);
-  packVertexRows(*context.scene, wave);
+  packVertexRows<kFeatures>(context, wave);
 
   const size_t pairs = listPairs(context, wave);
   context.counters->connections += pairs;

@@ -29,7 +29,7 @@ WAVECREST_INLINE Mask joinableVertices(const SceneView<S>& scene, const Wave<S>&
 }
 
 // The vertices of all waves are more than the caches hold: asks for the lines that later blocks will be written to.
-constexpr size_t kColumnsAhead = 64, kRecordsAhead = 48;  // items
+constexpr size_t kColumnsAhead = 64, kRowsAhead = 48;  // items
 template <class... Items>
 WAVECREST_INLINE void prefetchColumns(size_t out, const Column<Items>&... columns) {
   (__builtin_prefetch(columns + out + kColumnsAhead, 1), ...);
@@ -43,20 +43,26 @@ WAVECREST_INLINE auto appendPosition(const Rays<S>& rays, size_t i, Mask m, Ligh
   return position;
 }
 
-// What connections read.
+// What connections and merges read.
 template <uint32_t kFeatures, class S>
 WAVECREST_INLINE void appendRows(const StageContext<S>& context, const Wave<S>& wave, size_t i, Mask m,
                                  LightVertices<S>& vertices, size_t out) {
-  const auto& surfaces = wave.surfaces;
   RecordBlock<S> rows;
-  makeRows(*context.scene, wave, i, rows);
-  rows.append(m, vertices.row + out, kRecordsAhead);
+  makeRows<kFeatures>(context, wave, i, context.depth, rows);
+  rows.append(m, vertices.row + out, kRowsAhead);
+}
+
+// What connections read beside rows.
+template <uint32_t kFeatures, class S>
+WAVECREST_INLINE void appendColumns(const SceneView<S>& scene, const Wave<S>& wave, size_t i, Mask m,
+                                    LightVertices<S>& vertices, size_t out) {
+  const auto& surfaces = wave.surfaces;
   if constexpr (has(kFeatures, kShadingNormals)) {
     appendVec3(loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i), m, vertices.shadingX,
                vertices.shadingY, vertices.shadingZ, out);
   }
   if constexpr (has(kFeatures, kNormalMaps)) {
-    if (context.scene->normalMaps) {
+    if (scene.normalMaps) {
       appendVec3(loadVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, i), m, vertices.baseX, vertices.baseY,
                  vertices.baseZ, out);
     }
@@ -102,52 +108,23 @@ class BoundsLanes {
   Vec3<Real> low_, high_;
 };
 
-// What merging reads.
-template <class P, uint32_t kFeatures>
-WAVECREST_INLINE void appendPhotons(const StageContext<typename P::Storage>& context,
-                                    const Wave<typename P::Storage>& wave, size_t i, Mask m,
-                                    PhotonRecord<typename P::Storage>* out) {
-  using Real = typename P::Real;
-  using S = typename P::Storage;
-  const auto& rays = wave.rays;
-  const auto& surfaces = wave.surfaces;
-  const auto& paths = wave.paths;
-  const Vec3<Real> position = loadVec3(rays.originX, rays.originY, rays.originZ, i);
-  const Vec3<Real> fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
-  const Vec3<Real> normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
-  // METHODS 3.9; directions within the surface carry nothing that a merge could use.
-  const Real cosine = abs(dot(fix, normal));
-  const Real scale = zeroUnless(cosine > Real(1e-6f), reciprocal<P>(max(cosine, Real(1e-6f))));
-  const Vec3<Real> power = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * scale;
-  const auto mis = loadMis<kFeatures>(paths, i);
-
-  RecordBlock<S> records;
-  records.set(0, position.x, position.y, position.z, fix.x);
-  records.set(1, fix.y, fix.z, normal.x, normal.y);
-  records.set(2, normal.z, power.x, power.y, power.z);
-  records.set(3, mis.dVCM, mis.dVM, Real(static_cast<float>(context.depth)), Real(0));
-  records.append(m, out, kRecordsAhead);
-}
-
 }  // namespace
 
 template <class P, uint32_t kFeatures>
 void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   LightStore<typename P::Storage>& store = *context.light;
   auto& vertices = store.vertices;
-  const bool rows = store.keepsRows(), photons = store.keepsPhotons();
+  const bool connected = store.keepsLanes(), merged = store.keepsPositions();
   size_t out = vertices.size;
   BoundsLanes<typename P::Real> bounds;
   for (size_t i = 0; i < wave.rays.size; i += kLanes) {
     const Mask joinable = joinableVertices<kFeatures>(*context.scene, wave, i);
-    if (rows) appendRows<kFeatures>(context, wave, i, joinable, vertices, out);
-    if (photons) {
-      bounds.include(appendPosition(wave.rays, i, joinable, vertices, out), joinable);
-      appendPhotons<P, kFeatures>(context, wave, i, joinable, store.photons() + out);
-    }
+    appendRows<kFeatures>(context, wave, i, joinable, vertices, out);
+    if (connected) appendColumns<kFeatures>(*context.scene, wave, i, joinable, vertices, out);
+    if (merged) bounds.include(appendPosition(wave.rays, i, joinable, vertices, out), joinable);
     out += countTrue(joinable);
   }
-  if (photons) store.include(bounds.overLanes(), out - vertices.size);
+  if (merged) store.include(bounds.overLanes(), out - vertices.size);
   context.counters->lightVertices += out - vertices.size;
   vertices.claim(out - vertices.size);
 }

@@ -3,7 +3,7 @@
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the photon map. out: Radiance grows. METHODS 6.2, 6.4, 5.6
 // (37)-(39). Candidates are (vertex, photon) pairs in a flat list, so that lanes are full whatever the photons per
 // cell; a vertex sums its pairs in the order of photons. Most candidates only share a bucket with the vertex, so what
-// is looked at first is their position alone; the others' records follow.
+// is looked at first is their position alone; the rows of the others follow.
 #include <algorithm>
 
 #include "kernels/merge/photon_map.h"
@@ -168,7 +168,7 @@ class Merger {
   }
 
   // Of the listed candidates keeps those within the radius, each found through its own cell; packs vertex and photon to
-  // the front of the list, and asks for the photons' records.
+  // the front of the list, and asks for the photons' rows.
   size_t selectNear() {
     const Real radius(context_.mis.radius);
     const Real reach(context_.mis.radius * kReach);
@@ -179,7 +179,7 @@ class Merger {
       for (; asked < end; ++asked) {
         const uint32_t photon = map_.keys[wave_.pairs.light[asked]].photon;
         wave_.pairs.light[asked] = photon;
-        __builtin_prefetch(&map_.recordOf(photon));
+        __builtin_prefetch(&map_.rowOf(photon));
       }
     };
     for (size_t i = 0; i < count_; i += kLanes) {
@@ -213,19 +213,15 @@ class Merger {
   class PhotonLanes {
    public:
     WAVECREST_INLINE PhotonLanes(const PhotonMap<S>& map, const uint32_t* photons, size_t count) {
-      for (size_t k = 0; k < kLanes; ++k) record_[k] = &map.recordOf(photons[std::min(k, count - 1)]);
+      for (size_t k = 0; k < kLanes; ++k) row_[k] = &map.rowOf(photons[std::min(k, count - 1)]);
     }
-    WAVECREST_INLINE Vec3<Real> operator()(S (PhotonRecord<S>::*field)[3]) const {
-      const auto row = loadFour([&](size_t k) WAVECREST_LAMBDA { return record_[k]->*field; });
-      return {row.a, row.b, row.c};
-    }
-    // A field and the three numbers after it.
-    WAVECREST_INLINE FourColumns<Real> four(S PhotonRecord<S>::*first) const {
-      return loadFour([&](size_t k) WAVECREST_LAMBDA { return &(record_[k]->*first); });
+    // A field and the number after it.
+    WAVECREST_INLINE FourColumns<Real> operator()(S (VertexRow<S>::*field)[3]) const {
+      return loadFour([&](size_t k) WAVECREST_LAMBDA { return row_[k]->*field; });
     }
 
    private:
-    const PhotonRecord<S>* record_[kLanes];
+    const VertexRow<S>* row_[kLanes];
   };
 
   void shade() {
@@ -236,32 +232,37 @@ class Merger {
     const Real radius(context_.mis.radius);
     // k = len_L + len_C
     const Real longest(static_cast<float>(context_.limits.maxDepth - context_.depth));
-    using Photon = PhotonRecord<S>;
+    const auto vec3 = [](const FourColumns<Real>& row) WAVECREST_LAMBDA { return Vec3<Real>{row.a, row.b, row.c}; };
     for (size_t i = 0; i < near; i += kLanes) {
       const Mask active = firstLanes(near - i);
       const PhotonLanes photons(map_, wave_.pairs.light + i, near - i);
       const UInt vertex = load(wave_.pairs.camera, i);
       const auto row = gatherRows<P, kFeatures>(scene, wave_.vertexRows.row, wave_.surfaces, wave_.pairs.camera + i);
       const auto& shading = row.shading;
-      const Vec3<Real> between = photons(&Photon::position) - shading.position;
-      const FourColumns<Real> sums = photons.four(&Photon::dVCM);  // dVCM, dVM, depth
+      const Vec3<Real> between = vec3(photons(&VertexRow<S>::position)) - shading.position;
+      const FourColumns<Real> back = photons(&VertexRow<S>::fix), facing = photons(&VertexRow<S>::normal),
+                              carried = photons(&VertexRow<S>::throughput);
+      const Vec3<Real> direction = vec3(back), normal = vec3(facing);
       // On the same side of the surface, and not beyond the path length.
-      const Mask accepted = active & (dot(shading.normal, photons(&Photon::normal)) > Real(0.1f)) &
-                            (abs(dot(between, shading.normal)) <= radius * Real(0.5f)) & (sums.c <= longest);
+      const Mask accepted = active & (dot(shading.normal, normal) > Real(0.1f)) &
+                            (abs(dot(between, shading.normal)) <= radius * Real(0.5f)) &
+                            (edgesOfTag(back.d) <= longest);
       context_.counters->merges += countTrue(accepted);
-      const Vec3<Real> direction = photons(&Photon::direction);
       const auto bsdf = shading.scattering(active, direction);
+      // METHODS 3.9; directions within the surface carry nothing that a merge could use.
+      const Real cosine = abs(dot(direction, normal));
+      const Real perCosine = zeroUnless(cosine > Real(1e-6f), reciprocal<P>(max(cosine, Real(1e-6f))));
       Real weight(1);
       if (context_.mis.mergeWeights) {
-        const MisSums<Real> light{sums.a, Real(0), sums.b};
-        const MisSums<Real> camera{row.dVCM, Real(0), gather(paths.dVM, vertex)};
+        const MisSums<Real> light{facing.d, Real(0), mergeSum(context_.mis, carried.d)};
+        const MisSums<Real> camera{row.dVCM, Real(0), mergeSum(context_.mis, row.behind)};
         // Where connections compete (kVC > 0) every edge may be one; else kVC is 0 and the switch does not matter.
         const Real wLight = behindMerge(context_.mis, 1, light, bsdf.pdf);
         const Real wCamera = behindMerge(context_.mis, 1, camera, bsdf.pdfReverse);
         weight = reciprocal<P>(Real(1) + wLight + wCamera);
       }
       const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine;
-      const Vec3<Real> contribution = row.throughput * bsdf.f * photons(&Photon::power) * scale;
+      const Vec3<Real> contribution = row.throughput * bsdf.f * (vec3(carried) * perCosine) * scale;
       addRadiance(wave_.radiance, gather(paths.lane, vertex), accepted, contribution);
     }
   }
@@ -278,7 +279,7 @@ class Merger {
 template <class P, uint32_t kFeatures>
 void merge(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   if (context.depth + 1 > context.limits.maxDepth || context.photons->size == 0) return;
-  packVertexRows(*context.scene, wave);
+  packVertexRows<kFeatures>(context, wave);
   Merger<P, kFeatures>(context, wave).run();
 }
 

@@ -159,11 +159,11 @@ void PhotonMap<S>::reserve(size_t count) {
 template <class S>
 void PhotonMap<S>::build(Stores stores, double radius, const ForEach& forEach) {
   firstVertex_.assign(1, 0);
-  records.clear();
+  rows.clear();
   size_t largest = 1;
   for (const LightStore<S>* store : stores) {
     firstVertex_.push_back(firstVertex_.back() + store->vertices.size);
-    records.push_back(store->photons());
+    rows.push_back(store->vertices.row);
     largest = std::max(largest, store->vertices.size);
   }
   storeShift = static_cast<uint32_t>(std::bit_width(largest - 1));

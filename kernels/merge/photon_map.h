@@ -6,7 +6,7 @@
 // counts twice. Where photons are few for the radius the cells are wider: a search then looks at one more photon now
 // and then, and at fewer buckets always.
 //
-// Only positions are sorted; the other fields stay in the records of the light stores, in the order in which light
+// Only positions are sorted; the other fields stay in the rows of the light stores, in the order in which light
 // paths left them. Moving them costs more than the searches that find a photon save.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace wavecrest {
 
-// Where a photon is, and its record: that of vertex (photon & (2^storeShift - 1)) of store (photon >> storeShift).
+// Where a photon is, and its row: that of vertex (photon & (2^storeShift - 1)) of store (photon >> storeShift).
 template <class S>
 struct alignas(4 * sizeof(S)) PhotonKey {
   S position[3];
@@ -48,7 +48,7 @@ struct PhotonMap {
   const PhotonKey<S>* keys = nullptr;  // by bucket, within a bucket by (wave, depth, lane)
   size_t size = 0;
   PhotonGrid<S> grid;
-  std::vector<const PhotonRecord<S>*> records;  // of each store
+  std::vector<const VertexRow<S>*> rows;  // of each store
   uint32_t storeShift = 0;
   // The photons of buckets b and b + 1 are those from bucketStart[b] up to bucketStart[b + 2]; after the last bucket
   // there are some empty ones, because searches read four entries at once.
@@ -57,8 +57,8 @@ struct PhotonMap {
   // Runs body(i) for i in [0, count), in any order and on any threads.
   using ForEach = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
 
-  const PhotonRecord<S>& recordOf(uint32_t photon) const {
-    return records[photon >> storeShift][photon & ((1u << storeShift) - 1)];
+  const VertexRow<S>& rowOf(uint32_t photon) const {
+    return rows[photon >> storeShift][photon & ((1u << storeShift) - 1)];
   }
 
   // Sorts the vertices of all stores, which must stay as they are while the map is searched. radius: of the searches

@@ -2,14 +2,17 @@
 // gathering columns one by one would cost several times the arithmetic of what joins two vertices.
 #pragma once
 
+#include "kernels/mis_lanes.h"
 #include "kernels/shade/shading_lanes.h"
+#include "kernels/shade/vertex_tag.h"
 #include "kernels/simd/interleave.h"
 
 WAVECREST_SIMD_BEGIN
 
-// The rows of block i of the live paths' vertices.
-template <class S>
-WAVECREST_INLINE void makeRows(const SceneView<S>& scene, const Wave<S>& wave, size_t i, RecordBlock<S>& rows) {
+// The rows of block i of the live paths' vertices; edges: from the light, where they are kept as light vertices.
+template <uint32_t kFeatures, class S>
+WAVECREST_INLINE void makeRows(const StageContext<S>& context, const Wave<S>& wave, size_t i, uint32_t edges,
+                               RecordBlock<S>& rows) {
   const auto& rays = wave.rays;
   const auto& surfaces = wave.surfaces;
   const auto& paths = wave.paths;
@@ -17,24 +20,24 @@ WAVECREST_INLINE void makeRows(const SceneView<S>& scene, const Wave<S>& wave, s
   const auto fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
   const auto normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
   const auto throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
-  using Real = decltype(position.x);
+  const auto mis = loadMis<kFeatures>(paths, i);
   const UInt primitive = select(firstLanes(rays.size - i), load(wave.hits.primitive, i), UInt(0u));
   rows.set(0, position.x, position.y, position.z, load(surfaces.offset, i));
-  rows.set(1, fix.x, fix.y, fix.z, to<Real>(toFloat(materialOf(scene, primitive))));
-  rows.set(2, normal.x, normal.y, normal.z, load(paths.dVCM, i));
-  rows.set(3, throughput.x, throughput.y, throughput.z, load(paths.dVC, i));
+  rows.set(1, fix.x, fix.y, fix.z, packTag(materialOf(*context.scene, primitive), edges, fix.x));
+  rows.set(2, normal.x, normal.y, normal.z, mis.dVCM);
+  rows.set(3, throughput.x, throughput.y, throughput.z, keptBehind(context.mis, mis));
 }
 
 // The rows of the live paths' vertices, if no stage has written them at this depth yet.
-template <class S>
-WAVECREST_INLINE void packVertexRows(const SceneView<S>& scene, Wave<S>& wave) {
+template <uint32_t kFeatures, class S>
+WAVECREST_INLINE void packVertexRows(const StageContext<S>& context, Wave<S>& wave) {
   auto& rows = wave.vertexRows;
   if (rows.size != 0) return;
   const size_t count = wave.rays.size;
   rows.claim(count);
   RecordBlock<S> block;
   for (size_t i = 0; i < count; i += kLanes) {
-    makeRows(scene, wave, i, block);
+    makeRows<kFeatures>(context, wave, i, 0, block);
     // The tail of a column has room for whole blocks.
     for (size_t k = 0; k < kLanes; ++k) block.copy(k, rows.row[i + k]);
   }
@@ -46,7 +49,7 @@ struct RowLanes {
   using Real = typename P::Real;
   ShadingLanes<P, kFeatures> shading;
   Vec3<Real> throughput;
-  Real dVCM, dVC;
+  Real dVCM, behind;
 };
 
 // index: of a row for every lane. columns: what rows do not hold, at the same indices, as Surfaces or LightVertices.
@@ -68,7 +71,7 @@ WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::S
                            .offset = place.d,
                            .u = Float(0),
                            .v = Float(0),
-                           .material = toUInt(to<Float>(back.d))};
+                           .material = materialOfTag(back.d)};
   const UInt at = loadUnaligned(index);
   if constexpr (has(kFeatures, kShadingNormals)) {
     vertex.shadingNormal = gatherVec3(columns.shadingX, columns.shadingY, columns.shadingZ, at);

@@ -94,7 +94,6 @@ class StrategyImages : public WalkVisitor<float> {
       for (size_t i = walk_.light().firstOf(depth); i < walk_.light().firstOf(depth + 1); ++i) {
         const size_t target = some.vertices.claim(1);
         forEachColumn(all, some.vertices, [&](size_t, auto& from, auto& to) { to[target] = from[i]; });
-        some.photons()[target] = walk_.light().photons()[i];
       }
       LightStore<float>* const stores[1] = {&some};
       maps_[depth - 1].build(stores, walk_.mis().radius, [](size_t count, const std::function<void(size_t)>& body) {

@@ -2,6 +2,7 @@
 #include "tests/kernels/bsdf_entries.h"
 
 #include "kernels/shade/bsdf_lanes.h"
+#include "kernels/shade/vertex_tag.h"
 #include "kernels/simd/isa_table.h"
 
 WAVECREST_SIMD_BEGIN
@@ -129,6 +130,16 @@ constexpr BsdfEntries kEntries = {
           storeUnaligned(reflectance.b, out->reflectance[1]);
           storeUnaligned(reflectance.c, out->reflectance[2]);
           storeUnaligned(reflectance.d, out->reflectance[3]);
+        },
+    .throughTag =
+        [](Precision precision, uint32_t material, uint32_t edges) {
+          return withPolicy(precision, [&](auto policy) HWY_ATTR {
+            using Real = typename decltype(policy)::Real;
+            const Real tag = packTag(UInt(material), edges, Real(0));
+            HWY_ALIGN uint32_t materials[kLanes];
+            store(materialOfTag(tag), materials);
+            return std::array{materials[0], static_cast<uint32_t>(firstLane(edgesOfTag(tag)))};
+          });
         },
     .fresnelDielectric =
         [](Precision precision, double cosine, double eta) {

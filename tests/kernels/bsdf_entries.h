@@ -50,6 +50,8 @@ struct BsdfEntries {
   // Of the material of each lane: its record's words before the last array, word by word, and what MaterialLanes reads
   // of that array's element.
   void (*readMaterials)(const SceneView<float>& scene, const uint32_t* index, uint32_t element, MaterialWords* out);
+  // What comes back of a vertex's tag: material and edges.
+  std::array<uint32_t, 2> (*throughTag)(Precision precision, uint32_t material, uint32_t edges);
   double (*fresnelDielectric)(Precision precision, double cosine, double eta);
   double (*fresnelConductor)(Precision precision, double cosine, double eta, double k);
 };

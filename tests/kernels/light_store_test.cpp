@@ -12,26 +12,24 @@ namespace {
 constexpr size_t kLanesOfStore = 32;
 constexpr ColumnNeeds kNeeds{};
 
-// Writes vertices [first, first + count), each with a number of its own in every kind of column and in its photon.
+// Writes vertices [first, first + count), each with a number of its own in every kind of column.
 void fill(LightStore<float>& store, size_t first, size_t count) {
   const size_t at = store.vertices.claim(count);
   ASSERT_EQ(at, first);
   for (size_t i = first; i < first + count; ++i) {
     store.vertices.positionX[i] = static_cast<float>(i);
-    store.vertices.row[i].dVC = static_cast<float>(i) + 0.25f;
+    store.vertices.row[i].behind = static_cast<float>(i) + 0.25f;
     store.vertices.lane[i] = static_cast<uint32_t>(i);
-    store.photons()[i].position[0] = static_cast<float>(i) + 0.5f;
-    store.photons()[i].depth = static_cast<float>(i) + 0.75f;
+    store.vertices.row[i].position[0] = static_cast<float>(i) + 0.5f;
   }
 }
 void expectFilled(const LightStore<float>& store, size_t count) {
   ASSERT_EQ(store.vertices.size, count);
   for (size_t i = 0; i < count; ++i) {
     EXPECT_EQ(store.vertices.positionX[i], static_cast<float>(i));
-    EXPECT_EQ(store.vertices.row[i].dVC, static_cast<float>(i) + 0.25f);
+    EXPECT_EQ(store.vertices.row[i].behind, static_cast<float>(i) + 0.25f);
     EXPECT_EQ(store.vertices.lane[i], i);
-    EXPECT_EQ(store.photons()[i].position[0], static_cast<float>(i) + 0.5f);
-    EXPECT_EQ(store.photons()[i].depth, static_cast<float>(i) + 0.75f);
+    EXPECT_EQ(store.vertices.row[i].position[0], static_cast<float>(i) + 0.5f);
   }
 }
 

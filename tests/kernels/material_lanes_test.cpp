@@ -1,4 +1,5 @@
-// MaterialLanes: every field of every lane's material, whether they are gathered or looked up in a table.
+// MaterialLanes: every field of every lane's material, whether they are gathered or looked up in a table; and materials
+// in the tags of vertices.
 #include <bit>
 #include <cstring>
 #include <vector>
@@ -53,6 +54,18 @@ TEST_P(MaterialLanesTest, readEveryFieldOfAnyNumberOfMaterials) {
         EXPECT_EQ(read.reflectance[c][i], expected.reflectance[c]);
       }
       EXPECT_EQ(std::bit_cast<uint32_t>(read.reflectance[3][i]), expected.flags);
+    }
+  }
+}
+
+TEST_P(MaterialLanesTest, comeThroughATagWithEdges) {
+  for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
+    for (const uint32_t material : {0u, 1u, 12345u, kMaxMaterials / 2 + 1, kMaxMaterials - 1}) {
+      for (const uint32_t edges : {0u, 1u, 2u, 63u, 64u, 127u, 128u, kMostEdges}) {
+        const auto back = entries<BsdfEntries>().throughTag(precision, material, edges);
+        EXPECT_EQ(back[0], material) << edges << " edges";
+        EXPECT_EQ(back[1], edges) << "material " << material;
+      }
     }
   }
 }
