@@ -170,6 +170,7 @@ struct SceneView {
   const MaterialRecord* materials = nullptr;
   const MaterialTable* materialTable = nullptr;  // the same; none if they are more than kFewMaterials
   uint32_t materialCount = 0;
+  uint32_t bsdfKinds = ~0u;  // bit k: some material is, or may be, of BsdfKind k
   const LightRecord<S>* lights = nullptr;
   const TextureRecord* textures = nullptr;
   const float* texels = nullptr;

@@ -127,6 +127,8 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   view.attributes = primitives.attributes.data();
   view.materials = compiled->materials.data();
   view.materialCount = static_cast<uint32_t>(compiled->materials.size());
+  view.bsdfKinds = 0;
+  for (const MaterialRecord& material : compiled->materials) view.bsdfKinds |= 1u << material.kind;
   compiled->materialTable = tabulate(compiled->materials);
   view.materialTable = compiled->materialTable.get();
   view.textures = compiled->textures.records.data();

@@ -61,13 +61,14 @@ struct BsdfInput {
   using Real = typename P::Real;
   const MaterialRecord* materials;
   MaterialLanes at;
+  uint32_t kinds;  // SceneView::bsdfKinds
   UInt kind, flags;
   Walk walk = Walk::camera;  // from the eye, so that gen points to the light's side, or from a light
   Lobes lobes = Lobes::all;
   std::conditional_t<kTextured, TextureFactors<Real>, NoTextureFactors> textures;
 
   WAVECREST_INLINE BsdfInput(const SceneView<typename P::Storage>& scene, UInt index)
-      : materials(scene.materials), at(scene, index) {
+      : materials(scene.materials), at(scene, index), kinds(scene.bsdfKinds) {
     kind = at(materials->kind);
     const FourColumns<Float> first = at.four(materials->reflectance[0]);
     albedo_ = {first.a, first.b, first.c};

@@ -23,13 +23,15 @@ WAVECREST_INLINE BsdfSample<Real> select(Mask m, const BsdfSample<Real>& yes, co
 template <class P, uint32_t kFeatures>
 using BsdfInputOf = BsdfInput<P, has(kFeatures, kTextures)>;
 
-// Calls function(Bsdf{}, mask of its lanes) for each kind of the feature set that some active lane has.
+// Calls function(Bsdf{}, mask of its lanes) for each kind of the feature set that some active lane has. Most kinds are
+// absent from the whole scene, which a bit says sooner than a comparison of lanes.
 template <uint32_t kFeatures, class P, bool kTextured, class Function, class... Bsdfs>
 WAVECREST_INLINE void forEachBsdf(const BsdfInput<P, kTextured>& input, Mask active, Function&& function,
                                   BsdfList<Bsdfs...>) {
   const auto visit = [&](auto bsdf) WAVECREST_LAMBDA {
     using Bsdf = decltype(bsdf);
     if constexpr (Bsdf::kFeature == 0 || has(kFeatures, Bsdf::kFeature)) {
+      if ((input.kinds >> static_cast<uint32_t>(Bsdf::kKind) & 1) == 0) return;
       const Mask mine = active & (input.kind == UInt(static_cast<uint32_t>(Bsdf::kKind)));
       if (any(mine)) function(bsdf, mine);
     }
