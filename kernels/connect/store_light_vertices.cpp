@@ -95,7 +95,7 @@ class BoundsLanes {
     Bounds<S> bounds;
     const Real* const columns[2][3] = {{&low_.x, &low_.y, &low_.z}, {&high_.x, &high_.y, &high_.z}};
     for (size_t axis = 0; axis < 3; ++axis) {
-      HWY_ALIGN S low[kLanes], high[kLanes];
+      HWY_ALIGN S low[kLanes]{}, high[kLanes]{};  // clang-tidy does not see that store fills them
       store(*columns[0][axis], low);
       store(*columns[1][axis], high);
       bounds.low[axis] = *std::min_element(low, low + kLanes);

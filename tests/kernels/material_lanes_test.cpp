@@ -31,7 +31,7 @@ class MaterialLanesTest : public IsaTest {};
 WAVECREST_TEST_EVERY_ISA(MaterialLanesTest);
 
 TEST_P(MaterialLanesTest, readEveryFieldOfAnyNumberOfMaterials) {
-  for (const size_t count : {1, 2, 4, 5, 8, 9, 16, 17, 100}) {
+  for (const size_t count : {1u, 2u, 4u, 5u, 8u, 9u, 16u, 17u, 100u}) {
     const std::vector<MaterialRecord> materials = distinctMaterials(count);
     const std::unique_ptr<MaterialTable> table = tabulate(materials);
     EXPECT_EQ(table != nullptr, count <= kFewMaterials);
