@@ -78,16 +78,8 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
                            .u = Float(0),
                            .v = Float(0),
                            .material = materialOf(scene, gather(v.primitive, at))};
-  if constexpr (has(kFeatures, kShadingNormals)) {
-    vertex.shadingNormal = gatherVec3(v.shadingX, v.shadingY, v.shadingZ, at);
-  }
-  if constexpr (has(kFeatures, kNormalMaps)) {
-    if (scene.normalMaps) vertex.baseNormal = gatherVec3(v.baseX, v.baseY, v.baseZ, at);
-  }
-  if constexpr (has(kFeatures, kTextures)) {
-    vertex.u = gather(v.uvU, at);
-    vertex.v = gather(v.uvV, at);
-  }
+  readDetails<kFeatures>(
+      scene, v, [&](const auto& column) WAVECREST_LAMBDA { return gather(column, at); }, vertex);
   auto shading = shadingOf<P, kFeatures>(scene, vertex);
   shading.bsdf.walk = walk;
   return shading;

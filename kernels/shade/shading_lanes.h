@@ -224,6 +224,23 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
   return s;
 }
 
+// What some feature sets ask of a vertex: shading normals, those without maps, texture coordinates. columns: Surfaces
+// or others that name them so; read(column): the numbers of the lanes.
+template <uint32_t kFeatures, class Real, class S, class Columns, class Read>
+WAVECREST_INLINE void readDetails(const SceneView<S>& scene, const Columns& columns, const Read& read,
+                                  VertexLanes<Real>& vertex) {
+  if constexpr (has(kFeatures, kShadingNormals)) {
+    vertex.shadingNormal = {read(columns.shadingX), read(columns.shadingY), read(columns.shadingZ)};
+  }
+  if constexpr (has(kFeatures, kNormalMaps)) {
+    if (scene.normalMaps) vertex.baseNormal = {read(columns.baseX), read(columns.baseY), read(columns.baseZ)};
+  }
+  if constexpr (has(kFeatures, kTextures)) {
+    vertex.u = read(columns.uvU);
+    vertex.v = read(columns.uvV);
+  }
+}
+
 // Block i of the live paths' vertices.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename P::Storage>& scene,
@@ -241,16 +258,8 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename
                            .u = Float(0),
                            .v = Float(0),
                            .material = materialOf(scene, select(active, load(wave.hits.primitive, i), UInt(0u)))};
-  if constexpr (has(kFeatures, kShadingNormals)) {
-    vertex.shadingNormal = loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i);
-  }
-  if constexpr (has(kFeatures, kNormalMaps)) {
-    if (scene.normalMaps) vertex.baseNormal = loadVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, i);
-  }
-  if constexpr (has(kFeatures, kTextures)) {
-    vertex.u = load(surfaces.uvU, i);
-    vertex.v = load(surfaces.uvV, i);
-  }
+  readDetails<kFeatures>(
+      scene, surfaces, [&](const auto& column) WAVECREST_LAMBDA { return load(column, i); }, vertex);
   return shadingOf<P, kFeatures>(scene, vertex);
 }
 

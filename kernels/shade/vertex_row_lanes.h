@@ -73,16 +73,8 @@ WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::S
                            .v = Float(0),
                            .material = materialOfTag(back.d)};
   const UInt at = loadUnaligned(index);
-  if constexpr (has(kFeatures, kShadingNormals)) {
-    vertex.shadingNormal = gatherVec3(columns.shadingX, columns.shadingY, columns.shadingZ, at);
-  }
-  if constexpr (has(kFeatures, kNormalMaps)) {
-    if (scene.normalMaps) vertex.baseNormal = gatherVec3(columns.baseX, columns.baseY, columns.baseZ, at);
-  }
-  if constexpr (has(kFeatures, kTextures)) {
-    vertex.u = gather(columns.uvU, at);
-    vertex.v = gather(columns.uvV, at);
-  }
+  readDetails<kFeatures>(
+      scene, columns, [&](const auto& column) WAVECREST_LAMBDA { return gather(column, at); }, vertex);
   return {shadingOf<P, kFeatures>(scene, vertex), {carried.a, carried.b, carried.c}, side.d, carried.d};
 }
 

@@ -34,10 +34,9 @@ struct BsdfQuery {
 };
 
 struct MaterialWords {
-  static constexpr size_t kMaxLanes = 16;
-  uint32_t words[MaterialTable::kWords][kMaxLanes];
-  float transmittance[kMaxLanes];
-  float specular[3][kMaxLanes], reflectance[4][kMaxLanes];  // as a vector, and as four numbers
+  uint32_t words[MaterialTable::kWords][kFewMaterials];
+  float transmittance[kFewMaterials];
+  float specular[3][kFewMaterials], reflectance[4][kFewMaterials];  // as a vector, and as four numbers
 };
 
 struct BsdfEntries {

@@ -39,8 +39,8 @@ TEST_P(MaterialLanesTest, readEveryFieldOfAnyNumberOfMaterials) {
     scene.materials = materials.data();
     scene.materialTable = table.get();
     scene.materialCount = static_cast<uint32_t>(count);
-    uint32_t index[MaterialWords::kMaxLanes];
-    for (size_t i = 0; i < MaterialWords::kMaxLanes; ++i) index[i] = static_cast<uint32_t>((7 * i + count - 1) % count);
+    uint32_t index[kFewMaterials];
+    for (size_t i = 0; i < kFewMaterials; ++i) index[i] = static_cast<uint32_t>((7 * i + count - 1) % count);
     MaterialWords read;
     entries<BsdfEntries>().readMaterials(scene, index, kElement, &read);
     for (size_t i = 0; i < entries<BsdfEntries>().lanes; ++i) {
