@@ -113,7 +113,10 @@ class Planner {
     memory_.lightPaths = asked;
     if (plan_.pipeline.photonMap && settings_.memoryBytes) fitLightPaths(*settings_.memoryBytes);
     memory_.use.lightVertices = vertexBytes(memory_.lightPaths);
-    if (plan_.pipeline.photonMap) memory_.use.photonMap = photonBytes(memory_.lightPaths);
+    if (plan_.pipeline.photonMap) {
+      memory_.photons = photons(memory_.lightPaths);
+      memory_.use.photonMap = photonBytes(memory_.lightPaths);
+    }
   }
 
   // Of a wave per thread, or with a photon map of all waves.
@@ -121,10 +124,11 @@ class Planner {
     const size_t waves = (lightPaths + settings_.waveSize - 1) / settings_.waveSize;
     return (plan_.pipeline.photonMap ? waves : settings_.threads) * emptyStore_.bytesFor(memory_.verticesPerWave);
   }
-  size_t photonBytes(size_t lightPaths) const {
+  size_t photons(size_t lightPaths) const {
     const double perPath = static_cast<double>(pilot_.stored) / static_cast<double>(std::max<size_t>(pilot_.paths, 1));
-    return PhotonMap<S>::bytesFor(static_cast<size_t>(std::llround(perPath * static_cast<double>(lightPaths))));
+    return static_cast<size_t>(std::llround(perPath * static_cast<double>(lightPaths)));
   }
+  size_t photonBytes(size_t lightPaths) const { return PhotonMap<S>::bytesFor(photons(lightPaths)); }
 
   // The most light paths, up to those asked for, that leave the plan within the budget.
   void fitLightPaths(size_t budget) {

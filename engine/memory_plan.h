@@ -39,6 +39,7 @@ struct MemoryPlan {
   MemoryUse use;
   size_t lightPaths = 0;       // N_L: of each iteration
   size_t verticesPerWave = 0;  // room that the light vertices of a wave need
+  size_t photons = 0;          // with a photon map: about how many light vertices an iteration has
 };
 
 // The budget is too small even for the least that a render can do with.

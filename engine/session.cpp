@@ -77,6 +77,7 @@ class TypedSession final : public Session {
   void renderWaves(const Finished& finished);
   // Iterations of a method with a photon map.
   void renderPhases(const Finished& finished);
+  PhotonGrid<S> photonGrid(uint64_t iteration) const;
   void buildPhotonMap(uint64_t iteration);
   // Light vertices that the camera paths of a wave are joined with.
   LightStore<S>* partnersOf(size_t waveIndex, Worker& worker);
@@ -149,6 +150,7 @@ void TypedSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSt
       .limits = settings_.limits,
       .mis = misSettings(pass.strategies, settings_, plan_.scene->view.radius, memory_.lightPaths, iteration),
       .light = light,
+      .photonGrid = photonGrid(iteration),
       .photons = &photons_,
       .splats = {worker.splats.data(), area.x0, area.y0, area.width, area.height},
       .counters = &worker.counters};
@@ -237,13 +239,21 @@ void TypedSession<S>::renderWaves(const Finished& finished) {
 }
 
 template <class S>
+PhotonGrid<S> TypedSession<S>::photonGrid(uint64_t iteration) const {
+  if (!plan_.pipeline.photonMap) return {};
+  const SceneView<S>& scene = plan_.scene->view;
+  const MisSettings mis =
+      misSettings(plan_.pipeline.lightPass->strategies, settings_, scene.radius, memory_.lightPaths, iteration);
+  return PhotonGrid<S>::over(scene.center, scene.radius, mis.radius,
+                             static_cast<double>(std::max<size_t>(memory_.photons, 1)));
+}
+
+template <class S>
 void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
   std::vector<LightStore<S>*> stores;
   for (const auto& store : stores_) stores.push_back(store.get());
   const uint64_t begin = readTicks();
-  const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
-                                      memory_.lightPaths, iteration);
-  photons_.build(stores, mis.radius, forEach);
+  photons_.build(stores, photonGrid(iteration), forEach);
   photonTally_.ticks += readTicks() - begin;
   photonTally_.items += photons_.size;
   photonIteration_ = iteration;

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "kernels/columns/wave.h"
+#include "kernels/merge/photon_grid.h"
 #include "kernels/sampling/sampler.h"
 #include "kernels/scene_view.h"
 #include "kernels/simd/isa.h"
@@ -172,6 +173,7 @@ struct StageContext {
   uint32_t depth = 0;                     // index of the vertex that the stage works on; 0 is the path's origin
   uint32_t lightDepth = 0;                // index of the light vertices that connectVertices joins
   LightStore<S>* light = nullptr;         // light vertices of this wave's paths
+  PhotonGrid<S> photonGrid{};             // where they are in it, if they are to be merged
   const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place
   SplatSink splats;
   ChainState* chains = nullptr;       // of Markov chains: their state, one chain to a lane

@@ -98,19 +98,16 @@ void fillWave(Wave<float>& wave, size_t count, double side, Random& random) {
 }
 
 // One vertex per lane, on the floor (z = 0) or on the ceiling.
-void fillStore(LightStore<float>& store, size_t count, float z, Random& random) {
+void fillStore(LightStore<float>& store, const PhotonGrid<float>& grid, size_t count, float z, Random& random) {
   store.clear();
   store.beginDepth(count);
   auto& v = store.vertices;
   v.claim(count);
   for (uint32_t i = 0; i < count; ++i) {
-    v.positionX[i] = random.uniform(0, 1);
-    v.positionY[i] = random.uniform(0, 1);
-    v.positionZ[i] = z;
     v.lane[i] = i;
     const float up = z == 0 ? 1.0f : -1.0f, tilt = random.uniform(-0.7, 0.7), density = random.uniform(0, 1);
     const float cosine = std::sqrt(1 - tilt * tilt);
-    v.row[i] = {.position = {v.positionX[i], v.positionY[i], z},
+    v.row[i] = {.position = {random.uniform(0, 1), random.uniform(0, 1), z},
                 .offset = 1e-6f,
                 .fix = {tilt, 0, up * cosine},
                 .tag = std::bit_cast<float>(1u << kMaterialBits),  // material 0, one edge from the light
@@ -118,6 +115,9 @@ void fillStore(LightStore<float>& store, size_t count, float z, Random& random) 
                 .dVCM = density,
                 .throughput = {1, 1, 1},
                 .behind = density};
+    const auto at = grid.at(v.row[i].position);
+    v.cell[i] = at.cell;
+    v.place[i] = at.place;
   }
 }
 
@@ -126,21 +126,23 @@ struct PhotonField {
   Arena memory;
   std::vector<std::unique_ptr<LightStore<float>>> stores;
   std::vector<LightStore<float>*> pointers;
+  PhotonGrid<float> grid;
   PhotonMap<float> map;
 
   explicit PhotonField(size_t count) {
     Random random(count);
+    grid = PhotonGrid<float>::over({0.5, 0.5, 0.5}, 1, misFor(count).radius, static_cast<double>(count));
     for (size_t first = 0; first < count; first += kWave) {
       stores.push_back(std::make_unique<LightStore<float>>(kWave, kNeeds));
       if (first == 0) memory = Arena((count + kWave - 1) / kWave * stores[0]->arenaBytes(kWave));
       stores.back()->reserve(kWave, memory);
-      fillStore(*stores.back(), std::min(kWave, count - first), 0, random);
+      fillStore(*stores.back(), grid, std::min(kWave, count - first), 0, random);
       pointers.push_back(stores.back().get());
     }
-    build(count);
+    build();
   }
-  void build(size_t count) {
-    map.build(pointers, misFor(count).radius, [](size_t n, const std::function<void(size_t)>& body) {
+  void build() {
+    map.build(pointers, grid, [](size_t n, const std::function<void(size_t)>& body) {
       for (size_t i = 0; i < n; ++i) body(i);
     });
   }
@@ -184,7 +186,7 @@ void measureBuild(benchmark::State& state, size_t photons) {
   CpuTimer timer;
   for (auto _ : state) {
     timer.start();
-    field.build(photons);
+    field.build();
     state.SetIterationTime(timer.seconds());
   }
   reportItems(state, photons);
@@ -235,7 +237,7 @@ void measureConnection(benchmark::State& state, Walk walk, Stage<float> stage, S
   Wave<float> wave(items, kNeeds);
   fillWave(wave, items, 1, random);
   LightStore<float> store(items, kNeeds);
-  fillStore(store, items, 1, random);
+  fillStore(store, {}, items, 1, random);
   context.light = &store;
   twin(context, wave);
   const double expected = sumOf(wave.shadowRays.red, wave.shadowRays.size);

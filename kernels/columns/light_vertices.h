@@ -2,9 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstring>
-#include <limits>
 #include <vector>
 
 #include "kernels/columns/wave.h"
@@ -14,15 +12,13 @@ namespace wavecrest {
 template <class S>
 struct LightVertices : Columns<LightVertices<S>> {
   Column<VertexRow<S>> row;
-  Column<S> positionX, positionY, positionZ;  // dropped without merges; all below are without connections
-  Column<S> shadingX, shadingY, shadingZ;     // dropped where the scene has no shading normals
-  Column<S> baseX, baseY, baseZ;              // dropped where it has no normal maps
-  Column<float> uvU, uvV;                     // dropped where the scene has no textures
-  Column<uint32_t> lane;                      // of the path, in its wave
-  auto all() {
-    return std::tie(row, positionX, positionY, positionZ, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV,
-                    lane);
-  }
+  // In the grid of photons (kernels/merge/photon_grid.h). Dropped without merges; all below are without connections.
+  Column<uint32_t> cell, place;
+  Column<S> shadingX, shadingY, shadingZ;  // dropped where the scene has no shading normals
+  Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
+  Column<float> uvU, uvV;                  // dropped where the scene has no textures
+  Column<uint32_t> lane;                   // of the path, in its wave
+  auto all() { return std::tie(row, cell, place, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV, lane); }
 };
 
 // What camera paths do with light vertices.
@@ -30,42 +26,8 @@ struct LightVertexUse {
   bool connected = true, merged = true;
 };
 
-// The box around points; without any, low is above high.
-template <class S>
-struct Bounds {
-  std::array<S, 3> low, high;
-};
-
-template <class S>
-Bounds<S> boundsOf(const LightVertices<S>& v) {
-  constexpr S kInfinity = std::numeric_limits<S>::infinity();
-  constexpr size_t kAbreast = 16;  // independent minima and maxima, which the compiler keeps in registers
-  Bounds<S> bounds{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  const S* const columns[3] = {v.positionX, v.positionY, v.positionZ};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const S* const column = columns[axis];
-    std::array<S, kAbreast> low, high;
-    low.fill(kInfinity);
-    high.fill(-kInfinity);
-    const size_t whole = v.size / kAbreast * kAbreast;
-    for (size_t i = 0; i < whole; i += kAbreast) {
-      for (size_t k = 0; k < kAbreast; ++k) {
-        low[k] = std::min(low[k], column[i + k]);
-        high[k] = std::max(high[k], column[i + k]);
-      }
-    }
-    for (size_t i = whole; i < v.size; ++i) {
-      low[0] = std::min(low[0], column[i]);
-      high[0] = std::max(high[0], column[i]);
-    }
-    bounds.low[axis] = *std::min_element(low.begin(), low.end());
-    bounds.high[axis] = *std::max_element(high.begin(), high.end());
-  }
-  return bounds;
-}
-
 // The light vertices of one wave, in the order (depth, lane): rows, which connections and merges read; for merging also
-// columns of positions, because a photon map is built from those alone.
+// where they are in the grid, because a photon map is built from that alone.
 //
 // Grows between stages to what a wave needs and keeps that memory, so a steady state allocates nothing.
 // Path i of an iteration is lane i % lanes of store i / lanes.
@@ -87,34 +49,17 @@ class LightStore {
     }
     if (!use.connected) dropConnectedColumns();
     if (!use.merged) {
-      for (Column<S>* column : {&vertices.positionX, &vertices.positionY, &vertices.positionZ}) column->drop();
+      vertices.cell.drop();
+      vertices.place.drop();
     }
   }
 
   // Whether vertices can be connected, and merged.
   bool keepsLanes() const { return vertices.lane.needed(); }
-  bool keepsPositions() const { return vertices.positionX.needed(); }
-
-  // The box around the vertices: what storing them has included, or what findBounds() finds where somebody else has
-  // written them.
-  void include(const Bounds<S>& added, size_t count) {
-    if (boundedSize_ == 0) bounds_ = added;
-    for (size_t axis = 0; axis < 3; ++axis) {
-      bounds_.low[axis] = std::min(bounds_.low[axis], added.low[axis]);
-      bounds_.high[axis] = std::max(bounds_.high[axis], added.high[axis]);
-    }
-    boundedSize_ += count;
-  }
-  void findBounds() {
-    if (boundedSize_ == vertices.size && boundedSize_ != 0) return;
-    bounds_ = boundsOf(vertices);
-    boundedSize_ = vertices.size;
-  }
-  const Bounds<S>& bounds() const { return bounds_; }
+  bool keepsPlaces() const { return vertices.place.needed(); }
 
   // Forgets the vertices of the previous wave.
   void clear() {
-    boundedSize_ = 0;
     vertices.size = 0;
     depths_ = 0;
     roomUsed_ = 0;
@@ -237,8 +182,6 @@ class LightStore {
   size_t lanes_;
   size_t depths_ = 0, roomUsed_ = 0;
   size_t sharedBytes_ = 0, ownBytes_ = 0;
-  size_t boundedSize_ = 0;  // how many vertices bounds_ is of
-  Bounds<S> bounds_{};
   std::vector<size_t> firstOfDepth_;  // by depth
   std::vector<uint32_t> rayOfLane_;
   Arena arena_;

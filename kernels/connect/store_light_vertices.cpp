@@ -2,10 +2,8 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: the next depth of the context's light
 // store [<= n], in lane order; nothing else changes. The caller has begun the depth, so there is room.
-#include <algorithm>
-#include <limits>
-
 #include "kernels/columns/light_vertices.h"
+#include "kernels/merge/photon_grid_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/vertex_row_lanes.h"
 #include "kernels/stage_declarations.h"
@@ -35,12 +33,15 @@ WAVECREST_INLINE void prefetchColumns(size_t out, const Column<Items>&... column
   (__builtin_prefetch(columns + out + kColumnsAhead, 1), ...);
 }
 
+// What a photon map is built from.
 template <class S>
-WAVECREST_INLINE auto appendPosition(const Rays<S>& rays, size_t i, Mask m, LightVertices<S>& vertices, size_t out) {
-  prefetchColumns(out, vertices.positionX, vertices.positionY, vertices.positionZ);
+WAVECREST_INLINE void appendPlaces(const PhotonGrid<S>& grid, const Rays<S>& rays, size_t i, Mask m,
+                                   LightVertices<S>& vertices, size_t out) {
+  prefetchColumns(out, vertices.cell, vertices.place);
   const auto position = loadVec3(rays.originX, rays.originY, rays.originZ, i);
-  appendVec3(position, m, vertices.positionX, vertices.positionY, vertices.positionZ, out);
-  return position;
+  const PlaceLanes at = placesOf(GridLanes<decltype(position.x)>(grid)(position));
+  append(at.cell, m, vertices.cell, out);
+  append(at.place, m, vertices.place, out);
 }
 
 // What connections and merges read.
@@ -75,56 +76,21 @@ WAVECREST_INLINE void appendColumns(const SceneView<S>& scene, const Wave<S>& wa
   append(load(wave.paths.lane, i), m, vertices.lane, out);
 }
 
-// The box around the positions of several blocks.
-template <class Real>
-class BoundsLanes {
- public:
-  WAVECREST_INLINE BoundsLanes() {
-    const Real infinity(std::numeric_limits<double>::infinity());
-    low_ = {infinity, infinity, infinity};
-    high_ = {-infinity, -infinity, -infinity};
-  }
-  WAVECREST_INLINE void include(Vec3<Real> p, Mask m) {
-    low_ = {min(low_.x, select(m, p.x, low_.x)), min(low_.y, select(m, p.y, low_.y)),
-            min(low_.z, select(m, p.z, low_.z))};
-    high_ = {max(high_.x, select(m, p.x, high_.x)), max(high_.y, select(m, p.y, high_.y)),
-             max(high_.z, select(m, p.z, high_.z))};
-  }
-  WAVECREST_INLINE Bounds<typename Real::Storage> overLanes() const {
-    using S = typename Real::Storage;
-    Bounds<S> bounds;
-    const Real* const columns[2][3] = {{&low_.x, &low_.y, &low_.z}, {&high_.x, &high_.y, &high_.z}};
-    for (size_t axis = 0; axis < 3; ++axis) {
-      HWY_ALIGN S low[kLanes]{}, high[kLanes]{};  // clang-tidy does not see that store fills them
-      store(*columns[0][axis], low);
-      store(*columns[1][axis], high);
-      bounds.low[axis] = *std::min_element(low, low + kLanes);
-      bounds.high[axis] = *std::max_element(high, high + kLanes);
-    }
-    return bounds;
-  }
-
- private:
-  Vec3<Real> low_, high_;
-};
-
 }  // namespace
 
 template <class P, uint32_t kFeatures>
 void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   LightStore<typename P::Storage>& store = *context.light;
   auto& vertices = store.vertices;
-  const bool connected = store.keepsLanes(), merged = store.keepsPositions();
+  const bool connected = store.keepsLanes(), merged = store.keepsPlaces();
   size_t out = vertices.size;
-  BoundsLanes<typename P::Real> bounds;
   for (size_t i = 0; i < wave.rays.size; i += kLanes) {
     const Mask joinable = joinableVertices<kFeatures>(*context.scene, wave, i);
     appendRows<kFeatures>(context, wave, i, joinable, vertices, out);
     if (connected) appendColumns<kFeatures>(*context.scene, wave, i, joinable, vertices, out);
-    if (merged) bounds.include(appendPosition(wave.rays, i, joinable, vertices, out), joinable);
+    if (merged) appendPlaces(context.photonGrid, wave.rays, i, joinable, vertices, out);
     out += countTrue(joinable);
   }
-  if (merged) store.include(bounds.overLanes(), out - vertices.size);
   context.counters->lightVertices += out - vertices.size;
   vertices.claim(out - vertices.size);
 }

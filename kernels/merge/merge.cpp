@@ -2,10 +2,11 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the photon map. out: Radiance grows. METHODS 6.2, 6.4, 5.6
 // (37)-(39). Candidates are (vertex, photon) pairs in a flat list, so that lanes are full whatever the photons per
-// cell; a vertex sums its pairs in the order of photons. Most candidates only share a bucket with the vertex, so what
-// is looked at first is their position alone; the rows of the others follow.
+// cell; a vertex sums its pairs in the order of photons. Most candidates only share a bucket with the vertex: what is
+// looked at first is their place, which is rounded, and the rows of the others decide.
 #include <algorithm>
 
+#include "kernels/merge/photon_grid_lanes.h"
 #include "kernels/merge/photon_map.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/vertex_row_lanes.h"
@@ -15,8 +16,10 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-constexpr uint32_t kRunShift = 30;  // the run (dy + 2 dz) of a candidate stands above its vertex index
-constexpr uint32_t kIndexMask = (1u << kRunShift) - 1;
+// A vertex of the wave, as runs and candidates name it: its index, above that whether it looks at two cells along x,
+// the run (dy + 2 dz), and in the highest bits those of the row, as in a photon's place.
+constexpr uint32_t kRunShift = kPlaceRowShift - 2, kWideBit = kRunShift - 1;
+constexpr uint32_t kIndexMask = (1u << kWideBit) - 1;
 // Ends of a search are rounded; a photon that the distance test lets through must lie between them.
 constexpr double kReach = 1 + 1e-5;
 
@@ -27,54 +30,44 @@ class Merger {
 
  public:
   Merger(const StageContext<S>& context, Wave<S>& wave)
-      : context_(context), wave_(wave), map_(*context.photons), capacity_(wave.pairs.capacity()) {}
+      : context_(context), wave_(wave), map_(*context.photons), inGrid_(map_.grid) {}
 
-  // Lists the candidates of every vertex, and shades whenever the list is full. Buckets and photons are all over
-  // memory: some blocks are searched together, so that all of them have asked for what they will read before the first
-  // reads.
+  // Buckets, photons and rows are all over memory: some blocks are searched together, so that all of them have asked
+  // for what they will read before the first reads; and rows are read when the next ones have been asked for.
   void run() {
     constexpr size_t kTogether = 4;
     Search searches[kTogether];
     for (size_t i = 0; i < wave_.rays.size; i += kTogether * kLanes) {
       const size_t blocks = std::min(kTogether, (wave_.rays.size - i + kLanes - 1) / kLanes);
       for (size_t k = 0; k < blocks; ++k) locate(i + k * kLanes, searches[k]);
-      for (size_t k = 0; k < blocks; ++k) prefetch(map_.bucketStart, searches[k].bucket, searches[k]);
-      for (size_t k = 0; k < blocks; ++k) lookUp(searches[k]);
-      for (size_t k = 0; k < blocks; ++k) prefetch(map_.keys, searches[k].first, searches[k]);
-      for (size_t k = 0; k < blocks; ++k) prefetch(map_.keys, searches[k].final, searches[k]);
-      for (size_t k = 0; k < blocks; ++k) list(i + k * kLanes, searches[k]);
+      for (size_t k = 0; k < blocks; ++k) askForBuckets(searches[k]);
+      for (size_t k = 0; k < blocks; ++k) findRuns(searches[k]);
+      for (size_t k = 0; k < blocks; ++k) askForKeys(searches[k]);
+      for (size_t k = 0; k < blocks; ++k) listCandidates(searches[k]);
+      const size_t asked = asked_;
+      askForRows();
+      if (asked >= kNear / 2) shade(asked);
     }
-    shade();
+    shade(nearCount_);
   }
 
  private:
-  struct Cells {
-    UInt x, y, z;
-  };
-  WAVECREST_INLINE Cells cellsOf(Vec3<Real> p) const {
-    const auto& grid = map_.grid;
-    const auto cell = [&](Real coordinate, S origin) WAVECREST_LAMBDA {
-      return toUInt(to<Float>(floor((coordinate - Real(origin)) * Real(grid.inverseCell))));
-    };
-    return {cell(p.x, grid.origin[0]), cell(p.y, grid.origin[1]), cell(p.z, grid.origin[2])};
-  }
-
   // The runs of photons that the vertices of a block look at, one for each row of cells: y and z of the lower cell, or
-  // one more. In memory, where lanes are read one by one.
+  // one more. In memory, where lanes are read one by one, and looked up.
   static constexpr uint32_t kRuns = 4;
-  using LaneNumbers = uint32_t[kLanes];
+  template <size_t kSize>
+  using Numbers = uint32_t[kSize];
   struct Search {
-    HWY_ALIGN LaneNumbers bucket[kRuns];
-    HWY_ALIGN LaneNumbers first[kRuns], end[kRuns], final[kRuns];  // final: the last before the end, if there is one
-    Mask searched[kRuns];
-    Mask wide;  // two cells along x
+    size_t count;  // of runs
+    HWY_ALIGN Numbers<(kRuns + 1) * kLanes> vertex, bucket, first, end;
+    // Of the block's vertices, in quanta from the lower cell on, as bits of floats; and the place of that cell, which
+    // turns parities into numbers of cells.
+    HWY_ALIGN Numbers<kLanes> x, y, z, lower;
   };
-  template <class T>
-  static WAVECREST_INLINE void prefetch(const T* base, const LaneNumbers (&index)[kRuns], const Search& search) {
-    for (uint32_t run = 0; run < kRuns; ++run) {
-      if (none(search.searched[run])) continue;
-      for (const uint32_t lane : index[run]) __builtin_prefetch(base + lane);
-    }
+
+  WAVECREST_INLINE CellLanes lowerCells(Vec3<Real> position) const {
+    const Real reach(context_.mis.radius * kReach);
+    return cellsOf(inGrid_(position - Vec3<Real>{reach, reach, reach}));
   }
 
   // Which buckets.
@@ -82,53 +75,52 @@ class Merger {
     const Mask querying = queries(i);
     const Vec3<Real> position = loadVec3(wave_.rays.originX, wave_.rays.originY, wave_.rays.originZ, i);
     const Real reach(context_.mis.radius * kReach);
-    const Cells low = cellsOf(position - Vec3<Real>{reach, reach, reach});
-    const Cells high = cellsOf(position + Vec3<Real>{reach, reach, reach});
+    const CellLanes low = lowerCells(position), high = cellsOf(inGrid_(position + Vec3<Real>{reach, reach, reach}));
     const Mask twoAlongY = low.y != high.y, twoAlongZ = low.z != high.z;
-    search.wide = querying & (low.x != high.x);
-    search.searched[0] = querying;
-    search.searched[1] = querying & twoAlongY;
-    search.searched[2] = querying & twoAlongZ;
-    search.searched[3] = querying & twoAlongY & twoAlongZ;
-    const UInt bucketMask(map_.grid.bucketMask);
+    const UInt wide = select(low.x != high.x, UInt(1u << kWideBit), UInt(0u));
+    const Mask searched[kRuns] = {querying, querying & twoAlongY, querying & twoAlongZ,
+                                  querying & twoAlongY & twoAlongZ};
+    search.count = 0;
     for (uint32_t run = 0; run < kRuns; ++run) {
-      if (none(search.searched[run])) continue;
-      const UInt bucket = (hash(low.y + UInt(run & 1), low.z + UInt(run >> 1)) + low.x) & bucketMask;
-      store(select(search.searched[run], bucket, UInt(0u)), search.bucket[run]);
+      const UInt row = rowOf(low.y + UInt(run & 1), low.z + UInt(run >> 1));
+      const UInt vertex = laneIndex(static_cast<uint32_t>(i) | run << kRunShift) | wide |
+                          shiftLeft<kPlaceRowShift>(shiftRight<kPlaceRowShift>(row));
+      storeUnaligned(compress(vertex, searched[run]), search.vertex + search.count);
+      storeUnaligned(compress((row + low.x) & UInt(map_.bucketMask), searched[run]), search.bucket + search.count);
+      search.count += countTrue(searched[run]);
     }
+    storeUnaligned(UInt(0u), search.bucket + search.count);  // whole blocks are read
+    const Vec3<Real> inCells = inGrid_(position);
+    const auto quanta = [](Real inGrid, UInt cell) WAVECREST_LAMBDA {
+      return bits(to<Float>((inGrid - to<Real>(toFloat(cell))) * Real(static_cast<float>(kQuantaPerCell))));
+    };
+    store(quanta(inCells.x, low.x), search.x);
+    store(quanta(inCells.y, low.y), search.y);
+    store(quanta(inCells.z, low.z), search.z);
+    const auto parity = [](UInt cell) WAVECREST_LAMBDA { return shiftLeft<kQuantaBits - 1>(cell & UInt(1u)); };
+    store(parity(low.x) | shiftLeft<kQuantaBits>(parity(low.y)) | shiftLeft<2 * kQuantaBits>(parity(low.z)),
+          search.lower);
+  }
+
+  WAVECREST_INLINE void askForBuckets(const Search& search) const {
+    for (size_t k = 0; k < search.count; ++k) __builtin_prefetch(map_.bucketStart + search.bucket[k]);
   }
 
   // Which photons.
-  WAVECREST_INLINE void lookUp(Search& search) const {
-    for (uint32_t run = 0; run < kRuns; ++run) {
-      if (none(search.searched[run])) continue;
-      const uint32_t* const bucket = search.bucket[run];
+  WAVECREST_INLINE void findRuns(Search& search) const {
+    for (size_t i = 0; i < search.count; i += kLanes) {
+      const uint32_t* const bucket = search.bucket + i;
       const auto starts = loadFour([&](size_t k) WAVECREST_LAMBDA { return map_.bucketStart + bucket[k]; });
-      const UInt first = starts.a, end = select(search.wide, starts.c, starts.b);
-      store(first, search.first[run]);
-      store(end, search.end[run]);
-      store(select(first < end, end - UInt(1u), first), search.final[run]);
+      store(starts.a, search.first + i);
+      store(select(hasBit(load(search.vertex + i), kWideBit), starts.c, starts.b), search.end + i);
     }
   }
 
-  WAVECREST_INLINE void list(size_t i, const Search& search) {
-    const uint32_t* const start = map_.bucketStart;
-    for (uint32_t run = 0; run < kRuns; ++run) {
-      const Mask searched = search.searched[run];
-      if (none(searched)) continue;
-      const UInt vertex = laneIndex(static_cast<uint32_t>(i)) | UInt(run << kRunShift);
-      list(vertex, load(search.first[run]), load(search.end[run]), searched);
-      // After the last bucket comes the first.
-      const Mask wraps = searched & search.wide & (load(search.bucket[run]) == UInt(map_.grid.bucketMask));
-      if (any(wraps)) list(vertex, UInt(start[0]), UInt(start[1]), wraps);
+  WAVECREST_INLINE void askForKeys(const Search& search) const {
+    for (size_t k = 0; k < search.count; ++k) {
+      __builtin_prefetch(map_.keys + search.first[k]);
+      __builtin_prefetch(map_.keys + search.end[k] - 1);  // the same if there is none
     }
-  }
-
-  static WAVECREST_INLINE UInt hash(UInt y, UInt z) {
-    UInt h = (y * UInt(0x9e3779b1u)) ^ (z * UInt(0x85ebca77u));
-    h = h ^ shiftRight<15>(h);
-    h = h * UInt(0x2c1b3c6du);
-    return h ^ shiftRight<12>(h);
   }
 
   // Vertices of block i that can merge: inside the grid, with more than delta lobes.
@@ -150,64 +142,82 @@ class Merger {
     return querying;
   }
 
-  // The candidates [first, last) of each lane in m: the first of every lane, then the second, and so on.
-  WAVECREST_INLINE void list(UInt vertexAndRun, UInt first, UInt last, Mask m) {
+  // ---- candidates
+  // -----------------------------------------------------------------------------------------------------
+
+  // Lists the candidates of a block, and those of them that are near.
+  WAVECREST_INLINE void listCandidates(const Search& search) {
+    const uint32_t* const start = map_.bucketStart;
+    size_t count = 0;
+    for (size_t i = 0; i < search.count; i += kLanes) {
+      const Mask searched = firstLanes(search.count - i);
+      const UInt vertex = load(search.vertex + i);
+      count = list(search, vertex, load(search.first + i), load(search.end + i), searched, count);
+      // After the last bucket comes the first.
+      const Mask wraps = searched & hasBit(vertex, kWideBit) & (load(search.bucket + i) == UInt(map_.bucketMask));
+      if (any(wraps)) count = list(search, vertex, UInt(start[0]), UInt(start[1]), wraps, count);
+    }
+    selectNear(search, count);
+  }
+
+  // The candidates [first, last) of each lane in m: the first of every lane, then the second, and so on. How many there
+  // are then, if there were `count`.
+  WAVECREST_INLINE size_t list(const Search& search, UInt vertex, UInt first, UInt last, Mask m, size_t count) {
     for (Mask more = m & (first < last); any(more); more = m & (first < last)) {
-      if (count_ + kLanes > capacity_) shade();
-      append(vertexAndRun, more, wave_.pairs.camera, count_);
-      append(first, more, wave_.pairs.light, count_);
-      count_ += countTrue(more);
+      if (count > kCandidates) {
+        selectNear(search, count);
+        count = 0;
+      }
+      storeUnaligned(compress(vertex, more), candidateVertex_ + count);
+      storeUnaligned(compress(first, more), candidateKey_ + count);
+      count += countTrue(more);
       first = first + UInt(1u);
     }
+    return count;
   }
 
-  // Whole blocks of the list are read: those that its end leaves open get pairs of the first vertex and photon.
-  WAVECREST_INLINE void closeList(size_t end) const {
-    storeUnaligned(UInt(0u), wave_.pairs.camera + end);
-    storeUnaligned(UInt(0u), wave_.pairs.light + end);
-  }
-
-  // Of the listed candidates keeps those within the radius, each found through its own cell; packs vertex and photon to
-  // the front of the list, and asks for the photons' rows.
-  size_t selectNear() {
-    const Real radius(context_.mis.radius);
-    const Real reach(context_.mis.radius * kReach);
-    closeList(count_);
-    size_t out = 0, asked = 0;
-    // Of pairs that were packed some time ago, as what is read one by one waits for what is written as a vector.
-    const auto ask = [&](size_t end) WAVECREST_LAMBDA {
-      for (; asked < end; ++asked) {
-        const uint32_t photon = map_.keys[wave_.pairs.light[asked]].photon;
-        wave_.pairs.light[asked] = photon;
-        __builtin_prefetch(&map_.rowOf(photon));
+  // Of the listed candidates of a block those that may be within the radius.
+  void selectNear(const Search& search, size_t count) {
+    const double quanta = context_.mis.radius * kReach * static_cast<double>(map_.grid.inverseCell) * kQuantaPerCell;
+    const double reach = quanta + static_cast<double>(map_.grid.slack);
+    const Float reach2(reach * reach);
+    // Whole blocks are read: those that the list's end leaves open get the first photon.
+    storeUnaligned(UInt(0u), candidateKey_ + count);
+    for (size_t i = 0; i < count; i += kLanes) {
+      const UInt vertex = load(candidateVertex_ + i), key = load(candidateKey_ + i);
+      const UInt lane = vertex & UInt(kLanes - 1);
+      const UInt place = RecordLanes<PhotonKey>(map_.keys, key)(map_.keys->place);
+      // From the lower cell on: the parity says which of the two.
+      const UInt fromLower = place ^ lookUp(search.lower, lane);
+      const auto away = [&](const Numbers<kLanes>& coordinate, UInt quantum) WAVECREST_LAMBDA {
+        return fromBits(lookUp(coordinate, lane)) - (toFloat(quantum & UInt(kQuantaMask)) + Float(0.5f));
+      };
+      const Float dx = away(search.x, fromLower), dy = away(search.y, shiftRight<kQuantaBits>(fromLower)),
+                  dz = away(search.z, shiftRight<2 * kQuantaBits>(fromLower));
+      const Mask near = firstLanes(count - i) & (mulAdd(dx, dx, mulAdd(dy, dy, dz * dz)) <= reach2) &
+                        (shiftRight<kPlaceRowShift>(vertex ^ place) == UInt(0u));
+      if (nearCount_ > kNear) {
+        askForRows();
+        shade(nearCount_);
       }
-    };
-    for (size_t i = 0; i < count_; i += kLanes) {
-      const Mask active = firstLanes(count_ - i);
-      const uint32_t* const cameras = wave_.pairs.camera + i;
-      const uint32_t* const keys = wave_.pairs.light + i;
-      const auto photonAt = [&](size_t k) WAVECREST_LAMBDA { return map_.keys[keys[k]].position; };
-      const auto vertexAt = [&](size_t k)
-                                WAVECREST_LAMBDA { return wave_.vertexRows.row[cameras[k] & kIndexMask].position; };
-      const FourColumns<Real> ofPhoton = loadFour(photonAt), ofVertex = loadFour(vertexAt);
-      const Vec3<Real> p{ofPhoton.a, ofPhoton.b, ofPhoton.c}, z{ofVertex.a, ofVertex.b, ofVertex.c};
-      const UInt camera = load(wave_.pairs.camera, i), key = load(wave_.pairs.light, i);
-      const UInt vertex = camera & UInt(kIndexMask), run = shiftRight<kRunShift>(camera);
-      const size_t packed = out;
-      Mask near = active & (length2(p - z) <= radius * radius);
-      if (none(near)) continue;
-      const Cells low = cellsOf(z - Vec3<Real>{reach, reach, reach}), own = cellsOf(p);
-      near = near & ((own.x == low.x) | (own.x == low.x + UInt(1u))) & (own.y == low.y + (run & UInt(1u))) &
-             (own.z == low.z + shiftRight<1>(run));
-      append(vertex, near, wave_.pairs.camera, out);
-      append(key, near, wave_.pairs.light, out);
-      out += countTrue(near);
-      ask(packed);
+      storeUnaligned(compress(vertex & UInt(kIndexMask), near), nearVertex_ + nearCount_);
+      storeUnaligned(compress(shiftRight<kRunShift>(vertex) & UInt(kRuns - 1), near), nearRun_ + nearCount_);
+      storeUnaligned(compress(key, near), nearPhoton_ + nearCount_);
+      nearCount_ += countTrue(near);
     }
-    ask(out);
-    closeList(out);
-    return out;
   }
+
+  // Of the photons that have been listed since it was called last.
+  WAVECREST_INLINE void askForRows() {
+    for (; asked_ < nearCount_; ++asked_) {
+      const uint32_t photon = map_.keys[nearPhoton_[asked_]].photon;
+      nearPhoton_[asked_] = photon;
+      __builtin_prefetch(&map_.rowOf(photon));
+    }
+  }
+
+  // ---- rows
+  // -----------------------------------------------------------------------------------------------------------
 
   // The photons of a block of the list, scattered over the stores. Lanes past the last repeat it.
   class PhotonLanes {
@@ -224,28 +234,38 @@ class Merger {
     const VertexRow<S>* row_[kLanes];
   };
 
-  void shade() {
-    const size_t near = selectNear();
-    count_ = 0;
+  // Which photons p a vertex z finds in a run: those within the radius, in the run's row and the vertex's two cells.
+  WAVECREST_INLINE Mask found(Vec3<Real> p, Vec3<Real> z, UInt run) const {
+    const Real radius(context_.mis.radius);
+    const CellLanes low = lowerCells(z), own = cellsOf(inGrid_(p));
+    return (length2(p - z) <= radius * radius) & ((own.x == low.x) | (own.x == low.x + UInt(1u))) &
+           (own.y == low.y + (run & UInt(1u))) & (own.z == low.z + shiftRight<1>(run));
+  }
+
+  // Merges the first photons of the list, and removes them.
+  void shade(size_t count) {
+    // Whole blocks are read: those that the end leaves open get the next ones, or the first vertex.
+    storeUnaligned(UInt(0u), nearVertex_ + nearCount_);
     const auto& scene = *context_.scene;
     const auto& paths = wave_.paths;
     const Real radius(context_.mis.radius);
     // k = len_L + len_C
     const Real longest(static_cast<float>(context_.limits.maxDepth - context_.depth));
     const auto vec3 = [](const FourColumns<Real>& row) WAVECREST_LAMBDA { return Vec3<Real>{row.a, row.b, row.c}; };
-    for (size_t i = 0; i < near; i += kLanes) {
-      const Mask active = firstLanes(near - i);
-      const PhotonLanes photons(map_, wave_.pairs.light + i, near - i);
-      const UInt vertex = load(wave_.pairs.camera, i);
-      const auto row = gatherRows<P, kFeatures>(scene, wave_.vertexRows.row, wave_.surfaces, wave_.pairs.camera + i);
+    for (size_t i = 0; i < count; i += kLanes) {
+      const Mask active = firstLanes(count - i);
+      const PhotonLanes photons(map_, nearPhoton_ + i, count - i);
+      const UInt vertex = load(nearVertex_ + i);
+      const auto row = gatherRows<P, kFeatures>(scene, wave_.vertexRows.row, wave_.surfaces, nearVertex_ + i);
       const auto& shading = row.shading;
-      const Vec3<Real> between = vec3(photons(&VertexRow<S>::position)) - shading.position;
+      const Vec3<Real> position = vec3(photons(&VertexRow<S>::position));
       const FourColumns<Real> back = photons(&VertexRow<S>::fix), facing = photons(&VertexRow<S>::normal),
                               carried = photons(&VertexRow<S>::throughput);
       const Vec3<Real> direction = vec3(back), normal = vec3(facing);
       // On the same side of the surface, and not beyond the path length.
-      const Mask accepted = active & (dot(shading.normal, normal) > Real(0.1f)) &
-                            (abs(dot(between, shading.normal)) <= radius * Real(0.5f)) &
+      const Mask accepted = active & found(position, shading.position, load(nearRun_ + i)) &
+                            (dot(shading.normal, normal) > Real(0.1f)) &
+                            (abs(dot(position - shading.position, shading.normal)) <= radius * Real(0.5f)) &
                             (edgesOfTag(back.d) <= longest);
       context_.counters->merges += countTrue(accepted);
       const auto bsdf = shading.scattering(active, direction);
@@ -265,13 +285,26 @@ class Merger {
       const Vec3<Real> contribution = row.throughput * bsdf.f * (vec3(carried) * perCosine) * scale;
       addRadiance(wave_.radiance, gather(paths.lane, vertex), accepted, contribution);
     }
+    for (uint32_t* const list : {nearVertex_, nearRun_, nearPhoton_}) std::copy(list + count, list + nearCount_, list);
+    nearCount_ -= count;
+    asked_ -= count;
   }
+
+  // Lists have room for a whole vector beyond the count at which they are emptied, and for one more of zeros.
+  static constexpr size_t kCandidates = 512, kNear = 256, kRoom = 2 * kLanes;
 
   const StageContext<S>& context_;
   Wave<S>& wave_;
   const PhotonMap<S>& map_;
-  const size_t capacity_;
-  size_t count_ = 0;
+  const GridLanes<Real> inGrid_;
+  // Of one block: the vertex and run that each was found by, and its key.
+  HWY_ALIGN uint32_t candidateVertex_[kCandidates + kRoom];
+  HWY_ALIGN uint32_t candidateKey_[kCandidates + kRoom];
+  // Of all blocks: index of the vertex, run, and photon, where it has been asked for, else its key.
+  HWY_ALIGN uint32_t nearVertex_[kNear + kRoom];
+  HWY_ALIGN uint32_t nearRun_[kNear + kRoom];
+  HWY_ALIGN uint32_t nearPhoton_[kNear + kRoom];
+  size_t nearCount_ = 0, asked_ = 0;
 };
 
 }  // namespace

@@ -78,6 +78,8 @@ class BidirectionalWalk {
     context_.sampler = {SamplerKind::independent, settings.seed, settings.iteration};
     context_.limits = settings.limits;
     context_.mis = misOf(strategies, compiled_->view.radius, settings);
+    context_.photonGrid = PhotonGrid<S>::over(compiled_->view.center, compiled_->view.radius, context_.mis.radius,
+                                              static_cast<double>(settings.lightPaths));
     context_.counters = &counters;
     context_.splats = {splats_.data(), area_.x0, area_.y0, area_.width, area_.height};
   }
@@ -99,6 +101,7 @@ class BidirectionalWalk {
   const FilmArea& area() const { return area_; }
   const LightStore<S>& light() const { return light_; }
   const MisSettings& mis() const { return context_.mis; }
+  const PhotonGrid<S>& photonGrid() const { return context_.photonGrid; }
   const PathLimits& limits() const { return settings_.limits; }
   std::vector<int64_t>& splats() { return splats_; }
   const Stages<S>& stages() const { return stages_; }

@@ -94,7 +94,7 @@ class Recount : public WalkVisitor<float> {
 
   void merging(uint32_t depth, Wave<float>& wave, StageContext<float>& context) override {
     if (depth == 1) {
-      compareRows();
+      checkPlaces();
       buildMap();
     }
     context.photons = &map_;
@@ -107,44 +107,39 @@ class Recount : public WalkVisitor<float> {
  private:
   void buildMap() {
     LightStore<float>* const stores[1] = {const_cast<LightStore<float>*>(&walk_.light())};
-    map_.build(stores, walk_.mis().radius, [](size_t count, const std::function<void(size_t)>& body) {
+    map_.build(stores, walk_.photonGrid(), [](size_t count, const std::function<void(size_t)>& body) {
       for (size_t i = 0; i < count; ++i) body(i);
     });
     // 8: buckets hold all photons, each in its own.
-    const uint32_t buckets = map_.grid.bucketMask + 1;
+    const uint32_t buckets = map_.bucketMask + 1;
     ASSERT_EQ(map_.size, walk_.light().vertices.size);
     EXPECT_EQ(map_.bucketStart[0], 0u);
     EXPECT_EQ(map_.bucketStart[buckets], map_.size);
-    std::multiset<float> sorted, unsorted;
+    const auto& vertices = walk_.light().vertices;
+    std::set<uint32_t> sorted;
     for (uint32_t bucket = 0; bucket < buckets; ++bucket) {
       for (uint32_t i = map_.bucketStart[bucket]; i < map_.bucketStart[bucket + 1]; ++i) {
-        const auto& p = map_.keys[i].position;
-        uint32_t cell[3];
-        for (size_t axis = 0; axis < 3; ++axis) {
-          cell[axis] = static_cast<uint32_t>(std::floor((p[axis] - map_.grid.origin[axis]) * map_.grid.inverseCell));
-        }
-        EXPECT_EQ((PhotonGrid<float>::hash(cell[1], cell[2]) + cell[0]) & map_.grid.bucketMask, bucket);
-        EXPECT_EQ(map_.rowOf(map_.keys[i].photon).position[1], p[1]);
-        sorted.insert(p[0]);
-        unsorted.insert(walk_.light().vertices.positionX[i]);
+        const uint32_t photon = map_.keys[i].photon;
+        ASSERT_LT(photon, vertices.size);
+        EXPECT_EQ(vertices.cell[photon] & map_.bucketMask, bucket);
+        EXPECT_EQ(vertices.place[photon], map_.keys[i].place);
+        EXPECT_EQ(&map_.rowOf(photon), &vertices.row[photon]);
+        sorted.insert(photon);
       }
     }
-    EXPECT_EQ(sorted, unsorted);
+    EXPECT_EQ(sorted.size(), vertices.size);
   }
 
   static uint32_t edgesOf(const VertexRow<float>& row) { return std::bit_cast<uint32_t>(row.tag) >> kMaterialBits; }
 
-  // Columns of positions hold what rows do, and the box that was kept along with them is theirs.
-  void compareRows() {
+  // The places that kernels have stored are those of the rows.
+  void checkPlaces() {
     const auto& v = walk_.light().vertices;
-    const Bounds<float> kept = walk_.light().bounds(), found = boundsOf(v);
-    EXPECT_EQ(kept.low, found.low);
-    EXPECT_EQ(kept.high, found.high);
     for (size_t i = 0; i < v.size; ++i) {
       const VertexRow<float>& row = v.row[i];
-      EXPECT_EQ(row.position[0], v.positionX[i]);
-      EXPECT_EQ(row.position[1], v.positionY[i]);
-      EXPECT_EQ(row.position[2], v.positionZ[i]);
+      const auto expected = walk_.photonGrid().at(row.position);
+      EXPECT_EQ(v.cell[i], expected.cell);
+      EXPECT_EQ(v.place[i], expected.place);
       EXPECT_LT(std::bit_cast<uint32_t>(row.tag) % kMaxMaterials, walk_.scene().materialCount);
     }
   }
@@ -158,8 +153,8 @@ class Recount : public WalkVisitor<float> {
       if (!hasFiniteLobe(walk_.scene(), wave.hits.primitive[i])) continue;
       for (size_t k = 0; k < v.size; ++k) {
         if (edgesOf(v.row[k]) + depth > walk_.limits().maxDepth) continue;
-        const float x = v.positionX[k] - wave.rays.originX[i], y = v.positionY[k] - wave.rays.originY[i],
-                    z = v.positionZ[k] - wave.rays.originZ[i];
+        const auto& p = v.row[k].position;
+        const float x = p[0] - wave.rays.originX[i], y = p[1] - wave.rays.originY[i], z = p[2] - wave.rays.originZ[i];
         const float nx = wave.surfaces.normalX[i], ny = wave.surfaces.normalY[i], nz = wave.surfaces.normalZ[i];
         const bool near = x * x + y * y + z * z <= radius * radius;
         const auto& n = v.row[k].normal;

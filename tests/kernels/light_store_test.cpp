@@ -17,7 +17,7 @@ void fill(LightStore<float>& store, size_t first, size_t count) {
   const size_t at = store.vertices.claim(count);
   ASSERT_EQ(at, first);
   for (size_t i = first; i < first + count; ++i) {
-    store.vertices.positionX[i] = static_cast<float>(i);
+    store.vertices.place[i] = static_cast<uint32_t>(i) + 7;
     store.vertices.row[i].behind = static_cast<float>(i) + 0.25f;
     store.vertices.lane[i] = static_cast<uint32_t>(i);
     store.vertices.row[i].position[0] = static_cast<float>(i) + 0.5f;
@@ -26,7 +26,7 @@ void fill(LightStore<float>& store, size_t first, size_t count) {
 void expectFilled(const LightStore<float>& store, size_t count) {
   ASSERT_EQ(store.vertices.size, count);
   for (size_t i = 0; i < count; ++i) {
-    EXPECT_EQ(store.vertices.positionX[i], static_cast<float>(i));
+    EXPECT_EQ(store.vertices.place[i], i + 7);
     EXPECT_EQ(store.vertices.row[i].behind, static_cast<float>(i) + 0.25f);
     EXPECT_EQ(store.vertices.lane[i], i);
     EXPECT_EQ(store.vertices.row[i].position[0], static_cast<float>(i) + 0.5f);
