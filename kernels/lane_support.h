@@ -190,29 +190,30 @@ class MaterialLanes {
   WAVECREST_INLINE MaterialLanes(const SceneView<S>& scene, UInt index)
       : records_(scene.materials),
         table_(scene.materialCount <= kLanes ? scene.materialTable : nullptr),
-        index_(index),
-        at_(scene.materials, index) {}
+        index_(index) {}
   WAVECREST_INLINE UInt operator()(const uint32_t& field) const {
-    return table_ != nullptr ? word(reinterpret_cast<const std::byte*>(&field)) : at_(field);
+    return table_ != nullptr ? word(reinterpret_cast<const std::byte*>(&field)) : gathered()(field);
   }
   WAVECREST_INLINE Float operator()(const float& field) const {
-    return table_ != nullptr ? fromBits(word(reinterpret_cast<const std::byte*>(&field))) : at_(field);
+    return table_ != nullptr ? fromBits(word(reinterpret_cast<const std::byte*>(&field))) : gathered()(field);
   }
   WAVECREST_INLINE FourColumns<Float> four(const float& first) const {
-    if (table_ == nullptr) return at_.four(first);
+    if (table_ == nullptr) return gathered().four(first);
     const float* const field = &first;
     return {(*this)(field[0]), (*this)(field[1]), (*this)(field[2]), (*this)(field[3])};
   }
   WAVECREST_INLINE Vec3<Float> operator()(const float (&field)[3]) const {
-    if (table_ == nullptr) return at_(field);
+    if (table_ == nullptr) return gathered()(field);
     return {(*this)(field[0]), (*this)(field[1]), (*this)(field[2])};
   }
   // Each lane's own element of the array that is not in the table.
   WAVECREST_INLINE Float operator()(const float (&field)[kTransmittanceSize], UInt element) const {
-    return at_(field, element);
+    return gathered()(field, element);
   }
 
  private:
+  // Made when it is asked for: what is kept is copied wherever materials are passed on.
+  WAVECREST_INLINE RecordLanes<MaterialRecord> gathered() const { return {records_, index_}; }
   WAVECREST_INLINE UInt word(const std::byte* field) const {
     const auto offset = static_cast<size_t>(field - reinterpret_cast<const std::byte*>(records_));
     return lookUp(table_->words[offset / sizeof(uint32_t)], index_);
@@ -221,7 +222,6 @@ class MaterialLanes {
   const MaterialRecord* records_;
   const MaterialTable* table_;
   UInt index_;
-  RecordLanes<MaterialRecord> at_;
 };
 
 // The same face for a record that all lanes share: `OneRecord()(base->p0)` broadcasts that field.
