@@ -154,26 +154,48 @@ struct SplatPixel {
 };
 template <class Real>
 WAVECREST_INLINE SplatPixel<Real> splatPixel(const CameraView& camera, Real raster, Real u) {
-  const Real nearest = floor(raster), one(1);
+  const Real nearest = floor(raster), zero(0), one(1);
   if (camera.filter == FilterKind::box) return {nearest, one};
-  const Real fromNearest = raster - nearest - Real(0.5f);
+  const bool tent = camera.filter == FilterKind::tent;
+  const Real x = raster - nearest - Real(0.5f);
   const double inverseScale = 1 / camera.filterScale;
-  const auto filter = [&](int step) WAVECREST_LAMBDA {
-    const Real x = (fromNearest - Real(static_cast<float>(step))) * Real(inverseScale);
-    if (camera.filter == FilterKind::tent) return max(one - abs(x), Real(0)) * Real(inverseScale);
-    return exp(x * x * Real(-0.5)) * Real(inverseScale / std::sqrt(2 * kPi));
-  };
-  // A Gaussian's rest beyond four and a half deviations is below 1e-5.
-  const double radius = camera.filter == FilterKind::tent ? camera.filterScale : 4.5 * camera.filterScale;
+  // A Gaussian's rest beyond four and a half deviations is below 1e-5. Three exponentials make all of it: the ratio of
+  // one pixel to the one before is multiplied by the same number at every step, and that is the product of the first
+  // ratios up and down.
+  const double radius = tent ? camera.filterScale : 4.5 * camera.filterScale;
   const int reach = static_cast<int>(radius + 0.5);
-  Real sum(0);
-  for (int step = -reach; step <= reach; ++step) sum = sum + filter(step);
-  const Real wanted = u * sum;
-  Real below(0), chosen(static_cast<float>(-reach));
-  for (int step = -reach; step < reach; ++step) {
-    below = below + filter(step);
-    chosen = select(below <= wanted, Real(static_cast<float>(step + 1)), chosen);
+  Real centre(0), ratioUp(0), ratioDown(0);
+  if (!tent) {
+    const Real scaled = x * Real(inverseScale);
+    centre = exp(scaled * scaled * Real(-0.5)) * Real(inverseScale / std::sqrt(2 * kPi));
+    const Real half(0.5 * inverseScale * inverseScale);
+    ratioUp = exp(mulAdd(scaled, Real(inverseScale), -half));
+    ratioDown = exp(negMulAdd(scaled, Real(inverseScale), -half));
   }
+  const Real perStep = ratioUp * ratioDown;
+  // Calls visit(step, weight) for the pixels that the filter reaches: the nearest, those above it, those below.
+  const auto forEachPixel = [&](const auto& visit) WAVECREST_LAMBDA {
+    const auto tentAt = [&](int step) WAVECREST_LAMBDA {
+      const Real away = abs(x - Real(static_cast<float>(step))) * Real(inverseScale);
+      return max(one - away, zero) * Real(inverseScale);
+    };
+    visit(zero, tent ? tentAt(0) : centre);
+    for (const int direction : {1, -1}) {
+      Real weight = centre, ratio = direction == 1 ? ratioUp : ratioDown;
+      for (int step = direction; step * direction <= reach; step += direction) {
+        weight = tent ? tentAt(step) : weight * ratio;
+        ratio = ratio * perStep;
+        visit(Real(static_cast<float>(step)), weight);
+      }
+    }
+  };
+  Real sum(0), below(0), chosen(0);
+  forEachPixel([&](Real, Real weight) WAVECREST_LAMBDA { sum = sum + weight; });
+  const Real wanted = u * sum;
+  forEachPixel([&](Real step, Real weight) WAVECREST_LAMBDA {
+    chosen = select(below <= wanted, step, chosen);
+    below = below + weight;
+  });
   return {nearest + chosen, sum};
 }
 
