@@ -68,12 +68,14 @@ std::vector<std::string> needsOf(const Scene& scene) {
                                                          {kTextures, "textures"},
                                                          {kShadingNormals, "shading normals"},
                                                          {kCurvedShapes, "analytic spheres"},
-                                                         {kRareLights, "spot, directional or environment lights"},
-                                                         {kLens, "a lens or filter beyond pinhole and box"}};
+                                                         {kRareLights, "spot, directional or environment lights"}};
   const uint32_t features = sceneFeatures(scene);
   std::vector<std::string> needs;
   for (const auto& [bit, words] : kWords) {
     if ((features & bit) != 0) needs.emplace_back(words);
+  }
+  if (scene.sensor.kind != Sensor::Kind::perspective || scene.film.filter != ReconstructionFilter::box) {
+    needs.emplace_back("a lens or filter beyond pinhole and box");
   }
   return needs;
 }

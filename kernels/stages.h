@@ -34,9 +34,8 @@ enum Feature : uint32_t {
   kShadingNormals = 8,   // interpolated vertex normals
   kCurvedShapes = 16,    // analytic spheres, as geometry or as lights
   kRareLights = 32,      // spot, directional, environment map
-  kLens = 64,            // thin lens, orthographic, filters other than box
-  kBidirectional = 128,  // light paths, connections, merging: the whole MIS recursion
-  kNormalMaps = 256,     // bump and normal maps
+  kBidirectional = 64,   // light paths, connections, merging: the whole MIS recursion
+  kNormalMaps = 128,     // bump and normal maps
 };
 
 // What kernels are instantiated for: feature sets, in the order in which a scene and method try them; the last has all.
@@ -53,7 +52,7 @@ enum class Specialization {
 constexpr size_t kSpecializationCount = 7;
 constexpr std::array<std::string_view, kSpecializationCount> kSpecializationNames{
     "diffuse", "smooth", "plain", "diffuse-bidirectional", "smooth-bidirectional", "plain-bidirectional", "general"};
-constexpr uint32_t kAllFeatures = 511;
+constexpr uint32_t kAllFeatures = 255;
 constexpr uint32_t kPlainFeatures = kAllFeatures & ~(kTextures | kShadingNormals | kNormalMaps | kBidirectional);
 constexpr uint32_t kSmoothFeatures = kSpecularBsdfs | kCurvedShapes;
 constexpr std::array<uint32_t, kSpecializationCount> kSpecializationFeatures{0,

@@ -28,9 +28,6 @@ uint32_t sceneFeatures(const Scene& scene) {
     const auto* area = std::get_if<AreaEmitter>(&emitter.kind);
     if (area != nullptr && area->radiance.texture != kNone) features |= kTextures;
   }
-  if (scene.sensor.kind != Sensor::Kind::perspective || scene.film.filter != ReconstructionFilter::box) {
-    features |= kLens;
-  }
   return features;
 }
 

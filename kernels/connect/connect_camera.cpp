@@ -24,23 +24,20 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
   shadow.size = 0;
   shadow.claim(count);
   size_t out = 0;
-  [[maybe_unused]] const bool choosesPlace = scene.camera.lensRadius > 0 || scene.camera.filter != FilterKind::box;
+  const bool choosesPlace = scene.camera.lensRadius > 0 || scene.camera.filter != FilterKind::box;
 
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
     auto shading = loadShading<P, kFeatures>(scene, wave, active, i);
     shading.bsdf.walk = Walk::light;
     Uniform4 u{};  // place on the lens, choice of the pixel
-    if constexpr (has(kFeatures, kLens)) {
+    if (choosesPlace) {
       const UInt lane = select(active, load(paths.lane, i), UInt(0u));
-      if (choosesPlace) u = draw(context, pathOf(context, wave, lane), Block::light);
+      u = draw(context, pathOf(context, wave, lane), Block::light);
     }
-    const auto view = project<P, kFeatures>(scene.camera, shading.position, u);
-    SplatPixel<Real> column{floor(view.rasterX), Real(1)}, row{floor(view.rasterY), Real(1)};
-    if constexpr (has(kFeatures, kLens)) {
-      column = splatPixel(scene.camera, view.rasterX, to<Real>(u.c));
-      row = splatPixel(scene.camera, view.rasterY, to<Real>(u.d));
-    }
+    const auto view = project<P>(scene.camera, shading.position, u);
+    const SplatPixel<Real> column = splatPixel(scene.camera, view.rasterX, to<Real>(u.c));
+    const SplatPixel<Real> row = splatPixel(scene.camera, view.rasterY, to<Real>(u.d));
     // Relative to the rendered rectangle; outside of it nothing is seen.
     const Real x = column.pixel - Real(static_cast<float>(splats.x0)),
                y = row.pixel - Real(static_cast<float>(splats.y0));
@@ -57,8 +54,8 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
     const Real wLight = pdfA * Real(context.mis.camN > 0 ? 1 / context.mis.camN : 0.0) *
                         behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
     // f c(omega_l) / n(omega_l): omega_l is fix, the light's side.
-    Real scale = pdfA * bsdf.lightCosine * reciprocal<P>(max(fixCosine, Real(1e-6f)) * (Real(1) + wLight));
-    if constexpr (has(kFeatures, kLens)) scale = scale * (column.weight * row.weight);
+    const Real scale = pdfA * bsdf.lightCosine * reciprocal<P>(max(fixCosine, Real(1e-6f)) * (Real(1) + wLight)) *
+                       (column.weight * row.weight);
     const Vec3<Real> contribution =
         loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * bsdf.f * scale;
     const Mask lit = active & onFilm & (fixCosine > Real(1e-6f)) & (maxComponent(contribution) > Real(0));

@@ -43,30 +43,26 @@ WAVECREST_INLINE Vec3<Real> lensOffset(const CameraView& camera, Real u, Real v)
 }
 
 // u.a, u.b: place in the pixel; u.c, u.d: place on the lens.
-template <class P, uint32_t kFeatures>
+template <class P>
 WAVECREST_INLINE RayLanes<typename P::Real> cameraRay(const CameraView& camera, const PixelLanes& pixel,
                                                       const Uniform4& u) {
   using Real = typename P::Real;
   Real dx = to<Real>(u.a), dy = to<Real>(u.b);
-  if constexpr (has(kFeatures, kLens)) filterOffset(camera, dx, dy);
+  filterOffset(camera, dx, dy);
   const Real rasterX = to<Real>(toFloat(pixel.x)) + dx, rasterY = to<Real>(toFloat(pixel.y)) + dy;
-  if constexpr (has(kFeatures, kLens)) {
-    if (camera.parallel) {
-      const Vec3<Real> origin = mulAdd(broadcast<Real>(camera.du), rasterX,
-                                       mulAdd(broadcast<Real>(camera.dv), rasterY, broadcast<Real>(camera.origin)));
-      return {origin, broadcast<Real>(camera.axis)};
-    }
+  if (camera.parallel) {
+    const Vec3<Real> origin = mulAdd(broadcast<Real>(camera.du), rasterX,
+                                     mulAdd(broadcast<Real>(camera.dv), rasterY, broadcast<Real>(camera.origin)));
+    return {origin, broadcast<Real>(camera.axis)};
   }
   const Vec3<Real> onPlane = mulAdd(broadcast<Real>(camera.du), rasterX,
                                     mulAdd(broadcast<Real>(camera.dv), rasterY, broadcast<Real>(camera.corner)));
   const Vec3<Real> origin = broadcast<Real>(camera.origin);
-  if constexpr (has(kFeatures, kLens)) {
-    if (camera.lensRadius > 0) {
-      // Through the point of the plane in focus that the ray by the lens's centre would meet.
-      const Vec3<Real> onLens = lensOffset(camera, to<Real>(u.c), to<Real>(u.d));
-      const Vec3<Real> inFocus = onPlane * Real(camera.focusDistance / camera.planeDepth);
-      return {origin + onLens, normalizeFast<P>(inFocus - onLens)};
-    }
+  if (camera.lensRadius > 0) {
+    // Through the point of the plane in focus that the ray by the lens's centre would meet.
+    const Vec3<Real> onLens = lensOffset(camera, to<Real>(u.c), to<Real>(u.d));
+    const Vec3<Real> inFocus = onPlane * Real(camera.focusDistance / camera.planeDepth);
+    return {origin + onLens, normalizeFast<P>(inFocus - onLens)};
   }
   return {origin, normalizeFast<P>(onPlane)};
 }
@@ -76,12 +72,10 @@ inline double parallelPdf(const CameraView& camera) { return std::sqrt(camera.in
 
 // Density per solid angle of the camera rays of one pixel: D^2 / cos^3, D the distance in pixels at which a pixel has
 // area 1 (METHODS 4.1). Of parallel rays per area across them: arrive multiplies by no d^2 then.
-template <class P, uint32_t kFeatures>
+template <class P>
 WAVECREST_INLINE typename P::Real cameraPdf(const CameraView& camera, Vec3<typename P::Real> direction) {
   using Real = typename P::Real;
-  if constexpr (has(kFeatures, kLens)) {
-    if (camera.parallel) return Real(parallelPdf(camera));
-  }
+  if (camera.parallel) return Real(parallelPdf(camera));
   const Real cosine = dot(direction, broadcast<Real>(camera.axis));
   return Real(camera.pixelDistance * camera.pixelDistance) / (cosine * cosine * cosine);
 }
@@ -98,34 +92,30 @@ struct Projection {
   Mask inFront;
 };
 // u.a, u.b: place on the lens.
-template <class P, uint32_t kFeatures>
+template <class P>
 WAVECREST_INLINE Projection<typename P::Real> project(const CameraView& camera, Vec3<typename P::Real> point,
-                                                      [[maybe_unused]] const Uniform4& u) {
+                                                      const Uniform4& u) {
   using Real = typename P::Real;
   Projection<Real> out;
-  if constexpr (has(kFeatures, kLens)) {
-    if (camera.parallel) {
-      const Vec3<Real> axis = broadcast<Real>(camera.axis), fromCorner = point - broadcast<Real>(camera.origin);
-      const Real along = dot(fromCorner, axis);
-      return {.rasterX = dot(fromCorner, broadcast<Real>(camera.du)) * Real(camera.inverseDu2),
-              .rasterY = dot(fromCorner, broadcast<Real>(camera.dv)) * Real(camera.inverseDv2),
-              .direction = -axis,
-              .lens = mulAdd(axis, -along, point),
-              .pdf = Real(parallelPdf(camera)),
-              .inFront = along > Real(0)};
-    }
+  if (camera.parallel) {
+    const Vec3<Real> axis = broadcast<Real>(camera.axis), fromCorner = point - broadcast<Real>(camera.origin);
+    const Real along = dot(fromCorner, axis);
+    return {.rasterX = dot(fromCorner, broadcast<Real>(camera.du)) * Real(camera.inverseDu2),
+            .rasterY = dot(fromCorner, broadcast<Real>(camera.dv)) * Real(camera.inverseDv2),
+            .direction = -axis,
+            .lens = mulAdd(axis, -along, point),
+            .pdf = Real(parallelPdf(camera)),
+            .inFront = along > Real(0)};
   }
   out.lens = broadcast<Real>(camera.origin);
   Vec3<Real> onLens{Real(0), Real(0), Real(0)};
   // The image plane, corner + x du + y dv, is at planeDepth along the axis; where the ray meets the plane in focus,
   // seen from the lens's centre, is the raster position. A pinhole has every plane in focus.
   double focus = camera.planeDepth;
-  if constexpr (has(kFeatures, kLens)) {
-    if (camera.lensRadius > 0) {
-      onLens = lensOffset(camera, to<Real>(u.a), to<Real>(u.b));
-      out.lens = out.lens + onLens;
-      focus = camera.focusDistance;
-    }
+  if (camera.lensRadius > 0) {
+    onLens = lensOffset(camera, to<Real>(u.a), to<Real>(u.b));
+    out.lens = out.lens + onLens;
+    focus = camera.focusDistance;
   }
   const Vec3<Real> fromLens = point - out.lens;
   const Real dist2 = length2(fromLens);

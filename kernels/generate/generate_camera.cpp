@@ -60,7 +60,7 @@ void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<
     if (context.chains != nullptr) recordPixel(context, sample.pixel, i);
     const PixelLanes& pixel = sample.pixel;
     const Uniform4& u = sample.u;
-    const auto ray = cameraRay<P, kFeatures>(context.scene->camera, pixel, u);
+    const auto ray = cameraRay<P>(context.scene->camera, pixel, u);
 
     storeVec3(ray.origin, wave.rays.originX, wave.rays.originY, wave.rays.originZ, i);
     storeVec3(ray.direction, wave.rays.directionX, wave.rays.directionY, wave.rays.directionZ, i);
@@ -72,7 +72,7 @@ void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<
     MisSums<Real> mis{Real(0), Real(0), Real(0)};
     if constexpr (has(kFeatures, kBidirectional)) {
       if (context.mis.camera)
-        mis.dVCM = Real(context.mis.camN) / cameraPdf<P, kFeatures>(context.scene->camera, ray.direction);
+        mis.dVCM = Real(context.mis.camN) / cameraPdf<P>(context.scene->camera, ray.direction);
     }
     storeMis<kFeatures>(mis, wave.paths, i);
     if constexpr (hasRouletteScale(kFeatures)) store(Real(1), wave.paths.rouletteScale, i);

@@ -68,7 +68,7 @@ void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P
     Mask lit = joins & (length2(segment) > apart * apart);
     const Mask toLens = joins & (lightRow + one == edges);
     if (any(toLens)) {
-      const auto view = project<P, kFeatures>(scene.camera, y, Uniform4{});
+      const auto view = project<P>(scene.camera, y, Uniform4{});
       const Real x = view.rasterX - Real(static_cast<float>(film.x0)),
                  row = view.rasterY - Real(static_cast<float>(film.y0));
       const Mask seen = view.inFront & (x >= Real(0)) & (row >= Real(0)) & (x < Real(static_cast<float>(film.width))) &

@@ -238,7 +238,7 @@ WAVECREST_INLINE typename P::Real filmPdfW(const StageContext<typename P::Storag
                                            Vec3<typename P::Real> direction) {
   using Real = typename P::Real;
   const double pixels = static_cast<double>(context.splats.width) * context.splats.height;
-  return cameraPdf<P, 0>(context.scene->camera, direction) * Real(1 / pixels);
+  return cameraPdf<P>(context.scene->camera, direction) * Real(1 / pixels);
 }
 
 WAVECREST_SIMD_END

@@ -241,7 +241,7 @@ void beginEyeWalks(const StageContext<typename P::Storage>& context, Wave<typena
       const Float column = floor(raster.x), line = floor(raster.y);
       const Mask seen = fromLens & raster.onFilm;
       const PixelLanes pixel{toUInt(select(seen, column, Float(0))), toUInt(select(seen, line, Float(0))), zero};
-      const auto ray = cameraRay<P, kFeatures>(camera, pixel, {raster.x - column, raster.y - line, Float(0), Float(0)});
+      const auto ray = cameraRay<P>(camera, pixel, {raster.x - column, raster.y - line, Float(0), Float(0)});
       storeWhere(raster.x, seen, headers.rasterX, lane);
       storeWhere(raster.y, seen, headers.rasterY, lane);
       out = appendRay<kFeatures>(wave, seen, ray.origin, ray.direction, lane, out);

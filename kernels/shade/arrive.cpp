@@ -156,9 +156,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
         const UInt from = select(hit, load(paths.light, i), UInt(0u));
         toArea = firstLightEdge<P, kFeatures>(scene, from, origin, direction, surface.position, dist2);
       }
-      if constexpr (has(kFeatures, kLens)) {
-        if (camera && context.depth == 1 && scene.camera.parallel) toArea = Real(1);
-      }
+      if (camera && context.depth == 1 && scene.camera.parallel) toArea = Real(1);
       mis.dVC = mis.dVC * inverseCosine;
       mis.dVM = mis.dVM * inverseCosine;
     }

@@ -47,6 +47,17 @@ TEST_P(SpecializationTest, diffuseSceneByEveryKernel) {
       Method::bpt);
 }
 
+// Cameras and filters are branches that a whole scene takes or not.
+TEST_P(SpecializationTest, diffuseSceneThroughALensByTheDiffuseKernels) {
+  Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  scene.sensor.kind = Sensor::Kind::thinlens;
+  scene.sensor.apertureRadius = 0.1;
+  scene.sensor.focusDistance = 3;
+  scene.film.filter = ReconstructionFilter::gaussian;
+  expectSameImages(scene, {Specialization::diffuse});
+  expectSameImages(scene, {Specialization::diffuseBidirectional}, Method::bpt);
+}
+
 TEST_P(SpecializationTest, specularSceneByTheKernelsThatCoverIt) {
   expectSameImages(sceneFile("cornell-mirror", kWidth, kHeight), {Specialization::smooth});
   expectSameImages(sceneFile("validation/furnace-glass", kWidth, kHeight), {Specialization::smooth});
