@@ -28,14 +28,14 @@ constexpr std::array<std::string_view, 3> kPrecisionNames{"float", "double", "fa
 
 // Bits of a feature set. What a set lacks costs nothing in its kernels.
 enum Feature : uint32_t {
-  kSpecularBsdfs = 1,    // mirror, conductor, dielectric, rough conductor
-  kLayeredBsdfs = 2,     // plastic, rough dielectric, thin dielectric, phong, opacity
-  kTextures = 4,         // textures
-  kShadingNormals = 8,   // interpolated vertex normals
-  kCurvedShapes = 16,    // analytic spheres, as geometry or as lights
-  kRareLights = 32,      // spot, directional, environment map
-  kBidirectional = 64,   // light paths, connections, merging: the whole MIS recursion
-  kNormalMaps = 128,     // bump and normal maps
+  kSpecularBsdfs = 1,   // mirror, conductor, dielectric, rough conductor
+  kLayeredBsdfs = 2,    // plastic, rough dielectric, thin dielectric, phong, opacity
+  kTextures = 4,        // textures
+  kShadingNormals = 8,  // interpolated vertex normals
+  kCurvedShapes = 16,   // analytic spheres, as geometry or as lights
+  kRareLights = 32,     // spot, directional, environment map
+  kBidirectional = 64,  // light paths, connections, merging: the whole MIS recursion
+  kNormalMaps = 128,    // bump and normal maps
 };
 
 // What kernels are instantiated for: feature sets, in the order in which a scene and method try them; the last has all.

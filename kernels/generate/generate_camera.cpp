@@ -71,8 +71,7 @@ void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<
     // without that strategy the recursion starts from nothing.
     MisSums<Real> mis{Real(0), Real(0), Real(0)};
     if constexpr (has(kFeatures, kBidirectional)) {
-      if (context.mis.camera)
-        mis.dVCM = Real(context.mis.camN) / cameraPdf<P>(context.scene->camera, ray.direction);
+      if (context.mis.camera) mis.dVCM = Real(context.mis.camN) / cameraPdf<P>(context.scene->camera, ray.direction);
     }
     storeMis<kFeatures>(mis, wave.paths, i);
     if constexpr (hasRouletteScale(kFeatures)) store(Real(1), wave.paths.rouletteScale, i);

@@ -43,10 +43,13 @@ class Merger {
       for (size_t k = 0; k < blocks; ++k) askForBuckets(searches[k]);
       for (size_t k = 0; k < blocks; ++k) findRuns(searches[k]);
       for (size_t k = 0; k < blocks; ++k) askForKeys(searches[k]);
-      for (size_t k = 0; k < blocks; ++k) listCandidates(searches[k]);
-      const size_t asked = asked_;
+      settled_ = asked_;
+      for (size_t k = 0; k < blocks; ++k) {
+        listCandidates(searches[k]);
+        if (nearCount_ - asked_ >= kLanes) askForRows();
+      }
       askForRows();
-      if (asked >= kNear / 2) shade(asked);
+      if (settled_ >= kNear / 2) shade(settled_);
     }
     shade(nearCount_);
   }
@@ -288,6 +291,7 @@ class Merger {
     for (uint32_t* const list : {nearVertex_, nearRun_, nearPhoton_}) std::copy(list + count, list + nearCount_, list);
     nearCount_ -= count;
     asked_ -= count;
+    settled_ -= std::min(settled_, count);
   }
 
   // Lists have room for a whole vector beyond the count at which they are emptied, and for one more of zeros.
@@ -304,7 +308,7 @@ class Merger {
   HWY_ALIGN uint32_t nearVertex_[kNear + kRoom];
   HWY_ALIGN uint32_t nearRun_[kNear + kRoom];
   HWY_ALIGN uint32_t nearPhoton_[kNear + kRoom];
-  size_t nearCount_ = 0, asked_ = 0;
+  size_t nearCount_ = 0, asked_ = 0, settled_ = 0;  // settled: asked for before the searches that go on
 };
 
 }  // namespace
