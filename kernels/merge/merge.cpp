@@ -49,7 +49,7 @@ class Merger {
         if (nearCount_ - asked_ >= kLanes) askForRows();
       }
       askForRows();
-      if (settled_ >= kNear / 2) shade(settled_);
+      if (settled_ >= kNear / 2) shade(wholeBlocks(settled_));
     }
     shade(nearCount_);
   }
@@ -201,7 +201,7 @@ class Merger {
                         (shiftRight<kPlaceRowShift>(vertex ^ place) == UInt(0u));
       if (nearCount_ > kNear) {
         askForRows();
-        shade(nearCount_);
+        shade(wholeBlocks(kNear / 2));  // the rest have just been asked for
       }
       storeUnaligned(compress(vertex & UInt(kIndexMask), near), nearVertex_ + nearCount_);
       storeUnaligned(compress(shiftRight<kRunShift>(vertex) & UInt(kRuns - 1), near), nearRun_ + nearCount_);
@@ -244,6 +244,8 @@ class Merger {
     return (length2(p - z) <= radius * radius) & ((own.x == low.x) | (own.x == low.x + UInt(1u))) &
            (own.y == low.y + (run & UInt(1u))) & (own.z == low.z + shiftRight<1>(run));
   }
+
+  static constexpr size_t wholeBlocks(size_t count) { return count / kLanes * kLanes; }
 
   // Merges the first photons of the list, and removes them.
   void shade(size_t count) {
