@@ -17,8 +17,8 @@ WAVECREST_SIMD_BEGIN
 namespace {
 
 // A vertex of the wave, as runs and candidates name it: its index, above that whether it looks at two cells along x,
-// the run (dy + 2 dz), and in the highest bits those of the row, as in a photon's place.
-constexpr uint32_t kRunShift = kPlaceRowShift - 2, kWideBit = kRunShift - 1;
+// the run (dy + 2 dz), and in the highest bits those of the strip, as in a photon's place.
+constexpr uint32_t kRunShift = kPlaceStripShift - 2, kWideBit = kRunShift - 1;
 constexpr uint32_t kIndexMask = (1u << kWideBit) - 1;
 // Ends of a search are rounded; a photon that the distance test lets through must lie between them.
 constexpr double kReach = 1 + 1e-5;
@@ -55,8 +55,8 @@ class Merger {
   }
 
  private:
-  // The runs of photons that the vertices of a block look at, one for each row of cells: y and z of the lower cell, or
-  // one more. In memory, where lanes are read one by one, and looked up.
+  // The runs of photons that the vertices of a block look at, one for each strip of cells: y and z of the lower cell,
+  // or one more. In memory, where lanes are read one by one, and looked up.
   static constexpr uint32_t kRuns = 4;
   template <size_t kSize>
   using Numbers = uint32_t[kSize];
@@ -85,11 +85,11 @@ class Merger {
                                   querying & twoAlongY & twoAlongZ};
     search.count = 0;
     for (uint32_t run = 0; run < kRuns; ++run) {
-      const UInt row = rowOf(low.y + UInt(run & 1), low.z + UInt(run >> 1));
+      const UInt strip = stripOf(low.y + UInt(run & 1), low.z + UInt(run >> 1));
       const UInt vertex = laneIndex(static_cast<uint32_t>(i) | run << kRunShift) | wide |
-                          shiftLeft<kPlaceRowShift>(shiftRight<kPlaceRowShift>(row));
+                          shiftLeft<kPlaceStripShift>(shiftRight<kPlaceStripShift>(strip));
       storeUnaligned(compress(vertex, searched[run]), search.vertex + search.count);
-      storeUnaligned(compress((row + low.x) & UInt(map_.bucketMask), searched[run]), search.bucket + search.count);
+      storeUnaligned(compress((strip + low.x) & UInt(map_.bucketMask), searched[run]), search.bucket + search.count);
       search.count += countTrue(searched[run]);
     }
     storeUnaligned(UInt(0u), search.bucket + search.count);  // whole blocks are read
@@ -122,7 +122,7 @@ class Merger {
   WAVECREST_INLINE void askForKeys(const Search& search) const {
     for (size_t k = 0; k < search.count; ++k) {
       __builtin_prefetch(map_.keys + search.first[k]);
-      __builtin_prefetch(map_.keys + search.end[k] - 1);  // the same if there is none
+      __builtin_prefetch(map_.keys + std::max(search.end[k], 1u) - 1);
     }
   }
 
@@ -145,8 +145,7 @@ class Merger {
     return querying;
   }
 
-  // ---- candidates
-  // -----------------------------------------------------------------------------------------------------
+  // ---- candidates ---------------------------------------------------------------------------------------------------
 
   // Lists the candidates of a block, and those of them that are near.
   WAVECREST_INLINE void listCandidates(const Search& search) {
@@ -198,7 +197,7 @@ class Merger {
       const Float dx = away(search.x, fromLower), dy = away(search.y, shiftRight<kQuantaBits>(fromLower)),
                   dz = away(search.z, shiftRight<2 * kQuantaBits>(fromLower));
       const Mask near = firstLanes(count - i) & (mulAdd(dx, dx, mulAdd(dy, dy, dz * dz)) <= reach2) &
-                        (shiftRight<kPlaceRowShift>(vertex ^ place) == UInt(0u));
+                        (shiftRight<kPlaceStripShift>(vertex ^ place) == UInt(0u));
       if (nearCount_ > kNear) {
         askForRows();
         shade(wholeBlocks(kNear / 2));  // the rest have just been asked for
@@ -219,8 +218,7 @@ class Merger {
     }
   }
 
-  // ---- rows
-  // -----------------------------------------------------------------------------------------------------------
+  // ---- rows ---------------------------------------------------------------------------------------------------------
 
   // The photons of a block of the list, scattered over the stores. Lanes past the last repeat it.
   class PhotonLanes {
@@ -237,7 +235,7 @@ class Merger {
     const VertexRow<S>* row_[kLanes];
   };
 
-  // Which photons p a vertex z finds in a run: those within the radius, in the run's row and the vertex's two cells.
+  // Which photons p a vertex z finds in a run: those within the radius, in the run's strip and the vertex's two cells.
   WAVECREST_INLINE Mask found(Vec3<Real> p, Vec3<Real> z, UInt run) const {
     const Real radius(context_.mis.radius);
     const CellLanes low = lowerCells(z), own = cellsOf(inGrid_(p));

@@ -47,8 +47,8 @@ typename PhotonGrid<S>::Photon PhotonGrid<S>::at(const S (&position)[3]) const {
     const auto quanta = static_cast<uint32_t>(std::floor((inCells - low) * S{kQuantaPerCell}));
     place |= (quanta | cell[axis] % 2 * kQuantaPerCell) << axis * kQuantaBits;
   }
-  const uint32_t rowOfCell = row(cell[1], cell[2]);
-  return {rowOfCell + cell[0], place | rowOfCell >> kPlaceRowShift << kPlaceRowShift};
+  const uint32_t alongX = strip(cell[1], cell[2]);
+  return {alongX + cell[0], place | alongX >> kPlaceStripShift << kPlaceStripShift};
 }
 
 template struct PhotonGrid<float>;

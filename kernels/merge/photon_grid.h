@@ -6,12 +6,12 @@
 namespace wavecrest {
 
 // A photon's place: for x, y and z, from the lowest bit on, kQuantaBits of its coordinate in quanta, the highest of
-// them being the parity of its cell; above them the highest bits of the row of its cell.
+// them being the parity of its cell; above them the highest bits of the strip of its cell.
 constexpr uint32_t kQuantaBits = 9;
 constexpr uint32_t kQuantaPerCell = 1u << (kQuantaBits - 1);
 constexpr uint32_t kQuantaMask = (1u << kQuantaBits) - 1;
-constexpr uint32_t kPlaceRowShift = 3 * kQuantaBits;
-static_assert(kPlaceRowShift < 32);
+constexpr uint32_t kPlaceStripShift = 3 * kQuantaBits;
+static_assert(kPlaceStripShift < 32);
 
 // cell = floor((position - origin) * inverseCell) along each axis, in S and without contraction, so that all who count
 // cells agree to the bit. Cells are at least as wide as a search's diameter: it touches one or two along each axis.
@@ -34,8 +34,8 @@ struct PhotonGrid {
   // position: in the sphere, but for rounding. Kernels have the same in lanes (photon_grid_lanes.h).
   Photon at(const S (&position)[3]) const;
 
-  // A row of cells along x; its cells are numbered row + x.
-  static constexpr uint32_t row(uint32_t y, uint32_t z) {
+  // A strip of cells along x, by a hash; its cells are numbered strip + x.
+  static constexpr uint32_t strip(uint32_t y, uint32_t z) {
     uint32_t h = y * 0x9e3779b1u ^ z * 0x85ebca77u;
     h ^= h >> 15;
     h *= 0x2c1b3c6du;

@@ -17,8 +17,8 @@ WAVECREST_INLINE CellLanes cellsOf(Vec3<Real> point) {
   return {cell(point.x), cell(point.y), cell(point.z)};
 }
 
-// PhotonGrid::row
-WAVECREST_INLINE UInt rowOf(UInt y, UInt z) {
+// PhotonGrid::strip
+WAVECREST_INLINE UInt stripOf(UInt y, UInt z) {
   UInt h = (y * UInt(0x9e3779b1u)) ^ (z * UInt(0x85ebca77u));
   h = h ^ shiftRight<15>(h);
   h = h * UInt(0x2c1b3c6du);
@@ -50,11 +50,11 @@ WAVECREST_INLINE PlaceLanes placesOf(Vec3<Real> point) {
     const Real within = (x - floor(x)) * Real(static_cast<float>(kQuantaPerCell));
     return toUInt(to<Float>(floor(within))) | shiftLeft<kQuantaBits - 1>(c & UInt(1u));
   };
-  const UInt row = rowOf(cell.y, cell.z);
+  const UInt strip = stripOf(cell.y, cell.z);
   const UInt place = quanta(point.x, cell.x) | shiftLeft<kQuantaBits>(quanta(point.y, cell.y)) |
                      shiftLeft<2 * kQuantaBits>(quanta(point.z, cell.z)) |
-                     shiftLeft<kPlaceRowShift>(shiftRight<kPlaceRowShift>(row));
-  return {row + cell.x, place};
+                     shiftLeft<kPlaceStripShift>(shiftRight<kPlaceStripShift>(strip));
+  return {strip + cell.x, place};
 }
 
 WAVECREST_SIMD_END

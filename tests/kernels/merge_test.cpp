@@ -237,10 +237,10 @@ TEST_P(MergeTest, findsThePhotonsOfEveryPairWithinTheRadius) {
   }
 }
 
-// Vertices on the edges between four rows of cells, of which some two are alike to the map: same buckets, and in places
-// the same bits. A photon counts once all the same.
+// Vertices on the edges between four strips of cells, of which some two are alike to the map: same buckets, and in
+// places the same bits. A photon counts once all the same.
 template <class S>
-void expectAllPairsWhereRowsMeet(const MergeCase& param) {
+void expectAllPairsWhereStripsMeet(const MergeCase& param) {
   constexpr double kRadius = 1e-3;
   constexpr uint32_t kBuckets = 4096;  // as few as there are
   const auto grid = PhotonGrid<S>::over(kCenter, kSceneRadius, kRadius, 1e12);
@@ -253,10 +253,10 @@ void expectAllPairsWhereRowsMeet(const MergeCase& param) {
   const uint32_t middle = static_cast<uint32_t>(kSceneRadius / cell), some = middle / 2;
   for (uint32_t y = middle - some; y < middle + some; ++y) {
     for (uint32_t z = middle - some; z < middle + some; ++z) {
-      const uint32_t row = PhotonGrid<S>::row(y - 1, z - 1);
+      const uint32_t strip = PhotonGrid<S>::strip(y - 1, z - 1);
       for (const uint32_t other :
-           {PhotonGrid<S>::row(y, z - 1), PhotonGrid<S>::row(y - 1, z), PhotonGrid<S>::row(y, z)}) {
-        const bool alike = (row + 1 - other) % kBuckets <= 2 && (row ^ other) >> kPlaceRowShift == 0;
+           {PhotonGrid<S>::strip(y, z - 1), PhotonGrid<S>::strip(y - 1, z), PhotonGrid<S>::strip(y, z)}) {
+        const bool alike = (strip + 1 - other) % kBuckets <= 2 && (strip ^ other) >> kPlaceStripShift == 0;
         if (alike) vertices.push_back(edge(middle, y, z));
       }
     }
@@ -264,11 +264,11 @@ void expectAllPairsWhereRowsMeet(const MergeCase& param) {
   ASSERT_GT(vertices.size(), 20u);
   expectAllPairs(param, Cloud<S>(vertices, kRadius), grid, kRadius);
 }
-TEST_P(MergeTest, findsAPhotonOnceWhereRowsOfCellsShareBuckets) {
+TEST_P(MergeTest, findsAPhotonOnceWhereStripsShareBuckets) {
   if (GetParam().precision == Precision::doubled) {
-    expectAllPairsWhereRowsMeet<double>(GetParam());
+    expectAllPairsWhereStripsMeet<double>(GetParam());
   } else {
-    expectAllPairsWhereRowsMeet<float>(GetParam());
+    expectAllPairsWhereStripsMeet<float>(GetParam());
   }
 }
 
@@ -281,9 +281,9 @@ TEST_P(MergeTest, findsPhotonsBeyondTheLastBucket) {
   const uint32_t middle = static_cast<uint32_t>(kSceneRadius / cell);
   std::vector<Point3<float>> vertices;
   for (uint32_t y = middle; y < middle + 400; y += 10) {
-    const uint32_t row = PhotonGrid<float>::row(y, middle);
+    const uint32_t strip = PhotonGrid<float>::strip(y, middle);
     for (uint32_t x = middle - 400; x < middle + 400; ++x) {
-      if ((row + x) % 4096 != 4095) continue;
+      if ((strip + x) % 4096 != 4095) continue;
       double p[3];
       const double inCells[3] = {x + 1.0, y + 0.5, middle + 0.5};
       for (size_t k = 0; k < 3; ++k) p[k] = static_cast<double>(grid.origin[k]) + inCells[k] * cell;
@@ -307,11 +307,11 @@ TEST(PhotonGrid, placesAreWhatTheyAreDefinedAs) {
       cell[i] = static_cast<uint32_t>(inCells);
       quanta[i] = static_cast<uint32_t>(inCells * 256) % 512;
     }
-    const uint32_t row = PhotonGrid<float>::row(cell[1], cell[2]);
+    const uint32_t strip = PhotonGrid<float>::strip(cell[1], cell[2]);
     const auto at = grid.at(p.x);
-    EXPECT_EQ(at.cell, row + cell[0]);
+    EXPECT_EQ(at.cell, strip + cell[0]);
     EXPECT_EQ(at.place % (1u << 27), quanta[0] + 512 * quanta[1] + 512 * 512 * quanta[2]);
-    EXPECT_EQ(at.place >> 27, row >> 27);
+    EXPECT_EQ(at.place >> 27, strip >> 27);
   }
 }
 
