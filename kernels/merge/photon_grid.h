@@ -19,8 +19,8 @@ template <class S>
 struct PhotonGrid {
   S origin[3]{};
   S inverseCell = 0;
-  // In quanta: how much nearer two points can be than the middle of the one's quantum is to the other, by what
-  // positions in the grid are rounded.
+  // In quanta: by how much the distance of a point to the middle of another's quantum may exceed that between the two,
+  // roundings included.
   float slack = 0;
 
   // Over the sphere around a scene. searchRadius: of the searches that will follow; photons: about how many there will
