@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -237,7 +238,33 @@ WAVECREST_INLINE void storeScattered(Float a, float* base, UInt index) {
 
 // The lanes of a where m holds, moved to the front in order. Compaction is compress followed by an ordinary store into
 // padded columns: the store-compressed instruction is microcoded on some machines and several times slower.
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
+// For each mask of up to eight lanes, those that it holds and then the others, in order. Highway's own tables are local
+// to its functions, and g++ copies the whole of them, up to a kilobyte, to the stack at every call.
+inline constexpr auto kLanesInFront = [] {
+  std::array<std::array<uint8_t, 8>, 256> orders{};
+  for (size_t mask = 0; mask < orders.size(); ++mask) {
+    size_t at = 0;
+    for (const size_t held : {1u, 0u}) {
+      for (size_t lane = 0; lane < 8; ++lane) {
+        if ((mask >> lane & 1) == held) orders[mask][at++] = static_cast<uint8_t>(lane);
+      }
+    }
+  }
+  return orders;
+}();
+WAVECREST_INLINE UInt compress(UInt a, Mask m) {
+  const UIntTag tag;
+  const hn::Rebind<uint8_t, UIntTag> bytes;
+  uint8_t maskBits[8] = {};
+  hn::StoreMaskBits(FloatTag(), m.m, maskBits);
+  const auto order = hn::PromoteTo(tag, hn::LoadU(bytes, kLanesInFront[maskBits[0]].data()));
+  return {hn::TableLookupLanes(a.v, hn::IndicesFromVec(tag, order))};
+}
+WAVECREST_INLINE Float compress(Float a, Mask m) { return fromBits(compress(bits(a), m)); }
+#else
 WAVECREST_INLINE Float compress(Float a, Mask m) { return {hn::Compress(a.v, m.m)}; }
 WAVECREST_INLINE UInt compress(UInt a, Mask m) { return {hn::Compress(a.v, hn::RebindMask(UIntTag(), m.m))}; }
+#endif
 
 WAVECREST_SIMD_END
