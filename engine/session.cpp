@@ -77,7 +77,7 @@ class TypedSession final : public Session {
   void renderWaves(const Finished& finished);
   // Iterations of a method with a photon map.
   void renderPhases(const Finished& finished);
-  PhotonGrid<S> photonGrid(uint64_t iteration) const;
+  PhotonGrid<S> photonGrid(double searchRadius) const;
   void buildPhotonMap(uint64_t iteration);
   // Light vertices that the camera paths of a wave are joined with.
   LightStore<S>* partnersOf(size_t waveIndex, Worker& worker);
@@ -143,17 +143,18 @@ template <class S>
 void TypedSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker) {
   const FlushToZero flushToZero;
   const FilmArea& area = film_.area();
-  StageContext<S> context{
-      .scene = &plan_.scene->view,
-      .pixels = area.pixels.data(),
-      .sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(iteration)},
-      .limits = settings_.limits,
-      .mis = misSettings(pass.strategies, settings_, plan_.scene->view.radius, memory_.lightPaths, iteration),
-      .light = light,
-      .photonGrid = photonGrid(iteration),
-      .photons = &photons_,
-      .splats = {worker.splats.data(), area.x0, area.y0, area.width, area.height},
-      .counters = &worker.counters};
+  const MisSettings mis =
+      misSettings(pass.strategies, settings_, plan_.scene->view.radius, memory_.lightPaths, iteration);
+  StageContext<S> context{.scene = &plan_.scene->view,
+                          .pixels = area.pixels.data(),
+                          .sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(iteration)},
+                          .limits = settings_.limits,
+                          .mis = mis,
+                          .light = light,
+                          .photonGrid = photonGrid(mis.radius),
+                          .photons = &photons_,
+                          .splats = {worker.splats.data(), area.x0, area.y0, area.width, area.height},
+                          .counters = &worker.counters};
   auto& tallies = pass.walk == Walk::light ? worker.lightTallies : worker.cameraTallies;
   runPass(pass, context, worker.wave, settings_.measureStages ? tallies.data() : nullptr);
 }
@@ -239,12 +240,10 @@ void TypedSession<S>::renderWaves(const Finished& finished) {
 }
 
 template <class S>
-PhotonGrid<S> TypedSession<S>::photonGrid(uint64_t iteration) const {
+PhotonGrid<S> TypedSession<S>::photonGrid(double searchRadius) const {
   if (!plan_.pipeline.photonMap) return {};
   const SceneView<S>& scene = plan_.scene->view;
-  const MisSettings mis =
-      misSettings(plan_.pipeline.lightPass->strategies, settings_, scene.radius, memory_.lightPaths, iteration);
-  return PhotonGrid<S>::over(scene.center, scene.radius, mis.radius,
+  return PhotonGrid<S>::over(scene.center, scene.radius, searchRadius,
                              static_cast<double>(std::max<size_t>(memory_.photons, 1)));
 }
 
@@ -253,7 +252,9 @@ void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
   std::vector<LightStore<S>*> stores;
   for (const auto& store : stores_) stores.push_back(store.get());
   const uint64_t begin = readTicks();
-  photons_.build(stores, photonGrid(iteration), forEach);
+  const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
+                                      memory_.lightPaths, iteration);
+  photons_.build(stores, photonGrid(mis.radius), forEach);
   photonTally_.ticks += readTicks() - begin;
   photonTally_.items += photons_.size;
   photonIteration_ = iteration;

@@ -69,8 +69,8 @@ struct ShadowRays : Columns<ShadowRays<S>> {
   }
 };
 
-// Pairs of a camera vertex and a light vertex that connectVertices or merge is about to join. Scratch of one stage
-// call; dropped without connections.
+// Pairs of a camera vertex and a light vertex that connectVertices is about to join. Scratch of one stage call; dropped
+// without connections.
 struct VertexPairs : Columns<VertexPairs> {
   Column<uint32_t> camera, light;
   auto all() { return std::tie(camera, light); }

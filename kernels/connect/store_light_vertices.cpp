@@ -12,20 +12,6 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Vertices of block i of a light walk that more than delta lobes can join.
-template <uint32_t kFeatures, class S>
-WAVECREST_INLINE Mask joinableVertices(const SceneView<S>& scene, const Wave<S>& wave, size_t i) {
-  const Mask active = firstLanes(wave.rays.size - i);
-  if constexpr (has(kFeatures, kSpecularBsdfs)) {
-    const UInt primitive = select(active, load(wave.hits.primitive, i), UInt(0u));
-    const RecordLanes<PrimitiveRecord<S>> at(scene.primitives, primitive);
-    const MaterialLanes material(scene, at(scene.primitives->material));
-    return active & hasNonDeltaLobes(material(scene.materials->kind));
-  } else {
-    return active;
-  }
-}
-
 // The vertices of all waves are more than the caches hold: asks for the lines that later blocks will be written to.
 constexpr size_t kColumnsAhead = 64, kRowsAhead = 48;  // items
 template <class... Items>
@@ -85,7 +71,7 @@ void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<t
   const bool connected = store.keepsLanes(), merged = store.keepsPlaces();
   size_t out = vertices.size;
   for (size_t i = 0; i < wave.rays.size; i += kLanes) {
-    const Mask joinable = joinableVertices<kFeatures>(*context.scene, wave, i);
+    const Mask joinable = joinableVertices<kFeatures>(*context.scene, wave, i, firstLanes(wave.rays.size - i));
     appendRows<kFeatures>(context, wave, i, joinable, vertices, out);
     if (connected) appendColumns<kFeatures>(*context.scene, wave, i, joinable, vertices, out);
     if (merged) appendPlaces(context.photonGrid, wave.rays, i, joinable, vertices, out);

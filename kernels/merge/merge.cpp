@@ -86,8 +86,8 @@ class Merger {
     search.count = 0;
     for (uint32_t run = 0; run < kRuns; ++run) {
       const UInt strip = stripOf(low.y + UInt(run & 1), low.z + UInt(run >> 1));
-      const UInt vertex = laneIndex(static_cast<uint32_t>(i) | run << kRunShift) | wide |
-                          shiftLeft<kPlaceStripShift>(shiftRight<kPlaceStripShift>(strip));
+      const UInt vertex =
+          laneIndex(static_cast<uint32_t>(i) | run << kRunShift) | wide | (strip & UInt(kPlaceStripMask));
       storeUnaligned(compress(vertex, searched[run]), search.vertex + search.count);
       storeUnaligned(compress((strip + low.x) & UInt(map_.bucketMask), searched[run]), search.bucket + search.count);
       search.count += countTrue(searched[run]);
@@ -100,9 +100,7 @@ class Merger {
     store(quanta(inCells.x, low.x), search.x);
     store(quanta(inCells.y, low.y), search.y);
     store(quanta(inCells.z, low.z), search.z);
-    const auto parity = [](UInt cell) WAVECREST_LAMBDA { return shiftLeft<kQuantaBits - 1>(cell & UInt(1u)); };
-    store(parity(low.x) | shiftLeft<kQuantaBits>(parity(low.y)) | shiftLeft<2 * kQuantaBits>(parity(low.z)),
-          search.lower);
+    store(packAxes(parityBit(low.x), parityBit(low.y), parityBit(low.z)), search.lower);
   }
 
   WAVECREST_INLINE void askForBuckets(const Search& search) const {
@@ -135,14 +133,7 @@ class Merger {
     querying = querying & (load(wave_.rays.originX, i) - reach >= Real(grid.origin[0])) &
                (load(wave_.rays.originY, i) - reach >= Real(grid.origin[1])) &
                (load(wave_.rays.originZ, i) - reach >= Real(grid.origin[2]));
-    if constexpr (has(kFeatures, kSpecularBsdfs)) {
-      const auto& scene = *context_.scene;
-      const UInt primitive = select(querying, load(wave_.hits.primitive, i), UInt(0u));
-      const RecordLanes<PrimitiveRecord<S>> at(scene.primitives, primitive);
-      const MaterialLanes material(scene, at(scene.primitives->material));
-      querying = querying & hasNonDeltaLobes(material(scene.materials->kind));
-    }
-    return querying;
+    return joinableVertices<kFeatures>(*context_.scene, wave_, i, querying);
   }
 
   // ---- candidates ---------------------------------------------------------------------------------------------------
@@ -197,7 +188,7 @@ class Merger {
       const Float dx = away(search.x, fromLower), dy = away(search.y, shiftRight<kQuantaBits>(fromLower)),
                   dz = away(search.z, shiftRight<2 * kQuantaBits>(fromLower));
       const Mask near = firstLanes(count - i) & (mulAdd(dx, dx, mulAdd(dy, dy, dz * dz)) <= reach2) &
-                        (shiftRight<kPlaceStripShift>(vertex ^ place) == UInt(0u));
+                        (((vertex ^ place) & UInt(kPlaceStripMask)) == UInt(0u));
       if (nearCount_ > kNear) {
         askForRows();
         shade(wholeBlocks(kNear / 2));  // the rest have just been asked for

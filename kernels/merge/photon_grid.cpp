@@ -48,7 +48,7 @@ typename PhotonGrid<S>::Photon PhotonGrid<S>::at(const S (&position)[3]) const {
     place |= (quanta | cell[axis] % 2 * kQuantaPerCell) << axis * kQuantaBits;
   }
   const uint32_t alongX = strip(cell[1], cell[2]);
-  return {alongX + cell[0], place | alongX >> kPlaceStripShift << kPlaceStripShift};
+  return {alongX + cell[0], place | (alongX & kPlaceStripMask)};
 }
 
 template struct PhotonGrid<float>;

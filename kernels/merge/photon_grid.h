@@ -12,6 +12,7 @@ constexpr uint32_t kQuantaPerCell = 1u << (kQuantaBits - 1);
 constexpr uint32_t kQuantaMask = (1u << kQuantaBits) - 1;
 constexpr uint32_t kPlaceStripShift = 3 * kQuantaBits;
 static_assert(kPlaceStripShift < 32);
+constexpr uint32_t kPlaceStripMask = ~0u << kPlaceStripShift;
 
 // cell = floor((position - origin) * inverseCell) along each axis, in S and without contraction, so that all who count
 // cells agree to the bit. Cells are at least as wide as a search's diameter: it touches one or two along each axis.

@@ -39,6 +39,12 @@ class GridLanes {
   Real inverseCell_;
 };
 
+// As in a place: the bits of each axis, the parity of a cell as the highest of them.
+WAVECREST_INLINE UInt packAxes(UInt x, UInt y, UInt z) {
+  return x | shiftLeft<kQuantaBits>(y) | shiftLeft<2 * kQuantaBits>(z);
+}
+WAVECREST_INLINE UInt parityBit(UInt cell) { return shiftLeft<kQuantaBits - 1>(cell & UInt(1u)); }
+
 // What a photon map is built from: the number of each point's cell, before it is masked, and the point's place.
 struct PlaceLanes {
   UInt cell, place;
@@ -48,13 +54,11 @@ WAVECREST_INLINE PlaceLanes placesOf(Vec3<Real> point) {
   const CellLanes cell = cellsOf(point);
   const auto quanta = [](Real x, UInt c) WAVECREST_LAMBDA {
     const Real within = (x - floor(x)) * Real(static_cast<float>(kQuantaPerCell));
-    return toUInt(to<Float>(floor(within))) | shiftLeft<kQuantaBits - 1>(c & UInt(1u));
+    return toUInt(to<Float>(floor(within))) | parityBit(c);
   };
   const UInt strip = stripOf(cell.y, cell.z);
-  const UInt place = quanta(point.x, cell.x) | shiftLeft<kQuantaBits>(quanta(point.y, cell.y)) |
-                     shiftLeft<2 * kQuantaBits>(quanta(point.z, cell.z)) |
-                     shiftLeft<kPlaceStripShift>(shiftRight<kPlaceStripShift>(strip));
-  return {strip + cell.x, place};
+  const UInt within = packAxes(quanta(point.x, cell.x), quanta(point.y, cell.y), quanta(point.z, cell.z));
+  return {strip + cell.x, within | (strip & UInt(kPlaceStripMask))};
 }
 
 WAVECREST_SIMD_END

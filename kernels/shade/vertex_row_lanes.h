@@ -9,6 +9,18 @@
 
 WAVECREST_SIMD_BEGIN
 
+// The lanes of m whose vertices, of block i of the live paths, more than delta lobes can join.
+template <uint32_t kFeatures, class S>
+WAVECREST_INLINE Mask joinableVertices(const SceneView<S>& scene, const Wave<S>& wave, size_t i, Mask m) {
+  if constexpr (has(kFeatures, kSpecularBsdfs)) {
+    const UInt primitive = select(m, load(wave.hits.primitive, i), UInt(0u));
+    const MaterialLanes material(scene, materialOf(scene, primitive));
+    return m & hasNonDeltaLobes(material(scene.materials->kind));
+  } else {
+    return m;
+  }
+}
+
 // The rows of block i of the live paths' vertices; edges: from the light, where they are kept as light vertices.
 template <uint32_t kFeatures, class S>
 WAVECREST_INLINE void makeRows(const StageContext<S>& context, const Wave<S>& wave, size_t i, uint32_t edges,

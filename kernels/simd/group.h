@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <type_traits>
 
 #include "kernels/simd/lanes.h"
 
@@ -178,14 +177,10 @@ WAVECREST_INLINE Least leastOf(FloatGroup<kCount> a) {
 template <size_t kCount>
 WAVECREST_INLINE size_t appendWhere(MaskGroup<kCount> m, UIntGroup<kCount> items, uint32_t* out) {
   using Shape = GroupShape<kCount>;
-  [[maybe_unused]] const typename Shape::UIntTag tag;
+  const typename Shape::UIntTag tag;
   size_t count = 0;
   for (size_t i = 0; i < Shape::kParts; ++i) {
-    if constexpr (std::is_same_v<typename Shape::UIntTag, UIntTag>) {
-      storeUnaligned(compress(UInt(items.part[i]), Mask{m.part[i]}), out + count);
-    } else {
-      hn::StoreU(hn::Compress(items.part[i], hn::RebindMask(tag, m.part[i])), tag, out + count);
-    }
+    hn::StoreU(moveToFront(tag, items.part[i], hn::RebindMask(tag, m.part[i])), tag, out + count);
     count += hn::CountTrue(typename Shape::FloatTag(), m.part[i]);
   }
   return count;

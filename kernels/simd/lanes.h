@@ -236,8 +236,7 @@ WAVECREST_INLINE void storeScattered(Float a, float* base, UInt index) {
   hn::ScatterIndex(a.v, FloatTag(), base, hn::BitCast(IntTag(), index.v));
 }
 
-// The lanes of a where m holds, moved to the front in order. Compaction is compress followed by an ordinary store into
-// padded columns: the store-compressed instruction is microcoded on some machines and several times slower.
+// The 32-bit items where m holds, moved to the front in order; what follows them is not defined.
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
 // For each mask of up to eight lanes, those that it holds and then the others, in order. Highway's own tables are local
 // to its functions, and g++ copies the whole of them, up to a kilobyte, to the stack at every call.
@@ -253,18 +252,24 @@ inline constexpr auto kLanesInFront = [] {
   }
   return orders;
 }();
-WAVECREST_INLINE UInt compress(UInt a, Mask m) {
-  const UIntTag tag;
-  const hn::Rebind<uint8_t, UIntTag> bytes;
+template <class Tag>
+WAVECREST_INLINE hn::Vec<Tag> moveToFront(Tag tag, hn::Vec<Tag> items, hn::Mask<Tag> m) {
+  const hn::RebindToUnsigned<Tag> numbers;
   uint8_t maskBits[8] = {};
-  hn::StoreMaskBits(FloatTag(), m.m, maskBits);
-  const auto order = hn::PromoteTo(tag, hn::LoadU(bytes, kLanesInFront[maskBits[0]].data()));
-  return {hn::TableLookupLanes(a.v, hn::IndicesFromVec(tag, order))};
+  hn::StoreMaskBits(tag, m, maskBits);
+  const auto order = hn::PromoteTo(numbers, hn::LoadU(hn::Rebind<uint8_t, Tag>(), kLanesInFront[maskBits[0]].data()));
+  return hn::TableLookupLanes(items, hn::IndicesFromVec(tag, order));
 }
-WAVECREST_INLINE Float compress(Float a, Mask m) { return fromBits(compress(bits(a), m)); }
 #else
-WAVECREST_INLINE Float compress(Float a, Mask m) { return {hn::Compress(a.v, m.m)}; }
-WAVECREST_INLINE UInt compress(UInt a, Mask m) { return {hn::Compress(a.v, hn::RebindMask(UIntTag(), m.m))}; }
+template <class Tag>
+WAVECREST_INLINE hn::Vec<Tag> moveToFront(Tag, hn::Vec<Tag> items, hn::Mask<Tag> m) {
+  return hn::Compress(items, m);
+}
 #endif
+
+// The lanes of a where m holds, moved to the front in order. Compaction is compress followed by an ordinary store into
+// padded columns: the store-compressed instruction is microcoded on some machines and several times slower.
+WAVECREST_INLINE Float compress(Float a, Mask m) { return {moveToFront(FloatTag(), a.v, m.m)}; }
+WAVECREST_INLINE UInt compress(UInt a, Mask m) { return {moveToFront(UIntTag(), a.v, hn::RebindMask(UIntTag(), m.m))}; }
 
 WAVECREST_SIMD_END

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/for_each.h"
 #include "engine/render_plan.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"

@@ -107,9 +107,7 @@ class Recount : public WalkVisitor<float> {
  private:
   void buildMap() {
     LightStore<float>* const stores[1] = {const_cast<LightStore<float>*>(&walk_.light())};
-    map_.build(stores, walk_.photonGrid(), [](size_t count, const std::function<void(size_t)>& body) {
-      for (size_t i = 0; i < count; ++i) body(i);
-    });
+    map_.build(stores, walk_.photonGrid(), forEach);
     // 8: buckets hold all photons, each in its own.
     const uint32_t buckets = map_.bucketMask + 1;
     ASSERT_EQ(map_.size, walk_.light().vertices.size);

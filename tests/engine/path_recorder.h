@@ -295,9 +295,7 @@ class PathRecorder : public WalkVisitor<S> {
     forEachColumn(from, photonStore_.vertices, [&](size_t, auto& source, auto& target) { target[0] = source[index]; });
     photonStore_.vertices.claim(1);
     LightStore<S>* const stores[1] = {&photonStore_};
-    photon_.build(stores, walk_.photonGrid(), [](size_t count, const std::function<void(size_t)>& body) {
-      for (size_t i = 0; i < count; ++i) body(i);
-    });
+    photon_.build(stores, walk_.photonGrid(), forEach);
   }
 
   void recordMerges(uint32_t lightDepth, uint32_t depth, uint32_t lightLane, Wave<S>& wave) {

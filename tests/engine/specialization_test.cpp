@@ -47,13 +47,17 @@ TEST_P(SpecializationTest, diffuseSceneByEveryKernel) {
       Method::bpt);
 }
 
-// Cameras and filters are branches that a whole scene takes or not.
-TEST_P(SpecializationTest, diffuseSceneThroughALensByTheDiffuseKernels) {
-  Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+void addLensAndFilter(Scene& scene) {
   scene.sensor.kind = Sensor::Kind::thinlens;
   scene.sensor.apertureRadius = 0.1;
   scene.sensor.focusDistance = 3;
   scene.film.filter = ReconstructionFilter::gaussian;
+}
+
+// Cameras and filters are branches that a whole scene takes or not.
+TEST_P(SpecializationTest, diffuseSceneThroughALensByTheDiffuseKernels) {
+  Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  addLensAndFilter(scene);
   expectSameImages(scene, {Specialization::diffuse});
   expectSameImages(scene, {Specialization::diffuseBidirectional}, Method::bpt);
 }
@@ -68,10 +72,7 @@ TEST_P(SpecializationTest, plainSceneByTheKernelsThatCoverIt) {
   Scene scene =
       roomScene({.light = RoomLight::envmap, .materials = RoomMaterials::mixed, .width = kWidth, .height = kHeight});
   addRoomLight(scene, RoomLight::directional);
-  scene.sensor.kind = Sensor::Kind::thinlens;
-  scene.sensor.apertureRadius = 0.1;
-  scene.sensor.focusDistance = 3;
-  scene.film.filter = ReconstructionFilter::gaussian;
+  addLensAndFilter(scene);
   expectSameImages(scene, {Specialization::plain});
   expectSameImages(scene, {Specialization::plainBidirectional}, Method::bpt);
 }

@@ -96,9 +96,7 @@ class StrategyImages : public WalkVisitor<float> {
         forEachColumn(all, some.vertices, [&](size_t, auto& from, auto& to) { to[target] = from[i]; });
       }
       LightStore<float>* const stores[1] = {&some};
-      maps_[depth - 1].build(stores, walk_.photonGrid(), [](size_t count, const std::function<void(size_t)>& body) {
-        for (size_t i = 0; i < count; ++i) body(i);
-      });
+      maps_[depth - 1].build(stores, walk_.photonGrid(), forEach);
     }
   }
 
