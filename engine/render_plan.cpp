@@ -17,7 +17,8 @@ ColumnNeeds columnNeeds(const Scene& scene, Specialization specialization) {
           .textures = (features & kTextures) != 0,
           .normalMaps = (features & sceneFeatures(scene) & kNormalMaps) != 0,
           .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
-          .connections = (features & kBidirectional) != 0};
+          .connections = (features & kBidirectional) != 0,
+          .bsdfOrder = (features & (kSpecularBsdfs | kLayeredBsdfs)) != 0};
 }
 
 // Whether kernels with the whole MIS recursion are needed.

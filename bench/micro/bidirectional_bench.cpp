@@ -78,7 +78,8 @@ class Random {
 // Vertices on the floor, in a square of this side.
 void fillWave(Wave<float>& wave, size_t count, double side, Random& random) {
   const double x0 = random.uniform(0, 1 - side), y0 = random.uniform(0, 1 - side);
-  wave.pathCount = wave.rays.size = wave.hits.size = wave.surfaces.size = wave.paths.size = wave.radiance.size = count;
+  wave.pathCount = wave.radiance.size = count;
+  wave.setVertices(count, count);
   for (uint32_t i = 0; i < count; ++i) {
     wave.rays.originX[i] = random.uniform(x0, x0 + side);
     wave.rays.originY[i] = random.uniform(y0, y0 + side);

@@ -149,7 +149,7 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
     context.ends = &*ends_;
     for (Wave<S>* ends : {&ends_->atOrigin, &ends_->cameraAtVertex, &ends_->lightAtVertex}) {
       ends->pathCount = count;
-      ends->rays.size = ends->paths.size = ends->hits.size = ends->surfaces.size = 0;
+      ends->setVertices(0, 0);
     }
   }
   runPass(pipeline_.cameraPass, context, wave_, tally);
@@ -158,8 +158,7 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
 
   join(pipeline_.chains->afterCamera, context, tally);
   advance(pipeline_.chains->afterCamera.size());
-  Wave<S>& atOrigin = ends_->atOrigin;
-  atOrigin.rays.size = atOrigin.paths.size = atOrigin.hits.size = atOrigin.surfaces.size = 0;
+  ends_->atOrigin.setVertices(0, 0);
   wave_.pathCount = chooseLightLanes(chains.columns, count);
   context.lanes = lightLanes_;
   runPass(*pipeline_.lightPass, context, wave_, tally);

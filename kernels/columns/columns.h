@@ -7,7 +7,7 @@
 //  - size <= capacity; a stage that pushes checks room for a whole block of lanes before it writes (claim()).
 //  - Tail: each column has at least kColumnPadding items past capacity, so a kernel may load and store whole blocks;
 //    items at and past size are never read as results.
-//  - Order is the lane order of the stage that pushed; compaction is stable.
+//  - Order is that of the items that the pushing stage read, or what it says; compaction is stable.
 //  - A column that this scene and method do not need is dropped before bind() and costs no memory.
 #pragma once
 
@@ -95,6 +95,11 @@ struct Columns {
   }
   size_t bytesPerItem() const {
     return std::apply([](auto&... column) { return (column.bytesPerItem() + ...); }, tied());
+  }
+
+  // All columns.
+  void drop() {
+    std::apply([](auto&... column) { (column.drop(), ...); }, tied());
   }
 
   void bind(Arena& arena, size_t capacity) {

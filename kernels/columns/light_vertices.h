@@ -26,8 +26,8 @@ struct LightVertexUse {
   bool connected = true, merged = true;
 };
 
-// The light vertices of one wave, in the order (depth, lane): rows, which connections and merges read; for merging also
-// where they are in the grid, because a photon map is built from that alone.
+// The light vertices of one wave, by depth, and within one in the order of the wave's vertices: rows, which connections
+// and merges read; for merging also where they are in the grid, because a photon map is built from that alone.
 //
 // Grows between stages to what a wave needs and keeps that memory, so a steady state allocates nothing.
 // Path i of an iteration is lane i % lanes of store i / lanes.
@@ -108,7 +108,7 @@ class LightStore {
   }
 
   uint32_t depths() const { return static_cast<uint32_t>(depths_); }
-  // The vertices of a depth (1 .. depths()) are those from firstOf(depth) up to firstOf(depth + 1), by lane.
+  // The vertices of a depth (1 .. depths()) are those from firstOf(depth) up to firstOf(depth + 1).
   size_t firstOf(uint32_t depth) const { return depth > depths_ ? vertices.size : firstOfDepth_[depth]; }
   // Scratch of connectVertices, one entry per lane: where the camera path of the lane is now.
   uint32_t* rayOfLane() { return rayOfLane_.data(); }
@@ -152,17 +152,18 @@ class LightStore {
   // any path there is that long.
   bool copyLanes(const LightStore& from, uint32_t depth, size_t begin, size_t count, size_t target) {
     if (depth > from.depths()) return false;
-    const uint32_t* const lane = from.vertices.lane;
-    const auto place = [&](size_t first) {
-      return static_cast<size_t>(std::lower_bound(lane + from.firstOf(depth), lane + from.firstOf(depth + 1), first) -
-                                 lane);
-    };
-    const size_t source = place(begin), copied = place(begin + count) - source;
-    const size_t at = vertices.claim(copied);
     LightVertices<S> origin = from.vertices;  // pointers only: all() has one form, for writing
-    copyColumns(origin.all(), vertices.all(), source, at, copied, Indices());
-    for (size_t i = at; i < at + copied; ++i) {
-      vertices.lane[i] = static_cast<uint32_t>(vertices.lane[i] - begin + target);
+    const auto within = [&](size_t i) { return origin.lane[i] - begin < count; };
+    const size_t end = from.firstOf(depth + 1);
+    for (size_t i = from.firstOf(depth); i < end;) {
+      const size_t source = i;
+      while (i < end && within(i)) ++i;
+      const size_t copied = i - source, at = vertices.claim(copied);
+      copyColumns(origin.all(), vertices.all(), source, at, copied, Indices());
+      for (size_t k = at; k < at + copied; ++k) {
+        vertices.lane[k] = static_cast<uint32_t>(vertices.lane[k] - begin + target);
+      }
+      while (i < end && !within(i)) ++i;
     }
     return true;
   }

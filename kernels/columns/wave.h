@@ -12,25 +12,18 @@ struct ColumnNeeds {
   bool normalMaps = true;
   bool rouletteScale = true;
   bool connections = true;
+  bool bsdfOrder = true;
 };
 
+// The front of paths, and what they carry, at their vertices.
 template <class S>
-struct Wave {
+struct Vertices {
   Rays<S> rays;
   Hits hits;
   Surfaces<S> surfaces;
   PathStates<S> paths;
-  ShadowRays<S> shadowRays;
-  VertexPairs pairs;
-  VertexRows<S> vertexRows;
-  Radiance<S> radiance;
-  size_t firstPath = 0;  // index of lane 0 in the iteration's order of paths
-  size_t pathCount = 0;  // lanes in use when the wave began
-  // Camera paths of a wave may be of 2^iterationBits successive iterations: lane i is path firstPath + i >> bits, ahead
-  // by the low bits of i. Paths of one pixel then share packets and what they touch of the scene.
-  uint32_t iterationBits = 0;
 
-  Wave(size_t capacity, const ColumnNeeds& needs) {
+  explicit Vertices(const ColumnNeeds& needs) {
     if (!needs.shadingNormals) {
       for (Column<S>* column : {&surfaces.shadingX, &surfaces.shadingY, &surfaces.shadingZ}) column->drop();
     }
@@ -46,6 +39,39 @@ struct Wave {
       paths.dVC.drop();
       paths.dVM.drop();
       paths.light.drop();
+    }
+  }
+
+  template <class Function>
+  void forEachQueue(Function&& function) {
+    function(rays);
+    function(hits);
+    function(surfaces);
+    function(paths);
+  }
+};
+
+template <class S>
+struct Wave : Vertices<S> {
+  using Vertices<S>::rays, Vertices<S>::hits, Vertices<S>::surfaces, Vertices<S>::paths;
+  size_t joinable = 0;  // vertices that may have more than delta lobes; they come first
+  Vertices<S> aside;    // scratch of arrive (kernels/shade/vertex_order_lanes.h); dropped where all BSDFs are diffuse
+  ShadowRays<S> shadowRays;
+  VertexPairs pairs;
+  VertexRows<S> vertexRows;
+  Radiance<S> radiance;
+  size_t firstPath = 0;  // index of lane 0 in the iteration's order of paths
+  size_t pathCount = 0;  // lanes in use when the wave began
+  // Camera paths of a wave may be of 2^iterationBits successive iterations: lane i is path firstPath + i >> bits, ahead
+  // by the low bits of i. Paths of one pixel then share packets and what they touch of the scene.
+  uint32_t iterationBits = 0;
+
+  Wave(size_t capacity, const ColumnNeeds& needs) : Vertices<S>(needs), aside(needs) {
+    aside.hits.u.drop();
+    aside.hits.v.drop();
+    aside.paths.light.drop();
+    if (!needs.bsdfOrder) aside.forEachQueue([](auto& queue) { queue.drop(); });
+    if (!needs.connections) {
       pairs.camera.drop();
       pairs.light.drop();
       vertexRows.row.drop();
@@ -63,12 +89,20 @@ struct Wave {
     hits.size = other.hits.size;
     surfaces.size = other.surfaces.size;
     paths.size = other.paths.size;
+    joinable = other.joinable;
     shadowRays.size = other.shadowRays.size;
     vertexRows.size = other.vertexRows.size;
     radiance.size = other.radiance.size;
     firstPath = other.firstPath;
     pathCount = other.pathCount;
     iterationBits = other.iterationBits;
+  }
+
+  // Has so many vertices now, others than before.
+  void setVertices(size_t count, size_t joinableCount) {
+    rays.size = hits.size = surfaces.size = paths.size = count;
+    joinable = joinableCount;
+    vertexRows.size = 0;
   }
 
   size_t bytesPerPath() {
@@ -80,10 +114,8 @@ struct Wave {
  private:
   template <class Function>
   void forEachQueue(Function&& function) {
-    function(rays);
-    function(hits);
-    function(surfaces);
-    function(paths);
+    Vertices<S>::forEachQueue(function);
+    aside.forEachQueue(function);
     function(shadowRays);
     function(pairs);
     function(vertexRows);

@@ -1,7 +1,7 @@
 // connectToCamera: strategy t = 1. Joins each light vertex with the lens and pushes a shadow ray towards the pixel that
 // sees it.
 //
-// in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: ShadowRays [<= n] in lane order, whose
+// in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: ShadowRays [<= n] in that order, whose
 // targets are pixels of the splat sink; of chains their lanes, and the pixels go to Chains::proposedPixel.
 // METHODS 4.3, 5.6. The contribution leaves out 1/N_L: the film divides by the number of light paths, as the average
 // over passes does. Densities are per pixel whatever the reconstruction filter, so weights do not depend on it.
@@ -20,7 +20,7 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
   const auto& paths = wave.paths;
   const SplatSink& splats = context.splats;
   auto& shadow = wave.shadowRays;
-  const size_t count = wave.rays.size;
+  const size_t count = wave.joinable;
   shadow.size = 0;
   shadow.claim(count);
   size_t out = 0;

@@ -2,7 +2,7 @@
 // at the context's lightDepth, and pushes a shadow ray with the weighted contribution.
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the light store of the wave's light paths. out: ShadowRays
-// [<= n], in lane order. METHODS 5.6 (40)-(41).
+// [<= n], in the order of light vertices. METHODS 5.6 (40)-(41).
 //
 // Deep vertices are rare, so the pairs are listed first: 16 lanes then work on 16 pairs, whatever the depth. The list
 // begins at the light vertices, which get fewer from depth to depth. Depths are called in order from 1.
@@ -23,10 +23,11 @@ WAVECREST_INLINE void placeLanes(const StageContext<S>& context, const Wave<S>& 
   uint32_t* const rayOfLane = context.light->rayOfLane();
   const uint32_t* const lane = wave.paths.lane;
   std::fill_n(rayOfLane, wave.pathCount, kNoIndex);
-  for (uint32_t i = 0; i < wave.rays.size; ++i) rayOfLane[lane[i]] = i;
+  for (uint32_t i = 0; i < wave.joinable; ++i) rayOfLane[lane[i]] = i;
 }
 
-// The pairs of camera vertices and vertices of the light depth that are of one lane, in lane order; how many.
+// The pairs of camera vertices and vertices of the light depth that are of one lane, in the order of the latter; how
+// many.
 template <class S>
 WAVECREST_INLINE size_t listPairs(const StageContext<S>& context, Wave<S>& wave) {
   auto& pairs = wave.pairs;

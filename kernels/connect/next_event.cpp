@@ -1,7 +1,7 @@
 // nextEvent: strategy s = 1. Samples one light point for each vertex and pushes a shadow ray with the whole
 // contribution, weight included, where there is any.
 //
-// in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: ShadowRays [<= n], in lane order. METHODS 2.2, 5.6.
+// in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: ShadowRays [<= n], in that order. METHODS 2.2, 5.6.
 #include "kernels/connect/light_sample_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/shading_lanes.h"
@@ -15,7 +15,7 @@ void nextEvent(const StageContext<typename P::Storage>& context, Wave<typename P
   const auto& scene = *context.scene;
   const auto& paths = wave.paths;
   auto& shadow = wave.shadowRays;
-  const size_t count = wave.rays.size;
+  const size_t count = wave.joinable;
   shadow.size = 0;
   if (scene.lightCount == 0) return;
   shadow.claim(count);

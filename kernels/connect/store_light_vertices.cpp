@@ -1,7 +1,7 @@
 // storeLightVertices: keeps each light vertex that camera paths can join, for connections, for merging, or for both.
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: the next depth of the context's light
-// store [<= n], in lane order; nothing else changes. The caller has begun the depth, so there is room.
+// store [<= n], in that order; nothing else changes. The caller has begun the depth, so there is room.
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_grid_lanes.h"
 #include "kernels/mis_lanes.h"
@@ -70,8 +70,8 @@ void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<t
   auto& vertices = store.vertices;
   const bool connected = store.keepsLanes(), merged = store.keepsPlaces();
   size_t out = vertices.size;
-  for (size_t i = 0; i < wave.rays.size; i += kLanes) {
-    const Mask joinable = joinableVertices<kFeatures>(*context.scene, wave, i, firstLanes(wave.rays.size - i));
+  for (size_t i = 0; i < wave.joinable; i += kLanes) {
+    const Mask joinable = firstLanes(wave.joinable - i);
     appendRows<kFeatures>(context, wave, i, joinable, vertices, out);
     if (connected) appendColumns<kFeatures>(*context.scene, wave, i, joinable, vertices, out);
     if (merged) appendPlaces(context.photonGrid, wave.rays, i, joinable, vertices, out);

@@ -37,8 +37,8 @@ class Merger {
   void run() {
     constexpr size_t kTogether = 4;
     Search searches[kTogether];
-    for (size_t i = 0; i < wave_.rays.size; i += kTogether * kLanes) {
-      const size_t blocks = std::min(kTogether, (wave_.rays.size - i + kLanes - 1) / kLanes);
+    for (size_t i = 0; i < wave_.joinable; i += kTogether * kLanes) {
+      const size_t blocks = std::min(kTogether, (wave_.joinable - i + kLanes - 1) / kLanes);
       for (size_t k = 0; k < blocks; ++k) locate(i + k * kLanes, searches[k]);
       for (size_t k = 0; k < blocks; ++k) askForBuckets(searches[k]);
       for (size_t k = 0; k < blocks; ++k) findRuns(searches[k]);
@@ -124,16 +124,16 @@ class Merger {
     }
   }
 
-  // Vertices of block i that can merge: inside the grid, with more than delta lobes.
+  // Vertices of block i that can merge: inside the grid.
   WAVECREST_INLINE Mask queries(size_t i) const {
-    Mask querying = firstLanes(wave_.rays.size - i);
+    Mask querying = firstLanes(wave_.joinable - i);
     const auto& grid = map_.grid;
     // Left of the grid's margin there is no photon within reach, and cell numbers would be negative.
     const Real reach(context_.mis.radius * kReach);
     querying = querying & (load(wave_.rays.originX, i) - reach >= Real(grid.origin[0])) &
                (load(wave_.rays.originY, i) - reach >= Real(grid.origin[1])) &
                (load(wave_.rays.originZ, i) - reach >= Real(grid.origin[2]));
-    return joinableVertices<kFeatures>(*context_.scene, wave_, i, querying);
+    return querying;
   }
 
   // ---- candidates ---------------------------------------------------------------------------------------------------

@@ -1,15 +1,17 @@
 // admitWalks, takeEnds: walks of multiplexed chains go exactly as far as their strategy says.
 //
 // admitWalks: in: Rays, PathStates [n] before the first edge. out: the same [<= n], without walks that have no edge.
-// takeEnds: in: Rays (at vertices), Hits, Surfaces, PathStates [n] at a depth. out: the same [<= n] in lane order,
+// takeEnds: in: Rays (at vertices), Hits, Surfaces, PathStates [n] at a depth. out: the same [<= n] in that order,
 // without walks that end here; those have moved to the context's WalkEnds, unless emission was all they were after.
 //
 // Ends of all depths are gathered, so the stages that join them run once on full blocks of lanes instead of once per
 // depth on a few lanes each, and need not know that the walks of a wave have different lengths.
+#include <algorithm>
 #include <cassert>
 
 #include "kernels/columns/chains.h"
 #include "kernels/mis_lanes.h"
+#include "kernels/shade/path_vertex_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -30,43 +32,23 @@ WAVECREST_INLINE void copyRays(const Wave<S>& from, size_t i, Mask m, Wave<S>& t
   append(load(paths.lane, i), m, to.paths.lane, out);
 }
 
-template <uint32_t kFeatures, class S>
-WAVECREST_INLINE void copyVertices(const Wave<S>& from, size_t i, Mask m, Wave<S>& to, size_t out) {
-  copyRays<kFeatures>(from, i, m, to, out);
-  const Surfaces<S>& surfaces = from.surfaces;
-  append(load(from.hits.primitive, i), m, to.hits.primitive, out);
-  appendVec3(loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i), m, to.surfaces.normalX,
-             to.surfaces.normalY, to.surfaces.normalZ, out);
-  append(load(surfaces.offset, i), m, to.surfaces.offset, out);
-  if constexpr (has(kFeatures, kShadingNormals)) {
-    appendVec3(loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i), m, to.surfaces.shadingX,
-               to.surfaces.shadingY, to.surfaces.shadingZ, out);
-  }
-  if constexpr (has(kFeatures, kNormalMaps)) {
-    if (surfaces.baseX.needed()) {
-      appendVec3(loadVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, i), m, to.surfaces.baseX, to.surfaces.baseY,
-                 to.surfaces.baseZ, out);
-    }
-  }
-  if constexpr (has(kFeatures, kTextures)) {
-    append(load(surfaces.uvU, i), m, to.surfaces.uvU, out);
-    append(load(surfaces.uvV, i), m, to.surfaces.uvV, out);
-  }
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE void copyVertices(const Wave<typename P::Storage>& from, size_t i, Mask m,
+                                   Wave<typename P::Storage>& to, size_t out) {
+  PathVertexLanes<kFeatures, typename P::Real> vertex;
+  vertex.forEach(from, [&](auto& number, const auto& column) WAVECREST_LAMBDA { number = load(column, i); });
+  vertex.forEach(to, [&](const auto& number, const auto& column) WAVECREST_LAMBDA { append(number, m, column, out); });
 }
 
-template <class S>
-void setSize(Wave<S>& wave, size_t size) {
-  wave.rays.size = wave.paths.size = wave.hits.size = wave.surfaces.size = size;
-  wave.vertexRows.size = 0;
-}
-
-// Appends the lanes of m to a wave of ends.
-template <uint32_t kFeatures, class S>
-WAVECREST_INLINE void moveVertices(const Wave<S>& from, size_t i, Mask m, Wave<S>& to) {
+// Appends the lanes of m to a wave of ends. Those of delta lobes alone are among the others: the stages that join them
+// find that they carry nothing.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE void moveVertices(const Wave<typename P::Storage>& from, size_t i, Mask m,
+                                   Wave<typename P::Storage>& to) {
   const size_t out = to.rays.size;
   to.rays.claim(countTrue(m));
-  copyVertices<kFeatures>(from, i, m, to, out);
-  setSize(to, to.rays.size);
+  copyVertices<P, kFeatures>(from, i, m, to, out);
+  to.setVertices(to.rays.size, to.rays.size);
 }
 
 }  // namespace
@@ -96,7 +78,7 @@ void takeEnds(const StageContext<typename P::Storage>& context, Wave<typename P:
   Wave<typename P::Storage>& atOrigin = context.ends->atOrigin;
   Wave<typename P::Storage>& atVertex = context.ends->atVertex(camera);
   const size_t count = wave.rays.size;
-  size_t out = 0;
+  size_t out = 0, joinable = 0;
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
     const UInt lane = select(active, load(wave.paths.lane, i), UInt(0u));
@@ -107,10 +89,10 @@ void takeEnds(const StageContext<typename P::Storage>& context, Wave<typename P:
       Mask joinsOrigin = ended & alone;
       if (camera) joinsOrigin = joinsOrigin & (gather(chains.emissionDepth, lane) == UInt(0u));
       const Mask joinsVertex = andNot(ended, alone);
-      if (any(joinsOrigin)) moveVertices<kFeatures>(wave, i, joinsOrigin, atOrigin);
+      if (any(joinsOrigin)) moveVertices<P, kFeatures>(wave, i, joinsOrigin, atOrigin);
       if (any(joinsVertex)) {
         const size_t first = atVertex.rays.size;
-        moveVertices<kFeatures>(wave, i, joinsVertex, atVertex);
+        moveVertices<P, kFeatures>(wave, i, joinsVertex, atVertex);
         // Now the light walk is worth its while.
         for (size_t k = first; camera && k < atVertex.rays.size; ++k) {
           const uint32_t granted = atVertex.paths.lane[k];
@@ -119,10 +101,11 @@ void takeEnds(const StageContext<typename P::Storage>& context, Wave<typename P:
       }
     }
     const Mask goesOn = active & (UInt(context.depth) < edges);
-    copyVertices<kFeatures>(wave, i, goesOn, wave, out);
+    copyVertices<P, kFeatures>(wave, i, goesOn, wave, out);
     out += countTrue(goesOn);
+    joinable += countTrue(goesOn & firstLanes(std::max(i, wave.joinable) - i));
   }
-  setSize(wave, out);
+  wave.setVertices(out, joinable);
 }
 
 WAVECREST_SIMD_END

@@ -1,7 +1,8 @@
 // arrive: from hits to vertices.
 //
 // in: Rays, Hits, PathStates [n]. out: Rays (origin moved to the vertex), Hits (primitive), Surfaces, PathStates [<= n]
-// in lane order, without paths that left the scene or may not go on; Radiance grows by emission found on the way.
+// in the order of vertex_order_lanes.h, without paths that left the scene or may not go on; Radiance grows by emission
+// found on the way.
 //
 // Per path: position and normal; the arrival step of the MIS recursion (METHODS 5.3, 5.4); on camera paths emission of
 // strategy s = 0 with its weight (5.6), which needs the distance and cosine of this edge.
@@ -10,6 +11,7 @@
 #include "kernels/shade/interpolation_lanes.h"
 #include "kernels/shade/light_lanes.h"
 #include "kernels/shade/surface_lanes.h"
+#include "kernels/shade/vertex_order_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -101,9 +103,8 @@ template <class P, uint32_t kFeatures>
 void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
-  auto& rays = wave.rays;
-  auto& paths = wave.paths;
-  auto& surfaces = wave.surfaces;
+  const auto& rays = wave.rays;
+  const auto& paths = wave.paths;
   const bool camera = context.walk == Walk::camera;
   // Where merging stands alone it makes every path with a vertex to merge at; emission makes the others, which have met
   // nothing but delta lobes. Those have no earlier strategy in their sums.
@@ -114,8 +115,8 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
   const bool firstLightVertex = !camera && context.depth == 1;
   const bool goesOn = context.depth + 1 <= context.limits.maxDepth;
   const size_t count = rays.size;
-  size_t out = 0;
   uint64_t misses = 0;
+  VertexOrder<P, kFeatures> vertices(scene, wave);
 
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
@@ -179,30 +180,22 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     }
     if (!goesOn) continue;
 
-    appendVec3(surface.position, hit, rays.originX, rays.originY, rays.originZ, out);
-    appendVec3(direction, hit, rays.directionX, rays.directionY, rays.directionZ, out);
-    appendVec3(surface.normal, hit, surfaces.normalX, surfaces.normalY, surfaces.normalZ, out);
-    append(surface.offset, hit, surfaces.offset, out);
-    if constexpr (has(kFeatures, kShadingNormals | kTextures)) {
-      appendVec3(shading.normal, hit, surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, out);
-      append(shading.u, hit, surfaces.uvU, out);
-      append(shading.v, hit, surfaces.uvV, out);
-    }
-    appendVec3(throughput, hit, paths.throughputR, paths.throughputG, paths.throughputB, out);
-    appendMis<kFeatures>(mis, hit, paths, out);
-    if constexpr (has(kFeatures, kNormalMaps)) {
-      if (scene.normalMaps) appendVec3(shading.base, hit, surfaces.baseX, surfaces.baseY, surfaces.baseZ, out);
-    }
-    append(lane, hit, paths.lane, out);
-    append(primitive, hit, wave.hits.primitive, out);
-    if constexpr (hasRouletteScale(kFeatures)) {
-      append(load(paths.rouletteScale, i), hit, paths.rouletteScale, out);
-    }
-    out += countTrue(hit);
+    Real rouletteScale(1);
+    if constexpr (hasRouletteScale(kFeatures)) rouletteScale = load(paths.rouletteScale, i);
+    vertices.append({.position = surface.position,
+                     .direction = direction,
+                     .normal = surface.normal,
+                     .throughput = throughput,
+                     .shading = shading,
+                     .offset = surface.offset,
+                     .rouletteScale = rouletteScale,
+                     .mis = mis,
+                     .lane = lane,
+                     .primitive = primitive},
+                    hit, at(scene.primitives->material));
   }
   context.counters->misses += misses;
-  rays.size = paths.size = wave.hits.size = surfaces.size = out;
-  wave.vertexRows.size = 0;
+  vertices.finish();
 }
 
 WAVECREST_SIMD_END

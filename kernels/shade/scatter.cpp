@@ -1,6 +1,6 @@
 // scatter: chooses where each path goes on.
 //
-// in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: Rays (new), PathStates [<= n], in lane order, without
+// in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: Rays (new), PathStates [<= n], in that order, without
 // paths that were absorbed or ended by roulette. METHODS 1.4 (throughput), 1.5 (roulette), 5.5 (MIS recursion).
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/shading_lanes.h"

@@ -9,18 +9,6 @@
 
 WAVECREST_SIMD_BEGIN
 
-// The lanes of m whose vertices, of block i of the live paths, more than delta lobes can join.
-template <uint32_t kFeatures, class S>
-WAVECREST_INLINE Mask joinableVertices(const SceneView<S>& scene, const Wave<S>& wave, size_t i, Mask m) {
-  if constexpr (has(kFeatures, kSpecularBsdfs)) {
-    const UInt primitive = select(m, load(wave.hits.primitive, i), UInt(0u));
-    const MaterialLanes material(scene, materialOf(scene, primitive));
-    return m & hasNonDeltaLobes(material(scene.materials->kind));
-  } else {
-    return m;
-  }
-}
-
 // The rows of block i of the live paths' vertices; edges: from the light, where they are kept as light vertices.
 template <uint32_t kFeatures, class S>
 WAVECREST_INLINE void makeRows(const StageContext<S>& context, const Wave<S>& wave, size_t i, uint32_t edges,
@@ -40,12 +28,12 @@ WAVECREST_INLINE void makeRows(const StageContext<S>& context, const Wave<S>& wa
   rows.set(3, throughput.x, throughput.y, throughput.z, keptBehind(context.mis, mis));
 }
 
-// The rows of the live paths' vertices, if no stage has written them at this depth yet.
+// The rows of the live paths' vertices that can be joined, if no stage has written them at this depth yet.
 template <uint32_t kFeatures, class S>
 WAVECREST_INLINE void packVertexRows(const StageContext<S>& context, Wave<S>& wave) {
   auto& rows = wave.vertexRows;
   if (rows.size != 0) return;
-  const size_t count = wave.rays.size;
+  const size_t count = wave.joinable;
   rows.claim(count);
   RecordBlock<S> block;
   for (size_t i = 0; i < count; i += kLanes) {

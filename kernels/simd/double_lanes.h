@@ -184,6 +184,16 @@ inline WAVECREST_NOINLINE Double compress(Double a, Mask m) {
   return load(out);
 }
 
+inline WAVECREST_NOINLINE Double inOrder(Double a, UInt order) {
+  HWY_ALIGN double in[kLanes];
+  HWY_ALIGN double out[kLanes];
+  HWY_ALIGN uint32_t source[kLanes];
+  store(a, in);
+  store(order, source);
+  for (size_t i = 0; i < kLanes; ++i) out[i] = in[source[i]];
+  return load(out);
+}
+
 // ---- conversion by target type --------------------------------------------------------------------------------------
 
 template <class Real>

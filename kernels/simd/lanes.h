@@ -231,6 +231,12 @@ WAVECREST_INLINE UInt lookUp(const uint32_t* numbers, UInt index) {
   const UIntTag tag;
   return {hn::TableLookupLanes(hn::Load(tag, numbers), hn::IndicesFromVec(tag, index.v))};
 }
+// Lane i is lane order[i] of a; order: below kLanes.
+WAVECREST_INLINE UInt inOrder(UInt a, UInt order) {
+  const UIntTag tag;
+  return {hn::TableLookupLanes(a.v, hn::IndicesFromVec(tag, order.v))};
+}
+WAVECREST_INLINE Float inOrder(Float a, UInt order) { return fromBits(inOrder(bits(a), order)); }
 // Lanes with equal indices: the last one wins.
 WAVECREST_INLINE void storeScattered(Float a, float* base, UInt index) {
   hn::ScatterIndex(a.v, FloatTag(), base, hn::BitCast(IntTag(), index.v));
@@ -271,5 +277,12 @@ WAVECREST_INLINE hn::Vec<Tag> moveToFront(Tag, hn::Vec<Tag> items, hn::Mask<Tag>
 // padded columns: the store-compressed instruction is microcoded on some machines and several times slower.
 WAVECREST_INLINE Float compress(Float a, Mask m) { return {moveToFront(FloatTag(), a.v, m.m)}; }
 WAVECREST_INLINE UInt compress(UInt a, Mask m) { return {moveToFront(UIntTag(), a.v, hn::RebindMask(UIntTag(), m.m))}; }
+
+// The order that puts the lanes of m in front, in order, and those of `rest` at the end, backwards: the first of them
+// is the last lane. No lane is in both.
+WAVECREST_INLINE UInt splitOrder(Mask m, Mask rest) {
+  const UInt backwards = UInt(static_cast<uint32_t>(kLanes - 1)) - laneIndex();
+  return select(firstLanes(countTrue(m)), compress(laneIndex(), m), inOrder(compress(laneIndex(), rest), backwards));
+}
 
 WAVECREST_SIMD_END

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -14,6 +15,12 @@ namespace {
 
 constexpr MisSettings kVcm{.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true};
 
+BsdfKind kindOf(const SceneView<float>& scene, uint32_t primitive) {
+  return static_cast<BsdfKind>(scene.materials[scene.primitives[primitive].material].kind);
+}
+bool isDiffuse(const SceneView<float>& scene, uint32_t primitive) {
+  return kindOf(scene, primitive) == BsdfKind::diffuse;
+}
 bool hasFiniteLobe(const SceneView<float>& scene, uint32_t primitive) {
   return (scene.materials[scene.primitives[primitive].material].flags & kHasFinite) != 0;
 }
@@ -32,12 +39,15 @@ class Recount : public WalkVisitor<float> {
     EXPECT_EQ(wave.rays.size, depth == 1 ? wave.pathCount : survivors_);  // 2
     rays_ = wave.rays.size;
     misses_ = walk_.counters.misses;
+    rayOfLane_.clear();
+    for (size_t i = 0; i < rays_; ++i) rayOfLane_[wave.paths.lane[i]] = i;
   }
 
   void arrived(Walk kind, uint32_t depth, const Wave<float>& wave) override {
     const size_t missed = walk_.counters.misses - misses_;
     const bool last = depth == walk_.limits().maxDepth;
     EXPECT_EQ(wave.rays.size, last ? 0 : rays_ - missed) << "depth " << depth;  // 1: every ray hits or misses
+    expectOrder(wave);
     if (kind == Walk::light) {
       expectedStored_.clear();
       for (size_t i = 0; i < wave.rays.size; ++i) {
@@ -47,7 +57,7 @@ class Recount : public WalkVisitor<float> {
   }
 
   void splats(uint32_t depth, Wave<float>& wave) override {
-    // 5: a vertex is stored iff it has more than delta lobes; in lane order.
+    // 5: a vertex is stored iff it has more than delta lobes; in the order of the wave.
     const LightStore<float>& light = walk_.light();
     std::vector<uint32_t> lanes;
     for (size_t i = light.firstOf(depth); i < light.firstOf(depth + 1); ++i) {
@@ -78,11 +88,14 @@ class Recount : public WalkVisitor<float> {
   }
 
   void connection(uint32_t lightDepth, uint32_t depth, Wave<float>& wave) override {
-    // 7: every stored vertex of the same lane, if the path is not too long.
+    // 7: every stored vertex of the same lane, if the path is not too long and more than delta lobes meet there.
     size_t pairs = 0;
     const LightStore<float>& light = walk_.light();
     if (lightDepth + depth + 1 <= walk_.limits().maxDepth) {
-      const std::set<uint32_t> lanes(&wave.paths.lane[0], &wave.paths.lane[0] + wave.rays.size);
+      std::set<uint32_t> lanes;
+      for (size_t i = 0; i < wave.rays.size; ++i) {
+        if (hasFiniteLobe(walk_.scene(), wave.hits.primitive[i])) lanes.insert(wave.paths.lane[i]);
+      }
       for (size_t i = light.firstOf(lightDepth); i < light.firstOf(lightDepth + 1); ++i) {
         pairs += lanes.count(light.vertices.lane[i]);
       }
@@ -105,6 +118,24 @@ class Recount : public WalkVisitor<float> {
   }
 
  private:
+  // 15: diffuse vertices, others with more than delta lobes, the rest; in the order of their rays among themselves.
+  void expectOrder(const Wave<float>& wave) {
+    size_t joinable = 0;
+    std::pair<int, size_t> previous;
+    for (size_t i = 0; i < wave.rays.size; ++i) {
+      const uint32_t primitive = wave.hits.primitive[i];
+      const bool finite = hasFiniteLobe(walk_.scene(), primitive);
+      joinable += finite ? 1 : 0;
+      const std::pair<int, size_t> place{isDiffuse(walk_.scene(), primitive) ? 0
+                                         : finite                            ? 1
+                                                                             : 2,
+                                         rayOfLane_.at(wave.paths.lane[i])};
+      EXPECT_TRUE(i == 0 || previous < place) << "vertex " << i;
+      previous = place;
+    }
+    EXPECT_EQ(wave.joinable, joinable);
+  }
+
   void buildMap() {
     LightStore<float>* const stores[1] = {const_cast<LightStore<float>*>(&walk_.light())};
     map_.build(stores, walk_.photonGrid(), forEach);
@@ -166,6 +197,7 @@ class Recount : public WalkVisitor<float> {
 
   BidirectionalWalk<float>& walk_;
   PhotonMap<float> map_;
+  std::map<uint32_t, size_t> rayOfLane_;
   size_t rays_ = 0, survivors_ = 0;
   uint64_t misses_ = 0;
   std::vector<uint32_t> expectedStored_;

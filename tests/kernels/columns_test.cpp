@@ -147,8 +147,12 @@ TEST(Columns, droppedColumnsCostNothing) {
 
 // ---- the wave -------------------------------------------------------------------------------------------------------
 
-constexpr ColumnNeeds kPlainest{
-    .shadingNormals = false, .textures = false, .normalMaps = false, .rouletteScale = false, .connections = false};
+constexpr ColumnNeeds kPlainest{.shadingNormals = false,
+                                .textures = false,
+                                .normalMaps = false,
+                                .rouletteScale = false,
+                                .connections = false,
+                                .bsdfOrder = false};
 
 // Every queue of a wave has the wave's capacity and columns of its own.
 template <class Queue>
@@ -168,17 +172,22 @@ using StorageTypes = testing::Types<float, double>;
 TYPED_TEST_SUITE(WaveTest, StorageTypes);
 
 TYPED_TEST(WaveTest, bindsEveryQueueForEveryNeed) {
-  for (unsigned needs = 0; needs < 32; ++needs) {
+  for (unsigned needs = 0; needs < 64; ++needs) {
     for (const size_t capacity : {1u, 15u, 16u, 17u, 2048u}) {
       Wave<TypeParam> wave(capacity, {.shadingNormals = (needs & 1) != 0,
                                       .textures = (needs & 2) != 0,
                                       .normalMaps = (needs & 16) != 0,
                                       .rouletteScale = (needs & 4) != 0,
-                                      .connections = (needs & 8) != 0});
+                                      .connections = (needs & 8) != 0,
+                                      .bsdfOrder = (needs & 32) != 0});
       expectBound(wave.rays, capacity);
       expectBound(wave.hits, capacity);
       expectBound(wave.surfaces, capacity);
       expectBound(wave.paths, capacity);
+      expectBound(wave.aside.rays, capacity);
+      expectBound(wave.aside.hits, capacity);
+      expectBound(wave.aside.surfaces, capacity);
+      expectBound(wave.aside.paths, capacity);
       expectBound(wave.shadowRays, capacity);
       expectBound(wave.pairs, capacity);
       expectBound(wave.vertexRows, capacity);
@@ -201,6 +210,8 @@ TYPED_TEST(WaveTest, eachNeedCostsItsColumns) {
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.rouletteScale = true; }), kReal);
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.connections = true; }),
             2 * kReal + 3 * sizeof(uint32_t) + sizeof(VertexRow<TypeParam>));
+  // Position, direction, normal, offset, throughput, dVCM; lane and primitive.
+  EXPECT_EQ(extra([](ColumnNeeds& n) { n.bsdfOrder = true; }), 14 * kReal + 2 * sizeof(uint32_t));
 }
 
 // The bound that makes a wave of 2048 paths leave most of a core's L2 to the scene.

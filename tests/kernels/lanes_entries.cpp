@@ -131,6 +131,16 @@ constexpr LanesEntries kEntries = {
           storeUnaligned(compress(loadUnaligned(uints), m), uintsOut);
           return countTrue(m);
         },
+    .inOrder =
+        [](const uint32_t* order, const float* floats, const double* doubles, const uint32_t* uints, float* floatsOut,
+           double* doublesOut, uint32_t* uintsOut) HWY_ATTR {
+          const UInt lanes = loadUnaligned(order);
+          storeUnaligned(inOrder(loadUnaligned(floats), lanes), floatsOut);
+          storeUnaligned(inOrder(loadUnaligned(doubles), lanes), doublesOut);
+          storeUnaligned(inOrder(loadUnaligned(uints), lanes), uintsOut);
+        },
+    .splitOrder = [](const uint32_t* flags, const uint32_t* rest, uint32_t* out)
+                      HWY_ATTR { storeUnaligned(splitOrder(maskFromFlags(flags), maskFromFlags(rest)), out); },
     .firstLanes =
         [](size_t n, uint32_t* out) HWY_ATTR {
           const Mask m = firstLanes(n);

@@ -38,6 +38,10 @@ struct LanesEntries {
                          double* doublesOut);
   size_t (*compress)(const uint32_t* flags, const float* floats, const double* doubles, const uint32_t* uints,
                      float* floatsOut, double* doublesOut, uint32_t* uintsOut);
+  // Lanes in the given order, and in that which splits them; `rest` as flags.
+  void (*inOrder)(const uint32_t* order, const float* floats, const double* doubles, const uint32_t* uints,
+                  float* floatsOut, double* doublesOut, uint32_t* uintsOut);
+  void (*splitOrder)(const uint32_t* flags, const uint32_t* rest, uint32_t* out);
   // Masks. Bits of the answer: 1 any, 2 all, 4 none; out gets the mask as 0 and 1.
   uint32_t (*firstLanes)(size_t n, uint32_t* out);
   uint32_t (*maskQueries)(const uint32_t* flags);

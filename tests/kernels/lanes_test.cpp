@@ -307,6 +307,49 @@ TEST_P(LanesTest, compressMovesTheChosenLanesToTheFrontInOrder) {
   }
 }
 
+TEST_P(LanesTest, inOrderTakesEachLaneFromWhereItIsTold) {
+  const size_t n = lanes().lanes;
+  const std::vector<float> floats = realInputs<float>(16, 8);
+  const std::vector<double> doubles = realInputs<double>(16, 9);
+  const std::vector<uint32_t> uints = uintInputs(16, 10);
+  std::mt19937 random(1);
+  for (int k = 0; k < 100; ++k) {
+    std::vector<uint32_t> order(n);
+    for (uint32_t& lane : order) lane = static_cast<uint32_t>(random() % n);
+    GuardedColumn<float> floatsOut(n);
+    GuardedColumn<double> doublesOut(n);
+    GuardedColumn<uint32_t> uintsOut(n);
+    lanes().inOrder(order.data(), floats.data(), doubles.data(), uints.data(), floatsOut.data(), doublesOut.data(),
+                    uintsOut.data());
+    for (size_t i = 0; i < n; ++i) {
+      ASSERT_EQ(floatsOut[i], floats[order[i]]);
+      ASSERT_EQ(doublesOut[i], doubles[order[i]]);
+      ASSERT_EQ(uintsOut[i], uints[order[i]]);
+    }
+    ASSERT_TRUE(floatsOut.intact() && doublesOut.intact() && uintsOut.intact());
+  }
+}
+
+TEST_P(LanesTest, splitOrderPutsSomeInFrontAndTheRestAtTheEndBackwards) {
+  const size_t n = lanes().lanes;
+  std::mt19937 random(2);
+  for (int k = 0; k < 5000; ++k) {
+    std::vector<uint32_t> flags(n), rest(n), front, back, order(n);
+    const uint32_t odds = static_cast<uint32_t>(random() % 4);  // also all in front, and all at the end
+    for (uint32_t i = 0; i < n; ++i) {
+      const uint32_t kind = odds == 0 ? 0 : odds == 1 ? 1 : static_cast<uint32_t>(random() % 3);
+      flags[i] = kind == 0 ? 1 : 0;
+      rest[i] = kind == 1 ? 1 : 0;
+      if (kind == 0) front.push_back(i);
+      if (kind == 1) back.push_back(i);
+    }
+    lanes().splitOrder(flags.data(), rest.data(), order.data());
+    for (size_t i = 0; i < front.size(); ++i) ASSERT_EQ(order[i], front[i]);
+    for (size_t i = 0; i < back.size(); ++i) ASSERT_EQ(order[n - 1 - i], back[i]);
+    for (const uint32_t lane : order) ASSERT_LT(lane, n);
+  }
+}
+
 TEST_P(LanesTest, firstLanesSelectsExactlyTheTail) {
   const size_t n = lanes().lanes;
   for (size_t count = 0; count <= 2 * n + 1; ++count) {

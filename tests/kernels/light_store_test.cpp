@@ -1,6 +1,7 @@
 // LightStore: memory of its own and of others, and what stays when it grows.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -70,6 +71,45 @@ TEST(LightStore, thatOutgrowsSharedMemoryKeepsItsVerticesAndLeavesOthersAlone) {
   small.clear();
   small.reserve(50, shared);
   EXPECT_EQ(small.bytes(), held) << "it has more than that already";
+}
+
+// Paths of three stores, counted around after the last, whose vertices are in no order of lanes.
+TEST(LightStore, collectsTheVerticesOfARangeOfPathsWhateverTheirOrder) {
+  constexpr size_t kStores = 3, kPaths = 80;  // the last store has 16 of its 32
+  std::vector<std::unique_ptr<LightStore<float>>> stores;
+  const auto reaches = [](size_t path, uint32_t depth) { return depth <= path % 4; };
+  for (size_t k = 0; k < kStores; ++k) {
+    LightStore<float>& store = *stores.emplace_back(std::make_unique<LightStore<float>>(kLanesOfStore, kNeeds));
+    for (uint32_t depth = 1; depth <= 3; ++depth) {
+      store.beginDepth(kLanesOfStore);
+      for (const size_t parity : {1u, 0u}) {
+        for (size_t lane = parity; lane < kLanesOfStore; lane += 2) {
+          const size_t path = k * kLanesOfStore + lane;
+          if (path >= kPaths || !reaches(path, depth)) continue;
+          const size_t at = store.vertices.claim(1);
+          store.vertices.lane[at] = static_cast<uint32_t>(lane);
+          store.vertices.row[at].behind = static_cast<float>(100 * depth + path);
+        }
+      }
+    }
+  }
+  LightStore<float> collected(kLanesOfStore, kNeeds);
+  for (const size_t first : {0u, 5u, 40u, 70u}) {
+    for (const size_t used : {1u, 17u, 32u}) {
+      collected.collect(stores, kPaths, first, used);
+      for (uint32_t depth = 1; depth <= 3; ++depth) {
+        std::map<uint32_t, float> expected, found;
+        for (uint32_t lane = 0; lane < used; ++lane) {
+          const size_t path = (first + lane) % kPaths;
+          if (reaches(path, depth)) expected[lane] = static_cast<float>(100 * depth + path);
+        }
+        for (size_t i = collected.firstOf(depth); i < collected.firstOf(depth + 1); ++i) {
+          EXPECT_TRUE(found.emplace(collected.vertices.lane[i], collected.vertices.row[i].behind).second);
+        }
+        EXPECT_EQ(found, expected) << "depth " << depth << ", " << used << " from " << first;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -140,10 +140,7 @@ struct Photons {
 template <class S>
 void fillWave(Wave<S>& wave, const std::vector<Point3<S>>& vertices) {
   const size_t count = vertices.size();
-  wave.rays.claim(count);
-  wave.hits.claim(count);
-  wave.surfaces.claim(count);
-  wave.paths.claim(count);
+  wave.setVertices(count, count);
   wave.radiance.claim(count);
   wave.pathCount = count;
   auto& surfaces = wave.surfaces;

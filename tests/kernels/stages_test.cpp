@@ -167,7 +167,7 @@ struct StageCase {
 
 template <class S>
 void cutPaths(Wave<S>& wave, size_t count) {
-  for (size_t* size : {&wave.rays.size, &wave.paths.size, &wave.hits.size, &wave.surfaces.size}) {
+  for (size_t* size : {&wave.rays.size, &wave.paths.size, &wave.hits.size, &wave.surfaces.size, &wave.joinable}) {
     *size = std::min(*size, count);
   }
 }
@@ -236,7 +236,8 @@ class TwinComparison {
             .textures = (features & kTextures) != 0,
             .normalMaps = (features & kNormalMaps) != 0,
             .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
-            .connections = (features & kBidirectional) != 0};
+            .connections = (features & kBidirectional) != 0,
+            .bsdfOrder = (features & (kSpecularBsdfs | kLayeredBsdfs)) != 0};
   }
 
   // The twin's wave just before the stage.
