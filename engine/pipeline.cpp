@@ -64,7 +64,7 @@ template void runStage(const StageCall<double>&, const StageContext<double>&, Wa
 
 namespace {
 
-// Runs a depth's stages; rows of perLightDepth stages are repeated over the depths of the light store.
+// Runs a depth's stages.
 template <class S>
 void runDepth(const std::vector<StageCall<S>>& stages, StageContext<S>& context, Wave<S>& wave, StageTally* tally) {
   const auto tallyOf = [tally](size_t i) { return tally == nullptr ? nullptr : tally + i; };
@@ -75,10 +75,12 @@ void runDepth(const std::vector<StageCall<S>>& stages, StageContext<S>& context,
       continue;
     }
     size_t end = i;
-    while (end < stages.size() && stages[end].repeat == Repeat::perLightDepth) ++end;
-    for (context.lightDepth = 1; context.lightDepth <= context.light->depths(); ++context.lightDepth) {
+    while (end < stages.size() && stages[end].repeat == Repeat::untilJoined) ++end;
+    context.repetition = 0;
+    do {
       for (size_t k = i; k < end; ++k) runStage(stages[k], context, wave, tallyOf(k));
-    }
+      ++context.repetition;
+    } while (wave.openPairs != 0);
     i = end;
   }
 }

@@ -12,9 +12,9 @@
 
 namespace wavecrest {
 
-// How often a stage runs at each depth of its walk. A row of stages with perLightDepth is repeated as a whole for each
-// depth of the stored light vertices.
-enum class Repeat { once, perLightDepth };
+// How often a stage runs at each depth of its walk. A row of stages with untilJoined is repeated as a whole until all
+// pairs of vertices have been joined.
+enum class Repeat { once, untilJoined };
 
 // One entry of a pass. items: how many records the stage is about to read, for the statistics; lanes: how many of them
 // it works on at once.
@@ -30,10 +30,14 @@ struct StageCall {
 // The strategies of path tracing, where it is not part of a bidirectional method.
 constexpr MisSettings kPathTracingStrategies{.emission = true, .nextEvent = true, .powerHeuristic = true};
 
-// What a stage works on: rays of live paths, or shadow rays.
+// What a stage works on: live paths, those at vertices that can be joined, or shadow rays.
 template <class S>
 size_t pathItems(const Wave<S>& wave) {
   return wave.rays.size;
+}
+template <class S>
+size_t joinableItems(const Wave<S>& wave) {
+  return wave.joinable;
 }
 template <class S>
 size_t shadowItems(const Wave<S>& wave) {

@@ -158,6 +158,11 @@ struct StageCounters {
   }
 };
 
+// From the first to the last, both included.
+struct DepthRange {
+  uint32_t first = 1, last = ~0u;
+};
+
 template <class S>
 struct StageContext {
   const SceneView<S>* scene = nullptr;
@@ -170,7 +175,8 @@ struct StageContext {
   Walk walk = Walk::camera;
   MisSettings mis;
   uint32_t depth = 0;                     // index of the vertex that the stage works on; 0 is the path's origin
-  uint32_t lightDepth = 0;                // index of the light vertices that connectVertices joins
+  DepthRange lightDepths{};               // of the light vertices that connectVertices joins
+  uint32_t repetition = 0;                // of the stages that join vertices until none is left
   LightStore<S>* light = nullptr;         // light vertices of this wave's paths
   PhotonGrid<S> photonGrid{};             // where they are in it, if they are to be merged
   const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place

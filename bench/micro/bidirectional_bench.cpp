@@ -164,7 +164,6 @@ StageContext<float> contextFor(size_t lightPaths, StageCounters& counters) {
   context.pixels = room().pixels.data();
   context.mis = misFor(lightPaths);
   context.depth = 1;
-  context.lightDepth = 1;
   context.counters = &counters;
   return context;
 }

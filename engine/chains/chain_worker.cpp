@@ -91,7 +91,6 @@ void ChainWorker<S>::join(const std::vector<JoinCall<S>>& joins, StageContext<S>
                                                           : ends_->lightAtVertex;
     context.walk = call.walk;
     context.depth = call.depth;
-    context.lightDepth = 1;
     runStage(call.stage, context, wave, tally);
     if (tally != nullptr) ++tally;
   }

@@ -16,7 +16,7 @@ Pipeline<S> lightTracing(const Stages<S>& stages, const Intersector<S>& intersec
                   {
                       {"extend light", intersector.extend, pathItems<S>, intersector.lanes},
                       {"arrive light", stages.arrive, pathItems<S>, stages.lanes},
-                      {"connect to camera", stages.connectToCamera, pathItems<S>, stages.lanes},
+                      {"connect to camera", stages.connectToCamera, joinableItems<S>, stages.lanes},
                       {"occlude light", intersector.occlude, shadowItems<S>, intersector.lanes},
                       {"scatter light", stages.scatter, pathItems<S>, stages.lanes},
                   },
@@ -36,7 +36,7 @@ Pipeline<S> lightTracing(const Stages<S>& stages, const Intersector<S>& intersec
                   {
                       {"extend", intersector.extend, pathItems<S>, intersector.lanes},
                       {"arrive", stages.arrive, pathItems<S>, stages.lanes},
-                      {"next event", stages.nextEvent, pathItems<S>, stages.lanes},
+                      {"next event", stages.nextEvent, joinableItems<S>, stages.lanes},
                       {"occlude", intersector.occlude, shadowItems<S>, intersector.lanes},
                       {"scatter", stages.scatter, pathItems<S>, stages.lanes},
                   },

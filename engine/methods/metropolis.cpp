@@ -27,7 +27,7 @@ Pipeline<S> primarySampleSpace(const Stages<S>& stages, const Intersector<S>& in
                       {"extend", intersector.extend, pathItems<S>, intersector.lanes},
                       {"arrive", stages.arrive, pathItems<S>, stages.lanes},
                       {"record", stages.recordVertices, pathItems<S>, 1},
-                      {"next event", stages.nextEvent, pathItems<S>, stages.lanes},
+                      {"next event", stages.nextEvent, joinableItems<S>, stages.lanes},
                       {"occlude", intersector.occlude, shadowItems<S>, intersector.lanes},
                       {"scatter", stages.scatter, pathItems<S>, stages.lanes},
                   },
@@ -55,14 +55,14 @@ Pipeline<S> multiplexedMetropolis(const Stages<S>& stages, const Intersector<S>&
   first.insert(first.begin(), {"admit", stages.admitWalks, pathItems<S>, stages.lanes});
   ChainCalls<S> chains = decisions(stages);
   chains.afterCamera = {
-      {{"next event", stages.nextEvent, pathItems<S>, stages.lanes}, EndsOf::atOrigin, Walk::camera, 0},
+      {{"next event", stages.nextEvent, joinableItems<S>, stages.lanes}, EndsOf::atOrigin, Walk::camera, 0},
       {{"occlude", intersector.occlude, shadowItems<S>, intersector.lanes}, EndsOf::atOrigin, Walk::camera, 0},
   };
   chains.afterLight = {
-      {{"store", stages.storeLightVertices, pathItems<S>, stages.lanes}, EndsOf::lightAtVertex, Walk::light, 1},
-      {{"connect to camera", stages.connectToCamera, pathItems<S>, stages.lanes}, EndsOf::atOrigin, Walk::light, 1},
+      {{"store", stages.storeLightVertices, joinableItems<S>, stages.lanes}, EndsOf::lightAtVertex, Walk::light, 1},
+      {{"connect to camera", stages.connectToCamera, joinableItems<S>, stages.lanes}, EndsOf::atOrigin, Walk::light, 1},
       {{"occlude light", intersector.occlude, shadowItems<S>, intersector.lanes}, EndsOf::atOrigin, Walk::light, 1},
-      {{"connect", stages.connectVertices, pathItems<S>, stages.lanes}, EndsOf::cameraAtVertex, Walk::camera, 1},
+      {{"connect", stages.connectVertices, joinableItems<S>, stages.lanes}, EndsOf::cameraAtVertex, Walk::camera, 1},
       {{"occlude connection", intersector.occlude, shadowItems<S>, intersector.lanes},
        EndsOf::cameraAtVertex,
        Walk::camera,

@@ -15,7 +15,7 @@ Pipeline<S> pathTracing(const Stages<S>& stages, const Intersector<S>& intersect
                   {
                       {"extend", intersector.extend, pathItems<S>, intersector.lanes},
                       {"arrive", stages.arrive, pathItems<S>, stages.lanes},
-                      {"next event", stages.nextEvent, pathItems<S>, stages.lanes},
+                      {"next event", stages.nextEvent, joinableItems<S>, stages.lanes},
                       {"occlude", intersector.occlude, shadowItems<S>, intersector.lanes},
                       {"scatter", stages.scatter, pathItems<S>, stages.lanes},
                   },

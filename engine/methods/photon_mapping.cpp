@@ -21,7 +21,7 @@ Pipeline<S> photonMapping(const Stages<S>& stages, const Intersector<S>& interse
                   {
                       {"extend light", intersector.extend, pathItems<S>, intersector.lanes},
                       {"arrive light", stages.arrive, pathItems<S>, stages.lanes},
-                      {"store", stages.storeLightVertices, pathItems<S>, stages.lanes},
+                      {"store", stages.storeLightVertices, joinableItems<S>, stages.lanes},
                       {"scatter light", stages.scatter, pathItems<S>, stages.lanes},
                   },
           },
@@ -35,7 +35,7 @@ Pipeline<S> photonMapping(const Stages<S>& stages, const Intersector<S>& interse
                   {
                       {"extend", intersector.extend, pathItems<S>, intersector.lanes},
                       {"arrive", stages.arrive, pathItems<S>, stages.lanes},
-                      {"merge", stages.merge, pathItems<S>, stages.lanes},
+                      {"merge", stages.merge, joinableItems<S>, stages.lanes},
                       {"scatter", everyVertex ? stages.scatter : stages.scatterSpecular, pathItems<S>, stages.lanes},
                   },
           },

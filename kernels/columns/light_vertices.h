@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "kernels/columns/wave.h"
@@ -18,7 +19,10 @@ struct LightVertices : Columns<LightVertices<S>> {
   Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
   Column<float> uvU, uvV;                  // dropped where the scene has no textures
   Column<uint32_t> lane;                   // of the path, in its wave
-  auto all() { return std::tie(row, cell, place, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV, lane); }
+  Column<uint32_t> previous;               // the kept vertex before it on the path, or kNoIndex
+  auto all() {
+    return std::tie(row, cell, place, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV, lane, previous);
+  }
 };
 
 // What camera paths do with light vertices.
@@ -36,7 +40,8 @@ class LightStore {
  public:
   LightVertices<S> vertices;
 
-  LightStore(size_t lanes, const ColumnNeeds& needs, LightVertexUse use = {}) : lanes_(lanes), rayOfLane_(lanes) {
+  LightStore(size_t lanes, const ColumnNeeds& needs, LightVertexUse use = {})
+      : lanes_(lanes), lastOfLane_(lanes, kNoIndex) {
     if (!needs.shadingNormals) {
       for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ}) column->drop();
     }
@@ -63,6 +68,7 @@ class LightStore {
     vertices.size = 0;
     depths_ = 0;
     roomUsed_ = 0;
+    std::fill(lastOfLane_.begin(), lastOfLane_.end(), kNoIndex);
   }
 
   // Begins the vertices of the next depth (1, 2, ...), with room for `count` of them.
@@ -110,8 +116,9 @@ class LightStore {
   uint32_t depths() const { return static_cast<uint32_t>(depths_); }
   // The vertices of a depth (1 .. depths()) are those from firstOf(depth) up to firstOf(depth + 1).
   size_t firstOf(uint32_t depth) const { return depth > depths_ ? vertices.size : firstOfDepth_[depth]; }
-  // Scratch of connectVertices, one entry per lane: where the camera path of the lane is now.
-  uint32_t* rayOfLane() { return rayOfLane_.data(); }
+  // The last vertex of each lane's path, or kNoIndex; from there `previous` leads to the others. Kept up by those that
+  // append vertices which can be connected.
+  uint32_t* lastOfLane() { return lastOfLane_.data(); }
   size_t lanes() const { return lanes_; }
 
   // The capacity that the depths begun since clear() have asked for.
@@ -131,6 +138,7 @@ class LightStore {
     vertices.uvU.drop();
     vertices.uvV.drop();
     vertices.lane.drop();
+    vertices.previous.drop();
   }
 
   void grow(size_t capacity) {
@@ -161,7 +169,9 @@ class LightStore {
       const size_t copied = i - source, at = vertices.claim(copied);
       copyColumns(origin.all(), vertices.all(), source, at, copied, Indices());
       for (size_t k = at; k < at + copied; ++k) {
-        vertices.lane[k] = static_cast<uint32_t>(vertices.lane[k] - begin + target);
+        const size_t lane = vertices.lane[k] - begin + target;
+        vertices.lane[k] = static_cast<uint32_t>(lane);
+        vertices.previous[k] = std::exchange(lastOfLane_[lane], static_cast<uint32_t>(k));
       }
       while (i < end && !within(i)) ++i;
     }
@@ -184,7 +194,7 @@ class LightStore {
   size_t depths_ = 0, roomUsed_ = 0;
   size_t sharedBytes_ = 0, ownBytes_ = 0;
   std::vector<size_t> firstOfDepth_;  // by depth
-  std::vector<uint32_t> rayOfLane_;
+  std::vector<uint32_t> lastOfLane_;
   Arena arena_;
 };
 

@@ -55,7 +55,9 @@ template <class S>
 struct Wave : Vertices<S> {
   using Vertices<S>::rays, Vertices<S>::hits, Vertices<S>::surfaces, Vertices<S>::paths;
   size_t joinable = 0;  // vertices that may have more than delta lobes; they come first
-  Vertices<S> aside;    // scratch of arrive (kernels/shade/vertex_order_lanes.h); dropped where all BSDFs are diffuse
+  // The last ones of the pairs, whose light paths may have more vertices to be joined (connectVertices).
+  size_t openPairs = 0;
+  Vertices<S> aside;  // scratch of arrive (kernels/shade/vertex_order_lanes.h); dropped where all BSDFs are diffuse
   ShadowRays<S> shadowRays;
   VertexPairs pairs;
   VertexRows<S> vertexRows;
@@ -90,6 +92,8 @@ struct Wave : Vertices<S> {
     surfaces.size = other.surfaces.size;
     paths.size = other.paths.size;
     joinable = other.joinable;
+    pairs.size = other.pairs.size;
+    openPairs = other.openPairs;
     shadowRays.size = other.shadowRays.size;
     vertexRows.size = other.vertexRows.size;
     radiance.size = other.radiance.size;

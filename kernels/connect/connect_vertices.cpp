@@ -1,12 +1,15 @@
-// connectVertices: strategies s >= 2, t >= 2. Joins each camera vertex with the vertex that its paired light path has
-// at the context's lightDepth, and pushes a shadow ray with the weighted contribution.
+// connectVertices: strategies s >= 2, t >= 2. Joins camera vertices with the vertices of their paired light paths, and
+// pushes shadow rays with the weighted contributions.
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the light store of the wave's light paths. out: ShadowRays
-// [<= n], in the order of light vertices. METHODS 5.6 (40)-(41).
+// [<= capacity], in the order of the pairs. METHODS 5.6 (40)-(41).
 //
-// Deep vertices are rare, so the pairs are listed first: 16 lanes then work on 16 pairs, whatever the depth. The list
-// begins at the light vertices, which get fewer from depth to depth. Depths are called in order from 1.
+// Light paths have few vertices or none, so the pairs are listed first: 16 lanes then work on 16 pairs, wherever on
+// their paths the vertices are. The list begins with the last vertex of each path and goes on from pairs to those with
+// the vertices before. Pairs that there is no room for wait for the next repetition of the stage, while
+// Wave::openPairs is not 0.
 #include <algorithm>
+#include <utility>
 
 #include "kernels/columns/light_vertices.h"
 #include "kernels/mis_lanes.h"
@@ -17,37 +20,73 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Where each lane's camera path is in the wave; kNoIndex where it has ended. Holds for all depths of light vertices.
+// Lists pairs of camera vertices and light vertices of one lane.
 template <class S>
-WAVECREST_INLINE void placeLanes(const StageContext<S>& context, const Wave<S>& wave) {
-  uint32_t* const rayOfLane = context.light->rayOfLane();
-  const uint32_t* const lane = wave.paths.lane;
-  std::fill_n(rayOfLane, wave.pathCount, kNoIndex);
-  for (uint32_t i = 0; i < wave.joinable; ++i) rayOfLane[lane[i]] = i;
-}
-
-// The pairs of camera vertices and vertices of the light depth that are of one lane, in the order of the latter; how
-// many.
-template <class S>
-WAVECREST_INLINE size_t listPairs(const StageContext<S>& context, Wave<S>& wave) {
-  auto& pairs = wave.pairs;
-  const uint32_t *const rayOfLane = context.light->rayOfLane(), *const lanes = context.light->vertices.lane;
-  const size_t first = context.light->firstOf(context.lightDepth), end = context.light->firstOf(context.lightDepth + 1);
-  size_t count = 0;
-  for (size_t i = first; i < end; i += kLanes) {
-    const Mask active = firstLanes(end - i);
-    const UInt camera = gather(rayOfLane, select(active, loadUnaligned(lanes + i), UInt(0u)));
-    const Mask paired = andNot(active, camera == UInt(kNoIndex));
-    if (none(paired)) continue;
-    append(camera, paired, pairs.camera, count);
-    append(laneIndex(static_cast<uint32_t>(i)), paired, pairs.light, count);
-    count += countTrue(paired);
+class PairLister {
+ public:
+  PairLister(const StageContext<S>& context, Wave<S>& wave)
+      : wave_(wave), last_(context.light->lastOfLane()), previous_(context.light->vertices.previous) {
+    // k = len_L + 1 + len_C
+    const uint32_t longest = context.limits.maxDepth - context.depth - 1;
+    begin_ = static_cast<uint32_t>(context.light->firstOf(context.lightDepths.first));
+    end_ = static_cast<uint32_t>(context.light->firstOf(std::min(longest, context.lightDepths.last) + 1));
   }
-  // Whole blocks are read: those that the list's end leaves open get pairs of the first vertices.
-  storeUnaligned(UInt(0u), pairs.camera + count);
-  storeUnaligned(UInt(0u), pairs.light + count);
-  return count;
-}
+
+  // The next pairs, from the front of the list; how many.
+  WAVECREST_INLINE size_t list(bool first) {
+    const size_t before = wave_.pairs.size;
+    size_t open = 0, count = first ? listLast() : listPrevious(before - wave_.openPairs, before, 0);
+    while (open != count && 2 * count - open <= wave_.pairs.capacity()) {
+      const size_t end = listPrevious(open, count, count);
+      open = std::exchange(count, end);
+    }
+    wave_.pairs.size = count;
+    wave_.openPairs = count - open;
+    // Whole blocks are read: those that the list's end leaves open get pairs of the first vertices.
+    append(UInt(0u), UInt(0u), allLanes(), count);
+    return count;
+  }
+
+ private:
+  // Each camera vertex with the last vertex of its light path.
+  WAVECREST_INLINE size_t listLast() {
+    size_t count = 0;
+    for (size_t i = 0; i < wave_.joinable; i += kLanes) {
+      const Mask active = firstLanes(wave_.joinable - i);
+      UInt light = gather(last_, select(active, load(wave_.paths.lane, i), UInt(0u)));
+      light = select(active, light, UInt(kNoIndex));
+      // Not those that would make too long a path.
+      for (Mask deep = tooDeep(light); any(deep); deep = tooDeep(light)) {
+        light = select(deep, gather(previous_, select(deep, light, UInt(0u))), light);
+      }
+      count = append(laneIndex(static_cast<uint32_t>(i)), light, exists(light), count);
+    }
+    return count;
+  }
+  // The camera vertices of the pairs [i, end) with the vertices before those that they are paired with.
+  WAVECREST_INLINE size_t listPrevious(size_t i, size_t end, size_t count) {
+    for (; i < end; i += kLanes) {
+      const Mask active = firstLanes(end - i);
+      const UInt light = gather(previous_, select(active, loadUnaligned(wave_.pairs.light + i), UInt(0u)));
+      count = append(loadUnaligned(wave_.pairs.camera + i), light, active & exists(light), count);
+    }
+    return count;
+  }
+  WAVECREST_INLINE size_t append(UInt camera, UInt light, Mask m, size_t count) {
+    WAVECREST_SIMD_NAMESPACE::append(camera, m, wave_.pairs.camera, count);
+    WAVECREST_SIMD_NAMESPACE::append(light, m, wave_.pairs.light, count);
+    return count + countTrue(m);
+  }
+  WAVECREST_INLINE Mask tooDeep(UInt light) const { return andNot(light != UInt(kNoIndex), light < UInt(end_)); }
+  WAVECREST_INLINE Mask exists(UInt light) const { return andNot(light != UInt(kNoIndex), light < UInt(begin_)); }
+
+  Wave<S>& wave_;
+  const uint32_t *last_, *previous_;
+  uint32_t begin_, end_;  // light vertices that are joined
+};
+
+// For switches of edges, which with connections are on at every depth.
+constexpr uint32_t kAnyLightDepth = 2;
 
 // Light vertices of a whole iteration are more than the caches hold: their rows are asked for so many pairs ahead.
 constexpr size_t kRowsAhead = 128;
@@ -80,9 +119,9 @@ size_t joinPairs(const StageContext<typename P::Storage>& context, Wave<typename
 
     const Real inverseDist2 = inverseDistance * inverseDistance;
     const Real zCosine = abs(dot(towards, z.normal)), yCosine = abs(dot(towards, y.normal));
-    const Real wLight = zBsdf.pdf * yCosine * inverseDist2 *
-                        behindConnection(context.mis, context.lightDepth,
-                                         MisSums<Real>{yRow.dVCM, yRow.behind, Real(0)}, yBsdf.pdfReverse);
+    const Real wLight =
+        zBsdf.pdf * yCosine * inverseDist2 *
+        behindConnection(context.mis, kAnyLightDepth, MisSums<Real>{yRow.dVCM, yRow.behind, Real(0)}, yBsdf.pdfReverse);
     const Real wCamera =
         yBsdf.pdf * zCosine * inverseDist2 *
         behindConnection(context.mis, context.depth, MisSums<Real>{zRow.dVCM, zRow.behind, Real(0)}, zBsdf.pdfReverse);
@@ -114,12 +153,11 @@ template <class P, uint32_t kFeatures>
 void connectVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   auto& shadow = wave.shadowRays;
   shadow.size = 0;
-  // k = len_L + 1 + len_C
-  if (context.depth + context.lightDepth + 1 > context.limits.maxDepth) return;
-  if (context.lightDepth == 1) placeLanes(context, wave);
+  if (context.repetition == 0) wave.openPairs = 0;
+  if (context.depth + 2 > context.limits.maxDepth) return;  // one edge, and one to each vertex's origin at least
   packVertexRows<kFeatures>(context, wave);
 
-  const size_t pairs = listPairs(context, wave);
+  const size_t pairs = PairLister(context, wave).list(context.repetition == 0);
   context.counters->connections += pairs;
   shadow.claim(pairs);
   shadow.size = joinPairs<P, kFeatures>(context, wave, pairs);

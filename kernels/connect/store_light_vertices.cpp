@@ -58,8 +58,19 @@ WAVECREST_INLINE void appendColumns(const SceneView<S>& scene, const Wave<S>& wa
     append(load(surfaces.uvU, i), m, vertices.uvU, out);
     append(load(surfaces.uvV, i), m, vertices.uvV, out);
   }
-  prefetchColumns(out, vertices.lane);
-  append(load(wave.paths.lane, i), m, vertices.lane, out);
+}
+
+// Makes the vertices the last of their paths.
+template <class S>
+WAVECREST_INLINE void link(LightStore<S>& store, const Wave<S>& wave, size_t i, Mask m, size_t out) {
+  auto& vertices = store.vertices;
+  prefetchColumns(out, vertices.lane, vertices.previous);
+  const UInt lane = select(m, load(wave.paths.lane, i), UInt(0u));
+  append(lane, m, vertices.lane, out);
+  append(gather(store.lastOfLane(), lane), m, vertices.previous, out);
+  for (size_t k = out, end = out + countTrue(m); k < end; ++k) {
+    store.lastOfLane()[vertices.lane[k]] = static_cast<uint32_t>(k);
+  }
 }
 
 }  // namespace
@@ -73,7 +84,10 @@ void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<t
   for (size_t i = 0; i < wave.joinable; i += kLanes) {
     const Mask joinable = firstLanes(wave.joinable - i);
     appendRows<kFeatures>(context, wave, i, joinable, vertices, out);
-    if (connected) appendColumns<kFeatures>(*context.scene, wave, i, joinable, vertices, out);
+    if (connected) {
+      appendColumns<kFeatures>(*context.scene, wave, i, joinable, vertices, out);
+      link(store, wave, i, joinable, out);
+    }
     if (merged) appendPlaces(context.photonGrid, wave.rays, i, joinable, vertices, out);
     out += countTrue(joinable);
   }

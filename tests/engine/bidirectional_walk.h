@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 #include <vector>
 
 #include "engine/for_each.h"
@@ -147,16 +148,26 @@ class BidirectionalWalk {
       stages_.nextEvent(context_, wave_);
       visitor.nextEvent(context_.depth, wave_);
       clearContributions();
-      for (context_.lightDepth = 1; context_.lightDepth <= light_.depths(); ++context_.lightDepth) {
-        stages_.connectVertices(context_, wave_);
-        visitor.connection(context_.lightDepth, context_.depth, wave_);
-        clearContributions();
-      }
+      for (uint32_t lightDepth = 1; lightDepth <= light_.depths(); ++lightDepth) connect(lightDepth, visitor);
       visitor.merging(context_.depth, wave_, context_);
       clearContributions();
       stages_.scatter(context_, wave_);
       visitor.scattered(Walk::camera, context_.depth, wave_);
     }
+  }
+
+  // One depth of light vertices has at most one pair to a lane: the first repetition joins them all.
+  void connect(uint32_t lightDepth, WalkVisitor<S>& visitor) {
+    context_.lightDepths = {lightDepth, lightDepth};
+    context_.repetition = 0;
+    stages_.connectVertices(context_, wave_);
+    visitor.connection(lightDepth, context_.depth, wave_);
+    while (wave_.openPairs != 0) {
+      ++context_.repetition;
+      stages_.connectVertices(context_, wave_);
+      if (wave_.shadowRays.size != 0) throw std::logic_error("connect: a pair of another depth");
+    }
+    clearContributions();
   }
 
   void clearContributions() {

@@ -1,6 +1,7 @@
 // The integers of light paths, connections and merges: what goes into each stage and comes out (METHODS 9.9).
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <map>
 #include <set>
@@ -218,6 +219,56 @@ TEST(LightInvariants, holdFromStageToStage) {
       EXPECT_GT(recount.connections, 500u);
       EXPECT_GT(recount.merges, 1000u);
     }
+  }
+}
+
+// What connections of each depth of light vertices by itself push, and those of all of them together.
+class ConnectionsTogether : public WalkVisitor<float> {
+ public:
+  explicit ConnectionsTogether(BidirectionalWalk<float>& walk) : walk_(walk) {}
+
+  void connection(uint32_t, uint32_t, Wave<float>& wave) override { note(wave, oneByOne_); }
+  void merging(uint32_t depth, Wave<float>& wave, StageContext<float>& context) override {
+    std::multiset<Segment> together;
+    context.lightDepths = {};
+    context.repetition = 0;
+    do {
+      walk_.stages().connectVertices(context, wave);
+      note(wave, together);
+      ++context.repetition;
+    } while (wave.openPairs != 0);
+    EXPECT_EQ(together, oneByOne_) << "depth " << depth;
+    segments += together.size();
+    repetitions = std::max(repetitions, context.repetition);
+    oneByOne_.clear();
+  }
+  size_t segments = 0;
+  uint32_t repetitions = 0;
+
+ private:
+  using Segment = std::array<float, 7>;  // target, direction, contribution
+  static void note(const Wave<float>& wave, std::multiset<Segment>& segments) {
+    const auto& s = wave.shadowRays;
+    for (size_t i = 0; i < s.size; ++i) {
+      segments.insert({static_cast<float>(s.target[i]), s.directionX[i], s.directionY[i], s.directionZ[i], s.red[i],
+                       s.green[i], s.blue[i]});
+    }
+  }
+
+  BidirectionalWalk<float>& walk_;
+  std::multiset<Segment> oneByOne_;
+};
+
+TEST(LightInvariants, connectionsOfAllDepthsAreThoseOfEachDepth) {
+  for (const uint32_t longest : {4u, 9u}) {  // the shorter paths leave out vertices that there are
+    const Scene scene =
+        roomScene({.light = RoomLight::quad, .materials = RoomMaterials::mixed, .width = 32, .height = 24});
+    const WalkSettings settings{.lightPaths = 768, .radius = 0.1, .limits = {.maxDepth = longest, .rouletteDepth = 6}};
+    BidirectionalWalk<float> walk(scene, settings, kVcm);
+    ConnectionsTogether connections(walk);
+    walk.run(0, connections);
+    EXPECT_GT(connections.segments, 800u);
+    EXPECT_GT(connections.repetitions, 1u) << "more pairs than there is room for at once";
   }
 }
 

@@ -97,6 +97,17 @@ TEST(LightStore, collectsTheVerticesOfARangeOfPathsWhateverTheirOrder) {
   for (const size_t first : {0u, 5u, 40u, 70u}) {
     for (const size_t used : {1u, 17u, 32u}) {
       collected.collect(stores, kPaths, first, used);
+      for (uint32_t lane = 0; lane < used; ++lane) {
+        const size_t path = (first + lane) % kPaths;
+        uint32_t vertex = collected.lastOfLane()[lane];
+        for (uint32_t depth = 3; depth >= 1; --depth) {
+          if (!reaches(path, depth)) continue;
+          ASSERT_NE(vertex, kNoIndex);
+          EXPECT_EQ(collected.vertices.row[vertex].behind, static_cast<float>(100 * depth + path));
+          vertex = collected.vertices.previous[vertex];
+        }
+        EXPECT_EQ(vertex, kNoIndex);
+      }
       for (uint32_t depth = 1; depth <= 3; ++depth) {
         std::map<uint32_t, float> expected, found;
         for (uint32_t lane = 0; lane < used; ++lane) {
