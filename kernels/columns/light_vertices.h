@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <utility>
 #include <vector>
 
 #include "kernels/columns/wave.h"
@@ -19,9 +18,9 @@ struct LightVertices : Columns<LightVertices<S>> {
   Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
   Column<float> uvU, uvV;                  // dropped where the scene has no textures
   Column<uint32_t> lane;                   // of the path, in its wave
-  Column<uint32_t> previous;               // the kept vertex before it on the path, or kNoIndex
+  Column<uint32_t> next;                   // the vertex after it that the path has here, or kNoIndex
   auto all() {
-    return std::tie(row, cell, place, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV, lane, previous);
+    return std::tie(row, cell, place, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV, lane, next);
   }
 };
 
@@ -41,7 +40,7 @@ class LightStore {
   LightVertices<S> vertices;
 
   LightStore(size_t lanes, const ColumnNeeds& needs, LightVertexUse use = {})
-      : lanes_(lanes), lastOfLane_(lanes, kNoIndex) {
+      : lanes_(lanes), firstOfLane_(lanes, kNoIndex), lastOfLane_(lanes, kNoIndex) {
     if (!needs.shadingNormals) {
       for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ}) column->drop();
     }
@@ -68,6 +67,7 @@ class LightStore {
     vertices.size = 0;
     depths_ = 0;
     roomUsed_ = 0;
+    std::fill(firstOfLane_.begin(), firstOfLane_.end(), kNoIndex);
     std::fill(lastOfLane_.begin(), lastOfLane_.end(), kNoIndex);
   }
 
@@ -116,18 +116,26 @@ class LightStore {
   uint32_t depths() const { return static_cast<uint32_t>(depths_); }
   // The vertices of a depth (1 .. depths()) are those from firstOf(depth) up to firstOf(depth + 1).
   size_t firstOf(uint32_t depth) const { return depth > depths_ ? vertices.size : firstOfDepth_[depth]; }
-  // The last vertex of each lane's path, or kNoIndex; from there `previous` leads to the others. Kept up by those that
-  // append vertices which can be connected.
-  uint32_t* lastOfLane() { return lastOfLane_.data(); }
+  // The first vertex of each lane's path, or kNoIndex; from there `next` leads to the others.
+  const uint32_t* firstOfLane() const { return firstOfLane_.data(); }
+  // Makes vertices [first, end), whose lanes are known, the last ones of their paths.
+  void link(size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i) {
+      uint32_t& last = lastOfLane_[vertices.lane[i]];
+      uint32_t& from = last == kNoIndex ? firstOfLane_[vertices.lane[i]] : vertices.next[last];
+      from = last = static_cast<uint32_t>(i);
+      vertices.next[i] = kNoIndex;
+    }
+  }
   size_t lanes() const { return lanes_; }
 
   // The capacity that the depths begun since clear() have asked for.
   size_t roomUsed() const { return roomUsed_; }
 
   // Memory of its own, and what it took of others', though it may have outgrown that.
-  size_t bytes() const { return sharedBytes_ + ownBytes_ + lanes_ * sizeof(uint32_t); }
+  size_t bytes() const { return sharedBytes_ + ownBytes_ + 2 * lanes_ * sizeof(uint32_t); }
   // The same for a store that has reserved this capacity.
-  size_t bytesFor(size_t capacity) const { return arenaBytes(capacity) + lanes_ * sizeof(uint32_t); }
+  size_t bytesFor(size_t capacity) const { return arenaBytes(capacity) + 2 * lanes_ * sizeof(uint32_t); }
 
  private:
   void dropConnectedColumns() {
@@ -138,7 +146,7 @@ class LightStore {
     vertices.uvU.drop();
     vertices.uvV.drop();
     vertices.lane.drop();
-    vertices.previous.drop();
+    vertices.next.drop();
   }
 
   void grow(size_t capacity) {
@@ -169,10 +177,9 @@ class LightStore {
       const size_t copied = i - source, at = vertices.claim(copied);
       copyColumns(origin.all(), vertices.all(), source, at, copied, Indices());
       for (size_t k = at; k < at + copied; ++k) {
-        const size_t lane = vertices.lane[k] - begin + target;
-        vertices.lane[k] = static_cast<uint32_t>(lane);
-        vertices.previous[k] = std::exchange(lastOfLane_[lane], static_cast<uint32_t>(k));
+        vertices.lane[k] = static_cast<uint32_t>(vertices.lane[k] - begin + target);
       }
+      link(at, at + copied);
       while (i < end && !within(i)) ++i;
     }
     return true;
@@ -194,7 +201,7 @@ class LightStore {
   size_t depths_ = 0, roomUsed_ = 0;
   size_t sharedBytes_ = 0, ownBytes_ = 0;
   std::vector<size_t> firstOfDepth_;  // by depth
-  std::vector<uint32_t> lastOfLane_;
+  std::vector<uint32_t> firstOfLane_, lastOfLane_;
   Arena arena_;
 };
 

@@ -5,9 +5,9 @@
 // [<= capacity], in the order of the pairs. METHODS 5.6 (40)-(41).
 //
 // Light paths have few vertices or none, so the pairs are listed first: 16 lanes then work on 16 pairs, wherever on
-// their paths the vertices are. The list begins with the last vertex of each path and goes on from pairs to those with
-// the vertices before. Pairs that there is no room for wait for the next repetition of the stage, while
-// Wave::openPairs is not 0.
+// their paths the vertices are. The list begins with the first vertex of each path and goes on from pairs to those with
+// the vertices after. Pairs that there is no room for wait for the next repetition of the stage, while Wave::openPairs
+// is not 0.
 #include <algorithm>
 #include <utility>
 
@@ -25,7 +25,7 @@ template <class S>
 class PairLister {
  public:
   PairLister(const StageContext<S>& context, Wave<S>& wave)
-      : wave_(wave), last_(context.light->lastOfLane()), previous_(context.light->vertices.previous) {
+      : wave_(wave), firstOfLane_(context.light->firstOfLane()), next_(context.light->vertices.next) {
     // k = len_L + 1 + len_C
     const uint32_t longest = context.limits.maxDepth - context.depth - 1;
     begin_ = static_cast<uint32_t>(context.light->firstOf(context.lightDepths.first));
@@ -33,11 +33,11 @@ class PairLister {
   }
 
   // The next pairs, from the front of the list; how many.
-  WAVECREST_INLINE size_t list(bool first) {
+  WAVECREST_INLINE size_t list(bool fromTheFirst) {
     const size_t before = wave_.pairs.size;
-    size_t open = 0, count = first ? listLast() : listPrevious(before - wave_.openPairs, before, 0);
+    size_t open = 0, count = fromTheFirst ? listFirst() : listNext(before - wave_.openPairs, before, 0);
     while (open != count && 2 * count - open <= wave_.pairs.capacity()) {
-      const size_t end = listPrevious(open, count, count);
+      const size_t end = listNext(open, count, count);
       open = std::exchange(count, end);
     }
     wave_.pairs.size = count;
@@ -48,27 +48,27 @@ class PairLister {
   }
 
  private:
-  // Each camera vertex with the last vertex of its light path.
-  WAVECREST_INLINE size_t listLast() {
+  // Each camera vertex with the first vertex of its light path.
+  WAVECREST_INLINE size_t listFirst() {
     size_t count = 0;
     for (size_t i = 0; i < wave_.joinable; i += kLanes) {
       const Mask active = firstLanes(wave_.joinable - i);
-      UInt light = gather(last_, select(active, load(wave_.paths.lane, i), UInt(0u)));
-      light = select(active, light, UInt(kNoIndex));
-      // Not those that would make too long a path.
-      for (Mask deep = tooDeep(light); any(deep); deep = tooDeep(light)) {
-        light = select(deep, gather(previous_, select(deep, light, UInt(0u))), light);
+      UInt light = gather(firstOfLane_, select(active, load(wave_.paths.lane, i), UInt(0u)));
+      for (;;) {
+        const Mask before = active & (light < UInt(begin_));
+        if (none(before)) break;
+        light = select(before, gather(next_, select(before, light, UInt(0u))), light);
       }
-      count = append(laneIndex(static_cast<uint32_t>(i)), light, exists(light), count);
+      count = append(laneIndex(static_cast<uint32_t>(i)), light, active & (light < UInt(end_)), count);
     }
     return count;
   }
-  // The camera vertices of the pairs [i, end) with the vertices before those that they are paired with.
-  WAVECREST_INLINE size_t listPrevious(size_t i, size_t end, size_t count) {
+  // The camera vertices of the pairs [i, end) with the vertices after those that they are paired with.
+  WAVECREST_INLINE size_t listNext(size_t i, size_t end, size_t count) {
     for (; i < end; i += kLanes) {
       const Mask active = firstLanes(end - i);
-      const UInt light = gather(previous_, select(active, loadUnaligned(wave_.pairs.light + i), UInt(0u)));
-      count = append(loadUnaligned(wave_.pairs.camera + i), light, active & exists(light), count);
+      const UInt light = gather(next_, select(active, loadUnaligned(wave_.pairs.light + i), UInt(0u)));
+      count = append(loadUnaligned(wave_.pairs.camera + i), light, active & (light < UInt(end_)), count);
     }
     return count;
   }
@@ -77,12 +77,10 @@ class PairLister {
     WAVECREST_SIMD_NAMESPACE::append(light, m, wave_.pairs.light, count);
     return count + countTrue(m);
   }
-  WAVECREST_INLINE Mask tooDeep(UInt light) const { return andNot(light != UInt(kNoIndex), light < UInt(end_)); }
-  WAVECREST_INLINE Mask exists(UInt light) const { return andNot(light != UInt(kNoIndex), light < UInt(begin_)); }
 
   Wave<S>& wave_;
-  const uint32_t *last_, *previous_;
-  uint32_t begin_, end_;  // light vertices that are joined
+  const uint32_t *firstOfLane_, *next_;
+  uint32_t begin_, end_;  // light vertices that are joined; kNoIndex is none of them
 };
 
 // For switches of edges, which with connections are on at every depth.

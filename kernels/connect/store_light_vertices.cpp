@@ -60,19 +60,6 @@ WAVECREST_INLINE void appendColumns(const SceneView<S>& scene, const Wave<S>& wa
   }
 }
 
-// Makes the vertices the last of their paths.
-template <class S>
-WAVECREST_INLINE void link(LightStore<S>& store, const Wave<S>& wave, size_t i, Mask m, size_t out) {
-  auto& vertices = store.vertices;
-  prefetchColumns(out, vertices.lane, vertices.previous);
-  const UInt lane = select(m, load(wave.paths.lane, i), UInt(0u));
-  append(lane, m, vertices.lane, out);
-  append(gather(store.lastOfLane(), lane), m, vertices.previous, out);
-  for (size_t k = out, end = out + countTrue(m); k < end; ++k) {
-    store.lastOfLane()[vertices.lane[k]] = static_cast<uint32_t>(k);
-  }
-}
-
 }  // namespace
 
 template <class P, uint32_t kFeatures>
@@ -86,11 +73,13 @@ void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<t
     appendRows<kFeatures>(context, wave, i, joinable, vertices, out);
     if (connected) {
       appendColumns<kFeatures>(*context.scene, wave, i, joinable, vertices, out);
-      link(store, wave, i, joinable, out);
+      prefetchColumns(out, vertices.lane, vertices.next);
+      append(load(wave.paths.lane, i), joinable, vertices.lane, out);
     }
     if (merged) appendPlaces(context.photonGrid, wave.rays, i, joinable, vertices, out);
     out += countTrue(joinable);
   }
+  if (connected) store.link(vertices.size, out);
   context.counters->lightVertices += out - vertices.size;
   vertices.claim(out - vertices.size);
 }

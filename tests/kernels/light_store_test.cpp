@@ -99,12 +99,12 @@ TEST(LightStore, collectsTheVerticesOfARangeOfPathsWhateverTheirOrder) {
       collected.collect(stores, kPaths, first, used);
       for (uint32_t lane = 0; lane < used; ++lane) {
         const size_t path = (first + lane) % kPaths;
-        uint32_t vertex = collected.lastOfLane()[lane];
-        for (uint32_t depth = 3; depth >= 1; --depth) {
+        uint32_t vertex = collected.firstOfLane()[lane];
+        for (uint32_t depth = 1; depth <= 3; ++depth) {
           if (!reaches(path, depth)) continue;
           ASSERT_NE(vertex, kNoIndex);
           EXPECT_EQ(collected.vertices.row[vertex].behind, static_cast<float>(100 * depth + path));
-          vertex = collected.vertices.previous[vertex];
+          vertex = collected.vertices.next[vertex];
         }
         EXPECT_EQ(vertex, kNoIndex);
       }
