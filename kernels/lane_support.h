@@ -182,15 +182,13 @@ class RecordLanes {
   UInt wordIndex_, longIndex_;
 };
 
-// The same of materials, `MaterialLanes material(scene, index); material(scene.materials->kind)`: where there are few,
-// by looking them up in registers, which costs a fraction of a gather. index: of a material for every lane.
-class MaterialLanes {
+// The same where there may be few records: those are looked up in registers, which costs a fraction of a gather. index:
+// of a record for every lane.
+template <class Record, class Table>
+class TableLanes {
  public:
-  template <class S>
-  WAVECREST_INLINE MaterialLanes(const SceneView<S>& scene, UInt index)
-      : records_(scene.materials),
-        table_(scene.materialCount <= kLanes ? scene.materialTable : nullptr),
-        index_(index) {}
+  WAVECREST_INLINE TableLanes(const Record* records, const Table* table, uint32_t count, UInt index)
+      : records_(records), table_(count <= Table::kRegisters * kLanes ? table : nullptr), index_(index) {}
   WAVECREST_INLINE UInt operator()(const uint32_t& field) const {
     return table_ != nullptr ? word(reinterpret_cast<const std::byte*>(&field)) : gathered()(field);
   }
@@ -206,23 +204,49 @@ class MaterialLanes {
     if (table_ == nullptr) return gathered()(field);
     return {(*this)(field[0]), (*this)(field[1]), (*this)(field[2])};
   }
-  // Each lane's own element of the array that is not in the table.
-  WAVECREST_INLINE Float operator()(const float (&field)[kTransmittanceSize], UInt element) const {
+  // Each lane's own element of an array that is not in the table.
+  template <size_t kSize>
+  WAVECREST_INLINE Float operator()(const float (&field)[kSize], UInt element) const {
     return gathered()(field, element);
   }
 
  private:
-  // Made when it is asked for: what is kept is copied wherever materials are passed on.
-  WAVECREST_INLINE RecordLanes<MaterialRecord> gathered() const { return {records_, index_}; }
+  // Made when it is asked for: what is kept is copied wherever records are passed on.
+  WAVECREST_INLINE RecordLanes<Record> gathered() const { return {records_, index_}; }
   WAVECREST_INLINE UInt word(const std::byte* field) const {
     const auto offset = static_cast<size_t>(field - reinterpret_cast<const std::byte*>(records_));
-    return lookUp(table_->words[offset / sizeof(uint32_t)], index_);
+    const uint32_t* const words = table_->words[offset / sizeof(uint32_t)];
+    if constexpr (Table::kRegisters == 1) {
+      return lookUp(words, index_);
+    } else {
+      static_assert(Table::kRegisters == 2);
+      const UInt within = index_ & UInt(static_cast<uint32_t>(kLanes - 1));
+      return select(index_ == within, lookUp(words, within), lookUp(words + kLanes, within));
+    }
   }
 
-  const MaterialRecord* records_;
-  const MaterialTable* table_;
+  const Record* records_;
+  const Table* table_;
   UInt index_;
 };
+
+// `MaterialLanes material(scene, index); material(scene.materials->kind)`
+struct MaterialLanes : TableLanes<MaterialRecord, MaterialTable> {
+  template <class S>
+  WAVECREST_INLINE MaterialLanes(const SceneView<S>& scene, UInt index)
+      : TableLanes(scene.materials, scene.materialTable, scene.materialCount, index) {}
+};
+
+// `const auto at = primitivesOf(scene, index); at(scene.primitives->kind)`
+WAVECREST_INLINE TableLanes<PrimitiveRecord<float>, PrimitiveTable> primitivesOf(const SceneView<float>& scene,
+                                                                                 UInt index) {
+  return {scene.primitives, scene.primitiveTable, scene.primitiveCount, index};
+}
+WAVECREST_INLINE RecordLanes<PrimitiveRecord<double>> primitivesOf(const SceneView<double>& scene, UInt index) {
+  return {scene.primitives, index};
+}
+template <class S>
+using PrimitiveLanes = decltype(primitivesOf(std::declval<const SceneView<S>&>(), UInt()));
 
 // The same face for a record that all lanes share: `OneRecord()(base->p0)` broadcasts that field.
 struct OneRecord {

@@ -87,13 +87,17 @@ struct alignas(128) MaterialRecord {
 constexpr uint32_t kMaterialBits = 20, kMaxMaterials = 1u << kMaterialBits,
                    kMostEdges = (1u << (32 - kMaterialBits)) - 1;
 
-// The records of a scene that has few materials, word by word: word w of material m at [w][m]. A block of lanes has a
-// word of all of them in one register, and looks its own up there. Without the last array of the records.
-constexpr size_t kFewMaterials = 16;  // the widest block of lanes
-struct alignas(64) MaterialTable {
-  static constexpr size_t kWords = offsetof(MaterialRecord, roughTransmittance) / sizeof(uint32_t);
-  uint32_t words[kWords][kFewMaterials];
+// The first words of few records: word w of record r at [w][r]. A block of lanes has a word of all of them in some
+// registers of its own width, and looks its own up there.
+template <size_t kWordsOfRecord, size_t kMostRegisters>
+struct alignas(64) RecordTable {
+  static constexpr size_t kWords = kWordsOfRecord, kRegisters = kMostRegisters;
+  static constexpr size_t kRecords = 16 * kRegisters;  // 16: the widest block of lanes
+  uint32_t words[kWords][kRecords];
 };
+// Without the last array of a record.
+using MaterialTable = RecordTable<offsetof(MaterialRecord, roughTransmittance) / sizeof(uint32_t), 1>;
+using PrimitiveTable = RecordTable<sizeof(PrimitiveRecord<float>) / sizeof(uint32_t), 2>;
 
 enum class TextureKind : uint32_t { checkerboard, bitmap };
 enum class WrapMode : uint32_t { repeat, mirror, clamp };
@@ -168,7 +172,10 @@ struct SceneView {
   const PrimitiveRecord<S>* primitives = nullptr;
   const AttributeRecord* attributes = nullptr;
   const MaterialRecord* materials = nullptr;
-  const MaterialTable* materialTable = nullptr;  // the same; none if they are more than kFewMaterials
+  // The same, if they are few; of primitives in float alone.
+  const PrimitiveTable* primitiveTable = nullptr;
+  const MaterialTable* materialTable = nullptr;
+  uint32_t primitiveCount = 0;
   uint32_t materialCount = 0;
   uint32_t bsdfKinds = ~0u;  // bit k: some material is, or may be, of BsdfKind k
   const LightRecord<S>* lights = nullptr;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/compile/materials.h"
+#include "engine/compile/tabulate.h"
 #include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
 
@@ -121,12 +122,17 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
     }
   }
   view.primitives = primitives.records.data();
+  view.primitiveCount = static_cast<uint32_t>(primitives.records.size());
+  if constexpr (sizeof(S) == sizeof(float)) {
+    compiled->primitiveTable = tabulate<PrimitiveTable>(std::span<const PrimitiveRecord<S>>(primitives.records));
+    view.primitiveTable = compiled->primitiveTable.get();
+  }
   view.attributes = primitives.attributes.data();
   view.materials = compiled->materials.data();
   view.materialCount = static_cast<uint32_t>(compiled->materials.size());
   view.bsdfKinds = 0;
   for (const MaterialRecord& material : compiled->materials) view.bsdfKinds |= 1u << material.kind;
-  compiled->materialTable = tabulate(compiled->materials);
+  compiled->materialTable = tabulate<MaterialTable>(std::span<const MaterialRecord>(compiled->materials));
   view.materialTable = compiled->materialTable.get();
   view.textures = compiled->textures.records.data();
   view.texels = compiled->textures.texels.data();

@@ -30,7 +30,8 @@ struct CompiledScene {
   Double3 origin{};  // of all coordinates below, in those of the scene (originOf)
   Primitives<S> primitives;
   std::vector<MaterialRecord> materials;
-  std::unique_ptr<MaterialTable> materialTable;  // if they are few
+  std::unique_ptr<PrimitiveTable> primitiveTable;  // if they are few, and in float
+  std::unique_ptr<MaterialTable> materialTable;    // if they are few
   Textures textures;
   Lights<S> lights;
   // One of these three.

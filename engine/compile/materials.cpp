@@ -231,17 +231,6 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
   return record;
 }
 
-std::unique_ptr<MaterialTable> tabulate(std::span<const MaterialRecord> records) {
-  if (records.size() > kFewMaterials) return nullptr;
-  auto table = std::make_unique<MaterialTable>();
-  for (size_t material = 0; material < records.size(); ++material) {
-    uint32_t words[MaterialTable::kWords];
-    std::memcpy(words, &records[material], sizeof(words));
-    for (size_t w = 0; w < MaterialTable::kWords; ++w) table->words[w][material] = words[w];
-  }
-  return table;
-}
-
 double diffuseFresnelReflectance(double eta) {
   // Total reflection begins at cos^2 = 1 - eta^2, where F has a kink: it is integrated on either side of it, over
   // c = c0 + (1 - c0) t^2, which resolves the square root on the far side.

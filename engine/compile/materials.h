@@ -1,9 +1,6 @@
 // Materials to the records that BSDF kernels read.
 #pragma once
 
-#include <memory>
-#include <span>
-
 #include "engine/scene/scene.h"
 #include "kernels/scene_view.h"
 
@@ -14,9 +11,6 @@ uint32_t materialFeatures(const Material& material);
 
 // The scene is read for the means of textures, which decide how often a lobe is sampled.
 MaterialRecord compileMaterial(const Material& material, const Scene& scene);
-
-// The records word by word; none if they are too many for that.
-std::unique_ptr<MaterialTable> tabulate(std::span<const MaterialRecord> records);
 
 // Reflectance of a smooth dielectric boundary for diffuse light: INT_0^1 F(c, eta) 2 c dc, by quadrature; eta is the
 // index beyond the boundary over the index on the light's side.

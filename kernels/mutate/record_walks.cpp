@@ -62,7 +62,7 @@ void recordPathVertices(const StageContext<typename P::Storage>& context, Wave<t
     }
     UInt primitive = select(active, load(wave.hits.primitive, i), UInt(0u));
     if (camera) {  // x_0 is a point of a light, if it is one
-      const RecordLanes<PrimitiveRecord<typename P::Storage>> record(context.scene->primitives, primitive);
+      const auto record = primitivesOf(*context.scene, primitive);
       const UInt light = record(context.scene->primitives->light);
       primitive = select((row == UInt(0u)) & (light != UInt(kNoIndex)), light, primitive);
       primitive = select((row == UInt(0u)) & (light == UInt(kNoIndex)), UInt(0u), primitive);

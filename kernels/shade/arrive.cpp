@@ -145,7 +145,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
       if (none(hit)) continue;
     }
 
-    const RecordLanes<PrimitiveRecord<typename P::Storage>> at(scene.primitives, primitive);
+    const auto at = primitivesOf(scene, primitive);
     const SurfacePoint<Real> surface =
         surfacePoint<P, kFeatures>(scene, at, origin, direction, load(wave.hits.u, i), load(wave.hits.v, i));
     const Real dist2 = length2(surface.position - origin);

@@ -59,7 +59,7 @@ namespace {
 // the axis that its record has in e2, from the direction in `normal`, turning to e1.z (+1 or -1) times their product.
 template <class P>
 WAVECREST_INLINE void mapSphere(const PrimitiveRecord<typename P::Storage>& fields,
-                                const RecordLanes<PrimitiveRecord<typename P::Storage>>& at, Mask sphere,
+                                const PrimitiveLanes<typename P::Storage>& at, Mask sphere,
                                 Vec3<typename P::Real> normal, Interpolated<typename P::Real>& out,
                                 Tangents<typename P::Real>& tangents) {
   using Real = typename P::Real;
@@ -79,8 +79,8 @@ WAVECREST_INLINE void mapSphere(const PrimitiveRecord<typename P::Storage>& fiel
 
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<typename P::Storage>& scene,
-                                                            const RecordLanes<PrimitiveRecord<typename P::Storage>>& at,
-                                                            Mask hit, const SurfacePoint<typename P::Real>& surface) {
+                                                            const PrimitiveLanes<typename P::Storage>& at, Mask hit,
+                                                            const SurfacePoint<typename P::Real>& surface) {
   using Real = typename P::Real;
   Interpolated<Real> out{surface.normal, surface.normal, to<Float>(surface.u), to<Float>(surface.v)};
   const UInt index = at(scene.primitives->attributes);

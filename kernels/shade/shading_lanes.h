@@ -185,7 +185,7 @@ struct ShadingLanes {
 
 template <class S>
 WAVECREST_INLINE UInt materialOf(const SceneView<S>& scene, UInt primitive) {
-  return RecordLanes<PrimitiveRecord<S>>(scene.primitives, primitive)(scene.primitives->material);
+  return primitivesOf(scene, primitive)(scene.primitives->material);
 }
 
 template <class P, uint32_t kFeatures>

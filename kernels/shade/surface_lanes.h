@@ -19,9 +19,11 @@ struct SurfacePoint {
 };
 
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE SurfacePoint<typename P::Real> surfacePoint(
-    const SceneView<typename P::Storage>& scene, const RecordLanes<PrimitiveRecord<typename P::Storage>>& at,
-    Vec3<typename P::Real> rayOrigin, Vec3<typename P::Real> rayDirection, Float hitU, Float hitV) {
+WAVECREST_INLINE SurfacePoint<typename P::Real> surfacePoint(const SceneView<typename P::Storage>& scene,
+                                                             const PrimitiveLanes<typename P::Storage>& at,
+                                                             Vec3<typename P::Real> rayOrigin,
+                                                             Vec3<typename P::Real> rayDirection, Float hitU,
+                                                             Float hitV) {
   using Real = typename P::Real;
   const auto& fields = *scene.primitives;
   SurfacePoint<Real> surface;

@@ -131,6 +131,16 @@ constexpr BsdfEntries kEntries = {
           storeUnaligned(reflectance.c, out->reflectance[2]);
           storeUnaligned(reflectance.d, out->reflectance[3]);
         },
+    .readPrimitives =
+        [](const SceneView<float>& scene, const uint32_t* index, PrimitiveWords* out) {
+          const auto at = primitivesOf(scene, loadUnaligned(index));
+          const auto* const words = reinterpret_cast<const uint32_t*>(scene.primitives);
+          for (size_t w = 0; w < PrimitiveTable::kWords; ++w) storeUnaligned(at(words[w]), out->words[w]);
+          const Vec3<Float> normal = at(scene.primitives->normal);
+          storeUnaligned(normal.x, out->normal[0]);
+          storeUnaligned(normal.y, out->normal[1]);
+          storeUnaligned(normal.z, out->normal[2]);
+        },
     .throughTag =
         [](Precision precision, uint32_t material, uint32_t edges) {
           return withPolicy(precision, [&](auto policy) HWY_ATTR {

@@ -34,9 +34,16 @@ struct BsdfQuery {
 };
 
 struct MaterialWords {
-  uint32_t words[MaterialTable::kWords][kFewMaterials];
-  float transmittance[kFewMaterials];
-  float specular[3][kFewMaterials], reflectance[4][kFewMaterials];  // as a vector, and as four numbers
+  uint32_t words[MaterialTable::kWords][MaterialTable::kRecords];
+  float transmittance[MaterialTable::kRecords];
+  float specular[3][MaterialTable::kRecords],
+      reflectance[4][MaterialTable::kRecords];  // as a vector, and as four numbers
+};
+
+constexpr size_t kMostLanes = 16;
+struct PrimitiveWords {
+  uint32_t words[PrimitiveTable::kWords][kMostLanes];
+  float normal[3][kMostLanes];
 };
 
 struct BsdfEntries {
@@ -49,6 +56,8 @@ struct BsdfEntries {
   // Of the material of each lane: its record's words before the last array, word by word, and what MaterialLanes reads
   // of that array's element.
   void (*readMaterials)(const SceneView<float>& scene, const uint32_t* index, uint32_t element, MaterialWords* out);
+  // Of the primitive of each lane: its record word by word, and its normal as a vector.
+  void (*readPrimitives)(const SceneView<float>& scene, const uint32_t* index, PrimitiveWords* out);
   // What comes back of a vertex's tag: material and edges.
   std::array<uint32_t, 2> (*throughTag)(Precision precision, uint32_t material, uint32_t edges);
   double (*fresnelDielectric)(Precision precision, double cosine, double eta);

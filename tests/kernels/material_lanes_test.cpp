@@ -1,30 +1,31 @@
-// MaterialLanes: every field of every lane's material, whether they are gathered or looked up in a table; and materials
+// Every field of every lane's material and primitive, whether they are gathered or looked up in a table; and materials
 // in the tags of vertices.
 #include <bit>
 #include <cstring>
+#include <span>
 #include <vector>
 
-#include "engine/compile/materials.h"
+#include "engine/compile/tabulate.h"
 #include "tests/kernels/bsdf_entries.h"
 #include "tests/kernels/isa_test.h"
 
 namespace wavecrest {
 namespace {
 
-constexpr size_t kWords = sizeof(MaterialRecord) / sizeof(uint32_t);
 constexpr uint32_t kElement = 37;  // of roughTransmittance
 
 // Word w of material m; as a float, a number like any other.
 uint32_t wordOf(size_t material, size_t w) { return static_cast<uint32_t>(0x3f800000 + 1000 * w + material); }
 
-std::vector<MaterialRecord> distinctMaterials(size_t count) {
-  std::vector<MaterialRecord> materials(count);
-  for (size_t m = 0; m < count; ++m) {
-    uint32_t words[kWords];
-    for (size_t w = 0; w < kWords; ++w) words[w] = wordOf(m, w);
-    std::memcpy(&materials[m], words, sizeof(words));
+template <class Record>
+std::vector<Record> distinctRecords(size_t count) {
+  std::vector<Record> records(count);
+  for (size_t r = 0; r < count; ++r) {
+    uint32_t words[sizeof(Record) / sizeof(uint32_t)];
+    for (size_t w = 0; w < std::size(words); ++w) words[w] = wordOf(r, w);
+    std::memcpy(&records[r], words, sizeof(words));
   }
-  return materials;
+  return records;
 }
 
 class MaterialLanesTest : public IsaTest {};
@@ -32,15 +33,15 @@ WAVECREST_TEST_EVERY_ISA(MaterialLanesTest);
 
 TEST_P(MaterialLanesTest, readEveryFieldOfAnyNumberOfMaterials) {
   for (const size_t count : {1u, 2u, 4u, 5u, 8u, 9u, 16u, 17u, 100u}) {
-    const std::vector<MaterialRecord> materials = distinctMaterials(count);
-    const std::unique_ptr<MaterialTable> table = tabulate(materials);
-    EXPECT_EQ(table != nullptr, count <= kFewMaterials);
+    const std::vector<MaterialRecord> materials = distinctRecords<MaterialRecord>(count);
+    const auto table = tabulate<MaterialTable>(std::span<const MaterialRecord>(materials));
+    EXPECT_EQ(table != nullptr, count <= MaterialTable::kRecords);
     SceneView<float> scene;
     scene.materials = materials.data();
     scene.materialTable = table.get();
     scene.materialCount = static_cast<uint32_t>(count);
-    uint32_t index[kFewMaterials];
-    for (size_t i = 0; i < kFewMaterials; ++i) index[i] = static_cast<uint32_t>((7 * i + count - 1) % count);
+    uint32_t index[MaterialTable::kRecords];
+    for (size_t i = 0; i < MaterialTable::kRecords; ++i) index[i] = static_cast<uint32_t>((7 * i + count - 1) % count);
     MaterialWords read;
     entries<BsdfEntries>().readMaterials(scene, index, kElement, &read);
     for (size_t i = 0; i < entries<BsdfEntries>().lanes; ++i) {
@@ -54,6 +55,30 @@ TEST_P(MaterialLanesTest, readEveryFieldOfAnyNumberOfMaterials) {
         EXPECT_EQ(read.reflectance[c][i], expected.reflectance[c]);
       }
       EXPECT_EQ(std::bit_cast<uint32_t>(read.reflectance[3][i]), expected.flags);
+    }
+  }
+}
+
+TEST_P(MaterialLanesTest, readEveryFieldOfAnyNumberOfPrimitives) {
+  for (const size_t count : {1u, 2u, 3u, 4u, 8u, 9u, 15u, 16u, 17u, 18u, 31u, 32u, 33u, 100u}) {
+    const auto primitives = distinctRecords<PrimitiveRecord<float>>(count);
+    const auto table = tabulate<PrimitiveTable>(std::span<const PrimitiveRecord<float>>(primitives));
+    EXPECT_EQ(table != nullptr, count <= 32);
+    SceneView<float> scene;
+    scene.primitives = primitives.data();
+    scene.primitiveTable = table.get();
+    scene.primitiveCount = static_cast<uint32_t>(count);
+    for (size_t first = 0; first < count; first += entries<BsdfEntries>().lanes) {
+      uint32_t index[kMostLanes];
+      for (size_t i = 0; i < kMostLanes; ++i) index[i] = static_cast<uint32_t>((first + 5 * i) % count);
+      PrimitiveWords read;
+      entries<BsdfEntries>().readPrimitives(scene, index, &read);
+      for (size_t i = 0; i < entries<BsdfEntries>().lanes; ++i) {
+        for (size_t w = 0; w < PrimitiveTable::kWords; ++w) {
+          EXPECT_EQ(read.words[w][i], wordOf(index[i], w)) << count << " primitives, word " << w << ", lane " << i;
+        }
+        for (size_t c = 0; c < 3; ++c) EXPECT_EQ(read.normal[c][i], primitives[index[i]].normal[c]);
+      }
     }
   }
 }
