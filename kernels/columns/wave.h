@@ -54,7 +54,9 @@ struct Vertices {
 template <class S>
 struct Wave : Vertices<S> {
   using Vertices<S>::rays, Vertices<S>::hits, Vertices<S>::surfaces, Vertices<S>::paths;
-  size_t joinable = 0;  // vertices that may have more than delta lobes; they come first
+  // How many vertices are on opaque diffuse surfaces, which come first; and how many of all may have more than delta
+  // lobes, which come before the others.
+  size_t diffuse = 0, joinable = 0;
   // The last ones of the pairs, whose light paths may have more vertices to be joined (connectVertices).
   size_t openPairs = 0;
   Vertices<S> aside;  // scratch of arrive (kernels/shade/vertex_order_lanes.h); dropped where all BSDFs are diffuse
@@ -91,6 +93,7 @@ struct Wave : Vertices<S> {
     hits.size = other.hits.size;
     surfaces.size = other.surfaces.size;
     paths.size = other.paths.size;
+    diffuse = other.diffuse;
     joinable = other.joinable;
     pairs.size = other.pairs.size;
     openPairs = other.openPairs;
@@ -103,9 +106,10 @@ struct Wave : Vertices<S> {
   }
 
   // Has so many vertices now, others than before.
-  void setVertices(size_t count, size_t joinableCount) {
+  void setVertices(size_t count, size_t joinableCount, size_t diffuseCount = 0) {
     rays.size = hits.size = surfaces.size = paths.size = count;
     joinable = joinableCount;
+    diffuse = diffuseCount;
     vertexRows.size = 0;
   }
 

@@ -8,27 +8,28 @@
 #include "kernels/columns/chains.h"
 #include "kernels/generate/camera_lanes.h"
 #include "kernels/mis_lanes.h"
+#include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/shading_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
 
-template <class P, uint32_t kFeatures>
-void connectToCamera(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+namespace {
+
+// The vertices [begin, end), whose BSDFs are of kBsdfs; shadow rays from `out` on; where they end.
+template <class P, uint32_t kFeatures, uint32_t kBsdfs>
+WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
+                                   size_t begin, size_t end, size_t out) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
   const auto& paths = wave.paths;
   const SplatSink& splats = context.splats;
   auto& shadow = wave.shadowRays;
-  const size_t count = wave.joinable;
-  shadow.size = 0;
-  shadow.claim(count);
-  size_t out = 0;
   const bool choosesPlace = scene.camera.lensRadius > 0 || scene.camera.filter != FilterKind::box;
 
-  for (size_t i = 0; i < count; i += kLanes) {
-    const Mask active = firstLanes(count - i);
-    auto shading = loadShading<P, kFeatures>(scene, wave, active, i);
+  for (size_t i = begin; i < end; i += kLanes) {
+    const Mask active = firstLanes(end - i);
+    auto shading = loadShading<P, kBsdfs>(scene, wave, active, i);
     shading.bsdf.walk = Walk::light;
     Uniform4 u{};  // place on the lens, choice of the pixel
     if (choosesPlace) {
@@ -75,6 +76,20 @@ void connectToCamera(const StageContext<typename P::Storage>& context, Wave<type
     }
     out += countTrue(lit);
   }
+  return out;
+}
+
+}  // namespace
+
+template <class P, uint32_t kFeatures>
+void connectToCamera(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  auto& shadow = wave.shadowRays;
+  shadow.size = 0;
+  shadow.claim(wave.joinable);
+  size_t out = 0;
+  forEachBsdfRange<kFeatures>(wave, wave.joinable, [&](auto bsdfs, size_t begin, size_t end) WAVECREST_LAMBDA {
+    out = joinLens<P, kFeatures, decltype(bsdfs)::value>(context, wave, begin, end, out);
+  });
   shadow.size = out;
 }
 

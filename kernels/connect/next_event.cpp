@@ -4,26 +4,26 @@
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: ShadowRays [<= n], in that order. METHODS 2.2, 5.6.
 #include "kernels/connect/light_sample_lanes.h"
 #include "kernels/mis_lanes.h"
+#include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/shading_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
 
-template <class P, uint32_t kFeatures>
-void nextEvent(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+namespace {
+
+// The vertices [begin, end), whose BSDFs are of kBsdfs; shadow rays from `out` on; where they end.
+template <class P, uint32_t kFeatures, uint32_t kBsdfs>
+WAVECREST_NOINLINE size_t sampleLights(const StageContext<typename P::Storage>& context,
+                                       Wave<typename P::Storage>& wave, size_t begin, size_t end, size_t out) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
   const auto& paths = wave.paths;
   auto& shadow = wave.shadowRays;
-  const size_t count = wave.joinable;
-  shadow.size = 0;
-  if (scene.lightCount == 0) return;
-  shadow.claim(count);
-  size_t out = 0;
 
-  for (size_t i = 0; i < count; i += kLanes) {
-    const Mask active = firstLanes(count - i);
-    const auto shading = loadShading<P, kFeatures>(scene, wave, active, i);
+  for (size_t i = begin; i < end; i += kLanes) {
+    const Mask active = firstLanes(end - i);
+    const auto shading = loadShading<P, kBsdfs>(scene, wave, active, i);
     const UInt lane = select(active, load(paths.lane, i), UInt(0u));
     const Uniform4 u = draw(context, pathOf(context, wave, lane), Block::light);
     const UInt light = pickLight(scene, u.a, u.b);
@@ -56,6 +56,21 @@ void nextEvent(const StageContext<typename P::Storage>& context, Wave<typename P
     append(lane, lit, shadow.target, out);
     out += countTrue(lit);
   }
+  return out;
+}
+
+}  // namespace
+
+template <class P, uint32_t kFeatures>
+void nextEvent(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  auto& shadow = wave.shadowRays;
+  shadow.size = 0;
+  if (context.scene->lightCount == 0) return;
+  shadow.claim(wave.joinable);
+  size_t out = 0;
+  forEachBsdfRange<kFeatures>(wave, wave.joinable, [&](auto bsdfs, size_t begin, size_t end) WAVECREST_LAMBDA {
+    out = sampleLights<P, kFeatures, decltype(bsdfs)::value>(context, wave, begin, end, out);
+  });
   shadow.size = out;
 }
 

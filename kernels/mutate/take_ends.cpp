@@ -78,7 +78,7 @@ void takeEnds(const StageContext<typename P::Storage>& context, Wave<typename P:
   Wave<typename P::Storage>& atOrigin = context.ends->atOrigin;
   Wave<typename P::Storage>& atVertex = context.ends->atVertex(camera);
   const size_t count = wave.rays.size;
-  size_t out = 0, joinable = 0;
+  size_t out = 0, joinable = 0, diffuse = 0;
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
     const UInt lane = select(active, load(wave.paths.lane, i), UInt(0u));
@@ -104,8 +104,9 @@ void takeEnds(const StageContext<typename P::Storage>& context, Wave<typename P:
     copyVertices<P, kFeatures>(wave, i, goesOn, wave, out);
     out += countTrue(goesOn);
     joinable += countTrue(goesOn & firstLanes(std::max(i, wave.joinable) - i));
+    diffuse += countTrue(goesOn & firstLanes(std::max(i, wave.diffuse) - i));
   }
-  wave.setVertices(out, joinable);
+  wave.setVertices(out, joinable, diffuse);
 }
 
 WAVECREST_SIMD_END

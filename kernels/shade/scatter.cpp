@@ -3,6 +3,7 @@
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: Rays (new), PathStates [<= n], in that order, without
 // paths that were absorbed or ended by roulette. METHODS 1.4 (throughput), 1.5 (roulette), 5.5 (MIS recursion).
 #include "kernels/mis_lanes.h"
+#include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/shading_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -18,8 +19,8 @@ WAVECREST_INLINE Real survival(Vec3<Real> throughput, Real scale) {
 }
 
 // J of METHODS 5.5 for a delta lobe.
-template <class P, uint32_t kFeatures>
-WAVECREST_INLINE typename P::Real specularJacobian(const ShadingLanes<P, kFeatures>& shading,
+template <class P, uint32_t kBsdfs>
+WAVECREST_INLINE typename P::Real specularJacobian(const ShadingLanes<P, kBsdfs>& shading,
                                                    const BsdfSample<typename P::Real>& sample,
                                                    typename P::Real genCosine) {
   using Real = typename P::Real;
@@ -27,20 +28,19 @@ WAVECREST_INLINE typename P::Real specularJacobian(const ShadingLanes<P, kFeatur
   return sample.pdfReverse * reciprocal<P>(sample.pdf) * genCosine * cosines * sample.etaRatio * sample.etaRatio;
 }
 
-// Both stages share its code.
-template <class P, uint32_t kFeatures>
-WAVECREST_NOINLINE void scatterBy(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
-                                  Lobes lobes) {
+// Scatters vertices [begin, end), whose BSDFs are of kBsdfs, to `out`; where they end. Both stages share its code.
+template <class P, uint32_t kFeatures, uint32_t kBsdfs>
+WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& context,
+                                       Wave<typename P::Storage>& wave, Lobes lobes, size_t begin, size_t end,
+                                       size_t out) {
   using Real = typename P::Real;
   auto& rays = wave.rays;
   auto& paths = wave.paths;
   const bool roulette = context.depth >= context.limits.rouletteDepth;
-  const size_t count = rays.size;
-  size_t out = 0;
 
-  for (size_t i = 0; i < count; i += kLanes) {
-    const Mask active = firstLanes(count - i);
-    auto shading = loadShading<P, kFeatures>(*context.scene, wave, active, i);
+  for (size_t i = begin; i < end; i += kLanes) {
+    const Mask active = firstLanes(end - i);
+    auto shading = loadShading<P, kBsdfs>(*context.scene, wave, active, i);
     shading.bsdf.walk = context.walk;
     shading.bsdf.lobes = lobes;
     const UInt lane = select(active, load(paths.lane, i), UInt(0u));
@@ -73,7 +73,7 @@ WAVECREST_NOINLINE void scatterBy(const StageContext<typename P::Storage>& conte
     const MisSums<Real> before = loadMis<kFeatures>(paths, i);
     MisSums<Real> mis =
         scatterMis<P, kFeatures>(context.mis, context.depth, before, sample.pdf, sample.pdfReverse, genCosine);
-    if constexpr (has(kFeatures, kSpecularBsdfs | kLayeredBsdfs)) {
+    if constexpr (!onlyDiffuse(kBsdfs)) {
       if (any(sample.specular)) {
         const auto over = scatterSpecularMis(before, specularJacobian(shading, sample, genCosine));
         mis = {select(sample.specular, over.dVCM, mis.dVCM), select(sample.specular, over.dVC, mis.dVC),
@@ -90,7 +90,17 @@ WAVECREST_NOINLINE void scatterBy(const StageContext<typename P::Storage>& conte
     if constexpr (hasRouletteScale(kFeatures)) append(rouletteScale, alive, paths.rouletteScale, out);
     out += countTrue(alive);
   }
-  rays.size = paths.size = out;
+  return out;
+}
+
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE void scatterBy(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
+                                Lobes lobes) {
+  size_t out = 0;
+  forEachBsdfRange<kFeatures>(wave, wave.rays.size, [&](auto bsdfs, size_t begin, size_t end) WAVECREST_LAMBDA {
+    out = scatterRange<P, kFeatures, decltype(bsdfs)::value>(context, wave, lobes, begin, end, out);
+  });
+  wave.rays.size = wave.paths.size = out;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// The order of a wave's vertices: first those on diffuse surfaces, then those with other lobes that joins can use, at
-// last those of delta lobes alone; among themselves in the order of their rays. Blocks of one BSDF skip the others, and
-// stages that join vertices leave the last ones out.
+// The order of a wave's vertices: first those on opaque diffuse surfaces, then those with other lobes that joins can
+// use, at last those of delta lobes alone; among themselves in the order of their rays. Blocks of one BSDF skip the
+// others, and stages that join vertices leave the last ones out.
 //
 // Lanes of the first kind are moved to the front of the columns they came from. The others go to the wave's columns
 // aside, from their end towards their beginning, and are put behind the first when all of these are known: each block
@@ -30,15 +30,19 @@ class VertexOrder {
                                 WAVECREST_LAMBDA { WAVECREST_SIMD_NAMESPACE::append(number, m, column, size_); });
       size_ += countTrue(m);
     } else {
-      const UInt kind = MaterialLanes(scene_, material)(scene_.materials->kind);
-      const Mask diffuse = m & (kind == UInt(static_cast<uint32_t>(BsdfKind::diffuse)));
+      const MaterialLanes at(scene_, material);
+      Mask diffuse = m & (at(scene_.materials->kind) == UInt(static_cast<uint32_t>(BsdfKind::diffuse)));
+      if constexpr (has(kFeatures, kLayeredBsdfs)) {  // which have opacity as well
+        diffuse = andNot(diffuse, (at(scene_.materials->flags) & UInt(kHasDelta)) == UInt(kHasDelta));
+      }
       put(vertex, diffuse, andNot(m, diffuse), splitOrder(diffuse, andNot(m, diffuse)));
     }
   }
 
   // Puts the others behind the diffuse ones.
   WAVECREST_INLINE void finish() {
-    size_t joinableCount = size_;
+    const size_t diffuse = size_;
+    size_t joinable = size_;
     if constexpr (!onlyDiffuse(kFeatures)) {
       const UInt backwards = UInt(static_cast<uint32_t>(kLanes - 1)) - laneIndex();
       const size_t others = aside_;
@@ -48,11 +52,11 @@ class VertexOrder {
         read(vertex, i);
         const UInt primitive = select(firstLanes(others - i), inOrder(vertex.primitive, backwards), UInt(0u));
         const UInt kind = MaterialLanes(scene_, materialOf(scene_, primitive))(scene_.materials->kind);
-        const Mask joinable = firstLanes(others - i) & hasNonDeltaLobes(kind);
-        const Mask delta = andNot(firstLanes(others - i), joinable);
-        put(vertex, joinable, delta, UInt(static_cast<uint32_t>(kLanes - 1)) - splitOrder(joinable, delta));
+        const Mask finite = firstLanes(others - i) & hasNonDeltaLobes(kind);
+        const Mask delta = andNot(firstLanes(others - i), finite);
+        put(vertex, finite, delta, UInt(static_cast<uint32_t>(kLanes - 1)) - splitOrder(finite, delta));
       }
-      joinableCount = size_;
+      joinable = size_;
       for (size_t i = 0; i < aside_; i += kLanes) {
         read(vertex, i);
         vertex.forEach(wave_, [&](auto& number, auto& column)
@@ -60,7 +64,7 @@ class VertexOrder {
       }
       size_ += aside_;
     }
-    wave_.setVertices(size_, joinableCount);
+    wave_.setVertices(size_, joinable, diffuse);
   }
 
  private:

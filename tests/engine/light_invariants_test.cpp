@@ -16,11 +16,9 @@ namespace {
 
 constexpr MisSettings kVcm{.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true};
 
-BsdfKind kindOf(const SceneView<float>& scene, uint32_t primitive) {
-  return static_cast<BsdfKind>(scene.materials[scene.primitives[primitive].material].kind);
-}
 bool isDiffuse(const SceneView<float>& scene, uint32_t primitive) {
-  return kindOf(scene, primitive) == BsdfKind::diffuse;
+  const MaterialRecord& material = scene.materials[scene.primitives[primitive].material];
+  return static_cast<BsdfKind>(material.kind) == BsdfKind::diffuse && (material.flags & kHasDelta) == 0;
 }
 bool hasFiniteLobe(const SceneView<float>& scene, uint32_t primitive) {
   return (scene.materials[scene.primitives[primitive].material].flags & kHasFinite) != 0;
@@ -119,14 +117,16 @@ class Recount : public WalkVisitor<float> {
   }
 
  private:
-  // 15: diffuse vertices, others with more than delta lobes, the rest; in the order of their rays among themselves.
+  // 15: opaque diffuse vertices, others with more than delta lobes, the rest; in the order of their rays among
+  // themselves.
   void expectOrder(const Wave<float>& wave) {
-    size_t joinable = 0;
+    size_t joinable = 0, diffuse = 0;
     std::pair<int, size_t> previous;
     for (size_t i = 0; i < wave.rays.size; ++i) {
       const uint32_t primitive = wave.hits.primitive[i];
       const bool finite = hasFiniteLobe(walk_.scene(), primitive);
       joinable += finite ? 1 : 0;
+      diffuse += isDiffuse(walk_.scene(), primitive) ? 1 : 0;
       const std::pair<int, size_t> place{isDiffuse(walk_.scene(), primitive) ? 0
                                          : finite                            ? 1
                                                                              : 2,
@@ -135,6 +135,7 @@ class Recount : public WalkVisitor<float> {
       previous = place;
     }
     EXPECT_EQ(wave.joinable, joinable);
+    EXPECT_EQ(wave.diffuse, diffuse);
   }
 
   void buildMap() {
