@@ -56,9 +56,9 @@ struct PathStates : Columns<PathStates<S>> {
   auto all() { return std::tie(throughputR, throughputG, throughputB, dVCM, dVC, dVM, rouletteScale, lane, light); }
 };
 
-// Segments whose visibility decides over a contribution. Pushed by nextEvent and the connecting stages,
-// at most one per path and stage call; drained by occlude. The direction spans the whole segment: it is blocked iff
-// something is hit at t in [0, 1).
+// Segments whose visibility decides over a contribution. Pushed by nextEvent and the connecting stages, at most as many
+// as there are paths; drained by occlude. The direction spans the whole segment: it is blocked iff something is hit at
+// t in [0, 1).
 template <class S>
 struct ShadowRays : Columns<ShadowRays<S>> {
   Column<float> originX, originY, originZ, directionX, directionY, directionZ;

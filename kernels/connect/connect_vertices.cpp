@@ -83,7 +83,7 @@ class PairLister {
   uint32_t begin_, end_;  // light vertices that are joined; kNoIndex is none of them
 };
 
-// For switches of edges, which with connections are on at every depth.
+// Light vertices of all depths are joined together: where there are connections, edgeSwitch() is 1 at each of them.
 constexpr uint32_t kAnyLightDepth = 2;
 
 // Light vertices of a whole iteration are more than the caches hold: their rows are asked for so many pairs ahead.
