@@ -74,6 +74,14 @@ template <class T>
 WAVECREST_INLINE auto gather(const Column<T>& column, UInt index) {
   return gather(static_cast<const T*>(column), index);
 }
+// out[i] = read(index[i]) for i < count. Numbers that vectors were stored as some time ago are read one by one: with
+// 16 loads a gather costs more, and so does taking a vector of indices apart, as g++ would, were they not volatile.
+template <class T, class Read>
+WAVECREST_INLINE void readEach(const uint32_t* index, size_t count, const Read& read, T* out) {
+  const volatile uint32_t* const listed = index;
+  for (size_t i = 0; i < count; ++i) out[i] = read(listed[i]);
+}
+
 template <class S>
 WAVECREST_INLINE auto gatherVec3(const Column<S>& x, const Column<S>& y, const Column<S>& z, UInt index) {
   return Vec3<decltype(gather(x, index))>{gather(x, index), gather(y, index), gather(z, index)};
@@ -129,23 +137,25 @@ WAVECREST_INLINE void addRadiance(Radiance<S>& radiance, UInt lane, Mask m, Vec3
   }
 }
 
-// Adds a to pixels of the splat sums in fixed point.
+// Adds a to pixels of the splat sums in fixed point, one after the other.
 template <class S, class Real>
 WAVECREST_INLINE void addSplats(const StageContext<S>& context, UInt pixel, Mask m, Vec3<Real> a) {
-  HWY_ALIGN typename Real::Storage values[3][kLanes];
+  const Real limit(static_cast<float>(kSplatLimit));
+  const Mask taken = m & (a.x < limit) & (a.y < limit) & (a.z < limit);
+  const size_t count = countTrue(taken);
+  context.counters->nonFinite += countTrue(m) - count;
+  const auto fixedPoint = [taken](Real x) WAVECREST_LAMBDA {
+    return mulAdd(to<Double>(compress(x, taken)), Double(kSplatScale), Double(0.5));
+  };
+  HWY_ALIGN int64_t values[3][kLanes];
   HWY_ALIGN uint32_t pixels[kLanes];
-  store(compress(a.x, m), values[0]);
-  store(compress(a.y, m), values[1]);
-  store(compress(a.z, m), values[2]);
-  store(compress(pixel, m), pixels);
-  for (size_t i = 0, count = countTrue(m); i < count; ++i) {
-    if (!(values[0][i] < kSplatLimit && values[1][i] < kSplatLimit && values[2][i] < kSplatLimit)) {
-      ++context.counters->nonFinite;
-      continue;
-    }
+  storeTruncated(fixedPoint(a.x), values[0]);
+  storeTruncated(fixedPoint(a.y), values[1]);
+  storeTruncated(fixedPoint(a.z), values[2]);
+  store(compress(pixel, taken), pixels);
+  for (size_t i = 0; i < count; ++i) {
     int64_t* const sums = context.splats.sums + 3 * size_t{pixels[i]};
-    for (size_t c = 0; c < 3; ++c)
-      sums[c] += static_cast<int64_t>(static_cast<double>(values[c][i]) * kSplatScale + 0.5);
+    for (size_t c = 0; c < 3; ++c) sums[c] += values[c][i];
   }
 }
 

@@ -120,7 +120,7 @@ void fillStore(LightStore<float>& store, const PhotonGrid<float>& grid, size_t c
     v.cell[i] = at.cell;
     v.place[i] = at.place;
   }
-  store.link(0, count);
+  store.link(count, count);
 }
 
 // Light vertices of waves on the floor, side by side as a session has them, and the map over them.

@@ -9,6 +9,10 @@
 
 namespace wavecrest {
 
+// How a light vertex is linked to: its index, with kOtherLink where its BSDF is another than opaque diffuse; or
+// kNoIndex.
+constexpr uint32_t kOtherLink = 1u << 31, kLinkIndex = kOtherLink - 1;
+
 template <class S>
 struct LightVertices : Columns<LightVertices<S>> {
   Column<VertexRow<S>> row;
@@ -18,7 +22,7 @@ struct LightVertices : Columns<LightVertices<S>> {
   Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
   Column<float> uvU, uvV;                  // dropped where the scene has no textures
   Column<uint32_t> lane;                   // of the path, in its wave
-  Column<uint32_t> next;                   // the vertex after it that the path has here, or kNoIndex
+  Column<uint32_t> next;                   // link to the vertex after it that the path has here
   auto all() {
     return std::tie(row, cell, place, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV, lane, next);
   }
@@ -74,8 +78,11 @@ class LightStore {
   // Begins the vertices of the next depth (1, 2, ...), with room for `count` of them.
   void beginDepth(size_t count) {
     ++depths_;
-    if (firstOfDepth_.size() <= depths_) firstOfDepth_.resize(depths_ + 8);
-    firstOfDepth_[depths_] = vertices.size;
+    if (firstOfDepth_.size() <= depths_) {
+      firstOfDepth_.resize(depths_ + 8);
+      endOfDiffuse_.resize(depths_ + 8);
+    }
+    firstOfDepth_[depths_] = endOfDiffuse_[depths_] = vertices.size;
     const size_t needed = vertices.size + count;
     roomUsed_ = std::max(roomUsed_, needed);
     if (needed > vertices.capacity()) grow(std::max(needed, vertices.capacity() + vertices.capacity() / 4));
@@ -116,16 +123,20 @@ class LightStore {
   uint32_t depths() const { return static_cast<uint32_t>(depths_); }
   // The vertices of a depth (1 .. depths()) are those from firstOf(depth) up to firstOf(depth + 1).
   size_t firstOf(uint32_t depth) const { return depth > depths_ ? vertices.size : firstOfDepth_[depth]; }
-  // The first vertex of each lane's path, or kNoIndex; from there `next` leads to the others.
+  // Link to the first vertex of each lane's path; from there `next` leads to the others.
   const uint32_t* firstOfLane() const { return firstOfLane_.data(); }
-  // Makes vertices [first, end), whose lanes are known, the last ones of their paths.
-  void link(size_t first, size_t end) {
-    for (size_t i = first; i < end; ++i) {
+  // Links the `count` vertices that the depth got last, whose lanes are known, to their paths; the first `diffuse` of
+  // them have opaque diffuse BSDFs.
+  void link(size_t count, size_t diffuse) {
+    const size_t first = vertices.size - count;
+    for (size_t i = first; i < vertices.size; ++i) {
       uint32_t& last = lastOfLane_[vertices.lane[i]];
       uint32_t& from = last == kNoIndex ? firstOfLane_[vertices.lane[i]] : vertices.next[last];
-      from = last = static_cast<uint32_t>(i);
+      last = static_cast<uint32_t>(i);
+      from = i < first + diffuse ? last : last | kOtherLink;
       vertices.next[i] = kNoIndex;
     }
+    endOfDiffuse_[depths_] = first + diffuse;
   }
   size_t lanes() const { return lanes_; }
 
@@ -179,7 +190,7 @@ class LightStore {
       for (size_t k = at; k < at + copied; ++k) {
         vertices.lane[k] = static_cast<uint32_t>(vertices.lane[k] - begin + target);
       }
-      link(at, at + copied);
+      link(copied, std::clamp(from.endOfDiffuse_[depth], source, i) - source);
       while (i < end && !within(i)) ++i;
     }
     return true;
@@ -200,7 +211,8 @@ class LightStore {
   size_t lanes_;
   size_t depths_ = 0, roomUsed_ = 0;
   size_t sharedBytes_ = 0, ownBytes_ = 0;
-  std::vector<size_t> firstOfDepth_;  // by depth
+  // By depth; of its vertices the diffuse ones come first, but for those collected from several stores.
+  std::vector<size_t> firstOfDepth_, endOfDiffuse_;
   std::vector<uint32_t> firstOfLane_, lastOfLane_;
   Arena arena_;
 };

@@ -61,7 +61,7 @@ struct Wave : Vertices<S> {
   size_t openPairs = 0;
   Vertices<S> aside;  // scratch of arrive (kernels/shade/vertex_order_lanes.h); dropped where all BSDFs are diffuse
   ShadowRays<S> shadowRays;
-  VertexPairs pairs;
+  VertexPairs pairs, sortedPairs;  // sortedPairs: dropped where all BSDFs are diffuse
   VertexRows<S> vertexRows;
   Radiance<S> radiance;
   size_t firstPath = 0;  // index of lane 0 in the iteration's order of paths
@@ -74,10 +74,10 @@ struct Wave : Vertices<S> {
     aside.hits.u.drop();
     aside.hits.v.drop();
     aside.paths.light.drop();
+    if (!needs.connections || !needs.bsdfOrder) sortedPairs.drop();
     if (!needs.bsdfOrder) aside.forEachQueue([](auto& queue) { queue.drop(); });
     if (!needs.connections) {
-      pairs.camera.drop();
-      pairs.light.drop();
+      pairs.drop();
       vertexRows.row.drop();
     }
     size_t bytes = 0;
@@ -126,6 +126,7 @@ struct Wave : Vertices<S> {
     aside.forEachQueue(function);
     function(shadowRays);
     function(pairs);
+    function(sortedPairs);
     function(vertexRows);
     function(radiance);
   }

@@ -2,23 +2,33 @@
 // pushes shadow rays with the weighted contributions.
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the light store of the wave's light paths. out: ShadowRays
-// [<= capacity], in the order of the pairs. METHODS 5.6 (40)-(41).
+// [<= capacity], in the order in which pairs are joined. METHODS 5.6 (40)-(41).
 //
 // Light paths have few vertices or none, so the pairs are listed first: 16 lanes then work on 16 pairs, wherever on
 // their paths the vertices are. The list begins with the first vertex of each path and goes on from pairs to those with
 // the vertices after. Pairs that there is no room for wait for the next repetition of the stage, while Wave::openPairs
-// is not 0.
+// is not 0. Those of two diffuse vertices, most in most scenes, are joined first, by a kernel that knows no other BSDF.
 #include <algorithm>
 #include <utility>
 
 #include "kernels/columns/light_vertices.h"
 #include "kernels/mis_lanes.h"
+#include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/vertex_row_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
 
 namespace {
+
+// The index in a link, which is no vertex's where the link leads nowhere.
+WAVECREST_INLINE UInt indexOf(UInt link) { return link & UInt(kLinkIndex); }
+
+WAVECREST_INLINE size_t appendPairs(UInt camera, UInt light, Mask m, VertexPairs& pairs, size_t count) {
+  append(camera, m, pairs.camera, count);
+  append(light, m, pairs.light, count);
+  return count + countTrue(m);
+}
 
 // Lists pairs of camera vertices and light vertices of one lane.
 template <class S>
@@ -43,7 +53,7 @@ class PairLister {
     wave_.pairs.size = count;
     wave_.openPairs = count - open;
     // Whole blocks are read: those that the list's end leaves open get pairs of the first vertices.
-    append(UInt(0u), UInt(0u), allLanes(), count);
+    appendPairs(UInt(0u), UInt(0u), allLanes(), wave_.pairs, count);
     return count;
   }
 
@@ -55,11 +65,12 @@ class PairLister {
       const Mask active = firstLanes(wave_.joinable - i);
       UInt light = gather(firstOfLane_, select(active, load(wave_.paths.lane, i), UInt(0u)));
       for (;;) {
-        const Mask before = active & (light < UInt(begin_));
+        const Mask before = active & (indexOf(light) < UInt(begin_));
         if (none(before)) break;
-        light = select(before, gather(next_, select(before, light, UInt(0u))), light);
+        light = select(before, gather(next_, select(before, indexOf(light), UInt(0u))), light);
       }
-      count = append(laneIndex(static_cast<uint32_t>(i)), light, active & (light < UInt(end_)), count);
+      const Mask found = active & (indexOf(light) < UInt(end_));
+      count = appendPairs(laneIndex(static_cast<uint32_t>(i)), light, found, wave_.pairs, count);
     }
     return count;
   }
@@ -67,20 +78,17 @@ class PairLister {
   WAVECREST_INLINE size_t listNext(size_t i, size_t end, size_t count) {
     for (; i < end; i += kLanes) {
       const Mask active = firstLanes(end - i);
-      const UInt light = gather(next_, select(active, loadUnaligned(wave_.pairs.light + i), UInt(0u)));
-      count = append(loadUnaligned(wave_.pairs.camera + i), light, active & (light < UInt(end_)), count);
+      const UInt last = indexOf(loadUnaligned(wave_.pairs.light + i));
+      const UInt light = gather(next_, select(active, last, UInt(0u)));
+      const Mask found = active & (indexOf(light) < UInt(end_));
+      count = appendPairs(loadUnaligned(wave_.pairs.camera + i), light, found, wave_.pairs, count);
     }
     return count;
-  }
-  WAVECREST_INLINE size_t append(UInt camera, UInt light, Mask m, size_t count) {
-    WAVECREST_SIMD_NAMESPACE::append(camera, m, wave_.pairs.camera, count);
-    WAVECREST_SIMD_NAMESPACE::append(light, m, wave_.pairs.light, count);
-    return count + countTrue(m);
   }
 
   Wave<S>& wave_;
   const uint32_t *firstOfLane_, *next_;
-  uint32_t begin_, end_;  // light vertices that are joined; kNoIndex is none of them
+  uint32_t begin_, end_;  // light vertices that are joined
 };
 
 // Light vertices of all depths are joined together: where there are connections, edgeSwitch() is 1 at each of them.
@@ -89,58 +97,94 @@ constexpr uint32_t kAnyLightDepth = 2;
 // Light vertices of a whole iteration are more than the caches hold: their rows are asked for so many pairs ahead.
 constexpr size_t kRowsAhead = 128;
 
-// Weighted contributions of the listed pairs, as shadow rays; how many.
-template <class P, uint32_t kFeatures>
-size_t joinPairs(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave, size_t count) {
+// Weighted contributions of a block of pairs of vertices that have BSDFs of kBsdfs; shadow rays from `out` on; where
+// they end.
+template <class P, uint32_t kBsdfs>
+WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
+                                    const VertexPairs& pairs, size_t i, Mask active, size_t out) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
   const auto& vertices = context.light->vertices;
   auto& shadow = wave.shadowRays;
+
+  HWY_ALIGN uint32_t lanes[kLanes];
+  readEach(
+      pairs.camera + i, kLanes, [&](uint32_t v) WAVECREST_LAMBDA { return wave.paths.lane[v]; }, lanes);
+  const auto zRow = gatherRows<P, kBsdfs>(scene, wave.vertexRows.row, wave.surfaces, pairs.camera + i);
+  auto yRow = gatherRows<P, kBsdfs>(scene, vertices.row, vertices, pairs.light + i);
+  yRow.shading.bsdf.walk = Walk::light;
+  const auto &z = zRow.shading, &y = yRow.shading;
+
+  const Vec3<Real> segment = y.position - z.position;
+  const Real dist2 = length2(segment);
+  const Real inverseDistance = reciprocalSqrt<P>(max(dist2, Real(1e-37f)));
+  const Vec3<Real> towards = segment * inverseDistance;  // from the camera vertex to the light vertex
+  const auto zBsdf = z.scattering(active, towards);
+  const auto yBsdf = y.scattering(active, -towards);
+
+  const Real inverseDist2 = inverseDistance * inverseDistance;
+  const Real zCosine = abs(dot(towards, z.normal)), yCosine = abs(dot(towards, y.normal));
+  const Real wLight =
+      zBsdf.pdf * yCosine * inverseDist2 *
+      behindConnection(context.mis, kAnyLightDepth, MisSums<Real>{yRow.dVCM, yRow.behind, Real(0)}, yBsdf.pdfReverse);
+  const Real wCamera =
+      yBsdf.pdf * zCosine * inverseDist2 *
+      behindConnection(context.mis, context.depth, MisSums<Real>{zRow.dVCM, zRow.behind, Real(0)}, zBsdf.pdfReverse);
+
+  // c_z(omega_l) at the camera's end; c_y(omega_l) / n_y(omega_l) n_y(to z) at the light's (METHODS 3.9).
+  const Real yFix = max(abs(y.fixCosine), Real(1e-6f));
+  const Real scale = zBsdf.lightCosine * yBsdf.lightCosine * yCosine * inverseDist2 *
+                     reciprocal<P>(yFix * (Real(1) + wLight + wCamera));
+  const Vec3<Real> contribution = zRow.throughput * zBsdf.f * yRow.throughput * yBsdf.f * scale;
+
+  // Points closer than the offsets that keep their segment off the surfaces cannot be told apart.
+  const Real apart = Real(4) * (z.offset + y.offset);
+  const Mask lit = active & (dist2 > apart * apart) & (maxComponent(contribution) > Real(0));
+  if (none(lit)) return out;
+  const Vec3<Real> origin = offsetOrigin(z.position, z.normal, z.offset, towards);
+  const Vec3<Real> end = offsetOrigin(y.position, y.normal, y.offset, -towards);
+  appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
+  appendVec3(to<Float>(end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
+  appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
+  append(load(lanes), lit, shadow.target, out);
+  return out + countTrue(lit);
+}
+
+// Copies the listed pairs to Wave::sortedPairs, with indices for links: first those of two diffuse vertices, whose
+// number it returns, then the others.
+template <class S>
+size_t sortPairs(Wave<S>& wave, size_t count) {
+  auto& sorted = wave.sortedPairs;
+  size_t diffuse = 0, out = 0;
+  for (const bool first : {true, false}) {
+    for (size_t i = 0; i < count; i += kLanes) {
+      const UInt camera = load(wave.pairs.camera, i), light = load(wave.pairs.light, i);
+      const Mask alike = (camera < UInt(static_cast<uint32_t>(wave.diffuse))) & (light < UInt(kOtherLink));
+      const Mask active = firstLanes(count - i);
+      out = appendPairs(camera, indexOf(light), first ? active & alike : andNot(active, alike), sorted, out);
+    }
+    if (first) diffuse = out;
+  }
+  appendPairs(UInt(0u), UInt(0u), allLanes(), sorted, out);
+  return diffuse;
+}
+
+// Weighted contributions of the listed pairs, as shadow rays; how many.
+template <class P, uint32_t kFeatures>
+size_t joinPairs(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave, size_t count) {
+  const auto& rows = context.light->vertices.row;
+  size_t diffuse = count;
+  if constexpr (!onlyDiffuse(kFeatures)) diffuse = sortPairs(wave, count);
+  const VertexPairs& pairs = onlyDiffuse(kFeatures) ? wave.pairs : wave.sortedPairs;
   size_t out = 0;
   size_t asked = 0;
   for (size_t i = 0; i < count; i += kLanes) {
     for (const size_t end = std::min(i + kRowsAhead, count); asked < end; ++asked) {
-      __builtin_prefetch(vertices.row + wave.pairs.light[asked]);
+      __builtin_prefetch(rows + pairs.light[asked]);
     }
-    const Mask active = firstLanes(count - i);
-    const auto zRow = gatherRows<P, kFeatures>(scene, wave.vertexRows.row, wave.surfaces, wave.pairs.camera + i);
-    auto yRow = gatherRows<P, kFeatures>(scene, vertices.row, vertices, wave.pairs.light + i);
-    yRow.shading.bsdf.walk = Walk::light;
-    const auto &z = zRow.shading, &y = yRow.shading;
-
-    const Vec3<Real> segment = y.position - z.position;
-    const Real dist2 = length2(segment);
-    const Real inverseDistance = reciprocalSqrt<P>(max(dist2, Real(1e-37f)));
-    const Vec3<Real> towards = segment * inverseDistance;  // from the camera vertex to the light vertex
-    const auto zBsdf = z.scattering(active, towards);
-    const auto yBsdf = y.scattering(active, -towards);
-
-    const Real inverseDist2 = inverseDistance * inverseDistance;
-    const Real zCosine = abs(dot(towards, z.normal)), yCosine = abs(dot(towards, y.normal));
-    const Real wLight =
-        zBsdf.pdf * yCosine * inverseDist2 *
-        behindConnection(context.mis, kAnyLightDepth, MisSums<Real>{yRow.dVCM, yRow.behind, Real(0)}, yBsdf.pdfReverse);
-    const Real wCamera =
-        yBsdf.pdf * zCosine * inverseDist2 *
-        behindConnection(context.mis, context.depth, MisSums<Real>{zRow.dVCM, zRow.behind, Real(0)}, zBsdf.pdfReverse);
-
-    // c_z(omega_l) at the camera's end; c_y(omega_l) / n_y(omega_l) n_y(to z) at the light's (METHODS 3.9).
-    const Real yFix = max(abs(y.fixCosine), Real(1e-6f));
-    const Real scale = zBsdf.lightCosine * yBsdf.lightCosine * yCosine * inverseDist2 *
-                       reciprocal<P>(yFix * (Real(1) + wLight + wCamera));
-    const Vec3<Real> contribution = zRow.throughput * zBsdf.f * yRow.throughput * yBsdf.f * scale;
-
-    // Points closer than the offsets that keep their segment off the surfaces cannot be told apart.
-    const Real apart = Real(4) * (z.offset + y.offset);
-    const Mask lit = active & (dist2 > apart * apart) & (maxComponent(contribution) > Real(0));
-    if (none(lit)) continue;
-    const Vec3<Real> origin = offsetOrigin(z.position, z.normal, z.offset, towards);
-    const Vec3<Real> end = offsetOrigin(y.position, y.normal, y.offset, -towards);
-    appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
-    appendVec3(to<Float>(end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
-    appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
-    append(gather(static_cast<const uint32_t*>(wave.paths.lane), load(wave.pairs.camera, i)), lit, shadow.target, out);
-    out += countTrue(lit);
+    out = withBsdfs<kFeatures>(i + kLanes <= diffuse, [&](auto bsdfs) WAVECREST_LAMBDA {
+      return joinBlock<P, decltype(bsdfs)::value>(context, wave, pairs, i, firstLanes(count - i), out);
+    });
   }
   return out;
 }

@@ -13,51 +13,60 @@ WAVECREST_SIMD_BEGIN
 namespace {
 
 // The vertices of all waves are more than the caches hold: asks for the lines that later blocks will be written to.
-constexpr size_t kColumnsAhead = 64, kRowsAhead = 48;  // items
+constexpr size_t kColumnsAhead = 64;  // items
 template <class... Items>
 WAVECREST_INLINE void prefetchColumns(size_t out, const Column<Items>&... columns) {
   (__builtin_prefetch(columns + out + kColumnsAhead, 1), ...);
 }
 
-// What a photon map is built from.
+// What a photon map is built from, of block i of the wave, as those below.
 template <class S>
-WAVECREST_INLINE void appendPlaces(const PhotonGrid<S>& grid, const Rays<S>& rays, size_t i, Mask m,
-                                   LightVertices<S>& vertices, size_t out) {
+WAVECREST_INLINE void storePlaces(const PhotonGrid<S>& grid, const Rays<S>& rays, size_t i, LightVertices<S>& vertices,
+                                  size_t out) {
   prefetchColumns(out, vertices.cell, vertices.place);
   const auto position = loadVec3(rays.originX, rays.originY, rays.originZ, i);
   const PlaceLanes at = placesOf(GridLanes<decltype(position.x)>(grid)(position));
-  append(at.cell, m, vertices.cell, out);
-  append(at.place, m, vertices.place, out);
+  storeUnaligned(at.cell, vertices.cell + out);
+  storeUnaligned(at.place, vertices.place + out);
 }
 
 // What connections and merges read.
 template <uint32_t kFeatures, class S>
-WAVECREST_INLINE void appendRows(const StageContext<S>& context, const Wave<S>& wave, size_t i, Mask m,
-                                 LightVertices<S>& vertices, size_t out) {
-  RecordBlock<S> rows;
-  makeRows<kFeatures>(context, wave, i, context.depth, rows);
-  rows.append(m, vertices.row + out, kRowsAhead);
+WAVECREST_INLINE void storeRows(const StageContext<S>& context, const Wave<S>& wave, size_t i,
+                                LightVertices<S>& vertices, size_t out, bool kept) {
+  const auto rows = makeRows<kFeatures>(context, wave, i, context.depth);
+  if (kept) {
+    rows.stream(vertices.row + out);
+  } else {
+    rows.store(vertices.row + out);
+  }
 }
 
 // What connections read beside rows.
 template <uint32_t kFeatures, class S>
-WAVECREST_INLINE void appendColumns(const SceneView<S>& scene, const Wave<S>& wave, size_t i, Mask m,
-                                    LightVertices<S>& vertices, size_t out) {
+WAVECREST_INLINE void storeColumns(const SceneView<S>& scene, const Wave<S>& wave, size_t i, LightVertices<S>& vertices,
+                                   size_t out) {
   const auto& surfaces = wave.surfaces;
+  const auto copy = [i, out](const auto& from, const auto& to)
+                        WAVECREST_LAMBDA { storeUnaligned(load(from, i), to + out); };
   if constexpr (has(kFeatures, kShadingNormals)) {
-    appendVec3(loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i), m, vertices.shadingX,
-               vertices.shadingY, vertices.shadingZ, out);
+    copy(surfaces.shadingX, vertices.shadingX);
+    copy(surfaces.shadingY, vertices.shadingY);
+    copy(surfaces.shadingZ, vertices.shadingZ);
   }
   if constexpr (has(kFeatures, kNormalMaps)) {
     if (scene.normalMaps) {
-      appendVec3(loadVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, i), m, vertices.baseX, vertices.baseY,
-                 vertices.baseZ, out);
+      copy(surfaces.baseX, vertices.baseX);
+      copy(surfaces.baseY, vertices.baseY);
+      copy(surfaces.baseZ, vertices.baseZ);
     }
   }
   if constexpr (has(kFeatures, kTextures)) {
-    append(load(surfaces.uvU, i), m, vertices.uvU, out);
-    append(load(surfaces.uvV, i), m, vertices.uvV, out);
+    copy(surfaces.uvU, vertices.uvU);
+    copy(surfaces.uvV, vertices.uvV);
   }
+  prefetchColumns(out, vertices.lane, vertices.next);
+  copy(wave.paths.lane, vertices.lane);
 }
 
 }  // namespace
@@ -66,22 +75,18 @@ template <class P, uint32_t kFeatures>
 void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   LightStore<typename P::Storage>& store = *context.light;
   auto& vertices = store.vertices;
+  // Connections alone read vertices soon; for merging all waves of an iteration are stored before one is read.
   const bool connected = store.keepsLanes(), merged = store.keepsPlaces();
-  size_t out = vertices.size;
+  const size_t first = vertices.claim(wave.joinable);
+  // The tail of a column has room for whole blocks.
   for (size_t i = 0; i < wave.joinable; i += kLanes) {
-    const Mask joinable = firstLanes(wave.joinable - i);
-    appendRows<kFeatures>(context, wave, i, joinable, vertices, out);
-    if (connected) {
-      appendColumns<kFeatures>(*context.scene, wave, i, joinable, vertices, out);
-      prefetchColumns(out, vertices.lane, vertices.next);
-      append(load(wave.paths.lane, i), joinable, vertices.lane, out);
-    }
-    if (merged) appendPlaces(context.photonGrid, wave.rays, i, joinable, vertices, out);
-    out += countTrue(joinable);
+    storeRows<kFeatures>(context, wave, i, vertices, first + i, merged);
+    if (connected) storeColumns<kFeatures>(*context.scene, wave, i, vertices, first + i);
+    if (merged) storePlaces(context.photonGrid, wave.rays, i, vertices, first + i);
   }
-  if (connected) store.link(vertices.size, out);
-  context.counters->lightVertices += out - vertices.size;
-  vertices.claim(out - vertices.size);
+  if (merged) flushStream();
+  if (connected) store.link(wave.joinable, onlyDiffuse(kFeatures) ? wave.joinable : wave.diffuse);
+  context.counters->lightVertices += wave.joinable;
 }
 
 WAVECREST_SIMD_END

@@ -9,16 +9,28 @@
 
 WAVECREST_SIMD_BEGIN
 
-// Calls shade(features, begin, end) for the vertices [0, count) of the wave: features is a std::integral_constant of
-// what they need, begin a multiple of kLanes.
+// Calls shade(features): features is a std::integral_constant of what vertices need, of which all are diffuse or not.
+template <uint32_t kFeatures, class Shade>
+WAVECREST_INLINE auto withBsdfs(bool diffuse, const Shade& shade) {
+  if constexpr (!onlyDiffuse(kFeatures)) {
+    if (diffuse) return shade(std::integral_constant<uint32_t, kFeatures & ~(kSpecularBsdfs | kLayeredBsdfs)>());
+  }
+  return shade(std::integral_constant<uint32_t, kFeatures>());
+}
+
+// Calls shade(features, begin, end) for the vertices [0, count) of the wave, features as above; begin is a multiple of
+// kLanes.
 template <uint32_t kFeatures, class S, class Shade>
 WAVECREST_INLINE void forEachBsdfRange(const Wave<S>& wave, size_t count, const Shade& shade) {
-  size_t begin = 0;
-  if constexpr (!onlyDiffuse(kFeatures)) {
-    begin = std::min(wave.diffuse, count) / kLanes * kLanes;
-    if (begin != 0) shade(std::integral_constant<uint32_t, kFeatures & ~(kSpecularBsdfs | kLayeredBsdfs)>(), 0, begin);
-  }
-  if (begin != count) shade(std::integral_constant<uint32_t, kFeatures>(), begin, count);
+  const size_t diffuse = onlyDiffuse(kFeatures) ? 0 : std::min(wave.diffuse, count) / kLanes * kLanes;
+  if (diffuse != 0) withBsdfs<kFeatures>(true, [&](auto bsdfs) WAVECREST_LAMBDA { shade(bsdfs, 0, diffuse); });
+  if (diffuse != count) shade(std::integral_constant<uint32_t, kFeatures>(), diffuse, count);
+}
+
+// Whether all of a vector of the wave's vertices are diffuse, where withBsdfs tells them apart.
+template <class S>
+WAVECREST_INLINE bool allDiffuse(const Wave<S>& wave, UInt vertex) {
+  return all(vertex < UInt(static_cast<uint32_t>(wave.diffuse)));
 }
 
 WAVECREST_SIMD_END

@@ -11,8 +11,7 @@ WAVECREST_SIMD_BEGIN
 
 // The rows of block i of the live paths' vertices; edges: from the light, where they are kept as light vertices.
 template <uint32_t kFeatures, class S>
-WAVECREST_INLINE void makeRows(const StageContext<S>& context, const Wave<S>& wave, size_t i, uint32_t edges,
-                               RecordBlock<S>& rows) {
+WAVECREST_INLINE auto makeRows(const StageContext<S>& context, const Wave<S>& wave, size_t i, uint32_t edges) {
   const auto& rays = wave.rays;
   const auto& surfaces = wave.surfaces;
   const auto& paths = wave.paths;
@@ -22,10 +21,12 @@ WAVECREST_INLINE void makeRows(const StageContext<S>& context, const Wave<S>& wa
   const auto throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
   const auto mis = loadMis<kFeatures>(paths, i);
   const UInt primitive = select(firstLanes(rays.size - i), load(wave.hits.primitive, i), UInt(0u));
+  RecordBlock<decltype(position.x)> rows;
   rows.set(0, position.x, position.y, position.z, load(surfaces.offset, i));
   rows.set(1, fix.x, fix.y, fix.z, packTag(materialOf(*context.scene, primitive), edges, fix.x));
   rows.set(2, normal.x, normal.y, normal.z, mis.dVCM);
   rows.set(3, throughput.x, throughput.y, throughput.z, keptBehind(context.mis, mis));
+  return rows;
 }
 
 // The rows of the live paths' vertices that can be joined, if no stage has written them at this depth yet.
@@ -35,12 +36,7 @@ WAVECREST_INLINE void packVertexRows(const StageContext<S>& context, Wave<S>& wa
   if (rows.size != 0) return;
   const size_t count = wave.joinable;
   rows.claim(count);
-  RecordBlock<S> block;
-  for (size_t i = 0; i < count; i += kLanes) {
-    makeRows<kFeatures>(context, wave, i, 0, block);
-    // The tail of a column has room for whole blocks.
-    for (size_t k = 0; k < kLanes; ++k) block.copy(k, rows.row[i + k]);
-  }
+  for (size_t i = 0; i < count; i += kLanes) makeRows<kFeatures>(context, wave, i, 0).store(rows.row + i);
 }
 
 // Vertices at any indices, and what else their rows hold.

@@ -159,6 +159,12 @@ WAVECREST_INLINE void store(Double a, double* p) {
 WAVECREST_INLINE void storeUnaligned(Double a, double* p) {
   forEachPart([p](auto x, size_t first) WAVECREST_LAMBDA { hn::StoreU(x, DoubleTag(), p + first); }, a.v, kFirstLanes);
 }
+// Towards 0; numbers between -2^63 and 2^63.
+WAVECREST_INLINE void storeTruncated(Double a, int64_t* p) {
+  forEachPart([p](auto x, size_t first)
+                  WAVECREST_LAMBDA { hn::Store(hn::ConvertTo(LongTag(), x), LongTag(), p + first); },
+              a.v, kFirstLanes);
+}
 WAVECREST_INLINE Double gather(const double* base, UInt index) {
   return mapParts([base](auto half)
                       WAVECREST_LAMBDA { return hn::GatherIndex(DoubleTag(), base, hn::PromoteTo(LongTag(), half)); },

@@ -1,66 +1,133 @@
-// Columns to rows and back: four vectors of lanes written as one group of four after the other, and groups of four from
+// Columns to rows and back: vectors of lanes written as records of sixteen numbers, and groups of four numbers from
 // anywhere read into four vectors.
 #pragma once
 
-#include <cstring>
+#include <hwy/cache_control.h>
+
 #include <type_traits>
 
 #include "kernels/simd/double_lanes.h"
 
 WAVECREST_SIMD_BEGIN
 
-// a0 b0 c0 d0 a1 b1 ...; 4 kLanes numbers.
-WAVECREST_INLINE void storeInterleaved(Float a, Float b, Float c, Float d, float* p) {
-  hn::StoreInterleaved4(a.v, b.v, c.v, d.v, FloatTag(), p);
-}
-WAVECREST_INLINE void storeInterleaved(Double a, Double b, Double c, Double d, double* p) {
-  HWY_ALIGN double values[4][kLanes]{};  // clang-tidy does not see that store fills them
-  store(a, values[0]);
-  store(b, values[1]);
-  store(c, values[2]);
-  store(d, values[3]);
-  for (size_t i = 0; i < 4 * kLanes; ++i) p[i] = values[i % 4][i / 4];
-}
-
-// Records of sixteen numbers, one for each lane: numbers are set for all lanes, records are copied out lane by lane.
-template <class S>
-class RecordBlock {
- public:
-  // Numbers 4 piece to 4 piece + 3.
-  template <class Real>
-  WAVECREST_INLINE void set(size_t piece, Real a, Real b, Real c, Real d) {
-    storeInterleaved(a, b, c, d, pieces_[piece]);
-  }
-  template <class Record>
-  WAVECREST_INLINE void copy(size_t lane, Record& out) const {
-    static_assert(sizeof(Record) == 4 * kPieces * sizeof(S));
-    S* const numbers = reinterpret_cast<S*>(&out);
-    for (size_t piece = 0; piece < kPieces; ++piece) {
-      std::memcpy(numbers + 4 * piece, &pieces_[piece][4 * lane], 4 * sizeof(S));
-    }
-  }
-  // The records of the lanes in m, one after the other, which asks for the place of the one `ahead` of each.
-  template <class Record>
-  WAVECREST_INLINE void append(Mask m, Record* out, size_t ahead) const {
-    HWY_ALIGN uint32_t source[kLanes];
-    store(compress(laneIndex(), m), source);
-    for (size_t k = 0, count = countTrue(m); k < count; ++k) {
-      __builtin_prefetch(out + k + ahead, 1);
-      copy(source[k], out[k]);
-    }
-  }
-
- private:
-  static constexpr size_t kPieces = 4;
-  HWY_ALIGN S pieces_[kPieces][4 * kLanes];
-};
-
-// ---- rows to columns ------------------------------------------------------------------------------------------------
-
 template <class Real>
 struct FourColumns {
   Real a, b, c, d;
 };
+
+#if HWY_TARGET != HWY_SCALAR
+// Transposes four by four numbers in each 128-bit block of four registers.
+template <class V>
+WAVECREST_INLINE FourColumns<V> transposeBlocks(V a, V b, V c, V d) {
+  const hn::DFromV<V> tag;
+  const hn::RepartitionToWide<hn::DFromV<V>> wide;
+  const auto lowAB = hn::BitCast(wide, hn::InterleaveLower(tag, a, b));
+  const auto lowCD = hn::BitCast(wide, hn::InterleaveLower(tag, c, d));
+  const auto highAB = hn::BitCast(wide, hn::InterleaveUpper(tag, a, b));
+  const auto highCD = hn::BitCast(wide, hn::InterleaveUpper(tag, c, d));
+  return {hn::BitCast(tag, hn::InterleaveLower(wide, lowAB, lowCD)),
+          hn::BitCast(tag, hn::InterleaveUpper(wide, lowAB, lowCD)),
+          hn::BitCast(tag, hn::InterleaveLower(wide, highAB, highCD)),
+          hn::BitCast(tag, hn::InterleaveUpper(wide, highAB, highCD))};
+}
+#endif
+
+// ---- columns to rows ------------------------------------------------------------------------------------------------
+
+// Records of sixteen numbers, one for each lane: numbers are set for all lanes, then records are stored.
+template <class Real>
+class RecordBlock {
+  using S = typename Real::Storage;
+
+ public:
+  // Numbers 4 piece to 4 piece + 3.
+  WAVECREST_INLINE void set(size_t piece, Real a, Real b, Real c, Real d) { pieces_[piece] = {a, b, c, d}; }
+  // The records of all lanes, one after the other, aligned as wide as they are.
+  template <class Record>
+  WAVECREST_INLINE void store(Record* out) const {
+    write<false>(out);
+  }
+  // The same past the caches: for what is read much later. flushStream() before another thread may read it.
+  template <class Record>
+  WAVECREST_INLINE void stream(Record* out) const {
+    write<true>(out);
+  }
+
+ private:
+  static constexpr size_t kPieces = 4;
+
+  template <bool kStream, class Record>
+  WAVECREST_INLINE void write(Record* out) const {
+    static_assert(sizeof(Record) == 4 * kPieces * sizeof(S));
+    S* const numbers = reinterpret_cast<S*>(out);
+    if constexpr (kLanes == 1 || std::is_same_v<S, double>) {
+      for (size_t piece = 0; piece < kPieces; ++piece) {
+        const auto& [a, b, c, d] = pieces_[piece];
+        HWY_ALIGN S columns[4][kLanes];
+        WAVECREST_SIMD_NAMESPACE::store(a, columns[0]);
+        WAVECREST_SIMD_NAMESPACE::store(b, columns[1]);
+        WAVECREST_SIMD_NAMESPACE::store(c, columns[2]);
+        WAVECREST_SIMD_NAMESPACE::store(d, columns[3]);
+        for (size_t i = 0; i < 4 * kLanes; ++i)
+          numbers[i / 4 * 4 * kPieces + 4 * piece + i % 4] = columns[i % 4][i / 4];
+      }
+    } else {
+      writeTransposed<kStream>(numbers);
+    }
+  }
+
+#if HWY_TARGET != HWY_SCALAR
+  // Block b of register q of a transposed piece has the piece's numbers of lane 4 b + q.
+  template <bool kStream>
+  WAVECREST_INLINE void writeTransposed(float* out) const {
+    const auto transposed = [](const FourColumns<Real>& p)
+                                WAVECREST_LAMBDA { return transposeBlocks(p.a.v, p.b.v, p.c.v, p.d.v); };
+    const auto p = transposed(pieces_[0]), q = transposed(pieces_[1]), r = transposed(pieces_[2]),
+               s = transposed(pieces_[3]);
+    writeEveryFourth<kStream>(p.a, q.a, r.a, s.a, out);
+    writeEveryFourth<kStream>(p.b, q.b, r.b, s.b, out + 4 * kPieces);
+    writeEveryFourth<kStream>(p.c, q.c, r.c, s.c, out + 2 * 4 * kPieces);
+    writeEveryFourth<kStream>(p.d, q.d, r.d, s.d, out + 3 * 4 * kPieces);
+  }
+  // The records of lanes 0, 4, ...: block b of the four pieces is that of lane 4 b.
+  template <bool kStream, class V>
+  static WAVECREST_INLINE void writeEveryFourth(V p, V q, V r, V s, float* out) {
+    const hn::DFromV<V> tag;
+    constexpr size_t kNext = 4 * 4 * kPieces;
+    const auto put = [tag](V v, float* at) WAVECREST_LAMBDA {
+      if constexpr (kStream) {
+        hn::Stream(v, tag, at);
+      } else {
+        hn::Store(v, tag, at);
+      }
+    };
+    if constexpr (kLanes == 4) {
+      put(p, out);
+      put(q, out + 4);
+      put(r, out + 8);
+      put(s, out + 12);
+    } else if constexpr (kLanes == 8) {
+      put(hn::ConcatLowerLower(tag, q, p), out);
+      put(hn::ConcatLowerLower(tag, s, r), out + 8);
+      put(hn::ConcatUpperUpper(tag, q, p), out + kNext);
+      put(hn::ConcatUpperUpper(tag, s, r), out + kNext + 8);
+    } else {  // kLanes == 16
+      const auto two = [put](V even, V odd, float* first) WAVECREST_LAMBDA {
+        put(hn::OddEvenBlocks(hn::SwapAdjacentBlocks(odd), even), first);
+        put(hn::OddEvenBlocks(odd, hn::SwapAdjacentBlocks(even)), first + kNext);
+      };
+      two(hn::ConcatLowerLower(tag, r, p), hn::ConcatLowerLower(tag, s, q), out);
+      two(hn::ConcatUpperUpper(tag, r, p), hn::ConcatUpperUpper(tag, s, q), out + 2 * kNext);
+    }
+  }
+#endif
+
+  FourColumns<Real> pieces_[kPieces];
+};
+
+WAVECREST_INLINE void flushStream() { hwy::FlushStream(); }
+
+// ---- rows to columns ------------------------------------------------------------------------------------------------
 
 // Lane k gets the four numbers from rowAt(k) on, of any type. One load a lane and a transposition by fours: on machines
 // whose gathers are microcoded this costs less than the gather of a single column. Rows need no alignment.
@@ -100,17 +167,8 @@ WAVECREST_INLINE auto loadFour(const RowAt& rowAt) {
         }
       }
     };
-    const hn::ScalableTag<T> tag;
-    const hn::RepartitionToWide<hn::ScalableTag<T> > wide;
-    const auto row0 = blocks(0), row1 = blocks(1), row2 = blocks(2), row3 = blocks(3);
-    const auto low01 = hn::BitCast(wide, hn::InterleaveLower(tag, row0, row1));
-    const auto low23 = hn::BitCast(wide, hn::InterleaveLower(tag, row2, row3));
-    const auto high01 = hn::BitCast(wide, hn::InterleaveUpper(tag, row0, row1));
-    const auto high23 = hn::BitCast(wide, hn::InterleaveUpper(tag, row2, row3));
-    return FourColumns<Real>{{hn::BitCast(tag, hn::InterleaveLower(wide, low01, low23))},
-                             {hn::BitCast(tag, hn::InterleaveUpper(wide, low01, low23))},
-                             {hn::BitCast(tag, hn::InterleaveLower(wide, high01, high23))},
-                             {hn::BitCast(tag, hn::InterleaveUpper(wide, high01, high23))}};
+    const auto columns = transposeBlocks(blocks(0), blocks(1), blocks(2), blocks(3));
+    return FourColumns<Real>{{columns.a}, {columns.b}, {columns.c}, {columns.d}};
   }
 }
 #endif

@@ -1,6 +1,8 @@
 // Every operation of kernels/simd behind a plain pointer, for lanes_test.cpp.
 #include "tests/kernels/lanes_entries.h"
 
+#include <algorithm>
+
 #include "kernels/simd/double_lanes.h"
 #include "kernels/simd/interleave.h"
 #include "kernels/simd/isa_table.h"
@@ -15,6 +17,25 @@ WAVECREST_INLINE void storeFour(const FourColumns<V>& columns, T* out) {
   storeUnaligned(columns.b, out + kLanes);
   storeUnaligned(columns.c, out + 2 * kLanes);
   storeUnaligned(columns.d, out + 3 * kLanes);
+}
+
+template <class T>
+struct Sixteen {
+  T numbers[16];
+};
+template <class T>
+WAVECREST_INLINE void storeRecords(const T* columns, bool stream, T* out) {
+  RecordBlock<decltype(loadUnaligned(columns))> block;
+  const auto column = [columns](size_t i) WAVECREST_LAMBDA { return loadUnaligned(columns + i * kLanes); };
+  for (size_t piece = 0; piece < 4; ++piece) {
+    block.set(piece, column(4 * piece), column(4 * piece + 1), column(4 * piece + 2), column(4 * piece + 3));
+  }
+  auto* const records = reinterpret_cast<Sixteen<T>*>(out);
+  if (stream) {
+    block.stream(records);
+  } else {
+    block.store(records);
+  }
 }
 
 // The table's row for an expression of a, b and c.
@@ -92,6 +113,12 @@ constexpr LanesEntries kEntries = {
     .uintToFloat = [](const uint32_t* in, float* out) HWY_ATTR { storeUnaligned(toFloat(loadUnaligned(in)), out); },
     .floatToDouble = [](const float* in, double* out) HWY_ATTR { storeUnaligned(toDouble(loadUnaligned(in)), out); },
     .doubleToFloat = [](const double* in, float* out) HWY_ATTR { storeUnaligned(toFloat(loadUnaligned(in)), out); },
+    .doubleToLong =
+        [](const double* in, int64_t* out) HWY_ATTR {
+          HWY_ALIGN int64_t longs[kLanes];
+          storeTruncated(loadUnaligned(in), longs);
+          std::copy(longs, longs + kLanes, out);
+        },
     .gather =
         [](const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index, float* floatsOut,
            double* doublesOut, uint32_t* uintsOut) HWY_ATTR {
@@ -114,6 +141,12 @@ constexpr LanesEntries kEntries = {
           storeFour(loadFour([&](size_t k) WAVECREST_LAMBDA { return floats + index[k]; }), floatsOut);
           storeFour(loadFour([&](size_t k) WAVECREST_LAMBDA { return doubles + index[k]; }), doublesOut);
           storeFour(loadFour([&](size_t k) WAVECREST_LAMBDA { return uints + index[k]; }), uintsOut);
+        },
+    .storeRecords =
+        [](const float* floats, const double* doubles, bool stream, float* floatsOut, double* doublesOut) HWY_ATTR {
+          storeRecords(floats, stream, floatsOut);
+          storeRecords(doubles, stream, doublesOut);
+          flushStream();
         },
     .storeScattered =
         [](const float* floats, const double* doubles, const uint32_t* index, float* floatsOut, double* doublesOut)

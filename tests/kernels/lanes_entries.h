@@ -26,6 +26,7 @@ struct LanesEntries {
   void (*uintToFloat)(const uint32_t* in, float* out);
   void (*floatToDouble)(const float* in, double* out);
   void (*doubleToFloat)(const double* in, float* out);
+  void (*doubleToLong)(const double* in, int64_t* out);  // storeTruncated
   // Memory. flags[i] != 0 makes the mask; compress returns how many lanes it kept.
   void (*gather)(const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index,
                  float* floatsOut, double* doublesOut, uint32_t* uintsOut);
@@ -34,6 +35,8 @@ struct LanesEntries {
                      float* floatsOut, double* doublesOut, uint32_t* uintsOut);
   void (*loadFour)(const float* floats, const double* doubles, const uint32_t* uints, const uint32_t* index,
                    float* floatsOut, double* doublesOut, uint32_t* uintsOut);
+  // Sixteen columns of kLanes numbers, one after the other, as records.
+  void (*storeRecords)(const float* floats, const double* doubles, bool stream, float* floatsOut, double* doublesOut);
   void (*storeScattered)(const float* floats, const double* doubles, const uint32_t* index, float* floatsOut,
                          double* doublesOut);
   size_t (*compress)(const uint32_t* flags, const float* floats, const double* doubles, const uint32_t* uints,

@@ -200,8 +200,9 @@ TEST_P(LanesTest, conversionsMatchPlainCode) {
   const std::vector<double> doubles = realInputs<double>(1024, 4);
   for (size_t i = 0; i + n <= doubles.size(); i += n) {
     std::vector<float> floats(n), narrowed(n), fromUInt(n);
-    std::vector<double> widened(n);
+    std::vector<double> widened(n), larger(n);
     std::vector<uint32_t> uints(n);
+    std::vector<int64_t> longs(n);
     lanes().doubleToFloat(&doubles[i], narrowed.data());
     for (size_t k = 0; k < n; ++k) {
       EXPECT_EQ(narrowed[k], static_cast<float>(doubles[i + k]));
@@ -214,7 +215,10 @@ TEST_P(LanesTest, conversionsMatchPlainCode) {
       EXPECT_EQ(widened[k], static_cast<double>(floats[k]));
       EXPECT_EQ(uints[k], static_cast<uint32_t>(floats[k]));
       EXPECT_EQ(fromUInt[k], static_cast<float>(uints[k]));
+      larger[k] = doubles[i + k] * 0x1p20;  // from fractions to 2^61
     }
+    lanes().doubleToLong(larger.data(), longs.data());
+    for (size_t k = 0; k < n; ++k) EXPECT_EQ(longs[k], static_cast<int64_t>(larger[k]));
   }
 }
 
@@ -259,6 +263,24 @@ TEST_P(LanesTest, rowsAreReadIntoColumns) {
       }
     }
     EXPECT_TRUE(floatsOut.intact() && doublesOut.intact() && uintsOut.intact());
+  }
+}
+
+TEST_P(LanesTest, storeRecordsTransposesSixteenColumns) {
+  const size_t n = lanes().lanes;
+  const std::vector<float> floats = realInputs<float>(16 * n, 5);
+  const std::vector<double> doubles = realInputs<double>(16 * n, 6);
+  for (const bool stream : {false, true}) {
+    GuardedColumn<float> floatsOut(16 * n);
+    GuardedColumn<double> doublesOut(16 * n);
+    lanes().storeRecords(floats.data(), doubles.data(), stream, floatsOut.data(), doublesOut.data());
+    for (size_t lane = 0; lane < n; ++lane) {
+      for (size_t i = 0; i < 16; ++i) {
+        EXPECT_EQ(floatsOut[16 * lane + i], floats[i * n + lane]);
+        EXPECT_EQ(doublesOut[16 * lane + i], doubles[i * n + lane]);
+      }
+    }
+    EXPECT_TRUE(floatsOut.intact() && doublesOut.intact());
   }
 }
 

@@ -82,6 +82,7 @@ TEST(LightStore, collectsTheVerticesOfARangeOfPathsWhateverTheirOrder) {
     LightStore<float>& store = *stores.emplace_back(std::make_unique<LightStore<float>>(kLanesOfStore, kNeeds));
     for (uint32_t depth = 1; depth <= 3; ++depth) {
       store.beginDepth(kLanesOfStore);
+      size_t diffuse = 0;  // odd ones, which come first
       for (const size_t parity : {1u, 0u}) {
         for (size_t lane = parity; lane < kLanesOfStore; lane += 2) {
           const size_t path = k * kLanesOfStore + lane;
@@ -90,7 +91,9 @@ TEST(LightStore, collectsTheVerticesOfARangeOfPathsWhateverTheirOrder) {
           store.vertices.lane[at] = static_cast<uint32_t>(lane);
           store.vertices.row[at].behind = static_cast<float>(100 * depth + path);
         }
+        if (parity == 1) diffuse = store.vertices.size - store.firstOf(depth);
       }
+      store.link(store.vertices.size - store.firstOf(depth), diffuse);
     }
   }
   LightStore<float> collected(kLanesOfStore, kNeeds);
@@ -99,14 +102,16 @@ TEST(LightStore, collectsTheVerticesOfARangeOfPathsWhateverTheirOrder) {
       collected.collect(stores, kPaths, first, used);
       for (uint32_t lane = 0; lane < used; ++lane) {
         const size_t path = (first + lane) % kPaths;
-        uint32_t vertex = collected.firstOfLane()[lane];
+        uint32_t link = collected.firstOfLane()[lane];
         for (uint32_t depth = 1; depth <= 3; ++depth) {
           if (!reaches(path, depth)) continue;
-          ASSERT_NE(vertex, kNoIndex);
+          ASSERT_NE(link, kNoIndex);
+          const uint32_t vertex = link & kLinkIndex;
           EXPECT_EQ(collected.vertices.row[vertex].behind, static_cast<float>(100 * depth + path));
-          vertex = collected.vertices.next[vertex];
+          EXPECT_EQ((link & kOtherLink) == 0, path % 2 == 1);
+          link = collected.vertices.next[vertex];
         }
-        EXPECT_EQ(vertex, kNoIndex);
+        EXPECT_EQ(link, kNoIndex);
       }
       for (uint32_t depth = 1; depth <= 3; ++depth) {
         std::map<uint32_t, float> expected, found;
