@@ -9,6 +9,7 @@
 #include "kernels/merge/photon_grid_lanes.h"
 #include "kernels/merge/photon_map.h"
 #include "kernels/mis_lanes.h"
+#include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/vertex_row_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -32,22 +33,31 @@ class Merger {
   Merger(const StageContext<S>& context, Wave<S>& wave)
       : context_(context), wave_(wave), map_(*context.photons), inGrid_(map_.grid) {}
 
-  // Buckets, photons and rows are all over memory: some blocks are searched together, so that all of them have asked
-  // for what they will read before the first reads; and rows are read when the next ones have been asked for.
+  // Buckets, photons and rows are all over memory: each is asked for some blocks of vertices before it is read, and
+  // rows are read when the next ones have been asked for.
   void run() {
-    constexpr size_t kTogether = 4;
-    Search searches[kTogether];
-    for (size_t i = 0; i < wave_.joinable; i += kTogether * kLanes) {
-      const size_t blocks = std::min(kTogether, (wave_.joinable - i + kLanes - 1) / kLanes);
-      for (size_t k = 0; k < blocks; ++k) locate(i + k * kLanes, searches[k]);
-      for (size_t k = 0; k < blocks; ++k) askForBuckets(searches[k]);
-      for (size_t k = 0; k < blocks; ++k) findRuns(searches[k]);
-      for (size_t k = 0; k < blocks; ++k) askForKeys(searches[k]);
+    const size_t blocks = (wave_.joinable + kLanes - 1) / kLanes, groups = (blocks + kTogether - 1) / kTogether;
+    Search searches[3][kTogether];
+    // Of groups before the first, whose numbers wrap, and after the last there are none.
+    const auto forGroup = [&](size_t group, const auto& function) WAVECREST_LAMBDA {
+      if (group >= groups) return;
+      const size_t first = group * kTogether, count = std::min(kTogether, blocks - first);
+      for (size_t k = 0; k < count; ++k) function(searches[group % 3][k], (first + k) * kLanes);
+    };
+    for (size_t group = 0; group < groups + 2; ++group) {
+      forGroup(group, [&](Search& search, size_t i) WAVECREST_LAMBDA {
+        locate(i, search);
+        askForBuckets(search);
+      });
+      forGroup(group - 1, [&](Search& search, size_t) WAVECREST_LAMBDA {
+        findRuns(search);
+        askForKeys(search);
+      });
       settled_ = asked_;
-      for (size_t k = 0; k < blocks; ++k) {
-        listCandidates(searches[k]);
+      forGroup(group - 2, [&](Search& search, size_t) WAVECREST_LAMBDA {
+        listCandidates(search);
         if (nearCount_ - asked_ >= kLanes) askForRows();
-      }
+      });
       askForRows();
       if (settled_ >= kNear / 2) shade(wholeBlocks(settled_));
     }
@@ -55,6 +65,8 @@ class Merger {
   }
 
  private:
+  static constexpr size_t kTogether = 2;  // blocks
+
   // The runs of photons that the vertices of a block look at, one for each strip of cells: y and z of the lower cell,
   // or one more. In memory, where lanes are read one by one, and looked up.
   static constexpr uint32_t kRuns = 4;
@@ -176,10 +188,12 @@ class Merger {
     const Float reach2(reach * reach);
     // Whole blocks are read: those that the list's end leaves open get the first photon.
     storeUnaligned(UInt(0u), candidateKey_ + count);
+    readEach(
+        candidateKey_, count, [this](uint32_t key) WAVECREST_LAMBDA { return map_.keys[key].place; }, candidatePlace_);
     for (size_t i = 0; i < count; i += kLanes) {
       const UInt vertex = load(candidateVertex_ + i), key = load(candidateKey_ + i);
       const UInt lane = vertex & UInt(kLanes - 1);
-      const UInt place = RecordLanes<PhotonKey>(map_.keys, key)(map_.keys->place);
+      const UInt place = load(candidatePlace_ + i);
       // From the lower cell on: the parity says which of the two.
       const UInt fromLower = place ^ lookUp(search.lower, lane);
       const auto away = [&](const Numbers<kLanes>& coordinate, UInt quantum) WAVECREST_LAMBDA {
@@ -240,49 +254,56 @@ class Merger {
   void shade(size_t count) {
     // Whole blocks are read: those that the end leaves open get the next ones, or the first vertex.
     storeUnaligned(UInt(0u), nearVertex_ + nearCount_);
-    const auto& scene = *context_.scene;
-    const auto& paths = wave_.paths;
-    const Real radius(context_.mis.radius);
-    // k = len_L + len_C
-    const Real longest(static_cast<float>(context_.limits.maxDepth - context_.depth));
-    const auto vec3 = [](const FourColumns<Real>& row) WAVECREST_LAMBDA { return Vec3<Real>{row.a, row.b, row.c}; };
     for (size_t i = 0; i < count; i += kLanes) {
-      const Mask active = firstLanes(count - i);
-      const PhotonLanes photons(map_, nearPhoton_ + i, count - i);
-      const UInt vertex = load(nearVertex_ + i);
-      const auto row = gatherRows<P, kFeatures>(scene, wave_.vertexRows.row, wave_.surfaces, nearVertex_ + i);
-      const auto& shading = row.shading;
-      const Vec3<Real> position = vec3(photons(&VertexRow<S>::position));
-      const FourColumns<Real> back = photons(&VertexRow<S>::fix), facing = photons(&VertexRow<S>::normal),
-                              carried = photons(&VertexRow<S>::throughput);
-      const Vec3<Real> direction = vec3(back), normal = vec3(facing);
-      // On the same side of the surface, and not beyond the path length.
-      const Mask accepted = active & found(position, shading.position, load(nearRun_ + i)) &
-                            (dot(shading.normal, normal) > Real(0.1f)) &
-                            (abs(dot(position - shading.position, shading.normal)) <= radius * Real(0.5f)) &
-                            (edgesOfTag(back.d) <= longest);
-      context_.counters->merges += countTrue(accepted);
-      const auto bsdf = shading.scattering(active, direction);
-      // METHODS 3.9; directions within the surface carry nothing that a merge could use.
-      const Real cosine = abs(dot(direction, normal));
-      const Real perCosine = zeroUnless(cosine > Real(1e-6f), reciprocal<P>(max(cosine, Real(1e-6f))));
-      Real weight(1);
-      if (context_.mis.mergeWeights) {
-        const MisSums<Real> light{facing.d, Real(0), mergeSum(context_.mis, carried.d)};
-        const MisSums<Real> camera{row.dVCM, Real(0), mergeSum(context_.mis, row.behind)};
-        // Where connections compete (kVC > 0) every edge may be one; else kVC is 0 and the switch does not matter.
-        const Real wLight = behindMerge(context_.mis, 1, light, bsdf.pdf);
-        const Real wCamera = behindMerge(context_.mis, 1, camera, bsdf.pdfReverse);
-        weight = reciprocal<P>(Real(1) + wLight + wCamera);
-      }
-      const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine;
-      const Vec3<Real> contribution = row.throughput * bsdf.f * (vec3(carried) * perCosine) * scale;
-      addRadiance(wave_.radiance, gather(paths.lane, vertex), accepted, contribution);
+      const bool diffuse = allDiffuse(wave_, load(nearVertex_ + i));
+      withBsdfs<kFeatures>(diffuse, [&](auto bsdfs) WAVECREST_LAMBDA { shadeBlock<decltype(bsdfs)::value>(i, count); });
     }
     for (uint32_t* const list : {nearVertex_, nearRun_, nearPhoton_}) std::copy(list + count, list + nearCount_, list);
     nearCount_ -= count;
     asked_ -= count;
     settled_ -= std::min(settled_, count);
+  }
+
+  // Block i of the first `count`, found by vertices whose BSDFs are of kBsdfs.
+  template <uint32_t kBsdfs>
+  WAVECREST_NOINLINE void shadeBlock(size_t i, size_t count) {
+    const Real radius(context_.mis.radius);
+    // k = len_L + len_C
+    const Real longest(static_cast<float>(context_.limits.maxDepth - context_.depth));
+    const auto vec3 = [](const FourColumns<Real>& row) WAVECREST_LAMBDA { return Vec3<Real>{row.a, row.b, row.c}; };
+    const Mask active = firstLanes(count - i);
+    const PhotonLanes photons(map_, nearPhoton_ + i, count - i);
+    HWY_ALIGN uint32_t lanes[kLanes];
+    readEach(
+        nearVertex_ + i, kLanes, [this](uint32_t v) WAVECREST_LAMBDA { return wave_.paths.lane[v]; }, lanes);
+    const auto row = gatherRows<P, kBsdfs>(*context_.scene, wave_.vertexRows.row, wave_.surfaces, nearVertex_ + i);
+    const auto& shading = row.shading;
+    const Vec3<Real> position = vec3(photons(&VertexRow<S>::position));
+    const FourColumns<Real> back = photons(&VertexRow<S>::fix), facing = photons(&VertexRow<S>::normal),
+                            carried = photons(&VertexRow<S>::throughput);
+    const Vec3<Real> direction = vec3(back), normal = vec3(facing);
+    // On the same side of the surface, and not beyond the path length.
+    const Mask accepted = active & found(position, shading.position, load(nearRun_ + i)) &
+                          (dot(shading.normal, normal) > Real(0.1f)) &
+                          (abs(dot(position - shading.position, shading.normal)) <= radius * Real(0.5f)) &
+                          (edgesOfTag(back.d) <= longest);
+    context_.counters->merges += countTrue(accepted);
+    const auto bsdf = shading.scattering(active, direction);
+    // METHODS 3.9; directions within the surface carry nothing that a merge could use.
+    const Real cosine = abs(dot(direction, normal));
+    const Real perCosine = zeroUnless(cosine > Real(1e-6f), reciprocal<P>(max(cosine, Real(1e-6f))));
+    Real weight(1);
+    if (context_.mis.mergeWeights) {
+      const MisSums<Real> light{facing.d, Real(0), mergeSum(context_.mis, carried.d)};
+      const MisSums<Real> camera{row.dVCM, Real(0), mergeSum(context_.mis, row.behind)};
+      // Where connections compete (kVC > 0) every edge may be one; else kVC is 0 and the switch does not matter.
+      const Real wLight = behindMerge(context_.mis, 1, light, bsdf.pdf);
+      const Real wCamera = behindMerge(context_.mis, 1, camera, bsdf.pdfReverse);
+      weight = reciprocal<P>(Real(1) + wLight + wCamera);
+    }
+    const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine;
+    const Vec3<Real> contribution = row.throughput * bsdf.f * (vec3(carried) * perCosine) * scale;
+    addRadiance(wave_.radiance, load(lanes), accepted, contribution);
   }
 
   // Lists have room for a whole vector beyond the count at which they are emptied, and for one more of zeros.
@@ -295,6 +316,7 @@ class Merger {
   // Of one block: the vertex and run that each was found by, and its key.
   HWY_ALIGN uint32_t candidateVertex_[kCandidates + kRoom];
   HWY_ALIGN uint32_t candidateKey_[kCandidates + kRoom];
+  HWY_ALIGN uint32_t candidatePlace_[kCandidates + kRoom];
   // Of all blocks: index of the vertex, run, and photon, where it has been asked for, else its key.
   HWY_ALIGN uint32_t nearVertex_[kNear + kRoom];
   HWY_ALIGN uint32_t nearRun_[kNear + kRoom];
