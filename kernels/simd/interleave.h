@@ -63,7 +63,7 @@ class RecordBlock {
     if constexpr (kLanes == 1 || std::is_same_v<S, double>) {
       for (size_t piece = 0; piece < kPieces; ++piece) {
         const auto& [a, b, c, d] = pieces_[piece];
-        HWY_ALIGN S columns[4][kLanes];
+        HWY_ALIGN S columns[4][kLanes]{};  // clang-tidy does not see that store fills them
         WAVECREST_SIMD_NAMESPACE::store(a, columns[0]);
         WAVECREST_SIMD_NAMESPACE::store(b, columns[1]);
         WAVECREST_SIMD_NAMESPACE::store(c, columns[2]);
