@@ -72,7 +72,7 @@ struct ShadowRays : Columns<ShadowRays<S>> {
 // Pairs of a camera vertex and a light vertex that connectVertices is about to join. Scratch of one stage call; dropped
 // without connections.
 struct VertexPairs : Columns<VertexPairs> {
-  Column<uint32_t> camera, light;  // light: a link (kernels/columns/light_vertices.h)
+  Column<uint32_t> camera, light;  // light: a link (light_vertices.h); an index in Wave::sortedPairs
   auto all() { return std::tie(camera, light); }
 };
 

@@ -9,7 +9,7 @@
 
 WAVECREST_SIMD_BEGIN
 
-// Calls shade(features): features is a std::integral_constant of what vertices need, of which all are diffuse or not.
+// Calls shade(features) with a std::integral_constant: what vertices need that are all diffuse, or may have any BSDF.
 template <uint32_t kFeatures, class Shade>
 WAVECREST_INLINE auto withBsdfs(bool diffuse, const Shade& shade) {
   if constexpr (!onlyDiffuse(kFeatures)) {
@@ -24,7 +24,7 @@ template <uint32_t kFeatures, class S, class Shade>
 WAVECREST_INLINE void forEachBsdfRange(const Wave<S>& wave, size_t count, const Shade& shade) {
   const size_t diffuse = onlyDiffuse(kFeatures) ? 0 : std::min(wave.diffuse, count) / kLanes * kLanes;
   if (diffuse != 0) withBsdfs<kFeatures>(true, [&](auto bsdfs) WAVECREST_LAMBDA { shade(bsdfs, 0, diffuse); });
-  if (diffuse != count) shade(std::integral_constant<uint32_t, kFeatures>(), diffuse, count);
+  if (diffuse != count) withBsdfs<kFeatures>(false, [&](auto bsdfs) WAVECREST_LAMBDA { shade(bsdfs, diffuse, count); });
 }
 
 // Whether all of a vector of the wave's vertices are diffuse, where withBsdfs tells them apart.

@@ -36,6 +36,7 @@ WAVECREST_INLINE void packVertexRows(const StageContext<S>& context, Wave<S>& wa
   if (rows.size != 0) return;
   const size_t count = wave.joinable;
   rows.claim(count);
+  // The tail of a column has room for whole blocks.
   for (size_t i = 0; i < count; i += kLanes) makeRows<kFeatures>(context, wave, i, 0).store(rows.row + i);
 }
 

@@ -125,6 +125,7 @@ class RecordBlock {
   FourColumns<Real> pieces_[kPieces];
 };
 
+// Orders what this thread has streamed before what it stores next.
 WAVECREST_INLINE void flushStream() { hwy::FlushStream(); }
 
 // ---- rows to columns ------------------------------------------------------------------------------------------------

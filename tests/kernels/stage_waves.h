@@ -25,6 +25,7 @@ void forEachQueue(Wave<S>& a, Wave<S>& b, Function&& function) {
   function("paths", a.paths, b.paths);
   function("shadowRays", a.shadowRays, b.shadowRays);
   function("pairs", a.pairs, b.pairs);
+  function("sortedPairs", a.sortedPairs, b.sortedPairs);
   function("radiance", a.radiance, b.radiance);
 }
 
