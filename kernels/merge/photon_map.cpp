@@ -12,8 +12,9 @@ namespace {
 // pass writes as many streams, whose pages are all at hand, the second stays within a core's caches for up to some
 // million photons.
 constexpr uint32_t kPartitions = 64;
-// Each stream's next lines are asked for so many photons before they are written.
-constexpr size_t kPhotonsAhead = 8;
+// What a cache line holds. Lines are asked for before they are written: the next ones of each stream while those before
+// them are filled, and what a partition is sorted into at once.
+constexpr uint32_t kKeysPerLine = 64 / sizeof(PhotonKey), kNumbersPerLine = 64 / sizeof(uint32_t);
 constexpr uint32_t kMinBuckets = 1u << 12;
 // Entries of bucketStart after the last bucket's: searches read four from the bucket on.
 constexpr size_t kStartsBeyond = 4;
@@ -54,7 +55,8 @@ void PhotonMap<S>::dealToPartitions(Stores stores, const ForEach& forEach) {
     for (uint32_t k = 0; k < v.size; ++k) {
       const uint32_t bucket = v.cell[k] & bucketMask;
       const uint32_t at = next[bucket >> partitionShift]++;
-      __builtin_prefetch(dealt_ + at + kPhotonsAhead, 1);
+      __builtin_prefetch(dealt_ + at + kKeysPerLine, 1);
+      __builtin_prefetch(dealtBuckets_ + at + kNumbersPerLine, 1);
       dealt_[at] = {v.place[k], firstPhoton + k};
       dealtBuckets_[at] = bucket;
     }
@@ -71,8 +73,11 @@ void PhotonMap<S>::sortPartition(size_t partition, size_t storeCount) {
   const uint32_t firstBucket = static_cast<uint32_t>(partition) * perPartition, count = end - first;
   // Counts, then a running sum that leaves in start[b] where bucket b ends. Dealing from the last photon to the first
   // moves each end down to where its bucket begins, and keeps the order within it.
-  constexpr uint32_t kKeysPerLine = 64 / sizeof(PhotonKey);
-  for (uint32_t k = first; k < end; k += kKeysPerLine) __builtin_prefetch(keys_ + k, 1);
+  for (uint32_t b = 0; b < perPartition; b += kNumbersPerLine) __builtin_prefetch(start + b, 1);
+  for (uint32_t k = first; k < end; k += kKeysPerLine) {
+    __builtin_prefetch(keys_ + k, 1);
+    __builtin_prefetch(dealt_ + k);
+  }
   std::fill_n(start, perPartition, 0);
   for (uint32_t k = 0; k < count; ++k) ++start[bucket[k] - firstBucket];
   uint32_t place = first;
