@@ -1,4 +1,4 @@
-// Every operation of kernels/simd behind a plain pointer, for lanes_test.cpp.
+// Every operation of kernels/simd behind a plain pointer, for lanes_test.cpp and lane_moves_test.cpp.
 #include "tests/kernels/lanes_entries.h"
 
 #include <algorithm>
