@@ -14,7 +14,8 @@ namespace {
 constexpr uint32_t kPartitions = 64;
 // What a cache line holds. Lines are asked for before they are written: the next ones of each stream while those before
 // them are filled, and what a partition is sorted into at once.
-constexpr uint32_t kKeysPerLine = 64 / sizeof(PhotonKey), kNumbersPerLine = 64 / sizeof(uint32_t);
+constexpr uint32_t kKeysPerLine = kColumnAlignment / sizeof(PhotonKey);
+constexpr uint32_t kNumbersPerLine = kColumnAlignment / sizeof(uint32_t);
 constexpr uint32_t kMinBuckets = 1u << 12;
 // Entries of bucketStart after the last bucket's: searches read four from the bucket on.
 constexpr size_t kStartsBeyond = 4;
