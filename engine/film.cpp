@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include "kernels/stages.h"
-
 namespace wavecrest {
 namespace {
 
@@ -65,20 +62,21 @@ uint64_t Film::add(const Wave<S>& wave) {
 template uint64_t Film::add(const Wave<float>&);
 template uint64_t Film::add(const Wave<double>&);
 
-void Film::setSplats(std::vector<int64_t> sums, double factor) {
-  splats_ = std::move(sums);
-  splatFactor_ = factor;
-}
-
 std::vector<float> Film::resolve() const {
   std::vector<float> image(3 * size_t{area_.width} * area_.height, 0.0f);
-  const double splatScale = splatFactor_ / kSplatScale;
+  std::vector<double> pending;
+  if (!pending_.empty()) pending.resize(image.size());
+  for (const PendingSplat& splat : pending_) {
+    for (size_t c = 0; c < 3; ++c) pending[3 * size_t{splat.pixel} + c] += splat.rgb[c];
+  }
   for (size_t i = 0; i < area_.pixels.size(); ++i) {
     const uint32_t x = (area_.pixels[i] & 0xffffu) - area_.x0, y = (area_.pixels[i] >> 16) - area_.y0;
     const size_t pixel = 3 * (size_t{y} * area_.width + x);
     for (size_t c = 0; c < 3; ++c) {
-      double value = samples_[i] == 0 ? 0 : sums_[3 * i + c] / samples_[i];
-      if (!splats_.empty()) value += static_cast<double>(splats_[pixel + c]) * splatScale;
+      double value = samples_[i] == 0 ? 0 : sums_[3 * i + c] / static_cast<double>(samples_[i]);
+      double splats = splats_ ? splats_->total(pixel + c) / splats_->scale() : 0;
+      if (!pending.empty()) splats += pending[pixel + c];
+      value += splats * splatFactor_;
       image[pixel + c] = static_cast<float>(value);
     }
   }

@@ -1,12 +1,16 @@
 // The film: what all iterations have added up to, pixel by pixel.
 //
-// Sums are in double, so a million iterations lose nothing that float samples had. A pixel's samples are added in the
-// order of iterations, whatever thread computes them, so an image is the same bit for bit on any number of threads.
+// Sums of samples are in double, so a million iterations keep the precision of float samples. An image is the same bit
+// for bit on any number of threads: a pixel's samples are added in the order of iterations, and splats are summed as
+// integers, whose total does not depend on the order.
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "engine/splat_films.h"
 #include "kernels/columns/wave.h"
 
 namespace wavecrest {
@@ -17,7 +21,14 @@ struct FilmArea {
   uint32_t x0 = 0, y0 = 0;         // its corner in the full film
   std::vector<uint32_t> pixels;    // raster (y << 16 | x) in the full film, in wave order: small tiles, so that
                                    // the camera rays of a wave stay together
+  FilmWindow window() const { return {x0, y0, width, height}; }
   static FilmArea make(uint32_t x0, uint32_t y0, uint32_t width, uint32_t height);
+};
+
+// A splat of one pixel of the rendered rectangle, counted row by row.
+struct PendingSplat {
+  uint32_t pixel;
+  double rgb[3];
 };
 
 class Film {
@@ -29,12 +40,17 @@ class Film {
   template <class S>
   uint64_t add(const Wave<S>& wave);
 
-  // What has been splatted so far, in fixed point (kSplatScale), row by row, and the factor that makes it radiance: for
-  // light paths one over their number.
-  void setSplats(std::vector<int64_t> sums, double factor);
+  // Makes room for splats; see SplatFilms.
+  void makeSplats(size_t threads, double scale) { splats_.emplace(area_.pixels.size(), threads, scale); }
+  SplatFilms& splats() { return *splats_; }
+  const SplatFilms& splats() const { return *splats_; }
+  // What makes the sum of all splats radiance: for light paths one over their number.
+  void setSplatFactor(double factor) { splatFactor_ = factor; }
+  // Splats that belong to the image of now but not to the sums: those that Markov chains owe.
+  void setPending(std::vector<PendingSplat> pending) { pending_ = std::move(pending); }
 
   // The image, row by row from the top, RGB: the mean of each pixel's samples (black where there are none) plus the
-  // splats.
+  // splats. No wave may be under way.
   std::vector<float> resolve() const;
 
   const FilmArea& area() const { return area_; }
@@ -43,8 +59,9 @@ class Film {
  private:
   FilmArea area_;
   std::vector<double> sums_;       // RGB, in wave order
-  std::vector<uint32_t> samples_;  // in wave order
-  std::vector<int64_t> splats_;
+  std::vector<uint64_t> samples_;  // in wave order
+  std::optional<SplatFilms> splats_;
+  std::vector<PendingSplat> pending_;
   double splatFactor_ = 0;
 };
 

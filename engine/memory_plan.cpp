@@ -18,8 +18,9 @@ size_t bytesOf(const std::vector<T>& items) {
   return items.size() * sizeof(T);
 }
 
-// Waves of light paths that are walked.
-constexpr size_t kPilotWaves = 4;
+// Light paths that are walked, whatever the size of waves: the unit of splats follows from them, and with it the last
+// bits of an image.
+constexpr size_t kPilotPaths = 8192;
 
 // Later waves and iterations may need some more room than the first ones.
 constexpr double kSpread = 1.05;
@@ -28,6 +29,8 @@ constexpr double kSpread = 1.05;
 struct Pilot {
   size_t paths = 0, stored = 0;
   size_t room = 0;  // of the largest store: of all vertices, and of those that it might have stored at last
+  // Splats that are finite and not black, and the sum of their exponents: integers, which no order of sums changes.
+  int64_t splats = 0, exponents = 0;
 };
 
 template <class S>
@@ -36,7 +39,6 @@ Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, 
   const FlushToZero flushToZero;
   Wave<S> wave(settings.waveSize, plan.needs);
   LightStore<S> store(settings.waveSize, plan.needs, plan.lightUse);
-  std::vector<int64_t> splats(plan.pipeline.splats() ? 3 * area.pixels.size() : 0);
   StageCounters counters;
   StageContext<S> context;
   context.scene = &plan.scene->view;
@@ -45,13 +47,23 @@ Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, 
   context.limits = settings.limits;
   context.mis = misSettings(plan.pipeline.lightPass->strategies, settings, plan.scene->view.radius, lightPaths, 0);
   context.light = &store;
-  context.splats = {splats.data(), area.x0, area.y0, area.width, area.height};
+  context.film = area.window();
   context.counters = &counters;
   Pilot pilot;
-  for (size_t i = 0; i < kPilotWaves && pilot.paths < lightPaths; ++i) {
+  const SplatDrain<S> drain = [&](Splats<S>& splats) {
+    for (size_t i = 0; i < splats.size; ++i) {
+      const auto value = static_cast<double>(std::max({splats.red[i], splats.green[i], splats.blue[i]}));
+      if (!(value > 0 && std::isfinite(value))) continue;
+      ++pilot.splats;
+      pilot.exponents += std::ilogb(value);
+    }
+    splats.size = 0;
+  };
+  const size_t wanted = std::min(kPilotPaths, lightPaths);
+  while (pilot.paths < wanted) {
     wave.firstPath = pilot.paths;
-    wave.pathCount = std::min<size_t>(settings.waveSize, lightPaths - pilot.paths);
-    runPass<S>(*plan.pipeline.lightPass, context, wave, nullptr);
+    wave.pathCount = std::min<size_t>(settings.waveSize, wanted - pilot.paths);
+    runPass<S>(*plan.pipeline.lightPass, context, wave, nullptr, drain);
     pilot.paths += wave.pathCount;
     pilot.stored += store.vertices.size;
     pilot.room = std::max(pilot.room, store.roomUsed());
@@ -76,7 +88,7 @@ class Planner {
     memory_.bytesPerPath = Wave<S>(1, plan_.needs).bytesPerPath();
     use.waves = settings_.threads * waveBytes(memory_.bytesPerPath, settings_.waveSize);
     use.film = filmBytes(pixels);
-    if (plan_.pipeline.splats()) use.splats = (settings_.threads + 1) * splatBytes(pixels);
+    if (plan_.pipeline.splats()) use.splats = SplatFilms::bytesFor(pixels, settings_.threads);
     if (plan_.pipeline.chains) {
       addChains();
     } else if (plan_.pipeline.lightPass) {
@@ -90,7 +102,8 @@ class Planner {
   // Waves of walks' ends and a light vertex per lane where walks are joined; chains by the waves they are cut into.
   void addChains() {
     MemoryUse& use = memory_.use;
-    const bool pathSpace = plan_.pipeline.chains->inPathSpace();
+    memory_.splatScale = std::ldexp(1.0, kSplatUnitBits);  // a chain's splat has luminance 1
+    const bool pathSpace = plan_.pipeline.chains->inPathSpace;
     const uint32_t edges = plan_.pathLaws.law().maxEdges;
     if (pathSpace) {
       use.waves += settings_.threads * PathMutations<S>::bytesFor(settings_.waveSize, edges, plan_.needs);
@@ -108,6 +121,9 @@ class Planner {
   }
   void addLightPaths(size_t asked) {
     pilot_ = walkLightPaths(plan_, settings_, area_, asked);
+    // Where the pilot has no splat, those of the render are rare, and any unit of theirs is fine enough.
+    const int64_t exponent = pilot_.splats == 0 ? 0 : pilot_.exponents / pilot_.splats;
+    memory_.splatScale = std::ldexp(1.0, kSplatUnitBits - static_cast<int>(exponent));
     const double spread = pilot_.paths < asked ? kSpread : 1;
     memory_.verticesPerWave = static_cast<size_t>(spread * static_cast<double>(pilot_.room));
     memory_.lightPaths = asked;
@@ -174,8 +190,7 @@ size_t sceneBytes(const CompiledScene<S>& scene) {
 template size_t sceneBytes(const CompiledScene<float>&);
 template size_t sceneBytes(const CompiledScene<double>&);
 
-size_t filmBytes(size_t pixels) { return pixels * (3 * sizeof(double) + sizeof(uint32_t)); }
-size_t splatBytes(size_t pixels) { return pixels * 3 * sizeof(int64_t); }
+size_t filmBytes(size_t pixels) { return pixels * (3 * sizeof(double) + sizeof(uint64_t)); }
 size_t waveBytes(size_t bytesPerPath, size_t waveSize) { return bytesPerPath * paddedItems(waveSize); }
 
 template <class S>
@@ -185,10 +200,12 @@ MemoryPlan planMemory(const RenderPlan<S>& plan, const RenderSettings& settings,
 template MemoryPlan planMemory(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);
 template MemoryPlan planMemory(const RenderPlan<double>&, const RenderSettings&, const FilmArea&);
 
-MemoryPlan planMemory(const Scene& scene, const RenderSettings& settings) {
+MemoryPlan planMemory(const Scene& scene, const RenderSettings& asked) {
+  const RenderSettings settings = withinDepthOfMethod(asked);
   const FilmArea area = filmArea(scene.film);
-  return settings.precision == Precision::doubled ? planMemory(planRender<double>(scene, settings), settings, area)
-                                                  : planMemory(planRender<float>(scene, settings), settings, area);
+  const RenderSettings cut = withPieces(settings, area.pixels.size());
+  return settings.precision == Precision::doubled ? planMemory(planRender<double>(scene, cut), cut, area)
+                                                  : planMemory(planRender<float>(scene, cut), cut, area);
 }
 
 }  // namespace wavecrest

@@ -18,7 +18,7 @@ struct MemoryUse {
   size_t scene = 0;          // primitives, attributes, materials, textures, lights, and the hierarchy
   size_t waves = 0;          // columns of one wave per thread
   size_t film = 0;           // sums of the pixels
-  size_t splats = 0;         // sums of t = 1: one per thread, and the image's
+  size_t splats = 0;         // sums of t = 1, in at most kSplatFilms films
   size_t lightVertices = 0;  // of a wave per thread, or with a photon map of all waves
   size_t photonMap = 0;
   size_t chains = 0;  // state of the Markov chains
@@ -30,7 +30,6 @@ struct MemoryUse {
 template <class S>
 size_t sceneBytes(const CompiledScene<S>& scene);
 size_t filmBytes(size_t pixels);
-size_t splatBytes(size_t pixels);  // of one worker
 // Of one wave's columns.
 size_t waveBytes(size_t bytesPerPath, size_t waveSize);
 
@@ -40,6 +39,7 @@ struct MemoryPlan {
   size_t lightPaths = 0;       // N_L: of each iteration
   size_t verticesPerWave = 0;  // room that the light vertices of a wave need
   size_t photons = 0;          // with a photon map: about how many light vertices an iteration has
+  double splatScale = 1;       // of the film's sums (kernels/splat/splat_sums.h)
 };
 
 // The budget is too small even for the least that a render can do with.

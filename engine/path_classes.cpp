@@ -207,7 +207,7 @@ PathClassTable classifyPaths(const SceneLinks& links, std::span<const MethodEntr
   table.classes = findClasses(links);
   for (PathClass& pathClass : table.classes) {
     for (const MethodEntry& entry : methods) {
-      pathClass.verdicts.push_back(judge.verdict(entry.strategies, pathClass.bits));
+      pathClass.verdicts.push_back(judge.verdict(strategiesOf(entry.method), pathClass.bits));
     }
   }
   table.reference = chooseReference(table);

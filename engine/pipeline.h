@@ -1,52 +1,34 @@
-// A pipeline: the stages of a method in the order they run, and the loop that runs them on one wave.
+// A pipeline: a method's page (engine/methods/method_page.h) with the kernels that it calls, and the loop that runs a
+// walk of it on one wave.
 #pragma once
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <optional>
-#include <string_view>
+#include <string>
+#include <variant>
 #include <vector>
 
+#include "engine/methods/method_page.h"
 #include "kernels/stages.h"
 
 namespace wavecrest {
 
-// How often a stage runs at each depth of its walk. A row of stages with untilJoined is repeated as a whole until all
-// pairs of vertices have been joined.
-enum class Repeat { once, untilJoined };
-
-// One entry of a pass. items: how many records the stage is about to read, for the statistics; lanes: how many of them
-// it works on at once.
+// One stage of a pipeline: what runs, and its row of the statistics. items: how many records the stage is about to
+// read; lanes: how many of them it works on at once.
 template <class S>
 struct StageCall {
-  std::string_view name;
+  std::string name;
   Stage<S> run;
   size_t (*items)(const Wave<S>&);
   size_t lanes;
   Repeat repeat = Repeat::once;
+  // Repetitions go on with the items of the first: how many there are depends on the size of waves, so they are not
+  // counted again.
+  bool countedOnce = false;
 };
-
-// The strategies of path tracing, where it is not part of a bidirectional method.
-constexpr MisSettings kPathTracingStrategies{.emission = true, .nextEvent = true, .powerHeuristic = true};
-
-// What a stage works on: live paths, those at vertices that can be joined, or shadow rays.
-template <class S>
-size_t pathItems(const Wave<S>& wave) {
-  return wave.rays.size;
-}
-template <class S>
-size_t joinableItems(const Wave<S>& wave) {
-  return wave.joinable;
-}
-template <class S>
-size_t shadowItems(const Wave<S>& wave) {
-  return wave.shadowRays.size;
-}
-template <class S>
-size_t generatedItems(const Wave<S>& wave) {
-  return wave.pathCount;
-}
 
 // One walk of a wave's paths: generated once, then depth by depth until none is left.
 template <class S>
@@ -56,37 +38,36 @@ struct Pass {
   StageCall<S> generate;
   std::vector<StageCall<S>> firstDepth = {};  // at depth 1, where it differs; else empty
   std::vector<StageCall<S>> perDepth = {};
+  bool splats = false;  // its contributions are splats, which a SplatDrain takes to the film
 
-  size_t stageCount() const { return 1 + firstDepth.size() + perDepth.size(); }
+  // Rows of its statistics: its stages, and what the drain does.
+  size_t stageCount() const { return 1 + firstDepth.size() + perDepth.size() + (splats ? 1 : 0); }
 };
 
-// Where the stages that join the walks of multiplexed chains work: kernels/columns/chains.h, WalkEnds.
-enum class EndsOf { atOrigin, cameraAtVertex, lightAtVertex };
-
-// A stage that runs once, on walks' ends. walk, depth: what it takes them for; ends of all depths come together.
+// Stages that run once, on the wave or on the ends of its walks (OncePhase).
 template <class S>
-struct JoinCall {
-  StageCall<S> stage;
-  EndsOf ends;
-  Walk walk;
-  uint32_t depth;
+struct OnceCalls {
+  std::vector<StageCall<S>> stages;
+  EndsOf ends = EndsOf::wave;
+  Walk walk = Walk::camera;
+  uint32_t depth = 0;
 };
 
-// What Markov chains do beside the passes: propose, then the passes with a join after each, then accept.
+// What Markov chains do, in order: `trace` makes a proposal and its contribution, a walk being the pipeline's own pass;
+// `decide` begins with acceptMutations.
 template <class S>
 struct ChainCalls {
-  StageCall<S> propose, accept;
-  std::vector<JoinCall<S>> afterCamera = {}, afterLight = {};
-  // In path space: what joins and weighs the walks of whole waves, and what follows an acceptance.
-  std::vector<StageCall<S>> weigh = {}, commit = {};
+  std::vector<std::variant<Walk, OnceCalls<S>>> trace;
+  std::vector<StageCall<S>> decide;
   std::optional<Pass<S>> directPass = std::nullopt;  // paths of up to kDirectLength edges, if chains leave them out
+  bool inPathSpace = false;
 
-  bool inPathSpace() const { return !weigh.empty(); }
+  bool joinsEnds() const;  // multiplexed: stages join the ends of walks
 };
 constexpr uint32_t kDirectLength = 2;
 
-// A method. With a photon map, all light passes of an iteration come before all its camera passes; with chains, the
-// camera pass comes first and paths are what the chains propose.
+// A method's page with the kernels that it calls. With a photon map, all light passes of an iteration come before all
+// its camera passes; with chains, paths are what the chains propose.
 template <class S>
 struct Pipeline {
   std::optional<Pass<S>> lightPass = std::nullopt;
@@ -100,8 +81,7 @@ struct Pipeline {
     if (lightPass || chains) return 0;
     return static_cast<uint32_t>(std::bit_width(std::min(waveSize, kIterationsPerWave))) - 1;
   }
-  bool splats() const { return chains || (lightPass && lightPass->strategies.camera); }
-  bool bidirectional() const { return lightPass.has_value(); }
+  bool splats() const { return chains || (lightPass && lightPass->splats); }
 };
 
 // All intersectors offer the same pair of stages.
@@ -110,6 +90,10 @@ struct Intersector {
   Stage<S> extend, occlude;
   size_t lanes;
 };
+
+// The page's stages, of these kernels and this intersector.
+template <class S>
+Pipeline<S> makePipeline(const MethodPage& page, const Stages<S>& stages, const Intersector<S>& intersector);
 
 // Time and items of each stage, in pipeline order, of one worker. laneSlots: items rounded up to whole blocks.
 struct StageTally {
@@ -124,9 +108,15 @@ void runStage(const StageCall<S>& stage, const StageContext<S>& context, Wave<S>
 uint64_t readTicks();
 double secondsPerTick();
 
-// Takes one wave from generation to the end of its last path. tally: one entry per stage in the order generate,
-// firstDepth, perDepth, or nullptr to measure nothing. The wave's firstPath and pathCount say which paths.
+// Empties a wave's queue of splats. A pass calls it before the queue could overrun, and at its end.
 template <class S>
-void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, StageTally* tally);
+using SplatDrain = std::function<void(Splats<S>&)>;
+
+// Takes one wave from generation to the end of its last path. tally: one entry per stage in the order generate,
+// firstDepth, perDepth, drain, or nullptr to measure nothing. The wave's firstPath and pathCount say which paths.
+// drain: of a pass that splats.
+template <class S>
+void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, StageTally* tally,
+             const SplatDrain<S>& drain = {});
 
 }  // namespace wavecrest

@@ -21,10 +21,8 @@ ColumnNeeds columnNeeds(const Scene& scene, Specialization specialization) {
           .bsdfOrder = (features & (kSpecularBsdfs | kLayeredBsdfs)) != 0};
 }
 
-// Whether kernels with the whole MIS recursion are needed.
 bool isBidirectional(const RenderSettings& settings) {
-  if (settings.method == Method::mlt) return settings.metropolis.variant != MetropolisVariant::pssmlt;
-  return entryOf(settings.method).bidirectional;
+  return isBidirectional(pageOf(settings.method, settings.metropolis.variant));
 }
 
 }  // namespace
@@ -52,27 +50,31 @@ template Intersector<double> chooseIntersector(const Stages<double>&, Accel);
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   RenderPlan<S> plan;
-  // A chain keeps no numbers for the place on the lens, or the pixel, that t = 1 chooses; and densities of path space
-  // are those of rays that leave one point.
-  if (settings.method == Method::mlt && isBidirectional(settings)) {
-    const MetropolisVariant variant = settings.metropolis.variant;
-    const bool lens = scene.sensor.kind == Sensor::Kind::thinlens || scene.film.filter != ReconstructionFilter::box;
-    const bool parallel = scene.sensor.kind == Sensor::Kind::orthographic && variant == MetropolisVariant::pathspace;
-    if (lens || parallel) {
-      throw SceneError({scene.name}, std::string(kMetropolisVariantNames[static_cast<size_t>(variant)]) +
-                                         " needs a pinhole and the box filter; expected those, or --mlt pssmlt");
-    }
+  // Densities of path space are those of rays that leave one point.
+  const bool inPathSpace =
+      settings.method == Method::mlt && settings.metropolis.variant == MetropolisVariant::pathspace;
+  if (inPathSpace && scene.sensor.kind != Sensor::Kind::perspective) {
+    throw SceneError({scene.name}, "pathspace needs a pinhole; expected one, or --mlt mmlt");
   }
   plan.specialization = specializationFor(scene, settings);
   plan.needs = columnNeeds(scene, plan.specialization);
   plan.scene = compileScene<S>(scene, settings.accel, settings.precision != Precision::fast);
+  const CameraView& camera = plan.scene->view.camera;
+  const bool clipped = camera.nearClip > 0 || std::isfinite(camera.farClip);
+  if (clipped && settings.method == Method::mlt && settings.metropolis.variant == MetropolisVariant::pathspace) {
+    throw SceneError({scene.name},
+                     "pathspace knows no clips of the camera, and the scene has a surface outside of them; "
+                     "expected other clips, or another method");
+  }
   const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, plan.specialization);
   plan.isa = stages.isa;
-  plan.pipeline =
-      makePipeline(settings.method, settings.metropolis.variant, stages, chooseIntersector(stages, plan.accel()));
+  plan.stages = &stages;
+  plan.pipeline = makePipeline(pageOf(settings.method, settings.metropolis.variant), stages,
+                               chooseIntersector(stages, plan.accel()));
+  plan.needs.splats = plan.pipeline.splats();
   plan.lightUse = {.connected = !plan.pipeline.photonMap || plan.pipeline.cameraPass.strategies.connect,
                    .merged = plan.pipeline.photonMap};
-  if (plan.pipeline.chains && plan.pipeline.chains->inPathSpace()) {
+  if (plan.pipeline.chains && plan.pipeline.chains->inPathSpace) {
     const uint32_t least = settings.metropolis.directPass ? kDirectLength + 1 : 1;
     plan.pathLaws = PathLaws(least, std::max(settings.limits.maxDepth, least));
     plan.pathLaws.kinds = settings.metropolis.pathMutations;
@@ -88,13 +90,30 @@ MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, 
   strategies.lightPaths = lightPaths;
   strategies.camN = lightPaths;
   const double shrink = std::pow(static_cast<double>(iteration + 1), (settings.radiusAlpha - 1) / 2);
-  // Below the precision of positions nothing could be merged.
-  strategies.radius = std::max(settings.radius * shrink, 16 * 0x1p-24) * sceneRadius;
+  strategies.radius = std::max(settings.radius * shrink, kSmallestRadius) * sceneRadius;
   const double density = std::numbers::pi * strategies.radius * strategies.radius * lightPaths;
   strategies.mergeNorm = 1 / density;
   strategies.kVM = strategies.merge ? density : 0;
   strategies.kVC = strategies.merge && strategies.connect ? 1 / density : 0;
   return strategies;
+}
+
+uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most) {
+  constexpr size_t kPiecesPerThread = 16, kLeast = 128;
+  if (threads <= 1) return most;
+  const size_t fair = (items + kPiecesPerThread * threads - 1) / (kPiecesPerThread * threads);
+  const size_t whole = (fair + kColumnPadding - 1) / kColumnPadding * kColumnPadding;
+  return static_cast<uint32_t>(std::min<size_t>(most, std::max(whole, kLeast)));
+}
+
+RenderSettings withPieces(const RenderSettings& settings, size_t pixels) {
+  RenderSettings cut = settings;
+  const MethodPage page = pageOf(settings.method, settings.metropolis.variant);
+  // Camera walks alone take several iterations of a pixel at once: their waves stay, over fewer pixels.
+  if (!page.hasChains() && page.walk(Walk::light) == nullptr) return cut;
+  const size_t items = page.hasChains() ? std::max<size_t>(settings.metropolis.chains, 1) : pixels;
+  cut.waveSize = pieceSize(items, settings.threads, settings.waveSize);
+  return cut;
 }
 
 FilmArea filmArea(const FilmSettings& film) {

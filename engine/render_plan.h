@@ -9,6 +9,7 @@
 
 #include "engine/chains/path_law.h"
 #include "engine/film.h"
+#include "engine/pipeline.h"
 #include "engine/render_settings.h"
 #include "kernels/columns/light_vertices.h"
 
@@ -21,6 +22,7 @@ struct RenderPlan {
   ColumnNeeds needs;
   LightVertexUse lightUse;
   Isa isa{};
+  const Stages<S>* stages = nullptr;
   Pipeline<S> pipeline;
   PathLaws pathLaws;  // of chains in path space
 
@@ -39,10 +41,21 @@ Specialization specializationFor(const Scene& scene, const RenderSettings& setti
 template <class S>
 Intersector<S> chooseIntersector(const Stages<S>& stages, Accel accel);
 
+// Of the scene's radius. Positions have 24 bits: of a smaller radius nothing would be left but their rounding.
+constexpr double kSmallestRadius = 16 * 0x1p-24;
+
 // A pass's switches with the constants of an iteration's densities (METHODS 5.1, 6.1): N_L light paths, and one camera
 // path per pixel.
 MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t lightPaths,
                         uint64_t iteration);
+
+// The number of items, pixels or chains, that one task takes: `most`, or fewer if that would leave some of the threads
+// without a task. Images do not depend on it. Too few tasks leave threads idle at the end of a phase. Too small tasks
+// leave lanes idle and repeat the fixed cost of each stage.
+uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most);
+
+// The settings with waves cut by pieceSize, for a method whose waves are pieces of work.
+RenderSettings withPieces(const RenderSettings& settings, size_t pixels);
 
 // The rectangle of the film that is rendered: its crop window, or all of it.
 FilmArea filmArea(const FilmSettings& film);

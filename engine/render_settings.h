@@ -11,8 +11,10 @@
 
 namespace wavecrest {
 
-constexpr uint32_t kUnlimitedDepth = 64;  // edges; roulette ends paths long before
-static_assert(kUnlimitedDepth <= kMostEdges);
+// Edges of the longest path where none is stated. Light vertices keep their depth in a few bits, chains memory for each
+// vertex; what the limit cuts is counted (StageCounters::cutPaths). A method without either has none to speak of: four
+// numbers of each vertex' random blocks still fit in 32 bits.
+constexpr uint32_t kUnlimitedDepth = kMostEdges, kChainDepth = 64, kWalkDepth = 1u << 24;
 
 // Markov chains. Their number is a setting, not a consequence of threads or waves, so that images depend on neither.
 struct MetropolisSettings {
@@ -40,7 +42,7 @@ inline uint64_t epochSteps(const MetropolisSettings& settings, uint64_t samples)
 // vertex where roulette may end a path.
 inline PathLimits pathLimits(int maxDepth, int rouletteDepth) {
   PathLimits limits;
-  if (maxDepth > 0) limits.maxDepth = std::min(static_cast<uint32_t>(maxDepth), kUnlimitedDepth);
+  limits.maxDepth = maxDepth > 0 ? std::min(static_cast<uint32_t>(maxDepth), kUnlimitedDepth) : kUnlimitedDepth;
   limits.rouletteDepth = static_cast<uint32_t>(rouletteDepth);
   return limits;
 }
@@ -68,5 +70,13 @@ struct RenderSettings {
   std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene
   bool measureStages = false;
 };
+
+// The settings with the longest path that their method can make, where they ask for longer ones.
+inline RenderSettings withinDepthOfMethod(RenderSettings settings) {
+  uint32_t& depth = settings.limits.maxDepth;
+  if (settings.method == Method::mlt) depth = std::min(depth, kChainDepth);
+  if (settings.method == Method::pt && depth == kUnlimitedDepth) depth = kWalkDepth;
+  return settings;
+}
 
 }  // namespace wavecrest

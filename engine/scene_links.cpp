@@ -102,8 +102,7 @@ class Walker {
         stages_(findStages<float>(plan_.isa, Precision::floating, plan_.specialization)),
         intersector_(chooseIntersector(stages_, plan_.accel())),
         area_(filmArea(scene.film)),
-        wave_(kPaths, plan_.needs),
-        splats_(3 * area_.pixels.size()) {
+        wave_(kPaths, plan_.needs) {
     for (const MaterialRecord& material : plan_.scene->materials) events_.push_back(eventsOf(material));
     // Pixels all over the film, whatever its size.
     pixels_.resize(kPaths * kIterations + kColumnPadding, area_.pixels.front());
@@ -142,7 +141,7 @@ class Walker {
     context.sampler = {SamplerKind::independent, 0, iteration};
     context.walk = walk;
     context.mis.lightPaths = kPaths;
-    context.splats = {splats_.data(), area_.x0, area_.y0, area_.width, area_.height};
+    context.film = area_.window();
     context.counters = &counters_;
     previous_.assign(kPaths, 0);
     (walk == Walk::light ? stages_.generateLightPaths : stages_.generateCameraPaths)(context, wave_);
@@ -221,13 +220,9 @@ class Walker {
   void countSeen(StageContext<float>& context) {
     stages_.connectToCamera(context, wave_);
     carryOne();
-    auto& rays = wave_.shadowRays;
-    const std::vector<uint32_t> targets(&rays.target[0], &rays.target[0] + rays.size);
     intersector_.occlude(context, wave_);
-    for (const uint32_t target : targets) {
-      lightVertices_.joined += static_cast<double>(splats_[3 * target]) / kSplatScale;
-      splats_[3 * target] = 0;
-    }
+    for (size_t i = 0; i < wave_.splats.size; ++i) lightVertices_.joined += static_cast<double>(wave_.splats.red[i]);
+    wave_.splats.size = 0;
   }
 
   RenderPlan<float> plan_;
@@ -235,7 +230,6 @@ class Walker {
   Intersector<float> intersector_;
   FilmArea area_;
   Wave<float> wave_;
-  std::vector<int64_t> splats_;
   std::vector<uint32_t> pixels_;
   std::vector<uint8_t> events_;           // of each material
   std::vector<uint8_t> previous_;         // events at each lane's last vertex

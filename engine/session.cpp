@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <optional>
 
 #include "engine/chains/chain_session.h"
 #include "engine/flush_to_zero.h"
@@ -25,11 +26,15 @@ namespace {
 //
 // An iteration is one camera path per pixel and one light path for each, or with a photon map as many light paths as
 // the memory plan says. Without a photon map a wave's light and camera pass follow each other and waves are
-// independent; with one, all light passes come first, then the map, then all camera passes. Where time runs out in
-// between, what is done stays done and the next renderUntil goes on from there.
+// independent; with one, all light passes come first, then the map, then all camera passes. Such an iteration is
+// finished where time runs out in between: its weights belong to its radius, and splats without the camera paths that
+// share their weights would be of no radius at all.
 //
 // Camera paths that need no light paths are taken several iterations at a time, so that the paths of a pixel run
 // together: a wave is then fewer pixels. That changes no path and no sum, only their order in time.
+//
+// Pixels and light paths are cut into pieces whose size follows from their number and the threads', so that small films
+// keep all threads busy and waves of many threads together take no more memory than those of some.
 template <class S>
 class TypedSession final : public Session {
  public:
@@ -49,7 +54,7 @@ class TypedSession final : public Session {
     LightStore<S> light;  // of the wave under way, where light vertices do not outlive it
     StageCounters counters;
     std::vector<StageTally> lightTallies, cameraTallies;
-    std::vector<int64_t> splats;
+    std::optional<SplatWriter<S>> splats;
     uint64_t paths = 0, lightPaths = 0;
     Worker(size_t waveSize, const ColumnNeeds& needs)
         : wave(waveSize, needs), light(waveSize, needs, {.merged = false}) {}
@@ -67,9 +72,9 @@ class TypedSession final : public Session {
   Worker& worker();
   // What pass the worker's wave goes through, its paths being set; iteration: that of its paths that are not ahead.
   void tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker);
-  size_t pathsOf(size_t waveIndex, size_t paths) const {
-    return std::min<size_t>(settings_.waveSize, paths - waveIndex * settings_.waveSize);
-  }
+  // How many pieces of `size` there are, and what the one of this index has.
+  static size_t piecesOf(size_t items, size_t size) { return (items + size - 1) / size; }
+  static size_t itemsOf(size_t index, size_t items, size_t size) { return std::min(size, items - index * size); }
   uint32_t iterationBits(uint64_t next) const;
   void traceLight(size_t waveIndex, Worker& worker);
   void traceCamera(size_t waveIndex, Worker& worker);
@@ -81,16 +86,17 @@ class TypedSession final : public Session {
   void buildPhotonMap(uint64_t iteration);
   // Light vertices that the camera paths of a wave are joined with.
   LightStore<S>* partnersOf(size_t waveIndex, Worker& worker);
-  void collectSplats();
+  void countLightPaths();
 
-  const RenderSettings settings_;
   oneapi::tbb::task_arena arena_;
   Film film_;
+  const RenderSettings settings_;
   RenderPlan<S> plan_;
   MemoryPlan memory_;
+  size_t tile_ = 0;                     // pixels of a camera wave's own
   uint64_t endIteration_ = 0;           // of this renderUntil
   std::vector<uint64_t> lightDone_;     // next iteration of each wave
-  std::vector<CameraProgress> camera_;  // of each wave
+  std::vector<CameraProgress> camera_;  // of each tile
   Arena storeMemory_;
   std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each light wave, where a photon map gathers them
   PhotonMap<S> photons_;
@@ -104,18 +110,22 @@ class TypedSession final : public Session {
 
 template <class S>
 TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings)
-    : settings_(settings), arena_(static_cast<int>(settings.threads)), film_(filmArea(scene.film)) {
+    : arena_(static_cast<int>(settings.threads)),
+      film_(filmArea(scene.film)),
+      settings_(withPieces(settings, film_.area().pixels.size())) {
   const auto begin = Clock::now();
   const WorkerLimit limit(settings.threads);
   const size_t pixels = film_.area().pixels.size();
-  arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
-  memory_ = planMemory(plan_, settings, film_.area());
-  const auto waves = [&](size_t paths) { return (paths + settings.waveSize - 1) / settings.waveSize; };
-  lightDone_.resize(waves(memory_.lightPaths), settings.firstIteration);
-  camera_.resize(waves(pixels), {.next = settings.firstIteration});
+  arena_.execute([&] { plan_ = planRender<S>(scene, settings_); });
+  memory_ = planMemory(plan_, settings_, film_.area());
+  if (plan_.pipeline.splats()) film_.makeSplats(settings.threads, memory_.splatScale);
+  const uint32_t together = 1u << plan_.pipeline.mostIterationBits(settings_.waveSize);
+  tile_ = pieceSize(pixels * together, settings.threads, settings_.waveSize * together) / together;
+  lightDone_.resize(piecesOf(memory_.lightPaths, settings_.waveSize), settings.firstIteration);
+  camera_.resize(piecesOf(pixels, tile_), {.next = settings.firstIteration});
   if (plan_.pipeline.photonMap) {
     for (size_t i = 0; i < lightDone_.size(); ++i) {
-      stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan_.needs, plan_.lightUse));
+      stores_.push_back(std::make_unique<LightStore<S>>(settings_.waveSize, plan_.needs, plan_.lightUse));
       LightStore<S>& store = *stores_.back();
       if (i == 0) storeMemory_ = Arena(lightDone_.size() * store.arenaBytes(memory_.verticesPerWave));
       store.reserve(memory_.verticesPerWave, storeMemory_);
@@ -134,7 +144,9 @@ typename TypedSession<S>::Worker& TypedSession<S>::worker() {
       mine->lightTallies.resize(plan_.pipeline.lightPass->stageCount());
       if (!plan_.pipeline.photonMap) mine->light.reserve(memory_.verticesPerWave);
     }
-    if (plan_.pipeline.splats()) mine->splats.resize(3 * film_.area().pixels.size());
+    if (plan_.pipeline.splats()) {
+      mine->splats.emplace(film_.splats(), plan_.stages->addSplats, settings_.waveSize);
+    }
   }
   return *mine;
 }
@@ -147,16 +159,18 @@ void TypedSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSt
       misSettings(pass.strategies, settings_, plan_.scene->view.radius, memory_.lightPaths, iteration);
   StageContext<S> context{.scene = &plan_.scene->view,
                           .pixels = area.pixels.data(),
-                          .sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(iteration)},
+                          .sampler = {settings_.sampler, settings_.seed, iteration},
                           .limits = settings_.limits,
                           .mis = mis,
                           .light = light,
                           .photonGrid = photonGrid(mis.radius),
                           .photons = &photons_,
-                          .splats = {worker.splats.data(), area.x0, area.y0, area.width, area.height},
+                          .film = area.window(),
                           .counters = &worker.counters};
   auto& tallies = pass.walk == Walk::light ? worker.lightTallies : worker.cameraTallies;
-  runPass(pass, context, worker.wave, settings_.measureStages ? tallies.data() : nullptr);
+  SplatDrain<S> drain;
+  if (pass.splats) drain = [&](Splats<S>& splats) { worker.splats->drain(splats, worker.counters); };
+  runPass(pass, context, worker.wave, settings_.measureStages ? tallies.data() : nullptr, drain);
 }
 
 template <class S>
@@ -164,7 +178,7 @@ void TypedSession<S>::traceLight(size_t waveIndex, Worker& worker) {
   LightStore<S>* const store = plan_.pipeline.photonMap ? stores_[waveIndex].get() : &worker.light;
   Wave<S>& wave = worker.wave;
   wave.firstPath = waveIndex * settings_.waveSize;
-  wave.pathCount = pathsOf(waveIndex, memory_.lightPaths);
+  wave.pathCount = itemsOf(waveIndex, memory_.lightPaths, settings_.waveSize);
   wave.iterationBits = 0;
   tracePass(*plan_.pipeline.lightPass, lightDone_[waveIndex], store, worker);
   worker.lightPaths += wave.pathCount;
@@ -177,7 +191,7 @@ LightStore<S>* TypedSession<S>::partnersOf(size_t waveIndex, Worker& worker) {
   if (!plan_.pipeline.cameraPass.strategies.connect) return nullptr;
   const size_t pixels = film_.area().pixels.size();
   if (memory_.lightPaths == pixels) return stores_[waveIndex].get();
-  worker.light.collect(stores_, memory_.lightPaths, waveIndex * settings_.waveSize, pathsOf(waveIndex, pixels));
+  worker.light.collect(stores_, memory_.lightPaths, waveIndex * tile_, itemsOf(waveIndex, pixels, tile_));
   return &worker.light;
 }
 
@@ -192,10 +206,10 @@ uint32_t TypedSession<S>::iterationBits(uint64_t next) const {
 template <class S>
 void TypedSession<S>::traceCamera(size_t waveIndex, Worker& worker) {
   CameraProgress& progress = camera_[waveIndex];
-  const size_t pixels = pathsOf(waveIndex, film_.area().pixels.size());
+  const size_t pixels = itemsOf(waveIndex, film_.area().pixels.size(), tile_);
   if (progress.pixels == 0) progress.iterationBits = iterationBits(progress.next);
   Wave<S>& wave = worker.wave;
-  wave.firstPath = waveIndex * settings_.waveSize + progress.pixels;
+  wave.firstPath = waveIndex * tile_ + progress.pixels;
   wave.iterationBits = progress.iterationBits;
   const size_t some = std::min(size_t{settings_.waveSize} >> wave.iterationBits, pixels - progress.pixels);
   wave.pathCount = some << wave.iterationBits;
@@ -262,38 +276,24 @@ void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
 
 template <class S>
 void TypedSession<S>::renderPhases(const Finished& finished) {
-  const auto leastDone = [this] {
-    const auto least =
-        std::min_element(camera_.begin(), camera_.end(), [](const auto& a, const auto& b) { return a.next < b.next; });
-    return least->next;
-  };
   for (;;) {
-    const uint64_t iteration = leastDone();
-    forEach(stores_.size(), [&](size_t wave) {
-      if (lightDone_[wave] == iteration && !finished(iteration)) traceLight(wave, worker());
-    });
-    if (*std::min_element(lightDone_.begin(), lightDone_.end()) == iteration) return;  // time ran out
-    if (photonIteration_ != iteration) {
-      if (finished(iteration)) return;
-      buildPhotonMap(iteration);
-    }
+    const uint64_t iteration = camera_.front().next;
+    if (finished(iteration)) return;
+    forEach(stores_.size(), [&](size_t wave) { traceLight(wave, worker()); });
+    buildPhotonMap(iteration);
     forEach(camera_.size(), [&](size_t wave) {
-      if (camera_[wave].next == iteration && !finished(iteration)) traceCamera(wave, worker());
+      traceCamera(wave, worker());
+      finished(iteration);  // progress alone: an iteration that has begun is finished
     });
-    if (leastDone() == iteration) return;
   }
 }
 
+// A snapshot divides the sums of splats by the light paths that made them.
 template <class S>
-void TypedSession<S>::collectSplats() {
-  if (!plan_.pipeline.splats()) return;
-  std::vector<int64_t> sums(3 * film_.area().pixels.size(), 0);
+void TypedSession<S>::countLightPaths() {
   uint64_t lightPaths = 0;
-  for (const auto& worker : workers_) {
-    for (size_t i = 0; i < sums.size(); ++i) sums[i] += worker->splats[i];
-    lightPaths += worker->lightPaths;
-  }
-  film_.setSplats(std::move(sums), lightPaths == 0 ? 0 : 1 / static_cast<double>(lightPaths));
+  for (const auto& worker : workers_) lightPaths += worker->lightPaths;
+  film_.setSplatFactor(lightPaths == 0 ? 0 : 1 / static_cast<double>(lightPaths));
 }
 
 template <class S>
@@ -312,7 +312,7 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   renderSeconds_ += secondsSince(begin);
   cpuSeconds_ += processCpuSeconds() - cpuBegin;
   progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
-  collectSplats();
+  countLightPaths();
 }
 
 template <class S>
@@ -327,7 +327,7 @@ RenderStatistics TypedSession<S>::statistics() const {
   out.accel = plan_.accel();
   out.memory.scene = sceneBytes(*plan_.scene);
   out.memory.film = filmBytes(film_.area().pixels.size());
-  if (plan_.pipeline.splats()) out.memory.splats = splatBytes(film_.area().pixels.size());
+  if (plan_.pipeline.splats()) out.memory.splats = film_.splats().bytes();
   if (plan_.pipeline.lightPass) addRows(*plan_.pipeline.lightPass, out.stages);
   const size_t cameraRow = out.stages.size();
   addRows(plan_.pipeline.cameraPass, out.stages);
@@ -337,7 +337,6 @@ RenderStatistics TypedSession<S>::statistics() const {
     out.counters += worker->counters;
     out.bytesPerPath = worker->wave.bytesPerPath();
     out.memory.waves += waveBytes(out.bytesPerPath, settings_.waveSize);
-    out.memory.splats += worker->splats.size() * sizeof(worker->splats[0]);
     if (plan_.pipeline.lightPass && !plan_.pipeline.photonMap) out.memory.lightVertices += worker->light.bytes();
     addTallies(worker->lightTallies, 0, out.stages);
     addTallies(worker->cameraTallies, cameraRow, out.stages);
@@ -353,7 +352,8 @@ RenderStatistics TypedSession<S>::statistics() const {
 
 }  // namespace
 
-std::unique_ptr<Session> Session::create(const Scene& scene, const RenderSettings& settings) {
+std::unique_ptr<Session> Session::create(const Scene& scene, const RenderSettings& asked) {
+  const RenderSettings settings = withinDepthOfMethod(asked);
   if (settings.method == Method::mlt) {
     return settings.precision == Precision::doubled ? makeChainSession<double>(scene, settings)
                                                     : makeChainSession<float>(scene, settings);

@@ -75,6 +75,8 @@ class Session {
   // Asks a running renderUntil to return once the waves under way are done. Safe from any thread and signal handler.
   void interrupt() { interrupted_.store(true, std::memory_order_relaxed); }
   bool interrupted() const { return interrupted_.load(std::memory_order_relaxed); }
+  // Takes an interrupt() back, so that renderUntil goes on.
+  void resume() { interrupted_.store(false, std::memory_order_relaxed); }
 
   virtual RenderStatistics statistics() const = 0;
   virtual const Film& film() const = 0;

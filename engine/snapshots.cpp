@@ -35,12 +35,15 @@ SnapshotSchedule::Due SnapshotSchedule::due(unsigned number) const {
 }
 
 unsigned renderWithSnapshots(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
-                             const std::function<void(unsigned number)>& onSnapshot) {
+                             const std::function<void(unsigned number)>& onSnapshot,
+                             const std::function<bool()>& goesOn) {
   for (unsigned number = 0;; ++number) {
     const SnapshotSchedule::Due due = schedule.due(number);
     const bool inTime = due.seconds && (!settings.seconds || *due.seconds <= *settings.seconds);
     const bool inIterations = due.iterations && (!settings.iterations || *due.iterations <= *settings.iterations);
-    session.renderUntil(earlier(settings.iterations, due.iterations), earlier(settings.seconds, due.seconds));
+    do {
+      session.renderUntil(earlier(settings.iterations, due.iterations), earlier(settings.seconds, due.seconds));
+    } while (session.interrupted() && goesOn && goesOn());
     // The last one is due at the limit, a moment before which a session may have nothing left to do.
     const bool atLimit = inTime && !settings.iterations && *due.seconds == settings.seconds;
     const bool reached = atLimit || (inTime && session.progressSeconds() >= *due.seconds) ||

@@ -32,8 +32,10 @@ class SnapshotSchedule {
 };
 
 // Renders to the iterations or the time of the settings, whichever comes first, or to an interrupt. On the way calls
-// onSnapshot with the number of each snapshot once it is due; the clock stands still meanwhile. Returns how many.
+// onSnapshot with the number of each snapshot once it is due; the clock stands still meanwhile. After an interrupt it
+// goes on if goesOn, which has to call resume(), returns true. Returns how many snapshots there were.
 unsigned renderWithSnapshots(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
-                             const std::function<void(unsigned number)>& onSnapshot);
+                             const std::function<void(unsigned number)>& onSnapshot,
+                             const std::function<bool()>& goesOn = {});
 
 }  // namespace wavecrest

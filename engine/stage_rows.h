@@ -11,6 +11,7 @@ void addRows(const Pass<S>& pass, std::vector<RenderStatistics::StageRow>& rows)
   rows.push_back({std::string(pass.generate.name)});
   for (const auto& stage : pass.firstDepth) rows.push_back({std::string(stage.name)});
   for (const auto& stage : pass.perDepth) rows.push_back({std::string(stage.name)});
+  if (pass.splats) rows.push_back({"splat"});
 }
 
 // Adds tallies in the order of stages to the rows from `first` on.

@@ -137,26 +137,12 @@ WAVECREST_INLINE void addRadiance(Radiance<S>& radiance, UInt lane, Mask m, Vec3
   }
 }
 
-// Adds a to pixels of the splat sums in fixed point, one after the other.
+// Appends the lanes of a where m holds to the queue of splats, in lane order.
 template <class S, class Real>
-WAVECREST_INLINE void addSplats(const StageContext<S>& context, UInt pixel, Mask m, Vec3<Real> a) {
-  const Real limit(static_cast<float>(kSplatLimit));
-  const Mask taken = m & (a.x < limit) & (a.y < limit) & (a.z < limit);
-  const size_t count = countTrue(taken);
-  context.counters->nonFinite += countTrue(m) - count;
-  const auto fixedPoint = [taken](Real x) WAVECREST_LAMBDA {
-    return mulAdd(to<Double>(compress(x, taken)), Double(kSplatScale), Double(0.5));
-  };
-  HWY_ALIGN int64_t values[3][kLanes];
-  HWY_ALIGN uint32_t pixels[kLanes];
-  storeTruncated(fixedPoint(a.x), values[0]);
-  storeTruncated(fixedPoint(a.y), values[1]);
-  storeTruncated(fixedPoint(a.z), values[2]);
-  store(compress(pixel, taken), pixels);
-  for (size_t i = 0; i < count; ++i) {
-    int64_t* const sums = context.splats.sums + 3 * size_t{pixels[i]};
-    for (size_t c = 0; c < 3; ++c) sums[c] += values[c][i];
-  }
+WAVECREST_INLINE void pushSplats(Splats<S>& splats, UInt pixel, Mask m, Vec3<Real> a) {
+  const size_t out = splats.claim(countTrue(m));
+  appendVec3(a, m, splats.red, splats.green, splats.blue, out);
+  append(pixel, m, splats.pixel, out);
 }
 
 // ---- scene records --------------------------------------------------------------------------------------------------
@@ -297,6 +283,10 @@ WAVECREST_INLINE UInt pathOf(const StageContext<S>& context, const Wave<S>& wave
     return lane + UInt(static_cast<uint32_t>(wave.firstPath));
   return pixelsOf(context, wave, lane).path;
 }
+
+// Keeps quotients by a cosine finite. Directions this close to the surface occur with a probability of about its
+// square.
+constexpr double kSmallestCosine = 1e-12;
 
 // Whether a feature set's paths carry PathStates::rouletteScale.
 constexpr bool hasRouletteScale(uint32_t features) { return has(features, kSpecularBsdfs | kBidirectional); }

@@ -42,8 +42,9 @@ WAVECREST_INLINE void appendMis(const MisSums<Real>& mis, Mask m, PathStates<S>&
   }
 }
 
-// What the weight's denominator has beside 1, from the other strategies' densities relative to this one's. With two
-// strategies the power heuristic (Veach 1997, 9.2.4) squares the one ratio there is; kept below overflow.
+// Sum of the densities of all other strategies, divided by this one's: the MIS weight is 1 / (1 + sum). With two
+// strategies the power heuristic (Veach 1997, 9.2.4) squares their one ratio, which is bounded so that its square is
+// finite.
 template <class Real>
 WAVECREST_INLINE Real others(const MisSettings& settings, Real ratio) {
   if (!settings.powerHeuristic) return ratio;
@@ -94,7 +95,8 @@ WAVECREST_INLINE MisSums<Real> scatterSpecularMis(const MisSums<Real>& mis, Real
   return {Real(0), mis.dVC * jacobian, mis.dVM * jacobian};
 }
 
-// The one of dVC and dVM that a VertexRow keeps, and dVM by it.
+// A row stores one of dVC and dVM. Where vertices are connected it is dVC, and dVM follows from it: dVM = kVC dVC
+// (METHODS 5.6).
 template <class Real>
 WAVECREST_INLINE Real keptBehind(const MisSettings& settings, const MisSums<Real>& mis) {
   return settings.connect ? mis.dVC : mis.dVM;

@@ -1,11 +1,12 @@
 // The scene as kernels see it: flat arrays of fixed-size records in plain memory, built once by the engine.
 //
-// Records are arrays of words so that lanes can gather any field; the k*Word constants name the fields. S is float, or
-// double for the `double` precision policy.
+// Records consist of 32-bit words, or of doubles, so that lanes can gather any field (RecordLanes in lane_support.h). S
+// is float, or double for the `double` precision policy.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "kernels/columns/records.h"
 
@@ -142,6 +143,7 @@ enum class FilterKind : uint32_t { box, tent, gaussian };
 // which all go along the axis, to their origin, origin + x * du + y * dv. du, dv and the axis are perpendicular to each
 // other.
 struct CameraView {
+  static constexpr double kNoClip = std::numeric_limits<double>::infinity();
   double origin[3], corner[3], du[3], dv[3], axis[3];
   uint32_t width = 0, height = 0;         // of the full film
   bool parallel = false;                  // an orthographic camera
@@ -149,13 +151,20 @@ struct CameraView {
   double planeDepth = 0;                  // corner . axis
   double inverseDu2 = 0, inverseDv2 = 0;  // 1 / |du|^2, 1 / |dv|^2
   double lensRadius = 0, focusDistance = 0;
+  // Along the axis from the lens, or from the origin of parallel rays: what lies outside is not seen. 0 and infinite
+  // where the scene has nothing there.
+  double nearClip = 0, farClip = kNoClip;
   FilterKind filter = FilterKind::box;  // sampled by importance
   double filterScale = 0;               // radius of the tent, standard deviation of the Gaussian, in pixels
 };
 
-// A latitude-longitude environment. Sampled by texel with probability[texel], then uniformly within; the texel of (u,
-// v) is (floor(u width), floor(v height)). Radiance is interpolated as Mitsuba does: columns by their centres and
-// around, rows from pole to pole.
+// Bits of a texel's column and of its row in the alias table of an environment.
+constexpr uint32_t kTexelBits = 16, kMostTexelsAcross = 1u << kTexelBits;
+
+// A latitude-longitude environment, of up to kMostTexelsAcross columns and rows. `table` has an entry for each texel,
+// row by row, whose `other` is a column and, kTexelBits higher, a row. Sampled by texel with probability[texel], then
+// uniformly within; the texel of (u, v) is (floor(u width), floor(v height)). Radiance is interpolated as Mitsuba does:
+// columns by their centres and around, rows from pole to pole.
 struct EnvironmentView {
   const float* texels = nullptr;  // RGB, radiance scale included
   const float* probability = nullptr;

@@ -10,39 +10,17 @@ namespace {
 
 template <class P, uint32_t kFeatures>
 constexpr Stages<typename P::Storage> makeStages() {
-  Stages<typename P::Storage> stages{.isa = kIsa,
-                                     .lanes = kLanes,
-                                     .generateCameraPaths = generateCameraPaths<P, kFeatures>,
-                                     .extendSmall = extendSmall<P>,
-                                     .occludeSmall = occludeSmall<P>,
-                                     .extendBvh = extendBvh<P>,
-                                     .occludeBvh = occludeBvh<P>,
-                                     .arrive = arrive<P, kFeatures>,
-                                     .nextEvent = nextEvent<P, kFeatures>,
-                                     .scatter = scatter<P, kFeatures>,
-                                     .scatterSpecular = scatterSpecular<P, kFeatures>,
-                                     .proposeMutations = proposeMutations<P>,
-                                     .recordVertices = recordVertices<P>,
-                                     .acceptMutations = acceptMutations<P>};
-  if constexpr (has(kFeatures, kBidirectional)) {
-    stages.generateLightPaths = generateLightPaths<P, kFeatures>;
-    stages.storeLightVertices = storeLightVertices<P, kFeatures>;
-    stages.connectToCamera = connectToCamera<P, kFeatures>;
-    stages.connectVertices = connectVertices<P, kFeatures>;
-    stages.merge = merge<P, kFeatures>;
-    stages.admitWalks = admitWalks<P, kFeatures>;
-    stages.takeEnds = takeEnds<P, kFeatures>;
-    stages.proposePaths = proposePaths<P>;
-    stages.beginEyeWalks = beginEyeWalks<P, kFeatures>;
-    stages.beginLightWalks = beginLightWalks<P, kFeatures>;
-    stages.recordMisses = recordMisses<P, kFeatures>;
-    stages.recordPathVertices = recordPathVertices<P, kFeatures>;
-    stages.walkPaths = walkPaths<P, kFeatures>;
-    stages.joinPaths = joinPaths<P, kFeatures>;
-    stages.evaluatePaths = evaluatePaths<P, kFeatures>;
-    stages.weighPaths = weighPaths<P>;
-    stages.commitPaths = commitPaths<P>;
-  }
+  Stages<typename P::Storage> stages;
+  stages.isa = kIsa;
+  stages.lanes = kLanes;
+  stages.addSplats = addSplats<typename P::Storage>;
+#define WAVECREST_ENTER_featured(NAME) stages.NAME = NAME<P, kFeatures>;
+#define WAVECREST_ENTER_bidirectional(NAME) \
+  if constexpr (has(kFeatures, kBidirectional)) stages.NAME = NAME<P, kFeatures>;
+#define WAVECREST_ENTER_common(NAME) stages.NAME = NAME<P>;
+#define WAVECREST_ENTER(NAME, TITLE, ITEMS, FAMILY, LANES) WAVECREST_ENTER_##FAMILY(NAME)
+  WAVECREST_STAGE_CATALOGUE(WAVECREST_ENTER)
+#undef WAVECREST_ENTER
   return stages;
 }
 

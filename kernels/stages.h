@@ -15,6 +15,8 @@
 #include "kernels/sampling/sampler.h"
 #include "kernels/scene_view.h"
 #include "kernels/simd/isa.h"
+#include "kernels/splat/splat_sums.h"
+#include "kernels/stage_catalogue.h"
 
 namespace wavecrest {
 
@@ -116,14 +118,10 @@ struct MisSettings {
   double camN = 0;              // light paths per camera path of one pixel
 };
 
-// Where contributions of t = 1 go: fixed-point sums over the rendered rectangle of the film. Integers add up to the
-// same total in any order, so images do not depend on which worker splats first.
-struct SplatSink {
-  int64_t* sums = nullptr;  // RGB, row-major
+// The rendered rectangle of the film: what contributions of light walks are projected to.
+struct FilmWindow {
   uint32_t x0 = 0, y0 = 0, width = 0, height = 0;
 };
-constexpr double kSplatScale = 0x1p30;
-constexpr double kSplatLimit = 0x1p31;  // larger values, and those that are not finite, are dropped and counted
 
 template <class S>
 class LightStore;  // kernels/columns/light_vertices.h
@@ -144,16 +142,24 @@ struct PathLimits {
 // Counts that stages keep; summed over waves by the session.
 struct StageCounters {
   uint64_t raysClosest = 0, raysShadow = 0, misses = 0, nonFinite = 0;
+  uint64_t saturatedSplats = 0;  // too large for the film's sums, which hold their limit instead
   uint64_t connections = 0, merges = 0, lightVertices = 0;
+  uint64_t closePairs = 0;   // pairs of vertices too close to be told apart, which are not connected
+  uint64_t cutPaths = 0;     // paths that the limit of edges has ended at a surface,
+  double cutThroughput = 0;  // and what they carried together, in units of a path's beginning
 
   StageCounters& operator+=(const StageCounters& other) {
     raysClosest += other.raysClosest;
     raysShadow += other.raysShadow;
     misses += other.misses;
     nonFinite += other.nonFinite;
+    saturatedSplats += other.saturatedSplats;
     connections += other.connections;
     merges += other.merges;
     lightVertices += other.lightVertices;
+    closePairs += other.closePairs;
+    cutPaths += other.cutPaths;
+    cutThroughput += other.cutThroughput;
     return *this;
   }
 };
@@ -167,7 +173,7 @@ template <class S>
 struct StageContext {
   const SceneView<S>* scene = nullptr;
   // Raster (y << 16 | x) of each path of the iteration, in the order of waves. None: paths choose their own pixel, over
-  // the rectangle of the splats.
+  // the film's window.
   const uint32_t* pixels = nullptr;
   const uint32_t* lanes = nullptr;  // lanes in which light paths begin; none: the first ones
   SamplerSettings sampler;
@@ -180,53 +186,45 @@ struct StageContext {
   LightStore<S>* light = nullptr;         // light vertices of this wave's paths
   PhotonGrid<S> photonGrid{};             // where they are in it, if they are to be merged
   const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place
-  SplatSink splats;
+  FilmWindow film;
+  bool splatting = true;              // light walks push Splats; else they add to their lanes, as those of chains do
   ChainState* chains = nullptr;       // of Markov chains: their state, one chain to a lane
   WalkEnds<S>* ends = nullptr;        // of multiplexed chains: where walks stop to be joined
   PathMutations<S>* paths = nullptr;  // of chains in path space: the paths and what is to change about them
   StageCounters* counters = nullptr;
 
-  // Contributions of light walks go to the film, except those of chains, which join their lane's.
-  bool contributesToLanes() const { return walk == Walk::camera || splats.sums == nullptr; }
+  bool contributesToLanes() const { return walk == Walk::camera || !splatting; }
 };
 
 template <class S>
 using Stage = void (*)(const StageContext<S>&, Wave<S>&);
 
+// Adds splats [begin, end) of the queue to the sums of their pixels (kernels/splat/add_splats.cpp).
+template <class S>
+using AddSplats = void (*)(const Splats<S>&, size_t begin, size_t end, const SplatSums&, StageCounters&);
+
+// The functions of the catalogue for one choice; null where a stage's family is not compiled for the feature set.
 template <class S>
 struct Stages {
   Isa isa{};
   size_t lanes = 0;
-  Stage<S> generateCameraPaths = nullptr;
-  Stage<S> extendSmall = nullptr;   // closest hits by the small-scene intersector
-  Stage<S> occludeSmall = nullptr;  // visibility by the small-scene intersector
-  Stage<S> extendBvh = nullptr;     // closest hits in large scenes
-  Stage<S> occludeBvh = nullptr;    // visibility in large scenes
-  Stage<S> arrive = nullptr;
-  Stage<S> nextEvent = nullptr;
-  Stage<S> scatter = nullptr;
-  Stage<S> scatterSpecular = nullptr;  // only by delta lobes; paths without one end
-  Stage<S> proposeMutations = nullptr;
-  Stage<S> recordVertices = nullptr;
-  Stage<S> acceptMutations = nullptr;
-  // Of bidirectional feature sets only.
-  Stage<S> generateLightPaths = nullptr;
-  Stage<S> storeLightVertices = nullptr;
-  Stage<S> connectToCamera = nullptr;
-  Stage<S> connectVertices = nullptr;
-  Stage<S> merge = nullptr;
-  Stage<S> admitWalks = nullptr;
-  Stage<S> takeEnds = nullptr;
-  Stage<S> proposePaths = nullptr;
-  Stage<S> beginEyeWalks = nullptr;
-  Stage<S> beginLightWalks = nullptr;
-  Stage<S> recordMisses = nullptr;
-  Stage<S> recordPathVertices = nullptr;
-  Stage<S> walkPaths = nullptr;
-  Stage<S> joinPaths = nullptr;
-  Stage<S> evaluatePaths = nullptr;
-  Stage<S> weighPaths = nullptr;
-  Stage<S> commitPaths = nullptr;
+  AddSplats<S> addSplats = nullptr;
+#define WAVECREST_STAGE_MEMBER(NAME, ...) Stage<S> NAME = nullptr;
+  WAVECREST_STAGE_CATALOGUE(WAVECREST_STAGE_MEMBER)
+#undef WAVECREST_STAGE_MEMBER
+
+  // id: of the catalogue.
+  constexpr Stage<S> of(StageId id) const {
+    switch (id) {
+#define WAVECREST_STAGE_CASE(NAME, ...) \
+  case StageId::NAME:                   \
+    return NAME;
+      WAVECREST_STAGE_CATALOGUE(WAVECREST_STAGE_CASE)
+#undef WAVECREST_STAGE_CASE
+      default:
+        return nullptr;
+    }
+  }
 };
 
 // The stages compiled for these choices. The instruction set must be one of availableIsas(), S the storage type of the

@@ -1,5 +1,7 @@
 #include "scenes/scene_list.h"
 
+#include <dlfcn.h>
+
 #include <cstdlib>
 #include <stdexcept>
 #include <system_error>
@@ -30,11 +32,31 @@ constexpr SceneEntry kBenchmarkScenes[] = {
 // Prepared dragons are called dragon_full.ply, dragon_res2.ply, ...; the scans they come from dragon_vrip*.ply.gz.
 bool isDragon(const fs::path& file) { return file.filename().string().starts_with("dragon_"); }
 
-std::vector<fs::path> defaultFolders() {
-  std::vector<fs::path> folders{WAVECREST_SCENES_SOURCE_DIR, WAVECREST_SCENES_INSTALL_DIR};
+// The folders of the running program, and of the library or Python module that this code may be part of instead.
+std::vector<fs::path> ownFolders() {
+  std::vector<fs::path> folders;
   std::error_code error;
+  Dl_info module{};
+  if (dladdr(static_cast<const void*>(&kScenes), &module) != 0 && module.dli_fname != nullptr) {
+    const fs::path file = fs::canonical(module.dli_fname, error);
+    if (!error) folders.push_back(file.parent_path());
+  }
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back((executable.parent_path() / "../../scenes").lexically_normal());
+  if (!error) folders.push_back(executable.parent_path());
+  return folders;
+}
+
+// Installed folders first, relative to where they are now: prefixes are moved, and wheels unpacked anywhere.
+std::vector<fs::path> defaultFolders() {
+  std::vector<fs::path> folders;
+  for (const fs::path& own : ownFolders()) {
+    for (const char* relative : {"scenes", "../share/wavecrest/scenes", "../../share/wavecrest/scenes"}) {
+      folders.push_back((own / relative).lexically_normal());
+    }
+  }
+  folders.emplace_back(WAVECREST_SCENES_SOURCE_DIR);
+  folders.emplace_back(WAVECREST_SCENES_INSTALL_DIR);
+  for (const fs::path& own : ownFolders()) folders.push_back((own / "../../scenes").lexically_normal());
   return folders;
 }
 

@@ -19,8 +19,9 @@ struct SceneEntry {
 std::span<const SceneEntry> builtInScenes();    // the nine
 std::span<const SceneEntry> benchmarkScenes();  // known by name too, not part of the study
 
-// The folder of the built-in scenes: $WAVECREST_SCENES if set, else the first that exists of the source folder this
-// binary was built from, the installed folder, and ../../scenes beside the running executable.
+// The folder of the built-in scenes: $WAVECREST_SCENES if set, else the first that exists of those installed with this
+// program, library or Python module, the source folder that it was built from, the folder that it was to be installed
+// in, and ../../scenes beside the running executable.
 // Throws std::runtime_error when the folder that $WAVECREST_SCENES names does not exist, or none of the others does.
 std::filesystem::path sceneFolder();
 

@@ -61,11 +61,12 @@ class ChainSession final : public Session {
   void bootstrapWave(size_t wave, uint64_t epoch);
   void advance(uint64_t steps);
   uint64_t stepsInTime(uint64_t most, double now) const;
-  void collectSplats();
+  void addPending();
+  void updateFilm();
 
-  const RenderSettings settings_;
   oneapi::tbb::task_arena arena_;
   Film film_;
+  const RenderSettings settings_;
   RenderPlan<S> plan_;
   MemoryPlan memory_;
   Epochs epochs_;
@@ -83,29 +84,32 @@ class ChainSession final : public Session {
 
 template <class S>
 ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings)
-    : settings_(settings), arena_(static_cast<int>(settings.threads)), film_(filmArea(scene.film)) {
+    : arena_(static_cast<int>(settings.threads)),
+      film_(filmArea(scene.film)),
+      settings_(withPieces(settings, film_.area().pixels.size())) {
   if (settings.firstIteration != 0) {
     throw std::invalid_argument("ChainSession: chains cannot begin in the middle; expected the first iteration");
   }
   const auto begin = Clock::now();
   const WorkerLimit limit(settings.threads);
-  arena_.execute([&] { plan_ = planRender<S>(scene, settings); });
-  memory_ = planMemory(plan_, settings, film_.area());
+  arena_.execute([&] { plan_ = planRender<S>(scene, settings_); });
+  memory_ = planMemory(plan_, settings_, film_.area());
+  film_.makeSplats(settings.threads, memory_.splatScale);
   const MetropolisSettings& metropolis = settings.metropolis;
   const bool multiplexed = plan_.pipeline.lightPass.has_value();
   epochs_ = Epochs(multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,
                                                    settings.limits.maxDepth)
                                : plainBootstrap(metropolis.bootstrapSamples));
   chains_.emplace(plan_, settings_, film_.area());
-  bootstrapped_.resize((epochs_.targets.size() + settings.waveSize - 1) / settings.waveSize);
-  directDone_.resize((film_.area().pixels.size() + settings.waveSize - 1) / settings.waveSize);
+  bootstrapped_.resize((epochs_.targets.size() + settings_.waveSize - 1) / settings_.waveSize);
+  directDone_.resize((film_.area().pixels.size() + settings_.waveSize - 1) / settings_.waveSize);
   buildSeconds_ = secondsSince(begin);
 }
 
 template <class S>
 ChainWorker<S>& ChainSession<S>::worker() {
   std::unique_ptr<ChainWorker<S>>& mine = workers_.local();
-  if (!mine) mine = std::make_unique<ChainWorker<S>>(plan_, settings_.waveSize, film_.area().pixels.size());
+  if (!mine) mine = std::make_unique<ChainWorker<S>>(plan_, settings_.waveSize, film_.splats());
   return *mine;
 }
 
@@ -134,7 +138,7 @@ void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
     state.columns.length[i] = epochs_.plan().length[first + i];
   }
   StageContext<S> context = chainContext(plan_, settings_, film_.area());
-  context.sampler.iteration = static_cast<uint32_t>(epoch);
+  context.sampler.iteration = epoch;
   ChainWorker<S>& mine = worker();
   mine.trace(context, state, count, false);
   // Moves every chain, from nowhere, to its sample; what it adds to the film is nothing.
@@ -157,7 +161,7 @@ bool ChainSession<S>::beginEpoch(uint64_t epoch, const Stop& stop) {
   if (!bootstrap(epoch, stop)) return false;
   std::fill(bootstrapped_.begin(), bootstrapped_.end(), 0);  // the next epoch has samples of its own
   if (epoch != 0) {
-    chains_->addPending(worker().splats);
+    addPending();
     chains_->listStuck(stuck_);
   }
   epochs_.begin();
@@ -210,18 +214,24 @@ uint64_t ChainSession<S>::stepsInTime(uint64_t most, double now) const {
   return fit >= static_cast<double>(most) ? most : static_cast<uint64_t>(std::max(fit, 0.0));
 }
 
+// What chains owe at the end of an epoch goes into the sums.
 template <class S>
-void ChainSession<S>::collectSplats() {
-  std::vector<int64_t> sums(3 * film_.area().pixels.size(), 0);
-  for (const auto& worker : workers_) {
-    for (size_t i = 0; i < sums.size(); ++i) sums[i] += worker->splats[i];
-  }
-  chains_->addPending(sums);
+void ChainSession<S>::addPending() {
+  std::vector<PendingSplat> pending;
+  chains_->addPending(pending);
+  for (const PendingSplat& splat : pending) film_.splats().add(splat.pixel, splat.rgb);
+}
+
+template <class S>
+void ChainSession<S>::updateFilm() {
+  std::vector<PendingSplat> pending;
+  chains_->addPending(pending);
+  film_.setPending(std::move(pending));
   // b N_pix / M
   const double factor =
       step_ == 0 ? 0
                  : epochs_.unit() * static_cast<double>(film_.area().pixels.size()) / static_cast<double>(mutations());
-  film_.setSplats(std::move(sums), factor);
+  film_.setSplatFactor(factor);
 }
 
 template <class S>
@@ -254,7 +264,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   renderSeconds_ += secondsSince(begin);
   cpuSeconds_ += processCpuSeconds() - cpuBegin;
   progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
-  collectSplats();
+  updateFilm();
 }
 
 template <class S>
@@ -276,7 +286,6 @@ RenderStatistics ChainSession<S>::statistics() const {
         (worker->joinsWalks() ? kWavesOfJoinedWalks : 1) * waveBytes(worker->bytesPerPath(), settings_.waveSize) +
         worker->pathBytes();
     out.memory.lightVertices += worker->lightBytes();
-    out.memory.splats += splatBytes(film_.area().pixels.size());
     addTallies(worker->tallies, 0, out.stages);
   }
   if (direct()) {
@@ -297,15 +306,18 @@ RenderStatistics ChainSession<S>::statistics() const {
   chains.largestShare = ofFilm.largestShare;
   chains.counters = chains_->counters();
   chains.bytes = chains_->bytes();
-  const Brightness all = epochs_.pooledWith(chains_->largeSteps(), plan_.pipeline.chains->inPathSpace());
+  const Brightness all = epochs_.pooledWith(chains_->largeSteps(), plan_.pipeline.chains->inPathSpace);
   chains.pooledBrightness = all.mean;
   chains.pooledError = all.standardError;
   chains.stuck = stuck_;
   chains_->listStuck(chains.stuck);
   out.counters.nonFinite += chains.counters.nonFinite;
+  // Walks of chains end where their strategies say, and those of the direct pass after its two edges: nothing is cut.
+  out.counters.cutPaths = 0;
+  out.counters.cutThroughput = 0;
   out.memory.scene = sceneBytes(*plan_.scene);
   out.memory.film = filmBytes(film_.area().pixels.size());
-  out.memory.splats += splatBytes(film_.area().pixels.size());
+  out.memory.splats = film_.splats().bytes();
   out.memory.chains = chains.bytes;
   return out;
 }

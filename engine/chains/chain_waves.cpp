@@ -43,7 +43,7 @@ void ChainWaves<S>::start(size_t wave, uint64_t epoch, const BootstrapPlan& boot
   state.samples.stream = Stream::bootstrap;
   state.samples.largeStep = 2;
   StageContext<S> context = chainContext(plan_, settings_, area_);
-  context.sampler.iteration = static_cast<uint32_t>(epoch);
+  context.sampler.iteration = epoch;
   worker.trace(context, state, count, false, pathsOf(wave));
   worker.decide(context, state, false);
 
@@ -73,24 +73,23 @@ void ChainWaves<S>::advance(size_t wave, uint64_t first, uint64_t steps, ChainWo
   ChainState& state = states_[wave];
   StageContext<S> context = chainContext(plan_, settings_, area_);
   for (uint64_t step = first; step < first + steps; ++step) {
-    context.sampler.iteration = static_cast<uint32_t>(step);
+    context.sampler.iteration = step;
     worker.trace(context, state, chainCount(wave), settings_.measureStages, pathsOf(wave));
     worker.decide(context, state, settings_.measureStages);
   }
 }
 
 template <class S>
-void ChainWaves<S>::addPending(std::vector<int64_t>& splats) const {
+void ChainWaves<S>::addPending(std::vector<PendingSplat>& splats) const {
   for (size_t wave = 0; wave < size(); ++wave) {
     const ChainState& state = states_[wave];
     const Chains& chains = state.columns;
     for (size_t i = 0; i < chainCount(wave); ++i) {
       if (!(chains.target[i] > 0)) continue;
       const double visits = static_cast<double>(chains.weight[i]) * static_cast<double>(state.splatFactor);
-      const double colour[3] = {chains.red[i], chains.green[i], chains.blue[i]};
-      for (size_t c = 0; c < 3; ++c) {
-        splats[3 * size_t{chains.pixel[i]} + c] += static_cast<int64_t>(colour[c] * visits * kSplatScale + 0.5);
-      }
+      splats.push_back({chains.pixel[i],
+                        {visits * static_cast<double>(chains.red[i]), visits * static_cast<double>(chains.green[i]),
+                         visits * static_cast<double>(chains.blue[i])}});
     }
   }
 }

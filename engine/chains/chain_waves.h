@@ -31,7 +31,7 @@ class ChainWaves {
   void advance(size_t wave, uint64_t first, uint64_t steps, ChainWorker<S>& worker);
 
   // Adds what is due to the states that chains are in: a state is splatted when its chain leaves it.
-  void addPending(std::vector<int64_t>& splats) const;
+  void addPending(std::vector<PendingSplat>& splats) const;
   // Adds the chains that have been rejected at least kStuckRejections times in a row; keeps those that were rejected
   // most, kListedStuckChains of them.
   void listStuck(std::vector<StuckChain>& list) const;
@@ -42,7 +42,7 @@ class ChainWaves {
 
  private:
   size_t firstChain(size_t wave) const { return wave * settings_.waveSize; }
-  bool inPathSpace() const { return plan_.pipeline.chains->inPathSpace(); }
+  bool inPathSpace() const { return plan_.pipeline.chains->inPathSpace; }
   PathStore<S>* pathsOf(size_t wave) { return paths_.empty() ? nullptr : &paths_[wave]; }
 
   const RenderPlan<S>& plan_;

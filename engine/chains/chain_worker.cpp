@@ -3,29 +3,16 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <variant>
 
 namespace wavecrest {
 namespace {
 
 constexpr uint32_t bit(Block block) { return 1u << static_cast<uint32_t>(block); }
 
-// Every stage of the step: propose, the camera pass, its joins, the light pass, its joins, accept.
-template <class S, class Function>
-void forEachStage(const Pipeline<S>& pipeline, Function&& function) {
-  const auto pass = [&](const Pass<S>& p) {
-    function(p.generate);
-    for (const StageCall<S>& stage : p.firstDepth) function(stage);
-    for (const StageCall<S>& stage : p.perDepth) function(stage);
-  };
-  const ChainCalls<S>& chains = *pipeline.chains;
-  function(chains.propose);
-  pass(pipeline.cameraPass);
-  for (const JoinCall<S>& join : chains.afterCamera) function(join.stage);
-  if (pipeline.lightPass) pass(*pipeline.lightPass);
-  for (const JoinCall<S>& join : chains.afterLight) function(join.stage);
-  for (const StageCall<S>& stage : chains.weigh) function(stage);
-  function(chains.accept);
-  for (const StageCall<S>& stage : chains.commit) function(stage);
+template <class S>
+const Pass<S>& passOf(const Pipeline<S>& pipeline, Walk walk) {
+  return walk == Walk::camera ? pipeline.cameraPass : *pipeline.lightPass;
 }
 
 }  // namespace
@@ -34,7 +21,7 @@ template <class S>
 ChainState::Kept keptSamples(const Pipeline<S>& pipeline, const SceneView<S>& scene, uint32_t maxDepth) {
   const uint32_t sky = scene.environment.width != 0 ? bit(Block::environment) : 0u;
   ChainState::Kept kept;
-  if (pipeline.chains->inPathSpace()) {  // numbers are drawn for all that walks do, and none is kept
+  if (pipeline.chains->inPathSpace) {  // numbers are drawn for all that walks do, and none is kept
     kept.blocks[0] = kept.blocks[1] = {0xfu, 0xfu};
     return kept;
   }
@@ -57,23 +44,24 @@ StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& se
                           .sampler = {.kind = SamplerKind::chain, .seed = settings.seed, .iteration = 0},
                           .limits = settings.limits,
                           .mis = misSettings(pass.strategies, settings, plan.scene->view.radius, area.pixels.size(), 0),
-                          .splats = {nullptr, area.x0, area.y0, area.width, area.height}};
+                          .film = area.window(),
+                          .splatting = false};  // contributions go to the chain's lane
   // A strategy's walks have their lengths; roulette would only lose some.
   if (plan.pipeline.lightPass) context.limits.rouletteDepth = std::numeric_limits<uint32_t>::max();
   return context;
 }
 
 template <class S>
-ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, size_t pixels)
-    : splats(3 * pixels),
-      pipeline_(plan.pipeline),
+ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, SplatFilms& films)
+    : pipeline_(plan.pipeline),
       wave_(capacity, plan.needs),
       light_(capacity, plan.needs, plan.lightUse),
       law_(plan.pathLaws.law()),
-      needs_(plan.needs) {
+      needs_(plan.needs),
+      splats_(films, plan.stages->addSplats, capacity) {
   lanesArena_ = Arena(lightLanes_.bytes(capacity));
   lightLanes_.bind(lanesArena_, capacity);
-  if (pipeline_.chains->inPathSpace()) {
+  if (pipeline_.chains->inPathSpace) {
     paths_.emplace(capacity, law_.maxEdges, plan.needs);
     paths_->law = &law_;
   } else if (pipeline_.lightPass) {
@@ -81,19 +69,6 @@ ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, size_t p
     light_.reserve(capacity);  // at most one light vertex to a lane: room for all of them from the start
   }
   tallies.resize(stageNames(pipeline_).size());
-}
-
-template <class S>
-void ChainWorker<S>::join(const std::vector<JoinCall<S>>& joins, StageContext<S>& context, StageTally* tally) {
-  for (const JoinCall<S>& call : joins) {
-    Wave<S>& wave = call.ends == EndsOf::atOrigin         ? ends_->atOrigin
-                    : call.ends == EndsOf::cameraAtVertex ? ends_->cameraAtVertex
-                                                          : ends_->lightAtVertex;
-    context.walk = call.walk;
-    context.depth = call.depth;
-    runStage(call.stage, context, wave, tally);
-    if (tally != nullptr) ++tally;
-  }
 }
 
 template <class S>
@@ -108,42 +83,55 @@ size_t ChainWorker<S>::chooseLightLanes(const Chains& chains, size_t count) {
   return chosen;
 }
 
+// A walk of the proposals. Multiplexed chains join ends: the light walk begins in the lanes that the camera's has left
+// something to join in, and what the camera walk's own joins have left behind is gone.
 template <class S>
-void ChainWorker<S>::tracePaths(StageContext<S>& context, size_t count, StageTally* tally) {
-  const auto next = [&tally](size_t stages) {
-    StageTally* const mine = tally;
-    tally = tally == nullptr ? nullptr : tally + stages;
-    return mine;
-  };
-  context.limits.maxDepth = law_.maxEdges + 1;  // arrive lets no path go on at the last vertex
-  runStage(pipeline_.chains->propose, context, wave_, next(1));
-  runPass(pipeline_.cameraPass, context, wave_, next(pipeline_.cameraPass.stageCount()));
+void ChainWorker<S>::walkPaths(Walk walk, StageContext<S>& context, size_t count, StageTally* tally) {
+  if (ends_ && walk == Walk::light) {
+    ends_->atOrigin.setVertices(0, 0);
+    wave_.pathCount = chooseLightLanes(context.chains->columns, count);
+    context.lanes = lightLanes_;
+  }
+  runPass(passOf(pipeline_, walk), context, wave_, tally);
   wave_.pathCount = count;
-  runPass(*pipeline_.lightPass, context, wave_, next(pipeline_.lightPass->stageCount()));
   context.walk = Walk::camera;
-  for (const StageCall<S>& stage : pipeline_.chains->weigh) runStage(stage, context, wave_, next(1));
+  if (ends_ && walk == Walk::light) {
+    light_.clear();
+    light_.beginDepth(ends_->lightAtVertex.rays.size);
+    context.light = &light_;
+  }
+}
+
+template <class S>
+void ChainWorker<S>::runOnce(const OnceCalls<S>& calls, StageContext<S>& context, StageTally* tally) {
+  Wave<S>* wave = &wave_;
+  if (calls.ends != EndsOf::wave) {
+    wave = calls.ends == EndsOf::atOrigin         ? &ends_->atOrigin
+           : calls.ends == EndsOf::cameraAtVertex ? &ends_->cameraAtVertex
+                                                  : &ends_->lightAtVertex;
+    context.walk = calls.walk;
+    context.depth = calls.depth;
+  }
+  for (const StageCall<S>& stage : calls.stages) {
+    runStage(stage, context, *wave, tally);
+    if (tally != nullptr) ++tally;
+  }
 }
 
 template <class S>
 void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t count, bool measure,
                            PathStore<S>* paths) {
-  StageTally* tally = measure ? tallies.data() : nullptr;
-  const auto advance = [&tally](size_t stages) { tally = tally == nullptr ? nullptr : tally + stages; };
   context.chains = &chains;
   context.sampler.chain = &chains.samples;
   context.counters = &counters;
-  context.splats.sums = nullptr;  // contributions go to the chain's lane
   wave_.firstPath = 0;
   wave_.pathCount = count;
   if (paths_) {
     assert(paths == nullptr || paths->stride() == paths_->proposed.stride());
     paths_->current = paths;
     context.paths = &*paths_;
-    tracePaths(context, count, tally);
-    return;
+    context.limits.maxDepth = law_.maxEdges + 1;  // arrive lets no path go on at the last vertex
   }
-  runStage(pipeline_.chains->propose, context, wave_, tally);
-  advance(1);
   if (ends_) {
     context.ends = &*ends_;
     for (Wave<S>* ends : {&ends_->atOrigin, &ends_->cameraAtVertex, &ends_->lightAtVertex}) {
@@ -151,23 +139,20 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
       ends->setVertices(0, 0);
     }
   }
-  runPass(pipeline_.cameraPass, context, wave_, tally);
-  advance(pipeline_.cameraPass.stageCount());
-  if (!pipeline_.lightPass) return;
-
-  join(pipeline_.chains->afterCamera, context, tally);
-  advance(pipeline_.chains->afterCamera.size());
-  ends_->atOrigin.setVertices(0, 0);
-  wave_.pathCount = chooseLightLanes(chains.columns, count);
-  context.lanes = lightLanes_;
-  runPass(*pipeline_.lightPass, context, wave_, tally);
-  advance(pipeline_.lightPass->stageCount());
-  wave_.pathCount = count;
-
-  light_.clear();
-  light_.beginDepth(ends_->lightAtVertex.rays.size);
-  context.light = &light_;
-  join(pipeline_.chains->afterLight, context, tally);
+  StageTally* tally = measure ? tallies.data() : nullptr;
+  for (const auto& phase : pipeline_.chains->trace) {
+    const Walk* const walk = std::get_if<Walk>(&phase);
+    size_t rows = 0;
+    if (walk != nullptr) {
+      walkPaths(*walk, context, count, tally);
+      rows = passOf(pipeline_, *walk).stageCount();
+    } else {
+      const auto& once = std::get<OnceCalls<S>>(phase);
+      runOnce(once, context, tally);
+      rows = once.stages.size();
+    }
+    if (tally != nullptr) tally += rows;
+  }
 }
 
 template <class S>
@@ -175,12 +160,19 @@ void ChainWorker<S>::decide(StageContext<S> context, ChainState& chains, bool me
   context.chains = &chains;
   context.sampler.chain = &chains.samples;
   context.counters = &counters;
-  context.splats.sums = splats.data();
   if (paths_) context.paths = &*paths_;
-  const std::vector<StageCall<S>>& commit = pipeline_.chains->commit;
-  StageTally* tally = measure ? tallies.data() + (tallies.size() - 1 - commit.size()) : nullptr;
-  runStage(pipeline_.chains->accept, context, wave_, tally);
-  for (const StageCall<S>& stage : commit) runStage(stage, context, wave_, tally == nullptr ? nullptr : ++tally);
+  const std::vector<StageCall<S>>& stages = pipeline_.chains->decide;
+  StageTally* tally = measure ? tallies.data() + (tallies.size() - stages.size()) : nullptr;
+  for (const StageCall<S>& stage : stages) {
+    const uint64_t begin = readTicks();
+    runStage<S>(stage, context, wave_, nullptr);
+    splats_.drain(wave_.splats, counters);
+    if (tally == nullptr) continue;
+    tally->ticks += readTicks() - begin;
+    tally->items += wave_.pathCount;
+    tally->laneSlots += (wave_.pathCount + stage.lanes - 1) / stage.lanes * stage.lanes;
+    ++tally;
+  }
 }
 
 template <class S>
@@ -201,7 +193,20 @@ void ChainWorker<S>::traceDirect(StageContext<S> context, const FilmArea& area, 
 template <class S>
 std::vector<std::string> stageNames(const Pipeline<S>& pipeline) {
   std::vector<std::string> names;
-  forEachStage(pipeline, [&](const StageCall<S>& stage) { names.emplace_back(stage.name); });
+  const auto add = [&](const std::vector<StageCall<S>>& calls) {
+    for (const StageCall<S>& call : calls) names.push_back(call.name);
+  };
+  for (const auto& phase : pipeline.chains->trace) {
+    if (const Walk* walk = std::get_if<Walk>(&phase)) {
+      const Pass<S>& pass = passOf(pipeline, *walk);
+      names.push_back(pass.generate.name);
+      add(pass.firstDepth);
+      add(pass.perDepth);
+    } else {
+      add(std::get<OnceCalls<S>>(phase).stages);
+    }
+  }
+  add(pipeline.chains->decide);
   return names;
 }
 

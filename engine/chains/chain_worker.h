@@ -25,11 +25,10 @@ template <class S>
 class ChainWorker {
  public:
   StageCounters counters;
-  std::vector<int64_t> splats;      // RGB of the film's rectangle
   std::vector<StageTally> tallies;  // in the order of stageNames
   StageTally directTally;
 
-  ChainWorker(const RenderPlan<S>& plan, size_t capacity, size_t pixels);
+  ChainWorker(const RenderPlan<S>& plan, size_t capacity, SplatFilms& films);
 
   // Proposes and traces one path for each of the first `count` chains, whose radiance is in the wave afterwards,
   // without deciding anything. What the proposals depend on is in the chains' columns and samples, and in
@@ -52,8 +51,8 @@ class ChainWorker {
   }
 
  private:
-  void tracePaths(StageContext<S>& context, size_t count, StageTally* tally);
-  void join(const std::vector<JoinCall<S>>& joins, StageContext<S>& context, StageTally* tally);
+  void walkPaths(Walk walk, StageContext<S>& context, size_t count, StageTally* tally);
+  void runOnce(const OnceCalls<S>& calls, StageContext<S>& context, StageTally* tally);
   size_t chooseLightLanes(const Chains& chains, size_t count);
 
   const Pipeline<S>& pipeline_;
@@ -63,6 +62,7 @@ class ChainWorker {
   const PathLaw law_;
   const ColumnNeeds needs_;
   std::optional<PathMutations<S>> paths_;
+  SplatWriter<S> splats_;
   Arena lanesArena_;
   Column<uint32_t> lightLanes_;  // lanes whose light walk is worth its while
 };

@@ -1,7 +1,9 @@
 #include "engine/compile/compiled_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 
 #include "engine/compile/materials.h"
@@ -13,8 +15,8 @@ namespace wavecrest {
 
 uint32_t sceneFeatures(const Scene& scene) {
   uint32_t features = 0;
-  for (const Material& material : scene.materials) features |= materialFeatures(material);
   for (const Shape& shape : scene.shapes) {
+    if (shape.material != kNone) features |= materialFeatures(scene.materials[shape.material]);
     if (std::holds_alternative<Sphere>(shape.kind)) features |= kCurvedShapes;
     if (std::holds_alternative<Cylinder>(shape.kind)) features |= kShadingNormals;
     if (const Mesh* mesh = std::get_if<Mesh>(&shape.kind); mesh != nullptr && !mesh->normals.empty()) {
@@ -76,6 +78,75 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const D
   return camera;
 }
 
+namespace {
+
+// The bounding box of what lies before the near clip and within the picture.
+struct NearBox {
+  Double3 low, high;
+
+  NearBox(const CameraView& camera, double nearClip) {
+    const auto vec = [](const double(&a)[3]) { return Double3{a[0], a[1], a[2]}; };
+    const Double3 origin = vec(camera.origin);
+    low = high = origin;
+    const double around = 1 + 4.5 * camera.filterScale;  // pixels; filters reach over the picture's border
+    for (const double x : {-around, camera.width + around}) {
+      for (const double y : {-around, camera.height + around}) {
+        const Double3 onPlane = vec(camera.corner) + vec(camera.du) * x + vec(camera.dv) * y;
+        const Double3 point = origin + onPlane * (nearClip / camera.planeDepth);
+        for (size_t i = 0; i < 3; ++i) {
+          low[i] = std::min(low[i], point[i]);
+          high[i] = std::max(high[i], point[i]);
+        }
+      }
+    }
+    const double margin = camera.lensRadius + nearClip * 1e-3;
+    for (size_t i = 0; i < 3; ++i) {
+      low[i] -= margin;
+      high[i] += margin;
+    }
+  }
+  bool touches(const PrimitiveRecord<double>& primitive) const {
+    if (static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere) return touchesSphere(primitive);
+    const BoundingSphere bounds = boundPrimitives(std::span<const PrimitiveRecord<double>>(&primitive, 1));
+    for (size_t i = 0; i < 3; ++i) {
+      if (bounds.high[i] < low[i] || bounds.low[i] > high[i]) return false;
+    }
+    return true;
+  }
+
+ private:
+  // A camera within a sphere is not near its surface: the box reaches in or out of it only if it does both.
+  bool touchesSphere(const PrimitiveRecord<double>& sphere) const {
+    double nearest2 = 0, farthest2 = 0;
+    for (size_t i = 0; i < 3; ++i) {
+      const double below = low[i] - sphere.p0[i], above = high[i] - sphere.p0[i];
+      const double outside = std::max({below, -above, 0.0}), across = std::max(std::abs(below), std::abs(above));
+      nearest2 += outside * outside;
+      farthest2 += across * across;
+    }
+    const double radius2 = sphere.e1[0] * sphere.e1[0];
+    return nearest2 <= radius2 && radius2 <= farthest2;
+  }
+};
+
+}  // namespace
+
+void setClips(const Sensor& sensor, const std::vector<PrimitiveRecord<double>>& primitives, CameraView& camera) {
+  // An orthographic camera's rays begin at the near clip anyway.
+  if (!camera.parallel) {
+    const NearBox box(camera, sensor.nearClip);
+    const auto touches = [&](const auto& primitive) { return box.touches(primitive); };
+    if (std::any_of(primitives.begin(), primitives.end(), touches)) camera.nearClip = sensor.nearClip;
+  }
+  const BoundingSphere bounds = boundPrimitives(primitives);
+  double farthest = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    farthest += ((camera.axis[i] > 0 ? bounds.high[i] : bounds.low[i]) - camera.origin[i]) * camera.axis[i];
+  }
+  const double farClip = camera.parallel ? sensor.farClip - sensor.nearClip : sensor.farClip;
+  if (farthest > farClip) camera.farClip = farClip;
+}
+
 template <class S>
 std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree) {
   auto compiled = std::make_unique<CompiledScene<S>>();
@@ -103,6 +174,8 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
 
   SceneView<S>& view = compiled->view;
   view.camera = compileCamera(scene.sensor, scene.film, origin);
+  const std::vector<PrimitiveRecord<double>> precise = compilePrimitives<double>(scene, false, origin).records;
+  setClips(scene.sensor, precise, view.camera);
   if (accel == Accel::automatic) {
     accel = primitives.counts.total() <= kSmallSceneLimit ? Accel::small : Accel::bvh;
   }
@@ -112,9 +185,8 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
                                       primitives.counts.spheres, watertightEmbree);
     view.embree = compiled->embree->handle();
   } else {
-    const std::vector<PrimitiveRecord<double>> precise = compilePrimitives<double>(scene, false, origin).records;
     if (accel == Accel::small) {
-      compiled->small = std::make_unique<SmallScene>(precise.data(), precise.size());
+      compiled->small = std::make_unique<SmallScene>(precise.data(), precise.size(), view.camera.origin);
       view.small = &compiled->small->view();
     } else {
       compiled->bvh = std::make_unique<Bvh>(precise.data(), precise.size(), view.camera.origin);

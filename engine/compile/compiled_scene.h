@@ -47,11 +47,16 @@ struct CompiledScene {
   CompiledScene& operator=(const CompiledScene&) = delete;
 };
 
-// Builds everything; threads bounds the hierarchy's build. Throws SceneError where the scene cannot be rendered.
+// Builds everything, the hierarchy on all threads of the task arena. Throws SceneError where the scene cannot be
+// rendered.
 template <class S>
 std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree = true);
 
 // The camera of a sensor over its full film, relative to `origin`.
 CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const Double3& origin = {});
+
+// Sets the camera's clips where a primitive, in the camera's coordinates, may lie outside of them. Most scenes have
+// nothing there, and then rays begin at the lens and need no test.
+void setClips(const Sensor& sensor, const std::vector<PrimitiveRecord<double>>& primitives, CameraView& camera);
 
 }  // namespace wavecrest

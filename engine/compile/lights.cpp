@@ -143,6 +143,10 @@ class LightCollector {
   void visit(const EnvmapEmitter& envmap) {
     LightRecord<S> light = blank();
     light.kind = static_cast<uint32_t>(LightKind::envmap);
+    if (envmap.bitmap->width > kMostTexelsAcross || envmap.bitmap->height > kMostTexelsAcross) {
+      throw SceneError(location_, "environment map of more than " + std::to_string(kMostTexelsAcross) +
+                                      " columns or rows; expected a smaller one");
+    }
     lights_.environment = compileEnvironment(envmap);
     addInfinite(light, lights_.environment.meanLuminance);
   }

@@ -11,8 +11,10 @@
 namespace wavecrest {
 namespace {
 
-// An index ratio this close to 1 bends no light: a rough boundary is then compiled as a smooth one, which lets all of
-// it pass straight on.
+// Half vectors between directions that a rough boundary hardly bends apart are differences of nearly equal numbers.
+// Index ratios closer to 1 than this are compiled as if they were this far from it, which moves no direction by more
+// than about as much. What a rough boundary lets pass does not tend to 1 with its index ratio, for facets keep
+// shadowing each other.
 constexpr double kIndexMatched = 1e-4;
 
 // Scales of Mitsuba 0.6's phong: colours that add up to more than 1 are brought down to this sum.
@@ -29,7 +31,11 @@ Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that l
 
 bool isSmooth(const TexturedFloat& alpha) { return alpha.texture == kNone && alpha.value < kSmallestAlpha; }
 
-double relativeIor(const Dielectric& dielectric) { return dielectric.intIor / dielectric.extIor; }
+double relativeIor(const Dielectric& dielectric) {
+  const double ratio = dielectric.intIor / dielectric.extIor;
+  if (dielectric.thin || isSmooth(dielectric.alpha) || std::abs(ratio - 1) >= kIndexMatched) return ratio;
+  return ratio < 1 ? 1 - kIndexMatched : 1 + kIndexMatched;
+}
 
 BsdfKind kindOf(const Diffuse&) { return BsdfKind::diffuse; }
 BsdfKind kindOf(const Conductor& conductor) {
@@ -38,8 +44,7 @@ BsdfKind kindOf(const Conductor& conductor) {
 }
 BsdfKind kindOf(const Dielectric& dielectric) {
   if (dielectric.thin) return BsdfKind::thinDielectric;
-  const bool matched = std::abs(relativeIor(dielectric) - 1) < kIndexMatched;
-  if (matched || isSmooth(dielectric.alpha)) return BsdfKind::dielectric;
+  if (isSmooth(dielectric.alpha)) return BsdfKind::dielectric;
   return dielectric.distribution == Distribution::ggx ? BsdfKind::roughDielectric : BsdfKind::beckmannDielectric;
 }
 BsdfKind kindOf(const Plastic& plastic) {

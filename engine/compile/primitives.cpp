@@ -274,7 +274,7 @@ template Primitives<float> compilePrimitives(const Scene&, bool, const Double3&)
 template Primitives<double> compilePrimitives(const Scene&, bool, const Double3&);
 
 template <class S>
-BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<S>>& records) {
+BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<S>> records) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Double3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
   const auto include = [&](size_t axis, double x) {
@@ -304,8 +304,8 @@ BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<S>>& records) {
   bounds.radius = length(high - low) / 2 * 1.0001;
   return bounds;
 }
-template BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<float>>&);
-template BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<double>>&);
+template BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<float>>);
+template BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<double>>);
 
 Double3 originOf(const BoundingSphere& bounds) {
   constexpr double kFarRadii = 8;

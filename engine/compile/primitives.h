@@ -1,6 +1,7 @@
 // Shapes to primitive records: the scene's geometry as the kernels see it.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/scene/scene.h"
@@ -34,7 +35,11 @@ struct BoundingSphere {
   double low[3]{}, high[3]{};  // corners of the box
 };
 template <class S>
-BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<S>>& records);
+BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<S>> records);
+template <class S>
+BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<S>>& records) {
+  return boundPrimitives(std::span<const PrimitiveRecord<S>>(records));
+}
 
 // Where kernels have their origin, so that float resolves a scene that is far from its own: on each axis 0, or the
 // centre of the box if that is farther away than eight radii of the scene. Nearer scenes lose three bits of 24 at most

@@ -89,6 +89,7 @@ Environment compileEnvironment(const EnvmapEmitter& emitter) {
     total = static_cast<double>(weights.size());
   }
   out.table = makeAliasTable(weights);
+  for (AliasEntry& entry : out.table) entry.other = entry.other % width | entry.other / width << kTexelBits;
   for (const double weight : weights) out.probability.push_back(static_cast<float>(weight / total));
 
   out.view = {.texels = out.texels.data(),

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/load/bmp.h"
 #include "engine/load/input_file.h"
 #include "engine/load/jpeg.h"
+#include "engine/load/tga.h"
 #include "engine/load/values.h"
 #include "metrics/image/image_io.h"
 #include "metrics/image/srgb.h"
@@ -16,6 +18,8 @@ namespace {
 ImageFile readImageFile(const std::filesystem::path& path, const SourceLocation& where) {
   const std::string extension = toLower(path.extension().string());
   try {
+    if (extension == ".bmp") return decodeBmp(path.string(), readInputFile(path, where));
+    if (extension == ".tga") return decodeTga(path.string(), readInputFile(path, where));
     if (extension == ".jpg" || extension == ".jpeg") return decodeJpeg(path.string(), readInputFile(path, where));
     // Checks with the wording of the loader that the file is there.
     if (!std::filesystem::exists(path)) readInputFile(path, where);

@@ -1,4 +1,4 @@
-// Image files as textures: PNG and JPEG (gamma-encoded), EXR, PFM and Radiance HDR (linear).
+// Image files as textures: PNG, JPEG, BMP and TGA (gamma-encoded), EXR, PFM and Radiance HDR (linear).
 #pragma once
 
 #include <filesystem>

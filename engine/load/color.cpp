@@ -31,7 +31,10 @@ Rgb uniformSpectrum(double value, ColorRole role) {
   return role == ColorRole::emission ? scaled(value, xyzToRgb({1, 1, 1})) : grey(value);
 }
 
+Rgb readSrgb(std::string_view text, const SourceLocation& where);
+
 Rgb readRgb(std::string_view text, const SourceLocation& where) {
+  if (!text.empty() && text[0] == '#') return readSrgb(text, where);
   const std::vector<double> values = parseReals(text, where);
   if (values.size() == 1) return grey(values[0]);
   if (values.size() == 3) return {values[0], values[1], values[2]};
@@ -67,6 +70,7 @@ Rgb readSpectrum(std::string_view text, const SourceLocation& where, ColorRole r
   if (tokens.size() == 1 && tokens[0].find(':') == std::string_view::npos) {
     return uniformSpectrum(parseReal(tokens[0], where), role);
   }
+  if (tokens.size() == 3 && text.find(':') == std::string_view::npos) return readRgb(text, where);  // of version 0.6
   std::vector<double> wavelengths, values;
   for (const std::string_view token : tokens) {
     const size_t colon = token.find(':');

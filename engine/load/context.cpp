@@ -15,14 +15,16 @@ const XmlElement& LoadContext::resolve(const XmlElement& element) const {
   return *target->second;
 }
 
-std::filesystem::path LoadContext::resolvePath(std::string_view name, const XmlElement& namedIn) const {
+std::filesystem::path LoadContext::resolvePath(std::string_view name, const XmlElement& namedIn) {
   const auto folderOf = [](const std::string& file) { return std::filesystem::path(file).parent_path(); };
   std::filesystem::path besideScene = (folderOf(document.files.front()) / name).lexically_normal();
   std::vector<std::filesystem::path> candidates = {besideScene, folderOf(*namedIn.file) / name};
   for (const std::filesystem::path& folder : document.searchPaths) candidates.push_back(folder / name);
   for (const std::filesystem::path& candidate : candidates) {
     std::error_code error;
-    if (std::filesystem::exists(candidate, error)) return candidate.lexically_normal();
+    if (!std::filesystem::exists(candidate, error)) continue;
+    scene.files.push_back(candidate.lexically_normal().string());
+    return scene.files.back();
   }
   return besideScene;
 }
@@ -34,6 +36,15 @@ void LoadContext::unsupported(const SourceLocation& where, const std::string& me
 
 void LoadContext::warn(const SourceLocation& where, const std::string& message) {
   scene.warnings.push_back(where.file + ":" + std::to_string(where.line) + ": " + message);
+}
+
+void LoadContext::note(const SourceLocation& where, const std::string& what, const std::string& effect) {
+  for (Note& note : scene.notes) {
+    if (note.what != what || note.effect != effect) continue;
+    ++note.count;
+    return;
+  }
+  scene.notes.push_back({.source = where, .what = what, .effect = effect});
 }
 
 ReadingGuard::ReadingGuard(LoadContext& context, const XmlElement& object) : context_(context), object_(object) {

@@ -23,8 +23,12 @@ struct LoadContext {
   std::map<const XmlElement*, uint32_t> textures{};
   std::map<uint32_t, uint32_t> scalarTextures{};  // what stands in for a texture where a number is asked for
   std::set<const XmlElement*> reading{};          // objects being read, to find reference cycles
-  std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};            // by path and colour treatment
-  std::map<std::string, std::shared_ptr<const TriangleSoup>> groupMeshes{};  // mesh files inside shape groups
+  std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};                  // by path and colour treatment
+  std::map<std::string, std::shared_ptr<const TriangleSoup>> groupMeshes{};        // mesh files inside shape groups
+  std::map<std::string, std::shared_ptr<const std::vector<char>>> meshArchives{};  // files of many meshes, by path
+  std::set<const XmlElement*> areaLights{};                                        // that shapes have
+  std::string meshAttribute{};                      // that the shape being read asks its mesh for, and
+  std::shared_ptr<const Bitmap> attributeBitmap{};  // what became of it
   bool inShapeGroup = false;
   uint32_t defaultMaterial[2] = {kNone, kNone};      // of surfaces, of lights
   uint64_t instancedShapes = 0, instancedBytes = 0;  // copies made by instances
@@ -32,13 +36,17 @@ struct LoadContext {
   // Follows <ref>; any other element is itself.
   const XmlElement& resolve(const XmlElement& element) const;
   // A file named in the XML, relative to the scene file (as Mitsuba takes it, also in included files), else to the file
-  // that names it, else to a <path>. The first that exists; if none does, the one beside the scene file.
-  std::filesystem::path resolvePath(std::string_view name, const XmlElement& namedIn) const;
+  // that names it, else to a <path>. The first that exists; if none does, the one beside the scene file. Listed in
+  // Scene::files.
+  std::filesystem::path resolvePath(std::string_view name, const XmlElement& namedIn);
 
   // Something well-formed that wavecrest does not support: an error, or with --lenient a warning after which the
   // caller goes on without it.
   void unsupported(const SourceLocation& where, const std::string& message);
   void warn(const SourceLocation& where, const std::string& message);
+  // Something that is approximated or left out and changes the picture little or not at all: listed in Scene::notes,
+  // where equal notes of several places become one.
+  void note(const SourceLocation& where, const std::string& what, const std::string& effect);
 };
 
 // Marks an object as being read for its lifetime; throws if it already is, that is, if it contains itself,

@@ -33,8 +33,10 @@ bool isInfinite(const EmitterKind& kind) {
 
 void addEmitter(LoadContext& context, const XmlElement& emitter) {
   if (emitter.get("type") == "area") {
+    // Shapes refer to it by its id.
+    if (context.areaLights.contains(&emitter)) return;
     throw LoadError(emitter.location(),
-                    "area light outside of a shape; expected it as a child of the shape that emits");
+                    "area light outside of a shape; expected it as a child of the shape that emits, or a <ref> there");
   }
   const EmitterPlugin* plugin = findPlugin(context, emitterPlugins(), emitter, "left out");
   if (!plugin) return;
@@ -94,10 +96,7 @@ EmitterKind readSpot(LoadContext& context, Parameters& parameters) {
                                                              std::to_string(spot.cutoffAngle) + " degrees");
   }
   if (const XmlElement* texture = parameters.element("texture")) {
-    if (texture->tag != "texture") {
-      throw LoadError(texture->location(), "texture of a spot light is a <" + texture->tag + ">; expected a <texture>");
-    }
-    spot.texture = textureOf(context, *texture);
+    context.unsupported(texture->location(), "texture of a spot light is not supported; expected none");
   }
   return spot;
 }

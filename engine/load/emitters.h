@@ -5,7 +5,8 @@
 
 namespace wavecrest {
 
-// Adds an <emitter> of the scene itself. `area` is refused: it belongs inside a shape.
+// Adds an <emitter> of the scene itself, after all shapes. An `area` light belongs to the shapes that refer to it, and
+// is refused if none does.
 void addEmitter(LoadContext& context, const XmlElement& emitter);
 
 // The <emitter type="area"> of a shape.

@@ -1,6 +1,9 @@
 #include "engine/load/film.h"
 
+#include <algorithm>
+
 #include "engine/load/plugins.h"
+#include "engine/load/values.h"
 
 namespace wavecrest {
 
@@ -62,8 +65,10 @@ void readFilm(LoadContext& context, const XmlElement* element) {
   setGaussian(film, 0.5);
   if (element) {
     const std::string_view type = element->get("type");
-    if (type != "hdrfilm" && type != "ldrfilm") {
-      context.unsupported(element->location(), "film \"" + std::string(type) + "\" is not supported; expected hdrfilm");
+    if (type == "ldrfilm" || type == "tiledhdrfilm" || type == "mfilm") {
+      context.note(element->location(), "film " + inQuotes(type), "read as hdrfilm; the command line names the files");
+    } else if (type != "hdrfilm") {
+      context.unsupported(element->location(), "film " + inQuotes(type) + " is not supported; expected hdrfilm");
     }
     Parameters parameters(context, *element);
     film.width = static_cast<uint32_t>(parameters.integer("width", 768, 1, kLargestSide));
@@ -71,11 +76,17 @@ void readFilm(LoadContext& context, const XmlElement* element) {
     readCrop(parameters, film);
     // How the file is stored is the command line's business.
     parameters.ignore({"file_format", "pixel_format", "component_format", "banner", "compensate", "sample_border",
-                       "high_quality_edges", "gamma", "exposure", "tonemap_method"});
+                       "high_quality_edges", "attach_log", "variable", "digits", "has_alpha"});
+    parameters.leaveOut({"gamma", "exposure", "tonemap_method", "key", "burn"},
+                        "left out: images are written linear, or with the sRGB curve");
     const std::vector<const XmlElement*> filters = parameters.objects("rfilter");
     if (filters.size() > 1) throw LoadError(filters[1]->location(), "film has two rfilters; expected at most one");
     if (!filters.empty()) {
-      if (const FilterPlugin* plugin = findPlugin(context, filterPlugins(), *filters[0], "replaced by gaussian")) {
+      const std::string_view filter = filters[0]->get("type");
+      if (filter == "mitchell" || filter == "catmullrom" || filter == "lanczos") {
+        context.note(filters[0]->location(), "rfilter " + inQuotes(filter), "a gaussian of stddev 0.5 is used");
+      } else if (const FilterPlugin* plugin =
+                     findPlugin(context, filterPlugins(), *filters[0], "replaced by gaussian")) {
         Parameters filterParameters(context, *filters[0]);
         plugin->read(filterParameters, film);
         filterParameters.finish();
@@ -84,8 +95,11 @@ void readFilm(LoadContext& context, const XmlElement* element) {
     parameters.finish();
   }
   if (context.options.filmSize) {
-    film.width = (*context.options.filmSize)[0];
-    film.height = (*context.options.filmSize)[1];
+    const double aspect = static_cast<double>(film.width) / film.height;
+    const auto [width, height] = *context.options.filmSize;
+    const auto rounded = [](double side) { return static_cast<uint32_t>(std::max(side + 0.5, 1.0)); };
+    film.width = width != 0 ? width : rounded(height * aspect);
+    film.height = height != 0 ? height : rounded(width / aspect);
     film.cropX = film.cropY = film.cropWidth = film.cropHeight = 0;
   }
   if (film.width == 0 || film.height == 0 || int64_t{film.width} * film.height > kMostPixels) {
@@ -101,7 +115,12 @@ void readSampler(LoadContext& context, const XmlElement* element) {
   constexpr int64_t kMost = 1'000'000'000;
   Parameters parameters(context, *element);
   context.scene.defaults.sampleCount = static_cast<uint32_t>(parameters.integer("sample_count", 4, 1, kMost));
-  parameters.ignoreOthers();  // the sampler itself is chosen by the user
+  const std::string_view type = element->get("type");
+  if (type != "independent") {
+    context.note(element->location(), "sampler " + inQuotes(type),
+                 "the command line chooses the sampler (--sampler independent or sobol)");
+  }
+  parameters.takeOthers();  // how that sampler makes its numbers
 }
 
 }  // namespace wavecrest

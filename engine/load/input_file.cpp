@@ -69,6 +69,22 @@ std::vector<char> inflateAll(const std::vector<char>& compressed, const std::str
 
 }  // namespace
 
+std::vector<char> readStandardInput(size_t limit) {
+  std::vector<char> bytes;
+  for (size_t count = 1; count > 0;) {
+    const size_t done = bytes.size();
+    bytes.resize(done + (size_t{1} << 16));
+    count = std::fread(bytes.data() + done, 1, bytes.size() - done, stdin);
+    bytes.resize(done + count);
+    if (bytes.size() > limit) {
+      throw LoadError({kStandardInput, 0}, "standard input is longer than expected, at most " + std::to_string(limit) +
+                                               " bytes; expected a scene");
+    }
+  }
+  if (std::ferror(stdin)) throw LoadError({kStandardInput, 0}, "cannot read standard input; expected a scene");
+  return isGzip(bytes) ? inflateAll(bytes, kStandardInput) : bytes;
+}
+
 std::vector<char> readInputFile(const std::filesystem::path& path, const SourceLocation& where, size_t limit) {
   const std::string name = path.string();
   std::error_code error;

@@ -18,6 +18,12 @@ constexpr size_t kLargestFile = size_t{1} << 33;
 constexpr size_t kLargestInflated = size_t{1} << 29;
 constexpr size_t kHighestRatio = 100;  // ASCII meshes compress about 4 to 1; bombs do 1000 to 1
 
+// As the name of a scene file.
+constexpr const char* kStandardInput = "-";
+
+// All of standard input, which may be compressed too.
+std::vector<char> readStandardInput(size_t limit);
+
 // Reads `path`; if its content starts with the gzip magic, returns the inflated data. `where` is the line that names
 // the file and is blamed when it cannot be read; a damaged gzip stream is blamed on the file itself.
 std::vector<char> readInputFile(const std::filesystem::path& path, const SourceLocation& where,

@@ -4,10 +4,13 @@
 
 #include "engine/load/context.h"
 #include "engine/load/emitters.h"
+#include "engine/load/input_file.h"
+#include "engine/load/integrator.h"
 #include "engine/load/materials.h"
 #include "engine/load/scene_hash.h"
 #include "engine/load/sensor.h"
 #include "engine/load/shapes.h"
+#include "engine/load/simplify.h"
 #include "engine/load/values.h"
 #include "engine/load/xml_document.h"
 
@@ -37,8 +40,7 @@ void readSensors(LoadContext& context, const std::vector<const XmlElement*>& sen
   }
   readSensor(context, *sensors.front());
   if (sensors.size() > 1) {
-    context.scene.warnings.push_back(sensors[1]->location().file + ":" + std::to_string(sensors[1]->line) +
-                                     ": only the first of " + std::to_string(sensors.size()) + " sensors is used");
+    context.note(sensors[1]->location(), std::to_string(sensors.size()) + " sensors", "the first one is used");
   }
 }
 
@@ -54,6 +56,8 @@ void readScene(LoadContext& context) {
   for (const XmlElement* emitter : parameters.objects("emitter")) addEmitter(context, *emitter);
   for (const XmlElement* bsdf : parameters.objects("bsdf")) checkUnusedDefinition(context, *bsdf);
   for (const XmlElement* texture : parameters.objects("texture")) checkUnusedDefinition(context, *texture);
+  // Definitions that the sensor refers to, or nobody does.
+  for (const std::string_view tag : {"sampler", "film", "rfilter"}) parameters.objects(tag);
   parameters.finish();
   if (context.scene.shapes.empty()) {
     throw LoadError(context.document.scene.location(), "scene is empty; expected at least one shape");
@@ -66,10 +70,12 @@ Scene loadScene(const std::filesystem::path& xml, const LoadOptions& options) {
   try {
     const std::unique_ptr<XmlDocument> document = readXmlDocument(xml, options);
     LoadContext context{.options = options, .document = *document, .scene = {}};
-    context.scene.name = xml.stem().string();
+    context.scene.name = xml == kStandardInput ? "stdin" : xml.stem().string();
+    context.scene.files.assign(document->files.begin(), document->files.end());
     context.scene.warnings = document->warnings;
     readScene(context);
     context.scene.hash = hashScene(context.scene);
+    if (!options.keepAll) simplifyScene(context.scene);
     return std::move(context.scene);
   } catch (const std::bad_alloc&) {
     throw LoadError({xml.string(), 0}, "out of memory while loading; expected a scene that fits into memory");

@@ -44,10 +44,13 @@ struct LoadOptions {
   // Skip what is not supported and list it in Scene::warnings. Malformed input is an error all the same.
   bool lenient = false;
   // Width and height instead of the film's; a crop window, being in pixels of the old size, is dropped. The field of
-  // view follows the new aspect ratio by the sensor's fov_axis.
+  // view follows the new aspect ratio by the sensor's fov_axis. One of them may be 0: the file's aspect ratio says.
   std::optional<std::array<uint32_t, 2>> filmSize{};
+  // Keep what changes no image (engine/load/simplify.h): for those who ask what the file says.
+  bool keepAll = false;
 };
 
+// "-" is standard input; files are then found relative to the current folder.
 Scene loadScene(const std::filesystem::path& xml, const LoadOptions& options = {});
 
 }  // namespace wavecrest

@@ -1,5 +1,7 @@
 #include "engine/load/materials.h"
 
+#include <algorithm>
+
 #include "engine/load/color.h"
 #include "engine/load/plugins.h"
 #include "engine/load/values.h"
@@ -10,10 +12,18 @@ namespace {
 
 bool isTexture(const XmlElement& element) { return element.isObject() && element.tag == "texture"; }
 
+// The value of a texture that is the same everywhere.
+Rgb constantOf(LoadContext& context, const XmlElement& element) {
+  const Texture texture = readTexture(context, element);
+  const std::vector<float>& value = std::get<BitmapTexture>(texture.kind).bitmap->pixels;
+  return {value[0], value[1], value[2]};
+}
+
 TexturedRgb readTextured(LoadContext& context, Parameters& parameters, std::string_view name, double fallback,
                          ColorRole role) {
   const XmlElement* element = parameters.element(name);
   if (!element) return {.value = {fallback, fallback, fallback}};
+  if (isTexture(*element) && element->get("type") == "rawconstant") return {.value = constantOf(context, *element)};
   if (isTexture(*element)) return {.value = {0, 0, 0}, .texture = textureOf(context, *element)};
   return {.value = readColor(context, *element, role)};
 }
@@ -57,8 +67,7 @@ void readBsdf(LoadContext& context, const XmlElement& bsdf, Material& material) 
   parameters.finish();
 }
 
-uint32_t textureOf(LoadContext& context, const XmlElement& texture) {
-  if (const auto known = context.textures.find(&texture); known != context.textures.end()) return known->second;
+Texture readTexture(LoadContext& context, const XmlElement& texture) {
   const ReadingGuard guard(context, texture);
   Texture result{.kind = CheckerboardTexture{.color0 = {0.5, 0.5, 0.5}, .color1 = {0.5, 0.5, 0.5}},
                  .toUv = identityMatrix()};
@@ -67,14 +76,44 @@ uint32_t textureOf(LoadContext& context, const XmlElement& texture) {
     result = plugin->read(context, parameters);
     parameters.finish();
   }
+  return result;
+}
+
+uint32_t textureOf(LoadContext& context, const XmlElement& texture) {
+  if (const auto known = context.textures.find(&texture); known != context.textures.end()) return known->second;
+  Texture result = readTexture(context, texture);
   const uint32_t index = static_cast<uint32_t>(context.scene.textures.size());
   context.scene.textures.push_back(std::move(result));
   context.textures.emplace(&texture, index);
   return index;
 }
 
+namespace {
+
+// Pixels that reflect more than arrives are taken as they are, as in Mitsuba; less than nothing is refused.
+void checkReflectance(LoadContext& context, const Texture& texture, const SourceLocation& where) {
+  const auto* const bitmap = std::get_if<BitmapTexture>(&texture.kind);
+  if (bitmap == nullptr || bitmap->bitmap->pixels.empty()) return;
+  const std::vector<float>& pixels = bitmap->bitmap->pixels;
+  const auto [least, most] = std::minmax_element(pixels.begin(), pixels.end());
+  if (*least < 0) {
+    throw LoadError(where, "reflectance texture has a value of " + std::to_string(*least) + "; expected 0 to 1");
+  }
+  if (*most > 1) {
+    context.warn(where, "reflectance texture has values up to " + std::to_string(*most) +
+                            ", which reflect more light than arrives; expected 0 to 1");
+  }
+}
+
+}  // namespace
+
 TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
-  return readTextured(context, parameters, name, fallback, ColorRole::reflectance);
+  const TexturedRgb colour = readTextured(context, parameters, name, fallback, ColorRole::reflectance);
+  // Texels of a baked attribute also lie outside of the triangles, where values are extrapolated.
+  if (colour.texture != kNone && !context.attributeBitmap) {
+    checkReflectance(context, context.scene.textures[colour.texture], parameters.locationOf(name));
+  }
+  return colour;
 }
 
 TexturedRgb readTexturedEmission(LoadContext& context, Parameters& parameters, std::string_view name) {

@@ -11,6 +11,8 @@ uint32_t materialOf(LoadContext& context, const XmlElement& bsdf);
 uint32_t defaultMaterial(LoadContext& context, bool isLight);
 
 uint32_t textureOf(LoadContext& context, const XmlElement& texture);
+// The same without a place in the scene, for textures that are made of it.
+Texture readTexture(LoadContext& context, const XmlElement& texture);
 
 // A parameter that is a colour or a texture; TexturedRgb::texture says which.
 TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);

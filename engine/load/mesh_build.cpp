@@ -31,11 +31,22 @@ bool hasArea(const Double3& e1, const Double3& e2) {
   return length(cross(e1, e2)) > kResidue * longest2;
 }
 
-uint64_t dropTrianglesWithoutArea(Mesh& mesh) {
-  return std::erase_if(mesh.triangles, [&](const std::array<uint32_t, 3>& t) {
+uint64_t dropTrianglesWithoutArea(Mesh& mesh, MeshAttribute& attribute) {
+  const auto hasNone = [&](const std::array<uint32_t, 3>& t) {
     const Double3 a = toDouble(mesh.positions[t[0]]);
     return !hasArea(toDouble(mesh.positions[t[1]]) - a, toDouble(mesh.positions[t[2]]) - a);
-  });
+  };
+  if (attribute.perFace()) {
+    size_t kept = 0;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+      if (hasNone(mesh.triangles[i])) continue;
+      for (size_t c = 0; c < attribute.channels; ++c) {
+        attribute.values[kept * attribute.channels + c] = attribute.values[i * attribute.channels + c];
+      }
+      ++kept;
+    }
+  }
+  return std::erase_if(mesh.triangles, hasNone);
 }
 
 // Angle between two vectors, accurate when they are nearly parallel (Kahan, "How Futile are Mindless Assessments of
@@ -99,7 +110,7 @@ Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& pla
             .uvs = std::move(soup.uvs),
             .triangles = std::move(soup.triangles)};
   placePositions(mesh.positions, placement.toWorld, where);
-  context.scene.droppedTriangles += dropTrianglesWithoutArea(mesh);
+  context.scene.droppedTriangles += dropTrianglesWithoutArea(mesh, soup.attribute);
   if (placement.faceNormals) {
     mesh.normals.clear();
   } else if (!mesh.normals.empty()) {
@@ -112,6 +123,7 @@ Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& pla
     fillMissingNormals(mesh);
   }
   if (placement.flipNormals) turnAround(mesh);
+  if (!soup.attribute.values.empty()) context.attributeBitmap = bakeMeshAttribute(soup.attribute, mesh);
   return mesh;
 }
 

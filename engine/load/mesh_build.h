@@ -3,6 +3,7 @@
 
 #include "engine/load/context.h"
 #include "engine/load/matrix.h"
+#include "engine/load/mesh_attributes.h"
 
 namespace wavecrest {
 
@@ -12,6 +13,7 @@ struct TriangleSoup {
   std::vector<Float3> normals;  // empty or one per position
   std::vector<Float2> uvs;      // empty or one per position
   std::vector<std::array<uint32_t, 3>> triangles;
+  MeshAttribute attribute;  // without values: none is asked for
 };
 
 struct MeshPlacement {
@@ -26,6 +28,7 @@ struct MeshPlacement {
 //    from it unless face_normals is set;
 //  - flip_normals turns both around.
 // Triangles without area are left out and counted in Scene::droppedTriangles.
+// An attribute is baked: the bitmap becomes LoadContext::attributeBitmap.
 Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& placement, const SourceLocation& where);
 
 }  // namespace wavecrest

@@ -1,14 +1,24 @@
-// Mesh files: PLY (ASCII, binary of either byte order) and OBJ, each plain or gzipped.
+// Mesh files: PLY (ASCII, binary of either byte order) and OBJ, each plain or gzipped, and Mitsuba's serialized meshes.
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include "engine/load/mesh_build.h"
 
 namespace wavecrest {
 
 // `where` is the line of the XML that names the file. Polygons are cut into fans of triangles.
-TriangleSoup readPly(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where);
+// `attribute` is the name of one to read along, or empty.
+TriangleSoup readPly(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where,
+                     const std::string& attribute = {});
 TriangleSoup readObj(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where);
+
+// Mesh `index` of a serialized file in memory, whose name errors give.
+struct SerializedMesh {
+  TriangleSoup soup;
+  bool faceNormals = false;  // the file asks for facets
+};
+SerializedMesh readSerialized(std::span<const char> file, const std::string& name, uint32_t index);
 
 }  // namespace wavecrest

@@ -189,13 +189,31 @@ void Parameters::ignore(std::initializer_list<std::string_view> names) {
   for (const std::string_view name : names) take(name);
 }
 
-void Parameters::ignoreOthers() {
-  for (Child& child : children_) child.used = true;
+void Parameters::leaveOut(std::initializer_list<std::string_view> names, const std::string& effect) {
+  for (const std::string_view name : names) {
+    if (take(name)) context_.note(locationOf(name), inQuotes(name) + " of " + describe(), effect);
+  }
+}
+
+std::string Parameters::takeOthers() {
+  std::string names;
+  for (Child& child : children_) {
+    if (child.used) continue;
+    child.used = true;
+    names += (names.empty() ? "" : ", ") + (child.name.empty() ? article(child.target->tag) : std::string(child.name));
+  }
+  return names;
 }
 
 void Parameters::finish() {
   for (const Child& child : children_) {
     if (child.used) continue;
+    if (child.target->tag == "medium" || child.target->tag == "phase" || child.target->tag == "volume") {
+      context_.unsupported(child.site->location(),
+                           article(child.target->tag) + " in " + describe() +
+                               ": light transport in media is not supported; expected surfaces only");
+      continue;
+    }
     std::string list;
     for (const std::string& name : known_) list += (list.empty() ? "" : ", ") + name;
     if (list.empty()) list = "no parameters";

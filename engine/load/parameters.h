@@ -41,7 +41,10 @@ class Parameters {
 
   // Accepts and ignores parameters that cannot change an image.
   void ignore(std::initializer_list<std::string_view> names);
-  void ignoreOthers();
+  // Accepts parameters that may change it a little; a note says so where one is given.
+  void leaveOut(std::initializer_list<std::string_view> names, const std::string& effect);
+  // Accepts what is left and returns its names, "a, b", for a note.
+  std::string takeOthers();
   // Reports what is left over.
   void finish();
 

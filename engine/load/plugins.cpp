@@ -3,6 +3,7 @@
 #include "engine/load/bsdfs.h"
 #include "engine/load/emitters.h"
 #include "engine/load/film.h"
+#include "engine/load/mesh_attributes.h"
 #include "engine/load/sensor.h"
 #include "engine/load/shapes.h"
 #include "engine/load/textures.h"
@@ -27,15 +28,20 @@ std::span<const BsdfPlugin> bsdfPlugins() {
 }
 
 std::span<const TexturePlugin> texturePlugins() {
-  static constexpr TexturePlugin kPlugins[] = {{"bitmap", &readBitmapTexture}, {"checkerboard", &readCheckerboard}};
+  static constexpr TexturePlugin kPlugins[] = {{"bitmap", &readBitmapTexture},
+                                               {"checkerboard", &readCheckerboard},
+                                               {"mesh_attribute", &readMeshAttribute},
+                                               {"rawconstant", &readRawConstant},
+                                               {"scale", &readScaleTexture}};
   return kPlugins;
 }
 
 // `shapegroup` and `instance` are handled by addShape.
 std::span<const ShapePlugin> shapePlugins() {
-  static constexpr ShapePlugin kPlugins[] = {
-      {"rectangle", &readRectangle}, {"cube", &readCube},    {"sphere", &readSphere}, {"disk", &readDisk},
-      {"cylinder", &readCylinder},   {"ply", &readPlyShape}, {"obj", &readObjShape}};
+  static constexpr ShapePlugin kPlugins[] = {{"rectangle", &readRectangle}, {"cube", &readCube},
+                                             {"sphere", &readSphere},       {"disk", &readDisk},
+                                             {"cylinder", &readCylinder},   {"ply", &readPlyShape},
+                                             {"obj", &readObjShape},        {"serialized", &readSerializedShape}};
   return kPlugins;
 }
 

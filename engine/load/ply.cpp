@@ -99,8 +99,8 @@ class BinarySource {
   SourceLocation where_;
 };
 
-// Where a vertex property goes in a row of eight: position, normal, texture coordinates.
-constexpr int kNormalSlot = 3, kUvSlot = 6, kSlots = 8, kNoSlot = 8;
+// Where a vertex property goes in a row: position, normal, texture coordinates, what nobody wants, attribute.
+constexpr int kNormalSlot = 3, kUvSlot = 6, kNoSlot = 8, kAttributeSlot = 9, kRowSlots = 12;
 
 int slotOf(const PlyProperty& property) {
   struct Entry {
@@ -120,12 +120,40 @@ bool isFinite(const float* values, int count) {
   return std::all_of(values, values + count, [](float v) { return std::isfinite(v); });
 }
 
+// Channel of the attribute that a property is, or -1.
+int attributeChannel(const MeshAttribute& attribute, const PlyProperty& property, bool ofFaces) {
+  const bool isReal = property.type == PlyType::float32 || property.type == PlyType::float64;
+  return property.isList || !isReal ? -1 : attribute.channelOf(property.name, ofFaces);
+}
+
+// Counts the channels that an element has of the attribute: 1 or 3 make one.
+void startAttribute(const PlyElement& element, bool ofFaces, MeshAttribute& attribute) {
+  bool present[3] = {};
+  for (const PlyProperty& property : element.properties) {
+    const int channel = attributeChannel(attribute, property, ofFaces);
+    if (channel >= 0) present[channel] = true;
+  }
+  if (!present[0]) return;
+  attribute.channels = present[1] && present[2] ? 3 : 1;
+  attribute.values.reserve(element.count * attribute.channels);
+}
+
+template <class Source>
+void appendAttribute(const Source& source, const float* values, TriangleSoup& soup) {
+  if (!isFinite(values, static_cast<int>(soup.attribute.channels))) {
+    source.fail("attribute " + inQuotes(soup.attribute.name) + " is not finite; expected finite numbers");
+  }
+  soup.attribute.values.insert(soup.attribute.values.end(), values, values + soup.attribute.channels);
+}
+
 template <class Source>
 void readVertices(Source& source, const PlyElement& element, const SourceLocation& where, TriangleSoup& soup) {
   std::vector<int> slots;
-  bool present[kSlots + 1] = {};
+  bool present[kRowSlots] = {};
+  startAttribute(element, false, soup.attribute);
   for (const PlyProperty& property : element.properties) {
-    slots.push_back(slotOf(property));
+    const int channel = attributeChannel(soup.attribute, property, false);
+    slots.push_back(channel < 0 ? slotOf(property) : kAttributeSlot + channel);
     present[slots.back()] = true;
   }
   if (!present[0] || !present[1] || !present[2]) {
@@ -135,7 +163,7 @@ void readVertices(Source& source, const PlyElement& element, const SourceLocatio
   soup.positions.reserve(element.count);
   if (hasNormals) soup.normals.reserve(element.count);
   if (hasUvs) soup.uvs.reserve(element.count);
-  float row[kSlots + 1] = {};
+  float row[kRowSlots] = {};
   for (uint64_t i = 0; i < element.count; ++i) {
     for (size_t j = 0; j < slots.size(); ++j) {
       const PlyProperty& property = element.properties[j];
@@ -161,6 +189,7 @@ void readVertices(Source& source, const PlyElement& element, const SourceLocatio
       }
       soup.uvs.push_back({row[kUvSlot], row[kUvSlot + 1]});
     }
+    if (soup.attribute.channels != 0 && !soup.attribute.perFace()) appendAttribute(source, row + kAttributeSlot, soup);
   }
 }
 
@@ -196,9 +225,15 @@ void readFaces(Source& source, const PlyElement& element, uint64_t vertexCount, 
                     "PLY faces have no vertices; expected one list property vertex_indices or vertex_index");
   }
   soup.triangles.reserve(element.count);
+  startAttribute(element, true, soup.attribute);
+  const bool hasAttribute = soup.attribute.channels != 0 && soup.attribute.perFace();
+  float values[3] = {};
   for (uint64_t i = 0; i < element.count; ++i) {
+    const size_t firstTriangle = soup.triangles.size();
     for (const PlyProperty& property : element.properties) {
-      if (isIndices(property)) {
+      if (const int channel = hasAttribute ? attributeChannel(soup.attribute, property, true) : -1; channel >= 0) {
+        values[channel] = source.real(property.type);
+      } else if (isIndices(property)) {
         readPolygon(source, property, vertexCount, soup);
       } else if (property.isList) {
         const int64_t count = source.integer(property.countType);
@@ -208,6 +243,8 @@ void readFaces(Source& source, const PlyElement& element, uint64_t vertexCount, 
         source.skip(property.type, 1);
       }
     }
+    for (size_t t = firstTriangle; hasAttribute && t < soup.triangles.size(); ++t)
+      appendAttribute(source, values, soup);
   }
 }
 
@@ -224,8 +261,9 @@ void skipElement(Source& source, const PlyElement& element) {
 }
 
 template <class Source>
-TriangleSoup readBody(Source source, const PlyHeader& header, const std::string& file) {
+TriangleSoup readBody(Source source, const PlyHeader& header, const std::string& file, const std::string& attribute) {
   TriangleSoup soup;
+  soup.attribute.name = attribute;
   const SourceLocation where{file, header.bodyLine};
   uint64_t vertexCount = 0;
   int vertexElements = 0, faceElements = 0;
@@ -249,7 +287,8 @@ TriangleSoup readBody(Source source, const PlyHeader& header, const std::string&
 
 }  // namespace
 
-TriangleSoup readPly(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where) {
+TriangleSoup readPly(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where,
+                     const std::string& attribute) {
   std::vector<char> bytes = readInputFile(path, where);
   const size_t size = bytes.size();
   bytes.push_back('\n');
@@ -258,13 +297,14 @@ TriangleSoup readPly(const std::filesystem::path& path, bool flipTexCoords, cons
   const PlyHeader header = readPlyHeader(text, file);
   TriangleSoup soup;
   if (header.format == PlyFormat::ascii) {
-    soup = readBody(AsciiSource(TextScanner(text.substr(header.bodyOffset), file, header.bodyLine)), header, file);
+    soup = readBody(AsciiSource(TextScanner(text.substr(header.bodyOffset), file, header.bodyLine)), header, file,
+                    attribute);
   } else {
     static_assert(std::endian::native == std::endian::little);
     const std::string_view body = text.substr(0, size).substr(std::min(size, header.bodyOffset));
     soup =
         readBody(BinarySource(body, header.format == PlyFormat::binaryBigEndian, SourceLocation{file, header.bodyLine}),
-                 header, file);
+                 header, file, attribute);
   }
   if (flipTexCoords) {
     for (Float2& uv : soup.uvs) uv[1] = 1 - uv[1];

@@ -107,7 +107,9 @@ class Hasher {
   void add(const FilmSettings& f) {
     all(f.width, f.height, f.cropX, f.cropY, f.cropWidth, f.cropHeight, f.filter, f.filterRadius, f.gaussianStddev);
   }
-  void add(const RenderDefaults& d) { all(d.maxDepth, d.rrDepth, d.sampleCount, d.hideEmitters); }
+  void add(const RenderDefaults& d) {
+    all(d.maxDepth, d.rrDepth, d.sampleCount, false);
+  }  // false: as in the hashes of stored references
 
   uint64_t state_ = 0x243f6a8885a308d3u;  // fractional digits of pi
 };

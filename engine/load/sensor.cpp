@@ -147,16 +147,4 @@ void readSensor(LoadContext& context, const XmlElement& element) {
   parameters.finish();
 }
 
-void readIntegrator(LoadContext& context, const XmlElement& element) {
-  Parameters parameters(context, element);
-  RenderDefaults& defaults = context.scene.defaults;
-  constexpr int64_t kMost = 1'000'000'000;
-  // `direct` is what a path tracer does with two edges.
-  const int64_t fallback = element.get("type") == "direct" ? 2 : -1;
-  defaults.maxDepth = static_cast<int>(parameters.integer("max_depth", fallback, -1, kMost));
-  defaults.rrDepth = static_cast<int>(parameters.integer("rr_depth", 5, 1, kMost));
-  defaults.hideEmitters = parameters.boolean("hide_emitters", false);
-  parameters.ignoreOthers();  // the method is chosen by the user, not by the scene
-}
-
 }  // namespace wavecrest

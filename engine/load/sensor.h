@@ -1,4 +1,4 @@
-// The camera with its film, sampler and reconstruction filter, and what the <integrator> asks for.
+// The camera with its film, sampler and reconstruction filter.
 #pragma once
 
 #include "engine/load/parameters.h"
@@ -6,7 +6,6 @@
 namespace wavecrest {
 
 void readSensor(LoadContext& context, const XmlElement& sensor);
-void readIntegrator(LoadContext& context, const XmlElement& integrator);
 
 void readPerspective(Parameters&, Sensor&);
 void readThinLens(Parameters&, Sensor&);

@@ -5,6 +5,7 @@
 
 #include "engine/load/emitters.h"
 #include "engine/load/materials.h"
+#include "engine/load/mesh_attributes.h"
 #include "engine/load/values.h"
 
 namespace wavecrest {
@@ -23,7 +24,30 @@ const XmlElement* singleChild(Parameters& parameters, std::string_view tag) {
   return found.empty() ? nullptr : found.front();
 }
 
+// Materials with an attribute of a mesh are that mesh's own: for the lifetime of this, others are forgotten.
+class OwnMaterials {
+ public:
+  explicit OwnMaterials(LoadContext& context) : context_(context.attributeBitmap ? &context : nullptr) { exchange(); }
+  ~OwnMaterials() {
+    exchange();
+    if (context_ != nullptr) context_->attributeBitmap = nullptr;
+  }
+  OwnMaterials(const OwnMaterials&) = delete;
+  OwnMaterials& operator=(const OwnMaterials&) = delete;
+
+ private:
+  void exchange() {
+    if (context_ == nullptr) return;
+    std::swap(context_->materials, materials_);
+    std::swap(context_->textures, textures_);
+  }
+
+  LoadContext* context_;
+  std::map<const XmlElement*, uint32_t> materials_, textures_;
+};
+
 void attachAreaLight(LoadContext& context, const XmlElement& element, uint32_t shapeIndex, Shape& shape) {
+  context.areaLights.insert(&element);
   shape.emitter = static_cast<uint32_t>(context.scene.emitters.size());
   context.scene.emitters.push_back(
       {.kind = readAreaEmitter(context, element, shapeIndex), .source = element.location()});
@@ -78,7 +102,14 @@ void addPlacedShape(LoadContext& context, const XmlElement& element, const Matri
   Shape shape;
   shape.id = element.get("id");
   shape.source = element.location();
+  context.meshAttribute = meshAttributeOf(context, element);
+  context.attributeBitmap = nullptr;
   shape.kind = plugin->read(context, parameters, multiply(placement, own));
+  if (!context.meshAttribute.empty() && !context.attributeBitmap) {
+    throw LoadError(element.location(), parameters.describe() + " has no attribute " + inQuotes(context.meshAttribute) +
+                                            "; expected a ply mesh with that attribute");
+  }
+  const OwnMaterials ownMaterials(context);
   const XmlElement* bsdf = singleChild(parameters, "bsdf");
   const XmlElement* light = singleChild(parameters, "emitter");
   ignoreCommonParameters(parameters);

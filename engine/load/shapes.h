@@ -15,6 +15,7 @@ Geometry readDisk(LoadContext&, Parameters&, const Matrix4& toWorld);
 Geometry readCylinder(LoadContext&, Parameters&, const Matrix4& toWorld);
 Geometry readPlyShape(LoadContext&, Parameters&, const Matrix4& toWorld);
 Geometry readObjShape(LoadContext&, Parameters&, const Matrix4& toWorld);
+Geometry readSerializedShape(LoadContext&, Parameters&, const Matrix4& toWorld);
 
 // Surface area of a shape in world space; not finite if its numbers overflow.
 double surfaceArea(const Geometry& geometry);

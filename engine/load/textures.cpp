@@ -2,6 +2,8 @@
 
 #include "engine/load/bitmap_file.h"
 #include "engine/load/color.h"
+#include "engine/load/materials.h"
+#include "engine/load/matrix.h"
 #include "engine/load/values.h"
 
 namespace wavecrest {
@@ -25,34 +27,130 @@ Rgb readColorOr(LoadContext& context, Parameters& parameters, std::string_view n
 }
 
 Filter readFilter(LoadContext& context, Parameters& parameters) {
+  parameters.ignore({"max_anisotropy"});
   const std::string name = toLower(parameters.string("filter_type", "bilinear"));
   if (name == "nearest") return Filter::nearest;
-  if (name != "bilinear") {
-    context.unsupported(parameters.locationOf("filter_type"),
-                        "filter_type " + inQuotes(name) + " is not supported; expected bilinear or nearest");
+  if (name == "trilinear" || name == "ewa") {
+    context.note(parameters.locationOf("filter_type"), "filter_type " + inQuotes(name), "bilinear is used");
+  } else if (name != "bilinear") {
+    throw LoadError(parameters.locationOf("filter_type"),
+                    "unknown filter_type " + inQuotes(name) + "; expected bilinear, nearest, trilinear or ewa");
   }
   return Filter::bilinear;
 }
 
-Wrap readWrap(Parameters& parameters) {
-  const std::string name = toLower(parameters.string("wrap_mode", "repeat"));
+Wrap readWrap(LoadContext& context, Parameters& parameters, std::string_view parameter) {
+  const std::string name = toLower(parameters.string(parameter, "repeat"));
   if (name == "repeat") return Wrap::repeat;
   if (name == "mirror") return Wrap::mirror;
   if (name == "clamp") return Wrap::clamp;
-  throw LoadError(parameters.locationOf("wrap_mode"),
-                  "unknown wrap_mode " + inQuotes(name) + "; expected repeat, mirror or clamp");
+  if (name == "zero" || name == "one") {
+    context.note(parameters.locationOf(parameter), std::string(parameter) + " " + inQuotes(name), "clamp is used");
+    return Wrap::clamp;
+  }
+  throw LoadError(parameters.locationOf(parameter),
+                  "unknown " + std::string(parameter) + " " + inQuotes(name) + "; expected repeat, mirror or clamp");
+}
+
+// Version 0.6 has a mode for each axis.
+Wrap readWrapOfAxes(LoadContext& context, Parameters& parameters) {
+  if (!parameters.has("wrap_mode_u") && !parameters.has("wrap_mode_v")) {
+    return readWrap(context, parameters, "wrap_mode");
+  }
+  const Wrap u = readWrap(context, parameters, "wrap_mode_u"), v = readWrap(context, parameters, "wrap_mode_v");
+  if (u != v) {
+    context.unsupported(parameters.locationOf(parameters.has("wrap_mode_v") ? "wrap_mode_v" : "wrap_mode_u"),
+                        "wrap_mode_u and wrap_mode_v differ; expected the same for both");
+  }
+  return u;
+}
+
+// Whether the file's numbers are light already. Version 0.6 says so by a gamma of 1, and asks for the file's by -1.
+bool readRaw(LoadContext& context, Parameters& parameters) {
+  bool raw = parameters.boolean("raw", false);
+  if (parameters.has("gamma")) {
+    const double gamma = parameters.real("gamma", -1);
+    if (gamma == 1) raw = true;
+    if (gamma > 0 && gamma != 1) {
+      context.note(parameters.locationOf("gamma"), "gamma of a bitmap", "the sRGB curve is used");
+    }
+  }
+  return raw;
+}
+
+std::shared_ptr<const Bitmap> oneChannel(const Bitmap& colors, size_t channel) {
+  auto grey =
+      std::make_shared<Bitmap>(Bitmap{.width = colors.width, .height = colors.height, .channels = 1, .pixels = {}});
+  for (size_t i = channel; i < colors.pixels.size(); i += 3) grey->pixels.push_back(colors.pixels[i]);
+  return grey;
+}
+
+std::shared_ptr<const Bitmap> readChannel(Parameters& parameters, const std::shared_ptr<const Bitmap>& bitmap) {
+  const std::string name = parameters.string("channel", "");
+  if (name.empty() || bitmap->channels == 1) return bitmap;
+  constexpr std::string_view kNames = "rgb";
+  const size_t channel = kNames.find(name);
+  if (name.size() != 1 || channel == std::string_view::npos) {
+    throw LoadError(parameters.locationOf("channel"),
+                    "channel " + inQuotes(name) + " of a bitmap is not supported; expected r, g or b");
+  }
+  return oneChannel(*bitmap, channel);
+}
+
+// A number, three numbers, or a colour: Mitsuba's rawconstant takes any of these as they are.
+Rgb readRawValue(LoadContext& context, Parameters& parameters) {
+  const XmlElement* element = parameters.element("value");
+  if (!element) throw LoadError(parameters.location(), parameters.describe() + " has no value; expected one");
+  if (element->tag == "vector" || element->tag == "point") return *parameters.vector("value");
+  return readColor(context, *element, ColorRole::unbounded);
 }
 
 }  // namespace
 
 Texture readBitmapTexture(LoadContext& context, Parameters& parameters) {
-  BitmapTexture texture{.bitmap = nullptr, .filter = readFilter(context, parameters), .wrap = readWrap(parameters)};
-  const bool raw = parameters.boolean("raw", false);
-  parameters.ignore({"format", "accel"});  // how Mitsuba stores it
+  BitmapTexture texture{
+      .bitmap = nullptr, .filter = readFilter(context, parameters), .wrap = readWrapOfAxes(context, parameters)};
+  const bool raw = readRaw(context, parameters);
+  parameters.ignore({"format", "accel", "cache"});  // how Mitsuba stores it
   const std::string filename = parameters.requiredString("filename");
   texture.bitmap =
       readBitmap(context, context.resolvePath(filename, parameters.object()), raw, parameters.locationOf("filename"));
+  texture.bitmap = readChannel(parameters, texture.bitmap);
   return {.kind = std::move(texture), .toUv = readToUv(parameters)};
+}
+
+Texture readRawConstant(LoadContext& context, Parameters& parameters) {
+  const Rgb value = readRawValue(context, parameters);
+  auto bitmap = std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .channels = 3, .pixels = {}});
+  for (const double channel : value) bitmap->pixels.push_back(static_cast<float>(channel));
+  return {.kind = BitmapTexture{.bitmap = std::move(bitmap), .filter = Filter::nearest}, .toUv = identityMatrix()};
+}
+
+Texture readScaleTexture(LoadContext& context, Parameters& parameters) {
+  const std::string_view name = parameters.has("value") ? "value" : "scale";
+  const XmlElement* factor = parameters.element(name);
+  const Rgb scale = factor ? readColor(context, *factor, ColorRole::unbounded) : Rgb{1, 1, 1};
+  // The nested texture is a part of this one: it leaves nothing of its own in the scene.
+  Texture texture = readTexture(context, parameters.onlyObject("texture"));
+  if (auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
+    for (size_t i = 0; i < 3; ++i) {
+      board->color0[i] *= scale[i];
+      board->color1[i] *= scale[i];
+    }
+    return texture;
+  }
+  auto& bitmap = std::get<BitmapTexture>(texture.kind).bitmap;
+  const bool grey = bitmap->channels == 1 && scale[0] == scale[1] && scale[0] == scale[2];
+  Bitmap scaled{.width = bitmap->width, .height = bitmap->height, .channels = grey ? 1u : 3u, .pixels = {}};
+  scaled.pixels.reserve(size_t{scaled.width} * scaled.height * scaled.channels);
+  for (size_t i = 0; i < size_t{scaled.width} * scaled.height; ++i) {
+    for (size_t c = 0; c < scaled.channels; ++c) {
+      const float value = bitmap->pixels[bitmap->channels == 1 ? i : 3 * i + c];
+      scaled.pixels.push_back(static_cast<float>(scale[c] * value));
+    }
+  }
+  bitmap = std::make_shared<Bitmap>(std::move(scaled));
+  return texture;
 }
 
 Texture readCheckerboard(LoadContext& context, Parameters& parameters) {

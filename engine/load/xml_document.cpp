@@ -60,6 +60,7 @@ class XmlReader {
   XmlElement readElement(const OpenFile& file, const pugi::xml_node& node, int depth);
   void readChildren(const OpenFile& file, const pugi::xml_node& node, int depth, XmlElement& parent);
   void readInclude(const OpenFile& file, const XmlElement& include, XmlElement& parent);
+  std::filesystem::path includedPath(const std::filesystem::path& from, std::string_view filename) const;
 
   Variables variables_;
   XmlDocument& document_;
@@ -77,7 +78,9 @@ std::optional<double> majorVersion(const std::string& text) {
 }
 
 XmlElement XmlReader::readFile(const std::filesystem::path& path, const SourceLocation& namedAt) {
-  const std::vector<char> text = readInputFile(path, namedAt, kLargestXml);
+  const bool fromStandardInput = openFiles_.empty() && path == kStandardInput;
+  const std::vector<char> text =
+      fromStandardInput ? readStandardInput(kLargestXml) : readInputFile(path, namedAt, kLargestXml);
   byteCount_ += text.size();
   if (byteCount_ > kLargestXml) {
     throw LoadError(namedAt, "scene and its includes exceed 32 MiB of XML; expected a smaller description");
@@ -160,6 +163,14 @@ void XmlReader::readChildren(const OpenFile& file, const pugi::xml_node& node, i
   }
 }
 
+// Beside the file that includes it, or beside the scene, as Mitsuba takes it in nested includes.
+std::filesystem::path XmlReader::includedPath(const std::filesystem::path& from, std::string_view filename) const {
+  const std::filesystem::path beside = (from.parent_path() / filename).lexically_normal();
+  const std::filesystem::path besideScene = (openFiles_.front().parent_path() / filename).lexically_normal();
+  std::error_code error;
+  return !std::filesystem::exists(beside, error) && std::filesystem::exists(besideScene, error) ? besideScene : beside;
+}
+
 // The children of an included <scene> take the place of the <include>; any other root element does so itself.
 void XmlReader::readInclude(const OpenFile& file, const XmlElement& include, XmlElement& parent) {
   const std::string_view filename = include.get("filename");
@@ -170,7 +181,7 @@ void XmlReader::readInclude(const OpenFile& file, const XmlElement& include, Xml
     throw LoadError(include.location(), "includes nest deeper than " + std::to_string(kDeepestInclude) +
                                             "; expected a flatter set of files");
   }
-  const std::filesystem::path path = (file.path.parent_path() / filename).lexically_normal();
+  const std::filesystem::path path = includedPath(file.path, filename);
   for (const std::filesystem::path& open : openFiles_) {
     std::error_code error;
     if (open == path || std::filesystem::equivalent(open, path, error)) {

@@ -1,4 +1,4 @@
-// The list of light-transport methods: the name that --method takes, and the pipeline.
+// The list of light-transport methods: the name that --method takes, and the page.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/pipeline.h"
+#include "engine/methods/method_page.h"
 
 namespace wavecrest {
 
@@ -17,62 +17,42 @@ enum class Method { pt, lt, bpt, mlt, ppm, bpm, vcm };
 enum class MetropolisVariant { pssmlt, mmlt, pathspace };
 constexpr std::array<std::string_view, 3> kMetropolisVariantNames{"pssmlt", "mmlt", "pathspace"};
 
-// The ways in which a method joins s light vertices and t camera vertices. engine/path_classes.h derives from them
-// which paths the method can make.
-struct PathStrategies {
-  bool emission = false;            // s = 0: a camera path meets a light
-  bool nextEvent = false;           // s = 1
-  bool connect = false;             // s >= 2, t >= 2
-  bool camera = false;              // t = 1
-  bool merge = false;               // without nextEvent, emission then serves the paths that have no vertex to merge at
-  bool specularViewsOnly = false;   // emission and nextEvent serve only what a delta lobe, or nothing, shows to the eye
-  bool mergeAtFirstVertex = false;  // merges where a camera path first has more than delta lobes, and nowhere else
-  bool operator==(const PathStrategies&) const = default;
-};
+// The page of each method, in a file of its own.
+MethodPage pathTracing();
+MethodPage lightTracing();
+MethodPage bidirectionalPathTracing();
+MethodPage primarySampleSpace();
+MethodPage multiplexedMetropolis();
+MethodPage pathSpaceMetropolis();
+MethodPage progressivePhotonMapping();
+MethodPage bidirectionalPhotonMapping();
+MethodPage vertexConnectionAndMerging();
 
 struct MethodEntry {
   Method method;
   std::string_view name;         // spelling of --method
   std::string_view description;  // one line
-  bool bidirectional;            // needs kernels with the whole MIS recursion
-  PathStrategies strategies;
+  MethodPage (*page)();          // of mlt: of its default variant
 };
 
+// In the order of the enumeration.
 constexpr std::array kMethods{
-    MethodEntry{
-        Method::pt, "pt", "path tracing with next event estimation", false, {.emission = true, .nextEvent = true}},
-    MethodEntry{Method::lt,
-                "lt",
-                "light tracing, and path tracing of directly visible specular surfaces",
-                true,
-                {.emission = true, .nextEvent = true, .camera = true, .specularViewsOnly = true}},
-    MethodEntry{Method::bpt,
-                "bpt",
-                "bidirectional path tracing",
-                true,
-                {.emission = true, .nextEvent = true, .connect = true, .camera = true}},
-    // As mmlt and pathspace; pssmlt makes what pt does.
-    MethodEntry{Method::mlt,
-                "mlt",
-                "Metropolis light transport",
-                true,
-                {.emission = true, .nextEvent = true, .connect = true, .camera = true}},
-    MethodEntry{Method::ppm,
-                "ppm",
-                "progressive photon mapping",
-                true,
-                {.emission = true, .merge = true, .mergeAtFirstVertex = true}},
-    MethodEntry{Method::bpm,
-                "bpm",
-                "bidirectional photon mapping: merging at every vertex",
-                true,
-                {.emission = true, .merge = true}},
-    MethodEntry{Method::vcm,
-                "vcm",
-                "vertex connection and merging",
-                true,
-                {.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true}},
+    MethodEntry{Method::pt, "pt", "path tracing with next event estimation", pathTracing},
+    MethodEntry{Method::lt, "lt", "light tracing, and path tracing of directly visible specular surfaces",
+                lightTracing},
+    MethodEntry{Method::bpt, "bpt", "bidirectional path tracing", bidirectionalPathTracing},
+    MethodEntry{Method::mlt, "mlt", "Metropolis light transport", multiplexedMetropolis},
+    MethodEntry{Method::ppm, "ppm", "progressive photon mapping", progressivePhotonMapping},
+    MethodEntry{Method::bpm, "bpm", "bidirectional photon mapping: merging at every vertex",
+                bidirectionalPhotonMapping},
+    MethodEntry{Method::vcm, "vcm", "vertex connection and merging", vertexConnectionAndMerging},
 };
+static_assert([] {
+  for (size_t i = 0; i < kMethods.size(); ++i) {
+    if (kMethods[i].method != static_cast<Method>(i)) return false;
+  }
+  return true;
+}());
 
 constexpr std::optional<Method> parseMethod(std::string_view word) {
   for (const MethodEntry& entry : kMethods) {
@@ -86,30 +66,8 @@ constexpr std::string_view toString(Method method) { return entryOf(method).name
 // "pt, lt, ...": what --method may be.
 std::string methodChoices();
 
-// Each method's pipeline, in a file of its own.
-template <class S>
-Pipeline<S> pathTracing(const Stages<S>& stages, const Intersector<S>& intersector);
-template <class S>
-Pipeline<S> lightTracing(const Stages<S>& stages, const Intersector<S>& intersector);
-template <class S>
-Pipeline<S> bidirectionalPathTracing(const Stages<S>& stages, const Intersector<S>& intersector);
-template <class S>
-Pipeline<S> progressivePhotonMapping(const Stages<S>& stages, const Intersector<S>& intersector);
-template <class S>
-Pipeline<S> bidirectionalPhotonMapping(const Stages<S>& stages, const Intersector<S>& intersector);
-template <class S>
-Pipeline<S> vertexConnectionAndMerging(const Stages<S>& stages, const Intersector<S>& intersector);
-
-template <class S>
-Pipeline<S> primarySampleSpace(const Stages<S>& stages, const Intersector<S>& intersector);
-template <class S>
-Pipeline<S> multiplexedMetropolis(const Stages<S>& stages, const Intersector<S>& intersector);
-template <class S>
-Pipeline<S> pathSpaceMetropolis(const Stages<S>& stages, const Intersector<S>& intersector);
-
 // variant: of mlt.
-template <class S>
-Pipeline<S> makePipeline(Method method, MetropolisVariant variant, const Stages<S>& stages,
-                         const Intersector<S>& intersector);
+MethodPage pageOf(Method method, MetropolisVariant variant);
+inline PathStrategies strategiesOf(Method method) { return strategiesOf(entryOf(method).page()); }
 
 }  // namespace wavecrest

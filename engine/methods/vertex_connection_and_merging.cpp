@@ -4,47 +4,14 @@
 
 namespace wavecrest {
 
-template <class S>
-Pipeline<S> vertexConnectionAndMerging(const Stages<S>& stages, const Intersector<S>& intersector) {
-  constexpr MisSettings kAll{.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true};
-  return {
-      .lightPass =
-          Pass<S>{
-              .walk = Walk::light,
-              .strategies = kAll,
-              .generate = {"generate light", stages.generateLightPaths, generatedItems<S>, stages.lanes},
-              .perDepth =
-                  {
-                      {"extend light", intersector.extend, pathItems<S>, intersector.lanes},
-                      {"arrive light", stages.arrive, pathItems<S>, stages.lanes},
-                      {"store", stages.storeLightVertices, joinableItems<S>, stages.lanes},
-                      {"connect to camera", stages.connectToCamera, joinableItems<S>, stages.lanes},
-                      {"occlude light", intersector.occlude, shadowItems<S>, intersector.lanes},
-                      {"scatter light", stages.scatter, pathItems<S>, stages.lanes},
-                  },
-          },
-      .photonMap = true,
-      .cameraPass =
-          {
-              .walk = Walk::camera,
-              .strategies = kAll,
-              .generate = {"generate", stages.generateCameraPaths, generatedItems<S>, stages.lanes},
-              .perDepth =
-                  {
-                      {"extend", intersector.extend, pathItems<S>, intersector.lanes},
-                      {"arrive", stages.arrive, pathItems<S>, stages.lanes},
-                      {"next event", stages.nextEvent, joinableItems<S>, stages.lanes},
-                      {"occlude", intersector.occlude, shadowItems<S>, intersector.lanes},
-                      {"connect", stages.connectVertices, joinableItems<S>, stages.lanes, Repeat::untilJoined},
-                      {"occlude connection", intersector.occlude, shadowItems<S>, intersector.lanes,
-                       Repeat::untilJoined},
-                      {"merge", stages.merge, joinableItems<S>, stages.lanes},
-                      {"scatter", stages.scatter, pathItems<S>, stages.lanes},
-                  },
-          },
-  };
+MethodPage vertexConnectionAndMerging() {
+  using enum StageId;
+  return {{
+      walk(Walk::light, generateLightPaths, {extend, arrive, storeLightVertices, connectToCamera, occlude, scatter}),
+      buildPhotonMap(),
+      walk(Walk::camera, generateCameraPaths,
+           {extend, arrive, nextEvent, occlude, untilJoined{connectVertices, occlude}, merge, scatter}),
+  }};
 }
-template Pipeline<float> vertexConnectionAndMerging(const Stages<float>&, const Intersector<float>&);
-template Pipeline<double> vertexConnectionAndMerging(const Stages<double>&, const Intersector<double>&);
 
 }  // namespace wavecrest

@@ -199,7 +199,8 @@ struct Sensor {
   Kind kind = Kind::perspective;
   Matrix4 toWorld{};      // camera looks along +z, +x to the left of the image, +y up, as in Mitsuba
   double fovX = 39.3077;  // horizontal, degrees, already derived from fov_axis and the film's aspect
-  double nearClip = 1e-2, farClip = 1e4;
+  // Planes between which the camera sees, along its axis. The loader has Mitsuba's defaults, 0.01 and 10,000.
+  double nearClip = 0, farClip = std::numeric_limits<double>::infinity();
   double apertureRadius = 0, focusDistance = 0;  // thinlens
   std::array<double, 2> principalPointOffset{0, 0};
 };
@@ -217,7 +218,14 @@ struct FilmSettings {
 struct RenderDefaults {
   int maxDepth = -1, rrDepth = 5;
   uint32_t sampleCount = 16;
-  bool hideEmitters = false;
+};
+
+// Something in a scene file that is approximated or left out, without which the picture is about the same.
+struct Note {
+  SourceLocation source;  // the first place that says so
+  std::string what;       // what the file says
+  std::string effect;     // what wavecrest does
+  uint32_t count = 1;     // how many places say the same
 };
 
 struct Scene {
@@ -231,7 +239,9 @@ struct Scene {
   RenderDefaults defaults;
   uint64_t droppedTriangles = 0;      // without area, left out of the meshes
   uint64_t hash = 0;                  // of all data above that can change an image; stable across runs and machines
-  std::vector<std::string> warnings;  // what --lenient skipped, or may look unlike Mitsuba
+  std::vector<Note> notes;            // what was approximated or left out
+  std::vector<std::string> files;     // that it was read from
+  std::vector<std::string> warnings;  // what --lenient skipped
 };
 
 }  // namespace wavecrest

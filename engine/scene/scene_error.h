@@ -12,7 +12,9 @@ namespace wavecrest {
 class SceneError : public std::runtime_error {
  public:
   SceneError(const SourceLocation& where, const std::string& message)
-      : std::runtime_error(where.file + ":" + std::to_string(where.line) + ": " + message) {}
+      : std::runtime_error(where.file + ":" + std::to_string(where.line) + ": " + message), location(where) {}
+
+  SourceLocation location;
 };
 
 }  // namespace wavecrest

@@ -99,6 +99,16 @@ struct VertexRows : Columns<VertexRows<S>> {
   auto all() { return std::tie(row); }
 };
 
+// Contributions of light walks and of Markov chains on their way to the film. Pushed by occlude and acceptMutations, at
+// most one for each path and call; emptied into the film's sums by the engine (addSplats), which does so before a stage
+// could overrun the queue. Their order changes no sum. Dropped where a method has none.
+template <class S>
+struct Splats : Columns<Splats<S>> {
+  Column<S> red, green, blue;
+  Column<uint32_t> pixel;  // of the rendered rectangle, row by row
+  auto all() { return std::tie(red, green, blue, pixel); }
+};
+
 // Radiance gathered by each lane of the wave in this iteration.
 template <class S>
 struct Radiance : Columns<Radiance<S>> {

@@ -13,6 +13,7 @@ struct ColumnNeeds {
   bool rouletteScale = true;
   bool connections = true;
   bool bsdfOrder = true;
+  bool splats = true;
 };
 
 // The front of paths, and what they carry, at their vertices.
@@ -63,6 +64,7 @@ struct Wave : Vertices<S> {
   ShadowRays<S> shadowRays;
   VertexPairs pairs, sortedPairs;  // sortedPairs: dropped where all BSDFs are diffuse
   VertexRows<S> vertexRows;
+  Splats<S> splats;
   Radiance<S> radiance;
   size_t firstPath = 0;  // index of lane 0 in the iteration's order of paths
   size_t pathCount = 0;  // lanes in use when the wave began
@@ -76,6 +78,7 @@ struct Wave : Vertices<S> {
     aside.paths.light.drop();
     if (!needs.connections || !needs.bsdfOrder) sortedPairs.drop();
     if (!needs.bsdfOrder) aside.forEachQueue([](auto& queue) { queue.drop(); });
+    if (!needs.splats) splats.drop();
     if (!needs.connections) {
       pairs.drop();
       vertexRows.row.drop();
@@ -99,6 +102,7 @@ struct Wave : Vertices<S> {
     openPairs = other.openPairs;
     shadowRays.size = other.shadowRays.size;
     vertexRows.size = other.vertexRows.size;
+    splats.size = other.splats.size;
     radiance.size = other.radiance.size;
     firstPath = other.firstPath;
     pathCount = other.pathCount;
@@ -128,6 +132,7 @@ struct Wave : Vertices<S> {
     function(pairs);
     function(sortedPairs);
     function(vertexRows);
+    function(splats);
     function(radiance);
   }
 

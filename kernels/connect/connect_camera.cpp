@@ -2,7 +2,7 @@
 // sees it.
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: ShadowRays [<= n] in that order, whose
-// targets are pixels of the splat sink; of chains their lanes, and the pixels go to Chains::proposedPixel.
+// targets are pixels of the film's window; of chains their lanes, and the pixels go to Chains::proposedPixel.
 // METHODS 4.3, 5.6. The contribution leaves out 1/N_L: the film divides by the number of light paths, as the average
 // over passes does. Densities are per pixel whatever the reconstruction filter, so weights do not depend on it.
 #include "kernels/columns/chains.h"
@@ -16,6 +16,15 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
+// Place on the lens (a, b) and choice of the pixel (c, d). A chain's numbers for both are those that its camera walk
+// has at the lens, whatever the strategy: a step that changes the strategy keeps the place on the lens.
+template <class S>
+WAVECREST_INLINE Uniform4 lensNumbers(const StageContext<S>& context, const Wave<S>& wave, UInt lane) {
+  if (context.chains == nullptr) return draw(context, pathOf(context, wave, lane), Block::light);
+  const Uniform4 u = uniform4(context.sampler, lane, static_cast<uint32_t>(Block::scatter), Stream::camera);
+  return {u.c, u.d, u.a, u.b};
+}
+
 // The vertices [begin, end), whose BSDFs are of kBsdfs; shadow rays from `out` on; where they end.
 template <class P, uint32_t kFeatures, uint32_t kBsdfs>
 WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
@@ -23,7 +32,7 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
   using Real = typename P::Real;
   const auto& scene = *context.scene;
   const auto& paths = wave.paths;
-  const SplatSink& splats = context.splats;
+  const FilmWindow& film = context.film;
   auto& shadow = wave.shadowRays;
   const bool choosesPlace = scene.camera.lensRadius > 0 || scene.camera.filter != FilterKind::box;
 
@@ -33,17 +42,15 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
     shading.bsdf.walk = Walk::light;
     Uniform4 u{};  // place on the lens, choice of the pixel
     if (choosesPlace) {
-      const UInt lane = select(active, load(paths.lane, i), UInt(0u));
-      u = draw(context, pathOf(context, wave, lane), Block::light);
+      u = lensNumbers(context, wave, select(active, load(paths.lane, i), UInt(0u)));
     }
     const auto view = project<P>(scene.camera, shading.position, u);
     const SplatPixel<Real> column = splatPixel(scene.camera, view.rasterX, to<Real>(u.c));
     const SplatPixel<Real> row = splatPixel(scene.camera, view.rasterY, to<Real>(u.d));
     // Relative to the rendered rectangle; outside of it nothing is seen.
-    const Real x = column.pixel - Real(static_cast<float>(splats.x0)),
-               y = row.pixel - Real(static_cast<float>(splats.y0));
-    const Mask onFilm = view.inFront & (x >= Real(0)) & (y >= Real(0)) & (x < Real(static_cast<float>(splats.width))) &
-                        (y < Real(static_cast<float>(splats.height)));
+    const Real x = column.pixel - Real(static_cast<float>(film.x0)), y = row.pixel - Real(static_cast<float>(film.y0));
+    const Mask onFilm = view.inFront & (x >= Real(0)) & (y >= Real(0)) & (x < Real(static_cast<float>(film.width))) &
+                        (y < Real(static_cast<float>(film.height)));
     if (none(active & onFilm)) continue;
 
     const auto bsdf = shading.scattering(active & onFilm, view.direction);
@@ -55,17 +62,18 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
     const Real wLight = pdfA * Real(context.mis.camN > 0 ? 1 / context.mis.camN : 0.0) *
                         behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
     // f c(omega_l) / n(omega_l): omega_l is fix, the light's side.
-    const Real scale = pdfA * bsdf.lightCosine * reciprocal<P>(max(fixCosine, Real(1e-6f)) * (Real(1) + wLight)) *
+    const Real scale = pdfA * bsdf.lightCosine *
+                       reciprocal<P>(max(fixCosine, Real(kSmallestCosine)) * (Real(1) + wLight)) *
                        (column.weight * row.weight);
     const Vec3<Real> contribution =
         loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * bsdf.f * scale;
-    const Mask lit = active & onFilm & (fixCosine > Real(1e-6f)) & (maxComponent(contribution) > Real(0));
+    const Mask lit = active & onFilm & (fixCosine > Real(0)) & (maxComponent(contribution) > Real(0));
     if (none(lit)) continue;
 
     const Vec3<Real> origin = offsetOrigin(shading.position, shading.normal, shading.offset, view.direction);
-    const UInt pixel = toUInt(to<Float>(y)) * UInt(splats.width) + toUInt(to<Float>(x));
+    const UInt pixel = toUInt(to<Float>(y)) * UInt(film.width) + toUInt(to<Float>(x));
     appendVec3(to<Float>(origin), lit, shadow.originX, shadow.originY, shadow.originZ, out);
-    appendVec3(to<Float>(view.lens - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
+    appendVec3(to<Float>(view.end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
     appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
     if (context.contributesToLanes()) {
       const UInt lane = select(lit, load(paths.lane, i), UInt(0u));

@@ -2,7 +2,7 @@
 // pushes shadow rays with the weighted contributions.
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the light store of the wave's light paths. out: ShadowRays
-// [<= capacity], in the order in which pairs are joined. METHODS 5.6 (40)-(41).
+// [<= capacity], in the order in which pairs are joined. METHODS 5.6.
 //
 // Light paths have few vertices or none, so the pairs are listed first: 16 lanes then work on 16 pairs, wherever on
 // their paths the vertices are. The list begins with the first vertex of each path and goes on from pairs to those with
@@ -132,14 +132,16 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
       behindConnection(context.mis, context.depth, MisSums<Real>{zRow.dVCM, zRow.behind, Real(0)}, zBsdf.pdfReverse);
 
   // c_z(omega_l) at the camera's end; c_y(omega_l) / n_y(omega_l) n_y(to z) at the light's (METHODS 3.9).
-  const Real yFix = max(abs(y.fixCosine), Real(1e-6f));
+  const Real yFix = max(abs(y.fixCosine), Real(kSmallestCosine));
   const Real scale = zBsdf.lightCosine * yBsdf.lightCosine * yCosine * inverseDist2 *
                      reciprocal<P>(yFix * (Real(1) + wLight + wCamera));
   const Vec3<Real> contribution = zRow.throughput * zBsdf.f * yRow.throughput * yBsdf.f * scale;
 
   // Points closer than the offsets that keep their segment off the surfaces cannot be told apart.
   const Real apart = Real(4) * (z.offset + y.offset);
-  const Mask lit = active & (dist2 > apart * apart) & (maxComponent(contribution) > Real(0));
+  const Mask carries = active & (maxComponent(contribution) > Real(0)), tooClose = carries & (dist2 <= apart * apart);
+  if (any(tooClose)) context.counters->closePairs += countTrue(tooClose);
+  const Mask lit = andNot(carries, tooClose);
   if (none(lit)) return out;
   const Vec3<Real> origin = offsetOrigin(z.position, z.normal, z.offset, towards);
   const Vec3<Real> end = offsetOrigin(y.position, y.normal, y.offset, -towards);

@@ -143,7 +143,7 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   sample.direction = segment * inverseDistance;
   const Real n0 = -dot(sample.direction, normal);
   sample.pdf = pdfA * dist2 * reciprocal<P>(max(n0, Real(1e-12f)));
-  sample.valid = n0 > Real(1e-6f);
+  sample.valid = n0 > Real(0);
   sample.emissionPdf = pdfA * Real(kInvPi);  // cosine-distributed around a uniform point
   sample.delta = noLanes();
   sample.end = mulAdd(normal, light.offset, point);

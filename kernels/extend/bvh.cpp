@@ -1,7 +1,6 @@
 #include "kernels/extend/bvh.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "kernels/extend/bvh_branches.h"
+#include "kernels/extend/offset.h"
 
 namespace wavecrest {
 namespace {
@@ -16,74 +16,11 @@ namespace {
 constexpr double kGrid = 255;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-using Corner = std::array<float, 3>;
-
-Corner cornerAt(const PrimitiveRecord<double>& record, double u, double v) {
-  Corner corner;
-  for (size_t i = 0; i < 3; ++i) corner[i] = static_cast<float>(record.p0[i] + u * record.e1[i] + v * record.e2[i]);
-  return corner;
-}
-std::array<Corner, 3> cornersOf(const PrimitiveRecord<double>& record, FaceKind kind) {
-  const Corner origin = cornerAt(record, 0, 0);
-  if (kind == FaceKind::lowerHalf) return {origin, cornerAt(record, 1, 0), cornerAt(record, 1, 1)};
-  if (kind == FaceKind::upperHalf) return {origin, cornerAt(record, 1, 1), cornerAt(record, 0, 1)};
-  return {origin, cornerAt(record, 1, 0), cornerAt(record, 0, 1)};
-}
-
-Box boxOf(const std::array<Corner, 3>& corners) {
-  Box box;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = std::min({corners[0][axis], corners[1][axis], corners[2][axis]});
-    box.high[axis] = std::max({corners[0][axis], corners[1][axis], corners[2][axis]});
-  }
-  return box;
-}
-// Along the longest axis, rounded up.
-float sizeOf(const Box& box) {
-  float size = 0;
-  for (size_t axis = 0; axis < 3; ++axis) size = std::max(size, box.high[axis] - box.low[axis]);
-  return std::nextafter(size, kInfinity);
-}
-Box boxOfSphere(const PrimitiveRecord<double>& record) {
-  Box box;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = std::nextafter(static_cast<float>(record.p0[axis] - record.e1[0]), -kInfinity);
-    box.high[axis] = std::nextafter(static_cast<float>(record.p0[axis] + record.e1[0]), kInfinity);
-  }
-  return box;
-}
-
-// What leaves hold, one hierarchy for each kind of leaf: ids of slots (bvh.h) and the box of each.
-struct Pieces {
-  std::vector<uint32_t> ids;
-  std::vector<Box> boxes;
-
-  void add(size_t primitive, FaceKind kind, const Box& box) {
-    ids.push_back(static_cast<uint32_t>(primitive) | static_cast<uint32_t>(kind) << kFaceKindShift);
-    boxes.push_back(box);
-  }
-};
-
-FaceKind kindOf(uint32_t id) { return static_cast<FaceKind>(id >> kFaceKindShift); }
-
-void growTo(const Box& box, Box& all) {
-  for (size_t axis = 0; axis < 3; ++axis) {
-    all.low[axis] = std::min(all.low[axis], box.low[axis]);
-    all.high[axis] = std::max(all.high[axis], box.high[axis]);
-  }
-}
-
 // How far boxes are widened. A ray's distances to the planes of a box are (corner - origin) / direction + step * (scale
 // / direction): six roundings, each of which moves the plane by at most a unit roundoff of the distance between origin
-// and box. Both lie within the scene, or at the eye, or on the disc that distant light starts from, two diameters away.
-// Where a ray meets a triangle is as uncertain.
+// and box. The corners of triangles are as uncertain, relative to the origin and laid along the ray.
 float marginFor(const Box& all, const double (&eye)[3]) {
-  double reach = 0;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const double low = std::min(eye[axis], double{all.low[axis]}), high = std::max(eye[axis], double{all.high[axis]});
-    reach = std::max({reach, std::abs(low), std::abs(high), 3 * (high - low)});
-  }
-  return static_cast<float>(16 * 0x1p-24 * reach);
+  return static_cast<float>(16 * kUnitRoundoff * rayReach(all, eye));
 }
 
 struct Counts {
@@ -100,12 +37,6 @@ size_t stackNeed(const Branch& branch) {
   size_t deepest = 0;
   for (uint32_t i = 0; i < branch.count; ++i) deepest = std::max(deepest, stackNeed(*asNode(branch).child[i]));
   return branch.count - 1 + deepest;
-}
-
-Box unionOf(const Box* boxes, size_t count) {
-  Box all = boxes[0];
-  for (size_t i = 1; i < count; ++i) growTo(boxes[i], all);
-  return all;
 }
 
 // Writes the boxes of a node's children, each widened by the margin on every side.
@@ -187,85 +118,42 @@ class Layout {
   double margin_;
 };
 
-BvhFaces makeFaces(const BranchLeaf& leaf, const Pieces& pieces, const PrimitiveRecord<double>* primitives) {
-  BvhFaces faces;
-  for (size_t slot = 0; slot < kLeafSize; ++slot) {
-    const uint32_t id = pieces.ids[leaf.item[std::min<size_t>(slot, leaf.count - 1)]];
-    const auto corners = cornersOf(primitives[id & kFacePrimitiveMask], kindOf(id));
-    faces.id[slot] = id;
-    faces.size[slot] = sizeOf(boxOf(corners));
-    for (size_t k = 0; k < 3; ++k) {
-      for (size_t axis = 0; axis < 3; ++axis) faces.corner[k][axis][slot] = corners[k][axis];
-    }
-  }
-  return faces;
-}
-BvhSpheres makeSpheres(const BranchLeaf& leaf, const Pieces& pieces, const PrimitiveRecord<double>* primitives) {
-  BvhSpheres spheres;
-  for (size_t slot = 0; slot < kLeafSize; ++slot) {
-    const uint32_t id = pieces.ids[leaf.item[std::min<size_t>(slot, leaf.count - 1)]];
-    const auto& record = primitives[id & kFacePrimitiveMask];
-    spheres.id[slot] = id;
-    for (size_t axis = 0; axis < 3; ++axis) spheres.center[axis][slot] = static_cast<float>(record.p0[axis]);
-    spheres.radius[slot] = static_cast<float>(record.e1[0]);
-  }
-  return spheres;
-}
-
 }  // namespace
 
 Bvh::Bvh(const PrimitiveRecord<double>* primitives, size_t count, const double (&eye)[3]) {
-  Pieces faces, spheres;
-  faces.ids.reserve(count);
-  faces.boxes.reserve(count);
-  for (size_t i = 0; i < count; ++i) {
-    const auto addFace = [&](FaceKind kind) { faces.add(i, kind, boxOf(cornersOf(primitives[i], kind))); };
-    switch (static_cast<PrimitiveKind>(primitives[i].kind)) {
-      case PrimitiveKind::triangle:
-        addFace(FaceKind::triangle);
-        break;
-      case PrimitiveKind::quad:
-        addFace(FaceKind::lowerHalf);
-        addFace(FaceKind::upperHalf);
-        break;
-      case PrimitiveKind::sphere:
-        spheres.add(i, FaceKind::sphere, boxOfSphere(primitives[i]));
-        break;
-    }
-  }
+  const LeafMaker leaves(primitives, count);
   std::optional<BranchTree> faceTree, sphereTree;
-  Box all{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  std::vector<Box> bounds;
   Counts faceCounts, sphereCounts;
   size_t stack = 0;
   const auto grow = [&](const Pieces& pieces, std::optional<BranchTree>& tree, Counts& counts) {
-    if (pieces.ids.empty()) return;
+    if (pieces.empty()) return;
     tree.emplace(pieces.boxes);
     countBranches(tree->root(), counts);
     stack = std::max(stack, stackNeed(tree->root()));
-    growTo(unionOf(pieces.boxes.data(), pieces.boxes.size()), all);
+    bounds.push_back(pieces.bounds());
   };
-  grow(faces, faceTree, faceCounts);
-  grow(spheres, sphereTree, sphereCounts);
+  grow(leaves.faces(), faceTree, faceCounts);
+  grow(leaves.spheres(), sphereTree, sphereCounts);
   // One reference for the other hierarchy, one for the end, and a whole node written at once.
   if (stack + 2 + kBvhWidth > kBvhStack) throw std::runtime_error("the hierarchy is too deep");
 
   const size_t nodes = faceCounts.nodes + sphereCounts.nodes + 1;
   const size_t used =
-      nodes * sizeof(BvhNode) + faceCounts.leaves * sizeof(BvhFaces) + sphereCounts.leaves * sizeof(BvhSpheres);
+      nodes * sizeof(BvhNode) + faceCounts.leaves * sizeof(FaceLeaf) + sphereCounts.leaves * sizeof(SphereLeaf);
   if (used / kBvhUnit > kBvhOffsetMask) throw std::runtime_error("the hierarchy is too large");
   arena_ = MemoryBlock(used, sizeof(BvhNode));
 
-  Layout layout(arena_.get(), nodes, marginFor(all, eye));
+  Layout layout(arena_.get(), nodes, marginFor(unionOf(bounds.data(), bounds.size()), eye));
   view_.arena = arena_.get();
   if (faceTree) {
     view_.root = layout.add(faceTree->root(), BvhEntry::faces,
-                            [&](const BranchLeaf& leaf) { return makeFaces(leaf, faces, primitives); });
+                            [&](const BranchLeaf& leaf) { return leaves.faceLeaf(leaf.item, leaf.count); });
   }
   if (sphereTree) {
     const uint32_t root = layout.add(sphereTree->root(), BvhEntry::spheres,
-                                     [&](const BranchLeaf& leaf) { return makeSpheres(leaf, spheres, primitives); });
-    const auto bounds = [](const Pieces& pieces) { return unionOf(pieces.boxes.data(), pieces.boxes.size()); };
-    view_.root = faceTree ? layout.join(view_.root, bounds(faces), root, bounds(spheres)) : root;
+                                     [&](const BranchLeaf& leaf) { return leaves.sphereLeaf(leaf.item, leaf.count); });
+    view_.root = faceTree ? layout.join(view_.root, bounds.front(), root, bounds.back()) : root;
   }
 }
 

@@ -2,24 +2,23 @@
 //
 // A node is two cache lines: the boxes of its children on a grid of 255 steps over their union (Ylitie, Karras, Laine,
 // "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017), and a reference to each child.
-// Leaves hold up to four triangles, or spheres, in columns. A mesh of a million triangles has 10 MB of nodes and 50 MB
+// Leaves hold up to four triangles, or spheres, in columns. A mesh of a million triangles has 10 MB of nodes and 45 MB
 // of leaves.
 //
-// Watertightness: boxes are widened by a bound on the rounding of their test (bvh.cpp), and so are triangles by that of
-// their edge functions (bvh_lanes.h); triangles that share a corner agree on its place relative to a ray's origin. So
-// no ray passes between them, not even through a corner.
+// Watertightness: boxes are widened by a bound on the rounding of their test (bvh.cpp). Triangles are not: those that
+// share an edge agree on which of its sides a ray passes (bvh_lanes.h).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
 #include "kernels/columns/memory_block.h"
+#include "kernels/extend/leaves.h"
 #include "kernels/scene_view.h"
 
 namespace wavecrest {
 
 constexpr size_t kBvhWidth = 8;  // children of a node
-constexpr size_t kLeafSize = 4;  // primitives of a leaf
 
 // A reference: what it leads to in the upper two bits, and the distance from the arena's begin in units of 32 bytes.
 enum class BvhEntry : uint32_t { node, faces, spheres, end };
@@ -38,21 +37,6 @@ struct alignas(128) BvhNode {
   uint8_t bounds[6][kBvhWidth];
 };
 static_assert(sizeof(BvhNode) == 128);
-
-// What a hit's coordinates mean: a quad is two triangles, cut from (u, v) = (0, 0) to (1, 1).
-enum class FaceKind : uint32_t { triangle, lowerHalf, upperHalf, sphere };
-constexpr uint32_t kFaceKindShift = 30, kFacePrimitiveMask = (1u << kFaceKindShift) - 1;
-
-// Slots past the last primitive repeat it. id: index into SceneView::primitives, FaceKind in the upper two bits.
-struct alignas(64) BvhFaces {
-  float corner[3][3][kLeafSize];  // [corner][axis][slot]
-  float size[kLeafSize];          // greatest difference of two corners along an axis
-  uint32_t id[kLeafSize];
-};
-struct alignas(32) BvhSpheres {
-  float center[3][kLeafSize], radius[kLeafSize];
-  uint32_t id[kLeafSize];
-};
 
 // Room for the references that a ray has still to visit.
 constexpr size_t kBvhStack = 256;

@@ -10,10 +10,6 @@
 
 namespace wavecrest {
 
-struct Box {
-  float low[3], high[3];
-};
-
 // A leaf of up to kLeafSize boxes of the input, or a node with the boxes of its children.
 struct Branch {
   bool leaf;

@@ -18,8 +18,16 @@ WAVECREST_INLINE Vec3<FloatGroup<kCount>> loadPoints(const float (&a)[3][kCount]
 }
 // The end of a ray that has none: finite, so that no hit is at infinity.
 constexpr float kFarthest = std::numeric_limits<float>::max();
+// The end of a shadow ray: just short of 1, as nothing at the segment's end may block it.
+constexpr float kShadowEnd = 0x1.fffffep-1f;
 // Where in BvhNode::bounds the planes are through which rays enter that go in the direction d: 0, or 3 rows on.
 WAVECREST_INLINE uint32_t nearPlanes(float d) { return std::signbit(d) ? 3 * kBvhWidth : 0; }
+
+// The axis of the greatest part of a direction.
+WAVECREST_INLINE uint32_t greatestAxis(float x, float y, float z) {
+  x = std::abs(x), y = std::abs(y), z = std::abs(z);
+  return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+}
 
 // kAnyHit: whatever lies before the ray's end ends the walk.
 template <bool kAnyHit>
@@ -27,6 +35,8 @@ struct alignas(64) BvhRay {
   static constexpr size_t kUnderWay = 32;
   float origin[3], direction[3], inverse[3];
   uint32_t nearPlane[3];
+  RayAxes axes;
+  float shear[3];
   float t;              // nothing beyond counts: of the nearest hit so far, or the ray's end
   float second, third;  // of that hit: weights of the corners, or t and 0 of a sphere
   uint32_t id;          // of the face, or kMiss
@@ -46,6 +56,9 @@ struct alignas(64) BvhRay {
       inverse[axis] = std::copysign(1 / (size > kLeastDirection ? size : kLeastDirection), d[axis]);
       nearPlane[axis] = nearPlanes(d[axis]);
     }
+    axes = kAxesAlong[greatestAxis(dx, dy, dz)];
+    shear[2] = inverse[axes.axis[2]];
+    for (size_t i = 0; i < 2; ++i) shear[i] = -d[axes.axis[i]] * shear[2];
   }
 
   // Puts the children that the ray meets before t on its stack: the nearest last, or in any order if any hit will do.
@@ -65,13 +78,19 @@ struct alignas(64) BvhRay {
     waiting += static_cast<uint32_t>(kAnyHit ? appendWhere(met, children, top)
                                              : appendByFallingKey(met, enter, children, top));
   }
-  WAVECREST_INLINE void visit(const BvhFaces& faces) {
+  WAVECREST_INLINE void visit(const FaceLeaf& faces) {
     using Group = FloatGroup<kLeafSize>;
-    const Vec3<Group> o = broadcast<kLeafSize>(origin), d = broadcast<kLeafSize>(direction);
+    const auto corner = [&](size_t k) HWY_ATTR {
+      const auto along = [&](size_t i) HWY_ATTR {
+        return loadGroup<kLeafSize>(faces.corner[k][axes.axis[i]]) - Group(origin[axes.axis[i]]);
+      };
+      return Vec3<Group>{along(0), along(1), along(2)};
+    };
+    const Vec3<Group> turned{Group(direction[axes.axis[0]]), Group(direction[axes.axis[1]]),
+                             Group(direction[axes.axis[2]])};
     MaskGroup<kLeafSize> met;
     const FaceHit<Group> hit =
-        intersectFaces(loadPoints(faces.corner[0]) - o, loadPoints(faces.corner[1]) - o,
-                       loadPoints(faces.corner[2]) - o, loadGroup<kLeafSize>(faces.size), d, met);
+        intersectFaces(corner(0), corner(1), corner(2), turned, broadcast<kLeafSize>(shear), met);
     keep(met, hit.t, faces.id, [&](size_t slot) HWY_ATTR {
       HWY_ALIGN float sum[kLeafSize], weights[2][kLeafSize];
       store(hit.sum, sum);
@@ -81,7 +100,7 @@ struct alignas(64) BvhRay {
       third = weights[1][slot] / sum[slot];
     });
   }
-  WAVECREST_INLINE void visit(const BvhSpheres& spheres) {
+  WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
     using Group = FloatGroup<kLeafSize>;
     const Group distance = intersectSpheres(loadPoints(spheres.center), loadGroup<kLeafSize>(spheres.radius),
                                             broadcast<kLeafSize>(origin), broadcast<kLeafSize>(direction));
@@ -124,7 +143,11 @@ struct BvhPacket {
   float inverses[2][3];               // ends of the interval of 1 / direction
   float slack[3];                     // infinite where rays go both ways, else 0
   uint32_t nearPlane[3];
-  float end;  // greatest t
+  RayAxes axes;                      // of the first ray
+  bool sameAxes;                     // they are those of all
+  Mask alongX, alongY;               // rays whose last axis is x, or y
+  Vec3<Float> start, turned, shear;  // origins and directions in the order of the axes, and laidAcross's
+  float end;                         // greatest t
   uint32_t index, at, waiting;
   uint32_t stack[kBvhStack];
 
@@ -137,6 +160,16 @@ struct BvhPacket {
     second = third = Float(0);
     id = UInt(kMiss);
     inverse = {bound(0, o.x, d.x), bound(1, o.y, d.y), bound(2, o.z, d.z)};
+    const Float x = abs(d.x), y = abs(d.y), z = abs(d.z);
+    alongX = (x >= y) & (x >= z);
+    alongY = andNot(y >= z, alongX);
+    sameAxes = (all(alongX) || none(alongX)) && (all(alongY) || none(alongY));
+    axes = kAxesAlong[all(alongX) ? 0 : all(alongY) ? 1 : 2];
+    start = inOrder(o);
+    turned = inOrder(d);
+    shear.z = inOrder(inverse).z;
+    shear.x = -turned.x * shear.z;
+    shear.y = -turned.y * shear.z;
   }
 
   WAVECREST_INLINE void visit(const BvhNode& node) {
@@ -167,20 +200,21 @@ struct BvhPacket {
       waiting += meets(node, slots[i], step, first) ? 1 : 0;
     }
   }
-  WAVECREST_INLINE void visit(const BvhFaces& faces) {
+  WAVECREST_INLINE void visit(const FaceLeaf& faces) {
     forEachSlot(faces.id, [&](size_t slot, UInt face) HWY_ATTR {
       const auto corner = [&](size_t k) HWY_ATTR {
         const auto& c = faces.corner[k];
-        return Vec3<Float>{c[0][slot], c[1][slot], c[2][slot]} - origin;
+        Vec3<Float> p{c[axes.axis[0]][slot], c[axes.axis[1]][slot], c[axes.axis[2]][slot]};
+        if (!sameAxes) p = inOrder({c[0][slot], c[1][slot], c[2][slot]});
+        return p - start;
       };
       Mask met;
-      const FaceHit<Float> hit =
-          intersectFaces(corner(0), corner(1), corner(2), Float(faces.size[slot]), direction, met);
+      const FaceHit<Float> hit = intersectFaces(corner(0), corner(1), corner(2), turned, shear, met);
       met = met & (hit.t > Float(0));
       if (any(met)) keep(met, hit.t, hit.second / hit.sum, hit.third / hit.sum, face);
     });
   }
-  WAVECREST_INLINE void visit(const BvhSpheres& spheres) {
+  WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
     forEachSlot(spheres.id, [&](size_t slot, UInt sphere) HWY_ATTR {
       const Vec3<Float> center{spheres.center[0][slot], spheres.center[1][slot], spheres.center[2][slot]};
       const Float distance = intersectSpheres(center, Float(spheres.radius[slot]), origin, direction);
@@ -189,6 +223,11 @@ struct BvhPacket {
   }
 
  private:
+  // The parts of a in the order of each ray's axes.
+  WAVECREST_INLINE Vec3<Float> inOrder(Vec3<Float> a) const {
+    return {select(alongX, a.y, select(alongY, a.z, a.x)), select(alongX, a.z, select(alongY, a.x, a.y)),
+            select(alongX, a.x, select(alongY, a.y, a.z))};
+  }
   WAVECREST_INLINE Float bound(size_t axis, Float o, Float d) {
     const Float inverted = copySign(Float(1) / max(abs(d), Float(kLeastDirection)), d);
     const float least = leastLane(inverted), most = greatestLane(inverted);

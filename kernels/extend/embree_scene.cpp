@@ -58,18 +58,6 @@ void addSpheres(RTCDevice device, RTCScene scene, const PrimitiveRecord<S>* reco
   rtcReleaseGeometry(geometry);
 }
 
-// The scalar form of addSplats (kernels/lane_support.h).
-template <class S>
-void splat(const StageContext<S>& context, const ShadowRays<S>& shadow, size_t i) {
-  const double rgb[3] = {shadow.red[i], shadow.green[i], shadow.blue[i]};
-  if (!(rgb[0] < kSplatLimit && rgb[1] < kSplatLimit && rgb[2] < kSplatLimit)) {
-    ++context.counters->nonFinite;
-    return;
-  }
-  int64_t* const sums = context.splats.sums + 3 * size_t{shadow.target[i]};
-  for (size_t c = 0; c < 3; ++c) sums[c] += static_cast<int64_t>(rgb[c] * kSplatScale + 0.5);
-}
-
 }  // namespace
 
 template <class S>
@@ -172,7 +160,11 @@ void occludeEmbree(const StageContext<S>& context, Wave<S>& wave) {
         wave.radiance.green[target] += shadow.green[i + k];
         wave.radiance.blue[target] += shadow.blue[i + k];
       } else {
-        splat(context, shadow, i + k);
+        const size_t out = wave.splats.claim(1);
+        wave.splats.red[out] = shadow.red[i + k];
+        wave.splats.green[out] = shadow.green[i + k];
+        wave.splats.blue[out] = shadow.blue[i + k];
+        wave.splats.pixel[out] = shadow.target[i + k];
       }
     }
   }

@@ -3,7 +3,7 @@
 // in: Rays [n]. out: Hits [n], in ray order. Rays are in float under every precision policy. The result does not depend
 // on the width of a block, nor on which rays are walked together.
 #include "kernels/extend/bvh_ray.h"
-#include "kernels/extend/inset_lanes.h"
+#include "kernels/extend/face_coordinates.h"
 #include "kernels/extend/prefetch_hits.h"
 #include "kernels/stage_declarations.h"
 
@@ -20,13 +20,9 @@ WAVECREST_INLINE void prefetchHit(const SceneView<S>& scene, uint32_t id) {
 template <class S>
 WAVECREST_INLINE void finish(const SceneView<S>& scene, Hits& hits, size_t i) {
   const UInt id = load(hits.primitive, i);
-  const UInt kind = shiftRight<kFaceKindShift>(id);
-  const auto is = [&](FaceKind k) HWY_ATTR { return kind == UInt(static_cast<uint32_t>(k)); };
-  const Mask lower = is(FaceKind::lowerHalf), upper = is(FaceKind::upperHalf), sphere = is(FaceKind::sphere);
-  const Float second = load(hits.u, i), third = load(hits.v, i), both = second + third;
-  const auto at = insideEdges(select(lower, both, second), select(upper, both, third), !(lower | upper));
-  store(select(sphere, second, at.u), hits.u, i);
-  store(select(sphere, third, at.v), hits.v, i);
+  const HitCoordinates<Float> at = coordinatesInFace(id, load(hits.u, i), load(hits.v, i));
+  store(at.u, hits.u, i);
+  store(at.v, hits.v, i);
   store(select(id == UInt(kMiss), id, id & UInt(kFacePrimitiveMask)), hits.primitive, i);
   if (scene.attributes != nullptr) prefetchAttributes(scene, hits.primitive + i, kLanes);
 }

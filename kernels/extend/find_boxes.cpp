@@ -48,11 +48,34 @@ struct Parallelepiped {
   }
 };
 
+struct Edge {
+  D3 from, along;
+};
+double distanceTo(const Edge& edge, const D3& point) {
+  const double share = dot(point - edge.from, edge.along) / dot(edge.along, edge.along);
+  return length(point - edge.from - edge.along * std::clamp(share, 0.0, 1.0));
+}
+// Whether a part of one lies on the other; crossing it is not enough.
+bool overlap(const Edge& a, const Edge& b, double tolerance) {
+  return distanceTo(a, b.from) <= tolerance || distanceTo(a, b.from + b.along) <= tolerance ||
+         distanceTo(b, a.from) <= tolerance || distanceTo(b, a.from + a.along) <= tolerance;
+}
+std::vector<Edge> edgesOf(const PrimitiveRecord<double>& face) {
+  const D3 p0 = vec(face.p0), e1 = vec(face.e1), e2 = vec(face.e2);
+  if (static_cast<PrimitiveKind>(face.kind) == PrimitiveKind::triangle) return {{p0, e1}, {p0, e2}, {p0 + e1, e2 - e1}};
+  return {{p0, e1}, {p0, e2}, {p0 + e1, e2}, {p0 + e2, e1}};
+}
+std::vector<Edge> edgesOf(const Quad& quad) {
+  const D3 corner = quad.center - (quad.e1 + quad.e2) * 0.5;
+  return {{corner, quad.e1}, {corner, quad.e2}, {corner + quad.e1, quad.e2}, {corner + quad.e2, quad.e1}};
+}
+
 class BoxFinder {
  public:
-  BoxFinder(const PrimitiveRecord<double>* quads, size_t count) : free_(count, true) {
-    quads_.reserve(count);
-    for (size_t i = 0; i < count; ++i) quads_.push_back(quadOf(quads[i]));
+  BoxFinder(const PrimitiveRecord<double>* faces, size_t quads, size_t triangles) : free_(quads, true) {
+    quads_.reserve(quads);
+    for (size_t i = 0; i < quads; ++i) quads_.push_back(quadOf(faces[i]));
+    for (size_t i = 0; i < quads + triangles; ++i) edges_.push_back(edgesOf(faces[i]));
   }
 
   std::vector<FoundBox> find() {
@@ -87,6 +110,7 @@ class BoxFinder {
   std::optional<FoundBox> boxOf(const Parallelepiped& shape) const {
     FoundBox box{};
     size_t missing = 0;
+    Quad openSide{};
     for (size_t axis = 0; axis < 3; ++axis) {
       const D3 across = cross(shape.edge[(axis + 1) % 3], shape.edge[(axis + 2) % 3]);
       const double volume = dot(across, shape.edge[axis]);
@@ -95,14 +119,34 @@ class BoxFinder {
       for (size_t side = 0; side < 2; ++side) {
         const Quad face = shape.face(axis, side);
         const uint32_t quad = box.quad[axis][side] = freeQuadAt(face, shape.tolerance());
-        if (quad == kNoIndex && ++missing > 1) return std::nullopt;
+        if (quad == kNoIndex) {
+          if (++missing > 1) return std::nullopt;
+          openSide = face;
+        }
         double& bound = side == 0 ? box.low[axis] : box.high[axis];
         bound = dot(box.normal[axis], quad == kNoIndex ? face.center : quads_[quad].center);
         if (quad != kNoIndex && !liesIn(quads_[quad], box.normal[axis], bound)) return std::nullopt;
       }
     }
-    if (missing != 0) turnOpenSide(box);
+    if (missing == 0) return box;
+    turnOpenSide(box);
+    if (somethingMeets(openSide, box, 2 * shape.tolerance())) return std::nullopt;
     return box;
+  }
+
+  // Whether an edge of any face but the box's own lies along the rim of its open side.
+  bool somethingMeets(const Quad& openSide, const FoundBox& box, double tolerance) const {
+    for (size_t i = 0; i < edges_.size(); ++i) {
+      bool own = false;
+      box.forEachQuad([&own, i](uint32_t quad) { own = own || quad == i; });
+      if (own) continue;
+      for (const Edge& edge : edges_[i]) {
+        for (const Edge& rim : edgesOf(openSide)) {
+          if (overlap(edge, rim, tolerance)) return true;
+        }
+      }
+    }
+    return false;
   }
 
   uint32_t freeQuadAt(const Quad& face, double tolerance) const {
@@ -145,13 +189,14 @@ class BoxFinder {
   }
 
   std::vector<Quad> quads_;
+  std::vector<std::vector<Edge>> edges_;  // of quads, then triangles
   std::vector<bool> free_;
 };
 
 }  // namespace
 
-std::vector<FoundBox> findBoxes(const PrimitiveRecord<double>* quads, size_t count) {
-  return BoxFinder(quads, count).find();
+std::vector<FoundBox> findBoxes(const PrimitiveRecord<double>* faces, size_t quads, size_t triangles) {
+  return BoxFinder(faces, quads, triangles).find();
 }
 
 }  // namespace wavecrest

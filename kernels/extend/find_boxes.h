@@ -1,7 +1,7 @@
 // Finds the parallelepipeds among a scene's quads: blocks of six faces, and rooms or blocks of five, open at one side.
 //
-// in: the quads of a small scene. out: what belongs together. Fewer faces are cheaper to test one by one. The time it
-// takes grows with the square of their number.
+// in: the quads and triangles of a small scene. out: which quads belong together. Fewer faces are cheaper to test one
+// by one. The time it takes grows with the square of their number.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,9 @@ struct FoundBox {
   }
 };
 
-// No quad is part of two boxes. Every corner of a face lies in the box's plane to kFlatness units of rounding.
-std::vector<FoundBox> findBoxes(const PrimitiveRecord<double>* quads, size_t count);
+// faces: quads, then triangles. No quad is part of two boxes. Every corner of a face lies in the box's plane to
+// kFlatness units of rounding. A box that something else meets along the edges of its open side stays quads: slabs know
+// nothing of their neighbours, so rays would slip between them.
+std::vector<FoundBox> findBoxes(const PrimitiveRecord<double>* faces, size_t quads, size_t triangles);
 
 }  // namespace wavecrest

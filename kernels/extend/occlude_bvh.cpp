@@ -1,6 +1,6 @@
 // occlude, large scenes: adds the contribution of each shadow ray that nothing in the hierarchy of bvh.h blocks.
 //
-// in: ShadowRays [n]. out: Radiance grows, or on light walks that splat, the film; ShadowRays empty.
+// in: ShadowRays [n]. out: Radiance grows, or on light walks that splat, Splats; ShadowRays empty.
 #include "kernels/extend/bvh_ray.h"
 #include "kernels/extend/visible_lanes.h"
 #include "kernels/stage_declarations.h"
@@ -12,7 +12,6 @@ void occludeBvh(const StageContext<typename P::Storage>& context, Wave<typename 
   auto& shadow = wave.shadowRays;
   const size_t count = shadow.size;
   context.counters->raysShadow += count;
-  const bool splatting = !context.contributesToLanes();
   // Rays end in any order, but contributions are added in theirs: what a ray sees takes the place of its origin.
   float* const visible = shadow.originX;
   size_t next = 0;
@@ -20,16 +19,12 @@ void occludeBvh(const StageContext<typename P::Storage>& context, Wave<typename 
       *context.scene->bvh,
       [&](BvhRay<true>& ray) HWY_ATTR {
         if (next >= count) return false;
-        // Just short of 1: nothing at the segment's end may block it.
         ray.begin(next, shadow.originX[next], shadow.originY[next], shadow.originZ[next], shadow.directionX[next],
-                  shadow.directionY[next], shadow.directionZ[next], 0x1.fffffep-1f);
+                  shadow.directionY[next], shadow.directionZ[next], kShadowEnd);
         ++next;
         return true;
       },
-      [&](const BvhRay<true>& ray) HWY_ATTR {
-        visible[ray.index] = ray.id == kMiss ? 1.0f : 0.0f;
-        if (splatting) prefetchPixels(context.splats, shadow.target + ray.index, 1);
-      });
+      [&](const BvhRay<true>& ray) HWY_ATTR { visible[ray.index] = ray.id == kMiss ? 1.0f : 0.0f; });
   for (size_t i = 0; i < count; i += kLanes) {
     addVisible(context, wave, (load(visible + i) > Float(0)) & firstLanes(count - i), i);
   }

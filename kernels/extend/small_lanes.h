@@ -1,6 +1,7 @@
-// Tests of one primitive against a block of rays, for the small-scene intersector.
+// Tests of one primitive against a block of rays, for the small-scene intersector, and of one ray against all leaves.
 #pragma once
 
+#include "kernels/extend/bvh_ray.h"
 #include "kernels/extend/small_scene.h"
 #include "kernels/extend/sphere_lanes.h"
 #include "kernels/lane_support.h"
@@ -14,31 +15,29 @@ WAVECREST_INLINE Float dotForm(const float (&a)[3], Vec3<Float> b, float offset)
   return mulAdd(Float(a[0]), b.x, mulAdd(Float(a[1]), b.y, mulAdd(Float(a[2]), b.z, Float(offset))));
 }
 
+// Inside where edge <= 1, up to the bound limit - 1 on the error of edge.
 struct PlaneHit {
-  Float t, u, v;
-  Float slowness;  // 1 / |speed towards the plane|
+  Float t, edge, limit;
 };
 
-// Where the rays meet the plane, in its centred coordinates. A ray within the plane gives NaN or infinity, which fails
-// every comparison that follows.
-WAVECREST_INLINE PlaneHit intersectPlane(const PlaneForm& plane, Vec3<Float> origin, Vec3<Float> direction) {
+// Where the rays meet the plane. A ray within the plane gives NaN or infinity, which fails every comparison that
+// follows. kQuad: or a triangle. |direction| <= 1.
+template <bool kQuad>
+WAVECREST_INLINE PlaneHit intersectPlane(const PlaneForm& plane, const PlaneLimits& limits, Vec3<Float> origin,
+                                         Vec3<Float> direction) {
   const Float speed = dotForm(plane.normal, direction);
-  const Float gap = Float(plane.distance) - dotForm(plane.normal, origin);
+  const Float gap = negMulAdd(
+      Float(plane.normal[0]), origin.x,
+      negMulAdd(Float(plane.normal[1]), origin.y, negMulAdd(Float(plane.normal[2]), origin.z, Float(plane.distance))));
   PlaneHit hit;
   const Float inverseSpeed = approximateReciprocal(speed);
-  hit.slowness = abs(inverseSpeed);
   hit.t = gap * inverseSpeed;
   const Vec3<Float> point = mulAdd(direction, hit.t, origin);
-  hit.u = dotForm(plane.inside.uAxis, point, plane.inside.uOffset);
-  hit.v = dotForm(plane.inside.vAxis, point, plane.inside.vOffset);
+  const Float u = dotForm(plane.inside.uAxis, point, plane.inside.uOffset);
+  const Float v = dotForm(plane.inside.vAxis, point, plane.inside.vOffset);
+  hit.edge = kQuad ? max(abs(u), abs(v)) : max(max(u, v), Float(2) - u - v);
+  hit.limit = mulAdd(abs(inverseSpeed), Float(limits.doubt), Float(1));
   return hit;
-}
-WAVECREST_INLINE Mask insideQuad(const PlaneHit& hit, const PlaneLimits& limits) {
-  return max(abs(hit.u), abs(hit.v)) <= mulAdd(hit.slowness, Float(limits.grazing), Float(1));
-}
-WAVECREST_INLINE Mask insideTriangle(const PlaneHit& hit, const PlaneLimits& limits) {
-  const Float inside = min(min(hit.u, hit.v), Float(1) - hit.u - hit.v);
-  return mulAdd(hit.slowness, Float(limits.grazing), inside) >= Float(limits.least);
 }
 
 // ---- boxes ----------------------------------------------------------------------------------------------------------
@@ -94,11 +93,10 @@ WAVECREST_INLINE Float intersectSphere(const SphereForm& sphere, Vec3<Float> ori
   return intersectSpheres(center, Float(sphere.radius), origin, direction);
 }
 
-// ---- all of a scene
-// ---------------------------------------------------------------------------------------------------
+// ---- all of a scene ------------------------------------------------------------------------------------------------
 
-// Calls taker.take(met, t, primitive) for each box, and each primitive that is in none: where met, the rays' lines meet
-// it at t.
+// Calls taker.take(met, t, primitive) for each box and each sphere, and taker.take(hit, primitive) with the PlaneHit of
+// each plane: where met, the rays' lines meet it at t. |direction| <= 1.
 template <class Taker>
 WAVECREST_INLINE void intersectAll(const SmallSceneView& scene, Vec3<Float> origin, Vec3<Float> direction,
                                    Taker& taker) {
@@ -114,17 +112,22 @@ WAVECREST_INLINE void intersectAll(const SmallSceneView& scene, Vec3<Float> orig
   uint32_t plane = 0;
   for (; plane < scene.quadCount; ++plane) {
     const PlaneLimits& limits = scene.limits[plane];
-    const PlaneHit hit = intersectPlane(scene.planes[plane], origin, direction);
-    taker.take(insideQuad(hit, limits), hit.t, UInt(limits.primitive));
+    taker.take(intersectPlane<true>(scene.planes[plane], limits, origin, direction), UInt(limits.primitive));
   }
   for (const uint32_t end = plane + scene.triangleCount; plane < end; ++plane) {
     const PlaneLimits& limits = scene.limits[plane];
-    const PlaneHit hit = intersectPlane(scene.planes[plane], origin, direction);
-    taker.take(insideTriangle(hit, limits), hit.t, UInt(limits.primitive));
+    taker.take(intersectPlane<false>(scene.planes[plane], limits, origin, direction), UInt(limits.primitive));
   }
   for (uint32_t i = 0; i < scene.sphereCount; ++i) {
     taker.take(allLanes(), intersectSphere(scene.spheres[i], origin, direction), UInt(scene.firstSphere + i));
   }
+}
+
+// One ray against all leaves of the scene.
+template <bool kAnyHit>
+WAVECREST_INLINE void visitLeaves(const SmallSceneView& scene, BvhRay<kAnyHit>& ray) {
+  for (uint32_t i = 0; i < scene.faceLeafCount; ++i) ray.visit(scene.faceLeaves[i]);
+  for (uint32_t i = 0; i < scene.sphereLeafCount; ++i) ray.visit(scene.sphereLeaves[i]);
 }
 
 WAVECREST_SIMD_END

@@ -1,6 +1,7 @@
 #include "kernels/extend/small_scene.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "kernels/extend/find_boxes.h"
 #include "kernels/extend/offset.h"
@@ -8,29 +9,24 @@
 namespace wavecrest {
 namespace {
 
-// Bound on the rounding error of axis . p + offset for points with coordinates up to `reach`: the point itself carries
-// some 8 roundings from origin + t direction with an approximate t, the sum 4 more.
-double coordinateError(const D3& axis, double offset, double reach) {
-  const double magnitude = (std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2])) * reach + std::abs(offset);
-  return 16 * kUnitRoundoff * magnitude;
-}
-// The same of a distance from a plane, at the ray's origin.
-double gapError(const D3& normal, double reach) {
-  return 4 * kUnitRoundoff * (std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2])) * reach;
+// How far rounding may move the point where a ray meets a plane, as the plane's own coordinates and the leaves see it,
+// in units of rounding of the largest coordinate, per 1 / |cosine|. Here: the reciprocal of the speed and the product
+// with it 8, the plane's gap 10, the point 4, its coordinates 12. There: corners 7 for being welded and 2 for being
+// rounded, 4 for being taken relative to the origin, 14 for being laid across the ray.
+constexpr double kDoubtUnits = 64;
+
+// Slabs are tested where rays are, in coordinates of their own: the planes of a box are each off by two units of
+// rounding of the largest coordinate, which at this many thicknesses is 0.1 % of its width. Thinner ones stay quads.
+constexpr double kMostThicknesses = 4096;
+
+bool isThickEnough(const FoundBox& box, double reach) {
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if ((box.high[axis] - box.low[axis]) * kMostThicknesses < reach) return false;
+  }
+  return true;
 }
 
 PrimitiveKind kindOf(const PrimitiveRecord<double>& primitive) { return static_cast<PrimitiveKind>(primitive.kind); }
-
-double reachOf(const PrimitiveRecord<double>* primitives, size_t count) {
-  double reach = 0;
-  for (size_t i = 0; i < count; ++i) {
-    const auto& p = primitives[i];
-    for (size_t axis = 0; axis < 3; ++axis) {
-      reach = std::max(reach, std::abs(p.p0[axis]) + std::abs(p.e1[axis]) + std::abs(p.e2[axis]));
-    }
-  }
-  return reach;
-}
 
 // The dual basis of (e1, e2) in the plane: u . e1 = 1, u . e2 = 0; both are 0 at p0.
 struct DualBasis {
@@ -55,8 +51,7 @@ FaceCoordinates inFloat(const DualBasis& basis) {
 
 }  // namespace
 
-SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count) {
-  const double reach = reachOf(primitives, count);
+SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, const double (&eye)[3]) {
   const auto ofKind = [&](PrimitiveKind kind) {
     return static_cast<uint32_t>(
         std::count_if(primitives, primitives + count, [kind](const auto& p) { return kindOf(p) == kind; }));
@@ -65,14 +60,23 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count) 
   view_.triangleCount = ofKind(PrimitiveKind::triangle);
   view_.firstSphere = view_.firstTriangle + view_.triangleCount;
   view_.sphereCount = ofKind(PrimitiveKind::sphere);
+  if (count == 0) return;
+
+  const LeafMaker leaves(primitives, count);
+  addLeaves(leaves);
+  std::vector<Box> bounds;
+  for (const Pieces* pieces : {&leaves.faces(), &leaves.spheres()}) {
+    if (!pieces->empty()) bounds.push_back(pieces->bounds());
+  }
+  const double reach = rayReach(unionOf(bounds.data(), bounds.size()), eye);
 
   std::vector<bool> inBox(count, false);
-  std::vector<FoundBox> boxes = findBoxes(primitives, view_.firstTriangle);
+  const std::vector<FoundBox> boxes = findBoxes(primitives, view_.firstTriangle, view_.triangleCount);
   for (const bool open : {false, true}) {
     for (const FoundBox& box : boxes) {
-      if (box.open() != open) continue;
+      if (box.open() != open || !isThickEnough(box, reach)) continue;
       ++(open ? view_.openBoxCount : view_.closedBoxCount);
-      addBox(box, reach);
+      addBox(box);
       box.forEachQuad([&inBox](uint32_t quad) { inBox[quad] = true; });
     }
   }
@@ -93,33 +97,48 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count) 
   view_.spheres = spheres_.data();
 }
 
-void SmallScene::addBox(const FoundBox& box, double reach) {
+void SmallScene::addLeaves(const LeafMaker& leaves) {
+  const auto pack = [](const Pieces& pieces, const auto& addLeaf) {
+    std::vector<uint32_t> items(pieces.ids.size());
+    std::iota(items.begin(), items.end(), 0u);
+    for (size_t i = 0; i < items.size(); i += kLeafSize) {
+      addLeaf(items.data() + i, std::min(kLeafSize, items.size() - i));
+    }
+  };
+  pack(leaves.faces(),
+       [&](const uint32_t* items, size_t count) { faceLeaves_.push_back(leaves.faceLeaf(items, count)); });
+  pack(leaves.spheres(),
+       [&](const uint32_t* items, size_t count) { sphereLeaves_.push_back(leaves.sphereLeaf(items, count)); });
+  view_.faceLeaves = faceLeaves_.data();
+  view_.faceLeafCount = static_cast<uint32_t>(faceLeaves_.size());
+  view_.sphereLeaves = sphereLeaves_.data();
+  view_.sphereLeafCount = static_cast<uint32_t>(sphereLeaves_.size());
+}
+
+void SmallScene::addBox(const FoundBox& box) {
   BoxForm& form = boxes_.emplace_back();
   for (size_t axis = 0; axis < 3; ++axis) {
     SlabForm& slab = form.slabs[axis];
-    // Faces reach out of an open side, so that they overlap whatever closes it.
-    const double overlap = axis == 2 && box.open() ? 4 * gapError(box.normal[axis], reach) : 0;
     assign(slab.normal, box.normal[axis]);
     slab.low = static_cast<float>(box.low[axis]);
-    slab.high = static_cast<float>(box.high[axis] + overlap);
+    slab.high = static_cast<float>(box.high[axis]);
     std::copy_n(box.quad[axis], 2, form.primitives[axis]);
   }
 }
 
 void SmallScene::addPlane(const PrimitiveRecord<double>& primitive, uint32_t index, double reach) {
   const D3 n = vec(primitive.normal);
+  const bool quad = kindOf(primitive) == PrimitiveKind::quad;
   DualBasis basis = dualBasis(primitive);
-  const double uError = coordinateError(basis.u, basis.uOffset, reach);
-  const double vError = coordinateError(basis.v, basis.vOffset, reach);
+  if (quad) {
+    basis = {basis.u * 2, basis.v * 2, basis.uOffset * 2 - 1, basis.vOffset * 2 - 1};
+  } else {
+    basis = {basis.u * -1, basis.v * -1, 1 - basis.uOffset, 1 - basis.vOffset};
+  }
+  const double steepest = std::max({length(basis.u), length(basis.v), quad ? 0 : length(basis.u + basis.v)});
   PlaneLimits& limits = limits_.emplace_back();
   limits.primitive = index;
-  limits.grazing = static_cast<float>(4 * gapError(n, reach) * std::max(length(basis.u), length(basis.v)));
-  limits.least = static_cast<float>(-2 * std::max(uError, vError));
-  if (kindOf(primitive) == PrimitiveKind::quad) {
-    const double uHalf = 0.5 + uError, vHalf = 0.5 + vError;
-    basis = {basis.u * (1 / uHalf), basis.v * (1 / vHalf), (basis.uOffset - 0.5) / uHalf,
-             (basis.vOffset - 0.5) / vHalf};
-  }
+  limits.doubt = static_cast<float>(kDoubtUnits * kUnitRoundoff * reach * steepest);
   PlaneForm& plane = planes_.emplace_back();
   assign(plane.normal, n);
   plane.distance = static_cast<float>(dot(n, vec(primitive.p0)));

@@ -5,17 +5,20 @@
 // maps are centred and scaled so that the inside is max(|u|, |v|) <= 1. Five or six quads that bound a parallelepiped
 // are one box, three slabs between parallel planes, at less than half the cost (kernels/extend/find_boxes.h).
 //
-// Watertightness: the inside of a plane is widened by a bound on the rounding error of u and v, so of two primitives
-// that share an edge at least one is hit by any ray through the edge. A box has no edges to slip through: a ray that
-// starts inside leaves it where it leaves the first of its slabs, whichever that is. The gaps between the origin and
-// the two planes of a slab are rounded apart, as that of a plane is: a box far thicker than it is far from the origin
-// would lose in a shared centre and half width what kOffsetGamma allows for.
+// Neither wider than its primitives nor leaky: a plane takes what hits it within a bound on the rounding of u and v,
+// and says how near the edge that was. Where the nearest hit was within the bound, rounding might have decided, and the
+// ray is decided anew against leaves, whose neighbours agree on every edge (bvh_lanes.h). One ray in thousands is. A
+// box has no edges to slip through: a ray that starts inside leaves it where it leaves the first of its slabs,
+// whichever that is. The gaps between the origin and the two planes of a slab are rounded apart, as that of a plane is:
+// a box far thicker than it is far from the origin would lose in a shared centre and half width what kOffsetGamma
+// allows for.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "kernels/extend/leaves.h"
 #include "kernels/scene_view.h"
 
 namespace wavecrest {
@@ -27,16 +30,16 @@ struct FaceCoordinates {
   float uAxis[3], uOffset;
   float vAxis[3], vOffset;
 };
+// Of a quad u and v are centred and scaled, so that the inside is max(|u|, |v|) <= 1; of a triangle they are 1 less the
+// weights of two corners, so that it is max(u, v, 2 - u - v) <= 1.
 struct PlaneForm {
   float normal[3], distance;
   FaceCoordinates inside;
 };
-// The inside, widened: of a quad max(|u|, |v|) <= 1, of a triangle min(u, v, 1 - u - v) >= least.
-// grazing: how much either inside widens per 1 / |speed|, speed being the ray's speed towards the plane. The error of
-// the plane equation moves the hit of a grazing ray along the ray; where two faces meet at almost 180 degrees both
-// would otherwise miss it.
+// doubt: bound on the error of u and v, relative to 1 / |speed|, the ray's speed towards the plane. An error of the
+// plane equation moves the hit of a grazing ray along the ray.
 struct PlaneLimits {
-  float least, grazing;
+  float doubt;
   uint32_t primitive;
 };
 // The points low <= normal . p <= high.
@@ -60,8 +63,11 @@ struct SmallSceneView {
   const PlaneLimits* limits;
   const FaceCoordinates* coordinates;
   const SphereForm* spheres;
+  const FaceLeaf* faceLeaves;  // all quads and triangles once more
+  const SphereLeaf* sphereLeaves;
   uint32_t closedBoxCount, openBoxCount;
   uint32_t quadCount, triangleCount, sphereCount;
+  uint32_t faceLeafCount, sphereLeafCount;
   uint32_t firstTriangle, firstSphere;  // in SceneView order
 };
 
@@ -69,19 +75,22 @@ struct SmallSceneView {
 class SmallScene {
  public:
   // primitives: sorted by kind, as in SceneView. Coordinates in double, so that the forms are right to float's last
-  // place.
-  SmallScene(const PrimitiveRecord<double>* primitives, size_t count);
+  // place. eye: another point that rays start from.
+  SmallScene(const PrimitiveRecord<double>* primitives, size_t count, const double (&eye)[3]);
   const SmallSceneView& view() const { return view_; }
 
  private:
-  void addBox(const FoundBox& box, double reach);
+  void addBox(const FoundBox& box);
   void addPlane(const PrimitiveRecord<double>& primitive, uint32_t index, double reach);
+  void addLeaves(const LeafMaker& leaves);
 
   std::vector<BoxForm> boxes_;
   std::vector<PlaneForm> planes_;
   std::vector<PlaneLimits> limits_;
   std::vector<FaceCoordinates> coordinates_;
   std::vector<SphereForm> spheres_;
+  std::vector<FaceLeaf> faceLeaves_;
+  std::vector<SphereLeaf> sphereLeaves_;
   SmallSceneView view_{};
 };
 

@@ -5,16 +5,7 @@
 
 WAVECREST_SIMD_BEGIN
 
-// Asks for the pixels that rays will be splatted to, which lie all over the film.
-WAVECREST_INLINE void prefetchPixels(const SplatSink& splats, const uint32_t* pixels, size_t count) {
-  for (size_t k = 0; k < count; ++k) {
-    const int64_t* const sums = splats.sums + 3 * size_t{pixels[k]};
-    __builtin_prefetch(sums, 1);
-    __builtin_prefetch(sums + 2, 1);  // three of eight pixels lie on two lines
-  }
-}
-
-// Adds the contributions of block i where `visible` holds, in ray order: to lanes, or on light walks to the film.
+// Adds the contributions of block i where `visible` holds, in ray order: to lanes, or on light walks to the splats.
 template <class S>
 WAVECREST_INLINE void addVisible(const StageContext<S>& context, Wave<S>& wave, Mask visible, size_t i) {
   if (none(visible)) return;
@@ -24,7 +15,7 @@ WAVECREST_INLINE void addVisible(const StageContext<S>& context, Wave<S>& wave, 
   if (context.contributesToLanes()) {
     addRadiance(wave.radiance, target, visible, contribution);
   } else {
-    addSplats(context, target, visible, contribution);
+    pushSplats(wave.splats, target, visible, contribution);
   }
 }
 

@@ -6,7 +6,7 @@
 // kind of entry that they stand at, and a node's children go to the walker's stack sorted in a register.
 //
 // A walker has `at`, the entry that it stands at; `stack`, the entries that it has still to visit, of which `waiting`
-// are in use; `index`; and visit(BvhNode), visit(BvhFaces) and visit(BvhSpheres).
+// are in use; `index`; and visit(BvhNode), visit(FaceLeaf) and visit(SphereLeaf).
 #pragma once
 
 #include <cstring>
@@ -72,8 +72,8 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
   for (size_t i = 0; i < kUnderWay; ++i) enter(static_cast<uint8_t>(i));
   while (sizes[0] + sizes[1] + sizes[2] + sizes[3] > 0) {
     visitAll(BvhEntry::node, std::type_identity<BvhNode>());
-    visitAll(BvhEntry::faces, std::type_identity<BvhFaces>());
-    visitAll(BvhEntry::spheres, std::type_identity<BvhSpheres>());
+    visitAll(BvhEntry::faces, std::type_identity<FaceLeaf>());
+    visitAll(BvhEntry::spheres, std::type_identity<SphereLeaf>());
     for (size_t k = 0, size = take(BvhEntry::end); k < size; ++k) {
       end(walkers[current[k]]);
       enter(current[k]);

@@ -42,14 +42,28 @@ WAVECREST_INLINE Vec3<Real> lensOffset(const CameraView& camera, Real u, Real v)
   return broadcast<Real>(camera.du) * (lens.x * Real(scaleU)) + broadcast<Real>(camera.dv) * (lens.y * Real(scaleV));
 }
 
-// u.a, u.b: place in the pixel; u.c, u.d: place on the lens.
+// The way along a ray from the lens to the near clip.
+template <class Real>
+WAVECREST_INLINE Real toNearClip(const CameraView& camera, Vec3<Real> direction) {
+  return Real(camera.nearClip) / dot(direction, broadcast<Real>(camera.axis));
+}
+// Rays begin at the near clip, which hides what lies before it.
+template <class Real>
+WAVECREST_INLINE RayLanes<Real> fromNearClip(const CameraView& camera, const RayLanes<Real>& ray) {
+  if (camera.nearClip == 0) return ray;
+  return {mulAdd(ray.direction, toNearClip(camera, ray.direction), ray.origin), ray.direction};
+}
+// Where on the lens a ray came from that begins at the near clip.
+template <class Real>
+WAVECREST_INLINE Vec3<Real> lensOf(const CameraView& camera, Vec3<Real> origin, Vec3<Real> direction) {
+  return mulAdd(direction, -toNearClip(camera, direction), origin);
+}
+
+// The ray through a raster position; lensU, lensV: uniform numbers for the place on the lens.
 template <class P>
-WAVECREST_INLINE RayLanes<typename P::Real> cameraRay(const CameraView& camera, const PixelLanes& pixel,
-                                                      const Uniform4& u) {
+WAVECREST_INLINE RayLanes<typename P::Real> cameraRayAt(const CameraView& camera, typename P::Real rasterX,
+                                                        typename P::Real rasterY, Float lensU, Float lensV) {
   using Real = typename P::Real;
-  Real dx = to<Real>(u.a), dy = to<Real>(u.b);
-  filterOffset(camera, dx, dy);
-  const Real rasterX = to<Real>(toFloat(pixel.x)) + dx, rasterY = to<Real>(toFloat(pixel.y)) + dy;
   if (camera.parallel) {
     const Vec3<Real> origin = mulAdd(broadcast<Real>(camera.du), rasterX,
                                      mulAdd(broadcast<Real>(camera.dv), rasterY, broadcast<Real>(camera.origin)));
@@ -60,11 +74,21 @@ WAVECREST_INLINE RayLanes<typename P::Real> cameraRay(const CameraView& camera, 
   const Vec3<Real> origin = broadcast<Real>(camera.origin);
   if (camera.lensRadius > 0) {
     // Through the point of the plane in focus that the ray by the lens's centre would meet.
-    const Vec3<Real> onLens = lensOffset(camera, to<Real>(u.c), to<Real>(u.d));
+    const Vec3<Real> onLens = lensOffset(camera, to<Real>(lensU), to<Real>(lensV));
     const Vec3<Real> inFocus = onPlane * Real(camera.focusDistance / camera.planeDepth);
-    return {origin + onLens, normalizeFast<P>(inFocus - onLens)};
+    return fromNearClip<Real>(camera, {origin + onLens, normalizeFast<P>(inFocus - onLens)});
   }
-  return {origin, normalizeFast<P>(onPlane)};
+  return fromNearClip<Real>(camera, {origin, normalizeFast<P>(onPlane)});
+}
+
+// A ray of a pixel. u.a, u.b: place in the pixel; u.c, u.d: place on the lens.
+template <class P>
+WAVECREST_INLINE RayLanes<typename P::Real> cameraRay(const CameraView& camera, const PixelLanes& pixel,
+                                                      const Uniform4& u) {
+  using Real = typename P::Real;
+  Real dx = to<Real>(u.a), dy = to<Real>(u.b);
+  filterOffset(camera, dx, dy);
+  return cameraRayAt<P>(camera, to<Real>(toFloat(pixel.x)) + dx, to<Real>(toFloat(pixel.y)) + dy, u.c, u.d);
 }
 
 // Parallel rays of one pixel per area across them: each of its points sends one ray. METHODS 4.4.
@@ -87,7 +111,7 @@ template <class Real>
 struct Projection {
   Real rasterX, rasterY;
   Vec3<Real> direction;  // unit, from the point to the lens
-  Vec3<Real> lens;       // the point on the lens
+  Vec3<Real> end;        // the point on the lens, or before it on the near clip
   Real pdf;              // D^2 / (cos^3 d^2), or 1 / pixel area
   Mask inFront;
 };
@@ -103,26 +127,28 @@ WAVECREST_INLINE Projection<typename P::Real> project(const CameraView& camera, 
     return {.rasterX = dot(fromCorner, broadcast<Real>(camera.du)) * Real(camera.inverseDu2),
             .rasterY = dot(fromCorner, broadcast<Real>(camera.dv)) * Real(camera.inverseDv2),
             .direction = -axis,
-            .lens = mulAdd(axis, -along, point),
+            .end = mulAdd(axis, -along, point),
             .pdf = Real(parallelPdf(camera)),
-            .inFront = along > Real(0)};
+            .inFront = (along > Real(0)) & (along <= Real(camera.farClip))};
   }
-  out.lens = broadcast<Real>(camera.origin);
+  Vec3<Real> lens = broadcast<Real>(camera.origin);
   Vec3<Real> onLens{Real(0), Real(0), Real(0)};
   // The image plane, corner + x du + y dv, is at planeDepth along the axis; where the ray meets the plane in focus,
   // seen from the lens's centre, is the raster position. A pinhole has every plane in focus.
   double focus = camera.planeDepth;
   if (camera.lensRadius > 0) {
     onLens = lensOffset(camera, to<Real>(u.a), to<Real>(u.b));
-    out.lens = out.lens + onLens;
+    lens = lens + onLens;
     focus = camera.focusDistance;
   }
-  const Vec3<Real> fromLens = point - out.lens;
+  const Vec3<Real> fromLens = point - lens;
   const Real dist2 = length2(fromLens);
   const Real inverseDistance = reciprocalSqrt<P>(max(dist2, Real(1e-37f)));
   out.direction = fromLens * -inverseDistance;
   const Real along = dot(fromLens, broadcast<Real>(camera.axis));
-  out.inFront = along > Real(0);
+  out.inFront = (along > Real(camera.nearClip)) & (along <= Real(camera.farClip));
+  out.end = lens;
+  if (camera.nearClip > 0) out.end = mulAdd(fromLens, Real(camera.nearClip) / along, lens);
   const Vec3<Real> inFocus = onLens + fromLens * (Real(focus) / along);
   const Vec3<Real> onPlane = inFocus * Real(camera.planeDepth / focus) - broadcast<Real>(camera.corner);
   out.rasterX = dot(onPlane, broadcast<Real>(camera.du)) * Real(camera.inverseDu2);
@@ -131,6 +157,13 @@ WAVECREST_INLINE Projection<typename P::Real> project(const CameraView& camera, 
   out.pdf = Real(camera.pixelDistance * camera.pixelDistance) * inverseCosine * inverseCosine * inverseCosine *
             inverseDistance * inverseDistance;
   return out;
+}
+
+// How far a filter reaches from the centre of a pixel. A Gaussian's rest beyond four and a half deviations is below
+// 1e-5.
+inline double filterRadius(const CameraView& camera) {
+  if (camera.filter == FilterKind::box) return 0.5;
+  return camera.filter == FilterKind::tent ? camera.filterScale : 4.5 * camera.filterScale;
 }
 
 // The pixel that a splat goes to, along one axis, and what its value is multiplied by.
@@ -149,10 +182,9 @@ WAVECREST_INLINE SplatPixel<Real> splatPixel(const CameraView& camera, Real rast
   const bool tent = camera.filter == FilterKind::tent;
   const Real x = raster - nearest - Real(0.5f);
   const double inverseScale = 1 / camera.filterScale;
-  // A Gaussian's rest beyond four and a half deviations is below 1e-5. Three exponentials make all of it: the ratio of
-  // one pixel to the one before is multiplied by the same number at every step, and that is the product of the first
-  // ratios up and down.
-  const double radius = tent ? camera.filterScale : 4.5 * camera.filterScale;
+  // Three exponentials make all of a Gaussian: the ratio of one pixel to the one before is multiplied by the same
+  // number at every step, and that is the product of the first ratios up and down.
+  const double radius = filterRadius(camera);
   const int reach = static_cast<int>(radius + 0.5);
   Real centre(0), ratioUp(0), ratioDown(0);
   if (!tent) {

@@ -25,7 +25,7 @@ WAVECREST_INLINE CameraSample cameraSample(const StageContext<S>& context, const
   }
   // u.a, u.b: place in the whole rectangle. Numbers have 24 bits, of which the pixel takes the upper ones.
   Uniform4 u = draw(context, lane, Block::scatter);
-  const SplatSink& film = context.splats;
+  const FilmWindow& film = context.film;
   const auto split = [](Float number, uint32_t size, Float& rest) WAVECREST_LAMBDA {
     const Float place = number * Float(static_cast<float>(size));
     const UInt whole = min(toUInt(place), UInt(size - 1));
@@ -38,7 +38,7 @@ WAVECREST_INLINE CameraSample cameraSample(const StageContext<S>& context, const
 
 template <class S>
 WAVECREST_INLINE void recordPixel(const StageContext<S>& context, const PixelLanes& pixel, size_t i) {
-  const SplatSink& film = context.splats;
+  const FilmWindow& film = context.film;
   const UInt index = (pixel.y - UInt(film.y0)) * UInt(film.width) + pixel.x - UInt(film.x0);
   store(index, context.chains->columns.proposedPixel, i);
 }

@@ -291,7 +291,7 @@ class Merger {
     const auto bsdf = shading.scattering(active, direction);
     // METHODS 3.9; directions within the surface carry nothing that a merge could use.
     const Real cosine = abs(dot(direction, normal));
-    const Real perCosine = zeroUnless(cosine > Real(1e-6f), reciprocal<P>(max(cosine, Real(1e-6f))));
+    const Real perCosine = zeroUnless(cosine > Real(0), reciprocal<P>(max(cosine, Real(kSmallestCosine))));
     Real weight(1);
     if (context_.mis.mergeWeights) {
       const MisSums<Real> light{facing.d, Real(0), mergeSum(context_.mis, carried.d)};

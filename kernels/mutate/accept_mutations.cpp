@@ -1,6 +1,6 @@
 // acceptMutations: the Metropolis decision, and what it puts on the film.
 //
-// in: Radiance of the proposals and Chains [pathCount]. out: Chains, moved where accepted; the film's sums.
+// in: Radiance of the proposals and Chains [pathCount]. out: Chains, moved where accepted; Splats, emptied before.
 //
 // Both states of a step are splatted by their expected values, contribution over target times (1 - a) and a (Veach
 // 1997, 11.5). What is due to the current state is added up and splatted when the chain leaves it, so a step splats
@@ -99,9 +99,11 @@ WAVECREST_INLINE void addEstimates(ChainState& state, Mask large, Float estimate
 
 template <class P>
 void acceptMutations(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  using Real = typename P::Real;
   ChainState& state = *context.chains;
   const Chains& chains = state.columns;
   const size_t count = wave.pathCount;
+  wave.splats.size = 0;
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
     const Contribution proposed = proposedContribution(wave, chains, active, i, state.counters);
@@ -128,7 +130,8 @@ void acceptMutations(const StageContext<typename P::Storage>& context, Wave<type
     const Float visits = select(accepted, due, a);
     const Vec3<Float> splat = select(accepted, colour, proposed.colour) * (visits * Float(state.splatFactor));
     const Mask splats = active & (visits > Float(0)) & (maxComponent(splat) > Float(0));
-    if (any(splats)) addSplats(context, select(accepted, pixel, proposedPixel), splats, splat);
+    pushSplats(wave.splats, select(accepted, pixel, proposedPixel), splats,
+               Vec3<Real>{to<Real>(splat.x), to<Real>(splat.y), to<Real>(splat.z)});
 
     store(select(accepted, a, due), chains.weight, i);
     if (none(accepted)) continue;

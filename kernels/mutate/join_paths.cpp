@@ -32,7 +32,6 @@ void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P
   const PathPlans& plans = paths.plans;
   const auto& v = paths.proposed.vertices;
   const auto& headers = paths.proposed.headers;
-  const SplatSink& film = context.splats;
   auto& shadow = wave.shadowRays;
   const UInt zero(0u), one(1u), stride(static_cast<uint32_t>(paths.proposed.stride()));
   const size_t count = wave.pathCount;
@@ -69,10 +68,7 @@ void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P
     const Mask toLens = joins & (lightRow + one == edges);
     if (any(toLens)) {
       const auto view = project<P>(scene.camera, y, Uniform4{});
-      const Real x = view.rasterX - Real(static_cast<float>(film.x0)),
-                 row = view.rasterY - Real(static_cast<float>(film.y0));
-      const Mask seen = view.inFront & (x >= Real(0)) & (row >= Real(0)) & (x < Real(static_cast<float>(film.width))) &
-                        (row < Real(static_cast<float>(film.height)));
+      const Mask seen = view.inFront & isWithin(rasterArea(context), view.rasterX, view.rasterY);
       lit = lit & (seen | !toLens);
       storeWhere(to<Float>(view.rasterX), toLens & seen, headers.rasterX, lane);
       storeWhere(to<Float>(view.rasterY), toLens & seen, headers.rasterY, lane);

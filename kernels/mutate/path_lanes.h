@@ -224,7 +224,7 @@ WAVECREST_INLINE CausticRange<Real> causticRange(const StageContext<S>& context,
     toLight = toLight + zeroUnless(counts, edgeFrom(select(counts, row, zero)));
   }
   const Real ratio = edgeFrom(select(m, last, zero)) / max(toLight, Real(1e-20f));
-  const double pixels = static_cast<double>(context.splats.width) * context.splats.height;
+  const double pixels = static_cast<double>(context.film.width) * context.film.height;
   const double largest = std::max(std::sqrt(kLensShare * pixels * kInvPi), 2 * kLensSmallest);
   const double perPixel = 1 / context.scene->camera.pixelDistance;
   const Real theta2 = min(ratio * Real(largest * perPixel), Real(kAngleLimit));
@@ -232,13 +232,45 @@ WAVECREST_INLINE CausticRange<Real> causticRange(const StageContext<S>& context,
   return {theta1, log(theta2 / max(theta1, Real(1e-30f)))};
 }
 
-// Density per solid angle of directions from the lens over the whole rendered rectangle.
+// ---- the film -------------------------------------------------------------------------------------------------------
+
+// The raster positions that paths are made for: the rendered rectangle, and around it whatever the reconstruction
+// filters of its pixels reach.
+struct RasterArea {
+  double left, top, width, height;
+  double area() const { return width * height; }
+};
+template <class S>
+inline RasterArea rasterArea(const StageContext<S>& context) {
+  const FilmWindow& film = context.film;
+  const double margin = std::max(filterRadius(context.scene->camera) - 0.5, 0.0);
+  return {film.x0 - margin, film.y0 - margin, film.width + 2 * margin, film.height + 2 * margin};
+}
+// Whether raster positions lie in it.
+template <class Real>
+WAVECREST_INLINE Mask isWithin(const RasterArea& area, Real x, Real y) {
+  return (x >= Real(area.left)) & (y >= Real(area.top)) & (x < Real(area.left + area.width)) &
+         (y < Real(area.top + area.height));
+}
+
+// Density per solid angle of directions from the lens over the raster area.
 template <class P>
 WAVECREST_INLINE typename P::Real filmPdfW(const StageContext<typename P::Storage>& context,
                                            Vec3<typename P::Real> direction) {
   using Real = typename P::Real;
-  const double pixels = static_cast<double>(context.splats.width) * context.splats.height;
-  return cameraPdf<P>(context.scene->camera, direction) * Real(1 / pixels);
+  return cameraPdf<P>(context.scene->camera, direction) * Real(1 / rasterArea(context).area());
+}
+
+// What the film weighs a path by: the sum of the filters of all pixels at its raster position, and the share of the
+// raster area that is film. 1 for the box.
+template <class Real, class S>
+WAVECREST_INLINE Real filmWeight(const StageContext<S>& context, Float rasterX, Float rasterY) {
+  const CameraView& camera = context.scene->camera;
+  if (camera.filter == FilterKind::box) return Real(1);
+  const double pixels = static_cast<double>(context.film.width) * context.film.height;
+  const Float any(0);
+  const Float sum = splatPixel(camera, rasterX, any).weight * splatPixel(camera, rasterY, any).weight;
+  return to<Real>(sum) * Real(rasterArea(context).area() / pixels);
 }
 
 WAVECREST_SIMD_END

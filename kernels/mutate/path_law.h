@@ -33,6 +33,10 @@ struct PathLaw {
   uint32_t deletionStride() const { return maxEdges + 3; }
 };
 
+// Block of a step's random numbers (ChainUse::step) that chooses the pixel among those whose filters reach a path;
+// proposePaths uses blocks 0 and 1.
+constexpr uint32_t kPixelBlock = 2;
+
 // Raster perturbations: offsets between these, in pixels, the logarithm of the offset being uniform. The larger circle
 // has a twentieth of the image's area.
 constexpr double kLensSmallest = 0.1, kLensShare = 0.05;

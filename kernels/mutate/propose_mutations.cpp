@@ -23,7 +23,7 @@ WAVECREST_INLINE void chooseStrategy(const StageContext<S>& context, UInt lane, 
   const UInt cameraEdges = length - s;
   const Mask lens = cameraEdges == zero;
   // t = 1 has one path for all pixels together, the others one for each.
-  const double pixels = static_cast<double>(context.splats.width) * context.splats.height;
+  const double pixels = static_cast<double>(context.film.width) * context.film.height;
   const Float perPixel = select(lens, Float(1 / pixels), Float(1));
   const UInt lightEdges = max(s, one) - one;
   store(toFloat(strategies) * perPixel, chains.scale, i);

@@ -46,21 +46,21 @@ struct Raster {
 };
 template <class S>
 WAVECREST_NOINLINE Raster<S> newRaster(const StageContext<S>& context, UInt lane, Mask near, const Uniform4& u) {
-  const SplatSink& film = context.splats;
+  const FilmWindow& film = context.film;
   const auto& headers = context.paths->proposed.headers;
-  const Float width(static_cast<float>(film.width)), height(static_cast<float>(film.height));
-  const Float left(static_cast<float>(film.x0)), top(static_cast<float>(film.y0));
-  Float x = u.a * width, y = u.b * height;
+  const RasterArea area = rasterArea(context);
+  const Float left(static_cast<float>(area.left)), top(static_cast<float>(area.top));
+  Float x = mulAdd(u.a, Float(static_cast<float>(area.width)), left),
+        y = mulAdd(u.b, Float(static_cast<float>(area.height)), top);
   if (any(near)) {
     const double pixels = static_cast<double>(film.width) * film.height;
     const double ratio = std::max(std::sqrt(kLensShare * pixels * kInvPi) / kLensSmallest, 2.0);
     const Float offset = logarithmic(Float(static_cast<float>(kLensSmallest)), std::log(ratio), u.a);
     const SinCos<Float> angle = sinCos2Pi(u.b);
-    x = select(near, mulAdd(offset, angle.cos, gather(headers.rasterX, lane) - left), x);
-    y = select(near, mulAdd(offset, angle.sin, gather(headers.rasterY, lane) - top), y);
+    x = select(near, mulAdd(offset, angle.cos, gather(headers.rasterX, lane)), x);
+    y = select(near, mulAdd(offset, angle.sin, gather(headers.rasterY, lane)), y);
   }
-  const Mask onFilm = (x >= Float(0)) & (y >= Float(0)) & (x < width) & (y < height);
-  return {x + left, y + top, onFilm};
+  return {x, y, isWithin(area, x, y)};
 }
 
 // The direction in which a walk leaves a row it comes to from the neighbour at `before`, and the row's event.
@@ -238,10 +238,8 @@ void beginEyeWalks(const StageContext<typename P::Storage>& context, Wave<typena
     if (any(fromLens)) {
       const Uniform4 u = draw(context, lane, Block::scatter);
       const auto raster = newRaster(context, lane, isPerturbation(gather(paths.plans.kind, lane)), u);
-      const Float column = floor(raster.x), line = floor(raster.y);
       const Mask seen = fromLens & raster.onFilm;
-      const PixelLanes pixel{toUInt(select(seen, column, Float(0))), toUInt(select(seen, line, Float(0))), zero};
-      const auto ray = cameraRay<P>(camera, pixel, {raster.x - column, raster.y - line, Float(0), Float(0)});
+      const auto ray = cameraRayAt<P>(camera, to<Real>(raster.x), to<Real>(raster.y), Float(0), Float(0));
       storeWhere(raster.x, seen, headers.rasterX, lane);
       storeWhere(raster.y, seen, headers.rasterY, lane);
       out = appendRay<kFeatures>(wave, seen, ray.origin, ray.direction, lane, out);

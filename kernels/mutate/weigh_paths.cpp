@@ -202,13 +202,37 @@ WAVECREST_INLINE void findPatterns(const StageContext<S>& context) {
   }
 }
 
+// The pixel of the rendered rectangle that a path belongs to. A filter spreads a path over several; a chain's state is
+// a path and one of them, which every proposal draws anew by their shares. Paths that draw a pixel beyond the rectangle
+// are dark.
+struct ProposedPixel {
+  UInt index;
+  Mask onFilm;
+};
+template <class S>
+WAVECREST_INLINE ProposedPixel choosePixel(const StageContext<S>& context, UInt lane, Float rasterX, Float rasterY) {
+  const CameraView& camera = context.scene->camera;
+  const FilmWindow& film = context.film;
+  Float u(0), v(0);
+  if (camera.filter != FilterKind::box) {
+    const UInt source = gather(context.chains->columns.source, lane);
+    const ChainNumbers bits = chainBits(context.sampler, source, kPixelBlock, ChainUse::step);
+    u = toUnitInterval(bits.a);
+    v = toUnitInterval(bits.b);
+  }
+  const Float width(static_cast<float>(film.width)), height(static_cast<float>(film.height)), zero(0);
+  const Float x = splatPixel(camera, rasterX, u).pixel - Float(static_cast<float>(film.x0)),
+              y = splatPixel(camera, rasterY, v).pixel - Float(static_cast<float>(film.y0));
+  const Mask onFilm = (x >= zero) & (y >= zero) & (x < width) & (y < height);
+  return {toUInt(zeroUnless(onFilm, y)) * UInt(film.width) + toUInt(zeroUnless(onFilm, x)), onFilm};
+}
+
 // The same for every feature set, so there is one for each storage type.
 template <class Real, class S>
 WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave) {
   PathMutations<S>& paths = *context.paths;
   const PathPlans& plans = paths.plans;
   const Chains& chains = context.chains->columns;
-  const SplatSink& film = context.splats;
   findPatterns(context);
   for (size_t i = 0; i < paths.laneCount; i += kLanes) {
     const Mask active = firstLanes(paths.laneCount - i);
@@ -217,9 +241,11 @@ WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave)
     const UInt end = gather(plans.eyeTo, lane), fromEnd = gather(plans.eyeFrom, lane);
     const auto& headers = paths.proposed.headers;
     const PathBlock<S> proposed(paths.proposed, lane, active);
-    const Vec3<Real> value = proposed.overReference(active);
+    const Float rasterX = gather(headers.rasterX, lane), rasterY = gather(headers.rasterY, lane);
+    const Vec3<Real> value = proposed.overReference(active) * filmWeight<Real>(context, rasterX, rasterY);
     const Real luminance = luminanceOf(value);
-    const Mask lit = active & (luminance > Real(0)) & (luminance < Real(1e30f));
+    const ProposedPixel pixel = choosePixel(context, lane, rasterX, rasterY);
+    const Mask lit = active & pixel.onFilm & (luminance > Real(0)) & (luminance < Real(1e30f));
 
     Double ratio(0.0);
     const Mask somewhere = active & (gather(chains.target, lane) > Float(0));
@@ -241,7 +267,8 @@ WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave)
           restOfReference<Real>(context, proposed, end, current, fromEnd, kindsHere, lit, kind, kept, angle);
       const Double back =
           restOfReference<Real>(context, current, fromEnd, proposed, end, kindsThere, lit, kind, kept, angle);
-      const Double here = to<Double>(luminanceOf(current.overReference(somewhere))) * back;
+      const Real weight = filmWeight<Real>(context, gather(from.rasterX, lane), gather(from.rasterY, lane));
+      const Double here = to<Double>(luminanceOf(current.overReference(somewhere)) * weight) * back;
       const Mask possible = lit & (here > Double(0.0)) & (forth > Double(0.0)) & (forth < Double(1e200));
       const Mask large = lit & (kind == mutationCode(Mutation::large));
       storeWhere(to<Float>(to<Double>(luminance) * forth), large, chains.estimate, lane);
@@ -253,10 +280,7 @@ WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave)
     storeWhere(colour, active, wave.radiance.red, wave.radiance.green, wave.radiance.blue, lane);
     const Float scale = to<Float>(ratio / to<Double>(select(lit, luminance, Real(1))));
     storeWhere(scale, active, chains.scale, lane);
-    const UInt x = toUInt(floor(gather(headers.rasterX, lane))) - UInt(film.x0),
-               y = toUInt(floor(gather(headers.rasterY, lane))) - UInt(film.y0);
-    storeWhere(min(y, UInt(film.height - 1)) * UInt(film.width) + min(x, UInt(film.width - 1)), active,
-               chains.proposedPixel, lane);
+    storeWhere(pixel.index, active, chains.proposedPixel, lane);
   }
 }
 

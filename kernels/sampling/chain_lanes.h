@@ -23,8 +23,9 @@ enum class ChainUse : uint32_t { cameraWalk, lightWalk, step };
 
 WAVECREST_INLINE ChainNumbers chainBits(const SamplerSettings& sampler, UInt source, uint32_t block, ChainUse use) {
   const uint32_t stream = 8 * static_cast<uint32_t>(sampler.chain->stream) + static_cast<uint32_t>(use);
-  const auto bits =
-      philox4x32<kPhiloxRounds>(PhiloxBlock{split(source), sampler.iteration, block, stream}, philoxKey(sampler.seed));
+  const PhiloxBlock counter{split(source), static_cast<uint32_t>(sampler.iteration), block,
+                            streamWord(stream, sampler.iteration)};
+  const auto bits = philox4x32<kPhiloxRounds>(counter, philoxKey(sampler.seed));
   return {join(bits.a), join(bits.b), join(bits.c), join(bits.d)};
 }
 

@@ -2,8 +2,8 @@
 //
 // in: the sampler's settings, one path word (kernels/sampling/sampler.h) per lane, a block and a stream; out: four
 // numbers in [0,1) on the grid of 2^-24, which a float holds exactly. A block is one row of the dimension table: 4
-// times the vertex index plus the Block of kernels/lane_support.h. Call it where the numbers are used; storing them
-// costs more than drawing them (1.3 ns per path with AVX-512, kernels_bench).
+// times the vertex index plus the Block of kernels/sampling/sampler.h. Call it where the numbers are used; storing them
+// costs more than drawing them (1.3 ns per path with AVX-512, lanes_bench).
 #pragma once
 
 #include "kernels/sampling/chain_lanes.h"
@@ -24,8 +24,10 @@ WAVECREST_INLINE Float toUnitInterval(UInt bits) { return toFloat(shiftRight<8>(
 WAVECREST_INLINE Uniform4 independentUniform4(const SamplerSettings& sampler, UInt path, uint32_t block,
                                               Stream stream) {
   // Lanes that are iterations ahead carry into no bit of another meaning: see SamplerSettings::iteration.
-  const UInt word = path + UInt(sampler.iteration << kPathBits);
-  const PhiloxBlock counter{split(word), sampler.iteration / kIterationsPerWave, block, static_cast<uint32_t>(stream)};
+  const auto iteration = static_cast<uint32_t>(sampler.iteration);
+  const UInt word = path + UInt(iteration << kPathBits);
+  const PhiloxBlock counter{split(word), iteration / kIterationsPerWave, block,
+                            streamWord(static_cast<uint32_t>(stream), sampler.iteration)};
   const auto bits = philox4x32<kPhiloxRounds>(counter, philoxKey(sampler.seed));
   return {toUnitInterval(join(bits.a)), toUnitInterval(join(bits.b)), toUnitInterval(join(bits.c)),
           toUnitInterval(join(bits.d))};

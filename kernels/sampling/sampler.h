@@ -101,11 +101,16 @@ struct ChainSamples {
   }
 };
 
+// A word of Philox's counter that tells streams apart, in its low byte, and every 2^32 iterations from the others.
+constexpr uint32_t streamWord(uint32_t stream, uint64_t iteration) {
+  return stream | static_cast<uint32_t>(iteration >> 32) << 8;
+}
+
 // The part of the arguments that one iteration shares.
 struct SamplerSettings {
   SamplerKind kind = SamplerKind::independent;
   uint64_t seed = 0;
-  uint32_t iteration = 0;               // if lanes are ahead of it, a multiple of the number of iterations in the wave
+  uint64_t iteration = 0;               // if lanes are ahead of it, a multiple of the number of iterations in the wave
   const ChainSamples* chain = nullptr;  // of kind `chain`
 };
 

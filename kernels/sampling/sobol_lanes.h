@@ -53,14 +53,15 @@ WAVECREST_INLINE SobolPoint sobolPointReversed(UInt index) {
 // 32 random bits for each number, uppermost digit first.
 WAVECREST_INLINE SobolPoint sobolBits(const SamplerSettings& sampler, UInt path, uint32_t block, Stream stream) {
   constexpr uint32_t kIndexMask = (1u << kSobolIndexBits) - 1;
-  const uint32_t epoch = sampler.iteration >> kSobolIndexBits;
+  const auto iteration = static_cast<uint32_t>(sampler.iteration);
+  const uint32_t epoch = iteration >> kSobolIndexBits;
   const UInt set = path & UInt(kMostPaths - 1);
-  const auto random = philox4x32<kPhiloxRounds>(PhiloxBlock{split(set), epoch, block, static_cast<uint32_t>(stream)},
-                                                philoxKey(sampler.seed));
+  const PhiloxBlock counter{split(set), epoch, block, streamWord(static_cast<uint32_t>(stream), sampler.iteration)};
+  const auto random = philox4x32<kPhiloxRounds>(counter, philoxKey(sampler.seed));
   const UInt seedA = join(random.a), seedB = join(random.b), seedC = join(random.c), seedD = join(random.d);
 
   // The order of the points: any three of the four scrambles are independent of it.
-  const UInt index = UInt(sampler.iteration & kIndexMask) + shiftRight<kPathBits>(path);
+  const UInt index = UInt(iteration & kIndexMask) + shiftRight<kPathBits>(path);
   const UInt shuffled = scrambleReversed(reverseBits(index), xor3(seedA, seedB, seedC) ^ seedD);
   const SobolPoint point = sobolPointReversed(reverseBits(shuffled) & UInt(kIndexMask));
   return {reverseBits(scrambleReversed(point.a, seedA)), reverseBits(scrambleReversed(point.b, seedB)),

@@ -6,7 +6,10 @@
 //
 // Per path: position and normal; the arrival step of the MIS recursion (METHODS 5.3, 5.4); on camera paths emission of
 // strategy s = 0 with its weight (5.6), which needs the distance and cosine of this edge.
+#include <cmath>
+
 #include "kernels/columns/chains.h"
+#include "kernels/generate/camera_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/interpolation_lanes.h"
 #include "kernels/shade/light_lanes.h"
@@ -97,6 +100,27 @@ WAVECREST_INLINE typename P::Real firstLightEdge(const SceneView<typename P::Sto
   return factor;
 }
 
+// Lanes whose ray from the near clip meets its primitive before the far one. Not inlined: few scenes have a far clip.
+template <class P, uint32_t kFeatures>
+WAVECREST_NOINLINE Mask beforeFarClip(const SceneView<typename P::Storage>& scene, UInt primitive,
+                                      Vec3<typename P::Real> origin, Vec3<typename P::Real> direction, const Hits& hits,
+                                      size_t i) {
+  using Real = typename P::Real;
+  const auto surface = surfacePoint<P, kFeatures>(scene, primitivesOf(scene, primitive), origin, direction,
+                                                  load(hits.u, i), load(hits.v, i));
+  return dot(surface.position - origin, broadcast<Real>(scene.camera.axis)) <=
+         Real(scene.camera.farClip - scene.camera.nearClip);
+}
+
+// What the limit of edges ends: this many paths and this much of their beginnings' throughput.
+template <class Real>
+WAVECREST_NOINLINE void countCut(StageCounters& counters, Mask cut, Real throughput) {
+  HWY_ALIGN typename Real::Storage carried[kLanes];
+  store(zeroUnless(cut, throughput), carried);
+  counters.cutPaths += countTrue(cut);
+  for (const auto value : carried) counters.cutThroughput += static_cast<double>(value);
+}
+
 }  // namespace
 
 template <class P, uint32_t kFeatures>
@@ -113,6 +137,9 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
   // Multiplexed chains make each path by one strategy: emission counts at the vertex where s = 0 ends.
   const bool stopsAtEmission = camera && context.chains != nullptr && context.chains->multiplexed;
   const bool firstLightVertex = !camera && context.depth == 1;
+  // The first edge of a camera path ends at the far clip, and began at the near one.
+  const bool fromLens = camera && context.depth == 1;
+  const bool clipped = fromLens && std::isfinite(scene.camera.farClip);
   const bool goesOn = context.depth + 1 <= context.limits.maxDepth;
   const size_t count = rays.size;
   uint64_t misses = 0;
@@ -121,10 +148,11 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
     const UInt hitPrimitive = load(wave.hits.primitive, i);
-    const Mask hit = andNot(active, hitPrimitive == UInt(kMiss));
+    Mask hit = andNot(active, hitPrimitive == UInt(kMiss));
     const UInt primitive = select(hit, hitPrimitive, UInt(0u));
     const Vec3<Real> direction = loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
     const Vec3<Real> origin = loadVec3(rays.originX, rays.originY, rays.originZ, i);
+    if (clipped) hit = hit & beforeFarClip<P, kFeatures>(scene, primitive, origin, direction, wave.hits, i);
     const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     const UInt lane = load(paths.lane, i);
     MisSums<Real> mis = loadMis<kFeatures>(paths, i);
@@ -157,7 +185,9 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
         const UInt from = select(hit, load(paths.light, i), UInt(0u));
         toArea = firstLightEdge<P, kFeatures>(scene, from, origin, direction, surface.position, dist2);
       }
-      if (camera && context.depth == 1 && scene.camera.parallel) toArea = Real(1);
+      if (fromLens && scene.camera.parallel) toArea = Real(1);
+      if (fromLens && scene.camera.nearClip > 0)
+        toArea = length2(surface.position - lensOf(scene.camera, origin, direction));
       mis.dVC = mis.dVC * inverseCosine;
       mis.dVM = mis.dVM * inverseCosine;
     }
@@ -178,10 +208,12 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
         addRadiance(wave.radiance, lane, emits & counted, throughput * radiance);
       }
     }
-    if (!goesOn) continue;
-
     Real rouletteScale(1);
     if constexpr (hasRouletteScale(kFeatures)) rouletteScale = load(paths.rouletteScale, i);
+    if (!goesOn) {
+      countCut(*context.counters, hit, maxComponent(throughput) * rouletteScale);
+      continue;
+    }
     vertices.append({.position = surface.position,
                      .direction = direction,
                      .normal = surface.normal,

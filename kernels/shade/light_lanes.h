@@ -78,6 +78,8 @@ WAVECREST_INLINE Vec3<Real> mapRadiance(const EnvironmentView& map, const MapPoi
   return to<Real>(upper * (Float(1) - fy) + lower * fy);
 }
 
+WAVECREST_INLINE UInt packTexel(UInt column, UInt row) { return column | shiftLeft<kTexelBits>(row); }
+
 // Density per solid angle with which a direction is sampled from the map, light selection excluded.
 template <class Real>
 WAVECREST_INLINE Real mapPdfW(const EnvironmentView& map, const MapPoint<Real>& point) {
@@ -90,16 +92,22 @@ WAVECREST_INLINE Real mapPdfW(const EnvironmentView& map, const MapPoint<Real>& 
 }
 
 // A direction towards the environment: alias table over texels, then uniform within the texel.
+//
+// A number of 24 bits cannot choose among more than 2^24 entries, so one chooses the entry's row and another its
+// column. What the first leaves extends the second, of which all but log2(width) bits are then the place within the
+// texel. Rows are drawn with an error of 2^-24 at most, together as alone, and none where their number is a power of
+// two.
 template <class Real>
 WAVECREST_INLINE Vec3<Real> sampleMap(const EnvironmentView& map, const Uniform4& u) {
-  const uint32_t count = map.width * map.height;
-  const UInt entry = min(toUInt(u.a * Float(static_cast<float>(count))), UInt(count - 1));
-  const RecordLanes<AliasEntry> at(map.table, entry);
-  const UInt texel = select(u.b < at(map.table->keep), entry, at(map.table->other));
-  // Below 2^24 the quotient is exact in float.
-  const UInt row = toUInt((toFloat(texel) + Float(0.5f)) / Float(static_cast<float>(map.width)));
-  const UInt column = texel - row * UInt(map.width);
-  const Real phi = (to<Real>(toFloat(column)) + to<Real>(u.c)) * Real(2 * kPi / map.width);
+  const auto width = static_cast<float>(map.width);
+  const Float rows = u.a * Float(static_cast<float>(map.height)), columns = u.c * Float(width);
+  const UInt entryRow = min(toUInt(rows), UInt(map.height - 1)),
+             entryColumn = min(toUInt(columns), UInt(map.width - 1));
+  const Float across = mulAdd(rows - toFloat(entryRow), Float(width * 0x1p-24f), columns - toFloat(entryColumn));
+  const RecordLanes<AliasEntry> at(map.table, entryRow * UInt(map.width) + entryColumn);
+  const UInt texel = select(u.b < at(map.table->keep), packTexel(entryColumn, entryRow), at(map.table->other));
+  const UInt row = shiftRight<kTexelBits>(texel), column = texel & UInt((1u << kTexelBits) - 1);
+  const Real phi = (to<Real>(toFloat(column)) + to<Real>(across)) * Real(2 * kPi / map.width);
   const Real theta = (to<Real>(toFloat(row)) + to<Real>(u.d)) * Real(kPi / map.height);
   const auto azimuth = sinCos(phi), polar = sinCos(theta);
   const Vec3<Real> local{azimuth.sin * polar.sin, polar.cos, -azimuth.cos * polar.sin};

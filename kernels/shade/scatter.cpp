@@ -13,9 +13,20 @@ namespace {
 
 // Survival probability from the path's throughput, in the scale that makes it comparable with 1: refraction's change of
 // radiance says nothing about the light that the path can still carry.
-template <class Real>
-WAVECREST_INLINE Real survival(Vec3<Real> throughput, Real scale) {
-  return min(max(maxComponent(throughput) * scale, Real(0.05f)), Real(0.95f));
+//
+// One in twenty paths ends at each vertex however bright the surfaces are, which is what ends walks within glass. At
+// albedos above sqrt(0.95) that rate alone would make throughputs grow faster than paths die: variance without end, and
+// images that are too dark but for rare fireflies. From kBrightest on, the rate therefore falls as the throughput
+// grows.
+template <class P>
+WAVECREST_INLINE typename P::Real survival(Vec3<typename P::Real> throughput, typename P::Real scale) {
+  using Real = typename P::Real;
+  constexpr float kMost = 0.95f, kBrightest = 4;
+  const Real carried = maxComponent(throughput) * scale;
+  Real q = min(max(carried, Real(0.05f)), Real(kMost));
+  const Mask bright = carried > Real(kBrightest);
+  if (any(bright)) q = select(bright, Real(1) - Real((1 - kMost) * kBrightest) * reciprocal<P>(carried), q);
+  return q;
 }
 
 // J of METHODS 5.5 for a delta lobe.
@@ -54,7 +65,7 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     if (lobes == Lobes::specularOnly) alive = alive & sample.specular;
     if constexpr (has(kFeatures, kBidirectional) && has(kFeatures, kShadingNormals | kTextures)) {
       if (context.walk == Walk::light) {  // METHODS 3.9: the non-symmetry of interpolated normals (Veach 1997, 5.3)
-        const Real fixCosine = max(abs(shading.fixCosine), Real(1e-6f));
+        const Real fixCosine = max(abs(shading.fixCosine), Real(kSmallestCosine));
         throughput = throughput *
                      (abs(shading.fix.z) * genCosine * reciprocal<P>(fixCosine * max(abs(sample.gen.z), Real(1e-12f))));
       }
@@ -65,7 +76,7 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
       if (context.walk == Walk::camera) rouletteScale = rouletteScale / (sample.etaRatio * sample.etaRatio);
     }
     if (roulette) {
-      const Real q = survival(throughput, rouletteScale);
+      const Real q = survival<P>(throughput, rouletteScale);
       alive = alive & (to<Real>(u.d) < q);
       throughput = throughput * reciprocal<P>(q);
     }

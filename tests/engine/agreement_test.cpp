@@ -5,6 +5,8 @@
 // method the radius is small; where it is all of a method, a few per cent of the image's mean are allowed.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "tests/effort.h"
 #include "tests/engine/light_scenes.h"
 #include "tests/engine/render_statistics.h"
@@ -249,6 +251,23 @@ double meanExcess(const SeedMeans& more, const SeedMeans& less) {
   return mean / std::sqrt(squares / (kSeeds - 1) / kSeeds);
 }
 
+double sumOf(const RgbImage& image) { return std::accumulate(image.begin(), image.end(), 0.0); }
+double relativeExcess(const SeedMeans& more, const SeedMeans& less) {
+  double a = 0, b = 0;
+  for (size_t s = 0; s < kSeeds; ++s) {
+    a += sumOf(more.images[s]);
+    b += sumOf(less.images[s]);
+  }
+  return a / b - 1;
+}
+// The standard error of the mean image, relative to it.
+double noiseOfMean(const SeedMeans& seeds) {
+  double mean = 0, squares = 0;
+  for (const RgbImage& image : seeds.images) mean += sumOf(image) / kSeeds;
+  for (const RgbImage& image : seeds.images) squares += std::pow(sumOf(image) / mean - 1, 2);
+  return std::sqrt(squares / (kSeeds - 1) / kSeeds);
+}
+
 // Under the sun or a point each of pt, lt, bpt and vcm makes the paths of the one before and some more: caustics, then
 // caustics that two diffuse bounces lead into a mirror, then those that one bounce does.
 TEST(SlowAgreement, inSmallVcmsBoxesOfDeltaLights) {
@@ -259,9 +278,12 @@ TEST(SlowAgreement, inSmallVcmsBoxesOfDeltaLights) {
                     bpt = imagesBy(scene, Method::bpt, 4 * iterations()),
                     vcm = imagesBy(scene, Method::vcm, 4 * iterations());
     EXPECT_GT(meanExcess(lt, pt), 7) << name;
+    // What bpt adds to lt, and under the point vcm to bpt, is little beside the noise: neither less, nor much more.
     EXPECT_GT(meanExcess(bpt, lt), -4) << name;
-    // Of the point's light little comes that way, and with much noise.
+    EXPECT_LT(relativeExcess(bpt, lt), 0.05) << name;
     EXPECT_GT(meanExcess(vcm, bpt), name == kSun ? 4 : -4) << name;
+    EXPECT_LT(relativeExcess(vcm, bpt), 0.1) << name;
+    EXPECT_LT(noiseOfMean(bpt), 0.01) << name << ": so that less by a twentieth would be seen";
   }
 }
 

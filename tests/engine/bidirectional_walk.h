@@ -42,7 +42,7 @@ inline MisSettings misOf(MisSettings strategies, double sceneRadius, const WalkS
 constexpr MisSettings kAlone{.emission = false, .nextEvent = false, .mergeWeights = false};
 
 // What a walk shows. Shadow rays are waiting to be traced; radiance holds what the named stage has added and nothing
-// else. A visitor may call the walk's occlude(), which turns the former into the latter (or into splats).
+// else. A visitor may call the walk's occlude(), which turns the former into the latter, or into the wave's splats.
 template <class S>
 struct WalkVisitor {
   virtual ~WalkVisitor() = default;
@@ -73,8 +73,7 @@ class BidirectionalWalk {
                               chooseSpecialization(sceneFeatures(scene) | kBidirectional, settings.precision))),
         area_(filmArea(scene.film)),
         wave_(area_.pixels.size(), kNeeds),
-        light_(area_.pixels.size(), kNeeds),
-        splats_(3 * area_.pixels.size()) {
+        light_(area_.pixels.size(), kNeeds) {
     context_.scene = &compiled_->view;
     context_.pixels = area_.pixels.data();
     context_.sampler = {SamplerKind::independent, settings.seed, settings.iteration};
@@ -83,7 +82,7 @@ class BidirectionalWalk {
     context_.photonGrid = PhotonGrid<S>::over(compiled_->view.center, compiled_->view.radius, context_.mis.radius,
                                               static_cast<double>(settings.lightPaths));
     context_.counters = &counters;
-    context_.splats = {splats_.data(), area_.x0, area_.y0, area_.width, area_.height};
+    context_.film = area_.window();
   }
 
   StageCounters counters;
@@ -96,7 +95,7 @@ class BidirectionalWalk {
     walkCamera(visitor);
   }
 
-  // Traces the waiting shadow rays: into radiance on the camera's walk, into splats() on the light's.
+  // Traces the waiting shadow rays: into radiance on the camera's walk, into Splats on the light's.
   void occlude() { stages_.occludeSmall(context_, wave_); }
 
   const SceneView<S>& scene() const { return compiled_->view; }
@@ -105,7 +104,6 @@ class BidirectionalWalk {
   const MisSettings& mis() const { return context_.mis; }
   const PhotonGrid<S>& photonGrid() const { return context_.photonGrid; }
   const PathLimits& limits() const { return settings_.limits; }
-  std::vector<int64_t>& splats() { return splats_; }
   const Stages<S>& stages() const { return stages_; }
   static constexpr ColumnNeeds kNeeds{
       .shadingNormals = true, .textures = true, .rouletteScale = true, .connections = true};
@@ -127,7 +125,7 @@ class BidirectionalWalk {
       stages_.storeLightVertices(context_, wave_);
       stages_.connectToCamera(context_, wave_);
       visitor.splats(context_.depth, wave_);
-      wave_.shadowRays.size = 0;
+      wave_.shadowRays.size = wave_.splats.size = 0;
       stages_.scatter(context_, wave_);
       visitor.scattered(Walk::light, context_.depth, wave_);
     }
@@ -183,7 +181,6 @@ class BidirectionalWalk {
   const FilmArea area_;
   Wave<S> wave_;
   LightStore<S> light_;
-  std::vector<int64_t> splats_;
   StageContext<S> context_;
 };
 

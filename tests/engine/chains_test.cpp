@@ -106,7 +106,8 @@ class SceneChains {
         area_(filmArea(scene.film)),
         state(count, keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth)),
         paths_(count, std::max(plan_.pathLaws.law().maxEdges, 1u), plan_.needs),
-        worker_(plan_, count, area_.pixels.size()),
+        films_(area_.pixels.size(), 1, 1.0),
+        worker_(plan_, count, films_),
         context_(chainContext(plan_, settings_, area_)),
         count_(count) {
     state.multiplexed = chosen.variant != MetropolisVariant::pssmlt;
@@ -147,6 +148,7 @@ class SceneChains {
 
  private:
   PathStore<float> paths_;
+  SplatFilms films_;
   ChainWorker<float> worker_;
   StageContext<float> context_;
   size_t count_;

@@ -137,6 +137,44 @@ TEST_P(MetropolisTest, cropWindowShowsItsPartOfTheImage) {
   expectSameTruth(renderSeeds(scene, settings(), 256), renderSeeds(scene, other, 256, 2000), "crop");
 }
 
+// A narrow tent, whose sum over pixels is far from 1, and a wide Gaussian: what lies around the rectangle counts.
+TEST_P(MetropolisTest, everyFilterShowsTheImageOfPathTracing) {
+  Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings other = defaults();
+  for (const bool gaussian : {false, true}) {
+    scene.film.filter = gaussian ? ReconstructionFilter::gaussian : ReconstructionFilter::tent;
+    scene.film.filterRadius = 0.7;
+    scene.film.gaussianStddev = 0.9;
+    expectSameTruth(renderSeeds(scene, settings(), 96), renderSeeds(scene, other, 128, 2000),
+                    gaussian ? "gaussian" : "tent");
+  }
+}
+
+TEST_P(MetropolisTest, aFilterSeesWhatLiesAroundACropWindow) {
+  Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings other = defaults();
+  scene.film.cropX = 9;
+  scene.film.cropY = 5;
+  scene.film.cropWidth = 16;
+  scene.film.cropHeight = 11;
+  scene.film.filter = ReconstructionFilter::gaussian;
+  expectSameTruth(renderSeeds(scene, settings(), 256), renderSeeds(scene, other, 256, 2000), "crop, gaussian");
+}
+
+TEST_P(MetropolisTest, aLensShowsTheImageOfPathTracing) {
+  Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  scene.sensor.kind = Sensor::Kind::thinlens;
+  scene.sensor.apertureRadius = 60;
+  scene.sensor.focusDistance = 900;
+  scene.film.filter = ReconstructionFilter::gaussian;
+  if (settings().metropolis.variant == MetropolisVariant::pathspace) {
+    EXPECT_THROW(Session::create(scene, settings()), SceneError) << "its perturbations turn rays about one point";
+    return;
+  }
+  RenderSettings other = defaults();
+  expectSameTruth(renderSeeds(scene, settings(), 128), renderSeeds(scene, other, 128, 2000), "lens");
+}
+
 // b is the mean luminance of the image; its error says how far off it may be.
 class MetropolisOfAllLightTest : public MetropolisTest {};
 TEST_P(MetropolisOfAllLightTest, brightnessIsThatOfTheImageWithinItsError) {

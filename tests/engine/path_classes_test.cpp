@@ -13,23 +13,42 @@ namespace {
 
 // ---- rules ----------------------------------------------------------------------------------------------------------
 
-TEST(PathStrategies, areThoseOfThePipelines) {
+// What METHODS.md says of each method, as it follows from the stages on its page.
+TEST(PathStrategies, followFromTheStages) {
+  const PathStrategies bidirectional{.emission = true, .nextEvent = true, .connect = true, .camera = true};
+  EXPECT_EQ(strategiesOf(Method::pt), (PathStrategies{.emission = true, .nextEvent = true}));
+  EXPECT_EQ(strategiesOf(Method::lt),
+            (PathStrategies{.emission = true, .nextEvent = true, .camera = true, .specularViewsOnly = true}));
+  EXPECT_EQ(strategiesOf(Method::bpt), bidirectional);
+  EXPECT_EQ(strategiesOf(Method::mlt), bidirectional) << "each step takes one of bidirectional path tracing's";
+  EXPECT_EQ(strategiesOf(Method::ppm), (PathStrategies{.emission = true, .merge = true, .mergeAtFirstVertex = true}));
+  EXPECT_EQ(strategiesOf(Method::bpm), (PathStrategies{.emission = true, .merge = true}));
+  PathStrategies all = bidirectional;
+  all.merge = true;
+  EXPECT_EQ(strategiesOf(Method::vcm), all);
+}
+
+TEST(PathStrategies, decideTheWeights) {
   for (const MethodEntry& entry : kMethods) {
-    const Pipeline<float> pipeline = makePipeline<float>(entry.method, MetropolisVariant::mmlt, {}, {});
-    if (pipeline.chains) {  // each step takes one of bidirectional path tracing's
-      EXPECT_EQ(entry.strategies, entryOf(Method::bpt).strategies) << entry.name;
-      continue;
-    }
-    const MisSettings& camera = pipeline.cameraPass.strategies;
-    const PathStrategies& listed = entry.strategies;
-    EXPECT_EQ(listed.nextEvent, camera.nextEvent) << entry.name;
-    EXPECT_EQ(listed.connect, camera.connect) << entry.name;
-    EXPECT_EQ(listed.merge, camera.merge) << entry.name;
-    EXPECT_EQ(listed.camera, pipeline.splats()) << entry.name;
-    EXPECT_EQ(listed.specularViewsOnly, !pipeline.cameraPass.firstDepth.empty()) << entry.name;
-    EXPECT_EQ(listed.mergeAtFirstVertex, camera.merge && !camera.mergeWeights) << entry.name;
-    EXPECT_TRUE(listed.emission) << entry.name << " shows lights in view";
+    const MethodPage page = entry.page();
+    const PathStrategies strategies = strategiesOf(entry.method);
+    const MisSettings camera = weightsOf(page, Walk::camera);
+    EXPECT_EQ(camera.nextEvent, strategies.nextEvent) << entry.name;
+    EXPECT_EQ(camera.connect, strategies.connect) << entry.name;
+    EXPECT_EQ(camera.merge, strategies.merge) << entry.name;
+    EXPECT_EQ(camera.mergeWeights, !strategies.mergeAtFirstVertex) << entry.name;
+    // Merging alone leaves emission only what it cannot make, and light tracing's walks make different paths.
+    EXPECT_EQ(camera.emission, strategies.nextEvent) << entry.name;
+    EXPECT_EQ(camera.camera, strategies.camera && !strategies.specularViewsOnly) << entry.name;
+    EXPECT_EQ(camera.powerHeuristic, entry.method == Method::pt || entry.method == Method::lt) << entry.name;
+    EXPECT_EQ(isBidirectional(page), entry.method != Method::pt) << entry.name;
   }
+  const MisSettings light = weightsOf(lightTracing(), Walk::light);
+  EXPECT_FALSE(light.emission || light.nextEvent || light.connect || light.merge);
+  EXPECT_TRUE(light.camera);
+  const MisSettings recorded = weightsOf(pathSpaceMetropolis(), Walk::camera);
+  EXPECT_FALSE(recorded.emission || recorded.nextEvent || recorded.connect || recorded.camera || recorded.merge);
+  EXPECT_FALSE(isBidirectional(primarySampleSpace()));
 }
 
 // A scene in which everything sees everything, and nothing is hard.

@@ -122,7 +122,8 @@ Balance compareRatios(Precision precision, double tolerance) {
   ChainState state(kChains, keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth));
   state.multiplexed = true;
   PathStore<S> paths(kChains, plan.pathLaws.law().maxEdges, plan.needs);
-  ChainWorker<S> worker(plan, kChains, area.pixels.size());
+  SplatFilms films(area.pixels.size(), 1, 1.0);
+  ChainWorker<S> worker(plan, kChains, films);
   StageContext<S> context = chainContext(plan, settings, area);
   const auto pixels = static_cast<double>(area.pixels.size());
   const PathTransition<S> scratch(plan.scene->view, pixels, {1, 9, double{state.samples.largeStep}});

@@ -40,10 +40,12 @@ class StrategyImages : public WalkVisitor<float> {
   void splats(uint32_t depth, Wave<float>& wave) override {
     walk_.occlude();
     RgbImage& image = imageOf({false, depth + 1, depth + 1});
-    for (size_t i = 0; i < image.size(); ++i) {
-      image[i] += static_cast<float>(static_cast<double>(walk_.splats()[i]) /
-                                     (kSplatScale * static_cast<double>(wave.pathCount)));
-      walk_.splats()[i] = 0;
+    const auto paths = static_cast<float>(wave.pathCount);
+    for (size_t i = 0; i < wave.splats.size; ++i) {
+      float* const pixel = image.data() + 3 * size_t{wave.splats.pixel[i]};
+      pixel[0] += wave.splats.red[i] / paths;
+      pixel[1] += wave.splats.green[i] / paths;
+      pixel[2] += wave.splats.blue[i] / paths;
     }
   }
   void emission(uint32_t depth, Wave<float>& wave) override { add({false, 0, depth}, wave); }

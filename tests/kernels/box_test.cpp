@@ -50,7 +50,7 @@ Quads joined(Quads a, const Quads& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
-std::vector<FoundBox> boxesOf(const Quads& quads) { return findBoxes(quads.data(), quads.size()); }
+std::vector<FoundBox> boxesOf(const Quads& quads) { return findBoxes(quads.data(), quads.size(), 0); }
 
 // Every quad that belongs to some box, sorted.
 std::vector<uint32_t> claimed(const std::vector<FoundBox>& boxes) {
@@ -101,6 +101,31 @@ TEST_P(FindBoxesTest, fiveFacesAreABoxThatIsOpenAtTheSixth) {
     EXPECT_EQ(claimed(boxes), (std::vector<uint32_t>{0, 1, 2, 3, 4}));
     EXPECT_NEAR(dot(boxes[0].normal[2], corner(lid, 0.3, 0.6)), boxes[0].high[2],
                 1e-12 * length(corner(lid, 0.3, 0.6)));
+  }
+}
+
+// Slabs know nothing of their neighbours; quads and triangles agree on the edges that they share.
+TEST_P(FindBoxesTest, fiveFacesAreNoneWhereSomethingMeetsTheRimOfTheOpenSide) {
+  for (size_t missing = 0; missing < 6; ++missing) {
+    Quads faces = facesOf(GetParam());
+    const PrimitiveRecord<double> lid = faces[missing];
+    const Point p = corner(lid, 0, 0), u = corner(lid, 1, 0), v = corner(lid, 0, 1), wider = u * 2 - p;
+    faces.erase(faces.begin() + static_cast<std::ptrdiff_t>(missing));
+    for (const auto& other : {trianglePrimitive(p, u, v),                                     // a part of a lid
+                              trianglePrimitive(p * 2 - u, wider, p * 3 - u - v),             // wider, beside it
+                              trianglePrimitive(p * 0.5 + u * 0.5, wider, u * 3 - v - p)}) {  // along a part of the rim
+      Quads all = faces;
+      all.push_back(other);
+      EXPECT_TRUE(findBoxes(all.data(), 5, 1).empty());
+    }
+    // The ground around a block without a bottom, and something within the opening, leave the rim alone.
+    Quads ground = faces;
+    const Point middle = corner(lid, 0.5, 0.5), e1 = u - p, e2 = v - p;
+    ground.push_back(trianglePrimitive(middle - (e1 + e2) * 4, middle + e1 * 9 - e2 * 4, middle + e2 * 9 - e1 * 4));
+    EXPECT_EQ(findBoxes(ground.data(), 5, 1).size(), 1u);
+    Quads inside = faces;
+    inside.push_back(trianglePrimitive(corner(lid, 0.2, 0.2), corner(lid, 0.7, 0.2), corner(lid, 0.2, 0.7)));
+    EXPECT_EQ(findBoxes(inside.data(), 5, 1).size(), 1u);
   }
 }
 
@@ -207,7 +232,7 @@ TEST_P(BoxHitTest, raysFromInsideMeetTheEdgeTheyAreAimedAt) {
 }
 
 // A wall of two triangles closes the open side: nothing gets out along its edges.
-TEST_P(BoxHitTest, openBoxesOverlapWhatClosesThem) {
+TEST_P(BoxHitTest, nothingGetsOutBesideWhatClosesAnOpenBox) {
   RandomPoints random(32);
   RayBatch batch;
   for (size_t face = 0; face < 6; ++face) {

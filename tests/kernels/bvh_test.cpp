@@ -93,7 +93,7 @@ class Contents {
         break;
       }
       case BvhEntry::faces: {
-        const auto& faces = bvh.at<BvhFaces>(reference);
+        const auto& faces = bvh.at<FaceLeaf>(reference);
         for (size_t slot = 0; slot < kLeafSize; ++slot) {
           ++slots[faces.id[slot]];
           for (const auto& corner : faces.corner) {
@@ -103,7 +103,7 @@ class Contents {
         break;
       }
       case BvhEntry::spheres: {
-        const auto& spheres = bvh.at<BvhSpheres>(reference);
+        const auto& spheres = bvh.at<SphereLeaf>(reference);
         for (size_t slot = 0; slot < kLeafSize; ++slot) {
           ++slots[spheres.id[slot]];
           for (size_t axis = 0; axis < 3; ++axis) {

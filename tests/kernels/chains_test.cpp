@@ -30,7 +30,7 @@ class ToyChains {
         // Every column: where only the general kernels are compiled they stand in for these.
         wave_(count, {.shadingNormals = true, .textures = true, .rouletteScale = true, .connections = true}),
         state(count, kept()),
-        sums(3 * kPixels, 0),
+        sums(kPixels, 0),
         target_(std::move(target)) {
     camera();
     wave_.pathCount = count;
@@ -42,7 +42,7 @@ class ToyChains {
     StageContext<float> context;
     context.scene = &scene_;
     context.sampler = {SamplerKind::chain, 17, number, &state.samples};
-    context.splats = {sums.data(), 0, 0, kWidth, kHeight};
+    context.film = {0, 0, kWidth, kHeight};
     context.chains = &state;
     context.counters = &counters;
     stages_.proposeMutations(context, wave_);
@@ -52,6 +52,9 @@ class ToyChains {
       wave_.radiance.red[i] = wave_.radiance.green[i] = wave_.radiance.blue[i] = value;
     }
     stages_.acceptMutations(context, wave_);
+    for (size_t i = 0; i < wave_.splats.size; ++i) {
+      sums[wave_.splats.pixel[i]] += static_cast<double>(wave_.splats.red[i]);
+    }
   }
 
   const std::vector<uint32_t> numbers(size_t row) const {
@@ -62,7 +65,7 @@ class ToyChains {
     std::fill_n(state.samples.values, 4 * state.samples.stride, value);
     for (size_t i = 0; i < wave_.pathCount; ++i) state.columns.cameraVertices[i] = 1;
   }
-  double splatted(uint32_t pixel) const { return static_cast<double>(sums[3 * pixel]) / kSplatScale; }
+  double splatted(uint32_t pixel) const { return sums[pixel]; }
 
  private:
   const Stages<float>& stages_;
@@ -72,7 +75,7 @@ class ToyChains {
  public:
   ChainState state;
   StageCounters counters;
-  std::vector<int64_t> sums;
+  std::vector<double> sums;  // of what was splatted, by pixel
 
  private:
   static ChainState::Kept kept() {

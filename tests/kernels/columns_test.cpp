@@ -152,7 +152,8 @@ constexpr ColumnNeeds kPlainest{.shadingNormals = false,
                                 .normalMaps = false,
                                 .rouletteScale = false,
                                 .connections = false,
-                                .bsdfOrder = false};
+                                .bsdfOrder = false,
+                                .splats = false};
 
 // Every queue of a wave has the wave's capacity and columns of its own.
 template <class Queue>

@@ -14,7 +14,7 @@ using Words = std::array<uint32_t, 4>;
 class SamplerTest : public IsaTest {};
 WAVECREST_TEST_EVERY_ISA(SamplerTest);
 
-SamplerSettings settings(SamplerKind kind, uint64_t seed = 0x123456789abcdefu, uint32_t iteration = 5) {
+SamplerSettings settings(SamplerKind kind, uint64_t seed = 0x123456789abcdefu, uint64_t iteration = 5) {
   return {.kind = kind, .seed = seed, .iteration = iteration};
 }
 
@@ -60,6 +60,23 @@ TEST_P(SamplerTest, numbersDoNotDependOnTheNeighbours) {
     for (uint32_t path = 0; path < 100; ++path) {
       const SampleColumns one = drawPaths(settings(kind), 1, 3, Stream::camera, 50 + path, GetParam());
       for (size_t d = 0; d < 4; ++d) ASSERT_EQ(one[d][0], many[d][path]);
+    }
+  }
+}
+
+// As many iterations as a counter of 64 bits has: those that differ by a power of two share no path's numbers.
+TEST_P(SamplerTest, iterationsHaveNumbersOfTheirOwnHoweverMany) {
+  constexpr size_t kPaths = 32;
+  for (const SamplerKind kind : kAllSamplerKinds) {
+    const SampleColumns first = drawPaths(settings(kind, 7, 5), kPaths, 3, Stream::light, 0, GetParam());
+    for (uint32_t bit = 4; bit < 56; ++bit) {
+      const SampleColumns other =
+          drawPaths(settings(kind, 7, 5 + (uint64_t{1} << bit)), kPaths, 3, Stream::light, 0, GetParam());
+      size_t equal = 0;
+      for (size_t d = 0; d < 4; ++d) {
+        for (size_t i = 0; i < kPaths; ++i) equal += first[d][i] == other[d][i];
+      }
+      EXPECT_LE(equal, 1u) << toString(kind) << ", bit " << bit;  // 128 of 2^24: one by chance in 10^5 draws
     }
   }
 }

@@ -100,7 +100,7 @@ class StageScene {
       records.push_back(rounded(record));
       ++counts[order(record)];
     }
-    small = std::make_unique<SmallScene>(precise.data(), precise.size());
+    small = std::make_unique<SmallScene>(precise.data(), precise.size(), precise.front().p0);
     embree = std::make_unique<EmbreeScene>(records.data(), counts[0], counts[1], counts[2]);
     bvh = std::make_unique<Bvh>(precise.data(), precise.size(), precise.front().p0);
     materials.resize(1);

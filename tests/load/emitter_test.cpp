@@ -40,6 +40,16 @@ TEST(AreaLight, RadianceCanBeATexture) {
   EXPECT_EQ(std::get<AreaEmitter>(scene.emitters.at(0).kind).radiance.texture, 0u);
 }
 
+TEST(AreaLight, OfTheSceneBelongsToTheShapesThatReferToIt) {
+  const Scene scene =
+      loadBody(R"(<shape type="sphere"><ref id="lamp"/></shape><shape type="cube"><ref id="lamp"/></shape>
+      <emitter type="area" id="lamp"><rgb name="radiance" value="3"/></emitter>)");
+  ASSERT_EQ(scene.emitters.size(), 2u);
+  EXPECT_EQ(scene.shapes[1].emitter, 1u);
+  EXPECT_EQ(std::get<AreaEmitter>(scene.emitters[1].kind).shape, 1u);
+  EXPECT_EQ(std::get<AreaEmitter>(scene.emitters[0].kind).radiance.value, (Rgb{3, 3, 3}));
+}
+
 TEST(AreaLight, OutsideOfAShapeIsAnError) { expectEmitterError("area", "", "area light outside of a shape"); }
 
 TEST(AreaLight, OtherLightsInsideAShapeAreErrors) {
@@ -70,6 +80,14 @@ TEST(SpotLight, Defaults) {
   EXPECT_EQ(spot.cutoffAngle, 20);
   EXPECT_EQ(spot.beamWidth, 15);
   EXPECT_EQ(spot.texture, kNone);
+}
+
+TEST(SpotLight, TexturesAreRefusedOrLeftOut) {
+  const std::string body = R"(<emitter type="spot"><texture type="checkerboard" name="texture"/></emitter>)";
+  expectErrorOnLine2(body, "texture of a spot light is not supported");
+  const Scene scene = loadBody(body, {.lenient = true});
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("spot"), std::string::npos) << scene.warnings[0];
 }
 
 TEST(SpotLight, BeamIsThreeQuartersOfTheCutoff) {

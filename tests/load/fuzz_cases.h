@@ -1,4 +1,5 @@
-// Damaged scene, PLY and OBJ files for the tests that nothing in them may crash, hang or fill the memory.
+// Damaged scene, PLY, OBJ, serialized, BMP and TGA files for the tests that nothing in them may crash, hang or fill the
+// memory.
 //
 // Case i mutates one of the seeds below with a generator seeded by i, so a case is its number. How many of them a test
 // takes comes from WAVECREST_FUZZ_CASES; WAVECREST_FUZZ_CASE=i picks one alone.
@@ -43,6 +44,12 @@ inline constexpr std::string_view kSceneSeed = R"(<scene version="3.0.0">
     <bsdf type="plastic"/></bsdf>
   <bsdf type="mask" id="veil"><float name="opacity" value="0.3"/><bsdf type="roughplastic"/></bsdf>
   <shape type="ply"><string name="filename" value="mesh.ply"/><ref id="gold"/></shape>
+  <shape type="serialized"><string name="filename" value="mesh.serialized"/>
+    <integer name="shape_index" value="1"/><bsdf type="diffuse"><texture type="bitmap" name="reflectance">
+    <string name="filename" value="wood.bmp"/></texture></bsdf></shape>
+  <shape type="rectangle"><bsdf type="diffuse"><texture type="scale" name="reflectance">
+    <float name="scale" value="0.5"/><texture type="bitmap"><string name="filename" value="wood.tga"/></texture>
+    </texture></bsdf></shape>
   <shape type="obj"><string name="filename" value="mesh.obj"/><ref id="red"/>
     <transform name="to_world"><rotate x="1" angle="30"/><translate x="1" y="2" z="3"/></transform></shape>
   <shape type="sphere"><point name="center" x="0" y="1" z="0"/><float name="radius" value="0.5"/>
@@ -68,6 +75,17 @@ inline constexpr std::string_view kUvPlySeed =
     "property float ny\nproperty float nz\nproperty float u\nproperty float v\nelement face 1\nproperty list uchar int "
     "vertex_indices\nproperty float quality\nend_header\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2 "
     ".5\n";
+
+// Two pixels: red over blue with a palette, and a run of red.
+inline std::string bmpSeed() {
+  std::string bytes = "BM";
+  for (const uint32_t value : {70u, 0u, 62u, 40u, 1u, 2u, 0x80001u, 0u, 8u, 0u, 0u, 2u, 0u}) {
+    appendValue<uint32_t>(bytes, value, false);
+  }
+  return bytes + std::string("\0\0\xff\0\xff\0\0\0\1\0\0\0\0\0\0\0", 16);
+}
+inline std::string tgaSeed() { return std::string("\0\0\x0a\0\0\0\0\0\0\0\0\0\1\0\2\0\x18\0\x81\0\0\xff", 22); }
+inline std::string serializedSeed() { return serializedFile({serializedQuad(), serializedQuad({.colors = true})}); }
 
 // Fragments that sit at the edges of what parsers accept.
 inline constexpr std::string_view kFragments[] = {"-1",
@@ -164,6 +182,9 @@ inline std::string mutated(std::string text, Random& random) {
 // The undamaged files of which case i damages one.
 inline void writeSeeds(const Folder& folder) {
   writePng((folder.path() / "wood.png").string(), Image8{.width = 2, .height = 1, .pixels = {90, 60, 30, 120, 80, 40}});
+  folder.write("wood.bmp", bmpSeed());
+  folder.write("wood.tga", tgaSeed());
+  folder.write("mesh.serialized", serializedSeed());
   folder.write("part.xml", kPartSeed);
   folder.write("mesh.ply", kQuadPly);
   folder.write("mesh.obj", kObjSeed);
@@ -176,7 +197,8 @@ inline bool isLenient(int index) { return index % 5 == 0; }
 inline std::filesystem::path writeCase(const Folder& folder, int index) {
   Random random(static_cast<uint64_t>(index));
   std::string scene(kSceneSeed), ply(kQuadPly), obj(kObjSeed), part(kPartSeed);
-  switch (index % 6) {
+  std::string serialized = serializedSeed(), bmp = bmpSeed(), tga = tgaSeed();
+  switch (index % 9) {
     case 0:
       scene = mutated(scene, random);
       break;
@@ -184,13 +206,24 @@ inline std::filesystem::path writeCase(const Folder& folder, int index) {
       part = mutated(part, random);
       break;
     case 2:
-      ply = mutated(std::string(index % 12 == 2 ? kQuadPly : kUvPlySeed), random);
+      ply = mutated(std::string(index % 18 == 2 ? kQuadPly : kUvPlySeed), random);
       break;
     case 3:
-      ply = mutated(binaryQuadPly(index % 12 == 3), random);
+      ply = mutated(binaryQuadPly(index % 18 == 3), random);
       break;
     case 4:
       obj = mutated(obj, random);
+      break;
+    case 5:
+      serialized = below(random, 2) == 0
+                       ? mutated(serialized, random)
+                       : serializedFile({serializedQuad(), serializedMeshOf(mutated(serializedBody(), random))});
+      break;
+    case 6:
+      bmp = mutated(bmp, random);
+      break;
+    case 7:
+      tga = mutated(tga, random);
       break;
     default:
       ply = mutated(gzip(kUvPlySeed), random);
@@ -198,6 +231,9 @@ inline std::filesystem::path writeCase(const Folder& folder, int index) {
   folder.write("part.xml", part);
   folder.write("mesh.ply", ply);
   folder.write("mesh.obj", obj);
+  folder.write("mesh.serialized", serialized);
+  folder.write("wood.bmp", bmp);
+  folder.write("wood.tga", tga);
   return folder.write("scene.xml", scene);
 }
 

@@ -75,7 +75,7 @@ TEST(Fuzz, TheUndamagedFilesLoad) {
   for (const std::string& ply : {std::string(kQuadPly), binaryQuadPly(false), binaryQuadPly(true), gzip(kUvPlySeed)}) {
     folder.write("mesh.ply", ply);
     const Scene scene = load(folder, kSceneSeed);
-    EXPECT_EQ(scene.shapes.size(), 7u);
+    EXPECT_EQ(scene.shapes.size(), 9u);
     EXPECT_NO_THROW(compileScene<float>(scene, Accel::automatic));
   }
 }

@@ -61,6 +61,70 @@ inline std::string gzip(std::string_view text) {
   return out;
 }
 
+// The quad above with normals along +z and texture coordinates equal to x and y, as one mesh of a serialized file.
+struct SerializedSeed {
+  uint16_t version = 4;
+  bool isDouble = false, normals = true, colors = false, faceNormals = false;
+  float size = 1;  // of the quad's sides
+};
+inline std::string serializedBody(const SerializedSeed& seed = {}) {
+  std::string body;
+  const auto number = [&](double value) {
+    if (seed.isDouble) return appendValue<double>(body, value, false);
+    appendValue<float>(body, static_cast<float>(value), false);
+  };
+  appendValue<uint32_t>(body,
+                        (seed.normals ? 1u : 0u) | 2u | (seed.colors ? 8u : 0u) | (seed.faceNormals ? 0x10u : 0u) |
+                            (seed.isDouble ? 0x2000u : 0x1000u),
+                        false);
+  if (seed.version == 4) body += std::string("quad") + '\0';
+  appendValue<uint64_t>(body, 4, false);
+  appendValue<uint64_t>(body, 2, false);
+  const double corners[4][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+  for (const auto& corner : corners) {
+    for (const double x : {corner[0], corner[1], 0.0}) number(seed.size * x);
+  }
+  for (int i = 0; seed.normals && i < 4; ++i) {
+    for (const double x : {0.0, 0.0, 1.0}) number(x);
+  }
+  for (const auto& corner : corners) {
+    for (const double x : corner) number(x);
+  }
+  for (int i = 0; seed.colors && i < 12; ++i) number(0.25 * i);
+  for (const uint32_t index : {0u, 1u, 2u, 1u, 3u, 2u}) appendValue<uint32_t>(body, index, false);
+  return body;
+}
+
+// The header and the compressed body of a mesh.
+inline std::string serializedMeshOf(const std::string& body, uint16_t version = 4) {
+  std::string file;
+  appendValue<uint16_t>(file, 0x041c, false);
+  appendValue<uint16_t>(file, version, false);
+  std::string compressed(compressBound(static_cast<uLong>(body.size())), '\0');
+  uLongf size = static_cast<uLongf>(compressed.size());
+  compress(reinterpret_cast<Bytef*>(compressed.data()), &size, reinterpret_cast<const Bytef*>(body.data()),
+           static_cast<uLong>(body.size()));
+  return file + compressed.substr(0, size);
+}
+inline std::string serializedQuad(const SerializedSeed& seed = {}) {
+  return serializedMeshOf(serializedBody(seed), seed.version);
+}
+
+// Meshes one after the other with the table at the end; all of the version of the table.
+inline std::string serializedFile(const std::vector<std::string>& meshes, uint16_t version = 4) {
+  std::string file, table;
+  for (const std::string& mesh : meshes) {
+    if (version == 4)
+      appendValue<uint64_t>(table, file.size(), false);
+    else
+      appendValue<uint32_t>(table, static_cast<uint32_t>(file.size()), false);
+    file += mesh;
+  }
+  file += table;
+  appendValue<uint32_t>(file, static_cast<uint32_t>(meshes.size()), false);
+  return file;
+}
+
 // `text` with line `number` (from 1) replaced.
 inline std::string withLine(std::string_view text, int number, std::string_view line) {
   size_t begin = 0;

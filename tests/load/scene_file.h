@@ -48,7 +48,9 @@ inline std::string sceneXml(std::string_view body, std::string_view version = "3
   return "<scene version=\"" + std::string(version) + "\">" + std::string(body) + "</scene>";
 }
 
-inline Scene load(const Folder& folder, std::string_view xml, const LoadOptions& options = {}) {
+// As the file says it: nothing is simplified.
+inline Scene load(const Folder& folder, std::string_view xml, LoadOptions options = {}) {
+  options.keepAll = true;
   return loadScene(folder.write("scene.xml", xml), options);
 }
 inline Scene load(std::string_view xml, const LoadOptions& options = {}) { return load(Folder(), xml, options); }

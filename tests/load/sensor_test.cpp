@@ -101,8 +101,8 @@ TEST(Sensor, OnlyTheFirstIsUsedAndAWarningSaysSo) {
   const Scene scene = loadBody(R"(<sensor type="perspective"><float name="fov" value="30"/></sensor>
     <sensor type="perspective"><float name="fov" value="60"/></sensor>)");
   EXPECT_EQ(scene.sensor.fovX, 30);
-  ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("only the first of 2 sensors"), std::string::npos);
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_EQ(scene.notes[0].what, "2 sensors");
 }
 
 TEST(Sensor, MistakesAreErrors) {
@@ -173,7 +173,7 @@ TEST(Film, MistakesAreErrors) {
   expectSensorError(
       R"(<film type="hdrfilm"><integer name="crop_width" value="700"/><integer name="crop_offset_x" value="100"/></film>)",
       "crop window leaves the film");
-  expectSensorError(R"(<film type="hdrfilm"><rfilter type="lanczos"/></film>)", "rfilter \"lanczos\" is not supported");
+  expectSensorError(R"(<film type="hdrfilm"><rfilter type="sinc"/></film>)", "rfilter \"sinc\" is not supported");
   expectSensorError(R"(<film type="hdrfilm"><rfilter type="tent"><float name="radius" value="99"/></rfilter></film>)",
                     "wider than 32 pixels");
 }
@@ -182,17 +182,30 @@ TEST(Integrator, DefaultsAreUnlimitedDepthAndRouletteAfterFive) {
   const RenderDefaults defaults = loadBody(R"(<integrator type="path"/>)").defaults;
   EXPECT_EQ(defaults.maxDepth, -1);
   EXPECT_EQ(defaults.rrDepth, 5);
-  EXPECT_FALSE(defaults.hideEmitters);
 }
 
 TEST(Integrator, AnyTypeIsAcceptedForItsDepths) {
   const RenderDefaults defaults = loadBody(R"(<integrator type="bdpt"><integer name="max_depth" value="7"/>
-      <integer name="rr_depth" value="9"/><boolean name="hide_emitters" value="true"/>
+      <integer name="rr_depth" value="9"/>
       <boolean name="lightImage" value="true"/></integrator>)")
                                       .defaults;
   EXPECT_EQ(defaults.maxDepth, 7);
   EXPECT_EQ(defaults.rrDepth, 9);
-  EXPECT_TRUE(defaults.hideEmitters);
+}
+
+TEST(Integrator, HiddenEmittersAreRefused) {
+  expectErrorOnLine2(R"(<integrator type="path"><boolean name="hide_emitters" value="true"/></integrator>)",
+                     "hide_emitters is not supported");
+}
+
+TEST(Integrator, WrappersGiveTheDepthsOfTheOneWithin) {
+  const RenderDefaults defaults = loadBody(R"(<integrator type="moment"><integrator type="aov">
+      <string name="aovs" value="n:sh_normal"/><integrator type="path"><integer name="max_depth" value="7"/>
+      <integer name="rr_depth" value="9"/></integrator></integrator></integrator>)")
+                                      .defaults;
+  EXPECT_EQ(defaults.maxDepth, 7);
+  EXPECT_EQ(defaults.rrDepth, 9);
+  EXPECT_EQ(loadBody(R"(<integrator type="moment"><integrator type="direct"/></integrator>)").defaults.maxDepth, 2);
 }
 
 TEST(Integrator, DirectIsTwoEdges) { EXPECT_EQ(loadBody(R"(<integrator type="direct"/>)").defaults.maxDepth, 2); }

@@ -1,5 +1,6 @@
 // Textures: image files of each kind, their colour treatment, and the options of a bitmap.
 #include "metrics/image/image_io.h"
+#include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
 namespace wavecrest::testing {
@@ -36,6 +37,21 @@ TEST(Bitmap, ExrIsTakenAsItIs) {
   const Folder folder;
   writeExr((folder.path() / "a.exr").string(), {.width = 1, .height = 1, .channels = 3, .pixels = {0.5f, 2, 0.25f}});
   EXPECT_EQ(bitmapOf(folder, "a.exr").bitmap->pixels, (std::vector<float>{0.5f, 2, 0.25f}));
+}
+
+// A surface cannot take light that is not there; more than arrives it may reflect, as in Mitsuba, but not in silence.
+TEST(Bitmap, ReflectanceBelowZeroIsRefusedAndAboveOneIsSaid) {
+  const auto reflectance = [](float value) {
+    const Folder folder;
+    writeExr((folder.path() / "a.exr").string(),
+             {.width = 1, .height = 1, .channels = 3, .pixels = {0.5f, value, 0.25f}});
+    return loadBody(folder, material(R"(<texture name="reflectance" type="bitmap">
+                                        <string name="filename" value="a.exr"/></texture>)"));
+  };
+  EXPECT_TRUE(reflectance(1).warnings.empty());
+  ASSERT_EQ(reflectance(5).warnings.size(), 1u);
+  EXPECT_NE(reflectance(5).warnings[0].find("up to 5"), std::string::npos);
+  EXPECT_THROW(reflectance(-1), LoadError);
 }
 
 TEST(Bitmap, JpegIsDecodedFromSrgb) {
@@ -125,8 +141,108 @@ TEST(Bitmap, MistakesAreErrorsWhereTheFileIsNamed) {
   expectTextureError(folder, file("broken.jpg"), "damaged JPEG");
   expectTextureError(folder, file("note.txt"), "unknown image format '.txt'");
   expectTextureError(folder, file("grey.png") + R"(<string name="wrap_mode" value="bend"/>)", "unknown wrap_mode");
-  expectTextureError(folder, file("grey.png") + R"(<string name="filter_type" value="ewa"/>)",
-                     "\"ewa\" is not supported");
+  expectTextureError(folder, file("grey.png") + R"(<string name="filter_type" value="cubic"/>)",
+                     "unknown filter_type \"cubic\"");
+  expectTextureError(folder, file("grey.png") + R"(<string name="channel" value="a"/>)", "channel \"a\"");
+  expectTextureError(folder, file("grey.png") + R"(<string name="wrap_mode_u" value="clamp"/>)", "differ");
+}
+
+std::string withByte(std::string bytes, size_t at, int value) {
+  bytes[at] = static_cast<char>(value);
+  return bytes;
+}
+
+// Two pixels, red over blue, as files of each layout. Rows of a BMP fill four bytes.
+std::string bmpOf(bool palette, bool topFirst) {
+  std::string bytes = "BM";
+  const auto word = [&](uint32_t value) { appendValue<uint32_t>(bytes, value, false); };
+  for (const uint32_t value : {70u, 0u, palette ? 62u : 54u, 40u, 1u}) word(value);
+  word(topFirst ? static_cast<uint32_t>(-2) : 2u);
+  appendValue<uint16_t>(bytes, 1, false);
+  appendValue<uint16_t>(bytes, palette ? 8 : 24, false);
+  for (const uint32_t value : {0u, 8u, 0u, 0u, 2u, 0u}) word(value);
+  const std::string red("\0\0\xff\0", 4), blue("\xff\0\0\0", 4);
+  if (palette) return bytes + red + blue + std::string(topFirst ? "\0\0\0\0\1\0\0\0" : "\1\0\0\0\0\0\0\0", 8);
+  return bytes + (topFirst ? red + blue : blue + red);
+}
+std::string tgaOf(bool runs, bool topFirst) {
+  std::string bytes(18, '\0');
+  bytes[2] = runs ? 10 : 2;
+  bytes[12] = 1;
+  bytes[14] = 2;
+  bytes[16] = 24;
+  bytes[17] = topFirst ? 0x20 : 0;
+  const std::string red("\0\0\xff", 3), blue("\xff\0\0", 3), packet(runs ? "\0" : "", runs ? 1 : 0);
+  return bytes + packet + (topFirst ? red : blue) + packet + (topFirst ? blue : red);
+}
+const std::vector<float> kRedOverBlue = {1, 0, 0, 0, 0, 1};
+
+TEST(Bitmap, BmpOfEachLayout) {
+  const Folder folder;
+  for (const bool palette : {false, true}) {
+    for (const bool topFirst : {false, true}) {
+      folder.write("two.bmp", bmpOf(palette, topFirst));
+      EXPECT_EQ(bitmapOf(folder, "two.bmp").bitmap->pixels, kRedOverBlue) << palette << topFirst;
+    }
+  }
+}
+
+TEST(Bitmap, TgaOfEachLayout) {
+  const Folder folder;
+  for (const bool runs : {false, true}) {
+    for (const bool topFirst : {false, true}) {
+      folder.write("two.tga", tgaOf(runs, topFirst));
+      EXPECT_EQ(bitmapOf(folder, "two.tga").bitmap->pixels, kRedOverBlue) << runs << topFirst;
+    }
+  }
+}
+
+TEST(Bitmap, TgaRunRepeatsItsColour) {
+  std::string bytes = tgaOf(true, true).substr(0, 18);
+  bytes += "\x81";
+  bytes += std::string("\0\0\xff", 3);
+  const Folder folder;
+  folder.write("run.tga", bytes);
+  EXPECT_EQ(bitmapOf(folder, "run.tga").bitmap->pixels, (std::vector<float>{1, 0, 0, 1, 0, 0}));
+}
+
+TEST(Bitmap, DamagedBmpAndTgaAreErrors) {
+  const Folder folder;
+  const std::string bmp = bmpOf(false, false), tga = tgaOf(false, false);
+  const std::pair<std::string, std::string> cases[] = {
+      {"a.bmp", bmp.substr(0, 60)},     {"b.bmp", "BM"},
+      {"c.bmp", withByte(bmp, 28, 16)}, {"d.tga", tga.substr(0, 22)},
+      {"e.tga", withByte(tga, 2, 7)},   {"f.tga", withByte(tga, 15, 127)}};
+  for (const auto& [name, bytes] : cases) {
+    folder.write(name, bytes);
+    expectTextureError(folder, R"(<string name="filename" value=")" + name + "\"/>", name);
+  }
+}
+
+TEST(Bitmap, OptionsOfVersion06) {
+  const BitmapTexture texture = bitmapOf(ImageFolder(), "grey.png", R"(<string name="wrap_mode_u" value="clamp"/>
+      <string name="wrap_mode_v" value="clamp"/><float name="gamma" value="1"/><string name="channel" value="g"/>)");
+  EXPECT_EQ(texture.wrap, Wrap::clamp);
+  EXPECT_EQ(texture.bitmap->channels, 1u);
+  EXPECT_FLOAT_EQ(texture.bitmap->pixels.at(0), 128 / 255.0f);
+}
+
+TEST(RawConstant, IsAValue) {
+  const Scene scene = loadBody(material(
+      R"(<texture name="reflectance" type="rawconstant"><vector name="value" x="0.1" y="0.2" z="0.3"/></texture>)"));
+  EXPECT_EQ(scene.textures.size(), 0u);
+  const Rgb value = std::get<Diffuse>(scene.materials.at(0).kind).reflectance.value;
+  EXPECT_FLOAT_EQ(static_cast<float>(value[1]), 0.2f);
+}
+
+TEST(ScaleTexture, MultipliesTheOneWithin) {
+  const ImageFolder folder;
+  const Scene scene =
+      loadBody(folder, material(R"(<texture name="reflectance" type="scale"><float name="scale" value="0.5"/>
+      <texture type="bitmap"><string name="filename" value="grey.png"/><boolean name="raw" value="true"/></texture>
+      </texture>)"));
+  ASSERT_EQ(scene.textures.size(), 1u);
+  EXPECT_FLOAT_EQ(std::get<BitmapTexture>(scene.textures[0].kind).bitmap->pixels[0], 64 / 255.0f);
 }
 
 TEST(Bitmap, TruncatedJpegIsAnError) {

@@ -1,0 +1,136 @@
+#include "engine/load/mesh_attributes.h"
+
+#include <cmath>
+
+#include "engine/load/values.h"
+
+namespace wavecrest {
+
+namespace {
+
+// Walks what a shape refers to, each object once.
+class AttributeSearch {
+ public:
+  explicit AttributeSearch(const LoadContext& context) : context_(context) {}
+
+  void visit(const XmlElement& element) {
+    if (!visited_.insert(&element).second) return;
+    if (element.tag == "texture" && element.get("type") == "mesh_attribute") {
+      add(element);
+    } else if (element.tag == "texture" && !otherTexture_ && element.get("type") != "rawconstant") {
+      otherTexture_ = &element;
+    }
+    for (const XmlElement& child : element.children) {
+      const bool belongs =
+          child.tag == "ref" || child.tag == "bsdf" || child.tag == "texture" || child.tag == "emitter";
+      if (belongs) visit(context_.resolve(child));
+    }
+  }
+  std::string found() const {
+    if (!name_.empty() && otherTexture_) {
+      throw LoadError(otherTexture_->location(), "texture " + inQuotes(otherTexture_->get("type")) +
+                                                     " beside a mesh_attribute on one shape is not supported; expected "
+                                                     "only one of the two");
+    }
+    return name_;
+  }
+
+ private:
+  void add(const XmlElement& texture) {
+    for (const XmlElement& child : texture.children) {
+      if (child.get("name") != "name") continue;
+      const std::string name(child.get("value"));
+      if (!name_.empty() && name != name_) {
+        throw LoadError(texture.location(), "attributes " + inQuotes(name_) + " and " + inQuotes(name) +
+                                                " on one shape are not supported; expected one attribute");
+      }
+      name_ = name;
+    }
+  }
+
+  const LoadContext& context_;
+  std::set<const XmlElement*> visited_;
+  const XmlElement* otherTexture_ = nullptr;
+  std::string name_;
+};
+
+}  // namespace
+
+int MeshAttribute::channelOf(std::string_view property, bool ofFaces) const {
+  const size_t underscore = name.find('_');
+  if (name.empty() || ofFaces != perFace() || underscore == std::string::npos) return -1;
+  const std::string_view own = std::string_view(name).substr(underscore + 1);
+  constexpr std::string_view kColors = "rgb";
+  if (own == "color" && property.size() == 1 && kColors.find(property) != std::string_view::npos) {
+    return static_cast<int>(kColors.find(property));
+  }
+  const bool matches = property.size() == own.size() + 2 && property.starts_with(own) && property[own.size()] == '_' &&
+                       property.back() >= '0' && property.back() <= '2';
+  return matches ? property.back() - '0' : -1;
+}
+
+std::string meshAttributeOf(LoadContext& context, const XmlElement& shape) {
+  AttributeSearch search(context);
+  search.visit(shape);
+  return search.found();
+}
+
+std::shared_ptr<const Bitmap> bakeMeshAttribute(const MeshAttribute& attribute, Mesh& mesh) {
+  const size_t count = mesh.triangles.size();
+  const auto columns = static_cast<size_t>(std::ceil(std::sqrt(static_cast<double>(std::max<size_t>(count, 1)))));
+  const size_t rows = std::max<size_t>(1, (count + columns - 1) / columns), channels = attribute.channels;
+  auto bitmap = std::make_shared<Bitmap>(Bitmap{.width = static_cast<uint32_t>(2 * columns),
+                                                .height = static_cast<uint32_t>(2 * rows),
+                                                .channels = static_cast<uint32_t>(channels),
+                                                .pixels = std::vector<float>(4 * columns * rows * channels)});
+  Mesh split;
+  for (size_t i = 0; i < count; ++i) {
+    const std::array<uint32_t, 3> corners = mesh.triangles[i];
+    const size_t x = 2 * (i % columns), y = 2 * (i / columns);
+    for (size_t c = 0; c < channels; ++c) {
+      const auto valueAt = [&](size_t k) {
+        return attribute.values[(attribute.perFace() ? i : corners[k]) * channels + c];
+      };
+      const auto texel = [&](size_t dx, size_t dy) -> float& {
+        return bitmap->pixels[((y + dy) * 2 * columns + x + dx) * channels + c];
+      };
+      texel(0, 0) = valueAt(0);
+      texel(1, 0) = valueAt(1);
+      texel(0, 1) = valueAt(2);
+      texel(1, 1) = valueAt(1) + valueAt(2) - valueAt(0);
+    }
+    for (size_t k = 0; k < 3; ++k) {
+      split.positions.push_back(mesh.positions[corners[k]]);
+      if (!mesh.normals.empty()) split.normals.push_back(mesh.normals[corners[k]]);
+      const double u = static_cast<double>(x) + (k == 1 ? 1.5 : 0.5), v = static_cast<double>(y) + (k == 2 ? 1.5 : 0.5);
+      split.uvs.push_back({static_cast<float>(u / static_cast<double>(2 * columns)),
+                           static_cast<float>(v / static_cast<double>(2 * rows))});
+    }
+    const auto first = static_cast<uint32_t>(3 * i);
+    split.triangles.push_back({first, first + 1, first + 2});
+  }
+  mesh = std::move(split);
+  return bitmap;
+}
+
+Texture readMeshAttribute(LoadContext& context, Parameters& parameters) {
+  const std::string name = parameters.requiredString("name");
+  const double scale = parameters.real("scale", 1);
+  if (!name.starts_with("vertex_") && !name.starts_with("face_")) {
+    throw LoadError(parameters.locationOf("name"),
+                    "attribute " + inQuotes(name) + " of a mesh; expected a name that starts with vertex_ or face_");
+  }
+  std::shared_ptr<const Bitmap> bitmap = context.attributeBitmap;
+  if (!bitmap) {
+    // A definition that no mesh uses.
+    bitmap = std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .channels = 3, .pixels = {0, 0, 0}});
+  } else if (scale != 1) {
+    auto scaled = std::make_shared<Bitmap>(*bitmap);
+    for (float& value : scaled->pixels) value = static_cast<float>(scale * value);
+    bitmap = std::move(scaled);
+  }
+  return {.kind = BitmapTexture{.bitmap = std::move(bitmap), .filter = Filter::bilinear, .wrap = Wrap::clamp},
+          .toUv = identityMatrix()};
+}
+
+}  // namespace wavecrest

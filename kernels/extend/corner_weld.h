@@ -1,0 +1,39 @@
+// Corners of quads that rounding has moved apart, made one again.
+//
+// A quad keeps three corners; the fourth, p0 + e1 + e2, may miss the vertex of a mesh that it was before two triangles
+// became the quad by some units of rounding. Triangle tests are watertight where neighbours agree on their corners to
+// the bit (bvh_lanes.h), so every corner that lies that close to one of a quad is replaced by the same point.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "kernels/scene_view.h"
+
+namespace wavecrest {
+
+using Corner = std::array<float, 3>;
+
+class CornerWeld {
+ public:
+  // quads: those of the scene. Quads that are hardly larger than what is welded are left out.
+  CornerWeld(const PrimitiveRecord<double>* quads, size_t count);
+  // The point that takes the place of a corner of any face.
+  Corner operator()(const Corner& corner) const;
+
+ private:
+  struct Point {
+    Corner corner;
+    float tolerance;  // greatest distance along an axis of what becomes this point
+  };
+  const Point* find(const Corner& corner) const;
+
+  std::vector<Point> points_;  // sorted by x
+  float widest_ = 0;           // greatest tolerance
+};
+
+// A corner of a quad or triangle before it is welded.
+Corner cornerAt(const PrimitiveRecord<double>& record, double u, double v);
+
+}  // namespace wavecrest

@@ -1,0 +1,72 @@
+// Every stage of every instruction set, precision and specialisation, with its contracts checked before and after it: a
+// broken one ends the program. Built where checks are on (WAVECREST_CHECKED) and nowhere else, because without them
+// nothing here could fail.
+#include <gtest/gtest.h>
+
+#include "engine/stage_contracts.h"
+#include "tests/engine/light_scenes.h"
+#include "tests/engine/render_statistics.h"
+
+namespace wavecrest {
+namespace {
+
+static_assert(kChecksContracts);
+
+RenderSettings settingsOf(Method method, Precision precision, Isa isa) {
+  RenderSettings settings;
+  settings.method = method;
+  settings.precision = precision;
+  settings.isa = isa;
+  settings.limits = pathLimits(-1, 3);
+  settings.waveSize = 100;  // no multiple of a block, and not all waves are full
+  settings.metropolis.chains = 150;
+  settings.metropolis.bootstrapSamples = 2048;
+  return settings;
+}
+
+// Room by room: what each specialisation is for.
+std::vector<Scene> scenes() {
+  std::vector<Scene> list;
+  for (const RoomMaterials materials : {RoomMaterials::diffuse, RoomMaterials::mixed, RoomMaterials::rough}) {
+    for (const RoomLight light : {RoomLight::quad, RoomLight::sphere, RoomLight::envmap}) {
+      list.push_back(roomScene({.light = light,
+                                .materials = materials,
+                                .tiltedNormals = light == RoomLight::envmap,
+                                .width = 14,
+                                .height = 9}));
+    }
+  }
+  return list;
+}
+
+void renderByAll(const Scene& scene, Precision precision, Isa isa) {
+  for (const MethodEntry& entry : kMethods) {
+    RenderSettings settings = settingsOf(entry.method, precision, isa);
+    if (entry.method != Method::mlt) {
+      for (const Accel accel : {Accel::small, Accel::bvh, Accel::embree}) {
+        settings.accel = accel;
+        render(scene, settings, 3);
+      }
+      continue;
+    }
+    for (const MetropolisVariant variant :
+         {MetropolisVariant::pssmlt, MetropolisVariant::mmlt, MetropolisVariant::pathspace}) {
+      settings.metropolis.variant = variant;
+      render(scene, settings, 3);
+    }
+  }
+}
+
+class ContractsTest : public testing::TestWithParam<Isa> {};
+TEST_P(ContractsTest, areKeptByEveryKernel) {
+  for (const Scene& scene : scenes()) {
+    for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
+      renderByAll(scene, precision, GetParam());
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Engine, ContractsTest, testing::ValuesIn(availableIsas()),
+                         [](const auto& instance) { return std::string(toString(instance.param)); });
+
+}  // namespace
+}  // namespace wavecrest

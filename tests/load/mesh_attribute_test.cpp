@@ -1,0 +1,89 @@
+// Colours of vertices and faces, baked into a bitmap.
+#include <cmath>
+
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+// Two triangles; the first has no area, so that what faces have must follow those that stay.
+constexpr std::string_view kColoredPly =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "property float color_0\nproperty float color_1\nproperty float color_2\nelement face 2\n"
+    "property list uchar int vertex_indices\nproperty float weight_0\nend_header\n"
+    "0 0 0 0.1 0 0\n1 0 0 0.2 0 0\n0 1 0 0.4 1 0\n2 0 0 0.8 0 0\n3 0 1 3 0.25\n3 0 1 2 0.75\n";
+
+std::string plyWith(std::string_view attribute, std::string_view more = "") {
+  return R"(<shape type="ply"><string name="filename" value="mesh.ply"/><bsdf type="diffuse">
+      <texture type="mesh_attribute" name="reflectance"><string name="name" value=")" +
+         std::string(attribute) + "\"/></texture></bsdf>" + std::string(more) + "</shape>";
+}
+Scene loadColored(std::string_view body) {
+  const Folder folder;
+  folder.write("mesh.ply", kColoredPly);
+  return loadBody(folder, body);
+}
+
+// Bilinear interpolation between texel centres, as kernels do it.
+double lookUp(const Bitmap& bitmap, double u, double v, size_t channel) {
+  const double x = u * bitmap.width - 0.5, y = v * bitmap.height - 0.5;
+  const auto left = static_cast<size_t>(std::floor(x)), top = static_cast<size_t>(std::floor(y));
+  const double fx = x - std::floor(x), fy = y - std::floor(y);
+  const auto texel = [&](size_t i, size_t j) {
+    const size_t row = std::min<size_t>(j, bitmap.height - 1), column = std::min<size_t>(i, bitmap.width - 1);
+    return static_cast<double>(bitmap.pixels[(row * bitmap.width + column) * bitmap.channels + channel]);
+  };
+  return (1 - fy) * ((1 - fx) * texel(left, top) + fx * texel(left + 1, top)) +
+         fy * ((1 - fx) * texel(left, top + 1) + fx * texel(left + 1, top + 1));
+}
+
+TEST(MeshAttribute, OfVerticesIsLinearInATriangle) {
+  const Scene scene = loadColored(plyWith("vertex_color"));
+  const Mesh& mesh = std::get<Mesh>(scene.shapes.at(0).kind);
+  ASSERT_EQ(mesh.triangles.size(), 1u);
+  const Bitmap& bitmap = *std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap;
+  const auto& uv = mesh.uvs;
+  const double weights[][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2, 0.3, 0.5}};
+  for (const auto& w : weights) {
+    const double u = w[0] * uv[0][0] + w[1] * uv[1][0] + w[2] * uv[2][0];
+    const double v = w[0] * uv[0][1] + w[1] * uv[1][1] + w[2] * uv[2][1];
+    EXPECT_NEAR(lookUp(bitmap, u, v, 0), w[0] * 0.1 + w[1] * 0.2 + w[2] * 0.4, 1e-6);
+    EXPECT_NEAR(lookUp(bitmap, u, v, 1), w[2], 1e-6);
+  }
+}
+
+TEST(MeshAttribute, OfFacesFollowsTheFacesThatStay) {
+  const Scene scene = loadColored(plyWith("face_weight"));
+  const Bitmap& bitmap = *std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap;
+  EXPECT_EQ(bitmap.pixels, std::vector<float>(4, 0.75f));
+}
+
+TEST(MeshAttribute, MaterialOfTwoMeshesIsReadForEach) {
+  const Scene scene = loadColored(R"(<bsdf type="diffuse" id="m"><texture type="mesh_attribute" name="reflectance">
+      <string name="name" value="vertex_color"/></texture></bsdf>
+      <shape type="ply"><string name="filename" value="mesh.ply"/><ref id="m"/></shape>
+      <shape type="ply"><string name="filename" value="mesh.ply"/><ref id="m"/></shape>)");
+  EXPECT_NE(scene.shapes.at(0).material, scene.shapes.at(1).material);
+}
+
+TEST(MeshAttribute, WhatCannotBeIsRefused) {
+  const Folder folder;
+  folder.write("mesh.ply", kColoredPly);
+  const auto expectRefusal = [&](const std::string& shape, std::string_view text) {
+    expectError(folder, sceneXml(std::string(kSensor) + "\n" + shape), 2, text);
+  };
+  const std::string checkerboard = R"(<emitter type="area"><texture type="checkerboard" name="radiance"/></emitter>)";
+  const std::string sphere =
+      R"(<shape type="sphere"><bsdf type="diffuse"><texture type="mesh_attribute" name="reflectance"><string name="name" value="vertex_color"/></texture></bsdf></shape>)";
+  expectRefusal(sphere, "shape \"sphere\" has no attribute \"vertex_color\"");
+  expectRefusal(
+      R"(<shape type="ply"><string name="filename" value="mesh.ply"/><bsdf type="diffuse"><texture type="mesh_attribute" name="reflectance"><string name="name" value="vertex_heat"/></texture></bsdf></shape>)",
+      "no attribute \"vertex_heat\"");
+  expectRefusal(
+      R"(<shape type="ply"><string name="filename" value="mesh.ply"/>)" + checkerboard +
+          R"(<bsdf type="diffuse"><texture type="mesh_attribute" name="reflectance"><string name="name" value="vertex_color"/></texture></bsdf></shape>)",
+      "beside a mesh_attribute");
+}
+
+}  // namespace
+}  // namespace wavecrest::testing

@@ -1,0 +1,64 @@
+// Notes: what a scene asks for that is approximated or left out is listed, and nothing else is.
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+void expectNote(const Scene& scene, std::string_view what, std::string_view effect) {
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_NE(scene.notes[0].what.find(what), std::string::npos) << scene.notes[0].what;
+  EXPECT_NE(scene.notes[0].effect.find(effect), std::string::npos) << scene.notes[0].effect;
+}
+
+TEST(Notes, PlainSceneHasNone) {
+  EXPECT_TRUE(loadBody(R"(<integrator type="path"><integer name="max_depth" value="5"/></integrator>
+      <sensor type="perspective"><film type="hdrfilm"><rfilter type="gaussian"/></film>
+      <sampler type="independent"/></sensor>)")
+                  .notes.empty());
+}
+
+TEST(Notes, NameFileAndLine) {
+  const Folder folder;
+  const Scene scene =
+      load(folder, sceneXml("\n<integrator type=\"bdpt\"/>" + std::string(kSensor) + std::string(kSphere)));
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_EQ(scene.notes[0].source.file, (folder.path() / "scene.xml").string());
+  EXPECT_EQ(scene.notes[0].source.line, 2);
+}
+
+TEST(Notes, EqualOnesAreCounted) {
+  const std::string shape = R"(<shape type="ply"><string name="filename" value="mesh.ply"/>
+      <float name="max_smooth_angle" value="30"/></shape>)";
+  const Folder folder;
+  folder.write("mesh.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+               "z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 "
+               "0\n3 0 1 2\n");
+  const Scene scene = loadBody(folder, shape + shape);
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_EQ(scene.notes[0].count, 2u);
+}
+
+TEST(Notes, IntegratorsNameTheLikeMethod) {
+  const std::pair<const char*, const char*> kinds[] = {{"bdpt", "--method bpt"}, {"ptracer", "--method lt"},
+                                                       {"sppm", "--method ppm"}, {"mlt", "--method mlt"},
+                                                       {"vcm", "--method vcm"},  {"ao", "no method here is like it"}};
+  for (const auto& [type, text] : kinds) {
+    expectNote(loadBody("<integrator type=\"" + std::string(type) + "\"/>"), type, text);
+  }
+}
+
+TEST(Notes, ParametersOfAnIntegratorAreNamed) {
+  expectNote(loadBody(R"(<integrator type="sppm"><float name="alpha" value="0.9"/></integrator>)"),
+             "integrator \"sppm\" with alpha", "--method ppm");
+}
+
+TEST(Notes, SamplersAndFiltersThatAreReplaced) {
+  expectNote(loadBody(R"(<sensor type="perspective"><sampler type="ldsampler"/></sensor>)"), "ldsampler", "--sampler");
+  expectNote(loadBody(R"(<sensor type="perspective"><film type="hdrfilm"><rfilter type="lanczos"/></film></sensor>)"),
+             "lanczos", "gaussian");
+  expectNote(loadBody(R"(<sensor type="perspective"><film type="ldrfilm"/></sensor>)"), "ldrfilm", "hdrfilm");
+}
+
+}  // namespace
+}  // namespace wavecrest::testing

@@ -1,0 +1,83 @@
+// Mitsuba's serialized meshes.
+#include "tests/load/mesh_text.h"
+#include "tests/load/scene_file.h"
+
+namespace wavecrest::testing {
+namespace {
+
+std::string serializedShape(std::string_view options = "") {
+  return sceneXml(R"(<shape type="serialized"><string name="filename" value="mesh.serialized"/>)" +
+                  std::string(options) + "</shape>" + std::string(kSensor));
+}
+std::string shapeIndex(int index) { return R"(<integer name="shape_index" value=")" + std::to_string(index) + "\"/>"; }
+Mesh serializedMesh(const std::string& content, std::string_view options = "") {
+  const Folder folder;
+  folder.write("mesh.serialized", content);
+  return std::get<Mesh>(load(folder, serializedShape(options)).shapes.at(0).kind);
+}
+void expectSerializedError(const std::string& content, std::string_view text, std::string_view options = "") {
+  const Folder folder;
+  folder.write("mesh.serialized", content);
+  expectError(folder, serializedShape(options), 0, text, "mesh.serialized");
+}
+
+void expectQuad(const Mesh& mesh) {
+  EXPECT_EQ(mesh.positions, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
+  EXPECT_EQ(mesh.normals, (std::vector<Float3>(4, {0, 0, 1})));
+  EXPECT_EQ(mesh.uvs, (std::vector<Float2>{{0, 0}, {1, 0}, {0, 1}, {1, 1}}));
+  EXPECT_EQ(mesh.triangles, (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {1, 3, 2}}));
+}
+
+TEST(Serialized, BothVersionsAndPrecisions) {
+  for (const uint16_t version : {uint16_t{3}, uint16_t{4}}) {
+    for (const bool isDouble : {false, true}) {
+      SCOPED_TRACE(std::to_string(version) + (isDouble ? " double" : " float"));
+      expectQuad(serializedMesh(serializedQuad({.version = version, .isDouble = isDouble})));
+    }
+  }
+}
+
+TEST(Serialized, ColorsAreSkipped) { expectQuad(serializedMesh(serializedQuad({.colors = true}))); }
+
+TEST(Serialized, NormalsThatAreMissingAreMade) { expectQuad(serializedMesh(serializedQuad({.normals = false}))); }
+
+TEST(Serialized, FacetsByFlagOrParameter) {
+  EXPECT_TRUE(serializedMesh(serializedQuad({.faceNormals = true})).normals.empty());
+  EXPECT_TRUE(serializedMesh(serializedQuad(), R"(<boolean name="face_normals" value="true"/>)").normals.empty());
+}
+
+TEST(Serialized, ShapeIndexPicksTheMesh) {
+  for (const uint16_t version : {uint16_t{3}, uint16_t{4}}) {
+    std::vector<std::string> meshes;
+    for (const float size : {1.0f, 2.0f, 3.0f}) meshes.push_back(serializedQuad({.version = version, .size = size}));
+    const std::string file = serializedFile(meshes, version);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_EQ(serializedMesh(file, shapeIndex(i)).positions[1][0], static_cast<float>(i + 1));
+    }
+    expectSerializedError(file, "no mesh 3 in the file; expected a shape_index below 3", shapeIndex(3));
+  }
+}
+
+TEST(Serialized, DamageIsFound) {
+  const std::string file = serializedFile({serializedQuad()});
+  expectSerializedError("ply\n", "no mesh at byte 0");
+  expectSerializedError(file.substr(0, 40), "damaged or truncated mesh data");
+  std::string other = file;
+  other[2] = 5;
+  expectSerializedError(other, "serialized mesh of version 5");
+  other = file;
+  other[20] = static_cast<char>(~other[20]);
+  expectSerializedError(other, "damaged or truncated mesh data");
+}
+
+TEST(Serialized, MoreThanTheBytesCanHoldIsRefused) {
+  std::string body;
+  appendValue<uint32_t>(body, 0x1000, false);
+  body += '\0';
+  appendValue<uint64_t>(body, uint64_t{1} << 40, false);
+  appendValue<uint64_t>(body, 1, false);
+  expectSerializedError(serializedMeshOf(body), "mesh announces 1099511627776");
+}
+
+}  // namespace
+}  // namespace wavecrest::testing

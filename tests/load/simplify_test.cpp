@@ -1,0 +1,112 @@
+// Features that change no image are removed, and no others.
+#include "engine/load/simplify.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace wavecrest {
+namespace {
+
+// Two triangles that share an edge, the second one turned up by `angle` radians; normals are the faces' but for `tilt`.
+Scene hinge(double angle, double tilt) {
+  const auto up = static_cast<float>(std::sin(angle)), along = static_cast<float>(std::cos(angle));
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}};
+  mesh.positions[5] = {0.5f + 0.5f * along, 0.5f + 0.5f * along, up * std::sqrt(0.5f)};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const auto s = static_cast<float>(std::sin(tilt)), c = static_cast<float>(std::cos(tilt));
+  const float r = std::sqrt(0.5f);
+  for (size_t i = 0; i < 3; ++i) mesh.normals.push_back({s, 0, c});
+  for (size_t i = 0; i < 3; ++i) mesh.normals.push_back({-r * up, -r * up, along});
+  Scene scene;
+  scene.shapes.push_back({.id = "", .kind = mesh, .material = kNone, .emitter = kNone, .source = {}});
+  return scene;
+}
+
+bool hasNormals(const Scene& scene) { return !std::get<Mesh>(scene.shapes[0].kind).normals.empty(); }
+
+TEST(SimplifyScene, dropsNormalsOfFacesAlone) {
+  for (const double angle : {0.0, 0.3, 1.2}) {
+    Scene flat = hinge(angle, 0);
+    simplifyScene(flat);
+    EXPECT_FALSE(hasNormals(flat)) << angle;
+    Scene rounded = hinge(angle, 1e-3);
+    simplifyScene(rounded);
+    EXPECT_FALSE(hasNormals(rounded)) << "within the rounding of files";
+    Scene tilted = hinge(angle, 3e-3);
+    simplifyScene(tilted);
+    EXPECT_TRUE(hasNormals(tilted));
+    Scene turned = hinge(angle, 3.14159265);
+    simplifyScene(turned);
+    EXPECT_TRUE(hasNormals(turned)) << "normals that point inwards turn the shading frame";
+  }
+}
+
+uint32_t addBitmap(Scene& scene, uint32_t channels, std::vector<float> pixels) {
+  auto bitmap = std::make_shared<Bitmap>();
+  bitmap->width = static_cast<uint32_t>(pixels.size()) / channels;
+  bitmap->height = 1;
+  bitmap->channels = channels;
+  bitmap->pixels = std::move(pixels);
+  scene.textures.push_back({BitmapTexture{bitmap}, {}});
+  return static_cast<uint32_t>(scene.textures.size() - 1);
+}
+
+TEST(SimplifyScene, replacesTexturesOfOneColour) {
+  Scene scene;
+  const uint32_t plain = addBitmap(scene, 3, {0.2f, 0.3f, 0.4f, 0.2f, 0.3f, 0.4f}),
+                 varied = addBitmap(scene, 3, {0.2f, 0.3f, 0.4f, 0.2f, 0.3f, 0.5f}),
+                 grey = addBitmap(scene, 1, {0.25f, 0.25f, 0.25f});
+  scene.textures.push_back({CheckerboardTexture{{0.5, 0.6, 0.7}, {0.5, 0.6, 0.7}}, {}});
+  for (const uint32_t texture : {plain, varied, grey, 3u}) {
+    Material material;
+    material.kind = Diffuse{{{1, 1, 1}, texture}};
+    scene.materials.push_back(material);
+  }
+  Material rough;
+  rough.kind = Conductor{.alpha = {1, grey}};
+  scene.materials.push_back(rough);
+  std::get<Conductor>(rough.kind).alpha = {1, plain};
+  scene.materials.push_back(rough);
+  simplifyScene(scene);
+  const auto reflectance = [&](size_t i) { return std::get<Diffuse>(scene.materials[i].kind).reflectance; };
+  EXPECT_EQ(reflectance(0).texture, kNone);
+  EXPECT_FLOAT_EQ(static_cast<float>(reflectance(0).value[1]), 0.3f);
+  EXPECT_EQ(reflectance(1).texture, varied);
+  EXPECT_EQ(reflectance(2).texture, kNone);
+  EXPECT_EQ(reflectance(2).value, (Rgb{0.25, 0.25, 0.25}));
+  EXPECT_EQ(reflectance(3).texture, kNone);
+  EXPECT_EQ(reflectance(3).value, (Rgb{0.5, 0.6, 0.7}));
+  EXPECT_EQ(std::get<Conductor>(scene.materials[4].kind).alpha.texture, kNone);
+  EXPECT_EQ(std::get<Conductor>(scene.materials[4].kind).alpha.value, 0.25);
+  EXPECT_EQ(std::get<Conductor>(scene.materials[5].kind).alpha.texture, plain) << "a colour is no number";
+}
+
+TEST(SimplifyScene, dropsMapsAndOpacitiesThatDoNothing) {
+  Scene scene;
+  const uint32_t level = addBitmap(scene, 1, {0.5f, 0.5f}), steps = addBitmap(scene, 1, {0.5f, 0.6f}),
+                 straight = addBitmap(scene, 3, {0.5f, 0.5f, 1, 0.5f, 0.5f, 1}),
+                 leaning = addBitmap(scene, 3, {0.6f, 0.5f, 1, 0.6f, 0.5f, 1}), one = addBitmap(scene, 1, {1, 1});
+  const auto add = [&](uint32_t bump, uint32_t normal, std::optional<TexturedFloat> opacity) {
+    Material material;
+    material.bumpTexture = bump;
+    material.normalTexture = normal;
+    material.opacity = opacity;
+    scene.materials.push_back(material);
+  };
+  add(level, straight, TexturedFloat{1, kNone});
+  add(steps, leaning, TexturedFloat{0.5, kNone});
+  add(kNone, kNone, TexturedFloat{1, one});
+  simplifyScene(scene);
+  EXPECT_EQ(scene.materials[0].bumpTexture, kNone);
+  EXPECT_EQ(scene.materials[0].normalTexture, kNone);
+  EXPECT_FALSE(scene.materials[0].opacity);
+  EXPECT_EQ(scene.materials[1].bumpTexture, steps);
+  EXPECT_EQ(scene.materials[1].normalTexture, leaning);
+  EXPECT_TRUE(scene.materials[1].opacity);
+  EXPECT_FALSE(scene.materials[2].opacity);
+}
+
+}  // namespace
+}  // namespace wavecrest
