@@ -84,15 +84,19 @@ Measurement measureRelmse(const PreparedReference& reference, const ComparedImag
 
 // ---- perceptual metrics on 8-bit codes ------------------------------------------------------------------------------
 
+std::vector<float> badness(std::vector<float> similarities) {
+  for (float& v : similarities) v = 1 - v;
+  return similarities;
+}
+
 Measurement measureSsim(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
   SsimResult ssim = reference.ssim().compare(test.codes, withMap);
-  for (float& v : ssim.map) v = 1 - v;
   return {{{"mean", ssim.mean},
            {"r", ssim.channels[0]},
            {"g", ssim.channels[1]},
            {"b", ssim.channels[2]},
            {"luma", ssim.luma}},
-          std::move(ssim.map)};
+          badness(std::move(ssim.map))};
 }
 
 Measurement measureHdrVdp2(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
@@ -106,20 +110,33 @@ Measurement measureFlip(const PreparedReference& reference, const ComparedImage&
 }
 
 Measurement measureHdrFlip(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
-  Image light = linearLight(test.file);
-  if (test.nonFinitePixels > 0) {
-    // Excluded pixels take the reference's light.
-    const Image &a = reference.image().file.image, &b = test.file.image;
-    const Image referenceLight = linearLight(reference.image().file);
-    for (size_t pixel = 0; pixel < light.pixelCount(); ++pixel) {
-      const size_t i = 3 * pixel;
-      if (finitePixel(a, pixel) && finitePixel(b, pixel)) continue;
-      std::copy_n(referenceLight.pixels.data() + i, 3, light.pixels.data() + i);
-    }
-  }
-  FlipResult result = reference.hdrFlip().compare(light, withMap);
+  FlipResult result = reference.hdrFlip().compare(reference.lightOf(test), withMap);
   return {{{"", result.mean}}, std::move(result.map)};
 }
+
+Measurement measureMsSsim(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  MsSsimResult result = reference.msSsim().compare(test.codes, withMap);
+  return {{{"", result.mean}}, badness(std::move(result.map))};
+}
+
+Measurement measureCvvdp(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  CvvdpResult result = reference.cvvdp().compare(test.codes, withMap);
+  return {{{"", result.jod}}, std::move(result.map)};
+}
+
+// ---- perceptual metrics on light ------------------------------------------------------------------------------------
+
+Measurement measurePu21Psnr(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  Pu21PsnrResult result = reference.pu21().psnr(reference.lightOf(test), withMap);
+  return {{{"", result.colour}, {"luminance", result.luminance}}, std::move(result.map)};
+}
+
+Measurement measurePu21Ssim(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  Pu21SsimResult result = reference.pu21().ssim(reference.lightOf(test), withMap);
+  return {{{"", result.mean}}, badness(std::move(result.map))};
+}
+
+constexpr std::string_view kPu21Conditions = "PU21 banding_glare, linear 1.0 shown at 100 cd/m2";
 
 // clang-format off
 constexpr std::array kMetrics{
@@ -147,6 +164,22 @@ constexpr std::array kMetrics{
            .basis = "FLIP over a series of exposures", .score = "", .higherIsBetter = false, .sampleExponent = 0,
            .threshold = "max-hdrflip", .byDefault = false, .smallestSide = 1, .mapRange = 1,
            .measure = measureHdrFlip},
+    Metric{.name = "msssim", .symbol = "MS-SSIM", .title = "multi-scale structural similarity",
+           .basis = "structure of 8-bit sRGB at five scales", .score = "", .higherIsBetter = true, .sampleExponent = 0,
+           .threshold = "min-msssim", .byDefault = true, .smallestSide = kMsSsimSmallestSide, .mapRange = 1,
+           .measure = measureMsSsim},
+    Metric{.name = "pu21psnr", .symbol = "PU21-PSNR", .title = "PSNR in PU21",
+           .basis = "squared error of perceptually uniform light, dB", .score = "", .higherIsBetter = true, .sampleExponent = 0,
+           .threshold = "min-pu21psnr", .byDefault = true, .smallestSide = 1, .mapRange = 0,
+           .measure = measurePu21Psnr, .conditions = kPu21Conditions},
+    Metric{.name = "pu21ssim", .symbol = "PU21-SSIM", .title = "structural similarity in PU21",
+           .basis = "structure of perceptually uniform luminance", .score = "", .higherIsBetter = true, .sampleExponent = 0,
+           .threshold = "min-pu21ssim", .byDefault = true, .smallestSide = 1, .mapRange = 1,
+           .measure = measurePu21Ssim, .conditions = kPu21Conditions},
+    Metric{.name = "cvvdp", .symbol = "JOD", .title = "ColorVideoVDP 0.5.7",
+           .basis = "just-objectionable differences below 10, 8-bit sRGB", .score = "", .higherIsBetter = true, .sampleExponent = 0,
+           .threshold = "min-cvvdp", .byDefault = true, .smallestSide = kCvvdpSmallestSide, .mapRange = 0,
+           .measure = measureCvvdp, .conditions = kCvvdpConditions},
 };
 // clang-format on
 

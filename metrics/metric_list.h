@@ -36,6 +36,7 @@ struct Metric {
   uint32_t smallestSide;       // images with a shorter side are refused
   double mapRange;             // value of the map that false colours show brightest; 0: its 99.9 % quantile
   Measurement (*measure)(const PreparedReference& reference, const ComparedImage& test, bool withMap);
+  std::string_view conditions = {};  // version, display and viewing that scores depend on, for people
 };
 
 std::span<const Metric> metricList();

@@ -97,4 +97,27 @@ const PreparedHdrFlip& PreparedReference::hdrFlip() const {
              [&] { return PreparedHdrFlip(linearLight(image_.file), kFlipPixelsPerDegree, settings_.isa); });
 }
 
+const PreparedMsSsim& PreparedReference::msSsim() const {
+  return get(parts_->msSsim, [&] { return PreparedMsSsim(image_.codes, settings_.isa); });
+}
+const PreparedPu21& PreparedReference::pu21() const {
+  return get(parts_->pu21, [&] { return PreparedPu21(linearLight(image_.file), settings_.exposure, settings_.isa); });
+}
+const PreparedCvvdp& PreparedReference::cvvdp() const {
+  return get(parts_->cvvdp, [&] { return PreparedCvvdp(image_.codes, settings_.isa); });
+}
+
+Image PreparedReference::lightOf(const ComparedImage& test) const {
+  Image light = linearLight(test.file);
+  if (test.nonFinitePixels == 0) return light;
+  const Image &a = image_.file.image, &b = test.file.image;
+  const Image referenceLight = linearLight(image_.file);
+  for (size_t pixel = 0; pixel < light.pixelCount(); ++pixel) {
+    const size_t i = 3 * pixel;
+    if (finitePixel(a, pixel) && finitePixel(b, pixel)) continue;
+    std::copy_n(referenceLight.pixels.data() + i, 3, light.pixels.data() + i);
+  }
+  return light;
+}
+
 }  // namespace wavecrest

@@ -4,7 +4,7 @@
 // PreparedReference serves thousands of comparisons from any number of threads.
 //
 // Which numbers a metric sees: rmse and relmse see images as they were read (two coded images as codes in 0..1; a coded
-// and a linear one both as linear light), the other metrics 8-bit sRGB codes, HDR-FLIP linear light.
+// and a linear one both as linear light), HDR-FLIP and the PU21 metrics linear light, the others 8-bit sRGB codes.
 // A pixel with a NaN or infinity in either image is excluded: the error metrics leave it out of their means, for the
 // others the test image takes the reference's colour there (black where the reference itself is not finite).
 #pragma once
@@ -15,15 +15,18 @@
 #include <string>
 
 #include "kernels/simd/isa.h"
+#include "metrics/cvvdp/cvvdp.h"
 #include "metrics/flip.h"
 #include "metrics/hdrvdp2/hdrvdp2.h"
 #include "metrics/image/image.h"
+#include "metrics/ms_ssim.h"
+#include "metrics/pu21.h"
 #include "metrics/ssim.h"
 
 namespace wavecrest {
 
 struct ComparisonSettings {
-  double exposure = 0;                // stops, applied to light before it becomes 8-bit codes
+  double exposure = 0;                // stops, applied to light before it becomes 8-bit codes or PU21
   bool gammaCorrectedErrors = false;  // rmse and relmse on 8-bit codes instead of the values as read
   Isa isa = bestIsa();
 };
@@ -51,6 +54,12 @@ class PreparedReference {
   const PreparedHdrVdp2& hdrVdp2() const;
   const PreparedFlip& flip() const;
   const PreparedHdrFlip& hdrFlip() const;
+  const PreparedMsSsim& msSsim() const;
+  const PreparedPu21& pu21() const;
+  const PreparedCvvdp& cvvdp() const;
+
+  // Linear light of a test image; excluded pixels take the reference's.
+  Image lightOf(const ComparedImage& test) const;
 
  private:
   template <class T>
@@ -63,6 +72,9 @@ class PreparedReference {
     Lazy<PreparedHdrVdp2> hdrVdp2;
     Lazy<PreparedFlip> flip;
     Lazy<PreparedHdrFlip> hdrFlip;
+    Lazy<PreparedMsSsim> msSsim;
+    Lazy<PreparedPu21> pu21;
+    Lazy<PreparedCvvdp> cvvdp;
   };
   template <class T, class Make>
   static const T& get(Lazy<T>& part, Make make);

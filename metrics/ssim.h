@@ -11,7 +11,7 @@
 
 #include "kernels/simd/isa.h"
 #include "metrics/image/image.h"
-#include "metrics/plane.h"
+#include "metrics/ssim_layer.h"
 
 namespace wavecrest {
 
@@ -35,18 +35,7 @@ class PreparedSsim {
   SsimResult compare(const Image8& test, bool withMap = false) const;
 
  private:
-  // Interleaved samples of the three channels, or the luma alone.
-  struct Layer {
-    size_t channels = 0;
-    Plane values;          // x, full size
-    Plane mean, variance;  // of each window: (width - 10) x (height - 10)
-  };
-  struct Band;
-  void compareBand(const Image8& test, const Band& band) const;
-
-  Isa isa_;
-  std::array<float, 6> taps_{};  // centre and offsets 1..5 of the window
-  std::array<Layer, 2> layers_;  // colour, luma
+  PreparedSsimLayer colour_, luma_;
 };
 
 }  // namespace wavecrest

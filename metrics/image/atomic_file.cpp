@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include "metrics/image/image.h"
 
@@ -33,10 +34,45 @@ class Descriptor {
   throw ImageError(path, std::string("cannot be read: ") + std::strerror(error), "expected a readable image file");
 }
 
+[[noreturn]] void failWriting(const std::string& path, const char* step, int error) {
+  throw ImageError(path, std::string(step) + " failed: " + std::strerror(error), "expected a writable place");
+}
+
 // Unique among the processes and threads that may write beside each other.
 std::string temporaryName(const std::string& path) {
   static std::atomic<unsigned> counter{0};
   return path + ".tmp." + std::to_string(::getpid()) + "." + std::to_string(counter++);
+}
+
+// What a chain of symbolic links ends at, or the path itself.
+std::string targetOf(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(path, error)) return path;
+  const std::filesystem::path target = std::filesystem::canonical(path, error);
+  return error ? path : target.string();
+}
+
+// Devices and pipes, which a new file must not take the place of.
+bool isSpecial(const std::string& target) {
+  struct stat info {};
+  return ::stat(target.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+}
+
+int createTemporary(const std::string& path, const std::string& temporary) {
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0) failWriting(path, "creating the file", errno);
+  return file;
+}
+
+// False, with errno, where not all of it could be written.
+bool writeAll(int file, std::span<const unsigned char> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(file, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return false;
+    bytes = bytes.subspan(static_cast<size_t>(count));
+  }
+  return true;
 }
 
 }  // namespace
@@ -60,26 +96,43 @@ std::vector<unsigned char> readFileBytes(const std::string& path) {
   return bytes;
 }
 
+void checkWritable(const std::string& path) {
+  const std::string target = targetOf(path);
+  const std::filesystem::path folder = std::filesystem::path(target).parent_path();
+  std::error_code ignored;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
+    throw ImageError(path, "there is no folder '" + folder.string() + "'", "expected one that exists");
+  }
+  if (std::filesystem::is_directory(target, ignored)) throw ImageError(path, "is a folder", "expected a file name");
+  if (isSpecial(target)) {
+    if (::access(target.c_str(), W_OK) != 0) failWriting(path, "opening", errno);
+    return;
+  }
+  const std::string temporary = temporaryName(target);
+  const Descriptor file(createTemporary(path, temporary));
+  ::unlink(temporary.c_str());
+}
+
 void writeFileAtomically(const std::string& path, std::span<const unsigned char> bytes) {
-  const std::string temporary = temporaryName(path);
-  auto fail = [&](const char* step) {
+  const std::string target = targetOf(path);
+  if (isSpecial(target)) {
+    const Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+    if (file.get() < 0) failWriting(path, "opening", errno);
+    if (!writeAll(file.get(), bytes)) failWriting(path, "writing", errno);
+    return;
+  }
+  const std::string temporary = temporaryName(target);
+  const auto fail = [&](const char* step) {
     const int error = errno;
     ::unlink(temporary.c_str());
-    throw ImageError(path, std::string(step) + " failed: " + std::strerror(error), "expected a writable place");
+    failWriting(path, step, error);
   };
   {
-    Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file.get() < 0) fail("creating the file");
-    size_t done = 0;
-    while (done < bytes.size()) {
-      ssize_t count = ::write(file.get(), bytes.data() + done, bytes.size() - done);
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) fail("writing");
-      done += static_cast<size_t>(count);
-    }
+    const Descriptor file(createTemporary(path, temporary));
+    if (!writeAll(file.get(), bytes)) fail("writing");
     if (::fsync(file.get()) != 0) fail("flushing");
   }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("renaming");
+  if (std::rename(temporary.c_str(), target.c_str()) != 0) fail("renaming");
 }
 
 }  // namespace wavecrest

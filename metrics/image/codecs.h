@@ -20,8 +20,8 @@ ImageFile decodePng(const std::string& path, Bytes bytes);
 
 Image decodeExrLayer(const std::string& path, Bytes bytes, const std::string& layer);
 
-// Greatest image that is read: 2^27 pixels (1.6 GB as floats).
-constexpr uint64_t kMaxPixels = uint64_t{1} << 27;
+// Greatest image that is read: 2^28 pixels, the greatest film that a scene may have (3.2 GB as floats).
+constexpr uint64_t kMaxPixels = uint64_t{1} << 28;
 
 // Refuses empty and oversized images, and sizes that the file cannot hold: `leastBytes` is what the smallest encoding
 // of that size would take.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <filesystem>
 #include <string_view>
 
 #include "metrics/image/atomic_file.h"
@@ -77,11 +76,7 @@ void writePng(const std::string& path, const Image& linear) { writePng(path, enc
 
 void checkImageTarget(const std::string& path) {
   writerOf(path);
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::error_code ignored;
-  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
-    throw ImageError(path, "there is no folder '" + folder.string() + "'", "expected one that exists");
-  }
+  checkWritable(path);
 }
 
 void writeImage(const std::string& path, const Image& linear, const Metadata& metadata) {

@@ -39,8 +39,7 @@ void writePfm(const std::string& path, const Image& image);
 void writePng(const std::string& path, const Image8& image);
 void writePng(const std::string& path, const Image& linear);
 
-// Throws ImageError where no image can be written: an unknown extension, or a folder that does not exist. Lets a
-// program fail before long work instead of after it.
+// Throws ImageError where no image can be written: an unknown extension, or as checkWritable.
 void checkImageTarget(const std::string& path);
 
 // By extension: .exr, .pfm or .png (metadata is kept by EXR only).

@@ -7,9 +7,11 @@
 #pragma once
 
 #include "kernels/simd/isa.h"
+#include "metrics/kernels/cvvdp_rows.h"
 #include "metrics/kernels/fft_stage.h"
 #include "metrics/kernels/flip_rows.h"
 #include "metrics/kernels/hdrvdp2_rows.h"
+#include "metrics/kernels/pu21_row.h"
 #include "metrics/kernels/row_filters.h"
 #include "metrics/kernels/ssim_row.h"
 
@@ -26,6 +28,9 @@
   KERNEL(void, sensitivityRow, (const SensitivityRow& row))                                            \
   KERNEL(void, mutualMaskRow, (const MutualMaskRow& row))                                              \
   KERNEL(double, differenceRow, (const DifferenceRow& row))                                            \
+  KERNEL(void, cvvdpContrastRow, (const CvvdpContrastRow& row))                                        \
+  KERNEL(CvvdpChannels<double>, cvvdpDifferenceRow, (const CvvdpDifferenceRow& row))                   \
+  KERNEL(void, pu21Row, (const Pu21Row& row))                                                          \
   KERNEL(void, flipAppearanceRow, (const FlipAppearanceRow& row))                                      \
   KERNEL(void, flipFeatureRow, (const FlipFeatureRow& row))                                            \
   KERNEL(void, flipErrorRow, (const FlipErrorRow& row))                                                \

@@ -8,8 +8,6 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// C1 and C2 of Wang et al. 2004 for codes 0..255.
-constexpr float kC1 = 6.5025f, kC2 = 58.5225f;
 constexpr size_t kMaxChannels = 3;
 constexpr size_t kMaxLanes = 16;
 constexpr size_t kBlockColumns = kSsimBlock + 2 * kSsimRadius * kMaxChannels + 2;  // a multiple of 16
@@ -78,6 +76,7 @@ WAVECREST_INLINE Float sumAcross(const SsimRow& row, const float* columns) {
 template <size_t kChannels>
 SsimSums ssimRowOf(const SsimRow& row) {
   ColumnSums sums;
+  const Float c1(row.constants.luminance), c2(row.constants.structure);
   // One running sum for each channel that a vector may start with.
   Float totals[kMaxChannels] = {Float(0.0f), Float(0.0f), Float(0.0f)};
   for (size_t first = 0; first < row.windows; first += kSsimBlock) {
@@ -95,8 +94,8 @@ SsimSums ssimRowOf(const SsimRow& row) {
       const Float meanX = loadUnaligned(row.referenceMean + x);
       const Float varianceD = negMulAdd(relativeD, relativeD, sumAcross<kChannels>(row, sums.dd + column));
       const Float varianceY = negMulAdd(relativeY, relativeY, sumAcross<kChannels>(row, sums.yy + column));
-      const Float luminance = mulAdd(meanX, meanX, mulAdd(meanY, meanY, Float(kC1)));
-      const Float structure = loadUnaligned(row.referenceVariance + x) + varianceY + Float(kC2);
+      const Float luminance = mulAdd(meanX, meanX, mulAdd(meanY, meanY, c1));
+      const Float structure = loadUnaligned(row.referenceVariance + x) + varianceY + c2;
       const Float ssim = negMulAdd(meanD, meanD, luminance) * (structure - varianceD) / (luminance * structure);
       storeUnaligned(ssim, row.map + x);
       Float& total = totals[column % kChannels];

@@ -23,15 +23,26 @@ constexpr size_t kSsimSlack = 128;  // samples that the kernel may read and writ
 
 using SsimSums = std::array<double, 3>;  // of the map, per channel
 
+// C1 and C2 of Wang et al. 2004, (0.01 L)^2 and (0.03 L)^2 for samples of the range 0..L.
+struct SsimConstants {
+  float luminance, structure;
+};
+constexpr SsimConstants ssimConstants(double range) {
+  return {static_cast<float>(0.01 * range * 0.01 * range), static_cast<float>(0.03 * range * 0.03 * range)};
+}
+// With this C1 the luminance factor is 1, to the last digit, and the map is that of the structure factor alone.
+constexpr float kSsimStructureOnly = 1e20f;
+
 struct SsimRow {
   std::array<const float*, kSsimTaps> difference;  // rows of d, top to bottom
   std::array<const float*, kSsimTaps> test;        // rows of y
   const float* referenceMean;                      // mx of each window
   const float* referenceVariance;                  // vx of each window
   std::array<float, kSsimRadius + 1> taps;         // weights of the centre and of the offsets 1..5
-  size_t windows;                                  // of all channels: (width - 10) * channels
-  size_t channels;                                 // 1 or 3
-  float* map;                                      // out: SSIM of each window
+  SsimConstants constants;
+  size_t windows;   // of all channels: (width - 10) * channels
+  size_t channels;  // 1 or 3
+  float* map;       // out: SSIM of each window
 };
 
 }  // namespace wavecrest

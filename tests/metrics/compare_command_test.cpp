@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
 #include <limits>
 
+#include "metrics/image/atomic_file.h"
 #include "metrics/image/image_io.h"
 #include "metrics/metric_list.h"
 #include "tests/metrics/compare_runner.h"
@@ -42,6 +45,20 @@ TEST_F(CompareCommand, JsonHasTheFixedShapeAndTheGoldenScores) {
   EXPECT_NEAR(json["flip"], 0.0860074705, 2e-5);
   EXPECT_EQ(json["nonfinite_pixels"], 0);
   EXPECT_FALSE(json.contains("hdrflip")) << "only on request";
+}
+
+TEST_F(CompareCommand, LeavesOutDefaultMetricsThatTheImageIsTooSmallFor) {
+  const auto json = runCompare({golden("ref"), golden("test"), "--json"}).json();
+  EXPECT_TRUE(json.contains("cvvdp"));
+  EXPECT_FALSE(json.contains("msssim"));
+}
+
+TEST_F(CompareCommand, PrintsVersionsAndDisplaysThatScoresDependOn) {
+  const auto run = runCompare({golden("ref"), golden("test"), "--metrics", "cvvdp,pu21psnr"});
+  EXPECT_NE(run.output.find("ColorVideoVDP v0.5.7, 75.4 [pix/deg]"), std::string::npos) << run.output;
+  const auto json = runCompare({golden("ref"), golden("test"), "--json"}).json();
+  EXPECT_EQ(json["conditions"]["pu21psnr"], "PU21 banding_glare, linear 1.0 shown at 100 cd/m2");
+  EXPECT_NEAR(json["cvvdp"], 8.877741813659668, 1e-4);
 }
 
 TEST_F(CompareCommand, LinearImagesGiveLinearRmseAndTheSamePerceptualScores) {
@@ -97,10 +114,11 @@ TEST_F(CompareCommand, ExposureBrightensBeforeTheConversionTo8Bits) {
 
 TEST_F(CompareCommand, MapsAreWrittenForEveryMetric) {
   const std::string folder = files_.path("maps");
-  const auto run = runCompare(
-      {golden("ref"), golden("test"), "--map", folder, "--metrics", "rmse,relmse,ssim,hdrvdp2,flip,hdrflip"});
+  const auto run = runCompare({golden("ref"), golden("test"), "--map", folder, "--metrics",
+                               "rmse,relmse,ssim,hdrvdp2,flip,hdrflip,pu21psnr,pu21ssim,cvvdp"});
   ASSERT_EQ(run.exitCode, kExitDone) << run.error;
   for (const Metric& metric : metricList()) {
+    if (metric.smallestSide > 128) continue;
     const Image map = readImage(folder + "/" + std::string(metric.name) + ".png").image;
     EXPECT_EQ(map.width, 128u);
     const auto [least, most] = std::minmax_element(map.pixels.begin(), map.pixels.end());
@@ -118,7 +136,7 @@ TEST_F(CompareCommand, NonFinitePixelsAreExcludedCountedAndReported) {
   writeExr(files_.path("a.exr"), a);
   writeExr(files_.path("b.exr"), b);
   const auto json = runCompare({files_.path("a.exr"), files_.path("b.exr"), "--json", "--metrics",
-                                "rmse,relmse,ssim,hdrvdp2,flip,hdrflip"})
+                                "rmse,relmse,ssim,hdrvdp2,flip,hdrflip,pu21psnr,pu21ssim,cvvdp"})
                         .json();
   EXPECT_EQ(json["nonfinite_pixels"], 3);
   EXPECT_EQ(json["rmse"], 0.0);
@@ -126,6 +144,108 @@ TEST_F(CompareCommand, NonFinitePixelsAreExcludedCountedAndReported) {
   EXPECT_EQ(json["ssim"]["mean"], 1.0);
   EXPECT_EQ(json["flip"], 0.0);
   EXPECT_EQ(json["hdrflip"], 0.0);
+  EXPECT_EQ(json["pu21psnr"], 100.0);
+  EXPECT_EQ(json["pu21ssim"], 1.0);
+  EXPECT_EQ(json["cvvdp"], 10.0);
+}
+
+TEST_F(CompareCommand, NonFinitePixelsFailEveryCheck) {
+  Image a{32, 32, 3, std::vector<float>(32 * 32 * 3, 0.5f)}, b = a;
+  for (size_t i = 0; i < b.pixels.size() / 2; ++i) b.pixels[i] = std::numeric_limits<float>::quiet_NaN();
+  writeExr(files_.path("a.exr"), a);
+  writeExr(files_.path("b.exr"), b);
+  const std::string good = files_.path("a.exr"), bad = files_.path("b.exr");
+  for (const auto& [option, limit] : {std::pair{"--max-rmse", "0.1"}, {"--min-ssim", "0.5"}, {"--max-flip", "1"}}) {
+    for (const auto& [reference, test] : {std::pair{good, bad}, {bad, good}}) {
+      const auto run = runCompare({reference, test, "--metrics", "rmse", option, limit});
+      EXPECT_EQ(run.exitCode, kExitCheck) << option;
+      EXPECT_NE(run.error.find("512 of 1024 pixels are not finite"), std::string::npos) << run.error;
+    }
+    EXPECT_EQ(runCompare({good, good, "--metrics", "rmse", option, limit}).exitCode, kExitDone) << option;
+  }
+  EXPECT_EQ(runCompare({good, bad, "--metrics", "rmse"}).exitCode, kExitDone) << "nothing was asked for";
+}
+
+TEST_F(CompareCommand, SeveralTestsAreAnArrayAndEachMustHold) {
+  const std::string ref = golden("ref"), test = golden("test");
+  const auto json = runCompare({ref, ref, test, "--json", "--metrics", "rmse"}).json();
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0]["test"], ref);
+  EXPECT_EQ(json[0]["rmse"], 0.0);
+  EXPECT_EQ(json[1]["test"], test);
+  EXPECT_NEAR(json[1]["rmse"], 0.0516610712132, 1e-12);
+  EXPECT_EQ(runCompare({ref, ref, test, "--max-rmse", "0.05", "--metrics", "rmse"}).exitCode, kExitCheck);
+  EXPECT_EQ(runCompare({ref, test, ref, "--max-rmse", "0.05", "--metrics", "rmse"}).exitCode, kExitCheck);
+  EXPECT_EQ(runCompare({ref, ref, ref, "--max-rmse", "0.05", "--metrics", "rmse"}).exitCode, kExitDone);
+}
+
+TEST_F(CompareCommand, MapsOfTestsOfOneNameLieApart) {
+  std::filesystem::create_directories(files_.path("other"));
+  writePng(files_.path("other/test.png"), test::patternImage(32, 32));
+  writePng(files_.path("test.png"), test::patternImage(32, 32));
+  const auto run = runCompare({files_.path("test.png"), files_.path("test.png"), files_.path("other/test.png"), "--map",
+                               files_.path("maps"), "--metrics", "rmse"});
+  ASSERT_EQ(run.exitCode, kExitDone) << run.error;
+  EXPECT_EQ(readImage(files_.path("maps/test/rmse.png")).image.width, 32u);
+  EXPECT_EQ(readImage(files_.path("maps/test.2/rmse.png")).image.width, 32u);
+}
+
+TEST_F(CompareCommand, CropComparesThatPartAlone) {
+  Image a{40, 30, 3, std::vector<float>(40 * 30 * 3, 0.5f)}, b = a;
+  b.pixels[3 * (12 * 40 + 20)] = 1.5f;  // of the pixel at (20, 12)
+  writeExr(files_.path("a.exr"), a);
+  writeExr(files_.path("b.exr"), b);
+  const auto rmse = [&](const std::string& crop) -> double {
+    const auto run =
+        runCompare({files_.path("a.exr"), files_.path("b.exr"), "--metrics", "rmse", "--json", "--crop", crop});
+    EXPECT_EQ(run.exitCode, kExitDone) << run.error;
+    return run.json()["rmse"];
+  };
+  EXPECT_NEAR(rmse("20,12,1x1"), std::sqrt(1.0 / 3), 1e-7);
+  EXPECT_NEAR(rmse("19,11,2x2"), std::sqrt(1.0 / 12), 1e-7);
+  EXPECT_EQ(rmse("0,0,20x30"), 0.0);
+  EXPECT_EQ(rmse("21,0,19x30"), 0.0);
+  EXPECT_EQ(rmse("0,13,40x17"), 0.0);
+  const auto refused = [&](const std::string& crop) {
+    return runCompare({files_.path("a.exr"), files_.path("b.exr"), "--crop", crop}).exitCode;
+  };
+  EXPECT_EQ(refused("21,0,20x30"), kExitInput) << "beyond the image";
+  for (const char* crop : {"0,0", "0,0,0x1", "a,0,1x1", "0,0,1x1x1", "-1,0,1x1", "0;0,1x1"}) {
+    EXPECT_EQ(refused(crop), kExitUsage) << crop;
+  }
+}
+
+TEST_F(CompareCommand, ThePageHoldsScoresImagesAndMaps) {
+  const std::string page = files_.path("page.html");
+  const auto run = runCompare({golden("ref"), golden("test"), golden("ref"), "--metrics", "rmse,flip", "--html", page});
+  ASSERT_EQ(run.exitCode, kExitDone) << run.error;
+  const std::vector<unsigned char> bytes = readFileBytes(page);
+  const std::string text(bytes.begin(), bytes.end());
+  size_t images = 0;
+  for (size_t at = text.find("<img "); at != std::string::npos; at = text.find("<img ", at + 1)) ++images;
+  EXPECT_EQ(images, 1u + 2 * (1 + 2)) << "the reference, and of each test itself and a map for each metric";
+  EXPECT_NE(text.find("<td>0.0516611</td><td class=\"best\">0</td>"), std::string::npos);
+  EXPECT_EQ(text.find("src=\"http"), std::string::npos) << "it opens offline";
+}
+
+TEST_F(CompareCommand, NoFileIsWrittenOverAnother) {
+  writePng(files_.path("rmse.png"), test::patternImage(32, 32));
+  writePng(files_.path("test.png"), test::patternImage(32, 32));
+  const std::string reference = files_.path("rmse.png"), test = files_.path("test.png");
+  EXPECT_EQ(runCompare({reference, test, "--map", files_.path("."), "--metrics", "rmse"}).exitCode, kExitUsage);
+  EXPECT_EQ(runCompare({reference, test, "--html", test}).exitCode, kExitUsage);
+  EXPECT_EQ(runCompare({reference, test, "--html", files_.path("absent/page.html")}).exitCode, kExitUsage);
+  EXPECT_EQ(readImage(reference).image.width, 32u);
+}
+
+TEST_F(CompareCommand, ImagesTooSmallForADefaultMetricAreComparedByTheOthers) {
+  writePng(files_.path("small.png"), test::patternImage(3, 2));
+  const auto run = runCompare({files_.path("small.png"), files_.path("small.png"), "--json"});
+  ASSERT_EQ(run.exitCode, kExitDone) << run.error;
+  EXPECT_EQ(run.json()["rmse"], 0.0);
+  EXPECT_FALSE(run.json().contains("ssim"));
+  EXPECT_NE(run.error.find("too small for ssim"), std::string::npos) << run.error;
+  EXPECT_EQ(runCompare({files_.path("small.png"), files_.path("small.png"), "--min-ssim", "0"}).exitCode, kExitInput);
 }
 
 TEST_F(CompareCommand, BadInputIsExitCode3WithOneClearLine) {
@@ -134,14 +254,15 @@ TEST_F(CompareCommand, BadInputIsExitCode3WithOneClearLine) {
   Image allNan{20, 20, 3, std::vector<float>(1200, std::numeric_limits<float>::quiet_NaN())};
   writeExr(files_.path("nan.exr"), allNan);
   files_.write("broken.png", "not a png");
-  const auto complaint = [&](const std::string& a, const std::string& b) {
-    const auto run = runCompare({a, b});
+  const auto complaint = [&](const std::string& a, const std::string& b, const std::string& metrics = "hdrvdp2") {
+    const auto run = runCompare({a, b, "--metrics", metrics});
     EXPECT_EQ(run.exitCode, kExitInput) << a;
     return run.error;
   };
   const auto contains = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
   EXPECT_PRED2(contains, complaint(golden("ref"), files_.path("other.png")), "expected 128x128");
   EXPECT_PRED2(contains, complaint(files_.path("small.png"), files_.path("small.png")), "at least 17x17");
+  EXPECT_PRED2(contains, complaint(golden("ref"), golden("ref"), "msssim"), "at least 161x161");
   EXPECT_PRED2(contains, complaint(files_.path("nan.exr"), files_.path("nan.exr")), "no pixel is finite");
   EXPECT_PRED2(contains, complaint(golden("ref"), files_.path("broken.png")), "broken.png");
   EXPECT_PRED2(contains, complaint(golden("ref"), files_.path("missing.exr")), "No such file");
