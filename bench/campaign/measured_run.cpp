@@ -54,6 +54,7 @@ class SnapshotTaker {
     all.erase("stages");
     all.erase("snapshots");
     all["cpu"] = cpuName();
+    if (request_.settings.seconds) all["asked_seconds"] = *request_.settings.seconds;
     return all;
   }
 
@@ -80,12 +81,13 @@ MetricValues measureImage(const PreparedReference& reference, const std::string&
   return values;
 }
 
-std::optional<RunRecord> measuredRun(const RunRequest& request, const std::function<void(Session*)>& watch) {
+std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHooks& hooks) {
   RunRecord run{.scene = request.scene.name,
                 .method = std::string(toString(request.settings.method)),
                 .seed = request.settings.seed};
   std::unique_ptr<Session> session;
   try {
+    const IdleScope building(hooks);
     session = Session::create(request.scene, request.settings);
   } catch (const SceneError& error) {
     run.state = RunState::refused;
@@ -93,10 +95,10 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const std::funct
     return run;
   }
   SnapshotTaker taker(request, run, *session);
-  if (watch) watch(session.get());
+  if (hooks.watch) hooks.watch(session.get());
   const auto takeSnapshot = [&](unsigned number) { taker.take(number); };
-  const unsigned count = renderWithSnapshots(*session, request.settings, request.schedule, takeSnapshot);
-  if (watch) watch(nullptr);
+  const unsigned count = renderWithSnapshots(*session, request.settings, request.schedule, takeSnapshot, hooks.goesOn);
+  if (hooks.watch) hooks.watch(nullptr);
   if (session->interrupted()) return std::nullopt;
   if (taker.outdated()) taker.take(count);
   const RenderStatistics statistics = session->statistics();

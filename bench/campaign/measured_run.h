@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 
+#include "bench/campaign/session_hooks.h"
 #include "bench/results/results.h"
 #include "engine/snapshots.h"
 #include "metrics/prepared_reference.h"
@@ -26,7 +27,7 @@ struct RunRequest {
 
 // Nothing if the run was interrupted; its images are of no use then and the next attempt overwrites them. A method that
 // cannot render the scene gives a run that is refused.
-std::optional<RunRecord> measuredRun(const RunRequest& request, const std::function<void(Session*)>& watch);
+std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHooks& hooks);
 
 // All scores of all metrics that are measured by default and that the image is large enough for, by scoreName.
 MetricValues measureImage(const PreparedReference& reference, const std::string& name, Image image);

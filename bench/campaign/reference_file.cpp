@@ -113,6 +113,11 @@ void measureNoiseFloors(Reference& reference) {
   }
 }
 
+std::string whyNoReference(const Reference& image) {
+  if (!image.difference) return "is a plain image, without the two halves of a reference";
+  return image.info.sceneHash.empty() ? "does not say of which scene it is" : "";
+}
+
 void writeReference(const std::filesystem::path& path, const Reference& reference) {
   std::vector<ExrLayer> layers;
   if (reference.difference) {

@@ -3,8 +3,8 @@
 // EXR, single part, fp32. R G B: the mean M = (A + B) / 2. Layer `difference`: D = (A - B) / 2, so that A = M + D and
 // B = M - D. Layer `variance`: the variance of M, D squared (METHODS 8.4). Both layers are rounded to 12 significant
 // bits: they are noise, and the zeros compress. String attributes say how the image was made (ReferenceInfo) and the
-// noise floor of every metric, as "wavecrest:noise_floor.NAME". An EXR without the layers is a reference too, of
-// unknown noise.
+// noise floor of every metric, as "wavecrest:noise_floor.NAME". An EXR without the layers can be read as
+// one, but is none: whyNoReference.
 #pragma once
 
 #include <filesystem>
@@ -49,6 +49,10 @@ double relativeError(const Image& mean, const Image& difference);
 
 // Fills the noise floor of every metric that the image is large enough for, under its scoreName.
 void measureNoiseFloors(Reference& reference);
+
+// Why an image cannot serve as a reference: a plain render has no halves, and another program's says of no scene that
+// it is its own. Empty: it can.
+std::string whyNoReference(const Reference& image);
 
 // Throws ImageError.
 void writeReference(const std::filesystem::path& path, const Reference& reference);

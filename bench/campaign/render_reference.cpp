@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bench/campaign/file_lock.h"
 #include "bench/film_image.h"
 #include "engine/version.h"
 
@@ -20,15 +21,8 @@ constexpr double kLookFraction = 0.1;                     // a part of the time 
 
 using Halves = std::array<Image, 2>;
 
-// Unlike the seed of any other render: campaigns and users count from 0. A continuation has numbers of its own.
-uint64_t halfSeed(uint64_t seed, size_t half, uint64_t firstIteration) {
-  uint64_t mixed = firstIteration * 0x9e3779b97f4a7c15u;
-  mixed = (mixed ^ (mixed >> 29)) * 0xbf58476d1ce4e5b9u;
-  return (static_cast<uint64_t>(half + 1) << 32) | static_cast<uint32_t>(seed ^ (mixed >> 32));
-}
-
 ReferenceInfo describe(const Scene& scene, const RenderSettings& settings, const std::string& methodReason) {
-  const bool merges = entryOf(settings.method).strategies.merge;
+  const bool merges = strategiesOf(settings.method).merge;
   return {.scene = scene.name,
           .sceneHash = fmt::format("{:016x}", scene.hash),
           .method = std::string(toString(settings.method)),
@@ -104,12 +98,13 @@ uint64_t nextIterations(const ReferenceGoal& goal, const ReferenceInfo& info, ui
 // Two sessions that carry on from what a reference holds.
 class HalfSessions {
  public:
-  HalfSessions(const Scene& scene, const RenderSettings& settings, const Reference& before)
+  HalfSessions(const Scene& scene, const RenderSettings& settings, const Reference& before, const SessionHooks& hooks)
       : firstIteration_(before.info.iterations), firstSeconds_(before.info.renderSeconds) {
     if (firstIteration_ > 0) before_ = {before.halfA(), before.halfB()};
+    const IdleScope building(hooks);
     for (size_t half = 0; half < 2; ++half) {
       RenderSettings own = settings;
-      own.seed = halfSeed(settings.seed, half, firstIteration_);
+      own.seed = referenceSeed(settings.seed, half, firstIteration_);
       own.firstIteration = firstIteration_;
       sessions_[half] = Session::create(scene, own);
     }
@@ -119,9 +114,11 @@ class HalfSessions {
   bool render(uint64_t iterations, const ReferenceHooks& hooks) {
     const uint64_t goal = done_ + iterations;
     for (const auto& session : sessions_) {
-      if (hooks.watch) hooks.watch(session.get());
-      session->renderUntil(goal, std::nullopt);
-      if (hooks.watch) hooks.watch(nullptr);
+      if (hooks.session.watch) hooks.session.watch(session.get());
+      do {
+        session->renderUntil(goal, std::nullopt);
+      } while (session->interrupted() && hooks.session.goesOn && hooks.session.goesOn());
+      if (hooks.session.watch) hooks.session.watch(nullptr);
       if (session->interrupted() || (hooks.stopped && hooks.stopped())) return false;
     }
     done_ = goal;
@@ -151,18 +148,29 @@ class HalfSessions {
 
 }  // namespace
 
+uint64_t referenceSeed(uint64_t seed, size_t half, uint64_t firstIteration) {
+  uint64_t mixed = firstIteration * 0x9e3779b97f4a7c15u;
+  mixed = (mixed ^ (mixed >> 29)) * 0xbf58476d1ce4e5b9u;
+  return (static_cast<uint64_t>(half + 1) << 32) | static_cast<uint32_t>(seed ^ (mixed >> 32));
+}
+
 Reference renderReference(const Scene& scene, const RenderSettings& settings, const std::string& methodReason,
                           const ReferenceGoal& goal, const std::filesystem::path& file, const ReferenceHooks& hooks) {
   const ReferenceInfo wanted = describe(scene, settings, methodReason);
+  const FileLock lock(file);
   Reference reference{.mean = {}, .difference = {}, .info = wanted, .noiseFloors = {}};
   if (std::filesystem::exists(file)) {
     reference = readReference(file);
+    if (const std::string wrong = whyNoReference(reference); !wrong.empty()) {
+      throw ReferenceMismatch(
+          fmt::format("{}: {}; expected a reference to go on with, or no file", file.string(), wrong));
+    }
     requireSame(file, reference.info, wanted);
     if (reached(goal, reference.info)) return reference;
     reference.info.version = wanted.version;
     reference.info.commit = wanted.commit;
   }
-  HalfSessions halves(scene, settings, reference);
+  HalfSessions halves(scene, settings, reference, hooks.session);
   double savedSeconds = reference.info.renderSeconds;
   const auto save = [&] {
     measureNoiseFloors(reference);
@@ -173,7 +181,8 @@ Reference renderReference(const Scene& scene, const RenderSettings& settings, co
     if (!halves.render(nextIterations(goal, reference.info, halves.done(), halves.seconds()), hooks)) break;
     halves.collect(reference);
     if (hooks.advance) hooks.advance(reference.info);
-    if (reference.info.renderSeconds - savedSeconds >= kSaveSeconds) save();
+    const bool due = reference.info.renderSeconds - savedSeconds >= kSaveSeconds;
+    if (due || (hooks.saveNow && hooks.saveNow())) save();
   }
   if (reference.info.iterations > 0 && reference.info.renderSeconds > savedSeconds) save();
   return reference;

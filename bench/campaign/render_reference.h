@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "bench/campaign/reference_file.h"
+#include "bench/campaign/session_hooks.h"
 #include "engine/session.h"
 
 namespace wavecrest {
@@ -22,8 +23,9 @@ struct ReferenceGoal {
 };
 
 struct ReferenceHooks {
-  std::function<void(Session*)> watch;                // the session about to render; null: none
+  SessionHooks session;
   std::function<bool()> stopped;                      // true: save and return
+  std::function<bool()> saveNow;                      // true: save and go on; asked after every few iterations
   std::function<void(const ReferenceInfo&)> advance;  // after every few iterations
 };
 
@@ -32,8 +34,13 @@ struct ReferenceMismatch : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The seed of a half that begins with this iteration: unlike that of any other render, because campaigns and users
+// count from 0 and seldom reach 2^32. A continuation has numbers of its own.
+uint64_t referenceSeed(uint64_t seed, size_t half, uint64_t firstIteration);
+
 // settings.seed is the seed of both halves, which differ in its high word. Renders nothing if the file has reached the
-// goal. Throws ReferenceMismatch, ImageError, and what Session::create throws.
+// goal. Throws ReferenceMismatch, FileLockError where another process works on it, ImageError, and what Session::create
+// throws.
 Reference renderReference(const Scene& scene, const RenderSettings& settings, const std::string& methodReason,
                           const ReferenceGoal& goal, const std::filesystem::path& file, const ReferenceHooks& hooks);
 

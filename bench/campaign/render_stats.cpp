@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include "bench/enumerator_name.h"
+#include "bench/machine/machine_record.h"
 #include "engine/version.h"
 
 namespace wavecrest {
@@ -109,6 +110,11 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"light_bytes", statistics.memory.lightVertices + statistics.memory.photonMap},
       {"peak_memory_bytes", peakMemoryBytes()},
       {"nonfinite_samples", statistics.counters.nonFinite},
+      {"saturated_splats", statistics.counters.saturatedSplats},
+      {"close_pairs", statistics.counters.closePairs},
+      {"paths_cut", statistics.counters.cutPaths},
+      {"throughput_cut", statistics.counters.cutThroughput},
+      {"machine", toJson(machineRecord())},
       {"stages", stages},
       {"snapshots", snapshotRows},
   };

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
+#include <nlohmann/json.hpp>
 
 #include "bench/campaign/bias.h"
 #include "bench/campaign/environment.h"
+#include "bench/campaign/file_lock.h"
 #include "bench/campaign/measured_run.h"
 #include "bench/campaign/scene_reference.h"
 #include "bench/results/read_results.h"
@@ -70,15 +73,20 @@ class Pace {
 class Campaign {
  public:
   Campaign(const CampaignSettings& settings, const CampaignHooks& hooks)
-      : settings_(settings), hooks_(hooks), store_(resultsFile(settings)), pace_(settings) {}
+      : settings_(settings), hooks_(hooks), pace_(settings) {}
 
-  void putKeys(const std::map<std::string, std::string>& keys) {
-    store_.putCampaign(keys);
-    store_.addEnvironment(environment(settings_.render));
-  }
-
-  bool run() {
-    plan();
+  bool run(const std::map<std::string, std::string>& keys) {
+    if (fs::exists(resultsFile(settings_))) {
+      lock_.emplace(resultsFile(settings_));
+      store_.emplace(resultsFile(settings_));
+      plan();
+      createFolders();
+    } else {
+      plan();
+      create();
+    }
+    store_->putCampaign(keys);
+    store_->addEnvironment(environment(settings_.render));
     for (size_t s = 0; s < settings_.scenes.size(); ++s) {
       if (!runScene(settings_.scenes[s], methodsOfShard(settings_, s))) return false;
     }
@@ -86,8 +94,35 @@ class Campaign {
   }
 
  private:
+  void createFolders() const {
+    fs::create_directories(settings_.out / "images");
+    fs::create_directories(settings_.out / "references");
+  }
+
+  // What is written from here on begins to exist when everything else is known to be there.
+  void create() {
+    createFolders();
+    const fs::path results = resultsFile(settings_);
+    lock_.emplace(results);
+    if (fs::exists(results)) {
+      throw FileLockError(fmt::format("{}: another process has begun it; expected one at a time", results.string()));
+    }
+    store_.emplace(results);
+  }
+
+  std::optional<ResultsStore::KnownRun> knownRun(const CampaignScene& scene, Method method, uint64_t seed) {
+    return store_ ? store_->findRun(scene.name, std::string(toString(method)), seed) : std::nullopt;
+  }
+  // Whether a run is there, as long as it is asked for.
   bool isDone(const CampaignScene& scene, Method method, uint64_t seed) {
-    return store_.hasRun(scene.name, std::string(toString(method)), seed);
+    const std::optional<ResultsStore::KnownRun> run = knownRun(scene, method, seed);
+    if (!run || run->state == RunState::refused) return run.has_value();
+    const nlohmann::json stats = nlohmann::json::parse(run->stats);
+    if (settings_.iterations) return stats.value("iterations", uint64_t{0}) >= *settings_.iterations;
+    // Files of earlier versions say only how long it took.
+    const auto asked = stats.find("asked_seconds");
+    if (asked != stats.end()) return asked->get<double>() >= scene.effort.seconds;
+    return stats.value("render_seconds", 0.0) >= 0.95 * scene.effort.seconds;
   }
   // Counts what is ahead, and throws now what would be thrown later.
   void plan() {
@@ -118,7 +153,7 @@ class Campaign {
 
   // Whether the scene was begun by an earlier process, which settled its reference. Throws if it has changed since.
   bool isKnown(const CampaignScene& entry, const Scene& scene) {
-    const std::optional<std::string> known = store_.sceneHash(entry.name);
+    const std::optional<std::string> known = store_ ? store_->sceneHash(entry.name) : std::nullopt;
     if (known && *known != hashOf(scene)) {
       throw ResultsFileError(fmt::format("{}: the scene changed since this campaign began; expected scene_hash {}",
                                          entry.file.string(), *known));
@@ -129,6 +164,7 @@ class Campaign {
   Scene load(const CampaignScene& entry) const {
     LoadOptions loading;
     loading.filmSize = settings_.size;
+    const IdleScope idle(hooks_.session);
     return loadScene(entry.file, loading);
   }
 
@@ -160,22 +196,30 @@ class Campaign {
 
   // Of a scene that an earlier process began the same one; else a new one, with which the scene begins.
   Reference reference(const CampaignScene& entry, const Scene& scene) {
-    const fs::path file = referenceFile(entry.name);
-    if (isKnown(entry, scene)) return readReference(settings_.out / file);
+    if (isKnown(entry, scene)) {
+      Reference known = readReference(settings_.out / referenceFile(entry.name));
+      putScene(entry, scene, known);  // for methods that are new to it
+      return known;
+    }
     const bool exists = referenceExists(scene, entry, settings_);
     const auto begin = Clock::now();
-    Reference reference = sceneReference(scene, entry, settings_,
-                                         {.watch = hooks_.watch, .stopped = hooks_.stopped, .advance = {}}, hooks_.say);
+    Reference reference = sceneReference(
+        scene, entry, settings_, {.session = hooks_.session, .stopped = hooks_.stopped, .saveNow = {}, .advance = {}},
+        hooks_.say);
     if (stopped()) return reference;
     if (!exists) pace_.finishReference(entry, secondsSince(begin));
-    store_.putScene({.name = entry.name,
-                     .hash = hashOf(scene),
-                     .referenceFile = file.string(),
-                     .width = settings_.size[0],
-                     .height = settings_.size[1],
-                     .noiseFloors = reference.noiseFloors,
-                     .pathClasses = pathClasses(scene)});
+    putScene(entry, scene, reference);
     return reference;
+  }
+
+  void putScene(const CampaignScene& entry, const Scene& scene, const Reference& reference) {
+    store_->putScene({.name = entry.name,
+                      .hash = hashOf(scene),
+                      .referenceFile = referenceFile(entry.name).string(),
+                      .width = settings_.size[0],
+                      .height = settings_.size[1],
+                      .noiseFloors = reference.noiseFloors,
+                      .pathClasses = pathClasses(scene)});
   }
 
   // What each of the campaign's methods makes of each class of the scene's paths.
@@ -205,9 +249,9 @@ class Campaign {
                                                           .out = settings_.out,
                                                           .keepImages = settings_.keepImages,
                                                           .loadSeconds = loadSeconds},
-                                                         hooks_.watch);
+                                                         hooks_.session);
         if (!run || stopped()) return false;
-        store_.putRun(*run);
+        knownRun(entry, method, seed) ? store_->replaceRun(*run) : store_->putRun(*run);
         const CampaignProgress& progress = pace_.finish(entry, secondsSince(begin));
         if (hooks_.finished) hooks_.finished(*run, progress);
       }
@@ -232,26 +276,32 @@ class Campaign {
     return interval > 0 ? SnapshotSchedule::every(interval) : SnapshotSchedule::logarithmic();
   }
 
-  // Of the methods that have none yet. Every seed of them is done.
+  // Of the methods that have none yet of all these seeds and of the last snapshot. Every seed of them is done.
   void putBiases(const CampaignScene& entry, const std::vector<Method>& methods) {
     if (settings_.seeds < 2) return;
     const CampaignResults results = readResults(resultsFile(settings_));
     const Reference reference = readReference(settings_.out / referenceFile(entry.name));
     for (const Method method : methods) {
       const std::string name(toString(method));
-      const auto known = [&](const BiasRecord& bias) { return bias.scene == entry.name && bias.method == name; };
-      if (std::any_of(results.biases.begin(), results.biases.end(), known)) continue;
       std::vector<const RunRecord*> runs;
+      unsigned last = std::numeric_limits<unsigned>::max();
       for (const RunRecord& run : results.runs) {
-        if (run.scene == entry.name && run.method == name && run.state == RunState::done) runs.push_back(&run);
+        if (run.scene != entry.name || run.method != name || run.state != RunState::done) continue;
+        runs.push_back(&run);
+        last = std::min(last, run.snapshots.back().number);
       }
-      store_.putBiases(measureBiases(runs, reference));
+      const auto known = [&](const BiasRecord& bias) {
+        return bias.scene == entry.name && bias.method == name && bias.seeds == runs.size() && bias.number == last;
+      };
+      if (std::any_of(results.biases.begin(), results.biases.end(), known)) continue;
+      store_->putBiases(measureBiases(runs, reference));
     }
   }
 
   const CampaignSettings& settings_;
   const CampaignHooks& hooks_;
-  ResultsStore store_;
+  std::optional<FileLock> lock_;
+  std::optional<ResultsStore> store_;  // not before a new campaign is known to be able to begin
   Pace pace_;
 };
 
@@ -259,11 +309,7 @@ class Campaign {
 
 bool runCampaign(const CampaignSettings& settings, const std::map<std::string, std::string>& keys,
                  const CampaignHooks& hooks) {
-  fs::create_directories(settings.out / "images");
-  fs::create_directories(settings.out / "references");
-  Campaign campaign(settings, hooks);
-  campaign.putKeys(keys);
-  return campaign.run();
+  return Campaign(settings, hooks).run(keys);
 }
 
 }  // namespace wavecrest

@@ -5,7 +5,10 @@
 //
 // Scene by scene: load it, get its reference, then seed by seed every method, one run at a time with the machine to
 // itself; seeds are the outer loop so that a machine that warms up or is shared does so for all methods alike. Each run
-// is written into the results file as a whole once it is over. What is there already is not rendered again.
+// is written into the results file as a whole once it is over. What is there already is not rendered again,
+// unless it was asked for less time or fewer iterations than now: then a longer run takes its place.
+//
+// One process at a time works on a results file. One that cannot begin leaves neither folder nor file.
 #pragma once
 
 #include <functional>
@@ -13,11 +16,10 @@
 #include <vector>
 
 #include "bench/campaign/campaign_settings.h"
+#include "bench/campaign/session_hooks.h"
 #include "bench/results/results.h"
 
 namespace wavecrest {
-
-class Session;
 
 // What is ahead of a shard.
 struct CampaignPlan {
@@ -33,15 +35,16 @@ struct CampaignProgress {
 };
 
 struct CampaignHooks {
-  std::function<void(Session*)> watch;  // the session about to render; null: none
-  std::function<bool()> stopped;        // true: return at once, without the run under way
+  SessionHooks session;
+  std::function<bool()> stopped;  // true: return at once, without the run under way
   std::function<void(const CampaignPlan&)> planned;
   std::function<void(const RunRecord&, const CampaignProgress&)> finished;
   std::function<void(const std::string&)> say;  // what people should know, a line at a time
 };
 
 // keys: what is stored in the results file's campaign table besides the environment. True: all runs of the shard are in
-// the file; false: it was stopped. Throws LoadError, ReferenceError, ResultsFileError, ImageError.
+// the file; false: it was stopped. Throws LoadError, ReferenceError, FileLockError, ResultsFileError,
+// ImageError.
 bool runCampaign(const CampaignSettings& settings, const std::map<std::string, std::string>& keys,
                  const CampaignHooks& hooks);
 

@@ -15,12 +15,13 @@ constexpr double kReferenceRadius = 1e-4;
 
 // Why an image cannot be the reference of this scene; empty if it can.
 std::string misfit(const Reference& reference, const Scene& scene, const CampaignSettings& settings) {
+  if (const std::string wrong = whyNoReference(reference); !wrong.empty()) return wrong;
   if (reference.mean.width != settings.size[0] || reference.mean.height != settings.size[1]) {
     return fmt::format("is {}x{} pixels; expected {}x{}", reference.mean.width, reference.mean.height, settings.size[0],
                        settings.size[1]);
   }
   const std::string hash = fmt::format("{:016x}", scene.hash);
-  if (!reference.info.sceneHash.empty() && reference.info.sceneHash != hash) {
+  if (reference.info.sceneHash != hash) {
     return fmt::format("is of scene_hash {}; expected {} of this {}", reference.info.sceneHash, hash, scene.name);
   }
   return "";

@@ -16,6 +16,7 @@
 
 #include "bench/micro/registration.h"
 #include "bench/throughput/cpu_timer.h"
+#include "engine/splat_films.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
 #include "tests/kernels/stage_scene.h"
@@ -232,8 +233,7 @@ void measureConnection(benchmark::State& state, Walk walk, Stage<float> stage, S
   StageCounters counters;
   StageContext<float> context = contextFor(items, counters);
   context.walk = walk;
-  std::vector<int64_t> sums(3 * 64 * 64);
-  context.splats = {sums.data(), 0, 0, 64, 64};
+  context.film = {0, 0, 64, 64};
   Random random(5);
   Wave<float> wave(items, kNeeds);
   fillWave(wave, items, 1, random);
@@ -253,37 +253,29 @@ void measureConnection(benchmark::State& state, Walk walk, Stage<float> stage, S
   reportItems(state, items);
 }
 
-// Splats of shadow rays that nothing can block, over a film of this many pixels: what occlude adds to tracing.
-void measureSplat(benchmark::State& state, Stage<float> occlude, size_t pixels) {
+// Splats of a wave, added to the sums of a film of this many pixels.
+void measureSplat(benchmark::State& state, AddSplats<float> addSplats, size_t pixels) {
   StageCounters counters;
-  StageContext<float> context = contextFor(pixels, counters);
-  const SmallScene empty(nullptr, 0);
-  SceneView<float> nothing = room().view;
-  nothing.small = &empty.view();
-  context.scene = &nothing;
-  context.walk = Walk::light;
-  std::vector<int64_t> sums(3 * pixels);
-  context.splats = {sums.data(), 0, 0, static_cast<uint32_t>(pixels), 1};
+  SplatFilms films(pixels, 1, 0x1p48);
   Wave<float> wave(kWave, kNeeds);
   std::mt19937_64 random(7);
   const auto fill = [&] {
-    for (size_t i = 0; i < kWave; ++i) wave.shadowRays.target[i] = static_cast<uint32_t>(random() % pixels);
-    wave.shadowRays.size = kWave;
+    for (size_t i = 0; i < kWave; ++i) {
+      wave.splats.red[i] = wave.splats.green[i] = wave.splats.blue[i] = 1;
+      wave.splats.pixel[i] = static_cast<uint32_t>(random() % pixels);
+    }
   };
-  for (size_t i = 0; i < kWave; ++i) {
-    wave.shadowRays.red[i] = wave.shadowRays.green[i] = wave.shadowRays.blue[i] = 1;
-    wave.shadowRays.directionZ[i] = 1;
-  }
+  const SplatSums& sums = films.assign().sums();
   fill();
-  occlude(context, wave);
+  addSplats(wave.splats, 0, kWave, sums, counters);
   double sum = 0;
-  for (const int64_t value : sums) sum += static_cast<double>(value) / kSplatScale;
+  for (size_t channel = 0; channel < 3 * pixels; ++channel) sum += films.total(channel) / films.scale();
   if (!agrees(state, sum, 3.0 * kWave)) return;
   CpuTimer timer;
   for (auto _ : state) {
     fill();
     timer.start();
-    occlude(context, wave);
+    addSplats(wave.splats, 0, kWave, sums, counters);
     state.SetIterationTime(timer.seconds());
   }
   reportItems(state, kWave);
@@ -317,7 +309,7 @@ void registerBidirectionalBenchmarks() {
     }
     for (size_t pixels = 1000; pixels <= 10'000'000; pixels *= 100) {
       registerBenchmark(fmt::format("splat/{}/pixels:{}", toString(isa), pixels),
-                        [=, &stages](benchmark::State& state) { measureSplat(state, stages.occludeSmall, pixels); });
+                        [=, &stages](benchmark::State& state) { measureSplat(state, stages.addSplats, pixels); });
     }
   }
 }

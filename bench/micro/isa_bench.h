@@ -17,7 +17,7 @@ namespace wavecrest {
 
 constexpr size_t kItems = 4096;
 
-// Registers "name/scalar", "name/sse4" and so on; run(state, isa) is the benchmark. Called from kernels_bench.cpp, when
+// Registers "name/scalar", "name/sse4" and so on; run(state, isa) is the benchmark. Called from lanes_bench.cpp, when
 // all lane sources have registered their entries.
 template <class Run>
 void registerForEveryIsa(const std::string& name, Run run) {

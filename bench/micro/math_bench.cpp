@@ -2,7 +2,7 @@
 #include <random>
 
 #include "bench/micro/isa_bench.h"
-#include "bench/micro/kernels_bench.h"
+#include "bench/micro/lanes_bench.h"
 #include "tests/kernels/math_entries.h"
 #include "tests/kernels/warp_entries.h"
 

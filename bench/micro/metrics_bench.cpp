@@ -10,10 +10,14 @@
 #include <string>
 #include <vector>
 
+#include "metrics/cvvdp/cvvdp.h"
 #include "metrics/fft.h"
 #include "metrics/flip.h"
 #include "metrics/hdrvdp2/hdrvdp2.h"
+#include "metrics/image/srgb.h"
+#include "metrics/ms_ssim.h"
 #include "metrics/plane.h"
+#include "metrics/pu21.h"
 #include "metrics/ssim.h"
 #include "tests/metrics/golden.h"
 
@@ -34,10 +38,12 @@ constexpr double kScikitImageSeconds = 0.56;    // scikit-image 0.26, structural
 constexpr double kFlipEvaluatorSeconds = 1.52;  // flip-evaluator 1.7, evaluate(..., "LDR")
 constexpr double kOctaveHdrVdpSeconds = 4.5;    // the original HDR-VDP-2.2 under GNU Octave 7.3, second call
 
-// Pixels per second, and how many times faster than the usual program.
-void reportPixels(benchmark::State& state, double usualSeconds) {
-  state.counters["times_faster"] =
-      benchmark::Counter(usualSeconds * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+// Pixels per second, and how many times faster than the usual program, where one was timed.
+void reportPixels(benchmark::State& state, double usualSeconds = 0) {
+  if (usualSeconds > 0) {
+    state.counters["times_faster"] =
+        benchmark::Counter(usualSeconds * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+  }
   state.SetItemsProcessed(static_cast<int64_t>(state.iterations()) *
                           static_cast<int64_t>(roomPair().test.pixelCount()));
 }
@@ -71,6 +77,46 @@ void hdrvdp2(benchmark::State& state) {
   reportPixels(state, kOctaveHdrVdpSeconds);
 }
 BENCHMARK(hdrvdp2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+void msssim(benchmark::State& state) {
+  const auto& pair = roomPair();
+  const PreparedMsSsim prepared(pair.reference);
+  const double golden = test::goldenFigure("msssim.json", pair.name, "wang_mean");
+  if (!checkScore(state, prepared.compare(pair.test).mean, golden, 1e-6)) return;
+  for (auto _ : state) benchmark::DoNotOptimize(prepared.compare(pair.test).mean);
+  reportPixels(state);
+}
+BENCHMARK(msssim)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+Image lightOf(const Image8& codes) {
+  Image light{codes.width, codes.height, 3, {}};
+  for (const uint8_t code : codes.pixels) light.pixels.push_back(static_cast<float>(srgbDecodeTable()[code]));
+  return light;
+}
+
+void pu21(benchmark::State& state) {
+  const auto& pair = roomPair();
+  const PreparedPu21 prepared(lightOf(pair.reference));
+  const Image test = lightOf(pair.test);
+  if (!checkScore(state, prepared.psnr(test).colour, test::goldenFigure("pu21.json", pair.name, "psnr"), 1e-4)) return;
+  if (!checkScore(state, prepared.ssim(test).mean, test::goldenFigure("pu21.json", pair.name, "ssim"), 1e-4)) return;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(prepared.psnr(test).colour);
+    benchmark::DoNotOptimize(prepared.ssim(test).mean);
+  }
+  reportPixels(state);
+}
+BENCHMARK(pu21)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+void cvvdp(benchmark::State& state) {
+  const auto& pair = roomPair();
+  const PreparedCvvdp prepared(pair.reference);
+  if (!checkScore(state, prepared.compare(pair.test).jod, test::goldenFigure("cvvdp.json", pair.name, "jod"), 1e-4))
+    return;
+  for (auto _ : state) benchmark::DoNotOptimize(prepared.compare(pair.test).jod);
+  reportPixels(state);
+}
+BENCHMARK(cvvdp)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 // Sixteen complex transforms of the row length of a 1024-pixel image, batched and one by one with kissfft.
 constexpr size_t kLength = 2048;

@@ -1,4 +1,4 @@
-// What the parts of bench_kernels share: registration with manual time, and the counters that every benchmark reports.
+// What the parts of stages_bench share: registration with manual time, and the counters that every benchmark reports.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -8,7 +8,7 @@
 
 namespace wavecrest {
 
-void registerStageBenchmarks();          // stages_bench.cpp
+void registerStageBenchmarks();          // walk_bench.cpp
 void registerCrossoverBenchmarks();      // crossover_bench.cpp
 void registerBidirectionalBenchmarks();  // bidirectional_bench.cpp
 

@@ -1,6 +1,6 @@
 // Random numbers: the time of uniform4, four numbers per path, of both samplers.
 #include "bench/micro/isa_bench.h"
-#include "bench/micro/kernels_bench.h"
+#include "bench/micro/lanes_bench.h"
 #include "tests/kernels/sampler_entries.h"
 
 namespace wavecrest {

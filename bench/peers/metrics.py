@@ -81,7 +81,7 @@ def measure_rounds(bench, rounds):
         entry.wall.append(wall)
 
     for _ in range(rounds):
-        for metric in ("ssim", "flip", "hdrvdp2"):
+        for metric in ("ssim", "flip", "hdrvdp2", "msssim", "pu21", "cvvdp"):
             note((metric, "wavecrest"), *time_ours(bench, metric))
             if metric not in PEERS:
                 continue

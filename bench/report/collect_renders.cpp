@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -28,17 +29,69 @@ struct SceneReference {
   std::string origin;
 };
 
+constexpr const char* kHashKey = "wavecrest:scene_hash";
+constexpr const char* kFloorPrefix = "wavecrest:noise_floor.";
+
+std::string attribute(const ImageFile& image, const std::string& key) {
+  const auto entry = image.metadata.find(key);
+  return entry == image.metadata.end() ? "" : entry->second;
+}
+
+void requireHash(const fs::path& file, const std::string& found, const std::string& ofRuns) {
+  if (found.empty() || ofRuns.empty() || found == ofRuns) return;
+  throw ResultsError(fmt::format("{}: is of scene_hash {}; expected {} as the renders", file.string(), found, ofRuns));
+}
+
+// A whole reference says that it is one: it has halves, and a scene.
+void requireReference(const fs::path& file, const ImageFile& image) {
+  const bool said = !attribute(image, kHashKey).empty() && !attribute(image, "wavecrest:relative_error").empty();
+  if (said) return;
+  throw ResultsError(
+      fmt::format("{}: is a plain image, without the two halves of a reference; expected one made by "
+                  "`wavecrest reference`, or two independent renders",
+                  file.string()));
+}
+
+// Two renders are independent unless they have one seed.
+void requireIndependent(const fs::path& second, const ImageFile& a, const ImageFile& b) {
+  const std::string seed = attribute(a, "wavecrest:seed");
+  if (seed.empty() || seed != attribute(b, "wavecrest:seed")) return;
+  throw ResultsError(
+      fmt::format("{}: has the seed {} of the other half; expected another seed", second.string(), seed));
+}
+
+// The noise floors that a whole reference stores.
+void readFloors(const fs::path& file, const ImageFile& image, std::vector<std::optional<double>>& floors) {
+  const std::vector<const Metric*> metrics = reportedMetrics();
+  for (size_t m = 0; m < metrics.size(); ++m) {
+    const std::string text = attribute(image, kFloorPrefix + scoreName(*metrics[m], metrics[m]->score));
+    if (text.empty()) continue;
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) {
+      throw ResultsError(fmt::format("{}: noise floor '{}'; expected a number", file.string(), text));
+    }
+    if (std::isfinite(value)) floors[m] = value;
+  }
+}
+
 // Mean of two halves, and from their difference the noise that is left in it, by every metric.
-SceneReference readReference(const fs::path& folder, const std::string& scene) {
+SceneReference readReference(const fs::path& folder, const std::string& scene, const std::string& hashOfRuns) {
   const std::vector<fs::path> files = findReference(folder, scene);
   const std::vector<const Metric*> metrics = reportedMetrics();
   std::vector<std::optional<double>> floors(metrics.size());
   ImageFile mean = readImage(files[0].string());
   std::string origin = files[0].filename().string();
-  if (files.size() == 2) {
+  requireHash(files[0], attribute(mean, kHashKey), hashOfRuns);
+  if (files.size() == 1) {
+    requireReference(files[0], mean);
+    readFloors(files[0], mean, floors);
+  } else {
     const PreparedReference first(files[0].string(), mean);
     // Refuses another size, naming both files.
     const ComparedImage second = first.prepareTest(files[1].string(), readImage(files[1].string()));
+    requireHash(files[1], attribute(second.file, kHashKey), hashOfRuns);
+    requireIndependent(files[1], mean, second.file);
     const Image &a = mean.image, &b = second.file.image;
     for (const NoiseFloor& floor : noiseFloors(a, b, metricList())) {
       for (size_t m = 0; m < metrics.size(); ++m) {
@@ -134,7 +187,7 @@ std::string seriesLabel(const std::vector<std::vector<const RunFile*>>& groups, 
 ReportScene collectScene(const fs::path& folder, const std::string& name, const std::vector<const RunFile*>& runs) {
   ReportScene scene;
   scene.name = name;
-  const SceneReference reference = readReference(folder, name);
+  const SceneReference reference = readReference(folder, name, runs.front()->sceneHash);
   scene.width = reference.image.image().codes.width;
   scene.height = reference.image.image().codes.height;
   scene.referenceOrigin = reference.origin;

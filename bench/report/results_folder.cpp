@@ -38,10 +38,13 @@ Value require(const fs::path& path, const json& object, const char* key) {
   }
 }
 
-// Snapshot files are named as the renderer saw them; the folder may have been moved since.
+// Snapshot files are named as the renderer saw them; the folder may have been moved since. Only the folder itself is
+// looked into: an absolute name may by now be that of another render's image.
 fs::path locate(const fs::path& stats, const std::string& name) {
-  for (const fs::path& candidate : {stats.parent_path() / name, stats.parent_path() / fs::path(name).filename()}) {
-    if (fs::is_regular_file(candidate)) return candidate;
+  const fs::path file(name);
+  for (const fs::path& candidate : {file.is_relative() ? file : file.filename(), file.filename()}) {
+    const fs::path beside = stats.parent_path() / candidate;
+    if (fs::is_regular_file(beside)) return beside;
   }
   fail(stats, fmt::format("snapshot '{}' does not exist", name), "an image beside this file");
 }
@@ -76,6 +79,7 @@ RunFile readRun(const fs::path& path) {
   run.method = require<std::string>(path, run.stats, "method");
   run.sampler = require<std::string>(path, run.stats, "sampler");
   run.precision = require<std::string>(path, run.stats, "precision");
+  if (run.stats.contains("scene_hash")) run.sceneHash = require<std::string>(path, run.stats, "scene_hash");
   run.seed = require<uint64_t>(path, run.stats, "seed");
   run.snapshots = readSnapshots(path, run.stats);
   return run;

@@ -6,6 +6,7 @@
 // "relmse", "ssim", "q_mos", "q", "flip", ...; a value that could not be measured is NaN.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -89,8 +90,16 @@ struct CampaignResults {
   std::vector<BiasRecord> biases;
   std::vector<ClaimRecord> claims;
 
-  const SceneRecord* findScene(std::string_view name) const;
-  const RunRecord* findRun(std::string_view scene, std::string_view method, uint64_t seed) const;
+  const SceneRecord* findScene(std::string_view name) const {
+    const auto found = std::find_if(scenes.begin(), scenes.end(), [&](const SceneRecord& s) { return s.name == name; });
+    return found == scenes.end() ? nullptr : &*found;
+  }
+  const RunRecord* findRun(std::string_view scene, std::string_view method, uint64_t seed) const {
+    const auto found = std::find_if(runs.begin(), runs.end(), [&](const RunRecord& run) {
+      return run.scene == scene && run.method == method && run.seed == seed;
+    });
+    return found == runs.end() ? nullptr : &*found;
+  }
 };
 
 }  // namespace wavecrest

@@ -14,6 +14,18 @@ void putSnapshots(Database& database, int64_t run, const std::vector<SnapshotRec
   }
 }
 
+void insertRun(Database& database, const RunRecord& run) {
+  Statement(database, "INSERT INTO run(scene, method, seed, state, reason, stats) VALUES(?, ?, ?, ?, ?, ?)")
+      .bind(run.scene, run.method, run.seed, toString(run.state), run.reason, run.stats)
+      .run();
+  const int64_t id = sqlite3_last_insert_rowid(database.handle());
+  Statement stage(database, "INSERT INTO stage VALUES(?, ?, ?, ?, ?)");
+  for (size_t i = 0; i < run.stages.size(); ++i) {
+    stage.bind(id, i, run.stages[i].name, run.stages[i].items, run.stages[i].seconds).run();
+  }
+  putSnapshots(database, id, run.snapshots);
+}
+
 }  // namespace
 
 ResultsStore::ResultsStore(const std::filesystem::path& path) : database_(path, OpenFor::writing) {
@@ -62,18 +74,22 @@ void ResultsStore::putScene(const SceneRecord& scene) {
 
 void ResultsStore::putRun(const RunRecord& run) {
   Transaction transaction(database_);
-  Statement(database_, "INSERT INTO run(scene, method, seed, state, reason, stats) VALUES(?, ?, ?, ?, ?, ?)")
-      .bind(run.scene, run.method, run.seed, toString(run.state), run.reason, run.stats)
-      .run();
-  const int64_t id = sqlite3_last_insert_rowid(database_.handle());
-  Statement stage(database_, "INSERT INTO stage VALUES(?, ?, ?, ?, ?)");
-  for (size_t i = 0; i < run.stages.size(); ++i) {
-    stage.bind(id, i, run.stages[i].name, run.stages[i].items, run.stages[i].seconds).run();
-  }
-  putSnapshots(database_, id, run.snapshots);
+  insertRun(database_, run);
   transaction.commit();
 }
 
+void ResultsStore::replaceRun(const RunRecord& run) {
+  constexpr const char* kThisRun = " WHERE run IN (SELECT id FROM run WHERE scene = ? AND method = ? AND seed = ?)";
+  Transaction transaction(database_);
+  for (const char* table : {"measurement", "snapshot", "stage"}) {
+    Statement(database_, std::string("DELETE FROM ") + table + kThisRun).bind(run.scene, run.method, run.seed).run();
+  }
+  Statement(database_, "DELETE FROM run WHERE scene = ? AND method = ? AND seed = ?")
+      .bind(run.scene, run.method, run.seed)
+      .run();
+  insertRun(database_, run);
+  transaction.commit();
+}
 void ResultsStore::putBiases(const std::vector<BiasRecord>& biases) {
   Transaction transaction(database_);
   Statement row(database_, "INSERT OR REPLACE INTO bias VALUES(?, ?, ?, ?, ?, ?, ?)");
@@ -100,9 +116,11 @@ std::optional<std::string> ResultsStore::sceneHash(const std::string& scene) {
   return query.text(0);
 }
 
-bool ResultsStore::hasRun(const std::string& scene, const std::string& method, uint64_t seed) {
-  Statement query(database_, "SELECT 1 FROM run WHERE scene = ? AND method = ? AND seed = ?");
-  return query.bind(scene, method, seed).step();
+std::optional<ResultsStore::KnownRun> ResultsStore::findRun(const std::string& scene, const std::string& method,
+                                                            uint64_t seed) {
+  Statement query(database_, "SELECT state, stats FROM run WHERE scene = ? AND method = ? AND seed = ?");
+  if (!query.bind(scene, method, seed).step()) return std::nullopt;
+  return KnownRun{query.text(0) == toString(RunState::refused) ? RunState::refused : RunState::done, query.text(1)};
 }
 
 }  // namespace wavecrest

@@ -30,6 +30,8 @@ class ResultsStore {
   void putScene(const SceneRecord& scene);
   // Throws ResultsFileError if the run is there already: nothing is ever counted twice.
   void putRun(const RunRecord& run);
+  // The same of a run that is there, of less time: takes its place, in one transaction.
+  void replaceRun(const RunRecord& run);
   // Replaces rows of the same scene, method and snapshot.
   void putBiases(const std::vector<BiasRecord>& biases);
   // Replaces all claims.
@@ -37,7 +39,12 @@ class ResultsStore {
 
   // The hash under which a scene was put; nothing if it was not.
   std::optional<std::string> sceneHash(const std::string& scene);
-  bool hasRun(const std::string& scene, const std::string& method, uint64_t seed);
+  // State and stats of a run; nothing if it is not there.
+  struct KnownRun {
+    RunState state;
+    std::string stats;
+  };
+  std::optional<KnownRun> findRun(const std::string& scene, const std::string& method, uint64_t seed);
 
  private:
   Database database_;

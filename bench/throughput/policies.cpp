@@ -8,7 +8,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kRounds = 5;
+constexpr size_t kFewestRounds = 1, kMostRounds = 7;
 constexpr uint64_t kMostIterations = 16;
 
 struct Sums {
@@ -36,7 +36,8 @@ std::vector<std::unique_ptr<Session>> makeSessions(const Scene& scene, RenderSet
     sessions.push_back(Session::create(scene, settings));
     rows.push_back({.precision = settings.precision,
                     .isa = settings.isa,
-                    .specialization = sessions.back()->statistics().specialization});
+                    .specialization = sessions.back()->statistics().specialization,
+                    .pathsPerCpuSecond = {}});
   };
   for (auto isa = availableIsas().rbegin(); isa != availableIsas().rend(); ++isa) {
     for (const Precision precision : {Precision::doubled, Precision::floating, Precision::fast}) {
@@ -74,9 +75,11 @@ PolicyTable measurePolicies(const Scene& scene, const RenderSettings& settings, 
     table.rows[i].meanDifference = sums.value > 0 ? sums.difference / sums.value : 0;
     table.rows[i].pixelDifference = sums.square > 0 ? std::sqrt(sums.differenceSquare / sums.square) : 0;
   }
-  const auto slices = renderInTurn(sessions, 0.5 * share / (kRounds + 1), kRounds);
+  const auto slices =
+      renderInTurn(sessions, {.seconds = 0.5 * seconds, .fewestRounds = kFewestRounds, .mostRounds = kMostRounds});
   for (size_t i = 0; i < sessions.size(); ++i) {
-    table.rows[i].pathsPerCpuSecond = medianOf(slices[i], [](const Slice& s) { return s.pathsPerCpuSecond(); });
+    table.rows[i].pathsPerCpuSecond =
+        estimateMedian(valuesOf(slices[i], [](const Slice& s) { return s.pathsPerCpuSecond(); }));
     table.rows[i].bytesPerPath = sessions[i]->statistics().bytesPerPath;
   }
   return table;

@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "bench/statistics/medians.h"
 #include "engine/session.h"
 
 namespace wavecrest {
@@ -15,7 +16,7 @@ struct PolicyRow {
   Precision precision{};
   Isa isa{};
   Specialization specialization{};
-  double pathsPerCpuSecond = 0;
+  Estimate pathsPerCpuSecond;
   double meanDifference = 0;   // (mean - mean of double) / mean of double: a bias
   double pixelDifference = 0;  // root mean square over pixels, relative to that of double's image
   size_t bytesPerPath = 0;

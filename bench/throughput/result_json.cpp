@@ -5,40 +5,72 @@
 
 #include "bench/enumerator_name.h"
 #include "bench/throughput/bench_scene.h"
+#include "bench/throughput/doubts.h"
 
 namespace wavecrest {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+// A figure under its name, and its interval beside it.
+void add(Json& object, const std::string& name, const Estimate& estimate, double scale = 1) {
+  object[name] = scale * estimate.value;
+  object[name + "_interval"] = {scale * estimate.interval.low, scale * estimate.interval.high};
+}
+
+Json slicesJson(const std::vector<Slice>& slices) {
+  Json rows = Json::array();
+  for (const Slice& slice : slices) {
+    rows.push_back({{"paths", slice.paths}, {"seconds", slice.seconds}, {"cpu_seconds", slice.cpuSeconds}});
+  }
+  return rows;
+}
+
+Json stateJson(const MachineState& state) {
+  const auto orNull = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+  return {{"seconds", state.seconds},
+          {"others_cores", orNull(state.othersCores)},
+          {"stolen_cores", orNull(state.stolenCores)},
+          {"slowest_mhz", state.slowestMhz},
+          {"fastest_mhz", state.fastestMhz}};
+}
+
+Json stageJson(const StageShare& stage) {
+  Json row = {{"name", stage.name}, {"items_per_path", stage.itemsPerPath}};
+  add(row, "seconds_per_item", stage.nsPerItem, 1e-9);
+  add(row, "seconds_per_path", stage.nsPerPath, 1e-9);
+  add(row, "share", stage.share);
+  row["lane_use"] = stage.laneUse ? Json(*stage.laneUse) : Json();
+  return row;
+}
+
+Json scalingJson(const ScalingRow& row) {
+  Json json = {{"threads", row.threads}};
+  add(json, "paths_per_second", row.pathsPerSecond);
+  add(json, "speedup", row.speedup);
+  add(json, "cpu_efficiency", row.cpuEfficiency);
+  json["slices"] = slicesJson(row.slices);
+  return json;
+}
+
 Json speedJson(const Speed& speed) {
-  Json stages = Json::array(), scaling = Json::array();
-  for (const StageShare& stage : speed.stages) {
-    stages.push_back({{"name", stage.name},
-                      {"items_per_path", stage.itemsPerPath},
-                      {"seconds_per_item", 1e-9 * stage.nsPerItem},
-                      {"seconds_per_path", 1e-9 * stage.nsPerPath},
-                      {"share", stage.share},
-                      {"lane_use", stage.laneUse ? Json(*stage.laneUse) : Json()}});
-  }
-  for (const ScalingRow& row : speed.scaling) {
-    scaling.push_back({{"threads", row.threads},
-                       {"paths_per_second", row.pathsPerSecond},
-                       {"speedup", row.speedup},
-                       {"cpu_efficiency", row.cpuEfficiency}});
-  }
-  return {{"isa", std::string(toString(speed.facts.isa))},
-          {"specialization", enumeratorName(kSpecializationNames, speed.facts.specialization)},
-          {"accel", enumeratorName(kAccelNames, speed.facts.accel)},
-          {"paths_per_second", speed.pathsPerSecond},
-          {"paths_per_cpu_second", speed.pathsPerCpuSecond},
-          {"rays_per_path", speed.raysPerPath},
-          {"rays_per_second", speed.raysPerSecond},
-          {"rays_per_cpu_second", speed.raysPerCpuSecond},
-          {"bytes_per_path", speed.bytesPerPath},
-          {"stages", stages},
-          {"rest_share", speed.restShare},
-          {"scaling", scaling}};
+  Json json = {{"isa", std::string(toString(speed.facts.isa))},
+               {"specialization", enumeratorName(kSpecializationNames, speed.facts.specialization)},
+               {"accel", enumeratorName(kAccelNames, speed.facts.accel)}};
+  add(json, "paths_per_second", speed.pathsPerSecond);
+  add(json, "paths_per_cpu_second", speed.pathsPerCpuSecond);
+  json["rays_per_path"] = speed.raysPerPath;
+  add(json, "rays_per_second", speed.raysPerSecond);
+  add(json, "rays_per_cpu_second", speed.raysPerCpuSecond);
+  json["bytes_per_path"] = speed.bytesPerPath;
+  json["stages"] = Json::array();
+  for (const StageShare& stage : speed.stages) json["stages"].push_back(stageJson(stage));
+  add(json, "rest_share", speed.restShare);
+  json["scaling"] = Json::array();
+  for (const ScalingRow& row : speed.scaling) json["scaling"].push_back(scalingJson(row));
+  json["meanwhile"] = stateJson(speed.machine);
+  json["doubts"] = doubtsAbout(speed);
+  return json;
 }
 
 Json ratesJson(const RayRates& rates) {
@@ -51,13 +83,14 @@ Json ratesJson(const RayRates& rates) {
 Json policiesJson(const PolicyTable& table) {
   Json rows = Json::array();
   for (const PolicyRow& row : table.rows) {
-    rows.push_back({{"precision", enumeratorName(kPrecisionNames, row.precision)},
-                    {"isa", std::string(toString(row.isa))},
-                    {"specialization", enumeratorName(kSpecializationNames, row.specialization)},
-                    {"paths_per_cpu_second", row.pathsPerCpuSecond},
-                    {"mean_difference", row.meanDifference},
-                    {"pixel_difference", row.pixelDifference},
-                    {"bytes_per_path", row.bytesPerPath}});
+    Json json = {{"precision", enumeratorName(kPrecisionNames, row.precision)},
+                 {"isa", std::string(toString(row.isa))},
+                 {"specialization", enumeratorName(kSpecializationNames, row.specialization)}};
+    add(json, "paths_per_cpu_second", row.pathsPerCpuSecond);
+    json["mean_difference"] = row.meanDifference;
+    json["pixel_difference"] = row.pixelDifference;
+    json["bytes_per_path"] = row.bytesPerPath;
+    rows.push_back(json);
   }
   return {{"iterations", table.iterations}, {"rows", rows}};
 }
@@ -91,7 +124,7 @@ Json toJson(const SceneResult& result) {
       method["bare_embree"] = {{"closest", ratesJson(embree.closest)},
                                {"any_hit", ratesJson(embree.anyHit)},
                                {"rays_per_second", embree.raysPerSecond()},
-                               {"render_ratio", row.speed.raysPerCpuSecond / embree.raysPerSecond()}};
+                               {"render_ratio", row.speed.raysPerCpuSecond.value / embree.raysPerSecond()}};
     }
     method["policies"] = policiesJson(row.policies);
     Json entry = {{"method", std::string(toString(row.method))}};
@@ -104,6 +137,7 @@ Json toJson(const SceneResult& result) {
           {"height", result.height},
           {"threads", result.threads},
           {"methods", methods},
+          {"interval_level", kIntervalLevel},
           {"reference", {{"seconds", result.reference.seconds}, {"relmse", result.reference.noise}}},
           {"errors", errorsJson(result.errors)}};
 }

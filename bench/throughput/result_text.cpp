@@ -1,44 +1,52 @@
 // Tables of a SceneResult for a terminal.
-#include <fmt/format.h>
-
-#include <iterator>
-
 #include "bench/enumerator_name.h"
+#include "bench/text_lines.h"
 #include "bench/throughput/bench_scene.h"
+#include "bench/throughput/doubts.h"
 
 namespace wavecrest {
 namespace {
 
-using Text = fmt::memory_buffer;
-
-template <class... Arguments>
-void line(Text& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
-  text.push_back('\n');
-}
+using Text = TextLines;
 
 double millions(double perSecond) { return perSecond * 1e-6; }
 
-void addSpeed(Text& text, const Speed& speed, uint32_t threads) {
-  line(text, "  {:.3f} M paths/s on {} thread{}, {:.3f} per core; {:.2f} rays/path, {:.1f} M rays/s, {:.1f} per core",
-       millions(speed.pathsPerSecond), threads, threads == 1 ? "" : "s", millions(speed.pathsPerCpuSecond),
-       speed.raysPerPath, millions(speed.raysPerSecond), millions(speed.raysPerCpuSecond));
-  line(text, "  {} kernels on {}, intersector {}; {} bytes/path",
-       enumeratorName(kSpecializationNames, speed.facts.specialization), toString(speed.facts.isa),
-       enumeratorName(kAccelNames, speed.facts.accel), speed.bytesPerPath);
-  line(text, "\n  {:<18} {:>10} {:>9} {:>9} {:>7} {:>9}", "stage", "items/path", "ns/item", "ns/path", "share",
-       "lane use");
+// A rate in millions and how far the interval's ends are from it: "1.412 +-0.6%".
+std::string rate(const Estimate& estimate, int digits = 3) {
+  return fmt::format("{:.{}f} +-{:.1f}%", millions(estimate.value), digits, 100 * estimate.relativeError());
+}
+std::string percent(const Estimate& estimate) {
+  return fmt::format("{:.1f}% +-{:.1f}", 100 * estimate.value, 100 * estimate.interval.halfWidth());
+}
+
+void addStages(Text& text, const Speed& speed) {
+  line(text, "\n  {:<18} {:>10} {:>9} {:>7} {:>9} {:>14} {:>9}", "stage", "items/path", "ns/item", "+-%", "ns/path",
+       "share", "lane use");
   for (const StageShare& stage : speed.stages) {
     const std::string laneUse = stage.laneUse ? fmt::format("{:.1f}%", 100 * *stage.laneUse) : "-";
-    line(text, "  {:<18} {:>10.3f} {:>9.2f} {:>9.2f} {:>6.1f}% {:>9}", stage.name, stage.itemsPerPath, stage.nsPerItem,
-         stage.nsPerPath, 100 * stage.share, laneUse);
+    line(text, "  {:<18} {:>10.3f} {:>9.2f} {:>7.1f} {:>9.2f} {:>14} {:>9}", stage.name, stage.itemsPerPath,
+         stage.nsPerItem.value, 100 * stage.nsPerItem.relativeError(), stage.nsPerPath.value, percent(stage.share),
+         laneUse);
   }
-  line(text, "  {:<18} {:>10} {:>9} {:>9.2f} {:>6.1f}%", "film, rest", "", "",
-       1e9 * speed.restShare / speed.pathsPerCpuSecond, 100 * speed.restShare);
-  line(text, "\n  {:<12} {:>12} {:>9} {:>16}", "threads", "M paths/s", "speedup", "CPU efficiency");
+  line(text, "  {:<18} {:>10} {:>9} {:>7} {:>9.2f} {:>14}", "film, rest", "", "", "",
+       1e9 * speed.restShare.value / speed.pathsPerCpuSecond.value, percent(speed.restShare));
+}
+
+void addSpeed(Text& text, const Speed& speed, uint32_t threads) {
+  line(text, "  {} M paths/s on {} thread{}, {} per core; {:.2f} rays/path, {} M rays/s, {} per core",
+       rate(speed.pathsPerSecond), threads, threads == 1 ? "" : "s", rate(speed.pathsPerCpuSecond), speed.raysPerPath,
+       rate(speed.raysPerSecond, 1), rate(speed.raysPerCpuSecond, 1));
+  line(text, "  {} kernels on {}, intersector {}; {} bytes/path; medians of {} slices, +-: {:.0f} % interval",
+       enumeratorName(kSpecializationNames, speed.facts.specialization), toString(speed.facts.isa),
+       enumeratorName(kAccelNames, speed.facts.accel), speed.bytesPerPath, speed.scaling.front().slices.size(),
+       100 * kIntervalLevel);
+  for (const std::string& doubt : doubtsAbout(speed)) line(text, "  doubt: {}", doubt);
+  addStages(text, speed);
+  line(text, "\n  {:<12} {:>16} {:>15} {:>18}", "threads", "M paths/s", "speedup", "CPU efficiency");
   for (const ScalingRow& row : speed.scaling) {
-    line(text, "  {:<12} {:>12.3f} {:>9.2f} {:>15.1f}%", row.threads, millions(row.pathsPerSecond), row.speedup,
-         100 * row.cpuEfficiency);
+    line(text, "  {:<12} {:>16} {:>15} {:>18}", row.threads, rate(row.pathsPerSecond),
+         fmt::format("{:.2f} +-{:.2f}", row.speedup.value, row.speedup.interval.halfWidth()),
+         percent(row.cpuEfficiency));
   }
 }
 
@@ -54,7 +62,7 @@ void addBareEmbree(Text& text, const BareEmbree& embree, const Speed& speed) {
   row("closest hit", embree.closest);
   row("any hit", embree.anyHit);
   line(text, "  {:<12} {:>13.2f} {:>12} {:>8} {:>12.2f} {:>8.2f}", "whole render", millions(embree.raysPerSecond()), "",
-       "", millions(speed.raysPerCpuSecond), speed.raysPerCpuSecond / embree.raysPerSecond());
+       "", millions(speed.raysPerCpuSecond.value), speed.raysPerCpuSecond.value / embree.raysPerSecond());
 }
 
 void addPolicies(Text& text, const PolicyTable& table) {
@@ -63,11 +71,9 @@ void addPolicies(Text& text, const PolicyTable& table) {
   line(text, "  {:<9} {:<8} {:<21} {:>16} {:>15} {:>16} {:>11}", "precision", "isa", "kernels", "M paths/s core",
        "mean vs double", "pixels vs double", "bytes/path");
   for (const PolicyRow& row : table.rows) {
-    // A slow policy may not get a turn within the duration.
-    const std::string speed = row.pathsPerCpuSecond > 0 ? fmt::format("{:.3f}", millions(row.pathsPerCpuSecond)) : "-";
     line(text, "  {:<9} {:<8} {:<21} {:>16} {:>15.1e} {:>16.1e} {:>11}", enumeratorName(kPrecisionNames, row.precision),
-         toString(row.isa), enumeratorName(kSpecializationNames, row.specialization), speed, row.meanDifference,
-         row.pixelDifference, row.bytesPerPath);
+         toString(row.isa), enumeratorName(kSpecializationNames, row.specialization), rate(row.pathsPerCpuSecond),
+         row.meanDifference, row.pixelDifference, row.bytesPerPath);
   }
 }
 

@@ -1,12 +1,11 @@
 #include "bench/throughput/speed.h"
 
-#include "bench/throughput/stage_times.h"
 #include "bench/throughput/turns.h"
 
 namespace wavecrest {
 namespace {
 
-constexpr size_t kScalingRounds = 7;
+constexpr size_t kFewestSpeedRounds = 3, kMostSpeedRounds = 15;
 
 std::vector<uint32_t> threadCounts(uint32_t most) {
   std::vector<uint32_t> counts;
@@ -15,50 +14,57 @@ std::vector<uint32_t> threadCounts(uint32_t most) {
   return counts;
 }
 
-// What was done in all slices together: a short one may have no path, and a stage need not run in each.
-struct Totals {
-  double paths = 0, rays = 0, seconds = 0;
-};
-Totals totalsOf(const std::vector<Slice>& slices) {
-  Totals totals;
-  for (const Slice& slice : slices) {
-    totals.paths += static_cast<double>(slice.paths);
-    totals.rays += slice.rays();
-    totals.seconds += slice.seconds;
-  }
-  return totals;
-}
-RenderStatistics::StageRow totalOf(const std::vector<Slice>& slices, size_t stage) {
-  RenderStatistics::StageRow total{.name = slices.front().stages[stage].name};
-  for (const Slice& slice : slices) {
-    const RenderStatistics::StageRow& row = slice.stages[stage];
-    total.items += row.items;
-    total.laneSlots += row.laneSlots;
-    total.seconds += row.seconds;
-  }
-  return total;
+template <class Projection>
+Estimate estimateOf(const std::vector<Slice>& slices, Projection&& projection) {
+  return estimateMedian(valuesOf(slices, projection));
 }
 
-// times: of each stage in CPU time, where they can be measured apart. Otherwise a stage's share is its part of the
-// slices' time: the session's clock goes on while another program has the core, but so it does in the other stages.
-// slices: of one thread.
-std::vector<StageShare> stageShares(const std::vector<Slice>& slices, const StageTimes& times,
-                                    double pathsPerCpuSecond) {
-  const Totals all = totalsOf(slices);
+// Of each round the ratio of two sessions' figures: what holds up a whole round falls out.
+template <class Projection>
+Estimate estimateRatio(const std::vector<Slice>& slices, const std::vector<Slice>& base, Projection&& projection) {
+  std::vector<double> ratios = valuesOf(slices, projection);
+  const std::vector<double> below = valuesOf(base, projection);
+  for (size_t i = 0; i < ratios.size(); ++i) ratios[i] /= below[i];
+  return estimateMedian(ratios);
+}
+
+// A stage's row of one slice. Its seconds are of the time-stamp counter, which goes on while another program has the
+// core, as the slice's wall time does; so a share is their ratio.
+double shareIn(const Slice& slice, size_t stage) { return slice.stages[stage].seconds / slice.seconds; }
+
+Estimate scaled(Estimate estimate, double factor) {
+  return {estimate.value * factor, {estimate.interval.low * factor, estimate.interval.high * factor}};
+}
+
+// slices: of one thread, each of whole iterations.
+std::vector<StageShare> stageShares(const std::vector<Slice>& slices) {
   std::vector<StageShare> shares;
   for (size_t i = 0; i < slices.front().stages.size(); ++i) {
-    const RenderStatistics::StageRow total = totalOf(slices, i);
-    const auto items = static_cast<double>(total.items);
     StageShare& share = shares.emplace_back();
-    share.name = total.name;
-    share.itemsPerPath = items / all.paths;
-    if (total.laneSlots != 0) share.laneUse = items / static_cast<double>(total.laneSlots);
-    share.share = times.possible() ? times.secondsPerPath(i) * pathsPerCpuSecond : total.seconds / all.seconds;
-    share.nsPerPath = 1e9 * share.share / pathsPerCpuSecond;
-    share.nsPerItem = share.itemsPerPath > 0 ? share.nsPerPath / share.itemsPerPath : 0;
+    share.name = slices.front().stages[i].name;
+    double items = 0, laneSlots = 0, paths = 0;
+    for (const Slice& slice : slices) {
+      items += static_cast<double>(slice.stages[i].items);
+      laneSlots += static_cast<double>(slice.stages[i].laneSlots);
+      paths += static_cast<double>(slice.paths);
+    }
+    share.itemsPerPath = items / paths;
+    if (laneSlots != 0) share.laneUse = items / laneSlots;
+    share.share = estimateOf(slices, [i](const Slice& s) { return shareIn(s, i); });
+    share.nsPerPath = estimateOf(slices, [i](const Slice& s) { return 1e9 * shareIn(s, i) / s.pathsPerCpuSecond(); });
+    if (items > 0) share.nsPerItem = scaled(share.nsPerPath, 1 / share.itemsPerPath);
   }
   return shares;
 }
+
+double restIn(const Slice& slice) {
+  double rest = 1;
+  for (size_t i = 0; i < slice.stages.size(); ++i) rest -= shareIn(slice, i);
+  return rest;
+}
+
+double wallRate(const Slice& slice) { return slice.pathsPerSecond(); }
+double cpuRate(const Slice& slice) { return slice.pathsPerCpuSecond(); }
 
 }  // namespace
 
@@ -71,31 +77,34 @@ Speed measureSpeed(const Scene& scene, const RenderSettings& settings, double se
     own.measureStages = true;
     sessions.push_back(Session::create(scene, own));
   }
-  StageTimes stageTimes(scene, settings);
-  const auto slices = renderInTurn(sessions, seconds / static_cast<double>((kScalingRounds + 1) * sessions.size()),
-                                   kScalingRounds, [&] {
-                                     if (stageTimes.possible()) stageTimes.measureFor(0.3 * seconds / kScalingRounds);
-                                   });
-  const auto& one = slices.front();
-  const auto& all = slices.back();
+  MachineWatch watch;
+  auto slices =
+      renderInTurn(sessions, {.seconds = seconds, .fewestRounds = kFewestSpeedRounds, .mostRounds = kMostSpeedRounds},
+                   [&] { watch.look(); });
+  const std::vector<Slice>&one = slices.front(), &all = slices.back();
 
-  Speed speed;
-  speed.facts = sessions.front()->statistics();
+  Speed speed{.pathsPerSecond = estimateOf(all, wallRate),
+              .raysPerSecond = estimateOf(all, [](const Slice& s) { return s.rays() / s.seconds; }),
+              .pathsPerCpuSecond = estimateOf(one, cpuRate),
+              .raysPerCpuSecond = estimateOf(one, [](const Slice& s) { return s.rays() / s.cpuSeconds; }),
+              .stages = stageShares(one),
+              .restShare = estimateOf(one, restIn),
+              .scaling = {},
+              .facts = sessions.front()->statistics(),
+              .machine = watch.state()};
+  double rays = 0, paths = 0;
+  for (const Slice& slice : one) {
+    rays += slice.rays();
+    paths += static_cast<double>(slice.paths);
+  }
+  speed.raysPerPath = rays / paths;
   speed.bytesPerPath = speed.facts.bytesPerPath;
-  speed.pathsPerSecond = medianOf(all, [](const Slice& s) { return s.pathsPerSecond(); });
-  speed.raysPerSecond = medianOf(all, [](const Slice& s) { return s.rays() / s.seconds; });
-  speed.pathsPerCpuSecond = medianOf(one, [](const Slice& s) { return s.pathsPerCpuSecond(); });
-  const Totals byOne = totalsOf(one);
-  speed.raysPerPath = byOne.rays / byOne.paths;
-  speed.raysPerCpuSecond = medianOf(one, [](const Slice& s) { return s.rays() / s.cpuSeconds; });
-  speed.stages = stageShares(one, stageTimes, speed.pathsPerCpuSecond);
-  speed.restShare = 1;
-  for (const StageShare& stage : speed.stages) speed.restShare -= stage.share;
-  const double baseWall = medianOf(one, [](const Slice& s) { return s.pathsPerSecond(); });
   for (size_t i = 0; i < threads.size(); ++i) {
-    const double wall = medianOf(slices[i], [](const Slice& s) { return s.pathsPerSecond(); });
-    const double cpu = medianOf(slices[i], [](const Slice& s) { return s.pathsPerCpuSecond(); });
-    speed.scaling.push_back({threads[i], wall, wall / baseWall, cpu / speed.pathsPerCpuSecond});
+    speed.scaling.push_back({.threads = threads[i],
+                             .pathsPerSecond = estimateOf(slices[i], wallRate),
+                             .speedup = estimateRatio(slices[i], one, wallRate),
+                             .cpuEfficiency = estimateRatio(slices[i], one, cpuRate),
+                             .slices = slices[i]});
   }
   return speed;
 }

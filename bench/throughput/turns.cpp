@@ -1,9 +1,9 @@
 #include "bench/throughput/turns.h"
 
-#include <cassert>
-
 namespace wavecrest {
 namespace {
+
+constexpr double kMostOvershoot = 1.25;  // of a slice's paths over those asked for
 
 Slice difference(const RenderStatistics& after, const RenderStatistics& before) {
   Slice slice;
@@ -21,29 +21,53 @@ Slice difference(const RenderStatistics& after, const RenderStatistics& before) 
   return slice;
 }
 
-Slice renderSlice(Session& session, double seconds) {
-  const RenderStatistics before = session.statistics();
-  session.renderUntil(std::nullopt, before.renderSeconds + seconds);
-  return difference(session.statistics(), before);
-}
+// A session that goes on by the same number of iterations each time.
+class Candidate {
+ public:
+  explicit Candidate(Session& session) : session_(session) {}
+
+  // Doubles the iterations until a slice takes half of the time or more. The first render does not count: chains
+  // bootstrap in it. Chains advance in steps of many mutations; a slice must hold several, so that none is left empty.
+  void fill(double sliceSeconds) {
+    render();
+    for (;; iterations_ *= 2) {
+      const Slice slice = render();
+      const double asked = static_cast<double>(iterations_ * session_.film().area().pixels.size());
+      const bool even = slice.paths > 0 && static_cast<double>(slice.paths) <= kMostOvershoot * asked;
+      if (even && slice.seconds >= 0.5 * sliceSeconds) return;
+    }
+  }
+  Slice render() {
+    const RenderStatistics before = session_.statistics();
+    done_ += iterations_;
+    session_.renderUntil(done_, std::nullopt);
+    return difference(session_.statistics(), before);
+  }
+
+ private:
+  Session& session_;
+  uint64_t iterations_ = 1, done_ = 0;
+};
 
 }  // namespace
 
-double median(std::vector<double> values) {
-  assert(!values.empty());
-  std::sort(values.begin(), values.end());
-  const size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
-}
-
-std::vector<std::vector<Slice>> renderInTurn(std::span<const std::unique_ptr<Session>> sessions, double sliceSeconds,
-                                             size_t rounds, const std::function<void()>& afterRound) {
+std::vector<std::vector<Slice>> renderInTurn(std::span<const std::unique_ptr<Session>> sessions, const TurnPlan& plan,
+                                             const std::function<void()>& afterRound) {
+  // One more slice for finding out how long slices take.
+  const double sliceSeconds = plan.seconds / static_cast<double>((plan.mostRounds + 1) * sessions.size());
+  std::vector<Candidate> candidates;
+  for (const auto& session : sessions) {
+    candidates.emplace_back(*session);
+    candidates.back().fill(sliceSeconds);
+  }
   std::vector<std::vector<Slice>> slices(sessions.size());
-  for (const auto& session : sessions) renderSlice(*session, sliceSeconds);
-  for (size_t round = 0; round < rounds; ++round) {
-    for (size_t k = 0; k < sessions.size(); ++k) {
-      const size_t i = round % 2 == 0 ? k : sessions.size() - 1 - k;
-      slices[i].push_back(renderSlice(*sessions[i], sliceSeconds));
+  double spent = 0;
+  for (size_t round = 0; round < plan.mostRounds; ++round) {
+    if (round >= plan.fewestRounds && spent >= plan.seconds) break;
+    for (size_t k = 0; k < candidates.size(); ++k) {
+      const size_t i = round % 2 == 0 ? k : candidates.size() - 1 - k;
+      slices[i].push_back(candidates[i].render());
+      spent += slices[i].back().seconds;
     }
     afterRound();
   }

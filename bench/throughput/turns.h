@@ -1,7 +1,8 @@
-// Renders several sessions in turn, a slice of time each, and keeps what every slice did.
+// Renders several sessions in turn, a slice each, and keeps what every slice did.
 //
-// What is compared is rendered in alternating order (A B, B A, ...), so that other programs and the clock of the CPU
-// meet all candidates alike; figures are medians over slices.
+// A slice is a number of whole iterations, so it covers all of the image: parts of an image cost differently. What is
+// compared is rendered in alternating order (A B, B A, ...), so that other programs and the clock of the CPU meet all
+// candidates alike; figures are medians over slices, with intervals.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +11,10 @@
 #include <span>
 #include <vector>
 
+#include "bench/statistics/medians.h"
 #include "engine/session.h"
 
 namespace wavecrest {
-
-// The median; of an even count the mean of the middle two. values must not be empty.
-double median(std::vector<double> values);
 
 // What one session did in one slice.
 struct Slice {
@@ -29,17 +28,23 @@ struct Slice {
   double rays() const { return static_cast<double>(counters.raysClosest + counters.raysShadow); }
 };
 
-// slices[session][round]. Every session first renders one slice that is not kept: it fills caches and starts threads.
-// afterRound: what else is to be measured in turn with the slices.
+struct TurnPlan {
+  double seconds = 0;                       // render time of all sessions together, about
+  size_t fewestRounds = 1, mostRounds = 1;  // where an iteration takes long, fewest rounds may take more time
+};
+
+// slices[session][round]. Slices of one session have the same number of iterations, a power of two, as many as fill its
+// share of the time. How long they take is found in renders that are not kept; those also fill caches and start
+// threads. afterRound: what else is to be done in turn with the slices.
 std::vector<std::vector<Slice>> renderInTurn(
-    std::span<const std::unique_ptr<Session>> sessions, double sliceSeconds, size_t rounds,
+    std::span<const std::unique_ptr<Session>> sessions, const TurnPlan& plan,
     const std::function<void()>& afterRound = [] {});
 
 template <class Projection>
-double medianOf(const std::vector<Slice>& slices, Projection&& projection) {
+std::vector<double> valuesOf(const std::vector<Slice>& slices, Projection&& projection) {
   std::vector<double> values(slices.size());
   std::transform(slices.begin(), slices.end(), values.begin(), projection);
-  return median(std::move(values));
+  return values;
 }
 
 }  // namespace wavecrest

@@ -21,7 +21,7 @@ StageContext<S> WaveCapture<S>::context(uint32_t depth) {
           .limits = settings_.limits,
           .mis = plan_.pipeline.cameraPass.strategies,
           .depth = depth,
-          .splats = {},
+          .film = {},
           .counters = &counters_};
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -34,6 +35,14 @@ Image speckled(float deviation, uint32_t side = kSide) {
   return image;
 }
 
+// A whole reference, as `wavecrest reference` writes it.
+void writeWhole(const fs::path& file, const Image& mean) {
+  const Metadata says{
+      {"wavecrest:scene_hash", "00ff"}, {"wavecrest:relative_error", "0.25"}, {"wavecrest:noise_floor.rmse", "0.125"}};
+  const std::array<ExrLayer, 1> layers{ExrLayer{"difference", speckled(0.1F, mean.width)}};
+  writeExr(file.string(), mean, says, layers);
+}
+
 class CollectRenders : public testing::Test {
  protected:
   void SetUp() override {
@@ -41,7 +50,7 @@ class CollectRenders : public testing::Test {
     folder = fs::path(testing::TempDir()) / (std::string("wavecrest_collect_") + info->name());
     fs::remove_all(folder);
     fs::create_directories(folder);
-    writeExr((folder / "box.reference.exr").string(), speckled(0));
+    writeWhole(folder / "box.reference.exr", speckled(0));
   }
   void TearDown() override { fs::remove_all(folder); }
 
@@ -162,10 +171,49 @@ TEST_F(CollectRenders, meanOfTwoHalvesIsTheReferenceAndHalfTheirDifferenceItsNoi
   EXPECT_NEAR(scene.series[0].runs[0].points[0].values[0], 0.21, 1e-6);  // against 0.5 -+ 0.01
 }
 
-TEST_F(CollectRenders, aSingleReferenceHasNoKnownNoise) {
+TEST_F(CollectRenders, aWholeReferenceBringsTheNoiseFloorsThatItStores) {
   addRun("box.pt");
-  const ConvergenceReport report = collectRenders(folder);
-  for (const auto& floor : report.scenes[0].noiseFloors) EXPECT_FALSE(floor.has_value());
+  const ReportScene scene = collectRenders(folder).scenes[0];
+  EXPECT_EQ(scene.noiseFloors.at(0), 0.125) << "of rmse";
+  for (size_t m = 1; m < scene.noiseFloors.size(); ++m) EXPECT_FALSE(scene.noiseFloors[m].has_value());
+}
+
+TEST_F(CollectRenders, aPlainRenderIsNoReference) {
+  addRun("box.pt");
+  writeExr((folder / "box.reference.exr").string(), speckled(0), {{"wavecrest:scene_hash", "00ff"}});
+  EXPECT_NE(error().find("box.reference.exr: is a plain image, without the two halves"), std::string::npos) << error();
+}
+
+TEST_F(CollectRenders, anotherScenesReferenceIsRefused) {
+  addRun("box.pt", {{"scene_hash", "1234"}});
+  EXPECT_NE(error().find("box.reference.exr: is of scene_hash 00ff; expected 1234"), std::string::npos) << error();
+  fs::remove(folder / "box.reference.exr");
+  writeExr((folder / "box.reference.1.exr").string(), speckled(0.01F), {{"wavecrest:scene_hash", "1234"}});
+  writeExr((folder / "box.reference.2.exr").string(), speckled(-0.03F), {{"wavecrest:scene_hash", "00ff"}});
+  EXPECT_NE(error().find("box.reference.2.exr: is of scene_hash 00ff; expected 1234"), std::string::npos) << error();
+}
+
+TEST_F(CollectRenders, halvesOfOneSeedAreNotIndependent) {
+  addRun("box.pt");
+  fs::remove(folder / "box.reference.exr");
+  for (const char* name : {"box.reference.1.exr", "box.reference.2.exr"}) {
+    writeExr((folder / name).string(), speckled(0), {{"wavecrest:seed", "7"}});
+  }
+  EXPECT_NE(error().find("box.reference.2.exr: has the seed 7 of the other half"), std::string::npos) << error();
+}
+
+TEST_F(CollectRenders, onlyTheFolderItselfIsLookedInto) {
+  // The stats name an image by the absolute path where it was rendered; by now another render's lies there.
+  const fs::path elsewhere = folder / "elsewhere";
+  fs::create_directories(elsewhere);
+  addRun("box.pt", {{"snapshots",
+                     {{{"index", 0},
+                       {"render_seconds", 1.0},
+                       {"iterations", 10},
+                       {"file", (elsewhere / "box.pt.000.exr").string()}}}}});
+  writeExr((elsewhere / "box.pt.000.exr").string(), speckled(0.4F));
+  const ReportScene scene = collectRenders(folder).scenes[0];
+  EXPECT_NEAR(scene.series[0].runs[0].points[0].values[0], 0.2, 1e-6);
 }
 
 TEST_F(CollectRenders, runsThatDifferByTheSeedAreOneSeries) {
@@ -218,7 +266,7 @@ TEST_F(CollectRenders, errorsNameTheFileAndWhatWasExpected) {
   fs::remove(folder / "box.reference.exr");
   EXPECT_NE(error().find("no reference for 'box'; expected box.reference.exr"), std::string::npos) << error();
 
-  writeExr((folder / "box.reference.exr").string(), speckled(0, 12));
+  writeWhole(folder / "box.reference.exr", speckled(0, 12));
   EXPECT_NE(error().find("box.pt.000.exr: image of 16x16 pixels; expected 12x12 as in"), std::string::npos) << error();
 
   fs::remove(folder / "box.pt.001.exr");

@@ -25,6 +25,7 @@ class MeasuredRunTest : public testing::Test {
   std::optional<RunRecord> run(Method method, uint64_t iterations, bool keepImages = true) {
     RenderSettings settings;
     settings.method = method;
+    settings.metropolis.variant = variant_;
     settings.seed = 3;
     settings.isa = bestIsa();
     settings.threads = 2;
@@ -36,7 +37,7 @@ class MeasuredRunTest : public testing::Test {
                         .reference = reference_,
                         .out = folder_.folder(),
                         .keepImages = keepImages},
-                       watch_);
+                       {.watch = watch_});
   }
   size_t imageCount() const {
     return static_cast<size_t>(std::distance(std::filesystem::directory_iterator(folder_.folder() / "images"), {}));
@@ -47,6 +48,7 @@ class MeasuredRunTest : public testing::Test {
   const PreparedReference reference_{
       "grey", {{.width = 32, .height = 24, .channels = 3, .pixels = std::vector<float>(3 * 32 * 24, 0.3f)}, {}, {}}};
   std::function<void(Session*)> watch_;
+  MetropolisVariant variant_ = MetropolisVariant::mmlt;
 };
 
 TEST_F(MeasuredRunTest, snapshotsDoubleAndEndWithTheLastIteration) {
@@ -106,9 +108,10 @@ TEST_F(MeasuredRunTest, repeatsToTheBit) {
 
 TEST_F(MeasuredRunTest, aRefusalSaysWhy) {
   scene_.sensor.kind = Sensor::Kind::thinlens;
+  variant_ = MetropolisVariant::pathspace;
   const RunRecord run = this->run(Method::mlt, 1).value();
   EXPECT_EQ(run.state, RunState::refused);
-  EXPECT_NE(run.reason.find("mmlt needs a pinhole"), std::string::npos) << run.reason;
+  EXPECT_NE(run.reason.find("pathspace needs a pinhole"), std::string::npos) << run.reason;
   EXPECT_TRUE(run.snapshots.empty());
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "engine/load/load.h"
 #include "scenes/scene_list.h"
@@ -115,14 +116,29 @@ TEST(RenderReference, anotherReferenceIsNotContinued) {
                ReferenceMismatch);
 }
 
+TEST(RenderReference, hasSeedsThatNoCampaignHas) {
+  std::set<uint64_t> seeds;
+  for (uint64_t seed = 0; seed < 100; ++seed) {
+    for (const size_t half : {0u, 1u}) {
+      for (const uint64_t first : {0u, 1u, 7u, 1000u}) {
+        const uint64_t own = referenceSeed(seed, half, first);
+        EXPECT_GE(own, uint64_t{1} << 32);
+        seeds.insert(own);
+      }
+    }
+  }
+  EXPECT_EQ(seeds.size(), 100u * 2 * 4) << "and no two alike";
+}
+
 TEST(RenderReference, aStopKeepsWholeIterationsOfBothHalves) {
   const test::TemporaryFolder folder;
   const std::string file = folder.path("r.exr");
   const Scene scene = tinyScene();
   int watched = 0;
   // Stops in the second round, after its first half.
-  const ReferenceHooks hooks{.watch = [&](Session* session) { watched += session != nullptr ? 1 : 0; },
+  const ReferenceHooks hooks{.session = {.watch = [&](Session* session) { watched += session != nullptr ? 1 : 0; }},
                              .stopped = [&] { return watched >= 3; },
+                             .saveNow = {},
                              .advance = {}};
   const Reference stopped = renderReference(scene, settingsOf(Method::pt), "test", iterations(1000), file, hooks);
   EXPECT_EQ(stopped.info.iterations, 1u);

@@ -103,8 +103,8 @@ TEST(ResultsStore, aRunThatIsThereIsRefusedAndLeavesNoTrace) {
   ResultsStore store(folder.path("results.sqlite"));
   store.putScene(sampleScene());
   store.putRun(sampleRun());
-  EXPECT_TRUE(store.hasRun("box", "pt", 1));
-  EXPECT_FALSE(store.hasRun("box", "pt", 2));
+  EXPECT_TRUE(store.findRun("box", "pt", 1));
+  EXPECT_FALSE(store.findRun("box", "pt", 2));
   EXPECT_THROW(store.putRun(sampleRun()), ResultsFileError);
   EXPECT_EQ(readResults(folder.folder()).runs.size(), 1u);
 }
@@ -116,7 +116,7 @@ TEST(ResultsStore, aRunThatFailsHalfwayIsNotThereAtAll) {
   RunRecord run = sampleRun();
   run.snapshots[1].number = run.snapshots[0].number;  // after one snapshot has been written
   EXPECT_THROW(store.putRun(run), ResultsFileError);
-  EXPECT_FALSE(store.hasRun("box", "pt", 1));
+  EXPECT_FALSE(store.findRun("box", "pt", 1));
   EXPECT_TRUE(readResults(folder.folder()).runs.empty());
 }
 

@@ -1,4 +1,4 @@
-// bench_kernels: microbenchmarks of the stages. Repetitions run in random order across all benchmarks, so that a
+// stages_bench: microbenchmarks of the stages. Repetitions run in random order across all benchmarks, so that a
 // disturbance of the machine meets them alike; arguments of the command line come last and win.
 #include <benchmark/benchmark.h>
 #include <pmmintrin.h>

@@ -1,7 +1,7 @@
 // Microbenchmarks of the kernels on each instruction set. To compare a change with its base on the same machine, run
 // both builds in turn with --benchmark_enable_random_interleaving=true --benchmark_repetitions=9, which spreads the
 // repetitions over the run so that clock and neighbours change for all alike.
-#include "bench/micro/kernels_bench.h"
+#include "bench/micro/lanes_bench.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,0 +1,135 @@
+#include "bench/against/against.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "bench/against/child_render.h"
+#include "metrics/image/image_io.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLongestRun = 0.25;  // CPU seconds: short, so that a pair meets the machine in one state
+constexpr size_t kFewestRounds = 12;  // below that no ranks reach the level of a family of 40
+
+double cpuSecondsOf(const nlohmann::json& stats) { return stats.at("cpu_seconds").get<double>(); }
+
+std::string versionOf(const nlohmann::json& stats) {
+  return fmt::format("{} {}", stats.value("version", "?"), stats.value("commit", "?"));
+}
+
+void compareImages(const Image& ours, const Image& other, AgainstRow& row) {
+  row.sameImage = ours.width == other.width && ours.height == other.height && ours.pixels == other.pixels;
+  if (ours.pixels.size() != other.pixels.size()) {
+    row.imageDifference = 1;
+    return;
+  }
+  double square = 0, difference = 0;
+  for (size_t i = 0; i < other.pixels.size(); ++i) {
+    const double value = other.pixels[i], d = static_cast<double>(ours.pixels[i]) - value;
+    square += value * value;
+    difference += d * d;
+  }
+  row.imageDifference = square > 0 ? std::sqrt(difference / square) : std::sqrt(difference);
+}
+
+class Runner {
+ public:
+  explicit Runner(const AgainstRequest& request)
+      : request_(request), runSeconds_(std::min(kLongestRun, request.seconds / (2.0 * kFewestRounds))) {
+    result_.ours = ownBinary();
+    result_.other = request.other;
+    result_.threads = request.threads;
+    result_.family = request.family;
+    for (const fs::path& scene : request.scenes) {
+      for (const std::string& method : request.methods) {
+        children_.push_back({.scene = scene,
+                             .method = method,
+                             .size = request.size,
+                             .threads = request.threads,
+                             .more = request.more,
+                             .imageFile = {}});
+        AgainstRow& row = result_.rows.emplace_back();
+        row.scene = scene.stem().string();
+        row.method = method;
+      }
+    }
+  }
+
+  AgainstResult run(const std::function<void(size_t, size_t)>& progress) {
+    for (size_t i = 0; i < children_.size(); ++i) prepare(i);
+    const auto rounds = static_cast<size_t>(std::round(request_.seconds / (2 * runSeconds_)));
+    for (size_t round = 0; round < rounds; ++round) {
+      for (size_t i = 0; i < children_.size(); ++i) measurePair(i, round);
+      progress(round + 1, rounds);
+    }
+    std::vector<Comparison*> comparisons;
+    for (AgainstRow& row : result_.rows) {
+      row.comparison = comparePaired(row.ourSeconds, row.otherSeconds, request_.family);
+      comparisons.push_back(&row.comparison);
+    }
+    judge(comparisons, request_.family);
+    return std::move(result_);
+  }
+
+ private:
+  nlohmann::json render(const fs::path& binary, const ChildRequest& child) {
+    return renderInChild(binary, child, folder_);
+  }
+
+  // Compares one iteration's images, and finds how many iterations fill a run.
+  void prepare(size_t i) {
+    ChildRequest& child = children_[i];
+    const std::string file = (folder_.path() / "image.pfm").string();
+    child.imageFile = file;
+    const nlohmann::json other = render(result_.other, child);
+    const Image otherImage = readImage(file).image;
+    const nlohmann::json ours = render(result_.ours, child);
+    compareImages(readImage(file).image, otherImage, result_.rows[i]);
+    child.imageFile.reset();
+    result_.ourVersion = versionOf(ours);
+    result_.otherVersion = versionOf(other);
+    double seconds = cpuSecondsOf(ours);
+    // Twice: the first iterations of a render are slower than later ones.
+    for (int step = 0; step < 2 && seconds < runSeconds_; ++step) {
+      const double factor = runSeconds_ / std::max(seconds, 1e-3);
+      child.iterations = static_cast<uint64_t>(std::ceil(static_cast<double>(child.iterations) * factor));
+      seconds = cpuSecondsOf(render(result_.ours, child));
+    }
+    result_.rows[i].iterations = child.iterations;
+  }
+
+  void measurePair(size_t i, size_t round) {
+    ChildRequest& child = children_[i];
+    child.seed = round;
+    AgainstRow& row = result_.rows[i];
+    for (const size_t turn : {round % 2, 1 - round % 2}) {
+      if (turn == 0) row.ourSeconds.push_back(cpuSecondsOf(render(result_.ours, child)));
+      if (turn == 1) row.otherSeconds.push_back(cpuSecondsOf(render(result_.other, child)));
+    }
+  }
+
+  const AgainstRequest& request_;
+  const double runSeconds_;  // CPU time of a run, about
+  const ScratchFolder folder_;
+  std::vector<ChildRequest> children_;  // one for each row
+  AgainstResult result_;
+};
+
+}  // namespace
+
+bool AgainstResult::anySlower() const {
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const AgainstRow& row) { return row.comparison.verdict == SpeedVerdict::slower; });
+}
+
+AgainstResult runAgainst(const AgainstRequest& request, const std::function<void(size_t, size_t)>& progress) {
+  return Runner(request).run(progress);
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,98 @@
+#include "bench/against/child_render.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lastLine(const fs::path& file) {
+  std::ifstream in(file);
+  std::string last;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.empty()) last = line;
+  }
+  return last;
+}
+
+// Runs a program to its end with its error output in a file; the exit code, or 128 + the signal that ended it.
+int runProgram(const std::vector<std::string>& arguments, const fs::path& errors) {
+  std::vector<char*> words;
+  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  pid_t child = 0;
+  const int failed = posix_spawn(&child, words.front(), &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) throw ChildError(fmt::format("{}: {}", arguments.front(), std::strerror(failed)));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) throw ChildError(fmt::format("{}: {}", arguments.front(), std::strerror(errno)));
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace
+
+ScratchFolder::ScratchFolder() {
+  std::string name = (fs::temp_directory_path() / "wavecrest_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw ChildError(fmt::format("{}: {}", name, std::strerror(errno)));
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+nlohmann::json renderInChild(const fs::path& binary, const ChildRequest& request, const ScratchFolder& folder) {
+  const fs::path stats = folder.path() / "stats.json", errors = folder.path() / "errors.txt";
+  fs::remove(stats);
+  std::vector<std::string> arguments = {binary.string(),
+                                        "render",
+                                        request.scene.string(),
+                                        "--method",
+                                        request.method,
+                                        "--spp",
+                                        std::to_string(request.iterations),
+                                        "--seed",
+                                        std::to_string(request.seed),
+                                        "--threads",
+                                        std::to_string(request.threads),
+                                        "--progress",
+                                        "none",
+                                        "--stats",
+                                        stats.string()};
+  if (!request.size.empty()) arguments.insert(arguments.end(), {"--size", request.size});
+  if (request.imageFile) arguments.insert(arguments.end(), {"--output", *request.imageFile});
+  arguments.insert(arguments.end(), request.more.begin(), request.more.end());
+  const int code = runProgram(arguments, errors);
+  if (code != 0) {
+    throw ChildError(fmt::format("{}: render {} --method {} ended with code {}: {}", binary.string(),
+                                 request.scene.filename().string(), request.method, code, lastLine(errors)));
+  }
+  std::ifstream in(stats);
+  nlohmann::json all = nlohmann::json::parse(in, nullptr, false);
+  if (!all.is_object() || !all.contains("cpu_seconds")) {
+    throw ChildError(fmt::format("{}: its --stats are not those of a wavecrest render", binary.string()));
+  }
+  return all;
+}
+
+fs::path ownBinary() { return fs::read_symlink("/proc/self/exe"); }
+
+}  // namespace wavecrest

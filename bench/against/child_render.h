@@ -1,0 +1,49 @@
+// Renders with a wavecrest binary, this one or an older build, in a process of its own.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace wavecrest {
+
+// The child could not be started, or failed. The text is complete: "BINARY: what it said".
+struct ChildError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// A folder for what children write, deleted with everything in it.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// What a render is asked for, in options that every version of wavecrest has.
+struct ChildRequest {
+  std::filesystem::path scene;
+  std::string method;
+  std::string size;  // WIDTHxHEIGHT, or empty for the scene's own
+  uint64_t iterations = 1, seed = 0;
+  uint32_t threads = 1;
+  std::vector<std::string> more;         // further options
+  std::optional<std::string> imageFile;  // where the image goes, if anywhere
+};
+
+// Runs `BINARY render` to its end and returns its --stats.
+nlohmann::json renderInChild(const std::filesystem::path& binary, const ChildRequest& request,
+                             const ScratchFolder& folder);
+
+// The file that this process runs.
+std::filesystem::path ownBinary();
+
+}  // namespace wavecrest

@@ -1,0 +1,127 @@
+#include "bench/against/stored.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "bench/text_lines.h"
+
+namespace wavecrest {
+namespace {
+
+using Json = nlohmann::json;
+
+// CPU seconds per path of each slice on one thread, by "scene method WxH".
+using Series = std::map<std::string, std::vector<double>>;
+
+std::vector<double> slicesOfOneThread(const Json& method) {
+  std::vector<double> values;
+  for (const Json& row : method.at("scaling")) {
+    if (row.at("threads") != 1) continue;
+    for (const Json& slice : row.at("slices")) {
+      values.push_back(slice.at("cpu_seconds").get<double>() / slice.at("paths").get<double>());
+    }
+  }
+  return values;
+}
+
+Series seriesOf(const Json& result) {
+  Series series;
+  try {
+    for (const Json& scene : result.at("scenes")) {
+      for (const Json& method : scene.at("methods")) {
+        const std::string name =
+            fmt::format("{} {} {}x{}", scene.at("scene").get<std::string>(), method.at("method").get<std::string>(),
+                        scene.at("width").get<int>(), scene.at("height").get<int>());
+        const std::vector<double> values = slicesOfOneThread(method);
+        if (!values.empty()) series[name] = values;
+      }
+    }
+  } catch (const Json::exception&) {
+    throw StoredMismatch("is not a result of wavecrest bench; expected one written by --json");
+  }
+  return series;
+}
+
+// What makes times comparable at all.
+std::string machineOf(const Json& result) {
+  if (!result.contains("machine")) throw StoredMismatch("does not say which machine it comes from");
+  const Json& machine = result.at("machine");
+  return fmt::format("{}, {} cores", machine.value("cpu", "?"), machine.value("cores", 0));
+}
+
+}  // namespace
+
+bool StoredComparison::anySlower() const {
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const StoredRow& row) { return row.comparison.verdict == SpeedVerdict::slower; });
+}
+
+StoredComparison compareStored(const Json& before, const Json& after, const FamilyLevel& family) {
+  const Series old = seriesOf(before), now = seriesOf(after);
+  if (const std::string a = machineOf(before), b = machineOf(after); a != b) {
+    throw StoredMismatch(fmt::format("come from different machines: {}; {}", a, b));
+  }
+  StoredComparison result{.family = family, .rows = {}, .unmatched = {}};
+  for (const auto& [name, values] : old) {
+    const auto found = now.find(name);
+    if (found == now.end()) {
+      result.unmatched.push_back(name);
+      continue;
+    }
+    StoredRow& row = result.rows.emplace_back();
+    const size_t first = name.find(' '), second = name.find(' ', first + 1);
+    row.scene = name.substr(0, first);
+    row.method = name.substr(first + 1, second - first - 1);
+    row.size = name.substr(second + 1);
+    row.comparison = compareUnpaired(found->second, values, family);
+  }
+  for (const auto& [name, values] : now) {
+    if (old.count(name) == 0) result.unmatched.push_back(name);
+  }
+  if (result.rows.empty()) throw StoredMismatch("have no scene, method and size in common");
+  std::vector<Comparison*> comparisons;
+  for (StoredRow& row : result.rows) comparisons.push_back(&row.comparison);
+  judge(comparisons, family);
+  return result;
+}
+
+std::string toText(const StoredComparison& result) {
+  TextLines text;
+  line(text, "{:<24} {:<6} {:<10} {:>7} {:>17} {:>9}  {}", "scene", "method", "size", "speed", "interval", "p",
+       "verdict");
+  for (const StoredRow& row : result.rows) {
+    const Comparison& c = row.comparison;
+    line(text, "{:<24} {:<6} {:<10} {:>7.4f} {:>8.4f}-{:<8.4f} {:>9.2g}  {}", row.scene, row.method, row.size,
+         c.speedup, c.interval.low, c.interval.high, c.probability, toString(c.verdict));
+  }
+  for (const std::string& name : result.unmatched) line(text, "only in one of them: {}", name);
+  line(text,
+       "\nspeed: of the second over the first, CPU time per path on one thread; p: rank-sum test of slices, corrected");
+  line(text, "for {} comparisons. They were not measured in turn: --against tells a build from a machine that changed.",
+       result.rows.size());
+  return fmt::to_string(text);
+}
+
+nlohmann::ordered_json toJson(const StoredComparison& result) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const StoredRow& row : result.rows) {
+    const Comparison& c = row.comparison;
+    rows.push_back({{"scene", row.scene},
+                    {"method", row.method},
+                    {"size", row.size},
+                    {"speedup", c.speedup},
+                    {"interval", {c.interval.low, c.interval.high}},
+                    {"probability", c.probability},
+                    {"verdict", std::string(toString(c.verdict))}});
+  }
+  return {{"family_level", result.family.level},
+          {"tolerance", result.family.tolerance},
+          {"interval_level", kIntervalLevel},
+          {"comparisons", rows},
+          {"unmatched", result.unmatched}};
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,31 @@
+// A lock on a file that one process at a time may work on: a campaign's results, a reference.
+//
+// It is a file of its own beside it, NAME.lock, held by flock: the kernel lets go of it however the process ends, so a
+// lock never has to be removed by hand. It says who holds it. File systems that know no locks are taken to be free.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+
+namespace wavecrest {
+
+// Another process works on the file. The text is complete.
+struct FileLockError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+class FileLock {
+ public:
+  // Throws FileLockError where another process holds it. The folder must exist.
+  explicit FileLock(const std::filesystem::path& file);
+  // Removes the lock's file.
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+};
+
+}  // namespace wavecrest

@@ -1,0 +1,93 @@
+#include "bench/machine/topology.h"
+
+#include <hwloc.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+namespace wavecrest {
+namespace {
+
+struct DestroyTopology {
+  void operator()(hwloc_topology_t topology) const { hwloc_topology_destroy(topology); }
+};
+struct FreeBitmap {
+  void operator()(hwloc_bitmap_t bitmap) const { hwloc_bitmap_free(bitmap); }
+};
+using TopologyHandle = std::unique_ptr<hwloc_topology, DestroyTopology>;
+using Bitmap = std::unique_ptr<hwloc_bitmap_s, FreeBitmap>;
+
+uint32_t countOf(const TopologyHandle& topology, hwloc_obj_type_t type) {
+  return static_cast<uint32_t>(std::max(hwloc_get_nbobjs_by_type(topology.get(), type), 0));
+}
+
+size_t cacheBytes(const TopologyHandle& topology, hwloc_obj_type_t type) {
+  const hwloc_obj_t cache = hwloc_get_obj_by_type(topology.get(), type, 0);
+  return cache == nullptr ? 0 : cache->attr->cache.size;
+}
+
+std::string listOf(const Bitmap& bitmap) {
+  char* text = nullptr;
+  if (hwloc_bitmap_list_asprintf(&text, bitmap.get()) < 0) return {};
+  const std::unique_ptr<char, decltype(&std::free)> owner(text, &std::free);
+  return text;
+}
+
+// Everything is read from a loaded topology and the set of hardware threads that may be used.
+Topology describe(const TopologyHandle& topology, const Bitmap& usable) {
+  Topology result{.sockets = countOf(topology, HWLOC_OBJ_PACKAGE),
+                  .numaNodes = countOf(topology, HWLOC_OBJ_NUMANODE),
+                  .cores = countOf(topology, HWLOC_OBJ_CORE),
+                  .hardwareThreads = countOf(topology, HWLOC_OBJ_PU),
+                  .affinity = listOf(usable),
+                  .l2Bytes = cacheBytes(topology, HWLOC_OBJ_L2CACHE),
+                  .l3Bytes = cacheBytes(topology, HWLOC_OBJ_L3CACHE),
+                  .l3Caches = countOf(topology, HWLOC_OBJ_L3CACHE)};
+  result.usableThreads = static_cast<uint32_t>(std::max(hwloc_bitmap_weight(usable.get()), 0));
+  for (hwloc_obj_t core = nullptr;
+       (core = hwloc_get_next_obj_by_type(topology.get(), HWLOC_OBJ_CORE, core)) != nullptr;) {
+    result.smt = std::max(result.smt, static_cast<uint32_t>(hwloc_bitmap_weight(core->cpuset)));
+    if (hwloc_bitmap_intersects(core->cpuset, usable.get()) != 0) ++result.usableCores;
+  }
+  return result;
+}
+
+TopologyHandle makeTopology() {
+  hwloc_topology_t raw = nullptr;
+  if (hwloc_topology_init(&raw) != 0) throw std::runtime_error("hwloc cannot start");
+  return TopologyHandle(raw);
+}
+
+}  // namespace
+
+Topology topologyOfThisMachine() {
+  const TopologyHandle topology = makeTopology();
+  // What a container hides is part of the machine all the same; the affinity mask says what may be used.
+  hwloc_topology_set_flags(topology.get(), HWLOC_TOPOLOGY_FLAG_INCLUDE_DISALLOWED);
+  if (hwloc_topology_load(topology.get()) != 0) throw std::runtime_error("hwloc cannot read this machine's topology");
+  const Bitmap usable(hwloc_bitmap_alloc());
+  if (hwloc_get_cpubind(topology.get(), usable.get(), HWLOC_CPUBIND_PROCESS) != 0) {
+    hwloc_bitmap_copy(usable.get(), hwloc_topology_get_allowed_cpuset(topology.get()));
+  }
+  return describe(topology, usable);
+}
+
+Topology syntheticTopology(const std::string& description, const std::string& affinity) {
+  const TopologyHandle topology = makeTopology();
+  if (hwloc_topology_set_synthetic(topology.get(), description.c_str()) != 0 ||
+      hwloc_topology_load(topology.get()) != 0) {
+    throw std::invalid_argument("not a topology: " + description);
+  }
+  const Bitmap usable(hwloc_bitmap_dup(hwloc_topology_get_topology_cpuset(topology.get())));
+  if (!affinity.empty()) {
+    const Bitmap asked(hwloc_bitmap_alloc());
+    if (hwloc_bitmap_list_sscanf(asked.get(), affinity.c_str()) != 0) {
+      throw std::invalid_argument("not a list of hardware threads: " + affinity);
+    }
+    hwloc_bitmap_and(usable.get(), usable.get(), asked.get());
+  }
+  return describe(topology, usable);
+}
+
+}  // namespace wavecrest

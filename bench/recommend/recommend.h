@@ -1,0 +1,45 @@
+// Which method brings a scene to a quality soonest, and how long that takes on this machine.
+//
+// The reference method of `inspect` renders half of the budget, every method a part of the other half: four short
+// renders of different seeds each. From those follow noise, bias and speed, and from those the time (prediction.h).
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/recommend/prediction.h"
+#include "engine/session.h"
+
+namespace wavecrest {
+
+struct RecommendRequest {
+  double targetSsim = 0.95;
+  double seconds = 60;  // render time of all pilots together
+  std::vector<Method> methods;
+};
+
+struct RecommendRow {
+  Method method{};
+  std::string refusal;  // why the method cannot render the scene; then there is no prediction
+  double pilotSeconds = 0;
+  Prediction prediction;
+};
+
+struct Recommendation {
+  std::string scene;
+  double targetSsim = 0;
+  Method referenceMethod{};
+  double referenceSsim = 0;        // of the reference's halves' mean against itself with its noise: what can be judged
+  std::vector<RecommendRow> rows;  // soonest first; then those that do not get there, best first
+  // The best one, if any gets there.
+  const RecommendRow* best() const;
+};
+
+Recommendation recommend(const Scene& scene, const RenderSettings& settings, const RecommendRequest& request);
+
+// One paragraph and a table.
+std::string toText(const Recommendation& recommendation);
+nlohmann::ordered_json toJson(const Recommendation& recommendation);
+
+}  // namespace wavecrest

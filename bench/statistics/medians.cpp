@@ -1,0 +1,56 @@
+#include "bench/statistics/medians.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <random>
+
+namespace wavecrest {
+namespace {
+
+constexpr size_t kFewestForBootstrap = 6;
+
+// By linear interpolation between sorted values; part in 0..1.
+double quantile(const std::vector<double>& sorted, double part) {
+  const double at = part * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<size_t>(at);
+  const size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+}  // namespace
+
+double median(std::vector<double> values) {
+  assert(!values.empty());
+  std::sort(values.begin(), values.end());
+  return quantile(values, 0.5);
+}
+
+Interval bootstrapMedian(std::span<const double> values, double level) {
+  assert(!values.empty());
+  if (values.size() < kFewestForBootstrap) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return {*low, *high};
+  }
+  std::mt19937_64 random(values.size());
+  std::vector<double> medians(kResamples), sample(values.size());
+  for (double& middle : medians) {
+    for (double& value : sample) value = values[random() % values.size()];
+    middle = median(sample);
+  }
+  std::sort(medians.begin(), medians.end());
+  return {quantile(medians, 0.5 * (1 - level)), quantile(medians, 0.5 * (1 + level))};
+}
+
+Estimate estimateMedian(std::span<const double> values) {
+  return {.value = median({values.begin(), values.end()}), .interval = bootstrapMedian(values)};
+}
+
+double relativeSpread(std::vector<double> values) {
+  assert(!values.empty());
+  std::sort(values.begin(), values.end());
+  const double middle = quantile(values, 0.5);
+  return middle > 0 ? (quantile(values, 0.75) - quantile(values, 0.25)) / middle : 0;
+}
+
+}  // namespace wavecrest

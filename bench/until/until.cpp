@@ -1,0 +1,36 @@
+#include "bench/until/until.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "bench/film_image.h"
+
+namespace wavecrest {
+namespace {
+
+// Iterations until the next look: a power of two, which waves of several iterations at once divide well.
+uint64_t nextBlock(uint64_t done) { return std::max<uint64_t>(std::bit_floor(done) / 4, 1); }
+
+double ssimNow(const Session& session, const PreparedReference& reference) {
+  const ComparedImage test = reference.prepareTest("render", {filmImage(session), Encoding::linear, {}});
+  return reference.ssim().compare(test.codes).mean;
+}
+
+}  // namespace
+
+SsimNow renderUntilSsim(Session& session, const RenderSettings& settings, const SsimGoal& goal) {
+  const uint64_t most = settings.iterations.value_or(std::numeric_limits<uint64_t>::max());
+  SsimNow now;
+  for (uint64_t asked = 0; !now.reached && asked < most;) {
+    asked += std::min(nextBlock(asked), most - asked);
+    session.renderUntil(asked, settings.seconds);
+    now.iterations = session.statistics().iterations;
+    now.ssim = ssimNow(session, goal.reference);
+    now.reached = now.ssim >= goal.ssim;
+    if (session.interrupted() || (settings.seconds && session.progressSeconds() >= *settings.seconds)) break;
+  }
+  return now;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,65 @@
+// Stored results are compared row by row, and only if they are of one machine.
+#include "bench/against/stored.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace wavecrest {
+namespace {
+
+using Json = nlohmann::json;
+
+// A result with one scene of two methods, whose slices take about `seconds` for a million paths.
+Json resultOf(double seconds) {
+  Json methods = Json::array();
+  for (const char* method : {"pt", "vcm"}) {
+    Json slices = Json::array();
+    for (int i = 0; i < 15; ++i) {
+      slices.push_back({{"paths", 1000000}, {"cpu_seconds", seconds * (1 + 0.001 * (i * 7 % 15))}});
+    }
+    methods.push_back(
+        {{"method", method},
+         {"scaling", {{{"threads", 1}, {"slices", slices}}, {{"threads", 2}, {"slices", Json::array()}}}}});
+  }
+  return {{"machine", {{"cpu", "a CPU"}, {"cores", 2}}},
+          {"scenes", {{{"scene", "box"}, {"width", 4}, {"height", 3}, {"methods", methods}}}}};
+}
+
+TEST(Stored, aSlowerResultIsCalledSoInEveryRow) {
+  const StoredComparison result = compareStored(resultOf(1), resultOf(1.1), {});
+  ASSERT_EQ(result.rows.size(), 2u);
+  for (const StoredRow& row : result.rows) {
+    EXPECT_EQ(row.scene, "box");
+    EXPECT_EQ(row.size, "4x3");
+    EXPECT_EQ(row.comparison.verdict, SpeedVerdict::slower);
+    EXPECT_NEAR(row.comparison.speedup, 1 / 1.1, 0.01);
+  }
+  EXPECT_TRUE(result.anySlower());
+  EXPECT_EQ(result.rows[1].method, "vcm");
+}
+
+TEST(Stored, equalResultsGetNoVerdict) {
+  EXPECT_FALSE(compareStored(resultOf(1), resultOf(1), {}).anySlower());
+  EXPECT_EQ(compareStored(resultOf(1.1), resultOf(1), {}).rows[0].comparison.verdict, SpeedVerdict::faster);
+}
+
+TEST(Stored, whatOnlyOneHasIsListed) {
+  Json after = resultOf(1);
+  after["scenes"][0]["methods"].erase(1);
+  const StoredComparison result = compareStored(resultOf(1), after, {});
+  EXPECT_EQ(result.unmatched, std::vector<std::string>{"box vcm 4x3"});
+}
+
+TEST(Stored, otherMachinesAndOtherFilesAreRefused) {
+  Json other = resultOf(1);
+  other["machine"]["cpu"] = "another CPU";
+  EXPECT_THROW(compareStored(resultOf(1), other, {}), StoredMismatch);
+  EXPECT_THROW(compareStored(resultOf(1), Json::object(), {}), StoredMismatch);
+  other = resultOf(1);
+  other["scenes"][0]["scene"] = "another";
+  EXPECT_THROW(compareStored(resultOf(1), other, {}), StoredMismatch);
+}
+
+}  // namespace
+}  // namespace wavecrest

@@ -1,0 +1,89 @@
+// Predictions on made-up renders, whose noise and bias are known.
+#include "bench/recommend/prediction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace wavecrest {
+namespace {
+
+constexpr uint32_t kSide = 64;
+
+Image scene() {
+  Image image{.width = kSide, .height = kSide, .channels = 3, .pixels = std::vector<float>(3 * kSide * kSide)};
+  for (uint32_t y = 0; y < kSide; ++y) {
+    for (uint32_t x = 0; x < kSide; ++x) {
+      for (uint32_t c = 0; c < 3; ++c) {
+        image.pixels[3 * (y * kSide + x) + c] = (x / 9 + y / 7) % 2 == 0 ? 0.2f : 0.6f;
+      }
+    }
+  }
+  return image;
+}
+
+// After one second noise has a deviation of kNoise; four parts of a quarter of the time each have twice that.
+constexpr double kNoise = 0.2;
+Image noisy(double seconds, double bias, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, kNoise / std::sqrt(seconds));
+  Image image = scene();
+  for (float& value : image.pixels) value = static_cast<float>(value * (1 + bias) + noise(random));
+  return image;
+}
+
+Pilot pilotOf(double seconds, double bias) {
+  Pilot pilot{.parts = {}, .seconds = seconds};
+  for (unsigned part = 0; part < 4; ++part) pilot.parts[part] = noisy(seconds / 4, bias, part);
+  return pilot;
+}
+
+double ssimOf(const PreparedReference& reference, const Image& image) {
+  return reference.ssim().compare(reference.prepareTest("test", {image, Encoding::linear, {}}).codes).mean;
+}
+
+class PredictionTest : public testing::Test {
+ protected:
+  PredictionTest() : reference_("reference", {scene(), Encoding::linear, {}}), noNoise_(scene()) {
+    for (float& value : noNoise_.pixels) value = 0;
+  }
+  PreparedReference reference_;
+  Image noNoise_;
+};
+
+TEST_F(PredictionTest, theImageAtThePredictedTimeHasTheQualityAskedFor) {
+  const Prediction p = predict(reference_, noNoise_, pilotOf(1, 0), 0.95);
+  ASSERT_TRUE(p.seconds);
+  EXPECT_GT(*p.seconds, 2);  // or the test would say nothing about times to come
+  EXPECT_NEAR(ssimOf(reference_, noisy(*p.seconds, 0, 77)), 0.95, 0.003);
+  EXPECT_LE(p.interval.low, *p.seconds);
+  EXPECT_GE(p.interval.high, *p.seconds);
+  EXPECT_LT(p.interval.high / p.interval.low, 1.5);
+  EXPECT_GT(p.ssimLimit, 0.999);
+}
+
+TEST_F(PredictionTest, doesNotDependOnHowLongThePilotWas) {
+  const Prediction brief = predict(reference_, noNoise_, pilotOf(0.5, 0), 0.95);
+  const Prediction longer = predict(reference_, noNoise_, pilotOf(4, 0), 0.95);
+  ASSERT_TRUE(brief.seconds && longer.seconds);
+  EXPECT_NEAR(std::log(*brief.seconds / *longer.seconds), 0, 0.1);
+}
+
+TEST_F(PredictionTest, aBiasThatStaysIsNeverOvercome) {
+  const Prediction p = predict(reference_, noNoise_, pilotOf(4, -0.6), 0.95);
+  EXPECT_FALSE(p.seconds);
+  EXPECT_LT(p.ssimLimit, 0.95);
+}
+
+TEST_F(PredictionTest, aBiasThatShrinksIsOvercomeInTime) {
+  Pilot pilot = pilotOf(4, -0.6);
+  pilot.biasExponent = biasDecay(0.75);
+  EXPECT_DOUBLE_EQ(pilot.biasExponent, 0.25);
+  const Prediction p = predict(reference_, noNoise_, pilot, 0.95);
+  ASSERT_TRUE(p.seconds);
+  EXPECT_GT(*p.seconds, *predict(reference_, noNoise_, pilotOf(4, 0), 0.95).seconds);
+}
+
+}  // namespace
+}  // namespace wavecrest

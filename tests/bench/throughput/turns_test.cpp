@@ -1,0 +1,54 @@
+// Slices are whole iterations, so what a path needs is the same in each measurement.
+#include "bench/throughput/turns.h"
+
+#include <gtest/gtest.h>
+
+#include "bench/throughput/speed.h"
+#include "engine/load/load.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace {
+
+Scene smallBox() {
+  LoadOptions options;
+  options.filmSize = {24, 16};
+  return loadScene(findScene("cornell-diffuse"), options);
+}
+
+RenderSettings settingsOf(Method method) {
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  settings.method = method;
+  settings.measureStages = true;
+  return settings;
+}
+
+TEST(Turns, slicesAreWholeIterationsAndOfEqualSize) {
+  const Scene scene = smallBox();
+  for (const Method method : {Method::pt, Method::vcm, Method::lt}) {
+    std::vector<std::unique_ptr<Session>> sessions;
+    sessions.push_back(Session::create(scene, settingsOf(method)));
+    const auto slices = renderInTurn(sessions, {.seconds = 0.05, .fewestRounds = 3, .mostRounds = 5});
+    ASSERT_GE(slices[0].size(), 3u);
+    for (const Slice& slice : slices[0]) {
+      EXPECT_EQ(slice.paths, slices[0][0].paths);
+      EXPECT_EQ(slice.paths % (24 * 16), 0u);
+    }
+  }
+}
+
+TEST(Turns, itemsOfAPathAreTheSameInEveryMeasurement) {
+  const Scene scene = smallBox();
+  const Speed a = measureSpeed(scene, settingsOf(Method::vcm), 0.2);
+  const Speed b = measureSpeed(scene, settingsOf(Method::vcm), 0.4);
+  ASSERT_EQ(a.stages.size(), b.stages.size());
+  for (size_t i = 0; i < a.stages.size(); ++i) {
+    // Other numbers of iterations: some 10^5 paths at the least, so a standard error of 0.3 % or less.
+    EXPECT_NEAR(a.stages[i].itemsPerPath, b.stages[i].itemsPerPath, 0.015 * b.stages[i].itemsPerPath)
+        << a.stages[i].name;
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest

@@ -1,0 +1,66 @@
+// Renders end when they resemble the reference, or at their settings' end.
+#include "bench/until/until.h"
+
+#include <gtest/gtest.h>
+
+#include "bench/film_image.h"
+#include "engine/load/load.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace {
+
+Scene smallBox() {
+  LoadOptions options;
+  options.filmSize = {32, 24};
+  return loadScene(findScene("cornell-diffuse"), options);
+}
+
+RenderSettings settingsOf(uint64_t seed) {
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  settings.seed = seed;
+  return settings;
+}
+
+PreparedReference referenceOf(const Scene& scene) {
+  const auto session = Session::create(scene, settingsOf(1000));
+  session->renderUntil(2048, std::nullopt);
+  return {"reference", {filmImage(*session), Encoding::linear, {}}};
+}
+
+// The SSIM of a render of its own with so many iterations.
+double ssimAfter(const Scene& scene, const PreparedReference& reference, uint64_t iterations) {
+  const auto session = Session::create(scene, settingsOf(1));
+  session->renderUntil(iterations, std::nullopt);
+  return reference.ssim()
+      .compare(reference.prepareTest("test", {filmImage(*session), Encoding::linear, {}}).codes)
+      .mean;
+}
+
+TEST(UntilSsim, endsAtTheFirstLookThatResemblesTheReference) {
+  const Scene scene = smallBox();
+  const PreparedReference reference = referenceOf(scene);
+  const auto session = Session::create(scene, settingsOf(1));
+  const SsimNow now = renderUntilSsim(*session, settingsOf(1), {.reference = reference, .ssim = 0.9});
+  EXPECT_TRUE(now.reached);
+  EXPECT_EQ(now.ssim, ssimAfter(scene, reference, now.iterations));
+  EXPECT_GE(now.ssim, 0.9);
+  ASSERT_GT(now.iterations, 8u);
+  EXPECT_LT(ssimAfter(scene, reference, now.iterations * 3 / 4), 0.9);  // looks are a quarter apart at most
+}
+
+TEST(UntilSsim, endsAtTheIterationsOfTheSettingsUnreached) {
+  const Scene scene = smallBox();
+  const PreparedReference reference = referenceOf(scene);
+  RenderSettings settings = settingsOf(1);
+  settings.iterations = 7;
+  const auto session = Session::create(scene, settings);
+  const SsimNow now = renderUntilSsim(*session, settings, {.reference = reference, .ssim = 0.999});
+  EXPECT_FALSE(now.reached);
+  EXPECT_EQ(now.iterations, 7u);
+  EXPECT_EQ(now.ssim, ssimAfter(scene, reference, 7));
+}
+
+}  // namespace
+}  // namespace wavecrest

@@ -1,0 +1,92 @@
+// Near and far clip: what lies outside is not seen, by any method, and changes no weight.
+#include <gtest/gtest.h>
+
+#include "bench/extremes/extreme_scenes.h"
+#include "tests/engine/render_statistics.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+RenderSettings settingsOf(Method method) {
+  RenderSettings settings;
+  settings.method = method;
+  settings.isa = bestIsa();
+  settings.metropolis.chains = 256;
+  settings.metropolis.bootstrapSamples = 8192;
+  return settings;
+}
+
+double meanOf(const Scene& scene, Method method, uint64_t iterations) {
+  const SeedMeans seeds = renderSeeds(scene, settingsOf(method), iterations);
+  double sum = 0;
+  for (const double value : seeds.mean) sum += value;
+  return sum / static_cast<double>(seeds.mean.size());
+}
+
+// Two black squares across the picture, 1 and 3 before the camera, under a sky of radiance 1.
+Scene twoSquares(double nearClip, double farClip) {
+  Scene scene;
+  const uint32_t black = addDiffuse(scene, 0, 0, 0);
+  for (const double z : {-1.0, -3.0}) {
+    addShape(scene, Rectangle{.corner = {-9, -9, z}, .edgeU = {18, 0, 0}, .edgeV = {0, 18, 0}}, black);
+  }
+  Emitter sky;
+  sky.kind = ConstantEmitter{{1, 1, 1}};
+  scene.emitters.push_back(sky);
+  setCamera(scene, {0, 0, 0}, 60, 8, 8);
+  scene.sensor.nearClip = nearClip;
+  scene.sensor.farClip = farClip;
+  return scene;
+}
+
+TEST(CameraClips, hideWhatLiesOutside) {
+  for (const Method method : {Method::pt, Method::bpt, Method::vcm}) {
+    const std::string name(toString(method));
+    EXPECT_EQ(meanOf(twoSquares(0.5, 100), method, 1), 0) << name << ", both";
+    EXPECT_EQ(meanOf(twoSquares(2, 100), method, 1), 0) << name << ", the second";
+    EXPECT_EQ(meanOf(twoSquares(2, 2.9), method, 1), 1) << name << ", between both";
+    EXPECT_EQ(meanOf(twoSquares(0.5, 0.9), method, 1), 1) << name << ", before both";
+    EXPECT_EQ(meanOf(twoSquares(3.1, 100), method, 1), 1) << name << ", behind both";
+  }
+}
+
+// Planes, not spheres: a square at the corner of the picture is farther away, and clipped where its middle is.
+TEST(CameraClips, arePlanes) {
+  EXPECT_EQ(meanOf(twoSquares(0.99, 1.01), Method::pt, 1), 0);
+  EXPECT_EQ(meanOf(twoSquares(1.01, 2.99), Method::pt, 1), 1);
+}
+
+TEST(CameraClips, cutParallelRays) {
+  Scene scene = twoSquares(2, 2.9);
+  scene.sensor.kind = Sensor::Kind::orthographic;
+  EXPECT_EQ(meanOf(scene, Method::pt, 1), 1);
+  scene.sensor.farClip = 100;
+  EXPECT_EQ(meanOf(scene, Method::pt, 1), 0);
+}
+
+// Light passes a wall before the near clip as if it were not there, yet is reflected by it: from within the lamp's box
+// the wall behind the near clip is seen through by all methods alike.
+TEST(CameraClips, changeNoWeight) {
+  Scene scene = lampBox({});
+  Shape shade;
+  shade.kind = Rectangle{.corner = {-0.2, -0.2, 0.8}, .edgeU = {0.4, 0, 0}, .edgeV = {0, 0.4, 0}};
+  shade.material = 0;
+  scene.shapes.push_back(shade);
+  scene.sensor.nearClip = 0.4;
+  const double expected = meanOf(scene, Method::pt, 48);
+  for (const Method method : {Method::lt, Method::bpt, Method::vcm}) {
+    // Four standard errors of such means, measured.
+    EXPECT_NEAR(meanOf(scene, method, 12) / expected, 1, 0.06) << toString(method);
+  }
+}
+
+TEST(CameraClips, areRefusedInPathSpace) {
+  RenderSettings settings = settingsOf(Method::mlt);
+  settings.metropolis.variant = MetropolisVariant::pathspace;
+  EXPECT_THROW(Session::create(twoSquares(2, 100), settings), std::runtime_error);
+  EXPECT_NO_THROW(Session::create(twoSquares(0.5, 100), settings));
+}
+
+}  // namespace
+}  // namespace wavecrest
