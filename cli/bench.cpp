@@ -1,14 +1,13 @@
-// wavecrest bench: how fast the methods are on this machine, where the time goes, and what it buys.
+// wavecrest bench: the options of all its modes, and which mode they ask for.
 #include <fmt/core.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
-#include "bench/throughput/bench_scene.h"
+#include "bench/machine/machine_record.h"
+#include "cli/bench_modes.h"
 #include "cli/commands.h"
 #include "cli/option_values.h"
-#include "engine/load/load.h"
 #include "engine/version.h"
 #include "metrics/image/atomic_file.h"
 #include "scenes/scene_list.h"
@@ -16,20 +15,18 @@
 namespace wavecrest {
 namespace {
 
-struct BenchOptions {
-  std::vector<std::string> scenes, methods;
-  std::string duration = "6s", json, size;
-  uint32_t threads = 0;
-};
+constexpr int kBenchSchemaVersion = 1;  // of bench/schema.json
 
-std::vector<std::filesystem::path> sceneFiles(const BenchOptions& options) {
+}  // namespace
+
+std::vector<std::filesystem::path> benchSceneFiles(const BenchOptions& options) {
   if (options.scenes.empty()) return {findScene("cornell-diffuse"), sceneFolder() / "mitsuba-cornell-box.xml"};
   std::vector<std::filesystem::path> files;
   for (const std::string& scene : options.scenes) files.push_back(findScene(scene));
   return files;
 }
 
-std::vector<Method> chosenMethods(const BenchOptions& options) {
+std::vector<Method> benchMethods(const BenchOptions& options) {
   std::vector<Method> methods;
   for (const std::string& word : options.methods) {
     const std::optional<Method> method = parseMethod(word);
@@ -43,32 +40,38 @@ std::vector<Method> chosenMethods(const BenchOptions& options) {
   return methods;
 }
 
-RenderSettings settingsFor(const Scene& scene, const BenchOptions& options) {
-  RenderSettings settings;
-  settings.isa = bestIsa();
-  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-  settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
-  return settings;
+void printBench(const BenchOptions& options, const std::string& text) {
+  if (options.json == "-") return;
+  fmt::print("{}", text);
+  std::fflush(stdout);
 }
 
-void runBench(const BenchOptions& options) {
-  const std::vector<Method> methods = chosenMethods(options);
-  const double seconds = parseDuration(options.duration);
-  LoadOptions loading;
-  if (!options.size.empty()) loading.filmSize = parseSize(options.size);
+double benchSeconds(const BenchOptions& options, double unlessGiven) {
+  return options.duration.empty() ? unlessGiven : parseDuration(options.duration);
+}
 
-  nlohmann::ordered_json all = {
-      {"version", kVersion}, {"commit", kCommit}, {"scenes", nlohmann::ordered_json::array()}};
-  for (const std::filesystem::path& file : sceneFiles(options)) {
-    const Scene scene = loadScene(file, loading);
-    const SceneResult result = benchScene(scene, settingsFor(scene, options), methods, seconds);
-    fmt::print("{}\n", toText(result));
-    std::fflush(stdout);
-    all["scenes"].push_back(toJson(result));
-  }
+void writeBenchJson(const BenchOptions& options, const std::string& kind, const nlohmann::ordered_json& figures) {
   if (options.json.empty()) return;
+  nlohmann::ordered_json all = {{"schema_version", kBenchSchemaVersion},
+                                {"kind", kind},
+                                {"version", kVersion},
+                                {"commit", kCommit},
+                                {"machine", toJson(machineRecord())}};
+  all.update(figures);
   const std::string text = all.dump(2) + "\n";
+  if (options.json == "-") {
+    fmt::print("{}", text);
+    return;
+  }
   writeFileAtomically(options.json, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+namespace {
+
+int runBench(const BenchOptions& options) {
+  if (!options.compare.empty()) return runBenchCompare(options);
+  if (!options.against.empty()) return runBenchAgainst(options);
+  return runBenchThroughput(options);
 }
 
 }  // namespace
@@ -78,13 +81,28 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   const Command command = program.add("bench", "measure speed, where it goes, and what it buys");
   command.add("scenes", options->scenes, "built-in scenes or XML files; default: two Cornell boxes");
   command.add("--methods", options->methods, "methods, separated by commas; default: all").separatedByCommas();
-  command.add("--duration", options->duration, "render time per scene and method, about").showDefault();
-  command.add("--json", options->json, "write all figures as JSON");
+  command.add("--duration", options->duration, "time per scene and method, about; default: 6s, of --against 20s");
+  command.add("--json", options->json, "write all figures as JSON; -: to stdout, instead of the tables");
   command.add("--size", options->size, "film size, WIDTHxHEIGHT");
-  command.add("--threads", options->threads, "most threads; default: all cores").between(1, 4096);
+  command.add("--threads", options->threads, "most threads; default: all cores, of --against one").between(1, 4096);
+  command.add("--against", options->against, "compare with another build: the path of its wavecrest");
+  command.add("--compare", options->compare, "compare two stored results of one machine: BEFORE.json AFTER.json")
+      .exactly(2);
+  command.add("--family-level", options->familyLevel, "--against, --compare: probability of any false verdict")
+      .showDefault()
+      .between(1e-6, 0.5);
+  command.add("--tolerance", options->tolerance, "--against, --compare: part of the speed that may be lost")
+      .showDefault()
+      .between(0.0, 0.9);
+  command.addFlag("--extremes", options->extremes, "take scenes and renders to their extremes, one property at a time");
+  command.add("--html", options->html, "--extremes: write a page with a plot for each property");
   command.run([options, &exitCode] {
-    runBench(*options);
-    exitCode = kExitDone;
+    if (options->extremes) {
+      exitCode = runBenchExtremes(*options);
+      return;
+    }
+    if (!options->html.empty()) throw UsageError("--html goes with --extremes; expected both or none");
+    exitCode = runBench(*options);
   });
 }
 

@@ -15,7 +15,10 @@ class Option;
 
 namespace wavecrest {
 
-// A handle; the command line owns the option. Checks that fail end the program with kExitUsage.
+enum class DescriptionKind;
+struct CompletionWords;
+
+// A handle; the command line owns the option. Checks that fail make CommandLine::parse throw UsageError.
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
@@ -23,6 +26,7 @@ class Option {
   Option showDefault() const;  // in --help: the value that the variable has now
   Option oneValue() const;
   Option repeatable() const;  // one value each time
+  Option exactly(int values) const;
   Option separatedByCommas() const;
   Option positive() const;
   Option notNegative() const;
@@ -65,11 +69,20 @@ class CommandLine {
 
   void setVersion(const std::string& version);
   Command add(const std::string& name, const std::string& description);
-  // Reads the arguments and runs the command that they name, whose exceptions pass. False if there was nothing to run:
-  // exitCode is then kExitDone after --help and --version, and kExitUsage after a message on stderr.
+  // Reads the arguments and runs the command that they name, whose exceptions pass; wrong arguments are a UsageError.
+  // False if there was nothing to run: exitCode is then kExitDone, after --help, --version or `help COMMAND`.
+  //
+  // Options that are not among the arguments are taken from the settings file that --config names, and then from
+  // environment variables (kVariables).
   bool parse(std::vector<std::string> arguments, int& exitCode);
+  // What has been registered, as a man page or for a shell (cli/describe.h).
+  std::string describe(DescriptionKind kind, const std::string& version,
+                       const std::vector<CompletionWords>& values) const;
 
  private:
+  std::vector<std::string> commandNames() const;
+  [[noreturn]] void failParsing(const std::string& what) const;
+
   std::unique_ptr<CLI::App> app_;
 };
 

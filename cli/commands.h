@@ -30,6 +30,8 @@ void addCompareCommand(CommandLine& program, int& exitCode);
 void addBenchCommand(CommandLine& program, int& exitCode);
 void addInspectCommand(CommandLine& program, int& exitCode);
 void addConvergeCommand(CommandLine& program, int& exitCode);
+void addDescribeCommand(CommandLine& program, int& exitCode);
+void addRecommendCommand(CommandLine& program, int& exitCode);
 void addReferenceCommand(CommandLine& program, int& exitCode);
 void addRenderCommand(CommandLine& program, int& exitCode);
 void addReportCommand(CommandLine& program, int& exitCode);

@@ -1,16 +1,18 @@
-// wavecrest compare REFERENCE TEST: metrics of two images, thresholds, false-colour maps.
+// wavecrest compare REFERENCE TEST...: metrics of images against one reference, thresholds, false-colour maps.
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
+#include <charconv>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "cli/commands.h"
-#include "metrics/false_colour.h"
+#include "cli/compare_page.h"
+#include "cli/compare_results.h"
+#include "cli/file_check.h"
+#include "cli/messages.h"
 #include "metrics/image/image_io.h"
 #include "metrics/metric_list.h"
 
@@ -18,17 +20,12 @@ namespace wavecrest {
 namespace {
 
 struct CompareOptions {
-  std::string reference, test, mapFolder;
-  std::vector<std::string> metrics;
+  std::string reference, mapFolder, html, crop;
+  std::vector<std::string> tests, metrics;
   bool json = false, gammaCorrected = false;
   double exposure = 0;
   std::vector<Option> thresholds;  // in the order of metricList()
   std::vector<double> limits;
-};
-
-struct Measured {
-  const Metric* metric;
-  Measurement measurement;
 };
 
 std::string metricNames() {
@@ -39,122 +36,181 @@ std::string metricNames() {
 
 bool hasThreshold(const CompareOptions& options, size_t metric) { return options.thresholds[metric].given(); }
 
-// What was named, or the defaults; a metric with a threshold is always measured.
-std::vector<const Metric*> chosenMetrics(const CompareOptions& options) {
-  for (const std::string& name : options.metrics) {
-    if (!findMetric(name)) throw UsageError("--metrics: unknown metric '" + name + "'; expected " + metricNames());
+// ---- which part of the images ---------------------------------------------------------------------------------------
+
+struct Crop {
+  uint32_t x = 0, y = 0, width = 0, height = 0;
+};
+
+// "X,Y,WIDTHxHEIGHT".
+Crop parseCrop(const std::string& text) {
+  Crop crop;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  const auto number = [&](uint32_t& value, char after) {
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || (after == 0 ? next != end : next == end || *next != after)) return false;
+    at = next + (after == 0 ? 0 : 1);
+    return true;
+  };
+  const bool valid = number(crop.x, ',') && number(crop.y, ',') && number(crop.width, 'x') && number(crop.height, 0);
+  if (valid && crop.width > 0 && crop.height > 0) return crop;
+  throw UsageError(fmt::format("--crop '{}': expected X,Y,WIDTHxHEIGHT in pixels from the top left", text));
+}
+
+void cropTo(const Crop& crop, const std::string& path, Image& image) {
+  if (uint64_t{crop.x} + crop.width > image.width || uint64_t{crop.y} + crop.height > image.height) {
+    throw ImageError(
+        path, fmt::format("image of {}x{} pixels", image.width, image.height),
+        fmt::format("expected one that holds --crop {},{},{}x{}", crop.x, crop.y, crop.width, crop.height));
   }
+  Image part{crop.width, crop.height, image.channels, {}};
+  part.pixels.reserve(part.pixelCount() * image.channels);
+  for (uint32_t y = 0; y < crop.height; ++y) {
+    const float* const row = image.pixels.data() + (size_t{crop.y + y} * image.width + crop.x) * image.channels;
+    part.pixels.insert(part.pixels.end(), row, row + size_t{crop.width} * image.channels);
+  }
+  image = std::move(part);
+}
+
+ImageFile readPart(const CompareOptions& options, const std::string& path) {
+  ImageFile file = readImage(path);
+  if (!options.crop.empty()) cropTo(parseCrop(options.crop), path, file.image);
+  return file;
+}
+
+// ---- which metrics --------------------------------------------------------------------------------------------------
+
+// What was named, or the defaults that the image is large enough for; a metric with a threshold is always measured.
+// Throws ImageError where the image is too small for a metric that was asked for.
+std::vector<const Metric*> chosenMetrics(const CompareOptions& options, const Image& image) {
   std::vector<const Metric*> chosen;
   for (size_t i = 0; i < metricList().size(); ++i) {
     const Metric& metric = metricList()[i];
-    const auto& named = options.metrics;
-    const bool wanted =
-        named.empty() ? metric.byDefault : std::find(named.begin(), named.end(), metric.name) != named.end();
-    if (wanted || hasThreshold(options, i)) chosen.push_back(&metric);
+    const bool named = std::find(options.metrics.begin(), options.metrics.end(), metric.name) != options.metrics.end();
+    const bool asked = named || hasThreshold(options, i);
+    if (!asked && !(options.metrics.empty() && metric.byDefault)) continue;
+    if (std::min(image.width, image.height) >= metric.smallestSide) {
+      chosen.push_back(&metric);
+      continue;
+    }
+    const std::string wrong =
+        fmt::format("image of {}x{} pixels is too small for {}", image.width, image.height, metric.name);
+    if (asked) {
+      throw ImageError(options.reference, wrong, fmt::format("expected at least {0}x{0}", metric.smallestSide));
+    }
+    tell("wavecrest: note: {}, which is left out", wrong);
   }
   return chosen;
 }
 
-void requireSize(const std::string& path, const Image& image, const Metric& metric) {
-  if (std::min(image.width, image.height) >= metric.smallestSide) return;
-  throw ImageError(path,
-                   fmt::format("image of {}x{} pixels is too small for {}", image.width, image.height, metric.name),
-                   fmt::format("expected at least {0}x{0}; name other metrics with --metrics", metric.smallestSide));
+void checkMetricNames(const CompareOptions& options) {
+  for (const std::string& name : options.metrics) {
+    if (!findMetric(name)) throw UsageError("--metrics: unknown metric '" + name + "'; expected " + metricNames());
+  }
 }
 
-void writeMap(const CompareOptions& options, const Measured& measured, const Image& image) {
-  const Metric& metric = *measured.metric;
-  double range = metric.mapRange;
-  if (range == 0) range = quantile(measured.measurement.map, 0.999);
-  const std::string path = (std::filesystem::path(options.mapFolder) / (std::string(metric.name) + ".png")).string();
-  writePng(path, falseColour(measured.measurement.map, image.width, image.height, range));
-  if (!options.json) fmt::print("map {}: 0 to {:.6g}\n", path, range);
-}
+// ---- what comes of it -----------------------------------------------------------------------------------------------
 
-// A metric with one number is that number; further numbers of it go beside it; otherwise it is an object.
-nlohmann::ordered_json toJson(const std::vector<Measured>& all, uint64_t nonFinitePixels) {
-  nlohmann::ordered_json json;
-  for (const Measured& measured : all) {
-    const std::string name(measured.metric->name);
-    const auto& scores = measured.measurement.scores;
-    const bool single = scores.front().name.empty();
-    for (const Score& score : scores) {
-      if (score.name.empty()) {
-        json[name] = score.value;
-      } else if (single) {
-        json[name + "_" + std::string(score.name)] = score.value;
-      } else {
-        json[name][std::string(score.name)] = score.value;
-      }
+void checkFiles(const CompareOptions& options, const std::vector<std::string>& labels) {
+  FileCheck files;
+  files.input("REFERENCE", options.reference);
+  for (const std::string& test : options.tests) files.input("TEST", test);
+  if (!options.html.empty()) files.output("--html", options.html);
+  if (options.mapFolder.empty()) return;
+  for (const std::string& label : labels) {
+    for (const Metric& metric : metricList()) {
+      files.laterOutput("--map", mapFile(options.mapFolder, label, labels.size() == 1, metric));
     }
   }
-  json["nonfinite_pixels"] = nonFinitePixels;
-  return json;
 }
 
-void printText(const std::vector<Measured>& all, uint64_t nonFinitePixels) {
-  for (const Measured& measured : all) {
-    std::string line;
-    for (const Score& score : measured.measurement.scores) {
-      line +=
-          fmt::format("{}{}{}{:.9g}", line.empty() ? "" : "  ", score.name, score.name.empty() ? "" : " ", score.value);
+void writeMaps(const CompareOptions& options, const std::vector<MeasuredTest>& tests) {
+  for (const MeasuredTest& test : tests) {
+    for (const MeasuredScore& score : test.scores) {
+      const auto file = mapFile(options.mapFolder, test.label, tests.size() == 1, *score.metric);
+      std::error_code error;
+      std::filesystem::create_directories(file.parent_path(), error);
+      const ShownMap map = showMap(score, test.codes.width, test.codes.height);
+      writePng(file.string(), map.picture);
+      if (!options.json) fmt::print("map {}: 0 to {:.6g}\n", file.string(), map.range);
     }
-    fmt::print("{:8} {}\n", measured.metric->name, line);
   }
-  if (nonFinitePixels > 0) fmt::print("{} pixels are not finite and were excluded\n", nonFinitePixels);
 }
 
-// True when every threshold holds. A score that is not a number holds no threshold.
-bool checkThresholds(const CompareOptions& options, const std::vector<Measured>& all) {
-  bool held = true;
+// True when every threshold holds for this test. Neither a score that is not a number nor an image with pixels that are
+// not finite holds any.
+bool checkThresholds(const CompareOptions& options, const MeasuredTest& test, bool single) {
+  const std::string of = single ? "" : test.file + ": ";
+  bool held = true, asked = false;
   for (size_t i = 0; i < metricList().size(); ++i) {
     if (!hasThreshold(options, i)) continue;
+    asked = true;
     const Metric& metric = metricList()[i];
-    const auto measured = std::find_if(all.begin(), all.end(), [&](const Measured& m) { return m.metric == &metric; });
+    const auto measured = std::find_if(test.scores.begin(), test.scores.end(),
+                                       [&](const MeasuredScore& score) { return score.metric == &metric; });
     const double score = mainScore(metric, measured->measurement), limit = options.limits[i];
     if (metric.higherIsBetter ? score >= limit : score <= limit) continue;
-    fmt::print(stderr, "wavecrest: check failed: {} is {:.9g}; --{} asks for {:.9g}\n", metric.name, score,
-               metric.threshold, limit);
+    tell("wavecrest: check failed: {}{} is {:.9g}; --{} asks for {:.9g}", of, metric.name, score, metric.threshold,
+         limit);
     held = false;
   }
-  return held;
+  if (!asked || test.nonFinitePixels == 0) return held;
+  tell("wavecrest: check failed: {}{} of {} pixels are not finite; a check asks for numbers", of, test.nonFinitePixels,
+       test.codes.pixelCount());
+  return false;
+}
+
+MeasuredTest measure(const PreparedReference& reference, const std::string& file, const std::string& label,
+                     ImageFile image, const std::vector<const Metric*>& metrics, bool withMaps) {
+  ComparedImage test = reference.prepareTest(file, std::move(image));
+  MeasuredTest measured{
+      .file = file, .label = label, .codes = {}, .nonFinitePixels = test.nonFinitePixels, .scores = {}};
+  for (const Metric* metric : metrics) measured.scores.push_back({metric, metric->measure(reference, test, withMaps)});
+  measured.codes = std::move(test.codes);
+  return measured;
 }
 
 int compare(const CompareOptions& options) {
-  const std::vector<const Metric*> metrics = chosenMetrics(options);
+  checkMetricNames(options);
+  const std::vector<std::string> labels = uniqueLabels(options.tests);
+  checkFiles(options, labels);
   ComparisonSettings settings;
   settings.exposure = options.exposure;
   settings.gammaCorrectedErrors = options.gammaCorrected;
-  const PreparedReference reference(options.reference, readImage(options.reference), settings);
-  const ComparedImage test = reference.prepareTest(options.test, readImage(options.test));
-  const Image& image = test.file.image;
-  for (const Metric* metric : metrics) requireSize(options.reference, image, *metric);
+  const PreparedReference reference(options.reference, readPart(options, options.reference), settings);
+  const std::vector<const Metric*> metrics = chosenMetrics(options, reference.image().file.image);
 
-  const bool withMaps = !options.mapFolder.empty();
-  if (withMaps) std::filesystem::create_directories(options.mapFolder);
-  std::vector<Measured> all;
-  all.reserve(metrics.size());
-  for (const Metric* metric : metrics) all.push_back({metric, metric->measure(reference, test, withMaps)});
-  if (options.json) {
-    fmt::print("{}\n", toJson(all, test.nonFinitePixels).dump(2));
-  } else {
-    printText(all, test.nonFinitePixels);
+  const bool withMaps = !options.mapFolder.empty() || !options.html.empty();
+  std::vector<MeasuredTest> tests;
+  for (size_t i = 0; i < options.tests.size(); ++i) {
+    const std::string& file = options.tests[i];
+    tests.push_back(measure(reference, file, labels[i], readPart(options, file), metrics, withMaps));
   }
-  if (withMaps)
-    for (const Measured& measured : all) writeMap(options, measured, image);
-  return checkThresholds(options, all) ? kExitDone : kExitCheck;
+  if (options.json) {
+    fmt::print("{}\n", toJson(tests).dump(2));
+  } else {
+    printText(tests);
+  }
+  if (!options.mapFolder.empty()) writeMaps(options, tests);
+  if (!options.html.empty()) writeText(options.html, comparePage(options.reference, reference.image().codes, tests));
+  bool held = true;
+  for (const MeasuredTest& test : tests) held = checkThresholds(options, test, tests.size() == 1) && held;
+  return held ? kExitDone : kExitCheck;
 }
 
 }  // namespace
 
 void addCompareCommand(CommandLine& program, int& exitCode) {
-  const Command command = program.add("compare", "measure a test image against a reference");
+  const Command command = program.add("compare", "measure test images against a reference");
   auto options = std::make_shared<CompareOptions>();
   command.add("REFERENCE", options->reference, "EXR, PFM, HDR or PNG").required();
-  command.add("TEST", options->test, "image of the same size").required();
-  command.add("--metrics", options->metrics, "which of " + metricNames()).separatedByCommas();
-  command.addFlag("--json", options->json, "print one JSON object");
+  command.add("TEST", options->tests, "images of the same size").required();
+  command.add("--metrics", options->metrics, "which of " + metricNames()).separatedByCommas().repeatable();
+  command.addFlag("--json", options->json, "print one JSON object; of several tests an array of them");
   command.add("--map", options->mapFolder, "write a false-colour PNG of each metric into this folder");
+  command.add("--html", options->html, "write scores, images and maps as one page; - for stdout");
+  command.add("--crop", options->crop, "compare this part only: X,Y,WIDTHxHEIGHT");
   command.add("--exposure", options->exposure, "stops applied before conversion to 8 bits").between(-100.0, 100.0);
   command.addFlag("--gamma", options->gammaCorrected, "rmse and relmse on gamma-corrected 8-bit values");
   options->limits.resize(metricList().size());

@@ -7,6 +7,7 @@
 #include <set>
 #include <thread>
 
+#include "bench/campaign/file_lock.h"
 #include "bench/campaign/run_campaign.h"
 #include "bench/campaign/scene_reference.h"
 #include "bench/claims/judge_claims.h"
@@ -17,6 +18,7 @@
 #include "cli/commands.h"
 #include "cli/findings.h"
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
 #include "engine/load/load.h"
@@ -79,9 +81,8 @@ std::vector<Method> chosenMethods(const ConvergeOptions& options) {
     return methods;
   }
   for (const std::string& word : options.defining.at("--methods")) {
-    const std::optional<Method> method = parseMethod(word);
-    if (!method) throw UsageError(fmt::format("--methods {}: unknown; expected some of {}", word, methodChoices()));
-    if (std::find(methods.begin(), methods.end(), *method) == methods.end()) methods.push_back(*method);
+    const Method method = parseMethodOption("--methods", word);
+    if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
   }
   return methods;
 }
@@ -213,21 +214,76 @@ std::map<std::string, std::string> campaignKeys(const ConvergeOptions& options, 
   return keys;
 }
 
-// Takes from an earlier process of the same campaign what was not given again.
+// The words of a list option, its default spelt out.
+std::vector<std::string> listed(const ConvergeOptions& options, const std::string& name) {
+  if (options.has(name.c_str())) return options.defining.at(name);
+  std::vector<std::string> words;
+  if (name == "scenes") {
+    for (const SceneEntry& entry : builtInScenes()) words.emplace_back(entry.name);
+  } else {
+    for (const MethodEntry& entry : kMethods) words.emplace_back(entry.name);
+  }
+  return words;
+}
+
+// Whether every run of `after` takes at least as long as the same run of `before`, all else being equal.
+bool isLonger(const ConvergeOptions& before, const ConvergeOptions& after) {
+  const CampaignSettings a = campaignSettings(before), b = campaignSettings(after);
+  if (a.iterations.has_value() != b.iterations.has_value()) return false;
+  if (a.iterations) return *b.iterations >= *a.iterations;
+  for (size_t i = 0; i < a.scenes.size(); ++i) {
+    if (b.scenes[i].effort.seconds < a.scenes[i].effort.seconds) return false;
+  }
+  return true;
+}
+
+// `before` with the words of one option, if that makes the campaign larger: further scenes or methods, more seeds, time
+// or iterations. Otherwise nothing.
+std::optional<ConvergeOptions> extended(const ConvergeOptions& before, const std::string& name,
+                                        const std::vector<std::string>& words) {
+  ConvergeOptions after = before;
+  if (name == "scenes" || name == "--methods") {
+    std::vector<std::string> all = listed(before, name);
+    const size_t known = all.size();
+    for (const std::string& word : words) {
+      if (std::find(all.begin(), all.end(), word) == all.end()) all.push_back(word);
+    }
+    after.defining[name] = all;
+    return all.size() > known ? std::optional(after) : std::nullopt;
+  }
+  after.defining[name] = words;
+  if (name == "--seeds") {
+    return campaignSettings(after).seeds > campaignSettings(before).seeds ? std::optional(after) : std::nullopt;
+  }
+  if (name == "--time" || name == "--spp") return isLonger(before, after) ? std::optional(after) : std::nullopt;
+  return std::nullopt;
+}
+
+// Takes from an earlier process of the same campaign what was not given again, and adds what makes it larger.
 void resume(ConvergeOptions& options, const fs::path& results) {
+  const FileLock lock(results);
   const ResultsStore whole(results);  // also where a process died before it had made the tables
   const CampaignResults before = readResults(results);
   const auto stored = before.campaign.find("options");
   if (stored == before.campaign.end()) return;  // it died before it began
   const auto defining = json::parse(stored->second).get<std::map<std::string, std::vector<std::string>>>();
+  ConvergeOptions all = options;
+  all.defining = defining;
   for (const auto& [name, words] : options.defining) {
     const auto known = defining.find(name);
     if (known != defining.end() && known->second == words) continue;
-    throw UsageError(fmt::format("{} {}: {} was begun with {}; expected the same, or another --out", name,
-                                 joined(words), results.string(),
-                                 known == defining.end() ? "the default" : joined(known->second)));
+    const std::optional<ConvergeOptions> larger = extended(all, name, words);
+    if (!larger) {
+      throw UsageError(fmt::format("{} {}: {} was begun with {}; expected the same, more, or another --out", name,
+                                   joined(words), results.string(),
+                                   known == defining.end() ? "the default" : joined(known->second)));
+    }
+    if (name == "--methods" && campaignSettings(all).shard.count > 1) {
+      throw UsageError("--methods: shards divide scenes and methods, so none can be added; expected another --out");
+    }
+    all = *larger;
   }
-  options.defining = defining;
+  options.defining = all.defining;
 }
 
 // ---- what people see ------------------------------------------------------------------------------------------------
@@ -246,14 +302,14 @@ void showPlan(ProgressKind kind, const CampaignPlan& plan) {
                        {"render_seconds", plan.renderSeconds},
                        {"unreferenced", plan.unreferenced},
                        {"reference_seconds", plan.referenceSeconds}};
-    fmt::print(stderr, "{}\n", line.dump());
+    tell("{}", line.dump());
     return;
   }
   std::string text = fmt::format("{} runs, {} of them done", plan.runs, plan.done);
   if (plan.renderSeconds > 0) text += fmt::format("; {} of render time ahead", durationText(plan.renderSeconds));
   if (!plan.unreferenced.empty()) text += fmt::format("; references to render: {}", joined(plan.unreferenced));
   if (plan.referenceSeconds > 0) text += fmt::format(", {}", durationText(plan.referenceSeconds));
-  fmt::print(stderr, "{}\n", text);
+  tell("{}", text);
 }
 
 void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& progress) {
@@ -263,7 +319,7 @@ void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& pr
                  {"scene", run.scene},          {"method", run.method},    {"seed", run.seed},
                  {"state", toString(run.state)}};
     if (!run.snapshots.empty()) line["values"] = run.snapshots.back().values;
-    fmt::print(stderr, "{}\n", line.dump());
+    tell("{}", line.dump());
     return;
   }
   std::string outcome = run.reason;
@@ -275,13 +331,17 @@ void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& pr
       if (value != last.values.end()) outcome += fmt::format(", {} {:.4g}", name, value->second);
     }
   }
-  fmt::print(stderr, "[{}/{}] {} left  {} {} seed {}: {}\n", progress.done, progress.total,
-             durationText(progress.secondsLeft), run.scene, run.method, run.seed, outcome);
+  tell("[{}/{}] {} left  {} {} seed {}: {}", progress.done, progress.total, durationText(progress.secondsLeft),
+       run.scene, run.method, run.seed, outcome);
 }
 
 void storeClaims(const fs::path& results) {
   const std::vector<ClaimRecord> claims = judgeStudyClaims(readResults(results));
   ResultsStore(results).putClaims(claims);
+}
+
+std::string stopLine(const ConvergeOptions& options) {
+  return fmt::format("stopped; `wavecrest converge --out {} --resume` goes on", options.out);
 }
 
 int runConverge(ConvergeOptions options) {
@@ -296,18 +356,29 @@ int runConverge(ConvergeOptions options) {
     settings = campaignSettings(options);
   }
   const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
-  InterruptGuard guard;
+  InterruptGuard guard(stopLine(options));
   const CampaignHooks hooks{
-      .watch = [&](Session* session) { guard.watch(session); },
+      .session = {.watch = [&](Session* session) { guard.watch(session); },
+                  .goesOn =
+                      [&] {
+                        guard.takeSaveRequest();  // what is done is saved
+                        guard.goOn();
+                        return !guard.interrupted();
+                      },
+                  .idle = [&](bool idle) { guard.setIdle(idle); }},
       .stopped = [&] { return guard.interrupted(); },
       .planned = [&](const CampaignPlan& plan) { showPlan(kind, plan); },
       .finished = [&](const RunRecord& run, const CampaignProgress& progress) { showRun(kind, run, progress); },
       .say =
           [&](const std::string& line) {
-            if (kind != ProgressKind::none) fmt::print(stderr, "{}\n", line);
+            if (kind == ProgressKind::jsonl) {
+              tell("{}", json{{"message", line}}.dump());
+            } else if (kind != ProgressKind::none) {
+              tell("{}", line);
+            }
           }};
   if (!runCampaign(settings, campaignKeys(options, settings), hooks)) {
-    fmt::print(stderr, "stopped; `wavecrest converge --out {} --resume` goes on\n", options.out);
+    tell("{}", stopLine(options));
     return kExitInterrupted;
   }
   fmt::print("{}\n", results.string());
@@ -343,7 +414,8 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   command.add("--reference", options->reference, "folder of SCENE.exr; default: those that come with the scenes");
   command.add("--shard", options->shard, "i/n: do only the i-th of n parts").showDefault();
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
-  command.addFlag("--resume", options->resume, "go on with the campaign in --out, if there is one");
+  command.addFlag("--resume", options->resume,
+                  "go on with the campaign in --out, or extend it: more scenes, methods, seeds, time");
   command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
   command.run([options, command, &exitCode] {
     for (const char* name : kDefiningOptions) {
@@ -352,6 +424,8 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
     try {
       exitCode = runConverge(*options);
     } catch (const ReferenceError& error) {
+      throw InputError(error.what());
+    } catch (const FileLockError& error) {
       throw InputError(error.what());
     } catch (const ReferenceMismatch& error) {
       throw InputError(error.what());

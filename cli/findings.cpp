@@ -4,6 +4,7 @@
 
 #include "bench/claims/judge_claims.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 
 namespace wavecrest {
 
@@ -12,7 +13,7 @@ int showFindings(std::span<const ReportClaim> claims) {
   for (const ReportClaim& claim : claims) {
     fmt::print("{:13} {}: {} ({})\n", claim.verdict, claim.scene, claim.statement, claim.evidence);
     if (claim.verdict != toString(ClaimVerdict::fails)) continue;
-    fmt::print(stderr, "wavecrest: check failed: {}: {}\n", claim.scene, claim.statement);
+    tell("wavecrest: check failed: {}: {}", claim.scene, claim.statement);
     held = false;
   }
   return held ? kExitDone : kExitCheck;

@@ -9,11 +9,10 @@
 #include "cli/option_values.h"
 #include "cli/scene_options.h"
 #include "engine/inspection.h"
+#include "library/inspection_json.h"
 
 namespace wavecrest {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct InspectOptions {
   SceneOptions scene;
@@ -27,67 +26,6 @@ std::string name(Specialization specialization) {
 }
 std::string name(Accel accel) { return std::string(kAccelNames[static_cast<size_t>(accel)]); }
 std::string name(Verdict verdict) { return std::string(kVerdictNames[static_cast<size_t>(verdict)]); }
-
-// ---- JSON -----------------------------------------------------------------------------------------------------------
-
-ordered_json toJson(const MethodInspection& row) {
-  if (!row.refusal.empty()) return {{"refused", row.refusal}};
-  const MemoryUse& use = row.memory.use;
-  return {{"bytes_per_path", row.memory.bytesPerPath},
-          {"scene_bytes", use.scene},
-          {"wave_bytes", use.waves},
-          {"film_bytes", use.film},
-          {"splat_bytes", use.splats},
-          {"light_vertex_bytes", use.lightVertices},
-          {"photon_map_bytes", use.photonMap},
-          {"chain_bytes", use.chains},
-          {"total_bytes", use.total()}};
-}
-
-ordered_json toJson(const Scene& scene, const SceneInspection& facts) {
-  ordered_json specializations, memory, classes = ordered_json::array();
-  for (const MethodInspection& row : facts.methods) {
-    const std::string method(toString(row.method));
-    specializations[method] = name(row.specialization);
-    memory[method] = toJson(row);
-  }
-  for (const PathClass& pathClass : facts.paths.classes) {
-    ordered_json verdicts;
-    for (const Method method : facts.paths.methods) {
-      verdicts[std::string(toString(method))] = name(facts.paths.verdict(pathClass, method));
-    }
-    classes.push_back({{"class", pathClass.signature}, {"description", pathClass.description}, {"methods", verdicts}});
-  }
-  const BoundingSphere& bounds = facts.bounds;
-  const auto vec = [](const double(&a)[3]) { return ordered_json{a[0], a[1], a[2]}; };
-  return {{"scene", scene.name},
-          {"features",
-           {{"bsdfs", facts.bsdfs},
-            {"lights", facts.lights},
-            {"textures", facts.textures},
-            {"sensor", facts.sensor},
-            {"filter", facts.filter},
-            {"needs", facts.needs}}},
-          {"primitives",
-           {{"quads", facts.primitives.quads},
-            {"triangles", facts.primitives.triangles},
-            {"spheres", facts.primitives.spheres},
-            {"total", facts.primitives.total()},
-            {"dropped_triangles", scene.droppedTriangles}}},
-          {"bounds",
-           {{"min", vec(bounds.low)},
-            {"max", vec(bounds.high)},
-            {"center", vec(bounds.center)},
-            {"radius", bounds.radius}}},
-          {"specialization", name(facts.methods.front().specialization)},
-          {"specializations", specializations},
-          {"accel", name(facts.accel)},
-          {"memory", memory},
-          {"path_classes", classes},
-          {"reference_method", toString(facts.paths.reference.method)},
-          {"reference_biased", facts.paths.reference.biased},
-          {"reference_reason", facts.paths.reference.reason}};
-}
 
 // ---- text -----------------------------------------------------------------------------------------------------------
 
@@ -146,6 +84,12 @@ void printClasses(const PathClassTable& table) {
              table.reference.reason);
 }
 
+void printNoteList(const std::vector<Note>& notes) {
+  if (notes.empty()) return;
+  fmt::print("\nnotes: what was approximated or left out\n");
+  for (const Note& note : notes) fmt::print("{}\n", toString(note));
+}
+
 int runInspect(const InspectOptions& options) {
   RenderSettings settings;
   settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
@@ -156,12 +100,13 @@ int runInspect(const InspectOptions& options) {
   const Scene scene = loadScene(options.scene);
   const SceneInspection facts = inspectScene(scene, settings);
   if (options.json) {
-    fmt::print("{}\n", toJson(scene, facts).dump(2));
+    fmt::print("{}\n", inspectionJson(scene, facts).dump(2));
     return kExitDone;
   }
   printFacts(scene, facts);
   printMemory(facts);
   printClasses(facts.paths);
+  printNoteList(scene.notes);
   return kExitDone;
 }
 

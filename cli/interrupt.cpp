@@ -1,35 +1,91 @@
 #include "cli/interrupt.h"
 
-#include <csignal>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <ctime>
+
+#include "cli/commands.h"
 
 namespace wavecrest {
 namespace {
 
+// Handlers may only use what is lock-free.
 std::atomic<Session*> watched{nullptr};
-std::atomic<bool> requested{false};
+std::atomic<bool> endsAtOnce{false}, saveWanted{false};
+std::atomic<int64_t> firstRequest{0};  // milliseconds on the monotonic clock; 0: none yet
+static_assert(std::atomic<Session*>::is_always_lock_free && std::atomic<int64_t>::is_always_lock_free);
+std::string endLine;
 
-void onInterrupt(int) {
-  if (requested.exchange(true)) std::signal(SIGINT, SIG_DFL);
+constexpr int64_t kImpatience = 1000;  // milliseconds
+
+int64_t milliseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000 + 1;
+}
+
+void onStop(int signal) {
+  if (endsAtOnce.load()) {
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, endLine.data(), endLine.size());
+    _exit(kExitInterrupted);
+  }
+  Session* const session = watched.load();
+  int64_t none = 0;
+  const int64_t now = milliseconds();
+  if (!firstRequest.compare_exchange_strong(none, now) && signal == SIGINT && session != nullptr &&
+      now - none > kImpatience) {
+    _exit(kExitInterrupted);
+  }
+  if (session != nullptr) session->interrupt();
+}
+
+void onSave(int) {
+  saveWanted.store(true);
   if (Session* const session = watched.load()) session->interrupt();
 }
 
 }  // namespace
 
-InterruptGuard::InterruptGuard() {
-  requested.store(false);
-  previous_ = std::signal(SIGINT, onInterrupt);
+InterruptGuard::InterruptGuard(const std::string& lineAtEnd) {
+  endLine = lineAtEnd + "\n";
+  firstRequest.store(0);
+  saveWanted.store(false);
+  endsAtOnce.store(true);
+  for (size_t i = 0; i < std::size(kSignals); ++i) {
+    struct sigaction action {};
+    action.sa_handler = kSignals[i] == SIGUSR1 ? onSave : onStop;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaction(kSignals[i], &action, &previous_[i]);
+    // nohup stays in force.
+    if (kSignals[i] == SIGHUP && previous_[i].sa_handler == SIG_IGN) sigaction(SIGHUP, &previous_[i], nullptr);
+  }
 }
 
 InterruptGuard::~InterruptGuard() {
-  std::signal(SIGINT, previous_);
+  for (size_t i = 0; i < std::size(kSignals); ++i) sigaction(kSignals[i], &previous_[i], nullptr);
   watched.store(nullptr);
+  endsAtOnce.store(false);
 }
+
+void InterruptGuard::setIdle(bool value) { endsAtOnce.store(value); }
 
 void InterruptGuard::watch(Session* session) {
+  endsAtOnce.store(false);
   watched.store(session);
-  if (session != nullptr && requested.load()) session->interrupt();
+  if (session != nullptr && (interrupted() || saveWanted.load())) session->interrupt();
 }
 
-bool InterruptGuard::interrupted() const { return requested.load(); }
+bool InterruptGuard::interrupted() const { return firstRequest.load() != 0; }
+bool InterruptGuard::takeSaveRequest() { return saveWanted.exchange(false); }
+
+void InterruptGuard::goOn() {
+  Session* const session = watched.load();
+  if (session == nullptr) return;
+  session->resume();
+  if (interrupted() || saveWanted.load()) session->interrupt();
+}
 
 }  // namespace wavecrest

@@ -1,8 +1,13 @@
-// Ctrl-C as a wish to stop: while a guard lives, it asks the session that renders to return instead of ending the
-// program; a second one ends it.
+// Signals as wishes. While a guard lives, SIGINT, SIGTERM and SIGHUP ask the session that renders to return, so that
+// what there is can be saved; SIGUSR1 asks it to pause for a save. SIGPIPE never ends the program (main.cpp).
+//
+// A signal that comes while files are written changes nothing: what was to be saved is saved. Several of them in one
+// second count as one, as a terminal, a shell and a scheduler may all send theirs; a later Ctrl-C ends the program if
+// it renders on nevertheless.
 #pragma once
 
-#include <atomic>
+#include <csignal>
+#include <string>
 
 #include "engine/session.h"
 
@@ -10,17 +15,27 @@ namespace wavecrest {
 
 class InterruptGuard {
  public:
-  InterruptGuard();
+  // A guard begins idle: see setIdle.
+  explicit InterruptGuard(const std::string& lineAtEnd);
   ~InterruptGuard();
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-  // The session that is to stop, or null while none renders. One that comes after Ctrl-C is stopped at once.
+  // Idle: nothing is half done, as while a scene is loaded or built. A signal then ends the program at once with
+  // lineAtEnd on stderr and kExitInterrupted.
+  void setIdle(bool idle);
+  // The session that is to stop, or null while none renders. One that comes after a signal is stopped at once. The
+  // program is no longer idle.
   void watch(Session* session);
   bool interrupted() const;
+  // Whether SIGUSR1 has come since the last call.
+  bool takeSaveRequest();
+  // The watched session may go on, unless it is to end or to be saved again.
+  void goOn();
 
  private:
-  void (*previous_)(int);
+  static constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
+  struct sigaction previous_[4]{};
 };
 
 }  // namespace wavecrest

@@ -1,12 +1,23 @@
 // wavecrest: one program, one file per subcommand.
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/suggestion.h"
 #include "engine/load/load.h"
 #include "engine/scene/scene_error.h"
 #include "engine/version.h"
@@ -16,48 +27,101 @@
 namespace wavecrest {
 namespace {
 
-int run(std::vector<std::string> arguments) {
-  CommandLine program("wavecrest measures light-transport methods against each other", "wavecrest");
-  program.setVersion(kVersion);
-  int exitCode = kExitDone;
-  addCompareCommand(program, exitCode);
-  addConvergeCommand(program, exitCode);
-  addReferenceCommand(program, exitCode);
-  addRenderCommand(program, exitCode);
-  addInspectCommand(program, exitCode);
-  addReportCommand(program, exitCode);
-  addBenchCommand(program, exitCode);
-  addScenesCommand(program, exitCode);
+constexpr const char* kOutOfMemory =
+    "wavecrest: error: out of memory; expected a smaller film or scene, fewer --threads, or a budget by --memory";
 
+// For the end of a message about a scene file that does not exist and may be meant as the name of a scene.
+std::string meantScene(const std::filesystem::path& file) {
+  if (file.has_parent_path() || file.has_extension()) return "";
+  std::vector<std::string> known;
+  for (const SceneEntry& scene : builtInScenes()) known.emplace_back(scene.name);
+  return didYouMean(file.string(), known);
+}
+
+// Says what went wrong and returns the exit code of its kind.
+int report(const std::exception_ptr& thrown) {
+  const auto line = [](int exitCode, const std::string& text) {
+    tell("wavecrest: error: {}", text);
+    return exitCode;
+  };
   try {
-    program.parse(std::move(arguments), exitCode);
+    std::rethrow_exception(thrown);
   } catch (const UsageError& error) {
-    fmt::print(stderr, "wavecrest: error: {}\n", error.what());
-    return kExitUsage;
+    return line(kExitUsage, error.what());
   } catch (const MissingFileError& error) {
     const std::string hint = missingAssetHint(error.file);
-    fmt::print(stderr, "wavecrest: error: {}{}\n", error.what(), hint.empty() ? "" : ": " + hint);
-    return kExitInput;
+    return line(kExitInput, std::string(error.what()) + (hint.empty() ? meantScene(error.file) : ": " + hint));
   } catch (const LoadError& error) {
-    fmt::print(stderr, "wavecrest: error: {}\n", error.what());
-    return kExitInput;
+    return line(kExitInput, error.what());
   } catch (const SceneError& error) {
-    fmt::print(stderr, "wavecrest: error: {}\n", error.what());
-    return kExitInput;
+    return line(kExitInput, error.what());
   } catch (const ImageError& error) {
-    fmt::print(stderr, "wavecrest: error: {}\n", error.what());
-    return kExitInput;
+    return line(kExitInput, error.what());
   } catch (const InputError& error) {
-    fmt::print(stderr, "wavecrest: error: {}\n", error.what());
-    return kExitInput;
+    return line(kExitInput, error.what());
+  } catch (const std::bad_alloc&) {
+    writeStderr(kOutOfMemory);
+    writeStderr("\n");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "wavecrest: internal error: {}\n", error.what());
-    return kExitFailure;
+    // The standard library's threads and TBB's fail with texts of their own, which end alike.
+    const std::string text = error.what();
+    const bool thread = text.ends_with(std::strerror(EAGAIN));
+    tell("wavecrest: {}: {}{}", thread ? "error" : "internal error", text,
+         thread ? "; expected enough memory and processes for all threads, or fewer --threads" : "");
+  } catch (...) {
+    tell("wavecrest: internal error");
   }
-  return exitCode;
+  return kExitFailure;
+}
+
+// Of an exception that no frame can catch, as where a library fails to start its thread. Several threads may fail at
+// once; the first one speaks.
+[[noreturn]] void onTerminate() {
+  static std::atomic_flag reported;
+  while (reported.test_and_set()) pause();
+  if (const std::exception_ptr thrown = std::current_exception()) report(thrown);
+  _exit(kExitFailure);
+}
+
+// What the shell has closed is opened on nothing, or the first image would be taken for stdout or stderr.
+void openStandardStreams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
+    if (open("/dev/null", descriptor == STDIN_FILENO ? O_RDONLY : O_WRONLY) != descriptor) _exit(kExitFailure);
+  }
+}
+
+int run(std::vector<std::string> arguments) {
+  int exitCode = kExitDone;
+  try {
+    CommandLine program("wavecrest measures light-transport methods against each other", "wavecrest");
+    program.setVersion(kVersion);
+    addCompareCommand(program, exitCode);
+    addConvergeCommand(program, exitCode);
+    addReferenceCommand(program, exitCode);
+    addRenderCommand(program, exitCode);
+    addInspectCommand(program, exitCode);
+    addRecommendCommand(program, exitCode);
+    addReportCommand(program, exitCode);
+    addBenchCommand(program, exitCode);
+    addScenesCommand(program, exitCode);
+    addDescribeCommand(program, exitCode);
+    program.parse(std::move(arguments), exitCode);
+  } catch (...) {
+    exitCode = report(std::current_exception());
+  }
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written) return exitCode;
+  tell("wavecrest: error: stdout: writing failed: {}; expected somebody who reads", std::strerror(errno));
+  return exitCode == kExitDone ? kExitFailure : exitCode;
 }
 
 }  // namespace
 }  // namespace wavecrest
 
-int main(int argc, char** argv) { return wavecrest::run({argv + 1, argv + argc}); }
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of writing, which is reported as such
+  std::set_terminate(wavecrest::onTerminate);
+  wavecrest::openStandardStreams();
+  return wavecrest::run({argv + 1, argv + argc});
+}

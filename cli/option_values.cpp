@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "cli/commands.h"
+#include "cli/suggestion.h"
 
 namespace wavecrest {
 
@@ -80,11 +81,23 @@ uint64_t parseMemory(const std::string& text) {
 
 size_t parseChoice(const std::string& option, const std::string& word, const std::string_view* names, size_t count) {
   std::string choices;
+  std::vector<std::string> known;
   for (size_t i = 0; i < count; ++i) {
     if (names[i] == word) return i;
     choices += (i == 0 ? "" : ", ") + std::string(names[i]);
+    known.emplace_back(names[i]);
   }
-  throw UsageError(fmt::format("{} {}: unknown; expected one of {}", option, word, choices));
+  throw UsageError(fmt::format("{} {}: unknown; expected one of {}{}", option, word, choices, didYouMean(word, known)));
+}
+
+Method parseMethodOption(const std::string& option, const std::string& word) {
+  std::vector<std::string> known;
+  for (const MethodEntry& entry : kMethods) {
+    if (entry.name == word) return entry.method;
+    known.emplace_back(entry.name);
+  }
+  throw UsageError(
+      fmt::format("{} {}: unknown; expected one of {}{}", option, word, methodChoices(), didYouMean(word, known)));
 }
 
 }  // namespace wavecrest

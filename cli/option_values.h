@@ -24,6 +24,9 @@ std::array<uint32_t, 2> parseSize(const std::string& text);
 // "800M", "1.5G", "512MiB": bytes, by powers of 1000, or of 1024 with an i. At least 1 MB, or UsageError.
 uint64_t parseMemory(const std::string& text);
 
+// The method of that name; UsageError naming the option and the choices for any other word.
+Method parseMethodOption(const std::string& option, const std::string& word);
+
 // The position of a word in a list of names; UsageError naming the option and the choices for any other.
 size_t parseChoice(const std::string& option, const std::string& word, const std::string_view* names, size_t count);
 template <size_t kCount>

@@ -1,11 +1,14 @@
 #include "cli/progress.h"
 
-#include <fmt/core.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <string>
+
+#include "cli/messages.h"
 
 namespace wavecrest {
 namespace {
@@ -16,9 +19,25 @@ ProgressKind resolved(ProgressKind kind) {
 }
 
 constexpr auto kInterval = std::chrono::milliseconds(250);
-constexpr size_t kBarWidth = 40;
+constexpr size_t kWidestBar = 40, kTextWidth = 40;
+
+// Of the bar, such that its line fits the terminal; 0 leaves it out.
+size_t barWidth() {
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return kWidestBar;
+  return size.ws_col > kTextWidth ? std::min<size_t>(kWidestBar, size.ws_col - kTextWidth) : 0;
+}
 
 }  // namespace
+
+void noteLine(ProgressKind kind, const nlohmann::ordered_json& line, const std::string& text) {
+  if (kind == ProgressKind::none) return;
+  writeStderr(kind == ProgressKind::jsonl ? line.dump() + "\n" : "wavecrest: " + text + "\n");
+}
+
+void warn(ProgressKind kind, const std::string& text) {
+  noteLine(kind == ProgressKind::none ? ProgressKind::automatic : kind, {{"warning", text}}, "warning: " + text);
+}
 
 Progress::Progress(ProgressKind kind, const Session& session, std::optional<double> seconds,
                    std::optional<uint64_t> paths)
@@ -46,14 +65,15 @@ void Progress::show(bool last) const {
   if (paths_) fraction = std::max(fraction, static_cast<double>(paths) / static_cast<double>(*paths_));
   fraction = std::min(fraction, 1.0);
   if (kind_ == ProgressKind::jsonl) {
-    fmt::print(stderr, "{{\"fraction\":{:.4f},\"render_seconds\":{:.3f},\"paths\":{}}}\n", fraction, now, paths);
+    tell(R"({{"fraction":{:.4f},"render_seconds":{:.3f},"paths":{}}})", fraction, now, paths);
     return;
   }
-  const auto filled = static_cast<size_t>(fraction * kBarWidth);
+  const size_t width = barWidth();
+  const auto filled = static_cast<size_t>(fraction * static_cast<double>(width));
+  const std::string bar = width == 0 ? "" : "[" + std::string(filled, '=') + std::string(width - filled, ' ') + "] ";
   const double rate = now > 0 ? static_cast<double>(paths) / now * 1e-6 : 0;
-  fmt::print(stderr, "\r[{}{}] {:5.1f} %  {:7.1f} s  {:6.2f} M paths/s {}", std::string(filled, '='),
-             std::string(kBarWidth - filled, ' '), fraction * 100, now, rate, last ? "\n" : "");
-  std::fflush(stderr);
+  writeStderr(
+      fmt::format("\r{}{:5.1f} % {:7.1f} s {:6.2f} M paths/s {}", bar, fraction * 100, now, rate, last ? "\n" : ""));
 }
 
 }  // namespace wavecrest

@@ -1,9 +1,11 @@
-// Progress of a render on stderr, from a thread of its own that only reads counters.
+// Progress of a render on stderr, from a thread of its own that only reads counters, and other lines beside it.
 #pragma once
 
 #include <array>
 #include <atomic>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <thread>
 
@@ -13,6 +15,11 @@ namespace wavecrest {
 
 enum class ProgressKind { automatic, bar, jsonl, none };
 constexpr std::array<std::string_view, 4> kProgressNames{"auto", "bar", "jsonl", "none"};
+
+// A line beside the progress: with jsonl an object {key: value}, else "wavecrest: TEXT".
+void noteLine(ProgressKind kind, const nlohmann::ordered_json& line, const std::string& text);
+// The same of a warning, which is said in any case.
+void warn(ProgressKind kind, const std::string& text);
 
 class Progress {
  public:

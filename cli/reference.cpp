@@ -3,11 +3,16 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
+#include "bench/campaign/file_lock.h"
 #include "bench/campaign/render_reference.h"
 #include "cli/commands.h"
+#include "cli/file_check.h"
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/option_values.h"
 #include "cli/scene_options.h"
 #include "engine/path_classes.h"
@@ -25,23 +30,26 @@ struct ReferenceOptions {
   double relativeError = 0, radius = kReferenceRadius;
   uint64_t spp = 0, seed = 0;
   uint32_t threads = 0;
+  std::string progress = "auto";
   bool quiet = false;
 };
 
-// What is left to say once in a while, on a terminal in one line that is written over.
-void showAdvance(const ReferenceInfo& info) {
-  fmt::print(stderr, "{}{:8.1f} s  {:8} iterations of each half  relative error {:.4f}{}", isatty(2) ? "\r" : "",
-             info.renderSeconds, info.iterations, info.relativeError, isatty(2) ? " " : "\n");
-  std::fflush(stderr);
+// Said once in a while; on a terminal in one line that is written over.
+void showAdvance(ProgressKind kind, const ReferenceInfo& info) {
+  if (kind == ProgressKind::none) return;
+  if (kind == ProgressKind::jsonl) {
+    tell(R"({{"render_seconds":{:.3f},"iterations":{},"relative_error":{:.6g}}})", info.renderSeconds, info.iterations,
+         info.relativeError);
+    return;
+  }
+  const bool bar = kind == ProgressKind::bar || isatty(STDERR_FILENO) != 0;
+  writeStderr(fmt::format("{}{:8.1f} s  {:8} iterations of each half  relative error {:.4f}{}", bar ? "\r" : "",
+                          info.renderSeconds, info.iterations, info.relativeError, bar ? " " : "\n"));
 }
 
 ReferenceChoice chosenMethod(const ReferenceOptions& options, const Scene& scene) {
   if (options.method == "auto") return classifyPaths(scene).reference;
-  const std::optional<Method> method = parseMethod(options.method);
-  if (!method) {
-    throw UsageError(fmt::format("--method {}: unknown; expected auto or one of {}", options.method, methodChoices()));
-  }
-  return {.method = *method, .biased = false, .reason = "asked for"};
+  return {.method = parseMethodOption("--method", options.method), .biased = false, .reason = "asked for"};
 }
 
 RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, Method method) {
@@ -74,28 +82,47 @@ int runReference(const ReferenceOptions& options) {
   if (std::filesystem::path(output).extension() != ".exr") {
     throw UsageError(fmt::format("-o {}: expected a name that ends in .exr, which keeps the halves", output));
   }
-  try {
-    checkImageTarget(output);
-  } catch (const ImageError& error) {
-    throw UsageError(error.what());
-  }
+  FileCheck files;
+  files.input("the scene", scenePath);
+  files.output("-o", output);
   const ReferenceGoal goal = goalOf(options);
-  const Scene scene = loadScene(options.scene);
+  const auto kind = options.quiet
+                        ? ProgressKind::none
+                        : static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  InterruptGuard guard("wavecrest: interrupted while loading; " + output + " is as it was");
+  const Scene scene = loadScene(options.scene, kind);
+  printNotes(scene, kind);
+  for (const std::string& file : scene.files) files.input("the scene", file);
   const ReferenceChoice method = chosenMethod(options, scene);
-  if (!options.quiet) fmt::print(stderr, "{} by {}: {}\n", scene.name, toString(method.method), method.reason);
+  noteLine(kind, {{"method", toString(method.method)}, {"reason", method.reason}},
+           fmt::format("{} by {}: {}", scene.name, toString(method.method), method.reason));
 
-  InterruptGuard guard;
-  ReferenceHooks hooks{.watch = [&](Session* session) { guard.watch(session); },
-                       .stopped = [&] { return guard.interrupted(); },
-                       .advance = {}};
-  if (!options.quiet) hooks.advance = showAdvance;
+  bool saveNow = false;
+  const ReferenceHooks hooks{.session = {.watch = [&](Session* session) { guard.watch(session); },
+                                         .goesOn =
+                                             [&] {
+                                               if (guard.interrupted()) return false;
+                                               saveNow |= guard.takeSaveRequest();
+                                               guard.goOn();
+                                               return !guard.interrupted();
+                                             },
+                                         .idle = [&](bool idle) { guard.setIdle(idle); }},
+                             .stopped = [&] { return guard.interrupted(); },
+                             .saveNow = [&] { return std::exchange(saveNow, false) || guard.takeSaveRequest(); },
+                             .advance = [&](const ReferenceInfo& info) { showAdvance(kind, info); }};
   try {
     const Reference reference =
         renderReference(scene, settingsFor(options, scene, method.method), method.reason, goal, output, hooks);
+    if (reference.info.iterations == 0) {
+      tell("wavecrest: interrupted before anything was rendered; no reference was written");
+      return kExitInterrupted;
+    }
     fmt::print("{}: {} iterations of each half, {:.1f} s, relative error {:.5f}\n", output, reference.info.iterations,
                reference.info.renderSeconds, reference.info.relativeError);
     for (const auto& [name, value] : reference.noiseFloors) fmt::print("noise floor {:8} {:.6g}\n", name, value);
   } catch (const ReferenceMismatch& error) {
+    throw InputError(error.what());
+  } catch (const FileLockError& error) {
     throw InputError(error.what());
   }
   return guard.interrupted() ? kExitInterrupted : kExitDone;
@@ -122,7 +149,8 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--radius", options->radius, "first merge radius of ppm, bpm and vcm").showDefault().between(1e-9, 10.0);
   command.add("-o,--output", options->output, "EXR file; default: SCENE.reference.exr; goes on if it exists");
-  command.addFlag("--quiet", options->quiet, "print the result only");
+  command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
+  command.addFlag("--quiet", options->quiet, "print the result only; as --progress none");
   command.run([options, &exitCode] { exitCode = runReference(*options); });
 }
 

@@ -3,21 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "bench/campaign/render_stats.h"
-#include "bench/film_image.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
+#include "cli/render_outputs.h"
 #include "cli/scene_options.h"
+#include "cli/until_goal.h"
 #include "engine/load/load.h"
+#include "engine/render_plan.h"
 #include "engine/session.h"
 #include "engine/snapshots.h"
-#include "metrics/image/atomic_file.h"
-#include "metrics/image/image_io.h"
+#include "scenes/scene_list.h"
 
 namespace wavecrest {
 namespace {
@@ -35,7 +36,11 @@ struct RenderOptions {
            restart = 0;  // 0: by the number of samples
   double radius = 0.001, radiusAlpha = 0.75;
   std::vector<std::string> outputs;
-  bool noDirectPass = false;
+  bool noDirectPass = false, dryRun = false;
+  double untilSsim = 0;  // 0: not asked for
+  std::string reference;
+
+  bool untilGood() const { return untilSsim > 0 || !reference.empty(); }
 };
 
 MetropolisSettings chosenChains(const RenderOptions& options) {
@@ -52,10 +57,7 @@ MetropolisSettings chosenChains(const RenderOptions& options) {
 
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   RenderSettings settings;
-  const std::optional<Method> method = parseMethod(options.method);
-  if (!method)
-    throw UsageError(fmt::format("--method {}: unknown; expected one of {}", options.method, methodChoices()));
-  settings.method = *method;
+  settings.method = parseMethodOption("--method", options.method);
   const std::optional<SamplerKind> sampler = parseSamplerKind(options.sampler);
   if (!sampler) throw UsageError(fmt::format("--sampler {}: expected independent or sobol", options.sampler));
   settings.sampler = *sampler;
@@ -70,79 +72,20 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   settings.radiusAlpha = options.radiusAlpha;
   settings.limits = pathLimits(options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth,
                                options.rrDepth != 0 ? options.rrDepth : scene.defaults.rrDepth);
+  if (settings.method == Method::mlt && options.maxDepth > static_cast<int>(kChainDepth)) {
+    throw UsageError(fmt::format("--max-depth {}: chains have memory for {} edges; expected that or less",
+                                 options.maxDepth, kChainDepth));
+  }
   if (options.spp != 0) settings.iterations = options.spp;
   if (!options.time.empty()) settings.seconds = parseDuration(options.time);
-  if (!settings.iterations && !settings.seconds) settings.iterations = scene.defaults.sampleCount;
+  if (!settings.iterations && !settings.seconds && !options.untilGood())
+    settings.iterations = scene.defaults.sampleCount;
   if (!options.memory.empty()) settings.memoryBytes = parseMemory(options.memory);
   settings.measureStages = !options.stats.empty();
   return settings;
 }
 
-// NAME.0007.exr beside the output NAME.exr.
-std::string snapshotPath(const std::string& output, unsigned number) {
-  const std::filesystem::path path(output);
-  return (path.parent_path() / fmt::format("{}.{:04}.exr", path.stem().string(), number)).string();
-}
-
-// Files of one render: the image under each requested name, snapshots beside the first, the statistics.
-class Outputs {
- public:
-  Outputs(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, double loadSeconds)
-      : options_(options), scene_(scene), settings_(settings), loadSeconds_(loadSeconds) {}
-
-  void writeSnapshot(const Session& session, unsigned index) {
-    const std::string path = snapshotPath(options_.outputs.front(), index);
-    const RenderStatistics statistics = session.statistics();
-    snapshots_.push_back({.number = index,
-                          .renderSeconds = statistics.renderSeconds,
-                          .iterations = statistics.iterations,
-                          .file = path});
-    writeExr(path, filmImage(session), statsMetadata(stats(statistics)));
-  }
-
-  void writeFinal(const Session& session) {
-    const nlohmann::ordered_json all = stats(session.statistics());
-    for (const std::string& output : options_.outputs) writeImage(output, filmImage(session), statsMetadata(all));
-    if (!options_.stats.empty()) {
-      const std::string text = all.dump(2) + "\n";
-      writeFileAtomically(options_.stats, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
-    }
-  }
-
- private:
-  nlohmann::ordered_json stats(const RenderStatistics& statistics) const {
-    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    return renderStats(scene_, settings_, statistics, loadSeconds_, wall, snapshots_);
-  }
-
-  const RenderOptions& options_;
-  const Scene& scene_;
-  const RenderSettings& settings_;
-  const double loadSeconds_;
-  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  std::vector<SnapshotRecord> snapshots_;
-};
-
-// A name that cannot be written is found before the render, not after it.
-void checkOutputs(const RenderOptions& options) {
-  if (options.outputs.empty() && !options.snapshotEvery.empty()) {
-    throw UsageError("--snapshot-every needs an output to name the snapshots after; expected -o FILE.exr");
-  }
-  for (const std::string& output : options.outputs) {
-    try {
-      checkImageTarget(output);
-    } catch (const ImageError& error) {
-      throw UsageError(error.what());
-    }
-  }
-  const std::filesystem::path folder = std::filesystem::path(options.stats).parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder)) {
-    throw UsageError(
-        fmt::format("--stats {}: there is no folder '{}'; expected one that exists", options.stats, folder.string()));
-  }
-}
-
-// Edges of the longest path: 1 to 64, or -1 for as many as roulette allows.
+// Edges of the longest path: 1 to kUnlimitedDepth, or -1 for as many as roulette allows.
 std::string checkMaxDepth(const std::string& word) {
   int depth = 0;
   const bool valid =
@@ -184,37 +127,162 @@ std::string describe(const MemoryPlan& plan) {
   return text;
 }
 
+// Settings that the method cannot keep to, said before it renders.
+void warnOfLimits(ProgressKind kind, const RenderSettings& settings) {
+  if (!strategiesOf(settings.method).merge) return;
+  if (settings.radius < kSmallestRadius) {
+    warn(kind,
+         fmt::format("--radius {:g} is below what positions resolve; {:g} is used", settings.radius, kSmallestRadius));
+  } else if (settings.radius >= 0.5) {
+    warn(kind,
+         fmt::format("--radius {:g} blurs over the whole scene; expected a small part of its radius", settings.radius));
+  }
+}
+
+// What a render has left out.
+void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const RenderStatistics& statistics) {
+  const StageCounters& counters = statistics.counters;
+  if (counters.nonFinite != 0) {
+    warn(kind, fmt::format("{} samples were not finite and count as black", counters.nonFinite));
+  }
+  if (counters.saturatedSplats != 0) {
+    warn(kind, fmt::format("{} splats were too large for the film's sums", counters.saturatedSplats));
+  }
+  if (counters.cutPaths != 0 && settings.limits.maxDepth == kUnlimitedDepth) {
+    const double paths = static_cast<double>(statistics.paths + statistics.lightPaths);
+    warn(kind,
+         fmt::format("{} paths were cut after {} edges; they carried {:.2g} of what all began with", counters.cutPaths,
+                     withinDepthOfMethod(settings).limits.maxDepth, counters.cutThroughput / paths));
+  }
+}
+
+UntilGoal untilGoal(const RenderOptions& options, const FilmArea& film) {
+  if (!options.snapshotEvery.empty()) {
+    throw UsageError("--snapshot-every: not together with --until-ssim; expected one of them");
+  }
+  return {options.untilSsim, options.reference, film};
+}
+
+nlohmann::ordered_json toJson(const MemoryPlan& plan) {
+  const MemoryUse& use = plan.use;
+  return {{"memory",
+           {{"scene_bytes", use.scene},
+            {"wave_bytes", use.waves},
+            {"film_bytes", use.film},
+            {"splat_bytes", use.splats},
+            {"light_vertex_bytes", use.lightVertices},
+            {"photon_map_bytes", use.photonMap},
+            {"chain_bytes", use.chains},
+            {"total_bytes", use.total()},
+            {"light_paths", plan.lightPaths}}}};
+}
+
+// What people should know of a render besides its image: warnings, and in one line where it went and how it fared.
+void showSummary(const RenderOptions& options, const RenderSettings& settings, ProgressKind kind,
+                 const Session& session) {
+  const RenderStatistics statistics = session.statistics();
+  warnOfLosses(kind, settings, statistics);
+  std::string files;
+  for (const std::string& output : options.outputs) files += (files.empty() ? "" : ", ") + output;
+  const uint64_t paths = settings.method == Method::lt ? statistics.lightPaths : statistics.paths;
+  const double seconds = statistics.renderSeconds;
+  const double perSecond = seconds > 0 ? static_cast<double>(paths) / seconds : 0;
+  noteLine(kind,
+           {{"outputs", options.outputs},
+            {"iterations", statistics.iterations},
+            {"render_seconds", seconds},
+            {"paths_per_second", perSecond}},
+           fmt::format("{}: {} spp in {:.1f} s, {:.2f} M paths/s",
+                       files.empty() ? "no -o, so the image was not kept" : files, statistics.iterations, seconds,
+                       perSecond * 1e-6));
+}
+
+// What a render would do, on stdout.
+void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
+              const Session& session) {
+  const RenderStatistics statistics = session.statistics();
+  fmt::print("scene    {}, {}x{} pixels, scene_hash {:016x}\n", scene.name, session.film().area().width,
+             session.film().area().height, scene.hash);
+  fmt::print("method   {}, {} kernels on {}, {} intersector, {} threads\n", toString(settings.method),
+             kSpecializationNames[static_cast<size_t>(statistics.specialization)], toString(statistics.isa),
+             kAccelNames[static_cast<size_t>(statistics.accel)], settings.threads);
+  const std::string iterations = settings.iterations ? fmt::format("{} spp", *settings.iterations) : "";
+  const std::string seconds = settings.seconds ? fmt::format("{:g} s", *settings.seconds) : "";
+  fmt::print("ends     after {}{}{}\n", iterations, settings.iterations && settings.seconds ? " or " : "", seconds);
+  fmt::print("memory   {}\n", describe(session.memoryPlan()));
+  for (const std::string& output : options.outputs) fmt::print("writes   {}\n", output);
+  if (!options.stats.empty()) fmt::print("writes   {}\n", options.stats);
+  if (options.outputs.empty()) fmt::print("writes   no image: there is no -o\n");
+}
+
+enum class Ending { complete, stopped, stoppedBeforeAnyPath };
+
+// Renders to the end or to a signal, with snapshots and saves on the way.
+Ending render(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
+              const std::optional<UntilGoal>& until, ProgressKind kind, InterruptGuard& guard, RenderOutputs& outputs) {
+  bool stopped = false;
+  const auto goesOn = [&] {
+    stopped = guard.interrupted();
+    if (stopped) return false;
+    if (guard.takeSaveRequest() && session.statistics().paths > 0) outputs.write(session);
+    guard.goOn();
+    return true;
+  };
+  guard.watch(&session);
+  std::optional<uint64_t> goalPaths;
+  if (settings.iterations) goalPaths = *settings.iterations * session.film().area().pixels.size();
+  {
+    const Progress progress(kind, session, settings.seconds, goalPaths);
+    if (until) {
+      do {
+        outputs.setUntil(until->render(session, settings));
+      } while (session.interrupted() && goesOn());
+    } else {
+      renderWithSnapshots(
+          session, settings, schedule, [&](unsigned number) { outputs.writeSnapshot(session, number); }, goesOn);
+    }
+  }
+  guard.watch(nullptr);
+  if (!stopped) return Ending::complete;
+  return session.statistics().paths > 0 ? Ending::stopped : Ending::stoppedBeforeAnyPath;
+}
+
 int runRender(const RenderOptions& options) {
-  checkOutputs(options);
   const SnapshotSchedule schedule = parseSnapshotSchedule(options.snapshotEvery);
+  const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  const OutputNames names{options.outputs, options.stats, !options.snapshotEvery.empty()};
+  const std::string nothing = "wavecrest: interrupted before anything was rendered; no image was written";
+  InterruptGuard guard(nothing);
+  checkOutputs(names, {findScene(options.scene.scene)});
   const auto begin = std::chrono::steady_clock::now();
-  const Scene scene = loadScene(options.scene);
+  const Scene scene = loadScene(options.scene, kind);
+  printNotes(scene, kind);
+  checkOutputs(names, scene.files);
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const RenderSettings settings = resolved(options, scene);
-  const ProgressKind progressKind =
-      static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
   const std::unique_ptr<Session> session = createSession(scene, settings);
   // On request, and where light paths fill the memory.
-  if (settings.memoryBytes || (session->memoryPlan().use.photonMap > 0 && progressKind != ProgressKind::none)) {
-    fmt::print(stderr, "wavecrest: memory: {}\n", describe(session->memoryPlan()));
+  if (settings.memoryBytes || session->memoryPlan().use.photonMap > 0) {
+    noteLine(kind, toJson(session->memoryPlan()), "memory: " + describe(session->memoryPlan()));
   }
-  Outputs outputs(options, scene, settings, loadSeconds);
-
-  {
-    InterruptGuard guard;
-    guard.watch(session.get());
-    std::optional<uint64_t> goalPaths;
-    if (settings.iterations) goalPaths = *settings.iterations * session->film().area().pixels.size();
-    const Progress progress(progressKind, *session, settings.seconds, goalPaths);
-    renderWithSnapshots(*session, settings, schedule,
-                        [&](unsigned number) { outputs.writeSnapshot(*session, number); });
+  warnOfLimits(kind, settings);
+  if (options.dryRun) {
+    showPlan(options, scene, settings, *session);
+    return kExitDone;
   }
-  if (session->interrupted() && session->statistics().paths == 0) {
-    fmt::print(stderr, "wavecrest: interrupted before anything was rendered; no image was written\n");
+  RenderOutputs outputs(names, scene, settings, loadSeconds);
+  std::optional<UntilGoal> until;
+  if (options.untilGood()) until.emplace(untilGoal(options, session->film().area()));
+  const Ending ending = render(*session, settings, schedule, until, kind, guard, outputs);
+  if (until) noteLine(kind, {{"until", outputs.until()}}, UntilGoal::describe(outputs.until()));
+  if (ending == Ending::stoppedBeforeAnyPath) {
+    tell("{}", nothing);
     return kExitInterrupted;
   }
-  outputs.writeFinal(*session);
-  return session->interrupted() ? kExitInterrupted : kExitDone;
+  outputs.write(*session);
+  showSummary(options, settings, kind, *session);
+  if (outputs.failed()) return kExitInput;
+  return ending == Ending::stopped ? kExitInterrupted : kExitDone;
 }
 
 }  // namespace
@@ -225,7 +293,11 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
   addSceneOptions(command, options->scene);
   command.add("-m,--method", options->method, "light-transport method").showDefault();
   command.add("--time", options->time, "stop after this much render time: 6s, 2m, 1h30m");
-  command.add("--spp", options->spp, "stop after N iterations: paths, of mlt mutations, per pixel").positive();
+  command
+      .add("--spp", options->spp,
+           "stop after N iterations: paths, of mlt mutations, per pixel; default without --time: "
+           "the scene's sample_count, or 4")
+      .positive();
   command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
   command.add("--seed", options->seed, "seed of all random numbers").showDefault().notNegative();
   command.add("--sampler", options->sampler, "independent or sobol").showDefault();
@@ -253,8 +325,13 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
       .between(1, 1 << 28);
   command.addFlag("--no-direct-pass", options->noDirectPass, "mmlt and pathspace: chains render direct light too");
   command.add("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");
+  command.add("--until-ssim", options->untilSsim, "stop when the SSIM against --reference is S")
+      .checkedBy(checkFinite)
+      .between(1e-9, 1.0);
+  command.add("--reference", options->reference, "image that --until-ssim compares with");
   command.add("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable").repeatable();
-  command.add("--stats", options->stats, "write statistics as JSON");
+  command.add("--stats", options->stats, "write statistics as JSON; - for stdout");
+  command.addFlag("--dry-run", options->dryRun, "print plan, memory and outputs, and render nothing");
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
   command.run([options, &exitCode] { exitCode = runRender(*options); });
 }

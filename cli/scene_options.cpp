@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "engine/load/load.h"
@@ -10,13 +12,13 @@
 namespace wavecrest {
 
 void addSceneOptions(const Command& command, SceneOptions& options) {
-  command.add("scene", options.scene, "built-in scene or path of an XML file").required();
+  command.add("scene", options.scene, "built-in scene, path of an XML file, or - for stdin").required();
   command.add("--size", options.size, "film size, WIDTHxHEIGHT");
   command.add("-D", options.defines, "value of a scene's $name: NAME=VALUE").repeatable();
   command.addFlag("--lenient", options.lenient, "skip what a scene asks and wavecrest lacks, with a warning");
 }
 
-Scene loadScene(const SceneOptions& options) {
+Scene loadScene(const SceneOptions& options, ProgressKind kind) {
   LoadOptions load;
   load.lenient = options.lenient;
   if (!options.size.empty()) load.filmSize = parseSize(options.size);
@@ -28,8 +30,18 @@ Scene loadScene(const SceneOptions& options) {
     load.defines[define.substr(0, equals)] = define.substr(equals + 1);
   }
   Scene scene = loadScene(findScene(options.scene), load);
-  for (const std::string& warning : scene.warnings) fmt::print(stderr, "wavecrest: warning: {}\n", warning);
+  for (const std::string& warning : scene.warnings) warn(kind, warning);
+  if (scene.emitters.empty()) warn(kind, fmt::format("{}: the scene has no light; its image is black", options.scene));
   return scene;
+}
+
+void printNotes(const Scene& scene, ProgressKind kind) {
+  for (const Note& note : scene.notes) noteLine(kind, {{"note", toString(note)}}, "note: " + toString(note));
+}
+
+std::string toString(const Note& note) {
+  const std::string more = note.count > 1 ? fmt::format(" ({} times)", note.count) : "";
+  return fmt::format("{}:{}: {}{}: {}", note.source.file, note.source.line, note.what, more, note.effect);
 }
 
 }  // namespace wavecrest

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/command_line.h"
+#include "cli/progress.h"
 #include "engine/scene/scene.h"
 
 namespace wavecrest {
@@ -17,7 +18,14 @@ struct SceneOptions {
 
 void addSceneOptions(const Command& command, SceneOptions& options);
 
-// Loads it; what --lenient skipped goes to stderr. Throws UsageError, or LoadError for a scene that cannot be read.
-Scene loadScene(const SceneOptions& options);
+// Loads it; what --lenient skipped, and that nothing shines, goes to stderr. Throws UsageError, or LoadError for a
+// scene that cannot be read.
+Scene loadScene(const SceneOptions& options, ProgressKind kind = ProgressKind::automatic);
+
+// Its notes, one a line on stderr.
+void printNotes(const Scene& scene, ProgressKind kind);
+
+// FILE:LINE: what the file says (how often, if more than once): what wavecrest does.
+std::string toString(const Note& note);
 
 }  // namespace wavecrest

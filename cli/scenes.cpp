@@ -1,6 +1,9 @@
 // wavecrest scenes: the built-in scenes, a line each.
 #include <fmt/core.h>
 
+#include <memory>
+#include <nlohmann/json.hpp>
+
 #include "cli/commands.h"
 #include "scenes/scene_list.h"
 
@@ -8,8 +11,20 @@ namespace wavecrest {
 
 void addScenesCommand(CommandLine& program, int&) {
   const Command command = program.add("scenes", "list the built-in scenes");
-  command.run([] {
-    for (const SceneEntry& scene : builtInScenes()) fmt::print("{:<24} {}\n", scene.name, scene.description);
+  const auto json = std::make_shared<bool>(false);
+  command.addFlag("--json", *json, "as an array of objects: name, description, file");
+  command.run([json] {
+    if (!*json) {
+      for (const SceneEntry& scene : builtInScenes()) fmt::print("{:<24} {}\n", scene.name, scene.description);
+      return;
+    }
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const SceneEntry& scene : builtInScenes()) {
+      all.push_back({{"name", scene.name},
+                     {"description", scene.description},
+                     {"file", findScene(std::string(scene.name)).string()}});
+    }
+    fmt::print("{}\n", all.dump(2));
   });
 }
 

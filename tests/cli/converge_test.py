@@ -8,12 +8,13 @@ import os
 import pathlib
 import random
 import shutil
+import signal
 import sqlite3
 import subprocess
 import time
 import unittest
 
-from harness import CHECK, DONE, INPUT, TIMEOUT_SECONDS, USAGE, WAVECREST, CommandTest
+from harness import CHECK, DONE, INPUT, INTERRUPTED, TIMEOUT_SECONDS, USAGE, WAVECREST, CommandTest
 
 KILLS = int(os.environ.get("KILLS", "3"))
 
@@ -135,7 +136,7 @@ class Resuming(Converge):
                 resume, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
             )
             time.sleep(chance.uniform(0, 1.5 * length / max(KILLS, 4)))
-            process.kill()
+            process.send_signal(chance.choice((signal.SIGKILL, signal.SIGTERM)))
             if process.wait(timeout=TIMEOUT_SECONDS) == 0:
                 # It was faster than the kill: from the beginning, for the rest of the kills.
                 shutil.rmtree(self.path("killed"))
@@ -167,9 +168,12 @@ class Resuming(Converge):
         os.remove(self.path("a/images/cornell-diffuse.pt.1.0000.exr"))
         self.converge("--out", "a", "--resume")
         self.assertEqual(rows(self.results("a")), before)
-        for other in (["--spp", "8"], ["--seeds", "3"], ["--profile", "standard"], ["cornell-mirror"]):
+        self.assert_one_error_line(self.converge("--out", "a", "--resume", "--time", "1s", expect=USAGE), r"--spp counts")
+        for other in (["--spp", "2"], ["--seeds", "1"], ["--profile", "standard"], ["--methods", "pt"],
+                      ["--size", "64x48"], ["--images", "last"]):  # fmt: skip
             result = self.converge("--out", "a", "--resume", *other, expect=USAGE)
-            self.assert_one_error_line(result, r".*was begun with .*; expected the same, or another --out")
+            self.assert_one_error_line(result, r".*was begun with .*; expected the same, more, or another --out")
+        self.assertEqual(rows(self.results("a")), before)
 
     def test_a_campaign_is_not_begun_over_another(self):
         self.tiny("a")
@@ -191,15 +195,98 @@ class Resuming(Converge):
         self.assert_one_error_line(result, r".*room\.xml: the scene changed since this campaign began")
 
 
-class Planning(Converge):
-    def runs(self, out):
-        return kind(rows(self.results(out)), "run")
+class Extending(Converge):
+    """A finished campaign that grows has the rows of one that was begun that large."""
 
+    def assert_grows(self, begun, added, whole):
+        self.converge(*begun, "--out", "grown")
+        self.converge("--out", "grown", "--resume", *added)
+        self.converge(*whole, "--out", "whole")
+        self.assertEqual(rows(self.results("grown")), rows(self.results("whole")))
+        self.assertEqual(self.image_names("grown"), self.image_names("whole"))
+        stamp = os.stat(self.path("grown/images/cornell-diffuse.pt.1.0000.exr")).st_mtime_ns
+        self.converge("--out", "grown", "--resume")
+        self.assertEqual(os.stat(self.path("grown/images/cornell-diffuse.pt.1.0000.exr")).st_mtime_ns, stamp)
+
+    def test_by_scenes_methods_and_seeds(self):
+        small = ["--size", "20x20", "--spp", "2"]
+        self.assert_grows(
+            ["cornell-diffuse", "--methods", "pt", "--seeds", "2", *small],
+            ["cornell-mirror", "--methods", "pt,lt", "--seeds", "3"],
+            ["cornell-diffuse", "cornell-mirror", "--methods", "pt,lt", "--seeds", "3", *small],
+        )
+
+    def test_by_iterations(self):
+        # A reference of its own would be longer in the whole: both use the same.
+        os.mkdir(self.path("given"))
+        self.run_wavecrest(
+            "reference", "cornell-diffuse", "--size", "20x20", "--spp", "8", "-o", "given/cornell-diffuse.exr"
+        )
+        same = ["cornell-diffuse", "--methods", "pt,vcm", "--seeds", "2", "--size", "20x20", "--reference", "given"]
+        self.assert_grows([*same, "--spp", "2"], ["--spp", "4"], [*same, "--spp", "4"])
+
+    def test_by_time(self):
+        self.converge("cornell-diffuse", "--methods", "pt,lt", "--size", "20x20", "--time", "0.1s", "--out", "a",
+                      "--images", "last")  # fmt: skip
+        self.converge("--out", "a", "--resume", "--time", "0.3s")
+        database = sqlite3.connect(self.results("a"))
+        ends = [row[0] for row in database.execute("SELECT MAX(render_seconds) FROM snapshot GROUP BY run")]
+        database.close()
+        self.assertEqual(len(ends), 4)
+        self.assertTrue(all(end >= 0.3 for end in ends), ends)
+        self.assertEqual(len(self.image_names("a")), 4)
+
+    def test_shards_are_not_divided_anew(self):
+        self.tiny("a", "--shard", "1/2")
+        result = self.converge("--out", "a", "--resume", "--shard", "1/2", "--methods", "bpt", expect=USAGE)
+        self.assert_one_error_line(result, r"--methods: shards divide")
+
+
+class Locks(Converge):
+    def begun(self, out):
+        """Whether the settings of a campaign are stored."""
+        if not os.path.exists(self.results(out)):
+            return False
+        database = sqlite3.connect(self.results(out))
+        try:
+            return bool(database.execute("SELECT 1 FROM campaign WHERE key = 'options'").fetchall())
+        except sqlite3.OperationalError:  # no tables yet
+            return False
+        finally:
+            database.close()
+
+    def test_one_process_at_a_time_works_in_a_folder(self):
+        endless = ["cornell-diffuse", "--methods", "pt", "--size", "20x20", "--spp", "1000000000"]
+        first = subprocess.Popen(
+            [WAVECREST, "converge", *endless, "--out", "a"], cwd=self.folder, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        try:
+            deadline = time.monotonic() + TIMEOUT_SECONDS
+            while not self.begun("a"):
+                self.assertLess(time.monotonic(), deadline)
+                time.sleep(0.01)
+            result = self.converge("--out", "a", "--resume", expect=INPUT)
+            self.assert_one_error_line(result, rf"a/results\.sqlite: process {first.pid} on .* works on it")
+        finally:
+            first.kill()
+            first.wait()
+        # A lock ends with its process, however that ends.
+        self.assertTrue(os.path.exists(self.path("a/results.sqlite.lock")))
+        process = subprocess.Popen([WAVECREST, "converge", "--out", "a", "--resume"], cwd=self.folder,
+                                   stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)  # fmt: skip
+        self.assertIn("2 runs", process.stderr.readline() + process.stderr.readline())
+        process.terminate()
+        self.assertEqual(process.communicate(timeout=TIMEOUT_SECONDS) and process.returncode, INTERRUPTED)
+        self.assertFalse(os.path.exists(self.path("a/results.sqlite.lock")))
+
+
+class Planning(Converge):
     def test_a_scene_that_does_not_load_stops_it_before_the_first_run(self):
         broken = self.write("broken.xml", ROOM.replace('"sphere"', '"obj"', 1).replace("RADIANCE", "1"))
         result = self.converge("cornell-diffuse", broken, *TINY[1:], "--out", "a", "--progress", "none", expect=INPUT)
         self.assert_one_error_line(result, r".*broken\.xml:\d+: ")
-        self.assertEqual(self.runs("a"), [])
+        self.assertFalse(os.path.exists(self.path("a")), "nothing is begun")
 
     def test_a_reference_that_is_missing_stops_it_before_the_first_run(self):
         os.mkdir(self.path("given"))
@@ -209,7 +296,7 @@ class Planning(Converge):
         scenes = ["cornell-diffuse", "cornell-mirror", *TINY[1:]]
         result = self.converge(*scenes, "--reference", "given", "--out", "a", "--progress", "none", expect=INPUT)
         self.assert_one_error_line(result, r"given/cornell-mirror\.exr: does not exist")
-        self.assertEqual(self.runs("a"), [])
+        self.assertFalse(os.path.exists(self.path("a")), "nothing is begun")
 
     def test_it_begins_with_what_is_ahead(self):
         times = ["--methods", "pt,lt", "--size", "16x12", "--time", "0.02s", "--seeds", "3", "--progress", "jsonl"]
@@ -307,10 +394,16 @@ class Refusals(Converge):
         os.mkdir(self.path("given"))
         result = self.tiny("a", "--reference", "given", "--progress", "none", expect=INPUT)
         self.assert_one_error_line(result, r"given/cornell-diffuse\.exr: does not exist; expected")
-        self.run_wavecrest("render", "cornell-mirror", "--size", "32x24", "--spp", "1", "-o", "given/cornell-diffuse.exr")
+        self.run_wavecrest("render", "cornell-diffuse", "--size", "32x24", "--spp", "1", "-o", "given/cornell-diffuse.exr")
+        result = self.tiny("p", "--reference", "given", "--progress", "none", expect=INPUT)
+        self.assert_one_error_line(result, r"given/cornell-diffuse\.exr: is a plain image, without the two halves")
+        os.remove(self.path("given/cornell-diffuse.exr"))
+        made = ["--spp", "1", "-o", "given/cornell-diffuse.exr"]
+        self.run_wavecrest("reference", "cornell-mirror", "--size", "32x24", *made)
         result = self.tiny("b", "--reference", "given", "--progress", "none", expect=INPUT)
         self.assert_one_error_line(result, r"given/cornell-diffuse\.exr: is of scene_hash [0-9a-f]+; expected")
-        self.run_wavecrest("render", "cornell-diffuse", "--size", "16x12", "--spp", "1", "-o", "given/cornell-diffuse.exr")
+        os.remove(self.path("given/cornell-diffuse.exr"))
+        self.run_wavecrest("reference", "cornell-diffuse", "--size", "16x12", *made)
         result = self.tiny("c", "--reference", "given", "--progress", "none", expect=INPUT)
         self.assert_one_error_line(result, r"given/cornell-diffuse\.exr: is 16x12 pixels; expected 32x24")
 

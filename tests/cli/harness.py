@@ -35,7 +35,7 @@ class CommandTest(unittest.TestCase):
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
         return str(path)
 
-    def run_wavecrest(self, *arguments, expect=DONE):
+    def run_wavecrest(self, *arguments, expect=DONE, variables=None):
         """Runs to the end and checks the exit code; returns the completed process with its text."""
         result = subprocess.run(
             [WAVECREST, *map(str, arguments)],
@@ -44,6 +44,7 @@ class CommandTest(unittest.TestCase):
             text=True,
             timeout=TIMEOUT_SECONDS,
             check=False,
+            env=os.environ | (variables or {}),
         )
         self.assertEqual(result.returncode, expect, f"{arguments}\n{result.stdout}\n{result.stderr}")
         return result

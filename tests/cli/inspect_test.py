@@ -5,7 +5,7 @@ import unittest
 
 from harness import INPUT, CommandTest, read_json
 
-KEYS = ["features", "primitives", "bounds", "specialization", "accel", "memory", "path_classes", "reference_method"]
+KEYS = ["features", "primitives", "bounds", "specialization", "accel", "memory", "path_classes", "reference_method", "notes"]
 METHODS = {"pt", "lt", "bpt", "ppm", "bpm", "vcm"}
 
 
@@ -21,6 +21,17 @@ class Inspect(CommandTest):
         self.assertEqual(facts["features"]["bsdfs"], {"conductor": 1, "diffuse": 4})
         self.assertEqual(facts["features"]["lights"], {"area": 1})
         self.assertAlmostEqual(facts["bounds"]["max"][1], 548.8, places=2)
+
+    def test_notes_say_what_is_left_out(self):
+        scene = self.write(
+            "scene.xml",
+            '<scene version="3.0.0">\n<integrator type="bdpt"/><sensor type="perspective"/><shape type="sphere"/></scene>',
+        )
+        (note,) = self.inspect(scene)["notes"]
+        self.assertEqual((note["line"], note["what"], note["count"]), (2, 'integrator "bdpt"', 1))
+        self.assertIn("--method bpt", note["effect"])
+        self.assertRegex(self.run_wavecrest("inspect", scene).stdout, r'scene\.xml:2: integrator "bdpt": .*--method bpt')
+        self.assertEqual(self.inspect("cornell-diffuse")["notes"], [])
 
     def test_verdicts_are_of_three_words_for_every_method(self):
         classes = self.inspect("cornell-spheres")["path_classes"]

@@ -1,5 +1,6 @@
 """Reference images: what the file says, going on with it, and what survives kill and Ctrl-C."""
 
+import os
 import pathlib
 import random
 import signal
@@ -8,6 +9,9 @@ import time
 import unittest
 
 from harness import DONE, INPUT, INTERRUPTED, USAGE, WAVECREST, CommandTest, read_exr_header
+
+
+KILLS = int(os.environ.get("KILLS", "3"))
 
 
 class Reference(CommandTest):
@@ -57,6 +61,26 @@ class Reference(CommandTest):
         result = self.reference("--spp", "2", "--seed", "3", "--quiet", "-o", "r.exr", expect=INPUT)
         self.assert_one_error_line(result, r"r\.exr: its seed is '0', not '3'; expected")
 
+    def test_a_plain_render_is_not_gone_on_with(self):
+        self.run_wavecrest("render", "cornell-diffuse", "--size", "32x24", "--spp", "1", "-o", "r.exr")
+        before = pathlib.Path(self.path("r.exr")).read_bytes()
+        result = self.reference("--spp", "2", "--quiet", "-o", "r.exr", expect=INPUT)
+        self.assert_one_error_line(result, r"r\.exr: is a plain image, without the two halves of a reference")
+        self.assertEqual(pathlib.Path(self.path("r.exr")).read_bytes(), before)
+
+    def test_one_process_at_a_time_works_on_a_reference(self):
+        command = [WAVECREST, "reference", "cornell-diffuse", "--size", "32x24", "--time", "10m", "-o", "r.exr"]
+        first = subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
+        self.addCleanup(first.kill)
+        first.stderr.readline()  # which method, and why
+        first.stderr.readline()  # the first iterations are done
+        result = self.reference("--spp", "2", "--quiet", "-o", "r.exr", expect=INPUT)
+        self.assert_one_error_line(result, rf"r\.exr: process {first.pid} on .* works on it; expected one at a time")
+        first.terminate()
+        first.communicate(timeout=60)
+        self.reference("--spp", "2", "-o", "r.exr")
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["r.exr"])
+
     def test_wrong_words_and_files(self):
         self.reference("--method", "guess", expect=USAGE)
         self.reference("--until-relative-error", "0", expect=USAGE)
@@ -76,16 +100,17 @@ class Reference(CommandTest):
         self.assertEqual(process.returncode, INTERRUPTED)
         self.assertGreaterEqual(int(self.header("r.exr")["wavecrest:iterations"]), 1)
 
-    def test_a_kill_leaves_a_reference_or_none(self):
+    def test_a_signal_or_a_kill_leaves_a_reference_or_none(self):
         chance = random.Random(11)
-        for spp in ("64", "128", "192"):
+        for spp in map(str, range(64, 64 * (KILLS + 1), 64)):
             command = [WAVECREST, "reference", "cornell-diffuse", "--size", "32x24", "--spp", spp, "-o", "r.exr"]
             process = subprocess.Popen(
                 command, cwd=self.folder, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
             )
             time.sleep(chance.uniform(0, 0.2))
-            process.kill()
-            process.wait()
+            number = chance.choice((signal.SIGKILL, signal.SIGTERM))
+            process.send_signal(number)
+            self.assertIn(process.wait(), (DONE, INTERRUPTED, -number))
             self.reference("--spp", spp, "-o", "r.exr")
             self.assertEqual(self.header("r.exr")["wavecrest:iterations"], spp)
 

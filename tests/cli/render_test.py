@@ -27,7 +27,7 @@ STATS = {
     "rays_closest": int, "rays_shadow": int, "connections": int, "merges": int, "load_seconds": NUMBER,
     "build_seconds": NUMBER, "render_seconds": NUMBER, "wall_seconds": NUMBER, "cpu_seconds": NUMBER,
     "paths_per_second": NUMBER, "rays_per_second": NUMBER, "bytes_per_path": int, "peak_memory_bytes": int,
-    "nonfinite_samples": int, "stages": list, "snapshots": list,
+    "nonfinite_samples": int, "close_pairs": int, "paths_cut": int, "throughput_cut": NUMBER, "stages": list, "snapshots": list,
 }  # fmt: skip
 
 

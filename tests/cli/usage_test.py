@@ -1,8 +1,10 @@
 """Options: what is wrong on the command line ends with exit code 2 before anything is rendered."""
 
+import json
+import os
 import unittest
 
-from harness import DONE, USAGE, CommandTest
+from harness import DONE, INPUT, USAGE, CommandTest, read_json
 
 
 class Usage(CommandTest):
@@ -46,7 +48,7 @@ class Usage(CommandTest):
             ("--max-depth", "deep"),
             ("--max-depth", "-2"),
             ("--max-depth", "0"),
-            ("--max-depth", "1000"),
+            ("--max-depth", "5000"),
             ("--snapshot-every", "never"),
             ("-D", "albedo"),
             ("-D", "=0.5"),
@@ -82,6 +84,73 @@ class Usage(CommandTest):
     def test_words_of_a_list_name_the_choices(self):
         self.assertIn("float, double, fast", self.render("--precision", "half", expect=USAGE).stderr)
         self.assertIn("auto, embree, small", self.render("--accel", "kd", expect=USAGE).stderr)
+
+    def test_ten_mistakes_are_each_answered_with_a_useful_line(self):
+        for arguments, code, answer in [
+            (["rendr", "cornell-diffuse"], USAGE, r"unknown command 'rendr'; did you mean 'render'\?"),
+            (["render", "cornell-difuse"], INPUT, r"cornell-difuse.*did you mean 'cornell-diffuse'\?"),
+            (["render", "cornell-diffuse", "--smaples", "4"], USAGE, r"unknown argument '--smaples'"),
+            (["render", "cornell-diffuse", "--thread=4"], USAGE, r"'--thread=4'; did you mean '--threads'\?"),
+            (["render", "cornell-diffuse", "-m", "bdt"], USAGE, r"--method bdt: .*did you mean 'bpt'\?"),
+            (["render", "cornell-diffuse", "--sampler", "soblo"], USAGE, r"--sampler soblo: expected independent or sobol"),
+            (["render", "cornell-diffuse", "--precision", "flaot"], USAGE, r"did you mean 'float'\?"),
+            (["render"], USAGE, r"scene is required; see `wavecrest render --help`"),
+            (["render", "cornell-diffuse", "--spp"], USAGE, r"--spp.*see `wavecrest render --help`"),
+            (["converge", "--methods", "pt,vmc", "--out", "a"], USAGE, r"did you mean 'vcm'\?"),
+            ([], USAGE, r".*subcommand.*; see `wavecrest --help`"),
+        ]:
+            with self.subTest(arguments):
+                self.assert_one_error_line(self.run_wavecrest(*arguments, expect=code), ".*" + answer)
+
+    def test_help_and_version_have_the_usual_spellings(self):
+        self.assertEqual(self.run_wavecrest("help").stdout, self.run_wavecrest("--help").stdout)
+        self.assertEqual(
+            self.run_wavecrest("help", "compare").stdout, self.run_wavecrest("compare", "--help").stdout
+        )
+        self.assertEqual(self.run_wavecrest("-V").stdout, self.run_wavecrest("--version").stdout)
+        self.run_wavecrest("help", "nothing", expect=USAGE)
+        self.assertIn("sample_count, or 4", self.run_wavecrest("help", "render").stdout)
+
+    def test_a_dry_run_says_what_it_would_do_and_does_nothing(self):
+        result = self.render("--time", "60s", "-m", "vcm", "--dry-run", "-o", "image.exr", "--stats", "stats.json")
+        for word in ("cornell-diffuse, 32x24", "vcm", "60 s", "photon map", "image.exr", "stats.json"):
+            self.assertIn(word, result.stdout)
+        self.assertEqual(list(self.folder.iterdir()), [])
+        self.render("--dry-run", "-o", "absent/image.exr", expect=USAGE)
+
+    def test_a_render_ends_with_a_line_about_itself(self):
+        self.assertRegex(self.render("--spp", "3", "-o", "image.exr").stderr, r"wavecrest: image\.exr: 3 spp in .*paths/s")
+        self.assertIn("no -o, so the image was not kept", self.render("--spp", "1").stderr)
+        self.assertEqual(self.render("--spp", "1", "--progress", "none").stderr, "")
+
+    def test_settings_come_from_arguments_then_a_file_then_variables(self):
+        def seed(*arguments, **variables):
+            return json.loads(
+                self.run_wavecrest(
+                    *arguments, "render", "cornell-diffuse", "--size", "8x8", "--spp", "1", "--stats", "-",
+                    "--progress", "none", variables=variables,
+                ).stdout
+            )["seed"]  # fmt: skip
+
+        self.write("settings.toml", "[render]\nseed = 5\n")
+        self.assertEqual(seed(), 0)
+        self.assertEqual(seed(WAVECREST_SEED="7"), 7)
+        self.assertEqual(seed("--config", "settings.toml", WAVECREST_SEED="7"), 5)
+        result = self.run_wavecrest(
+            "render", "cornell-diffuse", "--config", "settings.toml", "--size", "8x8", "--spp", "1", "--seed", "9",
+            "--stats", "stats.json",
+        )  # fmt: skip
+        self.assertEqual(read_json(self.path("stats.json"))["seed"], 9, result.stderr)
+        self.write("settings.toml", "[render]\nsede = 5\n")
+        wrong = self.run_wavecrest("--config", "settings.toml", "render", "cornell-diffuse", "--spp", "1", expect=USAGE)
+        self.assert_one_error_line(wrong, r".*sede")
+        self.run_wavecrest("--config", "absent.toml", "scenes", expect=USAGE)
+
+    def test_scenes_are_told_as_json(self):
+        scenes = json.loads(self.run_wavecrest("scenes", "--json").stdout)
+        self.assertEqual(len(scenes), 9)
+        for scene in scenes:
+            self.assertTrue(os.path.isfile(scene["file"]) and scene["description"])
 
     def test_snapshots_need_a_name(self):
         self.render("--snapshot-every", "1s", "--spp", "1", expect=USAGE)

@@ -1,0 +1,73 @@
+// wavecrest bench --against and --compare: this build beside another one, or two stored results. Exit code 4 for a loss
+// of speed beyond noise.
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/against/against.h"
+#include "bench/against/child_render.h"
+#include "bench/against/stored.h"
+#include "cli/bench_modes.h"
+#include "cli/commands.h"
+#include "cli/option_values.h"
+#include "metrics/image/atomic_file.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kAgainstSeconds = 20;
+
+void showRound(size_t done, size_t all) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  fmt::print(stderr, "\rround {} of {}{}", done, all, done == all ? "\n" : "");
+  std::fflush(stderr);
+}
+
+nlohmann::json readResult(const std::string& file) {
+  const std::vector<unsigned char> bytes = readFileBytes(file);
+  nlohmann::json result = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  if (!result.is_object()) throw InputError(fmt::format("{}: is no JSON object; expected a result of bench", file));
+  return result;
+}
+
+}  // namespace
+
+int runBenchAgainst(const BenchOptions& options) {
+  if (access(options.against.c_str(), X_OK) != 0 || std::filesystem::is_directory(options.against)) {
+    throw UsageError(fmt::format("--against {}: cannot be run; expected the path of a wavecrest", options.against));
+  }
+  if (!options.size.empty()) parseSize(options.size);
+  AgainstRequest request{.other = std::filesystem::absolute(options.against),
+                         .scenes = benchSceneFiles(options),
+                         .methods = {},
+                         .size = options.size,
+                         .threads = options.threads == 0 ? 1 : options.threads,
+                         .seconds = benchSeconds(options, kAgainstSeconds),
+                         .family = {.level = options.familyLevel, .tolerance = options.tolerance},
+                         .more = {}};
+  for (const Method method : benchMethods(options)) request.methods.emplace_back(toString(method));
+  try {
+    const AgainstResult result = runAgainst(request, showRound);
+    printBench(options, toText(result));
+    writeBenchJson(options, "against", toJson(result));
+    return result.anySlower() ? kExitCheck : kExitDone;
+  } catch (const ChildError& error) {
+    throw InputError(error.what());
+  }
+}
+
+int runBenchCompare(const BenchOptions& options) {
+  const std::string &before = options.compare[0], &after = options.compare[1];
+  const FamilyLevel family{.level = options.familyLevel, .tolerance = options.tolerance};
+  try {
+    const StoredComparison result = compareStored(readResult(before), readResult(after), family);
+    printBench(options, toText(result));
+    writeBenchJson(options, "compare", toJson(result));
+    return result.anySlower() ? kExitCheck : kExitDone;
+  } catch (const StoredMismatch& error) {
+    throw InputError(fmt::format("{}, {}: {}", before, after, error.what()));
+  }
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,40 @@
+// wavecrest bench --extremes: every sweep of bench/extremes, as text, JSON and a page.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "bench/extremes/extremes_report.h"
+#include "cli/bench_modes.h"
+#include "cli/commands.h"
+#include "engine/version.h"
+#include "metrics/image/atomic_file.h"
+
+namespace wavecrest {
+
+int runBenchExtremes(const BenchOptions& options) {
+  if (!options.scenes.empty() || !options.methods.empty() || !options.size.empty() || !options.against.empty()) {
+    throw UsageError("--extremes has scenes, methods and sizes of its own; expected none");
+  }
+  const std::vector<Sweep> sweeps = allSweeps();
+  const uint32_t threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  std::vector<SweepResult> results;
+  nlohmann::ordered_json all = {
+      {"version", kVersion}, {"commit", kCommit}, {"sweeps", nlohmann::ordered_json::array()}};
+  for (const Sweep& sweep : sweeps) {
+    results.push_back(runSweep(sweep, {.threads = threads}));
+    fmt::print("{}", toText(results.back()));
+    std::fflush(stdout);
+    all["sweeps"].push_back(toJson(results.back()));
+  }
+  writeBenchJson(options, "extremes", all);
+  if (!options.html.empty()) {
+    const std::string page = extremesPage(results);
+    writeFileAtomically(options.html, {reinterpret_cast<const unsigned char*>(page.data()), page.size()});
+  }
+  const bool passes = std::all_of(results.begin(), results.end(), [](const auto& result) { return result.passes(); });
+  return passes ? kExitDone : kExitCheck;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,45 @@
+// What `wavecrest compare` has measured of each test image, and how it is shown: text, JSON, false-colour maps.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "metrics/metric_list.h"
+
+namespace wavecrest {
+
+// One metric of one test image.
+struct MeasuredScore {
+  const Metric* metric = nullptr;
+  Measurement measurement;
+};
+
+struct MeasuredTest {
+  std::string file;
+  std::string label;  // names its maps and its column; unique among the tests
+  Image8 codes;       // as the perceptual metrics saw it
+  uint64_t nonFinitePixels = 0;
+  std::vector<MeasuredScore> scores;
+};
+
+// The stem of each file, with a number where several have the same.
+std::vector<std::string> uniqueLabels(const std::vector<std::string>& files);
+
+// Of one test an object; of several an array of objects that begin with "test", the file.
+nlohmann::ordered_json toJson(const std::vector<MeasuredTest>& tests);
+void printText(const std::vector<MeasuredTest>& tests);
+
+// A metric's map in false colours, and the value that is shown brightest.
+struct ShownMap {
+  Image8 picture;
+  double range = 0;
+};
+ShownMap showMap(const MeasuredScore& score, uint32_t width, uint32_t height);
+
+// Of one test FOLDER/METRIC.png, of several FOLDER/LABEL/METRIC.png.
+std::filesystem::path mapFile(const std::filesystem::path& folder, const std::string& label, bool single,
+                              const Metric& metric);
+
+}  // namespace wavecrest

@@ -1,0 +1,63 @@
+#include "cli/file_check.h"
+
+#include <fmt/core.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "cli/commands.h"
+#include "metrics/image/atomic_file.h"
+#include "metrics/image/image.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One name for a file however it is reached.
+fs::path canonicalName(const fs::path& file) {
+  std::error_code error;
+  const fs::path name = fs::weakly_canonical(fs::absolute(file), error);
+  return error ? file.lexically_normal() : name;
+}
+
+}  // namespace
+
+void FileCheck::add(const Use& use, const fs::path& file) {
+  if (file == kStandardStream && !use.written) return;  // stdin is not stdout
+  const fs::path name = file == kStandardStream ? file : canonicalName(file);
+  std::error_code ignored;
+  if (fs::is_character_file(name, ignored)) return;  // /dev/null takes any number of outputs
+  const auto [known, first] = uses_.emplace(name, use);
+  if (first || (!use.written && !known->second.written)) return;
+  const Use& output = use.written ? use : known->second;
+  const Use& other = use.written ? known->second : use;
+  throw UsageError(
+      fmt::format("{} {}: is the file of {} too; expected a file of its own", output.role, file.string(), other.role));
+}
+
+void FileCheck::input(const std::string& role, const fs::path& file) { add({role, false}, file); }
+void FileCheck::laterOutput(const std::string& role, const fs::path& file) { add({role, true}, file); }
+
+void FileCheck::output(const std::string& role, const fs::path& file) {
+  laterOutput(role, file);
+  if (file == kStandardStream) return;
+  try {
+    checkWritable(file.string());
+  } catch (const ImageError& error) {
+    throw UsageError(fmt::format("{} {}", role, error.what()));
+  }
+}
+
+void writeText(const std::string& file, const std::string& text) {
+  if (file != kStandardStream) {
+    writeFileAtomically(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+    return;
+  }
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw ImageError("stdout", fmt::format("writing failed: {}", std::strerror(errno)), "expected somebody who reads");
+  }
+}
+
+}  // namespace wavecrest

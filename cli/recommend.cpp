@@ -1,0 +1,76 @@
+// wavecrest recommend: which method for a scene, and how long it takes.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "bench/recommend/recommend.h"
+#include "cli/commands.h"
+#include "cli/option_values.h"
+#include "cli/scene_options.h"
+#include "metrics/ssim.h"
+
+namespace wavecrest {
+namespace {
+
+struct RecommendOptions {
+  SceneOptions scene;
+  std::vector<std::string> methods;
+  std::string budget = "60s";
+  double targetSsim = 0.95;
+  uint32_t threads = 0;
+  bool json = false;
+};
+
+std::vector<Method> recommendMethods(const RecommendOptions& options) {
+  std::vector<Method> methods;
+  for (const std::string& word : options.methods) {
+    const std::optional<Method> method = parseMethod(word);
+    if (!method) {
+      throw UsageError(fmt::format("--methods {}: unknown; expected names like pt, separated by commas", word));
+    }
+    methods.push_back(*method);
+  }
+  if (methods.empty()) {
+    for (const MethodEntry& entry : kMethods) methods.push_back(entry.method);
+  }
+  return methods;
+}
+
+void runRecommend(const RecommendOptions& options) {
+  const RecommendRequest request{
+      .targetSsim = options.targetSsim, .seconds = parseDuration(options.budget), .methods = recommendMethods(options)};
+  const Scene scene = loadScene(options.scene);
+  const FilmArea area = filmArea(scene.film);
+  if (std::min(area.width, area.height) < kSsimSmallestSide) {
+    throw UsageError(fmt::format("recommend: a film of {}x{} is too small for SSIM; expected at least {} pixels a side",
+                                 area.width, area.height, kSsimSmallestSide));
+  }
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
+  const Recommendation result = recommend(scene, settings, request);
+  fmt::print("{}", options.json ? toJson(result).dump(2) + "\n" : toText(result));
+}
+
+}  // namespace
+
+void addRecommendCommand(CommandLine& program, int& exitCode) {
+  auto options = std::make_shared<RecommendOptions>();
+  const Command command = program.add("recommend", "which method for a scene, and how long it takes");
+  addSceneOptions(command, options->scene);
+  command.add("--target-ssim", options->targetSsim, "quality to get to").showDefault().between(0.01, 0.9999);
+  command.add("--budget", options->budget, "render time of the pilots together").showDefault();
+  command.add("--methods", options->methods, "methods, separated by commas; default: all").separatedByCommas();
+  command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
+  command.addFlag("--json", options->json, "as JSON");
+  command.run([options, &exitCode] {
+    runRecommend(*options);
+    exitCode = kExitDone;
+  });
+}
+
+}  // namespace wavecrest

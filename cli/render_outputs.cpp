@@ -1,0 +1,102 @@
+#include "cli/render_outputs.h"
+
+#include <fmt/core.h>
+
+#include <charconv>
+#include <filesystem>
+
+#include "bench/campaign/render_stats.h"
+#include "bench/film_image.h"
+#include "cli/commands.h"
+#include "cli/file_check.h"
+#include "cli/messages.h"
+#include "metrics/image/image_io.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+
+// NAME.0007.exr beside the output NAME.exr.
+std::string snapshotFile(const std::string& image, unsigned number) {
+  const fs::path path(image);
+  return (path.parent_path() / fmt::format("{}.{:04}.exr", path.stem().string(), number)).string();
+}
+
+// Whether a file has the name of some snapshot of an image.
+bool isSnapshotOf(const std::string& image, const std::string& file) {
+  const fs::path stem = fs::path(file).stem();  // NAME.0007
+  const std::string digits = stem.extension().string();
+  unsigned number = 0;
+  const auto [end, error] = std::from_chars(digits.data() + 1, digits.data() + digits.size(), number);
+  if (digits.size() < 2 || error != std::errc() || end != digits.data() + digits.size()) return false;
+  std::error_code ignored;
+  return fs::weakly_canonical(fs::absolute(snapshotFile(image, number)), ignored) ==
+         fs::weakly_canonical(fs::absolute(file), ignored);
+}
+
+}  // namespace
+
+void checkOutputs(const OutputNames& names, const std::vector<std::string>& inputs) {
+  if (names.images.empty() && names.snapshots) {
+    throw UsageError("--snapshot-every needs an output to name the snapshots after; expected -o FILE.exr");
+  }
+  FileCheck files;
+  for (const std::string& input : inputs) files.input("the scene", input);
+  for (const std::string& image : names.images) {
+    try {
+      checkImageTarget(image);
+    } catch (const ImageError& error) {
+      throw UsageError(error.what());
+    }
+    files.output("-o", image);
+  }
+  if (!names.stats.empty()) files.output("--stats", names.stats);
+  if (!names.snapshots) return;
+  std::vector<std::string> others(names.images.begin() + 1, names.images.end());
+  others.push_back(names.stats);
+  others.insert(others.end(), inputs.begin(), inputs.end());
+  for (const std::string& other : others) {
+    if (other.empty() || !isSnapshotOf(names.images.front(), other)) continue;
+    throw UsageError(fmt::format("{}: is the name of a snapshot of {} too; expected a file of its own", other,
+                                 names.images.front()));
+  }
+}
+
+template <class Step>
+void RenderOutputs::attempt(Step step) {
+  try {
+    step();
+  } catch (const ImageError& error) {
+    tell("wavecrest: error: {}", error.what());
+    failed_ = true;
+  }
+}
+
+void RenderOutputs::writeSnapshot(const Session& session, unsigned number) {
+  const std::string file = snapshotFile(names_.images.front(), number);
+  const RenderStatistics statistics = session.statistics();
+  snapshots_.push_back(
+      {.number = number, .renderSeconds = statistics.renderSeconds, .iterations = statistics.iterations, .file = file});
+  const bool failedBefore = failed_;
+  failed_ = false;
+  attempt([&] { writeExr(file, filmImage(session), statsMetadata(stats(statistics))); });
+  if (failed_) snapshots_.pop_back();
+  failed_ |= failedBefore;
+}
+
+void RenderOutputs::write(const Session& session) {
+  nlohmann::ordered_json all = stats(session.statistics());
+  if (!until_.is_null()) all["until"] = until_;
+  const Metadata metadata = statsMetadata(all);
+  const Image image = names_.images.empty() ? Image() : filmImage(session);
+  for (const std::string& name : names_.images) attempt([&] { writeImage(name, image, metadata); });
+  if (!names_.stats.empty()) attempt([&] { writeText(names_.stats, all.dump(2) + "\n"); });
+}
+
+nlohmann::ordered_json RenderOutputs::stats(const RenderStatistics& statistics) const {
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  return renderStats(scene_, settings_, statistics, loadSeconds_, wall, snapshots_);
+}
+
+}  // namespace wavecrest

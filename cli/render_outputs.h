@@ -1,0 +1,59 @@
+// Files of one render: the image under each requested name, snapshots beside the first, the statistics.
+//
+// All names are checked before the render begins. A file that cannot be written after all is reported and does not keep
+// the others from being written.
+#pragma once
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/results/results.h"
+#include "engine/scene/scene.h"
+#include "engine/session.h"
+
+namespace wavecrest {
+
+struct OutputNames {
+  std::vector<std::string> images;
+  std::string stats;       // empty: none; - is stdout
+  bool snapshots = false;  // named after the first image
+};
+
+// Throws UsageError where a name cannot be written, or is that of an input (a file of the scene) or of another output.
+void checkOutputs(const OutputNames& names, const std::vector<std::string>& inputs);
+
+class RenderOutputs {
+ public:
+  // All must outlive it.
+  RenderOutputs(const OutputNames& names, const Scene& scene, const RenderSettings& settings, double loadSeconds)
+      : names_(names), scene_(scene), settings_(settings), loadSeconds_(loadSeconds) {}
+
+  void writeSnapshot(const Session& session, unsigned number);
+  // Images and statistics as they are now. May be called again later.
+  void write(const Session& session);
+  // What was reached of a quality that was asked for; goes into the statistics.
+  void setUntil(nlohmann::ordered_json until) { until_ = std::move(until); }
+  const nlohmann::ordered_json& until() const { return until_; }
+  // Whether some file could not be written.
+  bool failed() const { return failed_; }
+
+ private:
+  nlohmann::ordered_json stats(const RenderStatistics& statistics) const;
+  // Runs a step that writes one file.
+  template <class Step>
+  void attempt(Step step);
+
+  const OutputNames& names_;
+  const Scene& scene_;
+  const RenderSettings& settings_;
+  const double loadSeconds_;
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::vector<SnapshotRecord> snapshots_;
+  nlohmann::ordered_json until_;  // null: none was asked for
+  bool failed_ = false;
+};
+
+}  // namespace wavecrest

@@ -1,0 +1,64 @@
+// Campaigns of the interface.
+#include "wavecrest/campaign.h"
+
+#include <array>
+
+#include "bench/campaign/run_campaign.h"
+#include "bench/report/write_report.h"
+#include "bench/results/read_results.h"
+#include "engine/session.h"
+#include "engine/version.h"
+#include "library/campaign_options.h"
+#include "library/translate.h"
+#include "wavecrest/wavecrest.h"
+
+namespace wavecrest::api {
+
+const char* version() { return kVersion; }
+const char* commit() { return kCommit; }
+
+void StopRequest::request() noexcept {
+  requested_.store(true);
+  if (Session* const session = session_.load()) session->interrupt();
+}
+
+void StopRequest::watch(Session* session) noexcept {
+  session_.store(session);
+  if (session != nullptr && requested_.load()) session->interrupt();
+}
+
+bool converge(const CampaignOptions& options, const CampaignCallbacks& callbacks, StopRequest* stop) {
+  return translated([&] {
+    CampaignOptions asked = options;
+    const CampaignSettings settings = begunCampaign(asked);
+    const CampaignHooks hooks{.session = {.watch =
+                                              [&](Session* session) {
+                                                if (stop != nullptr) stop->watch(session);
+                                              }},
+                              .stopped = [&] { return stop != nullptr && stop->requested(); },
+                              .planned = [](const CampaignPlan&) {},
+                              .finished =
+                                  [&](const RunRecord& run, const wavecrest::CampaignProgress& progress) {
+                                    if (callbacks.finished)
+                                      callbacks.finished(run, {progress.done, progress.total, progress.secondsLeft});
+                                  },
+                              .say =
+                                  [&](const std::string& line) {
+                                    if (callbacks.say) callbacks.say(line);
+                                  }};
+    if (!runCampaign(settings, campaignKeys(asked, settings), hooks)) return false;
+    if (settings.shard.count == 1) finishCampaign(settings);
+    return true;
+  });
+}
+
+CampaignResults readResults(const std::string& path) {
+  return translated([&] { return wavecrest::readResults(std::filesystem::path(path)); });
+}
+
+std::string writeReport(const std::string& folder) {
+  return translated(
+      [&] { return wavecrest::writeReport(std::array{std::filesystem::path(folder)}).files.front().string(); });
+}
+
+}  // namespace wavecrest::api

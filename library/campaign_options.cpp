@@ -1,0 +1,252 @@
+#include "library/campaign_options.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "bench/claims/judge_claims.h"
+#include "bench/report/results_folder.h"
+#include "bench/results/read_results.h"
+#include "bench/results/results_store.h"
+#include "cli/commands.h"
+#include "cli/option_values.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+using api::CampaignOptions;
+using nlohmann::json;
+
+constexpr std::array<std::string_view, 11> kDefiningOptions{"scenes",           "--methods", "--profile", "--time",
+                                                            "--snapshot-every", "--spp",     "--seeds",   "--precision",
+                                                            "--sampler",        "--size",    "--images"};
+
+bool has(const CampaignOptions& options, const char* name) { return options.defining.contains(name); }
+
+std::string get(const CampaignOptions& options, const char* name, const std::string& otherwise = "") {
+  const auto found = options.defining.find(name);
+  return found == options.defining.end() || found->second.empty() ? otherwise : found->second.front();
+}
+
+// ---- from words to settings -----------------------------------------------------------------------------------------
+
+// A whole number from 1 on, or 0 for any other text.
+uint32_t countOf(std::string_view text) {
+  uint32_t count = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  return error == std::errc() && rest == text.data() + text.size() ? count : 0;
+}
+
+uint32_t parseCount(const char* option, const std::string& text) {
+  const uint32_t count = countOf(text);
+  if (count == 0) throw UsageError(fmt::format("{} {}: expected a whole number from 1 on", option, text));
+  return count;
+}
+
+Shard parseShard(const std::string& text) {
+  const size_t slash = text.find('/');
+  if (slash == std::string::npos) throw UsageError(fmt::format("--shard {}: expected i/n", text));
+  const Shard shard{countOf(text.substr(0, slash)), countOf(text.substr(slash + 1))};
+  if (shard.index == 0 || shard.index > shard.count) {
+    throw UsageError(fmt::format("--shard {}: expected i/n with i from 1 to n", text));
+  }
+  return shard;
+}
+
+std::vector<Method> chosenMethods(const CampaignOptions& options) {
+  std::vector<Method> methods;
+  if (!has(options, "--methods")) {
+    for (const MethodEntry& entry : kMethods) methods.push_back(entry.method);
+    return methods;
+  }
+  for (const std::string& word : options.defining.at("--methods")) {
+    const std::optional<Method> method = parseMethod(word);
+    if (!method) throw UsageError(fmt::format("--methods {}: unknown; expected some of {}", word, methodChoices()));
+    if (std::find(methods.begin(), methods.end(), *method) == methods.end()) methods.push_back(*method);
+  }
+  return methods;
+}
+
+const Profile& chosenProfile(const CampaignOptions& options) {
+  const std::string name = get(options, "--profile", "quick");
+  if (const Profile* profile = findProfile(name)) return *profile;
+  std::string names;
+  for (const Profile& profile : profiles()) names += (names.empty() ? "" : ", ") + std::string(profile.name);
+  throw UsageError(fmt::format("--profile {}: unknown; expected one of {}", name, names));
+}
+
+Effort effortOf(const CampaignOptions& options, const Profile& profile, std::string_view scene) {
+  Effort effort = profile.effort(scene);
+  if (has(options, "--time")) effort.seconds = parseDuration(get(options, "--time"));
+  if (has(options, "--snapshot-every")) {
+    const std::string every = get(options, "--snapshot-every");
+    effort.snapshotSeconds = every == "log" ? 0 : parseDuration(every);
+  }
+  return effort;
+}
+
+std::vector<CampaignScene> chosenScenes(const CampaignOptions& options, const Profile& profile) {
+  std::vector<std::string> words;
+  if (has(options, "scenes")) {
+    words = options.defining.at("scenes");
+  } else {
+    for (const SceneEntry& entry : builtInScenes()) words.emplace_back(entry.name);
+  }
+  std::vector<CampaignScene> scenes;
+  std::set<std::string> names;
+  for (const std::string& word : words) {
+    const fs::path file = findScene(word);
+    const std::string name = file.stem().string();
+    if (!names.insert(name).second) throw UsageError(fmt::format("{}: a second scene of the name '{}'", word, name));
+    scenes.push_back({.name = name, .file = file, .effort = effortOf(options, profile, name)});
+  }
+  return scenes;
+}
+
+RenderSettings renderSettings(const CampaignOptions& options) {
+  RenderSettings render;
+  render.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  render.isa = parseIsaOption(options.isa);
+  render.precision =
+      static_cast<Precision>(parseChoice("--precision", get(options, "--precision", "float"), kPrecisionNames));
+  const std::string sampler = get(options, "--sampler", "independent");
+  const std::optional<SamplerKind> kind = parseSamplerKind(sampler);
+  if (!kind) throw UsageError(fmt::format("--sampler {}: expected independent or sobol", sampler));
+  render.sampler = *kind;
+  return render;
+}
+
+CampaignSettings campaignSettings(const CampaignOptions& options) {
+  const Profile& profile = chosenProfile(options);
+  CampaignSettings settings;
+  settings.methods = chosenMethods(options);
+  settings.scenes = chosenScenes(options, profile);
+  settings.seeds = profile.seeds;
+  if (has(options, "--seeds")) settings.seeds = parseCount("--seeds", get(options, "--seeds"));
+  if (has(options, "--spp")) settings.iterations = parseCount("--spp", get(options, "--spp"));
+  if (settings.iterations && (has(options, "--time") || get(options, "--snapshot-every", "log") != "log")) {
+    throw UsageError(
+        "--spp counts iterations and takes snapshots after 1, 2, 4, ...; expected no --time or "
+        "--snapshot-every beside it");
+  }
+  settings.size = has(options, "--size") ? parseSize(get(options, "--size")) : profile.size;
+  settings.render = renderSettings(options);
+  settings.out = options.out;
+  settings.shard = parseShard(options.shard);
+  constexpr std::array<std::string_view, 2> kImageChoices{"all", "last"};
+  settings.keepImages = parseChoice("--images", get(options, "--images", "all"), kImageChoices) == 0;
+  settings.referenceRequired = !options.reference.empty();
+  settings.referenceFolder = options.reference.empty() ? sceneFolder() / "references" : fs::path(options.reference);
+  if (options.check && settings.iterations) {
+    throw UsageError("--check: the study's findings are about equal time; expected no --spp beside it");
+  }
+  if (options.check && settings.shard.count > 1) {
+    throw UsageError(
+        "--check needs all methods of a scene; expected no --shard beside it, but `wavecrest report --check` once "
+        "all shards are done");
+  }
+  return settings;
+}
+
+// ---- what the results file says of it -------------------------------------------------------------------------------
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+// One value if it is the same for all scenes, else SCENE=VALUE of each.
+template <class Value>
+std::string perScene(const CampaignSettings& settings, Value value) {
+  std::vector<std::string> all;
+  std::set<std::string> values;
+  for (const CampaignScene& scene : settings.scenes) {
+    values.insert(value(scene));
+    all.push_back(scene.name + "=" + value(scene));
+  }
+  return values.size() == 1 ? *values.begin() : joined(all);
+}
+
+}  // namespace
+
+std::map<std::string, std::string> campaignKeys(const CampaignOptions& options, const CampaignSettings& settings) {
+  std::vector<std::string> scenes, methods;
+  for (const CampaignScene& scene : settings.scenes) scenes.push_back(scene.name);
+  for (const Method method : settings.methods) methods.emplace_back(toString(method));
+  std::map<std::string, std::string> keys{
+      {"options", json(options.defining).dump()},
+      {"profile", std::string(chosenProfile(options).name)},
+      {"scenes", joined(scenes)},
+      {"methods", joined(methods)},
+      {"seeds", std::to_string(settings.seeds)},
+      {"size", fmt::format("{}x{}", settings.size[0], settings.size[1])},
+      {"precision", std::string(kPrecisionNames[static_cast<size_t>(settings.render.precision)])},
+      {"sampler", std::string(toString(settings.render.sampler))},
+      {"shard", fmt::format("{}/{}", settings.shard.index, settings.shard.count)}};
+  if (settings.iterations) {
+    keys["spp"] = std::to_string(*settings.iterations);
+    keys["snapshots"] = "doubling";
+  } else {
+    keys["time"] = perScene(settings, [](const CampaignScene& s) { return fmt::format("{:g}", s.effort.seconds); });
+    keys["snapshots"] = perScene(settings, [](const CampaignScene& s) {
+      return s.effort.snapshotSeconds == 0 ? std::string("log") : fmt::format("{:g}", s.effort.snapshotSeconds);
+    });
+  }
+  return keys;
+}
+
+namespace {
+
+// Takes from an earlier process of the same campaign what was not given again.
+void resume(CampaignOptions& options, const fs::path& results) {
+  const ResultsStore whole(results);  // also where a process died before it had made the tables
+  const CampaignResults before = readResults(results);
+  const auto stored = before.campaign.find("options");
+  if (stored == before.campaign.end()) return;  // it died before it began
+  const auto defining = json::parse(stored->second).get<std::map<std::string, std::vector<std::string>>>();
+  for (const auto& [name, words] : options.defining) {
+    const auto known = defining.find(name);
+    if (known != defining.end() && known->second == words) continue;
+    throw UsageError(fmt::format("{} {}: {} was begun with {}; expected the same, or another --out", name,
+                                 joined(words), results.string(),
+                                 known == defining.end() ? "the default" : joined(known->second)));
+  }
+  options.defining = defining;
+}
+
+}  // namespace
+
+std::span<const std::string_view> campaignWords() { return kDefiningOptions; }
+
+CampaignSettings begunCampaign(CampaignOptions& options) {
+  for (const auto& [name, words] : options.defining) {
+    if (std::find(kDefiningOptions.begin(), kDefiningOptions.end(), name) == kDefiningOptions.end()) {
+      throw UsageError(fmt::format("{}: unknown; expected one of {}", name, fmt::join(kDefiningOptions, ", ")));
+    }
+    if (words.empty()) throw UsageError(fmt::format("{}: has no value; expected at least one", name));
+  }
+  const CampaignSettings settings = campaignSettings(options);
+  const fs::path results = resultsFile(settings);
+  if (!fs::exists(results)) return settings;
+  if (!options.resume) {
+    throw UsageError(fmt::format("{} exists; expected --resume to go on with it, or another --out", results.string()));
+  }
+  resume(options, results);
+  return campaignSettings(options);
+}
+
+WrittenReport finishCampaign(const CampaignSettings& settings) {
+  const fs::path results = resultsFile(settings);
+  const std::vector<ClaimRecord> claims = judgeStudyClaims(readResults(results));
+  ResultsStore(results).putClaims(claims);
+  return writeReport(std::array{settings.out});
+}
+
+}  // namespace wavecrest

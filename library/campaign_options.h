@@ -1,0 +1,30 @@
+// From a campaign's options, in words, to its settings, and what belongs to its beginning and its end.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "bench/campaign/campaign_settings.h"
+#include "bench/report/write_report.h"
+#include "wavecrest/campaign_options.h"
+
+namespace wavecrest {
+
+// The keys that CampaignOptions::defining may have.
+std::span<const std::string_view> campaignWords();
+
+// The campaign that these options ask for. If its results file exists, the campaign goes on: options takes from the
+// file what was not given again. Throws UsageError, also for a file that exists without options.resume, or that was
+// begun with other options.
+CampaignSettings begunCampaign(api::CampaignOptions& options);
+
+// What the results file says of the campaign beside its environment.
+std::map<std::string, std::string> campaignKeys(const api::CampaignOptions& options, const CampaignSettings& settings);
+
+// Judges the study's findings on the results, stores the verdicts with them and writes the report. For a campaign that
+// is whole, not for a shard.
+WrittenReport finishCampaign(const CampaignSettings& settings);
+
+}  // namespace wavecrest

@@ -1,0 +1,82 @@
+// Comparisons of the interface.
+#include "wavecrest/compare.h"
+
+#include <nlohmann/json.hpp>
+
+#include "library/comparison.h"
+#include "library/image_conversion.h"
+#include "library/translate.h"
+#include "metrics/false_colour.h"
+
+namespace wavecrest::api {
+namespace {
+
+ImageFile toFile(const std::string& name, Image image) {
+  checkPixels(name, image);
+  const Encoding encoding = image.srgb ? Encoding::srgb8 : Encoding::linear;
+  return {.image = toImage(std::move(image)), .encoding = encoding, .metadata = {}};
+}
+
+MetricResult toResult(Measured measured) {
+  const Metric& metric = *measured.metric;
+  MetricResult result;
+  result.metric = metric.name;
+  result.score = mainScore(metric, measured.measurement);
+  result.mapRange = metric.mapRange;
+  for (const Score& score : measured.measurement.scores) {
+    result.scores.push_back({scoreName(metric, score.name), score.value});
+  }
+  result.map = std::move(measured.measurement.map);
+  if (result.mapRange == 0) result.mapRange = quantile(result.map, 0.999);
+  return result;
+}
+
+}  // namespace
+
+std::vector<MetricInfo> metrics() {
+  std::vector<MetricInfo> all;
+  for (const Metric& metric : metricList()) {
+    all.push_back({.name = std::string(metric.name),
+                   .symbol = std::string(metric.symbol),
+                   .title = std::string(metric.title),
+                   .basis = std::string(metric.basis),
+                   .higherIsBetter = metric.higherIsBetter,
+                   .byDefault = metric.byDefault,
+                   .smallestSide = metric.smallestSide});
+  }
+  return all;
+}
+
+struct Reference::Data {
+  PreparedReference prepared;
+};
+
+Reference::Reference(Image image, const CompareOptions& options, const std::string& name) {
+  translated([&] {
+    ComparisonSettings settings;
+    settings.exposure = options.exposure;
+    settings.gammaCorrectedErrors = options.gammaCorrectedErrors;
+    data_ = std::make_unique<Data>(Data{PreparedReference(name, toFile(name, std::move(image)), settings)});
+  });
+}
+Reference::~Reference() = default;
+Reference::Reference(Reference&&) noexcept = default;
+Reference& Reference::operator=(Reference&&) noexcept = default;
+
+Comparison Reference::compare(Image test, const std::vector<std::string>& metrics, bool withMaps,
+                              const std::string& name) const {
+  return translated([&] {
+    const ComparedImage prepared = data_->prepared.prepareTest(name, toFile(name, std::move(test)));
+    const std::vector<const Metric*> chosen = chosenMetrics(metrics, prepared.file.image);
+    std::vector<Measured> all = measure(data_->prepared, prepared, chosen, withMaps);
+    Comparison comparison{.width = prepared.file.image.width,
+                          .height = prepared.file.image.height,
+                          .nonFinitePixels = prepared.nonFinitePixels,
+                          .results = {},
+                          .json = comparisonJson(all, prepared.nonFinitePixels).dump()};
+    for (Measured& measured : all) comparison.results.push_back(toResult(std::move(measured)));
+    return comparison;
+  });
+}
+
+}  // namespace wavecrest::api

@@ -1,0 +1,69 @@
+#include "wavecrest/error.h"
+
+#include "bench/campaign/render_reference.h"
+#include "bench/campaign/scene_reference.h"
+#include "bench/report/results_folder.h"
+#include "bench/results/results_error.h"
+#include "cli/commands.h"
+#include "engine/load/load.h"
+#include "engine/memory_plan.h"
+#include "engine/scene/scene_error.h"
+#include "library/translate.h"
+#include "metrics/image/image.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace api {
+
+Error::Error(ErrorKind kind, const std::string& text, const std::string& file, int line)
+    : std::runtime_error(text), kind_(kind), file_(file), line_(line) {}
+Error::~Error() = default;
+
+}  // namespace api
+
+namespace {
+
+api::Error inputError(const std::exception& error) { return {api::ErrorKind::input, error.what()}; }
+
+api::Error loadError(const LoadError& error, const std::string& hint = {}) {
+  return {api::ErrorKind::input, error.what() + (hint.empty() ? "" : ": " + hint), error.location.file,
+          static_cast<int>(error.location.line)};
+}
+
+}  // namespace
+
+api::Error currentError() {
+  try {
+    throw;
+  } catch (const api::Error& error) {
+    return error;
+  } catch (const UsageError& error) {
+    return {api::ErrorKind::usage, error.what()};
+  } catch (const MemoryBudgetError& error) {
+    return {api::ErrorKind::usage, std::string("--memory: ") + error.what()};
+  } catch (const MissingFileError& error) {
+    return loadError(error, missingAssetHint(error.file));
+  } catch (const LoadError& error) {
+    return loadError(error);
+  } catch (const SceneError& error) {
+    return {api::ErrorKind::input, error.what(), error.location.file, static_cast<int>(error.location.line)};
+  } catch (const ImageError& error) {
+    return inputError(error);
+  } catch (const ReferenceError& error) {
+    return inputError(error);
+  } catch (const ReferenceMismatch& error) {
+    return inputError(error);
+  } catch (const ResultsError& error) {
+    return inputError(error);
+  } catch (const ResultsFileError& error) {
+    return inputError(error);
+  } catch (const std::bad_alloc&) {
+    return {api::ErrorKind::fault, "out of memory"};
+  } catch (const std::exception& error) {
+    return {api::ErrorKind::fault, error.what()};
+  } catch (...) {
+    return {api::ErrorKind::fault, "unknown error"};
+  }
+}
+
+}  // namespace wavecrest

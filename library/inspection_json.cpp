@@ -1,0 +1,82 @@
+#include "library/inspection_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "bench/enumerator_name.h"
+
+namespace wavecrest {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json toJson(const MethodInspection& row) {
+  if (!row.refusal.empty()) return {{"refused", row.refusal}};
+  const MemoryUse& use = row.memory.use;
+  return {{"bytes_per_path", row.memory.bytesPerPath},
+          {"scene_bytes", use.scene},
+          {"wave_bytes", use.waves},
+          {"film_bytes", use.film},
+          {"splat_bytes", use.splats},
+          {"light_vertex_bytes", use.lightVertices},
+          {"photon_map_bytes", use.photonMap},
+          {"chain_bytes", use.chains},
+          {"total_bytes", use.total()}};
+}
+
+}  // namespace
+
+ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts) {
+  ordered_json specializations, memory, classes = ordered_json::array();
+  for (const MethodInspection& row : facts.methods) {
+    const std::string method(toString(row.method));
+    specializations[method] = enumeratorName(kSpecializationNames, row.specialization);
+    memory[method] = toJson(row);
+  }
+  for (const PathClass& pathClass : facts.paths.classes) {
+    ordered_json verdicts;
+    for (const Method method : facts.paths.methods) {
+      verdicts[std::string(toString(method))] = enumeratorName(kVerdictNames, facts.paths.verdict(pathClass, method));
+    }
+    classes.push_back({{"class", pathClass.signature}, {"description", pathClass.description}, {"methods", verdicts}});
+  }
+  ordered_json notes = ordered_json::array();
+  for (const Note& note : scene.notes) {
+    notes.push_back({{"file", note.source.file},
+                     {"line", note.source.line},
+                     {"what", note.what},
+                     {"effect", note.effect},
+                     {"count", note.count}});
+  }
+  const BoundingSphere& bounds = facts.bounds;
+  const auto vec = [](const double(&a)[3]) { return ordered_json{a[0], a[1], a[2]}; };
+  return {{"scene", scene.name},
+          {"features",
+           {{"bsdfs", facts.bsdfs},
+            {"lights", facts.lights},
+            {"textures", facts.textures},
+            {"sensor", facts.sensor},
+            {"filter", facts.filter},
+            {"needs", facts.needs}}},
+          {"primitives",
+           {{"quads", facts.primitives.quads},
+            {"triangles", facts.primitives.triangles},
+            {"spheres", facts.primitives.spheres},
+            {"total", facts.primitives.total()},
+            {"dropped_triangles", scene.droppedTriangles}}},
+          {"bounds",
+           {{"min", vec(bounds.low)},
+            {"max", vec(bounds.high)},
+            {"center", vec(bounds.center)},
+            {"radius", bounds.radius}}},
+          {"specialization", enumeratorName(kSpecializationNames, facts.methods.front().specialization)},
+          {"specializations", specializations},
+          {"accel", enumeratorName(kAccelNames, facts.accel)},
+          {"memory", memory},
+          {"path_classes", classes},
+          {"reference_method", toString(facts.paths.reference.method)},
+          {"reference_biased", facts.paths.reference.biased},
+          {"reference_reason", facts.paths.reference.reason},
+          {"notes", notes}};
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,13 @@
+// What a scene is made of and what methods can do in it, as JSON: what `wavecrest inspect --json` prints.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "engine/inspection.h"
+#include "engine/scene/scene.h"
+
+namespace wavecrest {
+
+nlohmann::ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts);
+
+}  // namespace wavecrest

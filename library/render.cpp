@@ -1,0 +1,73 @@
+// Renders of the interface.
+#include "wavecrest/render.h"
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "bench/campaign/render_stats.h"
+#include "bench/film_image.h"
+#include "engine/session.h"
+#include "library/image_conversion.h"
+#include "library/render_settings.h"
+#include "library/scene_data.h"
+#include "library/translate.h"
+#include "metrics/image/image_io.h"
+
+namespace wavecrest::api {
+
+struct Render::Data {
+  std::shared_ptr<const Scene::Data> scene;
+  RenderSettings settings;
+  std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
+  std::unique_ptr<Session> session;
+
+  nlohmann::ordered_json stats() const {
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return renderStats(scene->scene, settings, session->statistics(), scene->loadSeconds, wall, {});
+  }
+};
+
+Render::Render(const Scene& scene, const RenderOptions& options) {
+  translated([&] {
+    auto data = std::make_unique<Data>();
+    data->scene = scene.data_;
+    data->settings = renderSettings(options, data->scene->scene);
+    data->session = Session::create(data->scene->scene, data->settings);
+    data_ = std::move(data);
+  });
+}
+Render::~Render() = default;
+Render::Render(Render&&) noexcept = default;
+Render& Render::operator=(Render&&) noexcept = default;
+
+void Render::run() { runUntil(data_->settings.seconds, data_->settings.iterations); }
+
+void Render::runUntil(std::optional<double> seconds, std::optional<uint64_t> iterations) {
+  translated([&] { data_->session->renderUntil(iterations, seconds); });
+}
+
+void Render::stop() noexcept { data_->session->interrupt(); }
+bool Render::stopped() const noexcept { return data_->session->interrupted(); }
+
+double Render::seconds() const { return data_->session->progressSeconds(); }
+uint64_t Render::iterations() const { return data_->session->film().minSamples(); }
+
+Image Render::image() const {
+  return translated([&]() -> Image {
+    wavecrest::Image image = filmImage(*data_->session);
+    return {.width = image.width, .height = image.height, .pixels = std::move(image.pixels)};
+  });
+}
+
+std::string Render::stats() const {
+  return translated([&] { return data_->stats().dump(); });
+}
+
+void Render::write(const std::string& file) const {
+  translated([&] {
+    checkImageTarget(file);
+    writeImage(file, filmImage(*data_->session), statsMetadata(data_->stats()));
+  });
+}
+
+}  // namespace wavecrest::api

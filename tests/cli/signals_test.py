@@ -1,0 +1,159 @@
+"""Signals: INT, TERM and HUP save and end with 130, USR1 saves and goes on, none of them spoils a write."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import time
+import unittest
+
+from harness import DONE, INTERRUPTED, TIMEOUT_SECONDS, WAVECREST, CommandTest, read_exr_header, read_json
+
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+SMALL = ["cornell-diffuse", "--size", "32x24", "--threads", "2"]
+
+
+class Signals(CommandTest):
+    def start(self, *arguments, stdin=None):
+        process = subprocess.Popen(
+            [WAVECREST, *arguments], cwd=self.folder, stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            text=True,
+        )  # fmt: skip
+        self.addCleanup(process.kill)
+        return process
+
+    def started(self, *arguments):
+        """A render of ten minutes, once paths are traced."""
+        process = self.start("render", *SMALL, "--time", "10m", "--progress", "jsonl", *arguments)
+        for line in process.stderr:
+            if '"paths":' in line and not line.rstrip().endswith('"paths":0}'):
+                break
+        return process
+
+    def end(self, process, expect):
+        output, error = process.communicate(timeout=TIMEOUT_SECONDS)
+        self.assertEqual(process.returncode, expect, error)
+        return output, error
+
+    def wait_for(self, condition):
+        deadline = time.monotonic() + TIMEOUT_SECONDS
+        while not condition():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+
+
+class Render(Signals):
+    def test_each_ending_signal_saves_what_there_is(self):
+        for number in ENDING:
+            with self.subTest(signal=number.name):
+                name = number.name
+                process = self.started("-o", f"{name}.exr", "--stats", f"{name}.json")
+                process.send_signal(number)
+                self.end(process, INTERRUPTED)
+                stats = read_json(self.path(f"{name}.json"))
+                self.assertGreater(stats["camera_paths"], 0)
+                header = read_exr_header(self.path(f"{name}.exr"))
+                self.assertEqual(header["wavecrest:iterations"], str(stats["iterations"]))
+
+    def test_several_signals_at_once_are_one(self):
+        process = self.started("-o", "image.exr")
+        for number in (*ENDING, *ENDING):
+            process.send_signal(number)
+        self.end(process, INTERRUPTED)
+        read_exr_header(self.path("image.exr"))
+
+    def test_usr1_saves_and_goes_on(self):
+        process = self.started("-o", "image.exr", "--stats", "stats.json")
+        iterations = []
+        for _ in range(2):
+            process.send_signal(signal.SIGUSR1)
+            self.wait_for(lambda: (self.folder / "stats.json").exists())
+            iterations.append(read_json(self.path("stats.json"))["iterations"])
+            read_exr_header(self.path("image.exr"))
+            os.remove(self.path("stats.json"))
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGTERM)
+        self.end(process, INTERRUPTED)
+        iterations.append(read_json(self.path("stats.json"))["iterations"])
+        self.assertEqual(iterations, sorted(iterations))
+        self.assertGreater(iterations[0], 0)
+        self.assertGreater(iterations[2], iterations[0])
+
+    def test_a_saved_render_is_the_same_in_the_end(self):
+        arguments = ["-m", "vcm", "--spp", "400", "-o"]
+        self.run_wavecrest("render", *SMALL, *arguments, "whole.pfm")
+        process = self.start("render", *SMALL, *arguments, "saved.pfm")
+        for _ in range(5):
+            time.sleep(0.1)
+            if process.poll() is None:
+                process.send_signal(signal.SIGUSR1)
+        self.end(process, DONE)
+        whole, saved = (pathlib.Path(self.path(name)).read_bytes() for name in ("whole.pfm", "saved.pfm"))
+        self.assertEqual(whole, saved)
+
+    def test_signals_during_the_final_write_change_nothing(self):
+        # The image goes through a pipe that is read late, so the write is sure to be under way.
+        os.mkfifo(self.path("image.pfm"))
+        process = self.start("render", "cornell-diffuse", "--size", "320x240", "--spp", "1", "-o", "image.pfm")
+        with open(self.path("image.pfm"), "rb") as pipe:
+            start = pipe.read(1000)
+            for number in ENDING:
+                process.send_signal(number)
+                time.sleep(0.05)
+            image = start + pipe.read()
+        self.end(process, DONE)
+        self.assertEqual(len(image), len(b"PF\n320 240\n-1.0\n") + 320 * 240 * 3 * 4)
+
+    def test_an_interrupt_is_answered_while_a_scene_is_loaded(self):
+        for number in ENDING:
+            process = self.start("render", "-", "-o", "image.exr", stdin=subprocess.PIPE)
+            process.stdin.write("<scene>")
+            process.stdin.flush()
+            time.sleep(0.2)
+            process.send_signal(number)
+            _, error = self.end(process, INTERRUPTED)
+            self.assertIn("before anything was rendered", error)
+            self.assertFalse((self.folder / "image.exr").exists())
+
+
+class Reference(Signals):
+    def begin(self):
+        process = self.start("reference", "cornell-diffuse", "--size", "32x24", "--time", "10m", "-o", "r.exr")
+        process.stderr.readline()  # which method, and why
+        process.stderr.readline()  # the first iterations are done
+        return process
+
+    def test_term_and_hup_save(self):
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            process = self.begin()
+            process.send_signal(number)
+            self.end(process, INTERRUPTED)
+            self.assertGreaterEqual(int(read_exr_header(self.path("r.exr"))["wavecrest:iterations"]), 1)
+
+    def test_usr1_saves_and_goes_on(self):
+        process = self.begin()
+        process.send_signal(signal.SIGUSR1)
+        self.wait_for(lambda: (self.folder / "r.exr").exists())
+        saved = int(read_exr_header(self.path("r.exr"))["wavecrest:iterations"])
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGTERM)
+        self.end(process, INTERRUPTED)
+        self.assertGreaterEqual(int(read_exr_header(self.path("r.exr"))["wavecrest:iterations"]), saved)
+
+
+class Campaign(Signals):
+    def test_term_stops_and_usr1_does_not(self):
+        process = self.start("converge", "cornell-diffuse", "--methods", "pt", "--size", "32x24", "--spp", "1000000000",
+                             "--out", "a", "--progress", "jsonl")  # fmt: skip
+        process.stderr.readline()  # the plan
+        time.sleep(0.3)
+        process.send_signal(signal.SIGUSR1)
+        time.sleep(0.3)
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGTERM)
+        _, error = self.end(process, INTERRUPTED)
+        self.assertIn("--resume", error)
+
+
+if __name__ == "__main__":
+    unittest.main()
