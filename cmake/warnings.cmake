@@ -4,6 +4,12 @@ add_library(wavecrest_options INTERFACE)
 target_include_directories(wavecrest_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
 target_compile_options(wavecrest_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion -Werror -fno-math-errno -ffp-contract=off)
+# For objects that libwavecrest and the Python module hold as well as the program. Hidden symbols are called as directly
+# as in a program; what the library exports says so (include/wavecrest/export.h). An option of the compiler rather than
+# CMake's property, so that programs have it too and share precompiled headers with libraries.
+if(WAVECREST_SHARED)
+  target_compile_options(wavecrest_options INTERFACE -fPIC -fvisibility=hidden -fvisibility-inlines-hidden)
+endif()
 # With it __builtin_prefetch(p, 1) asks for a line to write, as it says. Otherwise it brings a line to read, and the store
 # still waits until no other core has it. All x86-64 processors take the instruction; some old ones do nothing then.
 target_compile_options(wavecrest_options INTERFACE -mprfchw)

@@ -96,13 +96,25 @@ def test(tally, preset, *selection, **environment):
 
 
 def step_release(tally):
-    if not build(tally, "release"):
+    if not build(tally, "release", "-DWAVECREST_SHARED=ON"):
         return
     if os.environ.get("CHECK_OFFLINE") == "1":
         print("CHECK_OFFLINE=1: the tests against Mitsuba (label oracle) are left out")
         test(tally, "release", "--label-exclude", "^(oracle|long)$")
     else:
         test(tally, "release", "--label-exclude", "^long$")
+
+
+def python_options(tally):
+    """The environment that the Python module is built for, and how to configure for it."""
+    run(tally, "python: environment", ["tools/python-venv", "--python"])
+    return ("-DWAVECREST_SHARED=ON", "-DWAVECREST_PYTHON=ON", f"-DPython_EXECUTABLE={ROOT}/build/venv/bin/python")
+
+
+def step_python(tally):
+    targets = ("wavecrest", "wavecrest_python_stub", "wavecrest_scene_assets")
+    if build(tally, "release", *python_options(tally), targets=targets):
+        test(tally, "release", "--label-regex", "^python$")
 
 
 def step_long(tally):
@@ -128,6 +140,9 @@ SANITIZED_TESTS = (
     "stages_test",
 )
 
+# Every stage of every instruction set, specialisation and precision, with contracts checked before and after it.
+CHECKED_TESTS = ("contracts_test",)
+
 # Sessions of all methods on several threads, with photon maps and chains. Not yet the metrics, whose loops do not say
 # what TBB orders (engine/task_order.h).
 THREADED_TESTS = ("render_test", "session_test")
@@ -138,6 +153,13 @@ def step_sanitizers(tally):
     if build(tally, "asan-ubsan", "-DWAVECREST_BENCH=OFF", targets=SANITIZED_TESTS):
         selection = ("--label-regex", "^(unit|kernel|session)$", "--exclude-regex", "_NOT_BUILT$")
         test(tally, "asan-ubsan", *selection, UBSAN_OPTIONS="print_stacktrace=1")
+
+
+def step_checked(tally):
+    """The release's kernels between checks of their contracts; with a compiler cache, they are not compiled again."""
+    # Position-independent as the release, or its kernels would be other objects.
+    if build(tally, "checked", "-DWAVECREST_SHARED=ON", "-DWAVECREST_BENCH=OFF", targets=CHECKED_TESTS):
+        test(tally, "checked", "--label-regex", "^checked$", "--exclude-regex", "_NOT_BUILT$")
 
 
 def step_fuzz(tally):
@@ -153,6 +175,13 @@ def step_tsan(tally):
         test(tally, "tsan", "--tests-regex", THREADED_CASES, "--exclude-regex", "_NOT_BUILT$", TSAN_OPTIONS=options)
 
 
+def step_wheel(tally):
+    """The wheel, carrying its libraries, in a Debian 12 that has none of them. Needs root for chroot."""
+    targets = ("wavecrest_python_stub", "wavecrest_scene_assets")
+    if build(tally, "release", *python_options(tally), targets=targets):
+        run(tally, "wheel", ["tests/python/wheel-test"])
+
+
 def step_lint(tally):
     run(tally, "format", [sys.executable, "tools/lint.py", "format"])
     run(tally, "tidy of what changed", [sys.executable, "tools/lint.py", "tidy", "--changed"])
@@ -165,11 +194,14 @@ def step_tidy(tally):
 STEPS = {
     "release": step_release,
     "long": step_long,
+    "checked": step_checked,
     "sanitizers": step_sanitizers,
     "fuzz": step_fuzz,
     "tsan": step_tsan,
     "lint": step_lint,
     "tidy": step_tidy,
+    "python": step_python,
+    "wheel": step_wheel,
 }
 # To ask for: pictures of all scenes, ten thousand damaged files, data races, and clang-tidy over the whole tree, which
 # take longer than all else together.

@@ -1,0 +1,200 @@
+"""Scenes and renders."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from wavecrest import _native
+from wavecrest.arrays import image_tag
+from wavecrest.errors import Interrupted, UsageError
+from wavecrest.tables import Table
+
+if TYPE_CHECKING:
+    from wavecrest.arrays import FloatArray
+
+
+def duration(time: float | str | None) -> str:
+    """Seconds, or words like "1h30m", as the words that C++ reads."""
+    return "" if time is None else time if isinstance(time, str) else f"{time}s"
+
+
+def _options(method: str, settings: Mapping[str, Any]) -> _native.RenderOptions:
+    options = _native.RenderOptions()
+    options.method = method
+    for name, value in settings.items():
+        if name.startswith("_") or not hasattr(options, name):
+            known = ", ".join(name for name in dir(options) if not name.startswith("_"))
+            raise TypeError(f"unknown option {name!r}; expected some of {known}")
+        if value is not None:
+            setattr(options, name, duration(value) if name == "time" else value)
+    return options
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result:
+    """The image of a render so far, and how it came about.
+
+    `image` is float32, height x width x 3, linear radiance; `stats` has the keys of `wavecrest render --stats`.
+    """
+
+    image: FloatArray
+    stats: dict[str, Any]
+
+    @property
+    def seconds(self) -> float:
+        """Of rendering: loading, building and looking at images are not in it."""
+        return float(self.stats["render_seconds"])
+
+    @property
+    def iterations(self) -> int:
+        return int(self.stats["iterations"])
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes the image: .exr, .pfm or .png (8-bit sRGB)."""
+        _native.write_image(os.fspath(file), self.image)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:
+        import numpy
+
+        return numpy.array(self.image, dtype=dtype, copy=True) if copy else numpy.asarray(self.image, dtype=dtype)
+
+    def __repr__(self) -> str:
+        stats = self.stats
+        return (
+            f"<{stats['scene']} by {stats['method']}: {stats['width']} x {stats['height']}, "
+            f"{stats['iterations']} iterations in {self.seconds:.3g} s>"
+        )
+
+    def _repr_html_(self) -> str:
+        text = escape(repr(self).strip("<>"))
+        return f"<figure>{image_tag(_native.srgb_codes(self.image, False, 0.0), text)}<figcaption>{text}</figcaption></figure>"
+
+
+class Inspection(dict[str, Any]):
+    """What `wavecrest inspect --json` prints, by the same keys."""
+
+    def _repr_html_(self) -> str:
+        rows = [{"": name, "value": json.dumps(value)} for name, value in self.items() if name != "path_classes"]
+        return Table(rows)._repr_html_()
+
+
+class Scene:
+    """A scene, loaded and checked. Renders never change it."""
+
+    def __init__(self, native: _native.Scene) -> None:
+        self._native = native
+
+    name = property(lambda self: self._native.name, doc="The scene's name.")
+    width = property(lambda self: self._native.width, doc="Pixels of the rendered film in a row.")
+    height = property(lambda self: self._native.height, doc="Rows of the rendered film.")
+    spp = property(lambda self: self._native.spp, doc="Iterations of a render that says neither time nor spp.")
+    hash = property(lambda self: self._native.hash, doc="Of all that the scene was loaded from.")
+    warnings = property(lambda self: self._native.warnings, doc="What `lenient` skipped, a line each.")
+
+    def __repr__(self) -> str:
+        return f"<scene {self.name}, {self.width} x {self.height}>"
+
+    def render(
+        self,
+        method: str = "pt",
+        *,
+        time: float | str | None = None,
+        spp: int | None = None,
+        seed: int = 0,
+        threads: int | None = None,
+        **options: Any,
+    ) -> Result:
+        """Renders for so much time ("30s", or seconds) or so many iterations, whichever ends first.
+
+        Further options are those of `wavecrest render`: sampler, precision, isa, accel, max_depth, rr_depth, wave, memory,
+        radius, radius_alpha, mlt, chains, bootstrap, restart, no_direct_pass. Other Python threads run meanwhile. Ctrl-C
+        raises Interrupted, a KeyboardInterrupt whose `result` is the image so far.
+        """
+        native = self._begin(method, {"time": time, "spp": spp, "seed": seed, "threads": threads, **options})
+        interrupted = native.run()
+        result = _result(native)
+        if interrupted:
+            raise Interrupted(result)
+        return result
+
+    def snapshots(
+        self,
+        method: str = "pt",
+        *,
+        times: Sequence[float] | None = None,
+        iterations: Sequence[int] | None = None,
+        seed: int = 0,
+        threads: int | None = None,
+        **options: Any,
+    ) -> Iterator[Result]:
+        """One render, looked at after each of these render times (seconds) or iterations, in growing order.
+
+        The render stands still while the caller works with a snapshot, and its clock with it.
+        """
+        if (times is None) == (iterations is None):
+            raise UsageError("snapshots: expected times or iterations, and not both")
+        due: Sequence[float] = times if times is not None else iterations or ()
+        if any(b <= a for a, b in zip(due, due[1:])) or any(not at > 0 for at in due):
+            raise UsageError(f"snapshots at {list(due)}: expected positive numbers in growing order")
+        native = self._begin(method, {"seed": seed, "threads": threads, **options})
+        return _snapshots(native, due, times is not None)
+
+    def inspect(self, **options: Any) -> Inspection:
+        """What is in the scene, and what each method can do in it: features, memory, path classes, reference method."""
+        return Inspection(json.loads(self._native.inspect(_options("pt", options))))
+
+    @property
+    def path_classes(self) -> Table:
+        """Which kinds of light paths the scene has, and whether each method samples them."""
+        rows = self.inspect()["path_classes"]
+        return Table({"class": row["class"], **row["methods"], "description": row["description"]} for row in rows)
+
+    def _begin(self, method: str, settings: Mapping[str, Any]) -> _native.Render:
+        return _native.Render(self._native, _options(method, settings))
+
+
+def _result(native: _native.Render) -> Result:
+    return Result(native.image(), json.loads(native.stats()))
+
+
+def _snapshots(native: _native.Render, due: Sequence[float], in_time: bool) -> Iterator[Result]:
+    for at in due:
+        interrupted = native.run_until(seconds=at) if in_time else native.run_until(iterations=int(at))
+        result = _result(native)
+        if interrupted:
+            raise Interrupted(result)
+        yield result
+
+
+def load(
+    scene: str | os.PathLike[str],
+    *,
+    width: int | None = None,
+    height: int | None = None,
+    spp: int | None = None,
+    lenient: bool = False,
+    **defines: object,
+) -> Scene:
+    """Loads a built-in scene by name, or a Mitsuba 3 XML file by path.
+
+    width, height: of the film; one alone keeps the aspect ratio. spp: iterations of a render that does not say. lenient:
+    skip what is not supported, see Scene.warnings. Further keywords are values of the scene's $names.
+    """
+    texts = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in defines.items()}
+    return Scene(_native.load(os.fspath(scene), texts, lenient, width or 0, height or 0, spp or 0))
+
+
+def scenes() -> Table:
+    """The built-in scenes."""
+    return Table({"name": name, "description": description} for name, description in _native.scenes())
+
+
+def scene_folder() -> pathlib.Path:
+    """Where the built-in scenes are, with references/SCENE.exr."""
+    return pathlib.Path(_native.scene_folder())

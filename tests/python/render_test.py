@@ -1,0 +1,146 @@
+"""Scenes and renders from Python: the same bits as the program's, other threads alive, Ctrl-C heard."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy
+import wavecrest as wc
+
+
+def small(**options):
+    return wc.load("cornell-mirror", width=32, **options)
+
+
+class Rendering(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="wavecrest_python_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def run_program(self, *arguments):
+        return subprocess.run(
+            [os.environ["WAVECREST"], *map(str, arguments)], check=True, capture_output=True, text=True, timeout=120
+        )
+
+    def test_the_image_is_the_programs_bit_for_bit(self):
+        for method in ("pt", "vcm", "mlt"):
+            file = self.folder / f"{method}.exr"
+            self.run_program("render", "cornell-mirror", "-m", method, "--size", "32x24", "--spp", 3, "--seed", 5,
+                             "--threads", 2, "-o", file)  # fmt: skip
+            result = small().render(method, spp=3, seed=5, threads=2)
+            self.assertEqual(result.image.dtype, numpy.float32)
+            self.assertEqual(result.image.shape, (24, 32, 3))
+            numpy.testing.assert_array_equal(wc.read_image(file), result.image)
+
+    def test_load_sets_size_and_sample_count(self):
+        scene = wc.load("cornell-mirror", height=30, spp=7)
+        self.assertEqual((scene.width, scene.height, scene.spp), (40, 30, 7))
+        self.assertEqual(scene.render(threads=1).iterations, 7)
+
+    def test_time_counts_seconds_of_rendering(self):
+        result = small().render(time=0.2, threads=2)
+        self.assertGreaterEqual(result.seconds, 0.2)
+        self.assertLess(result.seconds, 5)
+        self.assertEqual(result.stats["method"], "pt")
+
+    def test_snapshots_are_stages_of_one_render(self):
+        images = [snapshot.image for snapshot in small().snapshots("bpt", iterations=[1, 2, 4], seed=3, threads=2)]
+        for count, image in zip((1, 2, 4), images):
+            numpy.testing.assert_array_equal(image, small().render("bpt", spp=count, seed=3, threads=2).image)
+        seconds = [snapshot.seconds for snapshot in small().snapshots("pt", times=[0.05, 0.1], threads=2)]
+        self.assertEqual(seconds, sorted(seconds))
+        self.assertGreaterEqual(seconds[1], 0.1)
+
+    def test_the_image_belongs_to_the_array(self):
+        image = small().render(spp=1).image  # the render is gone, the numbers stay
+        self.assertTrue(image.flags.writeable)
+        self.assertIsNotNone(image.base)
+        image[:] = 0
+        self.assertEqual(image.sum(), 0)
+
+    def test_other_threads_run_meanwhile(self):
+        counted = 0
+        done = threading.Event()
+
+        def count():
+            nonlocal counted
+            while not done.is_set():
+                counted += 1
+                time.sleep(0.005)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        small().render(time=0.5, threads=1)
+        done.set()
+        thread.join()
+        self.assertGreater(counted, 10)  # it would be 0 or 1 with the GIL held
+
+    def test_a_thread_of_its_own_can_render(self):
+        results = []
+        thread = threading.Thread(target=lambda: results.append(small().render(spp=1)))
+        thread.start()
+        thread.join()
+        self.assertEqual(len(results), 1)
+
+    def test_ctrl_c_ends_a_render_and_keeps_what_there_is(self):
+        script = """
+import os, signal, threading, time
+import wavecrest as wc
+scene = wc.load("cornell-mirror", width=32)
+threading.Timer(1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+begin = time.monotonic()
+try:
+    scene.render("pt", time=100)
+except KeyboardInterrupt as stop:
+    print("interrupted", time.monotonic() - begin < 30, stop.result.image.mean() > 0)
+print("again", scene.render(spp=2).iterations)
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+"""
+        result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=100, check=False)
+        self.assertEqual(result.stdout.splitlines(), ["interrupted True True", "again 2"], result.stderr)
+
+    def test_errors_name_file_and_line(self):
+        file = self.folder / "bad.xml"
+        file.write_text('<scene version="3.0.0">\n  <sensor type="perspective"/>\n  <shape type="no-such-shape"/>\n</scene>\n')
+        with self.assertRaises(wc.InputError) as raised:
+            wc.load(file)
+        self.assertEqual((raised.exception.file, raised.exception.line), (str(file), 3))
+        self.assertIn("no-such-shape", str(raised.exception))
+        with self.assertRaisesRegex(wc.UsageError, "nonsense.*expected one of pt, lt"):
+            small().render("nonsense")
+        with self.assertRaisesRegex(TypeError, "unknown option 'wav'.*wave"):
+            small().render(wav=1)
+        with self.assertRaises(ValueError):
+            small().snapshots(times=[2, 1])
+
+    def test_inspection_is_the_programs(self):
+        import json
+
+        program = json.loads(self.run_program("inspect", "cornell-mirror", "--json").stdout)
+        inspection = wc.load("cornell-mirror").inspect()
+        self.assertEqual(inspection, program)
+        classes = wc.load("cornell-mirror").path_classes
+        self.assertEqual([row["class"] for row in classes], [row["class"] for row in program["path_classes"]])
+        self.assertIn("vcm", classes.columns)
+        self.assertIn("<table>", classes._repr_html_())
+
+    def test_a_result_shows_itself(self):
+        html = small().render(spp=1)._repr_html_()
+        self.assertIn("data:image/png;base64,iVBOR", html)
+        self.assertIn("cornell-mirror by pt: 32 x 24", html)
+
+
+class Importing(unittest.TestCase):
+    def test_import_does_not_wait_for_numpy(self):
+        script = "import sys, wavecrest; sys.exit('numpy' in sys.modules)"
+        self.assertEqual(subprocess.run([sys.executable, "-c", script], check=False).returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v", *sys.argv[1:]])
