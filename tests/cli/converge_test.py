@@ -278,6 +278,10 @@ class Locks(Converge):
         self.assertIn("2 runs", process.stderr.readline() + process.stderr.readline())
         process.terminate()
         self.assertEqual(process.communicate(timeout=TIMEOUT_SECONDS) and process.returncode, INTERRUPTED)
+
+    def test_a_campaign_that_ends_leaves_no_lock(self):
+        self.converge("cornell-diffuse", "--methods", "pt", "--size", "20x20", "--spp", "1", "--out", "a")
+        self.assertTrue(os.path.exists(self.results("a")))
         self.assertFalse(os.path.exists(self.path("a/results.sqlite.lock")))
 
 
