@@ -205,7 +205,13 @@ void addLights(std::vector<Sweep>& out) {
                  .baseline = 1e-3,
                  .bound = 2e-3,
                  .boundSource = "the same seeds at 1e-3, which is a point but for its squared size",
-                 .methods = kEveryMethod});
+                 .methods = kEveryMethod,
+                 .adjust =
+                     [](double, RenderSettings& settings) {
+                       if (settings.method != Method::ppm && settings.method != Method::bpm) return;
+                       settings.radius = 0.05;  // a lamp's rays move by its size, and must stay within most discs
+                       settings.lightPaths = 4096;
+                     }});
   out.push_back({.name = "sphere-light-size",
                  .title = "A floor under a spherical lamp of constant power, straight above",
                  .xLabel = "radius at distance 2",
@@ -215,7 +221,8 @@ void addLights(std::vector<Sweep>& out) {
                  .bound = 1e-4,
                  .boundSource = "a sphere that is seen whole lights as a point does, whatever its radius",
                  .methods = {Method::pt, Method::bpt, Method::vcm},
-                 .leftOut = "lt, ppm, bpm, mlt: few light paths reach the part that is seen"});
+                 .leftOut = "lt, ppm, bpm, mlt: few light paths reach the part that is seen",
+                 .everyRun = true});
   out.push_back({.name = "light-distance",
                  .title = "A floor under a point light at constant irradiance",
                  .xLabel = "distance in half sides of the floor",

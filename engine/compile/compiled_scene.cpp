@@ -1,5 +1,7 @@
 #include "engine/compile/compiled_scene.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -129,6 +131,22 @@ struct NearBox {
   }
 };
 
+// Intersectors work in single precision, whose range squares of lengths must fit.
+constexpr double kLargestExtent = 1e18, kSmallestSphere = 1e-18;
+
+void checkRange(const Scene& scene, const BoundingSphere& bounds) {
+  if (!(bounds.radius <= kLargestExtent)) {
+    throw SceneError(SourceLocation{scene.name},
+                     fmt::format("the scene's radius is {:g}; expected at most {:g}", bounds.radius, kLargestExtent));
+  }
+  for (const Shape& shape : scene.shapes) {
+    const auto* sphere = std::get_if<Sphere>(&shape.kind);
+    if (sphere == nullptr || sphere->radius == 0 || sphere->radius >= kSmallestSphere) continue;
+    throw SceneError(shape.source,
+                     fmt::format("a sphere's radius is {:g}; expected at least {:g}", sphere->radius, kSmallestSphere));
+  }
+}
+
 }  // namespace
 
 void setClips(const Sensor& sensor, const std::vector<PrimitiveRecord<double>>& primitives, CameraView& camera) {
@@ -158,6 +176,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
     throw SceneError(where, "no shape of the scene has a surface; expected one of positive area");
   }
   BoundingSphere bounds = boundPrimitives(primitives.records);
+  checkRange(scene, bounds);
   const Double3 origin = compiled->origin = originOf(bounds);
   if (origin != Double3{}) {
     primitives = compilePrimitives<S>(scene, textured, origin);

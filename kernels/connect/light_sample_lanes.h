@@ -44,11 +44,15 @@ WAVECREST_INLINE void sampleSphere(const LightLanes<typename P::Real>& light, Ve
   coneHeight = sphereConeHeight(r2, d2);
   const Real distance = sqrt(d2);
   const Frame<Real> frame = Frame<Real>::fromNormal(toCenter * (Real(1) / distance));
+  // Where a direction of the cone enters the sphere, relative to its centre and with the cone's axis as z. z is what
+  // distance times cosine less distance leaves: a difference of squares, so a sphere smaller than the rounding of its
+  // own place still gets exact normals.
   const Vec3<Real> local = uniformCone(u, v, coneHeight);
-  const Vec3<Real> direction = frame.toWorld(local);
-  const Real cosine = local.z, sin2 = local.x * local.x + local.y * local.y;
-  const Real near = distance * cosine - sqrt(max(r2 - d2 * sin2, Real(0)));
-  const Vec3<Real> fromCone = normalize(mulAdd(direction, near, receiver) - light.p0);
+  const Real sin2 = local.x * local.x + local.y * local.y;
+  const Real halfChord = sqrt(max(r2 - d2 * sin2, Real(0)));
+  const Real near = distance * local.z - halfChord;
+  const Vec3<Real> entry{near * local.x, near * local.y, -(distance * sin2 + local.z * halfChord)};
+  const Vec3<Real> fromCone = frame.toWorld(normalize(entry));
   const Vec3<Real> fromArea = uniformSphere<Real>(u, v);
   normal = select(outside, fromCone, fromArea);
   point = mulAdd(normal, light.radius, light.p0);

@@ -7,7 +7,9 @@
 #include "bench/extremes/extreme_scenes.h"
 #include "engine/compile/textures.h"
 #include "engine/render_plan.h"
+#include "engine/scene/scene_error.h"
 #include "tests/engine/render_statistics.h"
+#include "tests/engine/test_scenes.h"
 
 namespace wavecrest {
 namespace {
@@ -75,6 +77,23 @@ TEST(MergeRadius, shrinksByItsExponent) {
   }
   settings.radius = 1e-9;
   EXPECT_EQ(radius(0.75, 0), kSmallestRadius);
+}
+
+// ---- sizes ----------------------------------------------------------------------------------------------------------
+
+Scene sphereOfRadius(double radius) {
+  Scene scene = shiningRoom(0.5);
+  addShape(scene, Sphere{.center = {0, 0, 0}, .radius = radius}, 0);
+  return scene;
+}
+
+TEST(SceneRange, whatSinglePrecisionCannotSquareIsRefused) {
+  for (const double radius : {1e30, 1e-30}) {
+    EXPECT_THROW(Session::create(sphereOfRadius(radius), settingsOf(Method::pt)), SceneError) << radius;
+  }
+  for (const double radius : {1e12, 1e-12}) {
+    EXPECT_NO_THROW(Session::create(sphereOfRadius(radius), settingsOf(Method::pt))) << radius;
+  }
 }
 
 // ---- environment maps of more texels than a number has bits ---------------------------------------------------------
