@@ -131,7 +131,7 @@ struct NearBox {
   }
 };
 
-// Intersectors work in single precision, whose range squares of lengths must fit.
+// Rays are intersected in single precision, which holds numbers from 1e-38 to 3e38, and intersectors square lengths.
 constexpr double kLargestExtent = 1e18, kSmallestSphere = 1e-18;
 
 void checkRange(const Scene& scene, const BoundingSphere& bounds) {

@@ -44,9 +44,9 @@ WAVECREST_INLINE void sampleSphere(const LightLanes<typename P::Real>& light, Ve
   coneHeight = sphereConeHeight(r2, d2);
   const Real distance = sqrt(d2);
   const Frame<Real> frame = Frame<Real>::fromNormal(toCenter * (Real(1) / distance));
-  // Where a direction of the cone enters the sphere, relative to its centre and with the cone's axis as z. z is what
-  // distance times cosine less distance leaves: a difference of squares, so a sphere smaller than the rounding of its
-  // own place still gets exact normals.
+  // `entry` is where the direction enters the sphere, relative to the sphere's centre, in a frame whose z axis is the
+  // axis of the cone. Its z is near * local.z - distance. For a small sphere far away that difference would cancel;
+  // with 1 - local.z^2 = sin2 put in, it is a sum of two positive terms.
   const Vec3<Real> local = uniformCone(u, v, coneHeight);
   const Real sin2 = local.x * local.x + local.y * local.y;
   const Real halfChord = sqrt(max(r2 - d2 * sin2, Real(0)));

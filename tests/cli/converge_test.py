@@ -279,6 +279,26 @@ class Locks(Converge):
         process.terminate()
         self.assertEqual(process.communicate(timeout=TIMEOUT_SECONDS) and process.returncode, INTERRUPTED)
 
+    def test_a_campaign_that_is_stopped_within_a_run_leaves_no_lock(self):
+        os.mkdir(self.path("given"))
+        same = ["cornell-diffuse", "--size", "20x20"]
+        self.run_wavecrest("reference", *same, "--spp", "8", "-o", "given/cornell-diffuse.exr")
+        process = subprocess.Popen(
+            [WAVECREST, "converge", *same, "--methods", "pt", "--spp", "1000000000", "--reference", "given",
+             "--images", "all", "--out", "a"],
+            cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        try:
+            deadline = time.monotonic() + TIMEOUT_SECONDS
+            while not (os.path.isdir(self.path("a/images")) and self.image_names("a")):  # until its first snapshot
+                self.assertLess(time.monotonic(), deadline)
+                time.sleep(0.01)
+            self.assertTrue(os.path.exists(self.path("a/results.sqlite.lock")))
+        finally:
+            process.terminate()
+            self.assertEqual(process.wait(timeout=TIMEOUT_SECONDS), INTERRUPTED)
+        self.assertFalse(os.path.exists(self.path("a/results.sqlite.lock")))
+
     def test_a_campaign_that_ends_leaves_no_lock(self):
         self.converge("cornell-diffuse", "--methods", "pt", "--size", "20x20", "--spp", "1", "--out", "a")
         self.assertTrue(os.path.exists(self.results("a")))
