@@ -205,7 +205,7 @@ STEPS = {
 }
 # To ask for: pictures of all scenes, ten thousand damaged files, data races, and clang-tidy over the whole tree, which
 # take longer than all else together.
-DEFAULT_STEPS = ("release", "sanitizers", "lint")
+DEFAULT_STEPS = ("release", "checked", "sanitizers", "lint")
 
 
 def main():
