@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "bench/machine/machine_record.h"
 #include "cli/bench_modes.h"
@@ -46,6 +47,20 @@ void printBench(const BenchOptions& options, const std::string& text) {
   std::fflush(stdout);
 }
 
+LoadOptions benchLoading(const BenchOptions& options) {
+  LoadOptions loading;
+  if (!options.size.empty()) loading.filmSize = parseSize(options.size);
+  return loading;
+}
+
+RenderSettings benchSettings(const Scene& scene, const BenchOptions& options) {
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
+  return settings;
+}
+
 double benchSeconds(const BenchOptions& options, double unlessGiven) {
   return options.duration.empty() ? unlessGiven : parseDuration(options.duration);
 }
@@ -71,6 +86,7 @@ namespace {
 int runBench(const BenchOptions& options) {
   if (!options.compare.empty()) return runBenchCompare(options);
   if (!options.against.empty()) return runBenchAgainst(options);
+  if (options.scaling) return runBenchScaling(options);
   return runBenchThroughput(options);
 }
 
@@ -81,7 +97,8 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   const Command command = program.add("bench", "measure speed, where it goes, and what it buys");
   command.add("scenes", options->scenes, "built-in scenes or XML files; default: two Cornell boxes");
   command.add("--methods", options->methods, "methods, separated by commas; default: all").separatedByCommas();
-  command.add("--duration", options->duration, "time per scene and method, about; default: 6s, of --against 20s");
+  command.add("--duration", options->duration,
+              "time per scene and method, about; default: 6s, of --against and --scaling 20s");
   command.add("--json", options->json, "write all figures as JSON; -: to stdout, instead of the tables");
   command.add("--size", options->size, "film size, WIDTHxHEIGHT");
   command.add("--threads", options->threads, "most threads; default: all cores, of --against one").between(1, 4096);
@@ -94,6 +111,8 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.add("--tolerance", options->tolerance, "--against, --compare: part of the speed that may be lost")
       .showDefault()
       .between(0.0, 0.9);
+  command.addFlag("--scaling", options->scaling,
+                  "speedup over threads: measured here, and predicted up to 256 from the graph of tasks");
   command.addFlag("--extremes", options->extremes, "take scenes and renders to their extremes, one property at a time");
   command.add("--html", options->html, "--extremes: write a page with a plot for each property");
   command.run([options, &exitCode] {

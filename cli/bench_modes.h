@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/load/load.h"
 #include "engine/render_settings.h"
 #include "engine/scene/scene.h"
 
@@ -18,7 +19,7 @@ struct BenchOptions {
   uint32_t threads = 0;
   std::string against;
   std::vector<std::string> compare;  // two files
-  bool extremes = false;
+  bool extremes = false, scaling = false;
   std::string html;
   double familyLevel = 0.05, tolerance = 0;
 };
@@ -27,12 +28,16 @@ struct BenchOptions {
 int runBenchThroughput(const BenchOptions& options);
 int runBenchAgainst(const BenchOptions& options);
 int runBenchCompare(const BenchOptions& options);
+int runBenchScaling(const BenchOptions& options);
 int runBenchExtremes(const BenchOptions& options);
 
 // Shared by the modes. Tables go to stdout unless the JSON does.
 void printBench(const BenchOptions& options, const std::string& text);
 std::vector<std::filesystem::path> benchSceneFiles(const BenchOptions& options);
 std::vector<Method> benchMethods(const BenchOptions& options);
+LoadOptions benchLoading(const BenchOptions& options);
+// The best instruction set, all cores unless told otherwise, and the scene's own limits of paths.
+RenderSettings benchSettings(const Scene& scene, const BenchOptions& options);
 double benchSeconds(const BenchOptions& options, double unlessGiven);
 // Writes the figures of a mode where --json asks for them, with what every result has (bench/schema.json).
 void writeBenchJson(const BenchOptions& options, const std::string& kind, const nlohmann::ordered_json& figures);

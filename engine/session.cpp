@@ -1,7 +1,6 @@
 #include "engine/session.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/flow_graph.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
@@ -15,7 +14,6 @@
 #include "engine/render_clock.h"
 #include "engine/render_plan.h"
 #include "engine/stage_rows.h"
-#include "engine/task_order.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
 
@@ -120,7 +118,7 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
   memory_ = planMemory(plan_, settings_, film_.area());
   if (plan_.pipeline.splats()) film_.makeSplats(settings.threads, memory_.splatScale);
   const uint32_t together = 1u << plan_.pipeline.mostIterationBits(settings_.waveSize);
-  tile_ = pieceSize(pixels * together, settings.threads, settings_.waveSize * together) / together;
+  tile_ = pieceSize(pixels * together, settings.cutForThreads(), settings_.waveSize * together) / together;
   lightDone_.resize(piecesOf(memory_.lightPaths, settings_.waveSize), settings.firstIteration);
   camera_.resize(piecesOf(pixels, tile_), {.next = settings.firstIteration});
   if (plan_.pipeline.photonMap) {
@@ -225,32 +223,13 @@ void TypedSession<S>::traceCamera(size_t waveIndex, Worker& worker) {
 
 template <class S>
 void TypedSession<S>::renderWaves(const Finished& finished) {
-  // The graph has a token per wave. A token that has been traced goes back to the queue, behind all others, so that
-  // waves advance together; the run ends when none is put back.
-  namespace flow = oneapi::tbb::flow;
-  flow::graph graph;
-  flow::queue_node<size_t> ready(graph);
-  const auto trace = [&](size_t wave) {
-    observe(&camera_[wave]);
-    if (finished(camera_[wave].next)) return flow::continue_msg();
+  takeTurns(camera_.size(), settings_.threads, [&](size_t wave) {
+    if (finished(camera_[wave].next)) return false;
     Worker& mine = worker();
     if (plan_.pipeline.lightPass) traceLight(wave, mine);
     traceCamera(wave, mine);
-    if (finished(camera_[wave].next)) return flow::continue_msg();
-    publish(&camera_[wave]);
-    ready.try_put(wave);
-    return flow::continue_msg();
-  };
-  TaskOrder order;
-  const auto task = [&](size_t wave) WAVECREST_TASK_ENTRY {
-    const TaskOrder::Task scope(order);
-    return trace(wave);
-  };
-  flow::function_node<size_t, flow::continue_msg, flow::rejecting> tracing(graph, settings_.threads, task);
-  flow::make_edge(ready, tracing);
-  for (size_t wave = 0; wave < camera_.size(); ++wave) ready.try_put(wave);
-  graph.wait_for_all();
-  order.wait();
+    return !finished(camera_[wave].next);
+  });
 }
 
 template <class S>

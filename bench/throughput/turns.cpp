@@ -21,41 +21,30 @@ Slice difference(const RenderStatistics& after, const RenderStatistics& before) 
   return slice;
 }
 
-// A session that goes on by the same number of iterations each time.
-class Candidate {
- public:
-  explicit Candidate(Session& session) : session_(session) {}
-
-  // Doubles the iterations until a slice takes half of the time or more. The first render does not count: chains
-  // bootstrap in it. Chains advance in steps of many mutations; a slice must hold several, so that none is left empty.
-  void fill(double sliceSeconds) {
-    render();
-    for (;; iterations_ *= 2) {
-      const Slice slice = render();
-      const double asked = static_cast<double>(iterations_ * session_.film().area().pixels.size());
-      const bool even = slice.paths > 0 && static_cast<double>(slice.paths) <= kMostOvershoot * asked;
-      if (even && slice.seconds >= 0.5 * sliceSeconds) return;
-    }
-  }
-  Slice render() {
-    const RenderStatistics before = session_.statistics();
-    done_ += iterations_;
-    session_.renderUntil(done_, std::nullopt);
-    return difference(session_.statistics(), before);
-  }
-
- private:
-  Session& session_;
-  uint64_t iterations_ = 1, done_ = 0;
-};
-
 }  // namespace
+
+void SliceRenderer::fill(double sliceSeconds) {
+  render();
+  for (;; iterations_ *= 2) {
+    const Slice slice = render();
+    const double asked = static_cast<double>(iterations_ * session_.film().area().pixels.size());
+    const bool even = slice.paths > 0 && static_cast<double>(slice.paths) <= kMostOvershoot * asked;
+    if (even && slice.seconds >= 0.5 * sliceSeconds) return;
+  }
+}
+
+Slice SliceRenderer::render() {
+  const RenderStatistics before = session_.statistics();
+  done_ += iterations_;
+  session_.renderUntil(done_, std::nullopt);
+  return difference(session_.statistics(), before);
+}
 
 std::vector<std::vector<Slice>> renderInTurn(std::span<const std::unique_ptr<Session>> sessions, const TurnPlan& plan,
                                              const std::function<void()>& afterRound) {
   // One more slice for finding out how long slices take.
   const double sliceSeconds = plan.seconds / static_cast<double>((plan.mostRounds + 1) * sessions.size());
-  std::vector<Candidate> candidates;
+  std::vector<SliceRenderer> candidates;
   for (const auto& session : sessions) {
     candidates.emplace_back(*session);
     candidates.back().fill(sliceSeconds);

@@ -28,6 +28,21 @@ struct Slice {
   double rays() const { return static_cast<double>(counters.raysClosest + counters.raysShadow); }
 };
 
+// A session that goes on by the same number of iterations each time.
+class SliceRenderer {
+ public:
+  explicit SliceRenderer(Session& session) : session_(session) {}
+
+  // Doubles the iterations until a slice takes half of the time or more. The first render does not count: chains
+  // bootstrap in it. Chains advance in steps of many mutations; a slice must hold several, so that none is left empty.
+  void fill(double sliceSeconds);
+  Slice render();
+
+ private:
+  Session& session_;
+  uint64_t iterations_ = 1, done_ = 0;
+};
+
 struct TurnPlan {
   double seconds = 0;                       // render time of all sessions together, about
   size_t fewestRounds = 1, mostRounds = 1;  // where an iteration takes long, fewest rounds may take more time

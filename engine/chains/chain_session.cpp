@@ -19,8 +19,11 @@
 namespace wavecrest {
 namespace {
 
-// Steps of a wave between looks at the clock: a few milliseconds to some tens of them.
-constexpr uint64_t kRoundSteps = 4;
+// Steps of a wave in a turn, before others have theirs: a millisecond or some.
+constexpr uint64_t kTurnSteps = 4;
+// All waves meet after a round of about this many seconds, when the clock is looked at: threads wait for each other
+// there, and an interrupt waits for it.
+constexpr double kRoundSeconds = 0.05;
 
 // Mutations of a pixel, in the mean, to a sample of its direct light: a quarter or so of the time goes there.
 constexpr uint64_t kMutationsPerDirect = 2;
@@ -178,9 +181,13 @@ bool ChainSession<S>::beginEpoch(uint64_t epoch, const Stop& stop) {
 
 template <class S>
 void ChainSession<S>::advance(uint64_t steps) {
-  forEach(chains_->size(), [&](size_t wave) {
-    chains_->advance(wave, step_, steps, worker());
-    progressPaths_.fetch_add(steps * chains_->chainCount(wave), std::memory_order_relaxed);
+  std::vector<uint64_t> done(chains_->size(), 0);
+  takeTurns(chains_->size(), settings_.threads, [&](size_t wave) {
+    const uint64_t some = std::min(kTurnSteps, steps - done[wave]);
+    chains_->advance(wave, step_ + done[wave], some, worker());
+    progressPaths_.fetch_add(some * chains_->chainCount(wave), std::memory_order_relaxed);
+    done[wave] += some;
+    return done[wave] < steps;
   });
 }
 
@@ -204,14 +211,15 @@ bool ChainSession<S>::traceDirect(const Stop& stop) {
   return *std::min_element(directDone_.begin(), directDone_.end()) == goal;
 }
 
-// Chains move together, as the film divides by one number of steps, so a step that has begun is finished. One that
-// would end after the limit, by the time that the latest took, is left out; before there is any, one at a time.
+// Steps of the round that begins now. Chains move together, as the film divides by one number of steps, so a step that
+// has begun is finished. One that would end after the limit, by the time that the latest took, is left out; before
+// there is any, one at a time.
 template <class S>
 uint64_t ChainSession<S>::stepsInTime(uint64_t most, double now) const {
-  if (!settings_.seconds) return most;
   if (stepSeconds_ == 0) return std::min<uint64_t>(most, 1);
-  const double fit = (*settings_.seconds - now) / stepSeconds_;
-  return fit >= static_cast<double>(most) ? most : static_cast<uint64_t>(std::max(fit, 0.0));
+  const auto round = std::max(kRoundSeconds / stepSeconds_, static_cast<double>(kTurnSteps));
+  const double left = settings_.seconds ? (*settings_.seconds - now) / stepSeconds_ : round;
+  return static_cast<uint64_t>(std::clamp(std::min(round, left), 0.0, static_cast<double>(most)));
 }
 
 // What chains owe at the end of an epoch goes into the sums.
@@ -253,7 +261,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
       if (step_ >= goal) return;
       if (epochs_.count() <= step_ / restart && !beginEpoch(step_ / restart, stop)) return;
       const double before = now();
-      const uint64_t steps = stepsInTime(std::min({kRoundSteps, restart - step_ % restart, goal - step_}), before);
+      const uint64_t steps = stepsInTime(std::min(restart - step_ % restart, goal - step_), before);
       if (steps == 0) return;
       if (!epochs_.dark()) advance(steps);
       step_ += steps;

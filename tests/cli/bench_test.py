@@ -107,6 +107,23 @@ class Bench(CommandTest):
             validate({"schema_version": 1, "kind": "throughput"})
 
 
+class Scaling(CommandTest):
+    def test_measures_what_this_machine_has_and_predicts_the_rest(self):
+        told = self.run_wavecrest("bench", "cornell-diffuse", "--scaling", "--methods", "pt,vcm", "--size", "48x32",
+                                  "--threads", "2", "--duration", "1s", "--json", self.path("scaling.json"))
+        self.assertRegex(told.stdout, r"predicted")
+        result = read_json(self.path("scaling.json"))
+        validate(result)
+        self.assertEqual([row["method"] for row in result["results"]], ["pt", "vcm"])
+        for row in result["results"]:
+            self.assertEqual([measured["threads"] for measured in row["measured"]], [1, 2])
+            self.assertEqual([predicted["threads"] for predicted in row["predicted"]], [2**k for k in range(1, 9)])
+            self.assertEqual(row["measured"][0]["speedup"], 1)
+            for predicted in row["predicted"]:
+                self.assertLessEqual(predicted["speedup"], 1.5 * predicted["threads"], row["method"])
+                self.assertGreater(predicted["parallelism"], 1, row["method"])
+
+
 class Against(CommandTest):
     """Two builds in turn. The other build is this one, behind a script that may change the time it tells."""
 

@@ -1,0 +1,24 @@
+// What a recorded graph of tasks (engine/task_recorder.h) would take on other numbers of threads.
+//
+// As Cilkview does (He, Leiserson, Leiserson 2010): the work is the time of all tasks together, the span that of the
+// longest sequence in which each waits for the one before; no number of threads is faster than work / span times one.
+// A schedule says more: tasks go to whichever thread is free first, in the order in which they become ready (Graham
+// 1969), as TBB's queue does. What threads cost each other in caches, memory and clock rate is in none of these.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/task_recorder.h"
+
+namespace wavecrest {
+
+// Seconds. `times`: as if the render were so many times as long, each part of it being as the one that was recorded.
+// The first and the last step are what a render does at its beginning and end, and come once.
+double workOf(const TaskGraph& graph, uint32_t times = 1);
+double spanOf(const TaskGraph& graph, uint32_t times = 1);
+double scheduledSeconds(const TaskGraph& graph, uint32_t threads, uint32_t times = 1);
+
+// Tasks of the graph.
+size_t taskCount(const TaskGraph& graph);
+
+}  // namespace wavecrest

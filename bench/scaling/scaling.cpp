@@ -1,0 +1,165 @@
+#include "bench/scaling/scaling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bench/against/child_render.h"
+#include "bench/scaling/list_schedule.h"
+#include "bench/throughput/turns.h"
+#include "engine/render_plan.h"
+#include "engine/session.h"
+#include "engine/task_recorder.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr size_t kFewestRounds = 3, kMostRounds = 5;
+// Predictions are of renders of this length: at the end of a short one threads run out of tasks.
+constexpr double kPredictedSeconds = 1;
+constexpr size_t kMostScheduledTasks =
+    1 << 18;  // but no more tasks than this, or prediction would take longer than rendering
+// Parts of the time.
+constexpr double kMeasuredPart = 0.5, kProcessPart = 0.2, kRecordedPart = 0.3;
+
+std::vector<uint32_t> powersOfTwo(uint32_t from, uint32_t most) {
+  std::vector<uint32_t> counts;
+  for (uint32_t n = from; n < most; n *= 2) counts.push_back(n);
+  if (from <= most) counts.push_back(most);
+  return counts;
+}
+
+// One render on one thread, cut for others, that is recorded slice by slice.
+class RecordedRender {
+ public:
+  RecordedRender(const Scene& scene, const RenderSettings& settings, uint32_t cutFor, double sliceSeconds)
+      : threads_(cutFor), session_(Session::create(scene, cutSettings(settings, cutFor))), slices_(*session_) {
+    slices_.fill(sliceSeconds);
+  }
+  uint32_t threads() const { return threads_; }
+
+  void record() {
+    TaskRecorder recorder;
+    const Slice slice = slices_.render();
+    const TaskGraph graph = recorder.graph();
+    tasks_ = taskCount(graph);
+    const auto most = static_cast<double>(std::max<size_t>(kMostScheduledTasks / tasks_, 1));
+    const double wanted = std::ceil(kPredictedSeconds * threads_ / workOf(graph));
+    const auto times = static_cast<uint32_t>(std::clamp(wanted, 1.0, most));
+    rates_.push_back(static_cast<double>(slice.paths) * times / scheduledSeconds(graph, threads_, times));
+    parallelisms_.push_back(workOf(graph, times) / spanOf(graph, times));
+    longest_ = 0;
+    for (const TaskStep& step : graph.steps) {
+      for (const auto& chain : step.chains) {
+        for (const double task : chain) longest_ = std::max(longest_, task);
+      }
+    }
+  }
+  // oneThread: paths per second of each round.
+  PredictedScaling result(const std::vector<double>& oneThread) const {
+    std::vector<double> speedups = rates_;
+    for (size_t i = 0; i < speedups.size(); ++i) speedups[i] /= oneThread[i];
+    return {.threads = threads_,
+            .tasks = tasks_,
+            .longestTask = longest_,
+            .parallelism = estimateMedian(parallelisms_),
+            .speedup = estimateMedian(speedups)};
+  }
+
+ private:
+  static RenderSettings cutSettings(RenderSettings settings, uint32_t cutFor) {
+    settings.threads = 1;
+    settings.piecesForThreads = cutFor;
+    return settings;
+  }
+
+  uint32_t threads_;
+  std::unique_ptr<Session> session_;
+  SliceRenderer slices_;
+  std::vector<double> rates_, parallelisms_;  // of each round
+  size_t tasks_ = 0;
+  double longest_ = 0;
+};
+
+// The rates of as many processes of one thread each that run at the same time, added up.
+double rateOfProcesses(uint32_t count, const ChildRequest& request) {
+  std::vector<std::future<double>> rates;
+  for (uint32_t i = 0; i < count; ++i) {
+    ChildRequest own = request;
+    own.seed = i;
+    rates.push_back(std::async(std::launch::async, [own = std::move(own)] {
+      const ScratchFolder folder;
+      return renderInChild(ownBinary(), own, folder).at("paths_per_second").get<double>();
+    }));
+  }
+  double sum = 0;
+  for (auto& rate : rates) sum += rate.get();
+  return sum;
+}
+
+}  // namespace
+
+ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& file, const RenderSettings& settings,
+                             double seconds) {
+  const FilmArea area = filmArea(scene.film);
+  ScalingResult result;
+  result.scene = scene.name;
+  result.method = settings.method;
+  result.width = area.width;
+  result.height = area.height;
+
+  const std::vector<uint32_t> measured = powersOfTwo(1, settings.threads);
+  std::vector<std::unique_ptr<Session>> sessions;
+  for (const uint32_t threads : measured) {
+    RenderSettings own = settings;
+    own.threads = threads;
+    sessions.push_back(Session::create(scene, own));
+  }
+  const std::vector<uint32_t> predicted = powersOfTwo(2, kMostPredictedThreads);
+  const double recordedSlice = kRecordedPart * seconds / static_cast<double>(predicted.size() * (kMostRounds + 1));
+  std::vector<RecordedRender> recorded;
+  for (const uint32_t threads : predicted) recorded.emplace_back(scene, settings, threads, recordedSlice);
+
+  MachineWatch watch;
+  const TurnPlan plan{.seconds = kMeasuredPart * seconds, .fewestRounds = kFewestRounds, .mostRounds = kMostRounds};
+  const std::vector<std::vector<Slice>> slices = renderInTurn(sessions, plan, [&] {
+    for (RecordedRender& render : recorded) render.record();
+    watch.look();
+  });
+  const auto ratesOf = [](const std::vector<Slice>& all) {
+    return valuesOf(all, [](const Slice& slice) { return slice.pathsPerSecond(); });
+  };
+  const std::vector<double> oneThread = ratesOf(slices.front());
+  for (const RecordedRender& render : recorded) result.predicted.push_back(render.result(oneThread));
+
+  const double oneRate = median(oneThread),
+               processSeconds = kProcessPart * seconds / static_cast<double>(measured.size());
+  const ChildRequest request{
+      .scene = file,
+      .method = std::string(toString(settings.method)),
+      .size = fmt::format("{}x{}", area.width, area.height),
+      .iterations = std::max<uint64_t>(
+          1, static_cast<uint64_t>(processSeconds * oneRate / static_cast<double>(area.pixels.size()))),
+      .more = {},
+      .imageFile = {}};
+  double oneProcess = 0;
+  for (size_t i = 0; i < measured.size(); ++i) {
+    std::vector<double> rates = ratesOf(slices[i]), speedups = rates;
+    for (size_t k = 0; k < speedups.size(); ++k) speedups[k] /= oneThread[k];
+    const double processes = rateOfProcesses(measured[i], request);
+    if (i == 0) oneProcess = processes;
+    result.measured.push_back({.threads = measured[i],
+                               .pathsPerSecond = estimateMedian(rates),
+                               .speedup = estimateMedian(speedups),
+                               .processSpeedup = processes / oneProcess});
+    watch.look();
+  }
+  result.machine = watch.state();
+  return result;
+}
+
+}  // namespace wavecrest
