@@ -37,10 +37,7 @@ struct RenderOptions {
   double radius = 0.001, radiusAlpha = 0.75;
   std::vector<std::string> outputs;
   bool noDirectPass = false, dryRun = false;
-  double untilSsim = 0;  // 0: not asked for
-  std::string reference;
-
-  bool untilGood() const { return untilSsim > 0 || !reference.empty(); }
+  UntilRequest until;
 };
 
 MetropolisSettings chosenChains(const RenderOptions& options) {
@@ -78,7 +75,7 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   }
   if (options.spp != 0) settings.iterations = options.spp;
   if (!options.time.empty()) settings.seconds = parseDuration(options.time);
-  if (!settings.iterations && !settings.seconds && !options.untilGood())
+  if (!settings.iterations && !settings.seconds && !options.until.any())
     settings.iterations = scene.defaults.sampleCount;
   if (!options.memory.empty()) settings.memoryBytes = parseMemory(options.memory);
   settings.measureStages = !options.stats.empty();
@@ -156,11 +153,12 @@ void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const Rende
   }
 }
 
-UntilGoal untilGoal(const RenderOptions& options, const FilmArea& film) {
+UntilGoal untilGoal(const RenderOptions& options, const RenderSettings& settings, const FilmArea& film) {
   if (!options.snapshotEvery.empty()) {
-    throw UsageError("--snapshot-every: not together with --until-ssim; expected one of them");
+    throw UsageError(
+        "--snapshot-every: not together with --until-ssim or --until-relative-error; expected one of them");
   }
-  return {options.untilSsim, options.reference, film};
+  return {options.until, settings, film};
 }
 
 nlohmann::ordered_json toJson(const MemoryPlan& plan) {
@@ -219,7 +217,7 @@ enum class Ending { complete, stopped, stoppedBeforeAnyPath };
 
 // Renders to the end or to a signal, with snapshots and saves on the way.
 Ending render(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
-              const std::optional<UntilGoal>& until, ProgressKind kind, InterruptGuard& guard, RenderOutputs& outputs) {
+              std::optional<UntilGoal>& until, ProgressKind kind, InterruptGuard& guard, RenderOutputs& outputs) {
   bool stopped = false;
   const auto goesOn = [&] {
     stopped = guard.interrupted();
@@ -266,13 +264,16 @@ int runRender(const RenderOptions& options) {
     noteLine(kind, toJson(session->memoryPlan()), "memory: " + describe(session->memoryPlan()));
   }
   warnOfLimits(kind, settings);
+  if (options.until.relativeError > 0 && strategiesOf(settings.method).merge) {
+    warn(kind, "--until-relative-error leaves out the bias of merging, which falls with --radius and with time");
+  }
   if (options.dryRun) {
     showPlan(options, scene, settings, *session);
     return kExitDone;
   }
   RenderOutputs outputs(names, scene, settings, loadSeconds);
   std::optional<UntilGoal> until;
-  if (options.untilGood()) until.emplace(untilGoal(options, session->film().area()));
+  if (options.until.any()) until.emplace(untilGoal(options, settings, session->film().area()));
   const Ending ending = render(*session, settings, schedule, until, kind, guard, outputs);
   if (until) noteLine(kind, {{"until", outputs.until()}}, UntilGoal::describe(outputs.until()));
   if (ending == Ending::stoppedBeforeAnyPath) {
@@ -325,10 +326,16 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
       .between(1, 1 << 28);
   command.addFlag("--no-direct-pass", options->noDirectPass, "mmlt and pathspace: chains render direct light too");
   command.add("--snapshot-every", options->snapshotEvery, "snapshots at this interval, or 'log'");
-  command.add("--until-ssim", options->untilSsim, "stop when the SSIM against --reference is S")
+  command
+      .add(
+          "--until-relative-error", options->until.relativeError,
+          "stop when the image's relative RMSE against its expectation is E or less, with 95 % confidence; not for mlt")
+      .checkedBy(checkFinite)
+      .between(1e-5, 1.0);
+  command.add("--until-ssim", options->until.ssim, "stop when the SSIM against --reference is S")
       .checkedBy(checkFinite)
       .between(1e-9, 1.0);
-  command.add("--reference", options->reference, "image that --until-ssim compares with");
+  command.add("--reference", options->until.reference, "image that --until-ssim compares with");
   command.add("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable").repeatable();
   command.add("--stats", options->stats, "write statistics as JSON; - for stdout");
   command.addFlag("--dry-run", options->dryRun, "print plan, memory and outputs, and render nothing");

@@ -9,32 +9,71 @@
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {
+namespace {
 
-UntilGoal::UntilGoal(double ssim, const std::string& referenceFile, const FilmArea& film) : ssim_(ssim) {
-  if (ssim == 0 || referenceFile.empty()) {
-    throw UsageError("--until-ssim and --reference: one without the other; expected both or neither");
-  }
+std::unique_ptr<PreparedReference> readReference(const std::string& name, const FilmArea& film) {
   if (std::min(film.width, film.height) < kSsimSmallestSide) {
     throw UsageError(fmt::format("--until-ssim: a film of {}x{} is too small; expected at least {} pixels a side",
                                  film.width, film.height, kSsimSmallestSide));
   }
-  ImageFile file = readImage(referenceFile);
+  ImageFile file = readImage(name);
   if (file.image.width != film.width || file.image.height != film.height) {
-    throw InputError(fmt::format("{}: is {}x{}; expected the render's {}x{}", referenceFile, file.image.width,
-                                 file.image.height, film.width, film.height));
+    throw InputError(fmt::format("{}: is {}x{}; expected the render's {}x{}", name, file.image.width, file.image.height,
+                                 film.width, film.height));
   }
-  reference_ = std::make_unique<PreparedReference>(referenceFile, std::move(file));
+  return std::make_unique<PreparedReference>(name, std::move(file));
 }
 
-nlohmann::ordered_json UntilGoal::render(Session& session, const RenderSettings& settings) const {
-  const SsimNow now = renderUntilSsim(session, settings, {.reference = *reference_, .ssim = ssim_});
-  return {{"reached", now.reached}, {"iterations", now.iterations}, {"ssim", now.ssim}, {"ssim_goal", ssim_}};
+std::string describeError(const nlohmann::ordered_json& reached) {
+  if (reached["relative_error"].is_null()) return "relative error not known yet";
+  return fmt::format("relative error {:.3g}, {:.3g} to {:.3g} with {:.0f} % confidence",
+                     reached["relative_error"].get<double>(), reached["interval"][0].get<double>(),
+                     reached["interval"][1].get<double>(), 100 * reached["interval_level"].get<double>());
+}
+
+}  // namespace
+
+UntilGoal::UntilGoal(const UntilRequest& request, const RenderSettings& settings, const FilmArea& film)
+    : request_(request) {
+  if ((request.ssim == 0) != request.reference.empty()) {
+    throw UsageError("--until-ssim and --reference: one without the other; expected both or neither");
+  }
+  if (request.ssim > 0 && request.relativeError > 0) {
+    throw UsageError("--until-ssim and --until-relative-error: two goals; expected one of them");
+  }
+  if (request.ssim > 0) {
+    reference_ = readReference(request.reference, film);
+    return;
+  }
+  if (const std::string reason = whyNoFilmError(settings); !reason.empty()) {
+    throw UsageError(
+        fmt::format("--until-relative-error: {}; expected another method or --sampler independent", reason));
+  }
+}
+
+nlohmann::ordered_json UntilGoal::render(Session& session, const RenderSettings& settings) {
+  if (!reference_) return renderUntilError(session, settings);
+  const SsimNow now = renderUntilSsim(session, settings, {.reference = *reference_, .ssim = request_.ssim});
+  return {{"reached", now.reached}, {"iterations", now.iterations}, {"ssim", now.ssim}, {"ssim_goal", request_.ssim}};
+}
+
+nlohmann::ordered_json UntilGoal::renderUntilError(Session& session, const RenderSettings& settings) {
+  using Json = nlohmann::ordered_json;
+  const ErrorNow now = error_.renderUntil(session, settings, request_.relativeError);
+  return {{"reached", now.reached},
+          {"iterations", now.iterations},
+          {"relative_error", now.error ? Json(now.error->value) : Json()},
+          {"interval", now.error ? Json({now.error->interval.low, now.error->interval.high}) : Json()},
+          {"interval_level", kIntervalLevel},
+          {"relative_error_goal", request_.relativeError}};
 }
 
 std::string UntilGoal::describe(const nlohmann::ordered_json& reached) {
-  return fmt::format("{} after {} iterations: SSIM {:.4f}, goal {:.4g}",
+  const bool ofSsim = reached.contains("ssim");
+  return fmt::format("{} after {} iterations: {}, goal {:.4g}",
                      reached["reached"].get<bool>() ? "reached" : "not reached", reached["iterations"].get<uint64_t>(),
-                     reached["ssim"].get<double>(), reached["ssim_goal"].get<double>());
+                     ofSsim ? fmt::format("SSIM {:.4f}", reached["ssim"].get<double>()) : describeError(reached),
+                     reached[ofSsim ? "ssim_goal" : "relative_error_goal"].get<double>());
 }
 
 }  // namespace wavecrest

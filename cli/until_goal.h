@@ -1,4 +1,5 @@
-// `render --until-ssim S --reference R`: the goal as the command line gives it, checked before the render.
+// `render --until-ssim S --reference R` and `--until-relative-error E`: the goal as the command line gives it, checked
+// before the render.
 #pragma once
 
 #include <memory>
@@ -9,20 +10,31 @@
 
 namespace wavecrest {
 
+struct UntilRequest {
+  double ssim = 0, relativeError = 0;  // 0: not asked for
+  std::string reference;
+
+  bool any() const { return ssim > 0 || relativeError > 0 || !reference.empty(); }
+};
+
 class UntilGoal {
  public:
   // Throws UsageError where options do not fit together, ImageError for a reference that cannot be read, InputError for
   // one of another size than the film's.
-  UntilGoal(double ssim, const std::string& referenceFile, const FilmArea& film);
+  UntilGoal(const UntilRequest& request, const RenderSettings& settings, const FilmArea& film);
 
-  // Renders to the goal, to the settings' end or to an interrupt. Returns what was reached, for stats.
-  nlohmann::ordered_json render(Session& session, const RenderSettings& settings) const;
+  // Renders to the goal, to the settings' end or to an interrupt. Returns what was reached, for stats. May be called
+  // again for the same session.
+  nlohmann::ordered_json render(Session& session, const RenderSettings& settings);
   // The same in one line.
   static std::string describe(const nlohmann::ordered_json& reached);
 
  private:
-  double ssim_;
+  nlohmann::ordered_json renderUntilError(Session& session, const RenderSettings& settings);
+
+  UntilRequest request_;
   std::unique_ptr<PreparedReference> reference_;
+  FilmErrorWatch error_;
 };
 
 }  // namespace wavecrest

@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-#include "bench/claims/bands.h"
+#include "bench/statistics/bands.h"
 
 namespace wavecrest {
 namespace {

@@ -33,4 +33,29 @@ SsimNow renderUntilSsim(Session& session, const RenderSettings& settings, const 
   return now;
 }
 
+ErrorNow FilmErrorWatch::renderUntil(Session& session, const RenderSettings& settings, double relativeError) {
+  const uint64_t most = settings.iterations.value_or(std::numeric_limits<uint64_t>::max());
+  while (!now_.reached) {
+    const uint64_t next = slices_.nextIterations();
+    session.renderUntil(std::min(next, most), settings.seconds);
+    if (session.statistics().iterations == next) {
+      slices_.add(session.film().resolve());
+      now_.iterations = next;
+      now_.error = estimateFilmError(slices_.slices(), session.film().area().width);
+      now_.reached = now_.error && now_.error->interval.high <= relativeError;
+    }
+    const bool timeIsUp = settings.seconds && session.progressSeconds() >= *settings.seconds;
+    if (next >= most || session.interrupted() || timeIsUp) break;
+  }
+  return now_;
+}
+
+std::string whyNoFilmError(const RenderSettings& settings) {
+  if (settings.method == Method::mlt)
+    return "chains of mlt go on from where they were, so its iterations are not independent";
+  if (settings.sampler == SamplerKind::sobol)
+    return "points of one Sobol sequence depend on each other, so iterations are not independent";
+  return {};
+}
+
 }  // namespace wavecrest

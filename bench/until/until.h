@@ -1,9 +1,12 @@
-// Renders until the image resembles a reference.
+// Renders until the image resembles a reference, or is close enough to its expectation.
 //
 // The image is looked at after numbers of iterations that grow by an eighth to a quarter; the render clock stands still
 // meanwhile. So a goal is overshot by that much at most.
 #pragma once
 
+#include <string>
+
+#include "bench/until/film_error.h"
 #include "engine/session.h"
 #include "metrics/prepared_reference.h"
 
@@ -22,5 +25,28 @@ struct SsimNow {
 
 // Goes on to the goal, to the iterations or the time of the settings, or to an interrupt.
 SsimNow renderUntilSsim(Session& session, const RenderSettings& settings, const SsimGoal& goal);
+
+struct ErrorNow {
+  uint64_t iterations = 0;         // at the last look
+  std::optional<FilmError> error;  // nothing while it cannot be told
+  bool reached = false;            // all of the interval is at the goal or below
+};
+
+// The relative RMSE of a session's film against its expectation (film_error.h), watched from the first iteration on.
+// Takes the memory of up to 17 films. Merging methods have expectations that their radius blurs: that bias is no part
+// of the error.
+class FilmErrorWatch {
+ public:
+  // Goes on to the goal, to the iterations or the time of the settings, or to an interrupt. May be called again, for
+  // the same session. Settings must be such that whyNoFilmError has nothing to say.
+  ErrorNow renderUntil(Session& session, const RenderSettings& settings, double relativeError);
+
+ private:
+  FilmSlices slices_;
+  ErrorNow now_;
+};
+
+// Why iterations of these settings are not independent, so that their spread does not tell the error. Empty: they are.
+std::string whyNoFilmError(const RenderSettings& settings);
 
 }  // namespace wavecrest

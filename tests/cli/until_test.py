@@ -1,4 +1,4 @@
-"""wavecrest render --until-ssim: ends when the reference is resembled, and says so."""
+"""wavecrest render --until-ssim, --until-relative-error: ends when the goal is reached, and says so."""
 
 import unittest
 
@@ -19,10 +19,24 @@ class Until(CommandTest):
         until = self.stats_of("--until-ssim", "0.999", "--reference", reference, "--spp", "5")["until"]
         self.assertEqual((until["reached"], until["iterations"]), (False, 5))
 
+    def test_a_relative_error_is_reached_and_told_with_its_interval(self):
+        until = self.stats_of("--until-relative-error", "0.3", "--seed", "1")["until"]
+        low, high = until["interval"]
+        self.assertTrue(until["reached"] and low <= until["relative_error"] <= high <= 0.3, until)
+        self.assertRegex(self.result.stderr, r"reached after \d+ iterations: relative error 0\.\d+, 0\.\d+ to 0\.\d+ "
+                                             r"with 95 % confidence, goal 0\.3")
+        until = self.stats_of("--until-relative-error", "0.001", "--spp", "5")["until"]
+        self.assertEqual((until["reached"], until["relative_error"]), (False, None))
+        self.stats_of("--until-relative-error", "0.4", "-m", "ppm", "--spp", "8")
+        self.assertRegex(self.result.stderr, "leaves out the bias of merging")
+
     def test_what_does_not_fit_together_is_refused(self):
         for arguments in (
             ("--until-ssim", "0.9"),
             ("--reference", "x.exr"),
+            ("--until-ssim", "0.9", "--reference", "x.exr", "--until-relative-error", "0.1"),
+            ("--until-relative-error", "0.1", "-m", "mlt"),
+            ("--until-relative-error", "0.1", "--sampler", "sobol"),
             ("--until-ssim", "0.9", "--reference", "x.exr", "--snapshot-every", "1s", "-o", self.path("x.exr")),
         ):
             self.assert_one_error_line(self.render(*arguments, expect=USAGE), "--")

@@ -1,5 +1,5 @@
 // Bands of means and differences, against textbook values.
-#include "bench/claims/bands.h"
+#include "bench/statistics/bands.h"
 
 #include <gtest/gtest.h>
 

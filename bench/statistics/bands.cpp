@@ -1,4 +1,4 @@
-#include "bench/claims/bands.h"
+#include "bench/statistics/bands.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,174 @@
+// The error that a film's slices tell of is the one that the film has, as often as its interval says.
+#include "bench/until/film_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "bench/until/until.h"
+#include "engine/load/load.h"
+#include "scenes/scene_list.h"
+#include "tests/effort.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr uint32_t kWidth = 32, kHeight = 24;
+
+using Film = std::vector<float>;
+
+RenderSettings settingsOf(const Scene& scene, Method method, uint64_t seed) {
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  settings.method = method;
+  settings.seed = seed;
+  settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
+  settings.radius = 0.01;
+  return settings;
+}
+
+// The fewest misses that `trials` intervals, of which each misses with probability `miss`, have or exceed with a
+// probability below kFalseAlarms. Seeds are fixed: the test fails always or never.
+constexpr double kFalseAlarms = 1e-3;
+size_t tooManyMisses(size_t trials, double miss) {
+  const auto n = static_cast<double>(trials);
+  double below = 0;  // probability of fewer than k
+  for (size_t k = 0;; ++k) {
+    if (1 - below < kFalseAlarms) return k;
+    const auto x = static_cast<double>(k);
+    below += std::exp(std::lgamma(n + 1) - std::lgamma(x + 1) - std::lgamma(n - x + 1) + x * std::log(miss) +
+                      (n - x) * std::log1p(-miss));
+  }
+}
+
+struct Case {
+  const char* name;
+  const char* scene;
+  Method method;
+  double goal;
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+class FilmErrorOf : public testing::TestWithParam<Case> {};
+
+// The expectation of a film is the mean of all others, weighted by their iterations; their own error adds m / (n - m)
+// to the film's squared one on average.
+TEST_P(FilmErrorOf, isWithinItsIntervalAsOftenAsStated) {
+  const size_t trials = effort(80, 8);
+  LoadOptions options;
+  options.filmSize = {kWidth, kHeight};
+  const Scene scene = loadScene(findScene(GetParam().scene), options);
+  struct Trial {
+    Film film;
+    ErrorNow now;
+  };
+  std::vector<Trial> all;
+  std::vector<double> sum(size_t{3} * kWidth * kHeight);
+  double n = 0;
+  for (uint64_t seed = 0; seed < trials; ++seed) {
+    RenderSettings settings = settingsOf(scene, GetParam().method, seed);
+    settings.iterations = 4000;  // far beyond the goal
+    const auto session = Session::create(scene, settings);
+    FilmErrorWatch watch;
+    const ErrorNow now = watch.renderUntil(*session, settings, GetParam().goal);
+    ASSERT_TRUE(now.reached) << "seed " << seed;
+    all.push_back({session->film().resolve(), now});
+    const auto m = static_cast<double>(now.iterations);
+    n += m;
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += m * all.back().film[i];
+  }
+  size_t misses = 0;
+  for (const Trial& trial : all) {
+    const auto m = static_cast<double>(trial.now.iterations);
+    Film others(sum.size());
+    for (size_t i = 0; i < sum.size(); ++i) others[i] = static_cast<float>((sum[i] - m * trial.film[i]) / (n - m));
+    const double error = relativeFilmError(trial.film, others, kWidth) * std::sqrt(1 - m / n);
+    const Interval interval = trial.now.error->interval;
+    misses += error < interval.low || error > interval.high ? 1 : 0;
+  }
+  RecordProperty("misses", static_cast<int>(misses));
+  EXPECT_LT(misses, tooManyMisses(trials, 1 - kIntervalLevel));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, FilmErrorOf,
+                         testing::Values(Case{"diffusePt", "cornell-diffuse", Method::pt, 0.2},
+                                         Case{"mirrorLt", "cornell-mirror", Method::lt, 0.2},
+                                         Case{"mirrorVcm", "cornell-mirror", Method::vcm, 0.2},
+                                         Case{"doorBpt", "veach-door", Method::bpt, 0.5}),
+                         [](const auto& suite) { return suite.param.name; });
+
+// Slices of a grey film with noise of one size everywhere: N independent samples, K slices. The error's expectation is
+// known, and the squared one's standard deviation is sqrt(2 K / ((K - 1) N)) relative to it.
+TEST(FilmError, isThatOfEvenNoise) {
+  constexpr size_t kSlices = 10, kSamples = size_t{3} * 64 * 64;
+  constexpr double kNoise = 0.125;
+  std::mt19937_64 random(1);
+  std::normal_distribution<float> normal(1, kNoise);
+  std::vector<Film> slices(kSlices, Film(kSamples));
+  for (Film& slice : slices) {
+    for (float& value : slice) value = normal(random);
+  }
+  const std::optional<FilmError> error = estimateFilmError(slices, 64);
+  ASSERT_TRUE(error);
+  const double deviation = std::sqrt(2.0 * kSlices / ((kSlices - 1.0) * kSamples));
+  EXPECT_NEAR(error->value, kNoise / std::sqrt(double{kSlices}), 4 * 0.5 * deviation * error->value);
+  // 0.5 * 1.4 * 2.03 (35 degrees of freedom); the deviation is itself known to some 12 %.
+  EXPECT_NEAR(std::log(error->interval.high / error->value), 1.42 * deviation, 0.4 * 1.42 * deviation);
+}
+
+TEST(FilmError, isNotToldOfOneSampleThatOutshinesAllOrOfBlackFilms) {
+  std::vector<Film> slices(kFewestSlices, Film(size_t{3} * 64 * 64, 0.0f));
+  EXPECT_FALSE(estimateFilmError(slices, 64));
+  std::mt19937_64 random(1);
+  std::normal_distribution<float> normal(1000, 300);
+  for (Film& slice : slices) slice[100] = normal(random);
+  EXPECT_FALSE(estimateFilmError(slices, 64));
+}
+
+TEST(FilmSlices, areMeansOfTheirOwnIterationsAlone) {
+  FilmSlices slices;
+  // Iteration i has the value i: the mean of n of them is (n - 1) / 2.
+  uint64_t iterations = 0;
+  for (int look = 0; look < 26; ++look) {
+    iterations = slices.nextIterations();
+    slices.add(Film(3, 0.5f * static_cast<float>(iterations - 1)));
+  }
+  // Sixteen slices of one iteration become eight of two; sixteen of those, eight of four.
+  EXPECT_EQ(iterations, 2u * 16 + 2 * 4);
+  const float size = static_cast<float>(iterations) / static_cast<float>(slices.slices().size());
+  for (size_t k = 0; k < slices.slices().size(); ++k) {
+    EXPECT_NEAR(slices.slices()[k][0], static_cast<float>(k) * size + 0.5f * (size - 1), 1e-4f);
+  }
+}
+
+TEST(FilmErrorWatch, goesOnAfterAnInterrupt) {
+  LoadOptions options;
+  options.filmSize = {kWidth, kHeight};
+  const Scene scene = loadScene(findScene("cornell-diffuse"), options);
+  const RenderSettings settings = settingsOf(scene, Method::pt, 1);
+  const auto whole = Session::create(scene, settings), parts = Session::create(scene, settings);
+  FilmErrorWatch one, two;
+  const ErrorNow wanted = one.renderUntil(*whole, settings, 0.3);
+  parts->interrupt();
+  EXPECT_FALSE(two.renderUntil(*parts, settings, 0.3).reached);
+  parts->resume();
+  const ErrorNow found = two.renderUntil(*parts, settings, 0.3);
+  ASSERT_TRUE(wanted.reached && found.reached);
+  EXPECT_EQ(found.iterations, wanted.iterations);
+  EXPECT_EQ(found.error->value, wanted.error->value);
+  EXPECT_LE(found.error->interval.high, 0.3);
+}
+
+TEST(FilmErrorWatch, saysWhichIterationsAreNotIndependent) {
+  RenderSettings settings;
+  EXPECT_EQ(whyNoFilmError(settings), "");
+  settings.sampler = SamplerKind::sobol;
+  EXPECT_NE(whyNoFilmError(settings), "");
+  settings = {};
+  settings.method = Method::mlt;
+  EXPECT_NE(whyNoFilmError(settings), "");
+}
+
+}  // namespace
+}  // namespace wavecrest
