@@ -86,6 +86,7 @@ namespace {
 int runBench(const BenchOptions& options) {
   if (!options.compare.empty()) return runBenchCompare(options);
   if (!options.against.empty()) return runBenchAgainst(options);
+  if (options.tradeoff) return runBenchTradeoff(options);
   if (options.scaling) return runBenchScaling(options);
   return runBenchThroughput(options);
 }
@@ -98,10 +99,11 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.add("scenes", options->scenes, "built-in scenes or XML files; default: two Cornell boxes");
   command.add("--methods", options->methods, "methods, separated by commas; default: all").separatedByCommas();
   command.add("--duration", options->duration,
-              "time per scene and method, about; default: 6s, of --against and --scaling 20s");
+              "time per scene and method, about; default: 6s, of --against and --scaling 20s, of --tradeoff 60s");
   command.add("--json", options->json, "write all figures as JSON; -: to stdout, instead of the tables");
   command.add("--size", options->size, "film size, WIDTHxHEIGHT");
-  command.add("--threads", options->threads, "most threads; default: all cores, of --against one").between(1, 4096);
+  command.add("--threads", options->threads, "most threads; default: all cores, of --against and --tradeoff one")
+      .between(1, 4096);
   command.add("--against", options->against, "compare with another build: the path of its wavecrest");
   command.add("--compare", options->compare, "compare two stored results of one machine: BEFORE.json AFTER.json")
       .exactly(2);
@@ -113,14 +115,18 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
       .between(0.0, 0.9);
   command.addFlag("--scaling", options->scaling,
                   "speedup over threads: measured here, and predicted up to 256 from the graph of tasks");
+  command.addFlag("--tradeoff", options->tradeoff,
+                  "speed, noise, bias and memory of every setting that buys one for another");
   command.addFlag("--extremes", options->extremes, "take scenes and renders to their extremes, one property at a time");
-  command.add("--html", options->html, "--extremes: write a page with a plot for each property");
+  command.add("--html", options->html, "--extremes, --tradeoff: write a page with plots");
   command.run([options, &exitCode] {
     if (options->extremes) {
       exitCode = runBenchExtremes(*options);
       return;
     }
-    if (!options->html.empty()) throw UsageError("--html goes with --extremes; expected both or none");
+    if (!options->html.empty() && !options->tradeoff) {
+      throw UsageError("--html goes with --extremes or --tradeoff; expected one of them");
+    }
     exitCode = runBench(*options);
   });
 }

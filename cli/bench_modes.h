@@ -19,7 +19,7 @@ struct BenchOptions {
   uint32_t threads = 0;
   std::string against;
   std::vector<std::string> compare;  // two files
-  bool extremes = false, scaling = false;
+  bool extremes = false, scaling = false, tradeoff = false;
   std::string html;
   double familyLevel = 0.05, tolerance = 0;
 };
@@ -28,6 +28,7 @@ struct BenchOptions {
 int runBenchThroughput(const BenchOptions& options);
 int runBenchAgainst(const BenchOptions& options);
 int runBenchCompare(const BenchOptions& options);
+int runBenchTradeoff(const BenchOptions& options);
 int runBenchScaling(const BenchOptions& options);
 int runBenchExtremes(const BenchOptions& options);
 

@@ -79,7 +79,7 @@ struct Pipeline {
   // may: camera paths that are joined with light paths of their iteration come alone.
   uint32_t mostIterationBits(uint32_t waveSize) const {
     if (lightPass || chains) return 0;
-    return static_cast<uint32_t>(std::bit_width(std::min(waveSize, kIterationsPerWave))) - 1;
+    return static_cast<uint32_t>(std::bit_width(std::clamp(waveSize, 1u, kIterationsPerWave))) - 1;
   }
   bool splats() const { return chains || (lightPass && lightPass->splats); }
 };

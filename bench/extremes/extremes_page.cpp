@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "bench/extremes/extremes_report.h"
-#include "bench/report/assets.h"
 #include "bench/report/html_text.h"
+#include "bench/report/plain_page.h"
 #include "bench/report/svg_plot.h"
 
 namespace wavecrest {
@@ -72,15 +72,9 @@ std::string sectionOf(const SweepResult& result) {
 }  // namespace
 
 std::string extremesPage(const std::vector<SweepResult>& results) {
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n";
-  append(html,
-         "<title>Extremes</title>\n<style>\n{}{}</style></head>\n<body>\n<header><h1>Extremes</h1></header>\n<main>\n",
-         kPlotCss, kReportCss);
-  for (const SweepResult& result : results) html += sectionOf(result);
-  return html + "</main></body></html>\n";
+  std::string sections;
+  for (const SweepResult& result : results) sections += sectionOf(result);
+  return plainPage("Extremes", sections);
 }
 
 }  // namespace wavecrest

@@ -9,6 +9,7 @@
 #include "bench/report/embedded_images.h"
 #include "bench/report/html_text.h"
 #include "bench/report/method_style.h"
+#include "bench/report/plain_page.h"
 #include "bench/report/scene_section.h"
 #include "bench/report/series_values.h"
 #include "bench/report/summary_section.h"
@@ -70,12 +71,7 @@ std::string renderContents(const ConvergenceReport& report) {
 
 std::string assemble(const ConvergenceReport& report, const EmbeddedImages& images) {
   const bool several = report.scenes.size() > 1;
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n";
-  append(html, "<title>{}</title>\n<style>\n{}{}</style></head>\n<body>\n", escapeHtml(report.title), kPlotCss,
-         kReportCss);
+  std::string html = pageHead(report.title);
   html += renderHeader(report, images);
   if (several) html += renderContents(report);
   html += "<main>\n";

@@ -122,6 +122,7 @@ ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& fi
   const std::vector<uint32_t> predicted = powersOfTwo(2, kMostPredictedThreads);
   const double recordedSlice = kRecordedPart * seconds / static_cast<double>(predicted.size() * (kMostRounds + 1));
   std::vector<RecordedRender> recorded;
+  recorded.reserve(predicted.size());
   for (const uint32_t threads : predicted) recorded.emplace_back(scene, settings, threads, recordedSlice);
 
   MachineWatch watch;

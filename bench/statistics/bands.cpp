@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace wavecrest {
 namespace {
@@ -33,6 +34,20 @@ double studentQuantile(double degreesOfFreedom) {
   const double last = kTable.size();
   if (degreesOfFreedom > last) return 1.960 + (kTable.back() - 1.960) * last / degreesOfFreedom;  // to 0.5 %
   return kTable[static_cast<size_t>(std::max(degreesOfFreedom, 1.0)) - 1];
+}
+
+double studentTail(double t, int degreesOfFreedom) {
+  const double angle = std::atan(std::abs(t) / std::sqrt(degreesOfFreedom)), cosine = std::cos(angle),
+               sine = std::sin(angle);
+  const bool odd = degreesOfFreedom % 2 != 0;
+  // Odd: sin (cos + 2/3 cos^3 + 2 4 / (3 5) cos^5 ...); even: sin (1 + 1/2 cos^2 + 1 3 / (2 4) cos^4 ...).
+  double term = odd ? sine * cosine : sine, sum = 0;
+  for (int k = odd ? 1 : 0; k <= degreesOfFreedom - 2; k += 2) {
+    sum += term;
+    term *= cosine * cosine * (k + 1) / (k + 2);
+  }
+  const double within = odd ? (angle + sum) / (std::numbers::pi / 2) : sum;
+  return std::max(1 - within, 0.0);
 }
 
 Band meanBand(std::span<const double> values) {

@@ -14,6 +14,10 @@ struct Band {
 // Two-sided 95 % quantile of Student's distribution; degrees of freedom are rounded down, to 1 at least.
 double studentQuantile(double degreesOfFreedom);
 
+// The probability that Student's t of a whole number of degrees of freedom is at least as far from 0 as t (Abramowitz,
+// Stegun 1964, 26.7.3 and 26.7.4).
+double studentTail(double t, int degreesOfFreedom);
+
 Band meanBand(std::span<const double> values);
 // mean(a) - mean(b).
 Band differenceBand(std::span<const double> a, std::span<const double> b);

@@ -124,6 +124,24 @@ class Scaling(CommandTest):
                 self.assertGreater(predicted["parallelism"], 1, row["method"])
 
 
+class Tradeoff(CommandTest):
+    def test_every_setting_has_its_figures_or_its_refusal(self):
+        told = self.run_wavecrest("bench", "cornell-diffuse", "--tradeoff", "--methods", "vcm,mlt", "--size", "32x24",
+                                  "--duration", "1s", "--json", self.path("trade.json"), "--html", self.path("t.html"))
+        self.assertRegex(told.stdout, r"--radius-alpha 0\.5")
+        result = read_json(self.path("trade.json"))
+        validate(result)
+        self.assertEqual([entry["method"] for entry in result["results"]], ["vcm", "mlt"])
+        page = (self.folder / "t.html").read_text()
+        for entry in result["results"]:
+            self.assertIn(f"{entry['scene']}, {entry['method']}", page)
+            self.assertGreater(len(entry["rows"]), 15)
+
+    def test_a_page_of_nothing_is_refused(self):
+        result = self.run_wavecrest("bench", "cornell-diffuse", "--html", self.path("t.html"), expect=USAGE)
+        self.assert_one_error_line(result, "--html goes with")
+
+
 class Against(CommandTest):
     """Two builds in turn. The other build is this one, behind a script that may change the time it tells."""
 

@@ -6,7 +6,7 @@
 namespace wavecrest {
 namespace {
 
-TaskStep independent(std::vector<double> tasks) {
+TaskStep independent(const std::vector<double>& tasks) {
   TaskStep step;
   for (const double task : tasks) step.chains.push_back({task});
   return step;

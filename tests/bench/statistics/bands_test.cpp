@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include <array>
 #include <cmath>
 
@@ -39,6 +41,24 @@ TEST(Bands, oneValueHasNone) {
 
 TEST(Bands, equalValuesHaveAnEmptyBand) {
   EXPECT_EQ(differenceBand(std::array{2.0, 2.0}, std::array{1.0, 1.0}).halfWidth, 0);
+}
+
+// Tables of Student's distribution: the two-sided 5 %, 1 % and 0.1 % points.
+TEST(StudentTail, isThatOfTheTables) {
+  for (const auto& [t, degrees, tail] : {std::tuple{12.706, 1, 0.05},
+                                         {4.303, 2, 0.05},
+                                         {9.925, 2, 0.01},
+                                         {3.182, 3, 0.05},
+                                         {2.571, 5, 0.05},
+                                         {4.032, 5, 0.01},
+                                         {6.869, 5, 0.001},
+                                         {2.228, 10, 0.05},
+                                         {4.587, 10, 0.001},
+                                         {1.980, 120, 0.05}}) {
+    EXPECT_NEAR(studentTail(t, degrees), tail, 2e-3 * tail) << t << ", " << degrees;
+    EXPECT_EQ(studentTail(-t, degrees), studentTail(t, degrees));
+  }
+  EXPECT_EQ(studentTail(0, 7), 1);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ struct Case {
   Method method;
   double goal;
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
 class FilmErrorOf : public testing::TestWithParam<Case> {};
 

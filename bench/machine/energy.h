@@ -1,0 +1,12 @@
+// Energy that the processor packages have used, by Intel's and AMD's running average power limit counters.
+#pragma once
+
+#include <optional>
+
+namespace wavecrest {
+
+// Joules of all packages together since some moment; the counters wrap around now and then. Nothing where Linux does
+// not show them: virtual machines, other processors, or files that only root may read.
+std::optional<double> packageJoules();
+
+}  // namespace wavecrest

@@ -1,0 +1,97 @@
+#include "bench/tradeoff/knobs.h"
+
+#include <fmt/format.h>
+
+#include "bench/enumerator_name.h"
+#include "engine/film.h"
+#include "engine/render_plan.h"
+#include "kernels/stages.h"
+
+namespace wavecrest {
+namespace {
+
+class Variants {
+ public:
+  explicit Variants(const RenderSettings& base) : base_(base) {}
+
+  // A copy of the baseline to be changed.
+  RenderSettings& add(std::string_view knob, std::string_view value, bool samePaths = false) {
+    return all_.emplace_back(Variant{std::string(knob), std::string(value), base_, samePaths}).settings;
+  }
+  std::vector<Variant> take() { return std::move(all_); }
+
+ private:
+  const RenderSettings& base_;
+  std::vector<Variant> all_;
+};
+
+void addArithmetic(Variants& variants, const RenderSettings& base) {
+  variants.add("--precision", "double", true).precision = Precision::doubled;
+  variants.add("--precision", "fast", true).precision = Precision::fast;
+  for (const Isa isa : availableIsas()) {
+    if (isa != base.isa) variants.add("--isa", toString(isa), true).isa = isa;
+  }
+  variants.add("kernels", "general", true).specialization = Specialization::general;
+  for (const uint32_t wave : {512u, 8192u}) {
+    variants.add("--wave", std::to_string(wave), true).waveSize = wave;
+  }
+}
+
+void addTracing(Variants& variants) {
+  for (const Accel accel : {Accel::small, Accel::bvh, Accel::embree}) {
+    variants.add("--accel", enumeratorName(kAccelNames, accel), true).accel = accel;
+  }
+}
+
+void addPaths(Variants& variants, const RenderSettings& base) {
+  for (const uint32_t depth : {4u, 8u, 16u}) {
+    if (depth < base.limits.maxDepth) variants.add("--max-depth", std::to_string(depth)).limits.maxDepth = depth;
+  }
+  for (const uint32_t depth : {2u, 5u, 12u}) {
+    if (depth != base.limits.rouletteDepth) {
+      variants.add("--rr-depth", std::to_string(depth)).limits.rouletteDepth = depth;
+    }
+  }
+  if (base.method != Method::mlt) {
+    const SamplerKind other = base.sampler == SamplerKind::sobol ? SamplerKind::independent : SamplerKind::sobol;
+    variants.add("--sampler", toString(other)).sampler = other;
+  }
+}
+
+void addMerging(Variants& variants, const RenderSettings& base, uint64_t pixels) {
+  for (const double factor : {0.25, 4.0}) {
+    variants.add("--radius", fmt::format("{:g}", factor * base.radius)).radius = factor * base.radius;
+    const auto paths = static_cast<uint64_t>(factor * static_cast<double>(pixels));
+    variants.add("--light-paths", std::to_string(paths)).lightPaths = paths;
+  }
+  for (const double alpha : {0.5, 0.9}) {
+    variants.add("--radius-alpha", fmt::format("{:g}", alpha)).radiusAlpha = alpha;
+  }
+}
+
+void addChains(Variants& variants, const RenderSettings& base) {
+  for (size_t i = 0; i < kMetropolisVariantNames.size(); ++i) {
+    const auto variant = static_cast<MetropolisVariant>(i);
+    if (variant == base.metropolis.variant) continue;
+    variants.add("--mlt", kMetropolisVariantNames[i]).metropolis.variant = variant;
+  }
+  for (const uint32_t chains : {2048u, 65536u}) {
+    variants.add("--chains", std::to_string(chains)).metropolis.chains = chains;
+  }
+  variants.add("--no-direct-pass", "").metropolis.directPass = false;
+}
+
+}  // namespace
+
+std::vector<Variant> variantsOf(const Scene& scene, const RenderSettings& base) {
+  Variants variants(base);
+  variants.add("baseline", enumeratorName(kPrecisionNames, base.precision), true);
+  addArithmetic(variants, base);
+  addTracing(variants);
+  addPaths(variants, base);
+  if (strategiesOf(base.method).merge) addMerging(variants, base, filmArea(scene.film).pixels.size());
+  if (base.method == Method::mlt) addChains(variants, base);
+  return variants.take();
+}
+
+}  // namespace wavecrest

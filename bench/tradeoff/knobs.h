@@ -1,0 +1,23 @@
+// The settings that buy speed, accuracy or memory, one changed at a time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/render_settings.h"
+#include "engine/scene/scene.h"
+
+namespace wavecrest {
+
+struct Variant {
+  std::string knob, value;  // as on the command line
+  RenderSettings settings;
+  // The paths are those of the baseline: what differs from it is rounding and what follows from that, not noise.
+  bool samePaths = false;
+};
+
+// The baseline first, then double precision, then every other setting that means something for the method and the
+// scene. base: the settings that are varied, of precision float.
+std::vector<Variant> variantsOf(const Scene& scene, const RenderSettings& base);
+
+}  // namespace wavecrest

@@ -1,0 +1,190 @@
+#include "bench/tradeoff/tradeoff.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "bench/machine/energy.h"
+#include "bench/statistics/bands.h"
+#include "bench/tradeoff/block_means.h"
+#include "bench/until/film_error.h"
+#include "engine/memory_plan.h"
+#include "engine/path_classes.h"
+#include "engine/scene/scene_error.h"
+#include "engine/session.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr size_t kSeeds = 6, kReferenceSeeds = 6;
+constexpr double kReferencePart = 0.3;                  // of the time
+constexpr uint64_t kFirstReferenceSeed = 0x7472616465;  // unlike any that a user picks
+
+using Film = std::vector<float>;
+
+struct OneRender {
+  Film film;
+  double cpuSeconds = 0, paths = 0;
+  size_t bytes = 0;
+  std::optional<double> joules;
+};
+
+OneRender render(const Scene& scene, const RenderSettings& settings, std::optional<uint64_t> iterations,
+                 std::optional<double> seconds) {
+  const auto session = Session::create(scene, settings);
+  const std::optional<double> energy = packageJoules();
+  session->renderUntil(iterations, seconds);
+  const std::optional<double> energyAfter = packageJoules();
+  const RenderStatistics statistics = session->statistics();
+  OneRender done{.film = session->film().resolve(),
+                 .cpuSeconds = statistics.cpuSeconds,
+                 .paths = static_cast<double>(statistics.paths),
+                 .bytes = statistics.memory.total(),
+                 .joules = {}};
+  if (energy && energyAfter && *energyAfter > *energy) done.joules = *energyAfter - *energy;
+  return done;
+}
+
+// The image in double by the method that samples every class of paths, in parts of different seeds.
+struct TradeReference {
+  Method method{};
+  Film mean;
+  std::vector<BlockMeans> parts;
+};
+
+TradeReference renderReference(const Scene& scene, const RenderSettings& base, double seconds) {
+  RenderSettings settings = base;
+  settings.precision = Precision::doubled;
+  TradeReference reference{.method = classifyPaths(scene).reference.method, .mean = {}, .parts = {}};
+  settings.method = reference.method;
+  const uint32_t width = filmArea(scene.film).width;
+  for (size_t i = 0; i < kReferenceSeeds; ++i) {
+    settings.seed = kFirstReferenceSeed + i;
+    const Film film = render(scene, settings, {}, seconds / kReferenceSeeds).film;
+    reference.mean.resize(film.size(), 0.0f);
+    for (size_t k = 0; k < film.size(); ++k) reference.mean[k] += film[k] / static_cast<float>(kReferenceSeeds);
+    reference.parts.push_back(blockMeans(film, width));
+  }
+  return reference;
+}
+
+// What the seeds of one setting have shown.
+struct Measured {
+  std::string refusal;
+  std::vector<double> cpuSeconds, variance;  // variance: of one image, from one seed to the next; the first has none
+  std::vector<BlockMeans> blocks;
+  Film previous;
+  double paths = 0;
+  std::optional<double> joules = 0;
+  size_t bytes = 0;
+
+  void add(OneRender&& one, const TradeReference& reference, uint32_t width) {
+    if (!previous.empty()) {
+      Film moved = reference.mean;
+      for (size_t i = 0; i < moved.size(); ++i) moved[i] += one.film[i] - previous[i];
+      const double error = relativeFilmError(reference.mean, moved, width);
+      variance.push_back(0.5 * error * error);
+    }
+    blocks.push_back(blockMeans(one.film, width));
+    cpuSeconds.push_back(one.cpuSeconds);
+    paths += one.paths;
+    bytes = one.bytes;
+    joules = joules && one.joules ? std::optional(*joules + *one.joules) : std::nullopt;
+    previous = std::move(one.film);
+  }
+};
+
+// Of each seed the ratio of the baseline's figure to this one's.
+Estimate ratioTo(const std::vector<double>& base, const std::vector<double>& own) {
+  std::vector<double> ratios;
+  for (size_t i = 0; i < own.size(); ++i) {
+    if (own[i] > 0) ratios.push_back(base[i] / own[i]);
+  }
+  return ratios.empty() ? Estimate{} : estimateMedian(ratios);
+}
+
+// Variance times time, seed by seed.
+std::vector<double> costs(const Measured& measured) {
+  std::vector<double> values = measured.variance;
+  for (size_t i = 0; i < values.size(); ++i) values[i] *= measured.cpuSeconds[i + 1];
+  return values;
+}
+
+TradeRow rowOf(const Variant& variant, const Measured& own, const Measured& base, const Measured& doubled,
+               const TradeReference& reference) {
+  TradeRow row;
+  row.knob = variant.knob;
+  row.value = variant.value;
+  row.refusal = own.refusal;
+  row.samePaths = variant.samePaths;
+  if (!own.refusal.empty()) return row;
+  double cpu = 0;
+  for (const double seconds : own.cpuSeconds) cpu += seconds;
+  row.pathsPerCpuSecond = own.paths / cpu;
+  if (own.joules) row.joulesPerPath = *own.joules / own.paths;
+  row.bytes = own.bytes;
+  row.speed = ratioTo(base.cpuSeconds, own.cpuSeconds);
+  row.efficiency = ratioTo(costs(base), costs(own));
+  row.secondsToPercent = median(costs(own)) / (0.01 * 0.01);
+  const BlockComparison compared =
+      variant.samePaths ? comparePaired(own.blocks, doubled.blocks) : compareIndependent(own.blocks, reference.parts);
+  row.mean = compared.mean;
+  row.worstBlock = compared.worstBlock;
+  return row;
+}
+
+// A verdict for the mean and one for the blocks of every row, together at kTradeLevel (Bonferroni).
+void judge(std::vector<TradeRow>& rows) {
+  const auto verdicts = 2 * static_cast<double>(rows.size());
+  for (TradeRow& row : rows) {
+    for (const Bias& bias : {row.mean, row.worstBlock}) {
+      row.biased |= bias.probability < kTradeLevel / verdicts && std::abs(bias.value) > kNegligibleBias;
+    }
+  }
+}
+
+}  // namespace
+
+TradeResult measureTrade(const Scene& scene, const RenderSettings& base, double seconds) {
+  const FilmArea area = filmArea(scene.film);
+  TradeResult result;
+  result.scene = scene.name;
+  result.method = base.method;
+  result.width = area.width;
+  result.height = area.height;
+  result.seeds = kSeeds;
+  MachineWatch watch;
+  const TradeReference reference = renderReference(scene, base, kReferencePart * seconds);
+  result.referenceMethod = reference.method;
+
+  const std::vector<Variant> variants = variantsOf(scene, base);
+  const double oneIteration = render(scene, base, 1, {}).cpuSeconds / base.threads;
+  const double share = (1 - kReferencePart) * seconds / static_cast<double>(kSeeds * variants.size());
+  result.iterations = std::max<uint64_t>(1, static_cast<uint64_t>(share / std::max(oneIteration, 1e-6)));
+  std::vector<Measured> measured(variants.size());
+  for (size_t seed = 0; seed < kSeeds; ++seed) {
+    for (size_t k = 0; k < variants.size(); ++k) {
+      const size_t i = seed % 2 == 0 ? k : variants.size() - 1 - k;
+      if (!measured[i].refusal.empty()) continue;
+      RenderSettings settings = variants[i].settings;
+      settings.seed = base.seed + seed;
+      try {
+        measured[i].add(render(scene, settings, result.iterations, {}), reference, area.width);
+      } catch (const SceneError& error) {
+        measured[i].refusal = error.what();
+      }
+    }
+    watch.look();
+  }
+  const auto isDouble = [](const Variant& variant) { return variant.settings.precision == Precision::doubled; };
+  const auto doubled = std::find_if(variants.begin(), variants.end(), isDouble) - variants.begin();
+  for (size_t i = 0; i < variants.size(); ++i) {
+    result.rows.push_back(
+        rowOf(variants[i], measured[i], measured.front(), measured[static_cast<size_t>(doubled)], reference));
+  }
+  judge(result.rows);
+  result.machine = watch.state();
+  return result;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,66 @@
+// What speed costs: for every setting that can be traded (knobs.h) its speed, noise, bias and memory.
+//
+// All settings render the same iterations with several seeds, in turn. From the spread over seeds follow noise and
+// efficiency, 1 / (variance x CPU time); from the mean over seeds the bias. A setting that traces the paths of double
+// precision is compared with it seed by seed, so that the bias is free of noise; any other with a reference in double.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/machine/machine_watch.h"
+#include "bench/statistics/medians.h"
+#include "bench/tradeoff/knobs.h"
+#include "engine/scene/scene.h"
+
+namespace wavecrest {
+
+// A difference of means, relative to the reference's mean, and how probable one as large is by chance alone.
+struct Bias {
+  double value = 0, standardError = 0;
+  double probability = 1;
+};
+
+struct TradeRow {
+  std::string knob, value;
+  std::string refusal;  // why the setting cannot render the scene; then there are no figures
+  double pathsPerCpuSecond = 0;
+  Estimate speed, efficiency;   // over the baseline's, seed by seed
+  double secondsToPercent = 0;  // CPU time until the relative error is 1 %, by noise alone
+  Bias mean;                    // of the image
+  Bias worstBlock;              // the most significant block of 8 x 8 pixels; its probability is that of any block
+  bool samePaths = false;       // compared seed by seed
+  size_t bytes = 0;
+  std::optional<double> joulesPerPath;
+
+  // Whether bias was found, at the family level of the whole table.
+  bool biased = false;
+};
+
+struct TradeResult {
+  std::string scene;
+  Method method{};
+  Method referenceMethod{};  // of settings with paths of their own
+  uint32_t width = 0, height = 0, seeds = 0;
+  uint64_t iterations = 0;     // of each image
+  std::vector<TradeRow> rows;  // the baseline first
+  MachineState machine;
+};
+// Where paths are the same, a last bit that is always rounded the same way is certain to be a difference; smaller ones
+// than this, relative, are no bias.
+constexpr double kNegligibleBias = 1e-4;
+constexpr double kTradeLevel = 0.01;  // probability that any verdict of bias in a table is false
+
+// seconds: render time of everything, about.
+TradeResult measureTrade(const Scene& scene, const RenderSettings& base, double seconds);
+
+std::string toText(const TradeResult& result);
+nlohmann::ordered_json toJson(const TradeResult& result);
+// One page with a plot for each result: time to a relative error of 1 % against bias.
+std::string tradePage(const std::vector<TradeResult>& results);
+// What to do with this scene, in a sentence or two.
+std::string adviceOf(const TradeResult& result);
+
+}  // namespace wavecrest

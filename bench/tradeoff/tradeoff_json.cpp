@@ -1,0 +1,54 @@
+// A TradeResult as JSON (bench/schema.json).
+#include <nlohmann/json.hpp>
+
+#include "bench/tradeoff/tradeoff.h"
+
+namespace wavecrest {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json biasJson(const Bias& bias) {
+  return {{"value", bias.value}, {"standard_error", bias.standardError}, {"probability", bias.probability}};
+}
+
+Json rowJson(const TradeRow& row) {
+  Json json = {{"knob", row.knob}, {"value", row.value}};
+  if (!row.refusal.empty()) {
+    json["refused"] = row.refusal;
+    return json;
+  }
+  json.update({{"paths_per_cpu_second", row.pathsPerCpuSecond},
+               {"speed", row.speed.value},
+               {"speed_interval", {row.speed.interval.low, row.speed.interval.high}},
+               {"efficiency", row.efficiency.value},
+               {"efficiency_interval", {row.efficiency.interval.low, row.efficiency.interval.high}},
+               {"cpu_seconds_to_percent", row.secondsToPercent},
+               {"bias", biasJson(row.mean)},
+               {"worst_block", biasJson(row.worstBlock)},
+               {"biased", row.biased},
+               {"same_paths", row.samePaths},
+               {"bytes", row.bytes},
+               {"joules_per_path", row.joulesPerPath ? Json(*row.joulesPerPath) : Json()}});
+  return json;
+}
+
+}  // namespace
+
+Json toJson(const TradeResult& result) {
+  Json rows = Json::array();
+  for (const TradeRow& row : result.rows) rows.push_back(rowJson(row));
+  return {{"scene", result.scene},
+          {"method", std::string(toString(result.method))},
+          {"reference_method", std::string(toString(result.referenceMethod))},
+          {"width", result.width},
+          {"height", result.height},
+          {"seeds", result.seeds},
+          {"iterations", result.iterations},
+          {"level", kTradeLevel},
+          {"rows", rows},
+          {"advice", adviceOf(result)},
+          {"doubts", doubtsAbout(result.machine)}};
+}
+
+}  // namespace wavecrest

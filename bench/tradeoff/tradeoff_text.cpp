@@ -1,0 +1,77 @@
+// The table of `bench --tradeoff` for a terminal, and what to make of it.
+#include <algorithm>
+#include <cmath>
+
+#include "bench/text_lines.h"
+#include "bench/tradeoff/tradeoff.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kWorthNaming = 1.05;  // efficiency over the baseline's
+constexpr double kMostBias = 0.02;     // of the mean: beyond, an image is another image, not a faster one
+constexpr size_t kMostNamed = 3;
+
+std::string nameOf(const TradeRow& row) { return row.value.empty() ? row.knob : row.knob + " " + row.value; }
+
+std::string times(const Estimate& estimate) {
+  return fmt::format("{:.2f} +-{:.2f}", estimate.value, estimate.interval.halfWidth());
+}
+
+std::string percent(const Bias& bias) {
+  return fmt::format("{:+.2g} +-{:.1g} %", 100 * bias.value, 100 * bias.standardError);
+}
+
+std::string biasInWords(const TradeRow& row) {
+  if (row.biased) {
+    return fmt::format("bias {:+.2g} %, in a block {:+.2g} %", 100 * row.mean.value, 100 * row.worstBlock.value);
+  }
+  return fmt::format("no bias found, below {:.1g} %",
+                     100 * 3 * row.mean.standardError + 100 * std::abs(row.mean.value));
+}
+
+}  // namespace
+
+std::string adviceOf(const TradeResult& result) {
+  std::vector<const TradeRow*> gains;
+  for (const TradeRow& row : result.rows) {
+    const bool acceptable = !row.biased || std::abs(row.mean.value) <= kMostBias;
+    if (row.refusal.empty() && acceptable && row.efficiency.interval.low > kWorthNaming) gains.push_back(&row);
+  }
+  const std::string where = fmt::format("{}, {}: ", result.scene, toString(result.method));
+  if (gains.empty()) return where + "nothing here is worth more than its cost; the defaults are as good as any.";
+  std::sort(gains.begin(), gains.end(),
+            [](const TradeRow* a, const TradeRow* b) { return a->efficiency.value > b->efficiency.value; });
+  if (gains.size() > kMostNamed) gains.resize(kMostNamed);
+  std::string text = where;
+  for (const TradeRow* row : gains) {
+    text += fmt::format("{}{}: {:.2g} times the efficiency, {}", row == gains.front() ? "" : "; ", nameOf(*row),
+                        row->efficiency.value, biasInWords(*row));
+  }
+  return text + ".";
+}
+
+std::string toText(const TradeResult& result) {
+  TextLines text;
+  line(text, "{} {} {}x{}: {} iterations, {} seeds; reference: {} in double", result.scene, toString(result.method),
+       result.width, result.height, result.iterations, result.seeds, toString(result.referenceMethod));
+  for (const std::string& doubt : doubtsAbout(result.machine)) line(text, "  doubt: {}", doubt);
+  line(text, "  {:<28} {:>9} {:>13} {:>13} {:>10} {:>19} {:>19} {:>8}  {}", "setting", "M paths/s", "speed",
+       "efficiency", "s to 1 %", "bias of the mean", "worst block", "MB", "");
+  for (const TradeRow& row : result.rows) {
+    if (!row.refusal.empty()) {
+      line(text, "  {:<28} {}", nameOf(row), row.refusal);
+      continue;
+    }
+    line(text, "  {:<28} {:>9.3f} {:>13} {:>13} {:>10.3g} {:>19} {:>19} {:>8.1f}  {}", nameOf(row),
+         1e-6 * row.pathsPerCpuSecond, times(row.speed), times(row.efficiency), row.secondsToPercent, percent(row.mean),
+         percent(row.worstBlock), 1e-6 * static_cast<double>(row.bytes), row.biased ? "biased" : "");
+  }
+  const bool energy = std::any_of(result.rows.begin(), result.rows.end(),
+                                  [](const TradeRow& row) { return row.joulesPerPath.has_value(); });
+  if (!energy) line(text, "  energy: this machine does not tell (powercap)");
+  line(text, "\n  {}", adviceOf(result));
+  return fmt::to_string(text);
+}
+
+}  // namespace wavecrest

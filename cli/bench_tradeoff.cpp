@@ -1,0 +1,55 @@
+// wavecrest bench --tradeoff: what every setting that buys speed costs, on scenes of the user's choice.
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/tradeoff/tradeoff.h"
+#include "cli/bench_modes.h"
+#include "cli/commands.h"
+#include "metrics/image/atomic_file.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kTradeSeconds = 60;
+// Beyond it, images of a setting take long; settings are compared as well on small ones.
+constexpr uint32_t kMostColumns = 256;
+
+LoadOptions tradeLoading(const BenchOptions& options, const std::filesystem::path& file) {
+  LoadOptions loading = benchLoading(options);
+  if (loading.filmSize) return loading;
+  const FilmSettings film = loadScene(file, loading).film;
+  if (film.width > kMostColumns) {
+    loading.filmSize = {kMostColumns, std::max(1u, film.height * kMostColumns / film.width)};
+  }
+  return loading;
+}
+
+}  // namespace
+
+int runBenchTradeoff(const BenchOptions& options) {
+  const std::vector<Method> methods = benchMethods(options);
+  const double seconds = benchSeconds(options, kTradeSeconds);
+  std::vector<TradeResult> results;
+  nlohmann::ordered_json all = {{"results", nlohmann::ordered_json::array()}};
+  for (const std::filesystem::path& file : benchSceneFiles(options)) {
+    const Scene scene = loadScene(file, tradeLoading(options, file));
+    for (const Method method : methods) {
+      RenderSettings settings = benchSettings(scene, options);
+      if (options.threads == 0)
+        settings.threads = 1;  // CPU time of threads that share caches would blur the comparison
+      settings.method = method;
+      results.push_back(measureTrade(scene, settings, seconds));
+      printBench(options, toText(results.back()) + "\n");
+      all["results"].push_back(toJson(results.back()));
+    }
+  }
+  writeBenchJson(options, "tradeoff", all);
+  if (!options.html.empty()) {
+    const std::string page = tradePage(results);
+    writeFileAtomically(options.html, {reinterpret_cast<const unsigned char*>(page.data()), page.size()});
+  }
+  return kExitDone;
+}
+
+}  // namespace wavecrest

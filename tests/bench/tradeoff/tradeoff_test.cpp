@@ -1,0 +1,72 @@
+// The table of a small scene: what must be in it, and that known biases are found and no others.
+#include "bench/tradeoff/tradeoff.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/load/load.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace {
+
+Scene smallBox() {
+  LoadOptions options;
+  options.filmSize = {48, 32};
+  return loadScene(findScene("cornell-diffuse"), options);
+}
+
+RenderSettings settingsOf(Method method) {
+  RenderSettings settings;
+  settings.isa = bestIsa();
+  settings.method = method;
+  return settings;
+}
+
+const TradeRow& rowOf(const TradeResult& result, const std::string& knob, const std::string& value) {
+  const auto found = std::find_if(result.rows.begin(), result.rows.end(),
+                                  [&](const TradeRow& row) { return row.knob == knob && row.value == value; });
+  if (found == result.rows.end()) throw std::out_of_range(knob + " " + value);
+  return *found;
+}
+
+TEST(Knobs, areThoseThatMeanSomethingForTheMethod) {
+  const Scene scene = smallBox();
+  const auto has = [&](Method method, const std::string& knob) {
+    const auto variants = variantsOf(scene, settingsOf(method));
+    return std::any_of(variants.begin(), variants.end(), [&](const Variant& v) { return v.knob == knob; });
+  };
+  for (const Method method : {Method::pt, Method::vcm, Method::mlt}) {
+    EXPECT_TRUE(has(method, "--precision"));
+    EXPECT_EQ(has(method, "--radius"), method == Method::vcm);
+    EXPECT_EQ(has(method, "--chains"), method == Method::mlt);
+    EXPECT_EQ(has(method, "--sampler"), method != Method::mlt);
+  }
+}
+
+TEST(Tradeoff, findsWhatShortPathsLeaveOutAndNoBiasInRounding) {
+  const TradeResult result = measureTrade(smallBox(), settingsOf(Method::pt), 3);
+  EXPECT_EQ(result.rows.front().knob, "baseline");
+  EXPECT_EQ(result.rows.front().efficiency.value, 1);
+  const TradeRow& shortPaths = rowOf(result, "--max-depth", "4");
+  EXPECT_TRUE(shortPaths.biased);
+  EXPECT_LT(shortPaths.mean.value, -0.02);
+  EXPECT_GT(shortPaths.speed.value, 1);
+  EXPECT_EQ(rowOf(result, "--precision", "double").mean.value, 0) << "what the others are compared with";
+  for (const char* accel : {"small", "bvh", "embree"}) {
+    const TradeRow& row = rowOf(result, "--accel", accel);
+    EXPECT_TRUE(row.samePaths);
+    EXPECT_LT(std::abs(row.mean.value), 1e-3) << accel;
+    EXPECT_FALSE(row.biased) << accel;
+  }
+  for (const TradeRow& row : result.rows) {
+    EXPECT_GT(row.pathsPerCpuSecond, 0) << row.knob;
+    EXPECT_GT(row.bytes, 0u) << row.knob;
+    EXPECT_GT(row.secondsToPercent, 0) << row.knob;
+  }
+  EXPECT_NE(adviceOf(result).find("cornell-diffuse, pt: "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace wavecrest
