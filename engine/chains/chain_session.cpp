@@ -63,7 +63,7 @@ class ChainSession final : public Session {
   bool traceDirect(const Stop& stop);
   void bootstrapWave(size_t wave, uint64_t epoch);
   void advance(uint64_t steps);
-  uint64_t stepsInTime(uint64_t most, double now) const;
+  uint64_t stepsInTime(uint64_t most, double secondsLeft) const;
   void addPending();
   void updateFilm();
 
@@ -215,11 +215,10 @@ bool ChainSession<S>::traceDirect(const Stop& stop) {
 // has begun is finished. One that would end after the limit, by the time that the latest took, is left out; before
 // there is any, one at a time.
 template <class S>
-uint64_t ChainSession<S>::stepsInTime(uint64_t most, double now) const {
+uint64_t ChainSession<S>::stepsInTime(uint64_t most, double secondsLeft) const {
   if (stepSeconds_ == 0) return std::min<uint64_t>(most, 1);
   const auto round = std::max(kRoundSeconds / stepSeconds_, static_cast<double>(kTurnSteps));
-  const double left = settings_.seconds ? (*settings_.seconds - now) / stepSeconds_ : round;
-  return static_cast<uint64_t>(std::clamp(std::min(round, left), 0.0, static_cast<double>(most)));
+  return static_cast<uint64_t>(std::clamp(std::min(round, secondsLeft / stepSeconds_), 0.0, static_cast<double>(most)));
 }
 
 // What chains owe at the end of an epoch goes into the sums.
@@ -249,6 +248,8 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   const WorkerLimit limit(settings_.threads);
   const uint64_t restart = epochSteps(settings_.metropolis, epochs_.targets.size());
   const uint64_t goal = iterations ? stepsFor(*iterations) : std::numeric_limits<uint64_t>::max();
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  const double end = std::min(seconds.value_or(kEndless), settings_.seconds.value_or(kEndless));
   const auto now = [&] {
     const double charged = renderSeconds_ + secondsSince(begin);
     progressSeconds_.store(charged, std::memory_order_relaxed);
@@ -261,7 +262,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
       if (step_ >= goal) return;
       if (epochs_.count() <= step_ / restart && !beginEpoch(step_ / restart, stop)) return;
       const double before = now();
-      const uint64_t steps = stepsInTime(std::min(restart - step_ % restart, goal - step_), before);
+      const uint64_t steps = stepsInTime(std::min(restart - step_ % restart, goal - step_), end - before);
       if (steps == 0) return;
       if (!epochs_.dark()) advance(steps);
       step_ += steps;
