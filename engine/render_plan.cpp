@@ -112,7 +112,7 @@ RenderSettings withPieces(const RenderSettings& settings, size_t pixels) {
   // Camera walks alone take several iterations of a pixel at once: their waves stay, over fewer pixels.
   if (!page.hasChains() && page.walk(Walk::light) == nullptr) return cut;
   const size_t items = page.hasChains() ? std::max<size_t>(settings.metropolis.chains, 1) : pixels;
-  cut.waveSize = pieceSize(items, settings.threads, settings.waveSize);
+  cut.waveSize = pieceSize(items, settings.cutForThreads(), settings.waveSize);
   return cut;
 }
 

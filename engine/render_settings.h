@@ -69,6 +69,10 @@ struct RenderSettings {
   std::optional<double> seconds;                 // or after this much render time, whichever comes first
   std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene
   bool measureStages = false;
+  // Work is cut into pieces as for so many threads, however many there are; unset: for those that there are.
+  std::optional<uint32_t> piecesForThreads;
+
+  uint32_t cutForThreads() const { return piecesForThreads.value_or(threads); }
 };
 
 // The settings with the longest path that their method can make, where they ask for longer ones.
