@@ -13,7 +13,7 @@ namespace {
 
 // Handlers may only use what is lock-free.
 std::atomic<Session*> watched{nullptr};
-std::atomic<bool> endsAtOnce{false}, saveWanted{false};
+std::atomic<bool> endsAtOnce{false}, saveWanted{false}, pauseWanted{false};
 std::atomic<int64_t> firstRequest{0};  // milliseconds on the monotonic clock; 0: none yet
 static_assert(std::atomic<Session*>::is_always_lock_free && std::atomic<int64_t>::is_always_lock_free);
 std::string endLine;
@@ -41,10 +41,12 @@ void onStop(int signal) {
   if (session != nullptr) session->interrupt();
 }
 
-void onSave(int) {
-  saveWanted.store(true);
+void pauseFor(std::atomic<bool>& reason) {
+  reason.store(true);
   if (Session* const session = watched.load()) session->interrupt();
 }
+
+void onSave(int) { pauseFor(saveWanted); }
 
 }  // namespace
 
@@ -52,6 +54,7 @@ InterruptGuard::InterruptGuard(const std::string& lineAtEnd) {
   endLine = lineAtEnd + "\n";
   firstRequest.store(0);
   saveWanted.store(false);
+  pauseWanted.store(false);
   endsAtOnce.store(true);
   for (size_t i = 0; i < std::size(kSignals); ++i) {
     struct sigaction action {};
@@ -75,17 +78,19 @@ void InterruptGuard::setIdle(bool value) { endsAtOnce.store(value); }
 void InterruptGuard::watch(Session* session) {
   endsAtOnce.store(false);
   watched.store(session);
-  if (session != nullptr && (interrupted() || saveWanted.load())) session->interrupt();
+  if (session != nullptr && (interrupted() || saveWanted.load() || pauseWanted.load())) session->interrupt();
 }
 
 bool InterruptGuard::interrupted() const { return firstRequest.load() != 0; }
 bool InterruptGuard::takeSaveRequest() { return saveWanted.exchange(false); }
+void InterruptGuard::requestPause() { pauseFor(pauseWanted); }
+bool InterruptGuard::takePauseRequest() { return pauseWanted.exchange(false); }
 
 void InterruptGuard::goOn() {
   Session* const session = watched.load();
   if (session == nullptr) return;
   session->resume();
-  if (interrupted() || saveWanted.load()) session->interrupt();
+  if (interrupted() || saveWanted.load() || pauseWanted.load()) session->interrupt();
 }
 
 }  // namespace wavecrest

@@ -30,7 +30,10 @@ class InterruptGuard {
   bool interrupted() const;
   // Whether SIGUSR1 has come since the last call.
   bool takeSaveRequest();
-  // The watched session may go on, unless it is to end or to be saved again.
+  // Asks the watched session to pause, from any thread; and whether that was asked since the last call.
+  void requestPause();
+  bool takePauseRequest();
+  // The watched session may go on, unless it is to end, to be saved or to pause again.
   void goOn();
 
  private:

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/checkpoint/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/suggestion.h"
@@ -56,6 +57,8 @@ int report(const std::exception_ptr& thrown) {
   } catch (const SceneError& error) {
     return line(kExitInput, error.what());
   } catch (const ImageError& error) {
+    return line(kExitInput, error.what());
+  } catch (const CheckpointError& error) {
     return line(kExitInput, error.what());
   } catch (const InputError& error) {
     return line(kExitInput, error.what());

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cli/checkpointing.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
@@ -37,6 +38,7 @@ struct RenderOptions {
   double radius = 0.001, radiusAlpha = 0.75;
   std::vector<std::string> outputs;
   bool noDirectPass = false, dryRun = false;
+  CheckpointOptions checkpoint;
   UntilRequest until;
 };
 
@@ -158,6 +160,10 @@ UntilGoal untilGoal(const RenderOptions& options, const RenderSettings& settings
     throw UsageError(
         "--snapshot-every: not together with --until-ssim or --until-relative-error; expected one of them");
   }
+  if (!options.checkpoint.file.empty()) {
+    throw UsageError(
+        "--checkpoint: not together with --until-ssim or --until-relative-error, whose looks it does not keep; expected one of them");
+  }
   return {options.until, settings, film};
 }
 
@@ -209,11 +215,26 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
   fmt::print("ends     after {}{}{}\n", iterations, settings.iterations && settings.seconds ? " or " : "", seconds);
   fmt::print("memory   {}\n", describe(session.memoryPlan()));
   for (const std::string& output : options.outputs) fmt::print("writes   {}\n", output);
+  if (!options.checkpoint.file.empty()) fmt::print("writes   {}\n", options.checkpoint.file);
   if (!options.stats.empty()) fmt::print("writes   {}\n", options.stats);
   if (options.outputs.empty()) fmt::print("writes   no image: there is no -o\n");
 }
 
 enum class Ending { complete, stopped, stoppedBeforeAnyPath };
+
+// Takes over the state of an earlier part, if there is one, and says from where the render goes on.
+void goOn(const std::unique_ptr<Checkpoint>& earlier, const CheckpointOptions& options, const Scene& scene,
+          const RenderSettings& settings, ProgressKind kind, Session& session, RenderOutputs& outputs) {
+  if (!options.resume) return;
+  if (earlier) {
+    earlier->restore(scene, settings, session);
+    outputs.goOnFrom(earlier->notes(), session);
+  }
+  const uint64_t iterations = session.statistics().iterations;
+  noteLine(kind, {{"checkpoint", options.file}, {"resumed_from", iterations}},
+           options.file + (earlier ? fmt::format(": goes on after {} iterations", iterations)
+                                   : ": there is none yet; begins from the start"));
+}
 
 // Renders to the end or to a signal, with snapshots and saves on the way.
 Ending render(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
@@ -222,7 +243,9 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
   const auto goesOn = [&] {
     stopped = guard.interrupted();
     if (stopped) return false;
-    if (guard.takeSaveRequest() && session.statistics().paths > 0) outputs.write(session);
+    const bool save = guard.takeSaveRequest();
+    if (guard.takePauseRequest() || save) outputs.writeCheckpoint(session);
+    if (save && session.statistics().paths > 0) outputs.write(session);
     guard.goOn();
     return true;
   };
@@ -237,7 +260,8 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
       } while (session.interrupted() && goesOn());
     } else {
       renderWithSnapshots(
-          session, settings, schedule, [&](unsigned number) { outputs.writeSnapshot(session, number); }, goesOn);
+          session, settings, schedule, [&](unsigned number) { outputs.writeSnapshot(session, number); }, goesOn,
+          outputs.nextSnapshot(schedule, session));
     }
   }
   guard.watch(nullptr);
@@ -248,16 +272,19 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
 int runRender(const RenderOptions& options) {
   const SnapshotSchedule schedule = parseSnapshotSchedule(options.snapshotEvery);
   const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
-  const OutputNames names{options.outputs, options.stats, !options.snapshotEvery.empty()};
+  const OutputNames names{options.outputs, options.stats, options.snapshotEvery, options.checkpoint.file};
   const std::string nothing = "wavecrest: interrupted before anything was rendered; no image was written";
   InterruptGuard guard(nothing);
   checkOutputs(names, {findScene(options.scene.scene)});
+  Checkpointing checkpointing(options.checkpoint);
+  std::unique_ptr<Checkpoint> earlier = checkpointing.takeEarlier();
   const auto begin = std::chrono::steady_clock::now();
   const Scene scene = loadScene(options.scene, kind);
   printNotes(scene, kind);
   checkOutputs(names, scene.files);
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const RenderSettings settings = resolved(options, scene);
+  RenderSettings settings = resolved(options, scene);
+  if (earlier) earlier->cutAlike(settings);
   const std::unique_ptr<Session> session = createSession(scene, settings);
   // On request, and where light paths fill the memory.
   if (settings.memoryBytes || session->memoryPlan().use.photonMap > 0) {
@@ -272,14 +299,20 @@ int runRender(const RenderOptions& options) {
     return kExitDone;
   }
   RenderOutputs outputs(names, scene, settings, loadSeconds);
+  goOn(earlier, options.checkpoint, scene, settings, kind, *session, outputs);
+  earlier.reset();
   std::optional<UntilGoal> until;
   if (options.until.any()) until.emplace(untilGoal(options, settings, session->film().area()));
+  std::optional<CheckpointTimer> timer;
+  if (!options.checkpoint.file.empty()) timer.emplace(guard, checkpointing.seconds());
   const Ending ending = render(*session, settings, schedule, until, kind, guard, outputs);
+  timer.reset();
   if (until) noteLine(kind, {{"until", outputs.until()}}, UntilGoal::describe(outputs.until()));
   if (ending == Ending::stoppedBeforeAnyPath) {
     tell("{}", nothing);
     return kExitInterrupted;
   }
+  outputs.writeCheckpoint(*session);
   outputs.write(*session);
   showSummary(options, settings, kind, *session);
   if (outputs.failed()) return kExitInput;
@@ -336,6 +369,7 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
       .checkedBy(checkFinite)
       .between(1e-9, 1.0);
   command.add("--reference", options->until.reference, "image that --until-ssim compares with");
+  addCheckpointOptions(command, options->checkpoint);
   command.add("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable").repeatable();
   command.add("--stats", options->stats, "write statistics as JSON; - for stdout");
   command.addFlag("--dry-run", options->dryRun, "print plan, memory and outputs, and render nothing");

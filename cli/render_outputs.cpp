@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "bench/campaign/render_stats.h"
+#include "bench/checkpoint/checkpoint.h"
 #include "bench/film_image.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
@@ -38,7 +39,7 @@ bool isSnapshotOf(const std::string& image, const std::string& file) {
 }  // namespace
 
 void checkOutputs(const OutputNames& names, const std::vector<std::string>& inputs) {
-  if (names.images.empty() && names.snapshots) {
+  if (names.images.empty() && !names.snapshotEvery.empty()) {
     throw UsageError("--snapshot-every needs an output to name the snapshots after; expected -o FILE.exr");
   }
   FileCheck files;
@@ -52,9 +53,11 @@ void checkOutputs(const OutputNames& names, const std::vector<std::string>& inpu
     files.output("-o", image);
   }
   if (!names.stats.empty()) files.output("--stats", names.stats);
-  if (!names.snapshots) return;
+  if (!names.checkpoint.empty()) files.output("--checkpoint", names.checkpoint);
+  if (names.snapshotEvery.empty()) return;
   std::vector<std::string> others(names.images.begin() + 1, names.images.end());
   others.push_back(names.stats);
+  others.push_back(names.checkpoint);
   others.insert(others.end(), inputs.begin(), inputs.end());
   for (const std::string& other : others) {
     if (other.empty() || !isSnapshotOf(names.images.front(), other)) continue;
@@ -94,9 +97,45 @@ void RenderOutputs::write(const Session& session) {
   if (!names_.stats.empty()) attempt([&] { writeText(names_.stats, all.dump(2) + "\n"); });
 }
 
+void RenderOutputs::writeCheckpoint(const Session& session) {
+  if (names_.checkpoint.empty() || session.statistics().paths == 0) return;
+  nlohmann::ordered_json snapshots = nlohmann::ordered_json::array();
+  for (const SnapshotRecord& snapshot : snapshots_) {
+    snapshots.push_back({snapshot.number, snapshot.renderSeconds, snapshot.iterations, snapshot.file});
+  }
+  const nlohmann::ordered_json notes = {
+      {"wall_seconds", wallSeconds()}, {"snapshot_every", names_.snapshotEvery}, {"snapshots", snapshots}};
+  attempt([&] { wavecrest::writeCheckpoint(names_.checkpoint, scene_, settings_, session, notes); });
+}
+
+void RenderOutputs::goOnFrom(const nlohmann::ordered_json& notes, const Session& session) {
+  earlierSeconds_ = notes.at("wall_seconds").get<double>();
+  for (const auto& row : notes.at("snapshots")) {
+    snapshots_.push_back({.number = row.at(0).get<unsigned>(),
+                          .renderSeconds = row.at(1).get<double>(),
+                          .iterations = row.at(2).get<uint64_t>(),
+                          .file = row.at(3).get<std::string>()});
+  }
+  sameSchedule_ = notes.at("snapshot_every") == names_.snapshotEvery;
+  resumedFrom_ = session.statistics().iterations;
+}
+
+unsigned RenderOutputs::nextSnapshot(const SnapshotSchedule& schedule, const Session& session) {
+  if (sameSchedule_) return snapshots_.empty() ? 0 : snapshots_.back().number + 1;
+  const unsigned next = schedule.firstAfter(session.progressSeconds(), session.statistics().iterations);
+  // Files of these names are written anew.
+  std::erase_if(snapshots_, [&](const SnapshotRecord& snapshot) { return snapshot.number >= next; });
+  return next;
+}
+
+double RenderOutputs::wallSeconds() const {
+  return earlierSeconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+}
+
 nlohmann::ordered_json RenderOutputs::stats(const RenderStatistics& statistics) const {
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  return renderStats(scene_, settings_, statistics, loadSeconds_, wall, snapshots_);
+  auto stats = renderStats(scene_, settings_, statistics, loadSeconds_, wallSeconds(), snapshots_);
+  if (!names_.checkpoint.empty()) stats["resumed_from"] = resumedFrom_;
+  return stats;
 }
 
 }  // namespace wavecrest

@@ -1,7 +1,7 @@
 // Files of one render: the image under each requested name, snapshots beside the first, the statistics.
 //
 // All names are checked before the render begins. A file that cannot be written after all is reported and does not keep
-// the others from being written.
+// the others from being written. With a checkpoint, statistics and snapshots go on from it.
 #pragma once
 
 #include <chrono>
@@ -13,13 +13,15 @@
 #include "bench/results/results.h"
 #include "engine/scene/scene.h"
 #include "engine/session.h"
+#include "engine/snapshots.h"
 
 namespace wavecrest {
 
 struct OutputNames {
   std::vector<std::string> images;
-  std::string stats;       // empty: none; - is stdout
-  bool snapshots = false;  // named after the first image
+  std::string stats;          // empty: none; - is stdout
+  std::string snapshotEvery;  // empty: no snapshots; they are named after the first image
+  std::string checkpoint;     // empty: none
 };
 
 // Throws UsageError where a name cannot be written, or is that of an input (a file of the scene) or of another output.
@@ -34,6 +36,13 @@ class RenderOutputs {
   void writeSnapshot(const Session& session, unsigned number);
   // Images and statistics as they are now. May be called again later.
   void write(const Session& session);
+  // The checkpoint, if one was asked for and there are paths to keep.
+  void writeCheckpoint(const Session& session);
+  // Takes over what writeCheckpoint has noted of an earlier part of the render.
+  void goOnFrom(const nlohmann::ordered_json& notes, const Session& session);
+  // The number of the next snapshot. Where an earlier part had another schedule, those that would have been due by now
+  // are left out.
+  unsigned nextSnapshot(const SnapshotSchedule& schedule, const Session& session);
   // What was reached of a quality that was asked for; goes into the statistics.
   void setUntil(nlohmann::ordered_json until) { until_ = std::move(until); }
   const nlohmann::ordered_json& until() const { return until_; }
@@ -42,6 +51,7 @@ class RenderOutputs {
 
  private:
   nlohmann::ordered_json stats(const RenderStatistics& statistics) const;
+  double wallSeconds() const;
   // Runs a step that writes one file.
   template <class Step>
   void attempt(Step step);
@@ -53,6 +63,9 @@ class RenderOutputs {
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::vector<SnapshotRecord> snapshots_;
   nlohmann::ordered_json until_;  // null: none was asked for
+  double earlierSeconds_ = 0;     // on the wall, of processes that rendered earlier parts
+  bool sameSchedule_ = false;     // of snapshots as in those
+  uint64_t resumedFrom_ = 0;      // iterations
   bool failed_ = false;
 };
 

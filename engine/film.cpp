@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
+
+#include "engine/session_state.h"
+
 namespace wavecrest {
 namespace {
 
@@ -84,5 +88,32 @@ std::vector<float> Film::resolve() const {
 }
 
 uint64_t Film::minSamples() const { return samples_.empty() ? 0 : *std::min_element(samples_.begin(), samples_.end()); }
+uint64_t Film::maxSamples() const { return samples_.empty() ? 0 : *std::max_element(samples_.begin(), samples_.end()); }
+uint64_t Film::allSamples() const { return std::accumulate(samples_.begin(), samples_.end(), uint64_t{0}); }
+
+std::vector<PixelRun> Film::runsBelow(uint64_t samples, size_t most) const {
+  std::vector<PixelRun> runs;
+  for (size_t begin = 0; begin < samples_.size();) {
+    size_t end = begin + 1;
+    while (end < samples_.size() && end - begin < most && samples_[end] == samples_[begin]) ++end;
+    if (samples_[begin] < samples) runs.push_back({begin, end - begin, samples_[begin]});
+    begin = end;
+  }
+  return runs;
+}
+
+void Film::save(StateWriter& out) const {
+  out.value(uint64_t{area_.pixels.size()});
+  out.items(sums_.data(), sums_.size());
+  out.items(samples_.data(), samples_.size());
+  if (splats_) splats_->save(out);
+}
+
+void Film::restore(StateReader& in) {
+  in.expect(area_.pixels.size(), "pixels");
+  in.items(sums_.data(), sums_.size());
+  in.items(samples_.data(), samples_.size());
+  if (splats_) splats_->restore(in);
+}
 
 }  // namespace wavecrest

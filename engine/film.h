@@ -31,6 +31,12 @@ struct PendingSplat {
   double rgb[3];
 };
 
+// Pixels [first, first + count) in wave order, which have the same number of samples.
+struct PixelRun {
+  size_t first, count;
+  uint64_t samples;
+};
+
 class Film {
  public:
   explicit Film(FilmArea area);
@@ -54,7 +60,17 @@ class Film {
   std::vector<float> resolve() const;
 
   const FilmArea& area() const { return area_; }
+  // Samples of the pixels: the fewest and the most of one, and of all together.
   uint64_t minSamples() const;
+  uint64_t maxSamples() const;
+  uint64_t allSamples() const;
+  // The pixels with fewer samples than `samples`, in runs of at most `most` pixels.
+  std::vector<PixelRun> runsBelow(uint64_t samples, size_t most) const;
+
+  // Samples and splats, for checkpoints; and back into a film without any. Factor and pending splats are not among
+  // them.
+  void save(StateWriter& out) const;
+  void restore(StateReader& in);
 
  private:
   FilmArea area_;

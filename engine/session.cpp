@@ -13,6 +13,7 @@
 #include "engine/for_each.h"
 #include "engine/render_clock.h"
 #include "engine/render_plan.h"
+#include "engine/session_state.h"
 #include "engine/stage_rows.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
@@ -40,6 +41,8 @@ class TypedSession final : public Session {
 
   void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) override;
   RenderStatistics statistics() const override;
+  void save(StateWriter& out) const override;
+  void restore(StateReader& in) override;
   const Film& film() const override { return film_; }
   const MemoryPlan& memoryPlan() const override { return memory_; }
   double progressSeconds() const override { return progressSeconds_.load(std::memory_order_relaxed); }
@@ -74,8 +77,15 @@ class TypedSession final : public Session {
   static size_t piecesOf(size_t items, size_t size) { return (items + size - 1) / size; }
   static size_t itemsOf(size_t index, size_t items, size_t size) { return std::min(size, items - index * size); }
   uint32_t iterationBits(uint64_t next) const;
-  void traceLight(size_t waveIndex, Worker& worker);
-  void traceCamera(size_t waveIndex, Worker& worker);
+  // Light paths or the camera paths of pixels [first, first + count), of one iteration; of camera paths 2^iterationBits
+  // iterations.
+  void traceLight(size_t first, size_t count, uint64_t iteration, LightStore<S>& store, Worker& worker);
+  void traceCamera(size_t first, size_t count, uint64_t iteration, uint32_t iterationBits, LightStore<S>* partners,
+                   Worker& worker);
+  void traceLightWave(size_t waveIndex, Worker& worker);
+  void traceCameraWave(size_t waveIndex, Worker& worker);
+  // Goes on where a restored film stopped: until each pixel has as many samples as those that have most.
+  void levelPixels(const Finished& finished);
   // Iterations of a method whose waves are independent.
   void renderWaves(const Finished& finished);
   // Iterations of a method with a photon map.
@@ -95,12 +105,14 @@ class TypedSession final : public Session {
   uint64_t endIteration_ = 0;           // of this renderUntil
   std::vector<uint64_t> lightDone_;     // next iteration of each wave
   std::vector<CameraProgress> camera_;  // of each tile
+  bool level_ = true;                   // false: pixels of a restored film have different numbers of samples
   Arena storeMemory_;
   std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each light wave, where a photon map gathers them
   PhotonMap<S> photons_;
   std::optional<uint64_t> photonIteration_;  // which iteration the map is of
   StageTally photonTally_;
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
+  WorkDone earlier_;  // of the sessions that this one goes on for
   double buildSeconds_ = 0, renderSeconds_ = 0, cpuSeconds_ = 0;
   std::atomic<double> progressSeconds_{0};
   std::atomic<uint64_t> progressPaths_{0};
@@ -172,15 +184,20 @@ void TypedSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSt
 }
 
 template <class S>
-void TypedSession<S>::traceLight(size_t waveIndex, Worker& worker) {
-  LightStore<S>* const store = plan_.pipeline.photonMap ? stores_[waveIndex].get() : &worker.light;
+void TypedSession<S>::traceLight(size_t first, size_t count, uint64_t iteration, LightStore<S>& store, Worker& worker) {
   Wave<S>& wave = worker.wave;
-  wave.firstPath = waveIndex * settings_.waveSize;
-  wave.pathCount = itemsOf(waveIndex, memory_.lightPaths, settings_.waveSize);
+  wave.firstPath = first;
+  wave.pathCount = count;
   wave.iterationBits = 0;
-  tracePass(*plan_.pipeline.lightPass, lightDone_[waveIndex], store, worker);
+  tracePass(*plan_.pipeline.lightPass, iteration, &store, worker);
   worker.lightPaths += wave.pathCount;
-  ++lightDone_[waveIndex];
+}
+
+template <class S>
+void TypedSession<S>::traceLightWave(size_t waveIndex, Worker& worker) {
+  LightStore<S>& store = plan_.pipeline.photonMap ? *stores_[waveIndex] : worker.light;
+  const size_t count = itemsOf(waveIndex, memory_.lightPaths, settings_.waveSize);
+  traceLight(waveIndex * settings_.waveSize, count, lightDone_[waveIndex]++, store, worker);
 }
 
 template <class S>
@@ -202,19 +219,26 @@ uint32_t TypedSession<S>::iterationBits(uint64_t next) const {
 }
 
 template <class S>
-void TypedSession<S>::traceCamera(size_t waveIndex, Worker& worker) {
-  CameraProgress& progress = camera_[waveIndex];
-  const size_t pixels = itemsOf(waveIndex, film_.area().pixels.size(), tile_);
-  if (progress.pixels == 0) progress.iterationBits = iterationBits(progress.next);
+void TypedSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration, uint32_t iterationBits,
+                                  LightStore<S>* partners, Worker& worker) {
   Wave<S>& wave = worker.wave;
-  wave.firstPath = waveIndex * tile_ + progress.pixels;
-  wave.iterationBits = progress.iterationBits;
-  const size_t some = std::min(size_t{settings_.waveSize} >> wave.iterationBits, pixels - progress.pixels);
-  wave.pathCount = some << wave.iterationBits;
-  tracePass(plan_.pipeline.cameraPass, progress.next, partnersOf(waveIndex, worker), worker);
+  wave.firstPath = first;
+  wave.iterationBits = iterationBits;
+  wave.pathCount = count << iterationBits;
+  tracePass(plan_.pipeline.cameraPass, iteration, partners, worker);
   worker.counters.nonFinite += film_.add(wave);
   worker.paths += wave.pathCount;
   progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
+}
+
+template <class S>
+void TypedSession<S>::traceCameraWave(size_t waveIndex, Worker& worker) {
+  CameraProgress& progress = camera_[waveIndex];
+  const size_t pixels = itemsOf(waveIndex, film_.area().pixels.size(), tile_);
+  if (progress.pixels == 0) progress.iterationBits = iterationBits(progress.next);
+  const size_t some = std::min(size_t{settings_.waveSize} >> progress.iterationBits, pixels - progress.pixels);
+  traceCamera(waveIndex * tile_ + progress.pixels, some, progress.next, progress.iterationBits,
+              partnersOf(waveIndex, worker), worker);
   progress.pixels += some;
   if (progress.pixels < pixels) return;
   progress.next += uint64_t{1} << progress.iterationBits;
@@ -226,8 +250,8 @@ void TypedSession<S>::renderWaves(const Finished& finished) {
   takeTurns(camera_.size(), settings_.threads, [&](size_t wave) {
     if (finished(camera_[wave].next)) return false;
     Worker& mine = worker();
-    if (plan_.pipeline.lightPass) traceLight(wave, mine);
-    traceCamera(wave, mine);
+    if (plan_.pipeline.lightPass) traceLightWave(wave, mine);
+    traceCameraWave(wave, mine);
     return !finished(camera_[wave].next);
   });
 }
@@ -258,19 +282,36 @@ void TypedSession<S>::renderPhases(const Finished& finished) {
   for (;;) {
     const uint64_t iteration = camera_.front().next;
     if (finished(iteration)) return;
-    forEach(stores_.size(), [&](size_t wave) { traceLight(wave, worker()); });
+    forEach(stores_.size(), [&](size_t wave) { traceLightWave(wave, worker()); });
     buildPhotonMap(iteration);
     forEach(camera_.size(), [&](size_t wave) {
-      traceCamera(wave, worker());
+      traceCameraWave(wave, worker());
       finished(iteration);  // progress alone: an iteration that has begun is finished
     });
   }
 }
 
+// One iteration at a time, light path and camera path of a pixel together, in runs of pixels that stopped together.
+template <class S>
+void TypedSession<S>::levelPixels(const Finished& finished) {
+  const uint64_t goal = film_.maxSamples();
+  const std::vector<PixelRun> runs = film_.runsBelow(goal, settings_.waveSize);
+  forEach(runs.size(), [&](size_t index) {
+    const PixelRun& run = runs[index];
+    Worker& mine = worker();
+    for (uint64_t next = settings_.firstIteration + run.samples; next < settings_.firstIteration + goal; ++next) {
+      if (finished(next)) return;
+      if (plan_.pipeline.lightPass) traceLight(run.first, run.count, next, mine.light, mine);
+      traceCamera(run.first, run.count, next, 0, &mine.light, mine);
+    }
+  });
+  level_ = film_.minSamples() == goal;
+}
+
 // A snapshot divides the sums of splats by the light paths that made them.
 template <class S>
 void TypedSession<S>::countLightPaths() {
-  uint64_t lightPaths = 0;
+  uint64_t lightPaths = earlier_.lightPaths;
   for (const auto& worker : workers_) lightPaths += worker->lightPaths;
   film_.setSplatFactor(lightPaths == 0 ? 0 : 1 / static_cast<double>(lightPaths));
 }
@@ -287,7 +328,10 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
     progressSeconds_.store(now, std::memory_order_relaxed);
     return (seconds && now >= *seconds) || interrupted();
   };
-  arena_.execute([&] { plan_.pipeline.photonMap ? renderPhases(finished) : renderWaves(finished); });
+  arena_.execute([&] {
+    if (!level_) levelPixels(finished);
+    if (level_) plan_.pipeline.photonMap ? renderPhases(finished) : renderWaves(finished);
+  });
   renderSeconds_ += secondsSince(begin);
   cpuSeconds_ += processCpuSeconds() - cpuBegin;
   progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
@@ -326,7 +370,33 @@ RenderStatistics TypedSession<S>::statistics() const {
     for (const auto& store : stores_) out.memory.lightVertices += store->bytes();
     out.memory.photonMap = photons_.bytes();
   }
+  earlier_.addTo(out);
   return out;
+}
+
+// Which iterations a wave has done is what its pixels' numbers of samples say; light vertices and photons are made anew
+// in each iteration.
+template <class S>
+void TypedSession<S>::save(StateWriter& out) const {
+  film_.save(out);
+  WorkDone::of(statistics()).save(out);
+}
+
+template <class S>
+void TypedSession<S>::restore(StateReader& in) {
+  film_.restore(in);
+  earlier_.restore(in, statistics().stages);
+  in.finish();
+  const uint64_t done = film_.maxSamples();
+  level_ = film_.minSamples() == done;
+  if (!level_ && plan_.pipeline.photonMap) throw StateError("it ends within an iteration");
+  for (uint64_t& next : lightDone_) next = settings_.firstIteration + done;
+  for (CameraProgress& progress : camera_) progress.next = settings_.firstIteration + done;
+  renderSeconds_ = earlier_.renderSeconds;
+  cpuSeconds_ = earlier_.cpuSeconds;
+  progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
+  progressPaths_.store(earlier_.paths, std::memory_order_relaxed);
+  countLightPaths();
 }
 
 }  // namespace

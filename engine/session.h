@@ -17,6 +17,9 @@
 
 namespace wavecrest {
 
+class StateReader;
+class StateWriter;
+
 // A chain that has rejected kStuckRejections proposals in a row, or more.
 struct StuckChain {
   uint32_t chain = 0;
@@ -81,6 +84,14 @@ class Session {
   virtual RenderStatistics statistics() const = 0;
   virtual const Film& film() const = 0;
   virtual const MemoryPlan& memoryPlan() const = 0;
+  // All that a session of the same scene and settings needs to go on from here, whatever its number of threads and size
+  // of waves (engine/session_state.h). No renderUntil may be running.
+  virtual void save(StateWriter& out) const = 0;
+  // Takes over what another session has saved: whatever is rendered from now on, images are bit for bit those of a
+  // session that rendered all of it. Counts and clocks go on too, but for those of building. Must come before the first
+  // renderUntil. Throws StateError where the state is that of another render; the session is of no use then.
+  virtual void restore(StateReader& in) = 0;
+
   // Iterations of the slowest wave and seconds so far, for progress shown from another thread.
   virtual double progressSeconds() const = 0;
   virtual uint64_t progressPaths() const = 0;

@@ -34,21 +34,32 @@ SnapshotSchedule::Due SnapshotSchedule::due(unsigned number) const {
   return {};
 }
 
+unsigned SnapshotSchedule::firstAfter(double seconds, uint64_t iterations) const {
+  unsigned number = 0;
+  const auto isPast = [&](const Due& due) {
+    return (due.seconds && *due.seconds <= seconds) || (due.iterations && *due.iterations <= iterations);
+  };
+  while (isPast(due(number))) ++number;
+  return number;
+}
+
 unsigned renderWithSnapshots(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
                              const std::function<void(unsigned number)>& onSnapshot,
-                             const std::function<bool()>& goesOn) {
-  for (unsigned number = 0;; ++number) {
+                             const std::function<bool()>& goesOn, unsigned first) {
+  for (unsigned number = first;; ++number) {
     const SnapshotSchedule::Due due = schedule.due(number);
     const bool inTime = due.seconds && (!settings.seconds || *due.seconds <= *settings.seconds);
     const bool inIterations = due.iterations && (!settings.iterations || *due.iterations <= *settings.iterations);
-    do {
+    for (;;) {
       session.renderUntil(earlier(settings.iterations, due.iterations), earlier(settings.seconds, due.seconds));
-    } while (session.interrupted() && goesOn && goesOn());
+      if (!session.interrupted()) break;
+      if (!goesOn || !goesOn()) return number;
+    }
     // The last one is due at the limit, a moment before which a session may have nothing left to do.
     const bool atLimit = inTime && !settings.iterations && *due.seconds == settings.seconds;
     const bool reached = atLimit || (inTime && session.progressSeconds() >= *due.seconds) ||
                          (inIterations && session.statistics().iterations >= *due.iterations);
-    if (session.interrupted() || !reached) return number;
+    if (!reached) return number;  // an interrupt that comes after the render has returned is the next call's
     onSnapshot(number);
   }
 }

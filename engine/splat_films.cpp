@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <new>
-#include <stdexcept>
+
+#include "engine/session_state.h"
 
 namespace wavecrest {
 namespace {
@@ -43,34 +44,25 @@ void SplatFilms::add(uint32_t pixel, const double (&rgb)[3]) {
   for (size_t c = 0; c < 3; ++c) addToSplatSum(films_.front()->sums(), 3 * size_t{pixel} + c, rgb[c]);
 }
 
-double SplatFilms::total(size_t channel) const {
+__int128 SplatFilms::sum(size_t channel) const {
   __int128 sum = 0;
   for (const auto& film : films_) sum += splatSum(film->sums(), channel);
-  return static_cast<double>(sum);
+  return sum;
 }
 
-std::vector<uint64_t> SplatFilms::halves() const {
-  std::vector<uint64_t> halves;
-  halves.reserve(6 * pixels_);
-  for (size_t channel = 0; channel < 3 * pixels_; ++channel) {
-    __int128 sum = 0;
-    for (const auto& film : films_) sum += splatSum(film->sums(), channel);
-    halves.push_back(static_cast<uint64_t>(sum));
-    halves.push_back(static_cast<uint64_t>(sum >> 64));
-  }
-  return halves;
+void SplatFilms::save(StateWriter& out) const {
+  out.value(scale_);
+  for (size_t channel = 0; channel < 3 * pixels_; ++channel) out.value(sum(channel));
 }
 
-void SplatFilms::setHalves(const std::vector<uint64_t>& halves) {
-  if (halves.size() != 6 * pixels_) throw std::invalid_argument("SplatFilms: sums of a film of another size");
-  for (const auto& film : films_) {
-    std::fill_n(film->sums().low, 3 * pixels_, 0);
-    std::fill_n(film->sums().high, 3 * pixels_, 0);
-  }
+// All of it goes into the first film. High halves that are zero are left alone: their pages take no memory.
+void SplatFilms::restore(StateReader& in) {
+  if (in.value<double>() != scale_) throw StateError("its splats are in other units");
   const SplatSums& sums = films_.front()->sums();
   for (size_t channel = 0; channel < 3 * pixels_; ++channel) {
-    sums.low[channel] = halves[2 * channel];
-    sums.high[channel] = halves[2 * channel + 1];
+    const auto sum = in.value<__int128>();
+    sums.low[channel] = static_cast<uint64_t>(sum);
+    if (const auto high = static_cast<uint64_t>(sum >> 64); high != 0) sums.high[channel] = high;
   }
 }
 

@@ -18,6 +18,9 @@
 
 namespace wavecrest {
 
+class StateReader;
+class StateWriter;
+
 constexpr size_t kSplatFilms = 2;
 
 // One film's sums. Pages of the high halves that no splat has reached take no memory.
@@ -53,15 +56,17 @@ class SplatFilms {
   void add(uint32_t pixel, const double (&rgb)[3]);
 
   // The sum of a channel over all films, in units of 1 / scale. No worker may be adding.
-  double total(size_t channel) const;
-  // The sums themselves, for checkpoints: low and high half of each channel; and what replaces them.
-  std::vector<uint64_t> halves() const;
-  void setHalves(const std::vector<uint64_t>& halves);
+  double total(size_t channel) const { return static_cast<double>(sum(channel)); }
+  // The sums of all films together, for checkpoints; and back into films without splats. No worker may be adding.
+  void save(StateWriter& out) const;
+  void restore(StateReader& in);
 
   size_t bytes() const { return bytesFor(pixels_, films_.size()); }
   static size_t bytesFor(size_t pixels, size_t threads);
 
  private:
+  __int128 sum(size_t channel) const;
+
   size_t pixels_;
   double scale_;
   uint32_t regionBits_;

@@ -14,6 +14,7 @@
 #include "engine/flush_to_zero.h"
 #include "engine/for_each.h"
 #include "engine/render_clock.h"
+#include "engine/session_state.h"
 #include "engine/stage_rows.h"
 
 namespace wavecrest {
@@ -43,6 +44,8 @@ class ChainSession final : public Session {
 
   void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) override;
   RenderStatistics statistics() const override;
+  void save(StateWriter& out) const override;
+  void restore(StateReader& in) override;
   const Film& film() const override { return film_; }
   const MemoryPlan& memoryPlan() const override { return memory_; }
   double progressSeconds() const override { return progressSeconds_.load(std::memory_order_relaxed); }
@@ -75,11 +78,12 @@ class ChainSession final : public Session {
   Epochs epochs_;
   std::optional<ChainWaves<S>> chains_;  // from the plan on
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
-  std::vector<char> bootstrapped_;    // which waves of the next epoch's bootstrap samples are traced
-  std::vector<uint64_t> directDone_;  // direct light samples of each pixel, by wave
-  uint64_t step_ = 0;                 // steps that every chain has taken
-  double stepSeconds_ = 0;            // that the latest took
-  std::vector<StuckChain> stuck_;     // at the ends of epochs
+  std::vector<char> bootstrapped_;  // which waves of the next epoch's bootstrap samples are traced
+  uint64_t directDone_ = 0;         // direct light samples of each pixel; some may have more
+  uint64_t step_ = 0;               // steps that every chain has taken
+  double stepSeconds_ = 0;          // that the latest took
+  std::vector<StuckChain> stuck_;   // at the ends of epochs
+  WorkDone earlier_;                // of the sessions that this one goes on for; its counts but not its paths
   double buildSeconds_ = 0, renderSeconds_ = 0, cpuSeconds_ = 0;
   std::atomic<double> progressSeconds_{0};
   std::atomic<uint64_t> progressPaths_{0};
@@ -105,7 +109,6 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
                                : plainBootstrap(metropolis.bootstrapSamples));
   chains_.emplace(plan_, settings_, film_.area());
   bootstrapped_.resize((epochs_.targets.size() + settings_.waveSize - 1) / settings_.waveSize);
-  directDone_.resize((film_.area().pixels.size() + settings_.waveSize - 1) / settings_.waveSize);
   buildSeconds_ = secondsSince(begin);
 }
 
@@ -197,18 +200,21 @@ bool ChainSession<S>::traceDirect(const Stop& stop) {
   const FilmArea& area = film_.area();
   const uint64_t perIteration = kMutationsPerDirect * area.pixels.size(),
                  goal = (mutations() + perIteration - 1) / perIteration;
-  forEach(directDone_.size(), [&](size_t wave) {
+  if (directDone_ >= goal) return true;
+  const std::vector<PixelRun> runs = film_.runsBelow(goal, settings_.waveSize);
+  forEach(runs.size(), [&](size_t index) {
     const FlushToZero flushToZero;
-    const size_t first = wave * settings_.waveSize;
-    for (uint64_t& done = directDone_[wave]; done < goal && !stop(); ++done) {
+    const PixelRun& run = runs[index];
+    for (uint64_t done = run.samples; done < goal && !stop(); ++done) {
       StageContext<S> context = chainContext(plan_, settings_, area);
       context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(done), nullptr};
       ChainWorker<S>& mine = worker();
-      mine.traceDirect(context, area, first, std::min<size_t>(settings_.waveSize, area.pixels.size() - first));
+      mine.traceDirect(context, area, run.first, run.count);
       mine.counters.nonFinite += film_.add(mine.wave());
     }
   });
-  return *std::min_element(directDone_.begin(), directDone_.end()) == goal;
+  directDone_ = film_.minSamples();
+  return directDone_ >= goal;
 }
 
 // Steps of the round that begins now. Chains move together, as the film divides by one number of steps, so a step that
@@ -302,12 +308,10 @@ RenderStatistics ChainSession<S>::statistics() const {
     for (const auto& worker : workers_) addTallies({worker->directTally}, out.stages.size() - 1, out.stages);
   }
 
+  earlier_.addTo(out);
   ChainStatistics& chains = out.chains.emplace();
   chains.mutations = mutations();
-  for (size_t wave = 0; wave < directDone_.size(); ++wave) {
-    const size_t first = wave * settings_.waveSize, pixels = film_.area().pixels.size();
-    chains.directPaths += directDone_[wave] * std::min<size_t>(settings_.waveSize, pixels - first);
-  }
+  chains.directPaths = film_.allSamples();  // which are those of the direct pass alone
   chains.epochs = epochs_.count();
   const Brightness ofFilm = epochs_.ofFilm();
   chains.brightness = ofFilm.mean;
@@ -329,6 +333,40 @@ RenderStatistics ChainSession<S>::statistics() const {
   out.memory.splats = film_.splats().bytes();
   out.memory.chains = chains.bytes;
   return out;
+}
+
+// A bootstrap that is not complete is left out: its samples are traced again.
+template <class S>
+void ChainSession<S>::save(StateWriter& out) const {
+  film_.save(out);
+  const RenderStatistics now = statistics();
+  WorkDone work = WorkDone::of(now);
+  // Mutations follow from the steps; chains keep counts of their own.
+  work.paths = 0;
+  work.counters.nonFinite -= now.chains->counters.nonFinite;
+  work.save(out);
+  out.value(step_);
+  out.list(stuck_);
+  epochs_.save(out);
+  chains_->save(out);
+}
+
+template <class S>
+void ChainSession<S>::restore(StateReader& in) {
+  film_.restore(in);
+  earlier_.restore(in, statistics().stages);
+  step_ = in.value<uint64_t>();
+  stuck_ = in.list<StuckChain>();
+  epochs_.restore(in);
+  const bool lit = epochs_.count() != 0 && !epochs_.dark();
+  chains_->restore(in, lit ? epochs_.scale() : 1);
+  in.finish();
+  directDone_ = film_.minSamples();
+  renderSeconds_ = earlier_.renderSeconds;
+  cpuSeconds_ = earlier_.cpuSeconds;
+  progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
+  progressPaths_.store(mutations(), std::memory_order_relaxed);
+  updateFilm();
 }
 
 }  // namespace

@@ -1,10 +1,20 @@
 #include "engine/chains/chain_waves.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "engine/flush_to_zero.h"
+#include "engine/session_state.h"
 
 namespace wavecrest {
+namespace {
+
+// Columns of numbers that chains keep: those of the light walk follow those of the camera walk.
+uint32_t keptColumns(const ChainSamples& samples, const ChainState::Kept& kept) {
+  return kept.vertices[1] == 0 ? samples.firstColumn[1] : samples.column(1, 4 * kept.vertices[1]);
+}
+
+}  // namespace
 
 template <class S>
 ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
@@ -15,6 +25,7 @@ ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& setti
     states_.emplace_back(chainCount(wave), kept).multiplexed = plan.pipeline.lightPass.has_value();
     if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan.pathLaws.law().maxEdges, plan.needs);
   }
+  if (!states_.empty()) sampleRows_ = size_t{4} * keptColumns(states_.front().samples, kept);
 }
 
 template <class S>
@@ -130,6 +141,85 @@ size_t ChainWaves<S>::bytes() const {
   size_t sum = paths_.size() * PathStore<S>::bytesFor(settings_.waveSize, plan_.pathLaws.law().maxEdges, plan_.needs);
   for (const ChainState& state : states_) sum += state.bytes();
   return sum;
+}
+
+template <class S>
+uint32_t ChainWaves<S>::pathVertices() const {
+  uint32_t edges = 0;
+  for (size_t wave = 0; wave < paths_.size(); ++wave) {
+    const uint32_t* const ofWave = paths_[wave].headers.edges;
+    edges = std::max(edges, *std::max_element(ofWave, ofWave + chainCount(wave)));
+  }
+  return edges + 1;
+}
+
+template <class S>
+std::vector<typename ChainWaves<S>::Row> ChainWaves<S>::rowsOf(size_t wave, uint32_t vertices) const {
+  std::vector<Row> rows;
+  const auto add = [&](auto* items) { rows.push_back({reinterpret_cast<unsigned char*>(items), sizeof(*items)}); };
+  // all() has one form, for writing.
+  const auto columnsOf = [](const auto& columns) {
+    return const_cast<std::decay_t<decltype(columns)>&>(columns).all();
+  };
+  const auto forEachColumn = [&](const auto& columns, auto visit) {
+    std::apply([&](auto&... column) { ((column.needed() ? visit(column) : void()), ...); }, columnsOf(columns));
+  };
+  const ChainState& state = states_[wave];
+  forEachColumn(state.columns, [&](auto& column) { add(&column[0]); });
+  for (size_t row = 0; row < sampleRows_; ++row) add(state.samples.values + row * state.samples.stride);
+  if (inPathSpace()) {
+    const PathStore<S>& paths = paths_[wave];
+    forEachColumn(paths.headers, [&](auto& column) { add(&column[0]); });
+    forEachColumn(paths.vertices, [&](auto& column) {
+      for (size_t vertex = 0; vertex < vertices; ++vertex) add(&column[vertex * paths.stride()]);
+    });
+  }
+  return rows;
+}
+
+template <class S>
+void ChainWaves<S>::save(StateWriter& out) const {
+  static_assert(sizeof(ChainCounters) == (2 * kMutationKinds + 4) * sizeof(uint64_t), "padding would be written");
+  out.value(counters());
+  out.value(largeSteps());
+  const uint32_t vertices = pathVertices();
+  out.value(vertices);
+  std::vector<std::vector<Row>> rows;
+  for (size_t wave = 0; wave < size(); ++wave) rows.push_back(rowsOf(wave, vertices));
+  for (size_t row = 0; row < rows.front().size(); ++row) {
+    for (size_t wave = 0; wave < size(); ++wave) {
+      out.bytes({rows[wave][row].items, chainCount(wave) * rows[wave][row].bytes});
+    }
+  }
+}
+
+template <class S>
+void ChainWaves<S>::restore(StateReader& in, double splatFactor) {
+  // Of all waves together; which of them has counted does not matter.
+  states_.front().counters = in.value<ChainCounters>();
+  states_.front().largeSteps = in.value<LargeStepSums>();
+  const auto vertices = in.value<uint32_t>();
+  if (vertices == 0 || (inPathSpace() && vertices > plan_.pathLaws.law().maxEdges + 1)) {
+    throw StateError("its paths are too long");
+  }
+  std::vector<std::vector<Row>> rows;
+  for (size_t wave = 0; wave < size(); ++wave) rows.push_back(rowsOf(wave, vertices));
+  for (size_t row = 0; row < rows.front().size(); ++row) {
+    for (size_t wave = 0; wave < size(); ++wave) {
+      in.items(rows[wave][row].items, chainCount(wave) * rows[wave][row].bytes);
+    }
+  }
+  for (size_t wave = 0; wave < size(); ++wave) {
+    ChainState& state = states_[wave];
+    const uint32_t* const pixels = state.columns.pixel;
+    const size_t filmPixels = area_.pixels.size();
+    if (std::any_of(pixels, pixels + chainCount(wave), [&](uint32_t pixel) { return pixel >= filmPixels; })) {
+      throw StateError("its chains are beyond the film");
+    }
+    state.splatFactor = static_cast<float>(splatFactor);
+    state.samples.stream = Stream::chain;
+    state.samples.largeStep = static_cast<float>(settings_.metropolis.largeStep);
+  }
 }
 
 template class ChainWaves<float>;

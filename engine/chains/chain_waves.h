@@ -10,6 +10,9 @@
 
 namespace wavecrest {
 
+class StateReader;
+class StateWriter;
+
 template <class S>
 class ChainWaves {
  public:
@@ -40,7 +43,21 @@ class ChainWaves {
   LargeStepSums largeSteps() const;
   size_t bytes() const;
 
+  // The chains between two steps, for checkpoints: in an order that does not depend on the waves.
+  void save(StateWriter& out) const;
+  // splatFactor: of the epoch that they are in.
+  void restore(StateReader& in, double splatFactor);
+
  private:
+  // One number of each chain of a wave.
+  struct Row {
+    unsigned char* items;
+    size_t bytes;  // of one item
+  };
+  // All rows that say where chains are, paths up to so many vertices; the same rows for all waves.
+  std::vector<Row> rowsOf(size_t wave, uint32_t vertices) const;
+  // The most that the path of a chain has.
+  uint32_t pathVertices() const;
   size_t firstChain(size_t wave) const { return wave * settings_.waveSize; }
   bool inPathSpace() const { return plan_.pipeline.chains->inPathSpace; }
   PathStore<S>* pathsOf(size_t wave) { return paths_.empty() ? nullptr : &paths_[wave]; }
@@ -48,6 +65,7 @@ class ChainWaves {
   const RenderPlan<S>& plan_;
   const RenderSettings& settings_;
   const FilmArea& area_;
+  size_t sampleRows_ = 0;  // of the numbers that a wave keeps
   std::vector<ChainState> states_;
   std::vector<PathStore<S>> paths_;  // in path space; rows as long as those of proposals
 };

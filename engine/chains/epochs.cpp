@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/session_state.h"
+
 namespace wavecrest {
 
 void Epochs::begin() {
@@ -33,6 +35,19 @@ Brightness Epochs::pooledWith(const LargeStepSums& largeSteps, bool anyLength) c
   LargeStepSums both = sums_;
   both += largeSteps;
   return brightnessOf(both);
+}
+
+void Epochs::save(StateWriter& out) const {
+  static_assert(sizeof(Epoch) == 4 * sizeof(double), "padding would be written");
+  out.list(epochs_);
+  out.value(sums_);
+  out.value(unit_);
+}
+
+void Epochs::restore(StateReader& in) {
+  epochs_ = in.list<Epoch>();
+  sums_ = in.value<LargeStepSums>();
+  unit_ = in.value<double>();
 }
 
 }  // namespace wavecrest

@@ -10,6 +10,9 @@
 
 namespace wavecrest {
 
+class StateReader;
+class StateWriter;
+
 class Epochs {
  public:
   std::vector<float> targets;  // of the bootstrap samples of the epoch that is to begin
@@ -38,6 +41,10 @@ class Epochs {
   // b by all samples that know it: those of the bootstraps and the chains' large steps. anyLength: these may have any
   // length, and say something about b as a whole.
   Brightness pooledWith(const LargeStepSums& largeSteps, bool anyLength) const;
+
+  // Everything but the targets, for checkpoints.
+  void save(StateWriter& out) const;
+  void restore(StateReader& in);
 
  private:
   struct Epoch {

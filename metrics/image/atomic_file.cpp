@@ -31,17 +31,19 @@ class Descriptor {
 };
 
 [[noreturn]] void failReading(const std::string& path, int error) {
-  throw ImageError(path, std::string("cannot be read: ") + std::strerror(error), "expected a readable image file");
+  throw ImageError(path, std::string("cannot be read: ") + std::strerror(error), "expected a readable file");
 }
 
 [[noreturn]] void failWriting(const std::string& path, const char* step, int error) {
   throw ImageError(path, std::string(step) + " failed: " + std::strerror(error), "expected a writable place");
 }
 
+constexpr const char* kTemporary = ".tmp.";
+
 // Unique among the processes and threads that may write beside each other.
 std::string temporaryName(const std::string& path) {
   static std::atomic<unsigned> counter{0};
-  return path + ".tmp." + std::to_string(::getpid()) + "." + std::to_string(counter++);
+  return path + kTemporary + std::to_string(::getpid()) + "." + std::to_string(counter++);
 }
 
 // What a chain of symbolic links ends at, or the path itself.
@@ -82,7 +84,7 @@ std::vector<unsigned char> readFileBytes(const std::string& path) {
   if (file.get() < 0) failReading(path, errno);
   struct stat info {};
   if (::fstat(file.get(), &info) != 0) failReading(path, errno);
-  if (!S_ISREG(info.st_mode)) throw ImageError(path, "is not a regular file", "expected an image file");
+  if (!S_ISREG(info.st_mode)) throw ImageError(path, "is not a regular file", "expected a file");
   std::vector<unsigned char> bytes(static_cast<size_t>(info.st_size));
   size_t done = 0;
   while (done < bytes.size()) {
@@ -113,26 +115,48 @@ void checkWritable(const std::string& path) {
   ::unlink(temporary.c_str());
 }
 
-void writeFileAtomically(const std::string& path, std::span<const unsigned char> bytes) {
-  const std::string target = targetOf(path);
-  if (isSpecial(target)) {
-    const Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-    if (file.get() < 0) failWriting(path, "opening", errno);
-    if (!writeAll(file.get(), bytes)) failWriting(path, "writing", errno);
+AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(targetOf(path)) {
+  if (isSpecial(target_)) {
+    descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) failWriting(path, "opening", errno);
     return;
   }
-  const std::string temporary = temporaryName(target);
-  const auto fail = [&](const char* step) {
-    const int error = errno;
-    ::unlink(temporary.c_str());
-    failWriting(path, step, error);
-  };
-  {
-    const Descriptor file(createTemporary(path, temporary));
-    if (!writeAll(file.get(), bytes)) fail("writing");
-    if (::fsync(file.get()) != 0) fail("flushing");
+  const std::string temporary = temporaryName(target_);
+  descriptor_ = createTemporary(path, temporary);
+  temporary_ = temporary;
+}
+
+AtomicFile::~AtomicFile() {
+  ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::write(std::span<const unsigned char> bytes) {
+  if (!writeAll(descriptor_, bytes)) failWriting(path_, "writing", errno);
+}
+
+void AtomicFile::commit() {
+  if (temporary_.empty()) return;
+  if (::fsync(descriptor_) != 0) failWriting(path_, "flushing", errno);
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) failWriting(path_, "renaming", errno);
+  temporary_.clear();
+}
+
+void writeFileAtomically(const std::string& path, std::span<const unsigned char> bytes) {
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+void removeTemporaries(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path target = fs::absolute(targetOf(path));
+  const std::string begin = target.filename().string() + kTemporary;
+  std::error_code ignored;
+  for (fs::directory_iterator file(target.parent_path(), ignored), end; file != end; file.increment(ignored)) {
+    if (ignored) return;
+    if (file->path().filename().string().starts_with(begin)) ::unlink(file->path().c_str());
   }
-  if (std::rename(temporary.c_str(), target.c_str()) != 0) fail("renaming");
 }
 
 }  // namespace wavecrest

@@ -11,6 +11,7 @@ import re
 import struct
 import subprocess
 import tempfile
+import time
 import unittest
 
 WAVECREST = os.environ["WAVECREST"]
@@ -48,6 +49,27 @@ class CommandTest(unittest.TestCase):
         )
         self.assertEqual(result.returncode, expect, f"{arguments}\n{result.stdout}\n{result.stderr}")
         return result
+
+    def start(self, *arguments, stdin=None):
+        """Begins to run; the process is killed at the end of the test."""
+        process = subprocess.Popen(
+            [WAVECREST, *map(str, arguments)], cwd=self.folder, stdin=stdin, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        self.addCleanup(process.kill)
+        return process
+
+    def end(self, process, expect):
+        """Waits for what start has begun and checks the exit code; returns what it has written."""
+        output, error = process.communicate(timeout=TIMEOUT_SECONDS)
+        self.assertEqual(process.returncode, expect, error)
+        return output, error
+
+    def wait_for(self, condition):
+        deadline = time.monotonic() + TIMEOUT_SECONDS
+        while not condition():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
 
     def render(self, *arguments, scene="cornell-diffuse", expect=DONE):
         return self.run_wavecrest("render", scene, "--size", "32x24", "--threads", "2", *arguments, expect=expect)

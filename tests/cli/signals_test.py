@@ -7,21 +7,13 @@ import subprocess
 import time
 import unittest
 
-from harness import DONE, INTERRUPTED, TIMEOUT_SECONDS, WAVECREST, CommandTest, read_exr_header, read_json
+from harness import DONE, INTERRUPTED, CommandTest, read_exr_header, read_json
 
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 SMALL = ["cornell-diffuse", "--size", "32x24", "--threads", "2"]
 
 
 class Signals(CommandTest):
-    def start(self, *arguments, stdin=None):
-        process = subprocess.Popen(
-            [WAVECREST, *arguments], cwd=self.folder, stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            text=True,
-        )  # fmt: skip
-        self.addCleanup(process.kill)
-        return process
-
     def started(self, *arguments):
         """A render of ten minutes, once paths are traced."""
         process = self.start("render", *SMALL, "--time", "10m", "--progress", "jsonl", *arguments)
@@ -29,17 +21,6 @@ class Signals(CommandTest):
             if '"paths":' in line and not line.rstrip().endswith('"paths":0}'):
                 break
         return process
-
-    def end(self, process, expect):
-        output, error = process.communicate(timeout=TIMEOUT_SECONDS)
-        self.assertEqual(process.returncode, expect, error)
-        return output, error
-
-    def wait_for(self, condition):
-        deadline = time.monotonic() + TIMEOUT_SECONDS
-        while not condition():
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.01)
 
 
 class Render(Signals):

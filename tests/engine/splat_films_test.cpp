@@ -10,6 +10,7 @@
 #include "engine/for_each.h"
 #include "engine/methods/method_list.h"
 #include "tests/engine/render_statistics.h"
+#include "tests/engine/saved_state.h"
 #include "tests/engine/test_scenes.h"
 #include "tests/kernels/isa_test.h"
 
@@ -135,7 +136,7 @@ TEST_P(SplatSumsTest, holdAnHourOfLargeSplats) {
 // Any number of workers, at the same time, come to the same sums; and they share a bounded number of films.
 TEST(SplatFilms, areTheSameForAnyNumberOfWorkers) {
   constexpr size_t kPixels = 1000, kCapacity = 256, kQueues = 200;
-  std::vector<uint64_t> expected;
+  std::vector<unsigned char> expected;
   for (const size_t threads : {1u, 2u, 3u, 8u, 64u}) {
     SplatFilms films(kPixels, threads, 0x1p40);
     EXPECT_EQ(films.bytes(), SplatFilms::bytesFor(kPixels, std::min<size_t>(threads, kSplatFilms)));
@@ -154,11 +155,11 @@ TEST(SplatFilms, areTheSameForAnyNumberOfWorkers) {
         EXPECT_EQ(queue.splats.size, 0u);
       }
     });
-    if (expected.empty()) expected = films.halves();
-    EXPECT_EQ(films.halves(), expected) << threads << " workers";
+    if (expected.empty()) expected = savedState(films);
+    EXPECT_EQ(savedState(films), expected) << threads << " workers";
     SplatFilms restored(kPixels, threads, 0x1p40);
-    restored.setHalves(films.halves());
-    EXPECT_EQ(restored.halves(), expected);
+    restoreState(restored, expected);
+    EXPECT_EQ(savedState(restored), expected);
   }
 }
 

@@ -1,0 +1,215 @@
+"""Checkpoints: a render that is broken at any moment goes on to the bits of one that was not, and nothing else is taken.
+
+BREAKS in the environment is how often each signal breaks renders in all (default 14: each method twice). Moments are drawn
+with a fixed seed; where they fall within the render depends on the machine, and every one must do.
+"""
+
+import itertools
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+from harness import DONE, INPUT, INTERRUPTED, TIMEOUT_SECONDS, USAGE, CommandTest, read_json
+
+BREAKS = int(os.environ.get("BREAKS", "14"))
+# Iterations of some tenths of a second.
+SPP = {"pt": 3000, "lt": 2000, "bpt": 700, "mlt": 1000, "ppm": 1200, "bpm": 700, "vcm": 400}
+METHODS = list(SPP)
+
+
+class Checkpoints(CommandTest):
+    def arguments(self, method, output, *more, threads=2, times=1):
+        return ["render", "cornell-diffuse", "--size", "64x48", "-m", method, "--spp", times * SPP[method],
+                "--threads", threads, "--radius", "0.02", "--seed", "7", "--chains", "2000", "--bootstrap", "20000", "--progress", "none",
+                "-o", output, *more]  # fmt: skip
+
+    def bytes_of(self, name):
+        return pathlib.Path(self.path(name)).read_bytes()
+
+
+class Broken(Checkpoints):
+    """Renders of each method, broken by a signal at random moments until they are done."""
+
+    def render_in_parts(self, method, number, moments):
+        """Leaves parts.pfm; returns how often the render was broken."""
+        more = ["--checkpoint", "c", "--checkpoint-every", "0.02s", "--resume"]
+        for broken in range(TIMEOUT_SECONDS):
+            process = self.start(*self.arguments(method, "parts.pfm", *more, threads=1 + broken % 3))
+            try:
+                # After some breaks as long as it takes: a render must come to its end.
+                process.wait(moments.uniform(0.02, 0.25) if broken < 8 else TIMEOUT_SECONDS)
+            except subprocess.TimeoutExpired:
+                process.send_signal(number)
+            _, error = process.communicate()
+            if process.returncode == DONE:
+                return broken
+            # A signal that comes before the program has begun to listen ends it as any other program.
+            self.assertIn(process.returncode, (-number, INTERRUPTED), error)
+        return self.fail("the render does not end")
+
+    def break_by(self, number):
+        moments = random.Random(int(number))
+        whole, breaks = {}, 0
+        for method in itertools.cycle(METHODS):
+            if breaks >= BREAKS:
+                break
+            if method not in whole:
+                self.run_wavecrest(*self.arguments(method, "whole.pfm"))
+                whole[method] = self.bytes_of("whole.pfm")
+            broken = self.render_in_parts(method, number, moments)
+            self.assertEqual(self.bytes_of("parts.pfm"), whole[method], f"{method}, broken {broken} times")
+            os.remove(self.path("parts.pfm"))
+            os.remove(self.path("c"))
+            self.assertEqual(os.listdir(self.folder), ["whole.pfm"])
+            breaks += broken
+
+    def test_by_term(self):
+        self.break_by(signal.SIGTERM)
+
+    def test_by_kill(self):
+        self.break_by(signal.SIGKILL)
+
+
+class GoingOn(Checkpoints):
+    def test_usr1_saves_now(self):
+        for method in ("pt", "mlt", "vcm"):
+            whole, parts = (self.arguments(method, name, times=4) for name in ("whole.pfm", "parts.pfm"))
+            process = self.start(*parts, "--checkpoint", method)
+            time.sleep(0.2)
+            process.send_signal(signal.SIGUSR1)
+            self.wait_for(lambda: (self.folder / method).exists())
+            process.kill()
+            process.communicate()
+            self.run_wavecrest(*parts, "--checkpoint", method, "--resume", "--stats", "stats.json")
+            stats = read_json(self.path("stats.json"))
+            self.assertGreater(stats["resumed_from"], 0)
+            self.assertLess(stats["resumed_from"], stats["iterations"])
+            self.run_wavecrest(*whole)
+            self.assertEqual(self.bytes_of("parts.pfm"), self.bytes_of("whole.pfm"))
+
+    def test_a_render_that_is_done_goes_on_to_more_iterations(self):
+        self.render("-m", "bpt", "--spp", "5", "--checkpoint", "c", "--stats", "5.json")
+        self.render("-m", "bpt", "--spp", "8", "--checkpoint", "c", "--resume", "--stats", "8.json", "-o", "parts.pfm")
+        self.render("-m", "bpt", "--spp", "8", "--stats", "whole.json", "-o", "whole.pfm")
+        five, eight, whole = (read_json(self.path(f"{name}.json")) for name in ("5", "8", "whole"))
+        self.assertEqual(self.bytes_of("parts.pfm"), self.bytes_of("whole.pfm"))
+        self.assertEqual((five["resumed_from"], eight["resumed_from"]), (0, 5))
+        self.assertNotIn("resumed_from", whole)
+        for count in ("iterations", "camera_paths", "light_paths", "rays_closest", "rays_shadow", "connections"):
+            self.assertEqual(eight[count], whole[count], count)
+        for seconds in ("render_seconds", "cpu_seconds", "wall_seconds"):
+            self.assertGreater(eight[seconds], five[seconds], seconds)
+        # Nothing is left to do: the same image again.
+        self.render("-m", "bpt", "--spp", "8", "--checkpoint", "c", "--resume", "-o", "again.pfm")
+        self.assertEqual(self.bytes_of("again.pfm"), self.bytes_of("whole.pfm"))
+
+    def test_a_render_goes_on_to_more_time(self):
+        for method in METHODS:
+            arguments = ["-m", method, "--checkpoint", method, "--stats", "stats.json", "--chains", "500"]
+            seconds = []
+            for time_limit in ("0.1s", "0.2s"):
+                self.render(*arguments, "--time", time_limit, "--resume")
+                seconds.append(read_json(self.path("stats.json"))["render_seconds"])
+            self.assertGreaterEqual(seconds[1], 0.15, method)  # of mlt a step that would not fit is left out
+            self.assertLess(seconds[1] - seconds[0], 0.19, f"{method}: the second part took the time of both")
+
+    def test_snapshots_go_on(self):
+        arguments = ["render", "cornell-diffuse", "--size", "32x24", "--time", "1s", "--snapshot-every", "0.1s", "-o",
+                     "a.exr", "--stats", "stats.json", "--checkpoint", "c", "--resume"]  # fmt: skip
+        process = self.start(*arguments)
+        self.wait_for(lambda: (self.folder / "a.0003.exr").exists())
+        process.send_signal(signal.SIGTERM)
+        self.end(process, INTERRUPTED)
+        first = read_json(self.path("stats.json"))["snapshots"]
+        self.run_wavecrest(*arguments)
+        snapshots = read_json(self.path("stats.json"))["snapshots"]
+        self.assertEqual([snapshot["index"] for snapshot in snapshots], list(range(10)))
+        self.assertGreaterEqual(len(first), 4)
+        self.assertEqual(snapshots[: len(first)], first)
+        for snapshot in snapshots:
+            # Each at its time, none made up for later.
+            self.assertAlmostEqual(snapshot["render_seconds"], 0.1 * (snapshot["index"] + 1), delta=0.09)
+            self.assertTrue((self.folder / snapshot["file"]).exists())
+
+    def test_without_a_file_it_begins_from_the_start_and_says_so(self):
+        result = self.render("--spp", "2", "--checkpoint", "c", "--resume")
+        self.assertIn("c: there is none yet", result.stderr)
+        self.assertTrue((self.folder / "c").exists())
+        self.assertIn("c: goes on after 2 iterations", self.render("--spp", "3", "--checkpoint", "c", "--resume").stderr)
+
+    def test_what_killed_writers_left_is_removed(self):
+        self.write("c.tmp.1.0", "part of a checkpoint")
+        self.render("--spp", "1", "--checkpoint", "c")
+        self.assertEqual(os.listdir(self.folder), ["c"])
+
+
+class Refused(Checkpoints):
+    def setUp(self):
+        super().setUp()
+        self.render("-m", "lt", "--spp", "2", "--checkpoint", "c")
+        self.before = self.bytes_of("c")
+
+    def tearDown(self):
+        self.assertEqual(self.bytes_of("c"), self.before)
+
+    def resume(self, *arguments, **keywords):
+        return self.render("--spp", "3", "--checkpoint", "c", "--resume", "-o", "a.pfm", *arguments, **keywords)
+
+    def test_another_render(self):
+        for arguments, scene, said in (
+            (["-m", "bpt"], "cornell-diffuse", "its method is lt, not bpt"),
+            (["-m", "lt", "--seed", "1"], "cornell-diffuse", "its seed is 0, not 1"),
+            (["-m", "lt", "--max-depth", "3"], "cornell-diffuse", "its max_depth is "),
+            (["-m", "lt"], "cornell-mirror", "its scene_hash is "),
+        ):
+            result = self.resume(*arguments, scene=scene, expect=INPUT)
+            self.assert_one_error_line(result, f"c: {said}")
+        self.assertFalse((self.folder / "a.pfm").exists())
+
+    def test_damaged_files(self):
+        whole, self.before = self.before, None
+        damages = random.Random(1)
+        for _ in range(20):
+            bytes_ = bytearray(whole)
+            if damages.random() < 0.5:
+                del bytes_[damages.randrange(len(bytes_)) :]
+            else:
+                bytes_[damages.randrange(len(bytes_))] ^= 1 << damages.randrange(8)
+            self.write("c", bytes(bytes_))
+            self.assert_one_error_line(self.resume("-m", "lt", expect=INPUT), "c: is (damaged|no checkpoint)")
+            self.before = bytes(bytes_)
+
+    def test_to_overwrite_it(self):
+        result = self.render("-m", "lt", "--spp", "3", "--checkpoint", "c", expect=USAGE)
+        self.assert_one_error_line(result, "c exists; expected --resume")
+        result = self.render("--spp", "1", "--checkpoint", "c", "--resume", "--stats", "c", expect=USAGE)
+        self.assert_one_error_line(result, "--.* c: is the file of --.* too")
+
+    def test_options_that_do_not_fit(self):
+        for arguments, said in (
+            (["--resume"], "--resume: there is no checkpoint"),
+            (["--checkpoint-every", "5s"], "--checkpoint-every: there is no checkpoint"),
+            (["--checkpoint", "-"], "--checkpoint -: expected a file"),
+            (["--checkpoint", "d", "--checkpoint-every", "soon"], ".*soon"),
+            (["--checkpoint", "nowhere/c"], "--checkpoint nowhere/c: there is no folder"),
+        ):
+            self.assert_one_error_line(self.render("--spp", "1", *arguments, expect=USAGE), said)
+        self.render("--spp", "1", "-o", "a.pfm")
+        until = ["--checkpoint", "d", "--until-ssim", "0.9", "--reference", "a.pfm"]
+        self.assertIn("--checkpoint: not together", self.render(*until, expect=USAGE).stderr)
+
+    def test_two_at_a_time(self):
+        process = self.start("render", "cornell-diffuse", "--size", "32x24", "--time", "10m", "--checkpoint", "d")
+        self.wait_for(lambda: (self.folder / "d.lock").exists())
+        result = self.render("--spp", "1", "--checkpoint", "d", "--resume", expect=INPUT)
+        self.assert_one_error_line(result, "d: process .* works on it")
+        process.send_signal(signal.SIGTERM)
+        process.communicate()
+
+
+if __name__ == "__main__":
+    unittest.main()
