@@ -29,6 +29,7 @@ struct InputError : std::runtime_error {
 void addCompareCommand(CommandLine& program, int& exitCode);
 void addBenchCommand(CommandLine& program, int& exitCode);
 void addInspectCommand(CommandLine& program, int& exitCode);
+void addConvertCommand(CommandLine& program, int& exitCode);
 void addConvergeCommand(CommandLine& program, int& exitCode);
 void addDescribeCommand(CommandLine& program, int& exitCode);
 void addRecommendCommand(CommandLine& program, int& exitCode);

@@ -105,6 +105,7 @@ int run(std::vector<std::string> arguments) {
     addRenderCommand(program, exitCode);
     addInspectCommand(program, exitCode);
     addRecommendCommand(program, exitCode);
+    addConvertCommand(program, exitCode);
     addReportCommand(program, exitCode);
     addBenchCommand(program, exitCode);
     addScenesCommand(program, exitCode);

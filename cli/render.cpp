@@ -162,7 +162,8 @@ UntilGoal untilGoal(const RenderOptions& options, const RenderSettings& settings
   }
   if (!options.checkpoint.file.empty()) {
     throw UsageError(
-        "--checkpoint: not together with --until-ssim or --until-relative-error, whose looks it does not keep; expected one of them");
+        "--checkpoint: not together with --until-ssim or --until-relative-error, whose looks it does not keep; "
+        "expected one of them");
   }
   return {options.until, settings, film};
 }

@@ -21,6 +21,7 @@ void addSceneOptions(const Command& command, SceneOptions& options) {
 Scene loadScene(const SceneOptions& options, ProgressKind kind) {
   LoadOptions load;
   load.lenient = options.lenient;
+  load.keepAll = options.keepAll;
   if (!options.size.empty()) load.filmSize = parseSize(options.size);
   for (const std::string& define : options.defines) {
     const size_t equals = define.find('=');
@@ -35,8 +36,8 @@ Scene loadScene(const SceneOptions& options, ProgressKind kind) {
   return scene;
 }
 
-void printNotes(const Scene& scene, ProgressKind kind) {
-  for (const Note& note : scene.notes) noteLine(kind, {{"note", toString(note)}}, "note: " + toString(note));
+void printNotes(const std::vector<Note>& notes, ProgressKind kind) {
+  for (const Note& note : notes) noteLine(kind, {{"note", toString(note)}}, "note: " + toString(note));
 }
 
 std::string toString(const Note& note) {

@@ -11,9 +11,10 @@
 namespace wavecrest {
 
 struct SceneOptions {
-  std::string scene, size;
-  std::vector<std::string> defines;
+  std::string scene{}, size{};
+  std::vector<std::string> defines{};
   bool lenient = false;
+  bool keepAll = false;  // LoadOptions::keepAll; not an option of the command line
 };
 
 void addSceneOptions(const Command& command, SceneOptions& options);
@@ -22,8 +23,9 @@ void addSceneOptions(const Command& command, SceneOptions& options);
 // scene that cannot be read.
 Scene loadScene(const SceneOptions& options, ProgressKind kind = ProgressKind::automatic);
 
-// Its notes, one a line on stderr.
-void printNotes(const Scene& scene, ProgressKind kind);
+// One a line on stderr.
+void printNotes(const std::vector<Note>& notes, ProgressKind kind);
+inline void printNotes(const Scene& scene, ProgressKind kind) { printNotes(scene.notes, kind); }
 
 // FILE:LINE: what the file says (how often, if more than once): what wavecrest does.
 std::string toString(const Note& note);

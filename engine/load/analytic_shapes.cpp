@@ -28,18 +28,22 @@ void basisAround(const Double3& n, Double3& s, Double3& t) {
 
 }  // namespace
 
-Geometry readRectangle(LoadContext&, Parameters& parameters, const Matrix4& toWorld) {
+Rectangle placeRectangle(const Matrix4& toWorld, bool flipNormals) {
   Rectangle rectangle{.corner = transformPoint(toWorld, {-1, -1, 0}),
                       .edgeU = transformVector(toWorld, {2, 0, 0}),
                       .edgeV = transformVector(toWorld, {0, 2, 0})};
   // The normal is to_world's image of +z as a normal, whatever the handedness: edgeU is reversed to face that way.
   const bool mirrored = determinant3(toWorld) < 0;
-  if (mirrored != parameters.boolean("flip_normals", false)) {
+  if (mirrored != flipNormals) {
     rectangle.corner = rectangle.corner + rectangle.edgeU;
     rectangle.edgeU = -1 * rectangle.edgeU;
     rectangle.mirrored = true;
   }
   return rectangle;
+}
+
+Geometry readRectangle(LoadContext&, Parameters& parameters, const Matrix4& toWorld) {
+  return placeRectangle(toWorld, parameters.boolean("flip_normals", false));
 }
 
 Geometry readDisk(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
@@ -72,6 +76,33 @@ Geometry readSphere(LoadContext& context, Parameters& parameters, const Matrix4&
                 .toWorld = multiply(toWorld, multiply(translation(center), scaling({radius, radius, radius})))};
 }
 
+namespace {
+
+// The images of the cylinder's axis and of the two directions across it where phi is 0 and pi / 2.
+struct CylinderFrame {
+  Double3 phi0{}, phi90{}, axis{};
+};
+
+CylinderFrame frameOf(const Matrix4& toWorld, const Double3& p0, const Double3& p1) {
+  const Double3 axis = normalized(p1 - p0);
+  Double3 s, t;
+  basisAround(axis, s, t);
+  return {transformVector(toWorld, s), transformVector(toWorld, t), transformVector(toWorld, axis)};
+}
+
+}  // namespace
+
+Cylinder placeCylinder(const Matrix4& toWorld, const Double3& p0, const Double3& p1, double radius, bool flipNormals) {
+  const CylinderFrame frame = frameOf(toWorld, p0, p1);
+  const bool mirrored = determinant3(toWorld) < 0;
+  return {.p0 = transformPoint(toWorld, p0),
+          .p1 = transformPoint(toWorld, p1),
+          .radius = radius * length(frame.phi0),
+          .flipNormals = mirrored != flipNormals,
+          .phi0 = normalized(frame.phi0),
+          .phi90 = normalized(frame.phi90)};
+}
+
 Geometry readCylinder(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
   const Double3 p0 = parameters.vector("p0").value_or(Double3{0, 0, 0});
   const Double3 p1 = parameters.vector("p1").value_or(Double3{0, 0, 1});
@@ -79,10 +110,7 @@ Geometry readCylinder(LoadContext& context, Parameters& parameters, const Matrix
   if (!(length(p1 - p0) > 0) || !std::isfinite(length(p1 - p0))) {
     throw LoadError(parameters.locationOf("p1"), "cylinder has no length; expected p0 and p1 to differ");
   }
-  const Double3 axis = normalized(p1 - p0);
-  Double3 s, t;
-  basisAround(axis, s, t);
-  const Double3 u = transformVector(toWorld, s), v = transformVector(toWorld, t), w = transformVector(toWorld, axis);
+  const auto [u, v, w] = frameOf(toWorld, p0, p1);
   constexpr double kTolerance = 1e-4;
   const bool straight = std::abs(dot(u, w)) <= kTolerance * length(u) * length(w) &&
                         std::abs(dot(v, w)) <= kTolerance * length(v) * length(w);
@@ -90,13 +118,7 @@ Geometry readCylinder(LoadContext& context, Parameters& parameters, const Matrix
     context.unsupported(parameters.locationOf("to_world"),
                         "cylinder with an elliptic or slanted section; expected a uniform scale around its axis");
   }
-  const bool mirrored = determinant3(toWorld) < 0;
-  return Cylinder{.p0 = transformPoint(toWorld, p0),
-                  .p1 = transformPoint(toWorld, p1),
-                  .radius = radius * length(u),
-                  .flipNormals = mirrored != parameters.boolean("flip_normals", false),
-                  .phi0 = normalized(u),
-                  .phi90 = normalized(v)};
+  return placeCylinder(toWorld, p0, p1, radius, parameters.boolean("flip_normals", false));
 }
 
 // Four vertices per face, so that each has its own texture coordinates; faces in Mitsuba's order -y +y +x +z -x -z.

@@ -138,20 +138,25 @@ Bitmap luminanceOf(const Bitmap& colour) {
 
 // Where a number is asked for, Mitsuba reads a colour bitmap's luminance, and swaps the colours of a checkerboard (3.9,
 // seen in its images).
-uint32_t scalarTextureOf(LoadContext& context, uint32_t index) {
-  if (const auto known = context.scalarTextures.find(index); known != context.scalarTextures.end()) {
-    return known->second;
-  }
-  Texture texture = context.scene.textures[index];
+Texture scalarTexture(Texture texture) {
   if (auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
     std::swap(board->color0, board->color1);
   } else {
     auto& bitmap = std::get<BitmapTexture>(texture.kind).bitmap;
-    if (bitmap->channels == 1) return index;
-    bitmap = std::make_shared<Bitmap>(luminanceOf(*bitmap));
+    if (bitmap->channels != 1) bitmap = std::make_shared<Bitmap>(luminanceOf(*bitmap));
   }
+  return texture;
+}
+
+uint32_t scalarTextureOf(LoadContext& context, uint32_t index) {
+  if (const auto known = context.scalarTextures.find(index); known != context.scalarTextures.end()) {
+    return known->second;
+  }
+  const Texture& texture = context.scene.textures[index];
+  const auto* const bitmap = std::get_if<BitmapTexture>(&texture.kind);
+  if (bitmap != nullptr && bitmap->bitmap->channels == 1) return index;
   const uint32_t scalar = static_cast<uint32_t>(context.scene.textures.size());
-  context.scene.textures.push_back(std::move(texture));
+  context.scene.textures.push_back(scalarTexture(texture));
   context.scalarTextures.emplace(index, scalar);
   return scalar;
 }

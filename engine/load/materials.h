@@ -19,6 +19,7 @@ TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::s
 TexturedRgb readTexturedEmission(LoadContext& context, Parameters& parameters, std::string_view name);
 // The texture that stands in for another where a number is asked for instead of a colour.
 uint32_t scalarTextureOf(LoadContext& context, uint32_t index);
+Texture scalarTexture(Texture texture);
 
 TexturedFloat readTexturedFloat(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);
 // A parameter that must be one colour everywhere.

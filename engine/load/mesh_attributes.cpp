@@ -113,6 +113,20 @@ std::shared_ptr<const Bitmap> bakeMeshAttribute(const MeshAttribute& attribute, 
   return bitmap;
 }
 
+MeshAttribute unbakedAttribute(const Bitmap& bitmap, size_t triangles) {
+  const size_t channels = bitmap.channels, columns = bitmap.width / 2;
+  MeshAttribute attribute{.name = channels == 3 ? "vertex_color" : "vertex_value", .channels = channels, .values = {}};
+  attribute.values.reserve(3 * triangles * channels);
+  for (size_t i = 0; i < triangles; ++i) {
+    const size_t corner = (2 * (i / columns) * bitmap.width + 2 * (i % columns));
+    for (const size_t texel : {corner, corner + 1, corner + bitmap.width}) {
+      const auto value = bitmap.pixels.begin() + static_cast<ptrdiff_t>(texel * channels);
+      attribute.values.insert(attribute.values.end(), value, value + static_cast<ptrdiff_t>(channels));
+    }
+  }
+  return attribute;
+}
+
 Texture readMeshAttribute(LoadContext& context, Parameters& parameters) {
   const std::string name = parameters.requiredString("name");
   const double scale = parameters.real("scale", 1);
@@ -121,7 +135,8 @@ Texture readMeshAttribute(LoadContext& context, Parameters& parameters) {
                     "attribute " + inQuotes(name) + " of a mesh; expected a name that starts with vertex_ or face_");
   }
   std::shared_ptr<const Bitmap> bitmap = context.attributeBitmap;
-  if (!bitmap) {
+  const bool ofMesh = bitmap != nullptr;
+  if (!ofMesh) {
     // A definition that no mesh uses.
     bitmap = std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .channels = 3, .pixels = {0, 0, 0}});
   } else if (scale != 1) {
@@ -129,8 +144,10 @@ Texture readMeshAttribute(LoadContext& context, Parameters& parameters) {
     for (float& value : scaled->pixels) value = static_cast<float>(scale * value);
     bitmap = std::move(scaled);
   }
-  return {.kind = BitmapTexture{.bitmap = std::move(bitmap), .filter = Filter::bilinear, .wrap = Wrap::clamp},
-          .toUv = identityMatrix()};
+  return {
+      .kind =
+          BitmapTexture{.bitmap = std::move(bitmap), .filter = Filter::bilinear, .wrap = Wrap::clamp, .ofMesh = ofMesh},
+      .toUv = identityMatrix()};
 }
 
 }  // namespace wavecrest

@@ -29,6 +29,10 @@ std::string meshAttributeOf(LoadContext& context, const XmlElement& shape);
 // Gives each triangle vertices of its own, with texture coordinates in the bitmap that is returned.
 std::shared_ptr<const Bitmap> bakeMeshAttribute(const MeshAttribute& attribute, Mesh& mesh);
 
+// The values of the vertices of a mesh that bakeMeshAttribute has given its texture coordinates: three for each
+// triangle.
+MeshAttribute unbakedAttribute(const Bitmap& bitmap, size_t triangles);
+
 Texture readMeshAttribute(LoadContext& context, Parameters& parameters);
 
 }  // namespace wavecrest

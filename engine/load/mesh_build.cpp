@@ -56,9 +56,11 @@ double angleBetween(const Double3& a, const Double3& b) {
   return 2 * std::atan2(length(u - v), length(u + v));
 }
 
-// Vertex normals as the mean of the face normals weighted by the angle at the vertex (Thürmer and Wüthrich, "Computing
-// Vertex Normals from Polygonal Facets", JGT 3(1), 1998), for the vertices whose normal is zero.
-void fillMissingNormals(Mesh& mesh) {
+}  // namespace
+
+// The mean of the face normals weighted by the angle at the vertex (Thürmer and Wüthrich, "Computing Vertex Normals
+// from Polygonal Facets", JGT 3(1), 1998).
+std::vector<Float3> smoothNormals(const Mesh& mesh) {
   std::vector<Double3> sums(mesh.positions.size(), Double3{0, 0, 0});
   for (const std::array<uint32_t, 3>& t : mesh.triangles) {
     const Double3 p[3] = {toDouble(mesh.positions[t[0]]), toDouble(mesh.positions[t[1]]),
@@ -69,21 +71,35 @@ void fillMissingNormals(Mesh& mesh) {
       sums[t[i]] = sums[t[i]] + angle * normal;
     }
   }
-  for (size_t i = 0; i < sums.size(); ++i) {
-    if (mesh.normals[i] != Float3{0, 0, 0}) continue;
+  std::vector<Float3> normals;
+  normals.reserve(sums.size());
+  for (const Double3& sum : sums) {
     // Opposite faces cancel, and an unused vertex has none: any direction will do, Mitsuba takes x.
-    const double size = length(sums[i]);
-    mesh.normals[i] = size > 1e-20 ? toFloat((1 / size) * sums[i]) : Float3{1, 0, 0};
+    const double size = length(sum);
+    normals.push_back(size > 1e-20 ? toFloat((1 / size) * sum) : Float3{1, 0, 0});
+  }
+  return normals;
+}
+
+Float3 placedNormal(const Matrix4& normalMatrix, const Float3& normal) {
+  const Double3 placed = transformVector(normalMatrix, toDouble(normal));
+  const double size = length(placed);
+  return size > 0 && std::isfinite(size) ? toFloat((1 / size) * placed) : Float3{0, 0, 0};
+}
+
+namespace {
+
+// For the vertices whose normal is zero.
+void fillMissingNormals(Mesh& mesh) {
+  const std::vector<Float3> smooth = smoothNormals(mesh);
+  for (size_t i = 0; i < smooth.size(); ++i) {
+    if (mesh.normals[i] == Float3{0, 0, 0}) mesh.normals[i] = smooth[i];
   }
 }
 
 void placeNormals(std::vector<Float3>& normals, const Matrix4& toWorld) {
   const Matrix4 matrix = normalMatrix(toWorld);
-  for (Float3& n : normals) {
-    const Double3 placed = transformVector(matrix, toDouble(n));
-    const double size = length(placed);
-    n = size > 0 && std::isfinite(size) ? toFloat((1 / size) * placed) : Float3{0, 0, 0};
-  }
+  for (Float3& n : normals) n = placedNormal(matrix, n);
 }
 
 // Reverses triangles whose winding contradicts their normals, so that both name the same front side. Mitsuba shades and
@@ -97,12 +113,12 @@ void windAlongNormals(Mesh& mesh) {
   }
 }
 
+}  // namespace
+
 void turnAround(Mesh& mesh) {
   for (std::array<uint32_t, 3>& t : mesh.triangles) std::swap(t[1], t[2]);
   for (Float3& n : mesh.normals) n = {-n[0], -n[1], -n[2]};
 }
-
-}  // namespace
 
 Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& placement, const SourceLocation& where) {
   Mesh mesh{.positions = std::move(soup.positions),

@@ -31,4 +31,11 @@ struct MeshPlacement {
 // An attribute is baked: the bitmap becomes LoadContext::attributeBitmap.
 Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& placement, const SourceLocation& where);
 
+// Normals of all vertices as a mesh has them that is not given any: unit vectors.
+std::vector<Float3> smoothNormals(const Mesh& mesh);
+// A normal of a file after a transform: a unit vector, or zero where it has no direction. normalMatrix: see matrix.h.
+Float3 placedNormal(const Matrix4& normalMatrix, const Float3& normal);
+// Makes the other side of all triangles the front, as flip_normals does.
+void turnAround(Mesh& mesh);
+
 }  // namespace wavecrest

@@ -17,6 +17,10 @@ Geometry readPlyShape(LoadContext&, Parameters&, const Matrix4& toWorld);
 Geometry readObjShape(LoadContext&, Parameters&, const Matrix4& toWorld);
 Geometry readSerializedShape(LoadContext&, Parameters&, const Matrix4& toWorld);
 
+// What these shapes become in world space. Pure functions of their parameters, so that a writer can find parameters.
+Rectangle placeRectangle(const Matrix4& toWorld, bool flipNormals);
+Cylinder placeCylinder(const Matrix4& toWorld, const Double3& p0, const Double3& p1, double radius, bool flipNormals);
+
 // Surface area of a shape in world space; not finite if its numbers overflow.
 double surfaceArea(const Geometry& geometry);
 

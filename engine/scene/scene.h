@@ -45,6 +45,7 @@ struct BitmapTexture {
   std::shared_ptr<const Bitmap> bitmap;
   Filter filter = Filter::bilinear;
   Wrap wrap = Wrap::repeat;
+  bool ofMesh = false;  // an attribute of the one mesh that has it, baked (engine/load/mesh_attributes.h)
 };
 
 struct CheckerboardTexture {

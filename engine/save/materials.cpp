@@ -1,0 +1,155 @@
+#include "engine/save/sections.h"
+
+namespace wavecrest {
+
+namespace {
+
+constexpr Rgb kWhite{1, 1, 1};
+
+// A factor that is 1 unless a file says otherwise.
+void addFactor(const SaveContext& context, pugi::xml_node node, const char* name, const TexturedRgb& value) {
+  if (value.texture != kNone || value.value != kWhite) addTexturedRgb(context, node, name, value);
+}
+
+// A reflectance above one, which a file can only give as a constant that is not checked.
+bool isRaw(const TexturedRgb& value) {
+  const auto outside = [](double v) { return v < 0 || v > 1; };
+  return value.texture == kNone && (outside(value.value[0]) || outside(value.value[1]) || outside(value.value[2]));
+}
+
+bool isRough(const TexturedFloat& alpha) { return alpha.texture != kNone || alpha.value != 0; }
+
+// Writes a BSDF without its adapters below `parent`.
+class BsdfWriter {
+ public:
+  BsdfWriter(SaveContext& context, const Material& material, pugi::xml_node parent, const std::string& id)
+      : context_(context), material_(material), parent_(parent), id_(id) {}
+
+  void operator()(const Diffuse& m) {
+    start("diffuse");
+    reflectance("reflectance", m.reflectance);
+  }
+  void operator()(const Conductor& m) {
+    start(isRough(m.alpha) ? "roughconductor" : "conductor");
+    if (m.perfectMirror && m.eta == Rgb{0, 0, 0} && m.k == kWhite) {
+      addString(node_, "material", "none");
+    } else {
+      addRgb(node_, "eta", m.eta);
+      addRgb(node_, "k", m.k);
+    }
+    roughness(m.alpha, m.distribution);
+    factor("specular_reflectance", m.specularReflectance);
+  }
+  void operator()(const Dielectric& m) {
+    start(m.thin ? "thindielectric" : isRough(m.alpha) ? "roughdielectric" : "dielectric");
+    indices(m.intIor, m.extIor);
+    roughness(m.alpha, m.distribution);
+    factor("specular_reflectance", m.specularReflectance);
+    factor("specular_transmittance", m.specularTransmittance);
+  }
+  void operator()(const Plastic& m) {
+    start(isRough(m.alpha) ? "roughplastic" : "plastic");
+    indices(m.intIor, m.extIor);
+    roughness(m.alpha, m.distribution);
+    reflectance("diffuse_reflectance", m.diffuseReflectance);
+    factor("specular_reflectance", m.specularReflectance);
+    if (m.nonlinear) addBoolean(node_, "nonlinear", true);
+  }
+  void operator()(const Phong& m) {
+    start("phong");
+    reflectance("diffuse_reflectance", m.diffuseReflectance);
+    reflectance("specular_reflectance", m.specularReflectance);
+    addFloat(node_, "exponent", m.exponent);
+    context_.notes.push_back({material_.source, "bsdf \"phong\"", "written as it is, which Mitsuba 3 does not know"});
+  }
+
+ private:
+  void start(const char* type) { node_ = addObject(parent_, "bsdf", type, id_); }
+  void reflectance(const char* name, const TexturedRgb& value) {
+    if (!isRaw(value)) return addTexturedRgb(context_, node_, name, value);
+    addVector(addObject(node_, "texture", "rawconstant", "", name), "value", value.value);
+  }
+  void factor(const char* name, const TexturedRgb& value) {
+    if (isRaw(value)) return reflectance(name, value);
+    addFactor(context_, node_, name, value);
+  }
+  void indices(double interior, double exterior) {
+    addFloat(node_, "int_ior", interior);
+    addFloat(node_, "ext_ior", exterior);
+  }
+  void roughness(const TexturedFloat& alpha, Distribution distribution) {
+    if (!isRough(alpha)) return;
+    addString(node_, "distribution", distribution == Distribution::ggx ? "ggx" : "beckmann");
+    addTexturedFloat(context_, node_, "alpha", alpha);
+  }
+
+  SaveContext& context_;
+  const Material& material_;
+  pugi::xml_node parent_, node_;
+  const std::string& id_;
+};
+
+// Opens the adapters around a material's BSDF, the outermost with the material's id.
+class AdapterWriter {
+ public:
+  AdapterWriter(SaveContext& context, const Material& material, std::string id)
+      : context_(context), material_(material), parent_(context.root), id_(std::move(id)) {}
+
+  void write() {
+    const bool mapOutside = material_.normalMapping.aroundTwoSided || !material_.twoSided;
+    if (mapOutside && mapBeforeMask()) map();
+    mask();
+    if (mapOutside && !mapBeforeMask()) map();
+    if (material_.twoSided) open("twosided");
+    if (!mapOutside) map();
+    std::visit(BsdfWriter(context_, material_, parent_, id_), material_.kind);
+  }
+
+ private:
+  pugi::xml_node open(const char* type) {
+    parent_ = addObject(parent_, "bsdf", type, id_);
+    id_.clear();
+    return parent_;
+  }
+  // Either order is the same material. Textures are numbered as they are read, so the first one is outside.
+  bool mapBeforeMask() const {
+    return material_.opacity && material_.opacity->texture != kNone && material_.bumpTexture != kNone &&
+           material_.bumpTexture < material_.opacity->texture;
+  }
+  void mask() {
+    if (material_.opacity) addTexturedFloat(context_, open("mask"), "opacity", *material_.opacity);
+  }
+  void map() {
+    if (material_.bumpTexture != kNone) {
+      const pugi::xml_node node = open("bumpmap");
+      addTexturedFloat(context_, node, "map", {.value = 0, .texture = material_.bumpTexture});
+      addFloat(node, "scale", material_.bumpScale);
+      addMapping(node);
+    } else if (material_.normalTexture != kNone) {
+      const pugi::xml_node node = open("normalmap");
+      addTexturedRgb(context_, node, "normalmap", {.value = {}, .texture = material_.normalTexture});
+      addMapping(node);
+    }
+  }
+  void addMapping(pugi::xml_node node) const {
+    if (!material_.normalMapping.flipInvalidNormals) addBoolean(node, "flip_invalid_normals", false);
+    if (!material_.normalMapping.shadowing) addBoolean(node, "use_shadowing_function", false);
+  }
+
+  SaveContext& context_;
+  const Material& material_;
+  pugi::xml_node parent_;
+  std::string id_;
+};
+
+}  // namespace
+
+void saveMaterials(SaveContext& context) {
+  for (const Material& material : context.scene.materials) {
+    const std::string fallback = "material-" + std::to_string(context.materialIds.size() + 1);
+    context.materialIds.push_back(context.names.unique(material.id, fallback));
+    AdapterWriter(context, material, context.materialIds.back()).write();
+  }
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,80 @@
+#include "engine/save/sections.h"
+
+namespace wavecrest {
+
+namespace {
+
+void saveFilter(pugi::xml_node film, const FilmSettings& settings) {
+  switch (settings.filter) {
+    case ReconstructionFilter::box: {
+      const pugi::xml_node node = addObject(film, "rfilter", "box");
+      if (settings.filterRadius != 0.5) addFloat(node, "radius", settings.filterRadius);
+      break;
+    }
+    case ReconstructionFilter::tent: {
+      const pugi::xml_node node = addObject(film, "rfilter", "tent");
+      if (settings.filterRadius != 1) addFloat(node, "radius", settings.filterRadius);
+      break;
+    }
+    case ReconstructionFilter::gaussian:
+      addFloat(addObject(film, "rfilter", "gaussian"), "stddev", settings.gaussianStddev);
+      break;
+  }
+}
+
+void saveFilm(pugi::xml_node sensor, const FilmSettings& film) {
+  const pugi::xml_node node = addObject(sensor, "film", "hdrfilm");
+  addInteger(node, "width", film.width);
+  addInteger(node, "height", film.height);
+  if (film.cropWidth != 0) {
+    addInteger(node, "crop_offset_x", film.cropX);
+    addInteger(node, "crop_offset_y", film.cropY);
+    addInteger(node, "crop_width", film.cropWidth);
+    addInteger(node, "crop_height", film.cropHeight);
+  }
+  addString(node, "pixel_format", "rgb");
+  addString(node, "component_format", "float32");
+  saveFilter(node, film);
+}
+
+const char* pluginOf(Sensor::Kind kind) {
+  switch (kind) {
+    case Sensor::Kind::perspective:
+      return "perspective";
+    case Sensor::Kind::thinlens:
+      return "thinlens";
+    case Sensor::Kind::orthographic:
+      return "orthographic";
+  }
+  return "";
+}
+
+}  // namespace
+
+void saveIntegrator(SaveContext& context) {
+  const pugi::xml_node node = addObject(context.root, "integrator", "path");
+  addInteger(node, "max_depth", context.scene.defaults.maxDepth);
+  addInteger(node, "rr_depth", context.scene.defaults.rrDepth);
+}
+
+void saveSensor(SaveContext& context) {
+  const Sensor& sensor = context.scene.sensor;
+  const pugi::xml_node node = addObject(context.root, "sensor", pluginOf(sensor.kind));
+  addTransform(node, "to_world", sensor.toWorld);
+  addFloat(node, "near_clip", sensor.nearClip);
+  addFloat(node, "far_clip", sensor.farClip);
+  if (sensor.kind != Sensor::Kind::orthographic) {
+    addString(node, "fov_axis", "x");
+    addFloat(node, "fov", sensor.fovX);
+  }
+  if (sensor.kind == Sensor::Kind::perspective && sensor.principalPointOffset != std::array<double, 2>{0, 0}) {
+    addFloat(node, "principal_point_offset_x", sensor.principalPointOffset[0]);
+    addFloat(node, "principal_point_offset_y", sensor.principalPointOffset[1]);
+  }
+  if (sensor.kind == Sensor::Kind::thinlens) addFloat(node, "aperture_radius", sensor.apertureRadius);
+  if (sensor.focusDistance != sensor.farClip) addFloat(node, "focus_distance", sensor.focusDistance);
+  saveFilm(node, context.scene.film);
+  addInteger(addObject(node, "sampler", "independent"), "sample_count", context.scene.defaults.sampleCount);
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "engine/load/matrix.h"
+#include "engine/load/mesh_build.h"
+#include "engine/load/shapes.h"
+#include "engine/save/preimage.h"
+#include "engine/save/sections.h"
+
+namespace wavecrest {
+
+namespace {
+
+Matrix4 fromColumns(const Double3& x, const Double3& y, const Double3& z, const Double3& origin) {
+  Matrix4 m = identityMatrix();
+  for (size_t i = 0; i < 3; ++i) m[i] = {x[i], y[i], z[i], origin[i]};
+  return m;
+}
+
+bool isSame(const Cylinder& a, const Cylinder& b) {
+  return a.p0 == b.p0 && a.p1 == b.p1 && a.radius == b.radius && a.flipNormals == b.flipNormals && a.phi0 == b.phi0 &&
+         a.phi90 == b.phi90;
+}
+
+// Whether a mesh without normals in its file gets these, to the bit.
+bool hasSmoothNormals(const Mesh& mesh) {
+  const std::vector<Float3> smooth = smoothNormals(mesh);
+  return std::memcmp(smooth.data(), mesh.normals.data(), smooth.size() * sizeof(Float3)) == 0;
+}
+
+// Writes the shape's own parameters; each call returns the shape's element.
+class ShapeWriter {
+ public:
+  ShapeWriter(SaveContext& context, std::string id, const Bitmap* attribute)
+      : context_(context), id_(std::move(id)), attribute_(attribute) {}
+
+  pugi::xml_node operator()(const Mesh& mesh) const {
+    const pugi::xml_node node = start("ply");
+    PlyContent content;
+    if (attribute_ != nullptr) content.attribute = unbakedAttribute(*attribute_, mesh.triangles.size());
+    const bool faceted = mesh.normals.empty();
+    if (!faceted && !hasSmoothNormals(mesh)) {
+      Mesh turned = mesh;
+      turnAround(turned);
+      if (hasSmoothNormals(turned)) {
+        addString(node, "filename", context_.assets.addMesh(std::move(turned), std::move(content)));
+        addBoolean(node, "flip_normals", true);
+        return node;
+      }
+      content.normals = true;
+    }
+    addString(node, "filename", context_.assets.addMesh(mesh, std::move(content)));
+    if (faceted) addBoolean(node, "face_normals", true);
+    return node;
+  }
+
+  // to_world maps [-1, 1]^2 at z = 0 to it. It never mirrors: flip_normals does.
+  pugi::xml_node operator()(const Rectangle& r) const {
+    const Double3 edgeU = r.mirrored ? -1 * r.edgeU : r.edgeU;
+    const Double3 x = 0.5 * edgeU, y = 0.5 * r.edgeV;
+    Matrix4 toWorld = fromColumns(x, y, normalized(cross(x, y)), {});
+    for (size_t i = 0; i < 3; ++i) {
+      toWorld[i][3] = sumPreimage(r.corner[i], [&](double offset) {
+        Matrix4 moved = toWorld;
+        moved[i][3] = offset;
+        return placeRectangle(moved, r.mirrored).corner[i];
+      });
+    }
+    return placed("rectangle", toWorld, r.mirrored);
+  }
+
+  pugi::xml_node operator()(const Disk& d) const {
+    const Double3 axisV = d.mirrored ? -1 * d.axisV : d.axisV;
+    return placed("disk", fromColumns(d.axisU, axisV, normalized(cross(d.axisU, axisV)), d.center), d.mirrored);
+  }
+
+  pugi::xml_node operator()(const Sphere& s) const {
+    return placed("sphere", s.toWorld, s.flipNormals != (determinant3(s.toWorld) < 0));
+  }
+
+  pugi::xml_node operator()(const Cylinder& c) const {
+    // Without a transform, if phi is then where it must be.
+    Matrix4 toWorld = identityMatrix();
+    Double3 p0 = c.p0, p1 = c.p1;
+    bool flip = c.flipNormals;
+    double radius = radiusOf(c, toWorld, p0, p1);
+    if (!isSame(placeCylinder(toWorld, p0, p1, radius, flip), c)) {
+      // From [0, 1] on the z axis.
+      const auto unit = [](const Double3& v) { return normalized(v); };
+      constexpr double kStep = 1e-9;  // small: the two may differ in length by little
+      Double3 axis{};
+      for (size_t i = 0; i < 3; ++i) axis[i] = sumPreimage(c.p1[i], [&](double v) { return v + c.p0[i]; });
+      toWorld = fromColumns(unitPreimage(c.phi0, kStep, unit), unitPreimage(c.phi90, kStep, unit), axis, c.p0);
+      p0 = {0, 0, 0};
+      p1 = {0, 0, 1};
+      flip = c.flipNormals != (determinant3(toWorld) < 0);
+      radius = radiusOf(c, toWorld, p0, p1);
+    }
+    const pugi::xml_node node = placed("cylinder", toWorld, flip);
+    addPoint(node, "p0", p0);
+    addPoint(node, "p1", p1);
+    addFloat(node, "radius", radius);
+    return node;
+  }
+
+ private:
+  pugi::xml_node start(const char* type) const { return addObject(context_.root, "shape", type, id_); }
+  pugi::xml_node placed(const char* type, const Matrix4& toWorld, bool flipNormals) const {
+    const pugi::xml_node node = start(type);
+    addTransform(node, "to_world", toWorld);
+    if (flipNormals) addBoolean(node, "flip_normals", true);
+    return node;
+  }
+  static double radiusOf(const Cylinder& c, const Matrix4& toWorld, const Double3& p0, const Double3& p1) {
+    return productPreimage(c.radius, [&](double r) { return placeCylinder(toWorld, p0, p1, r, false).radius; });
+  }
+
+  SaveContext& context_;
+  std::string id_;
+  const Bitmap* attribute_;  // of the mesh, or null
+};
+
+}  // namespace
+
+void saveShapes(SaveContext& context) {
+  for (size_t i = 0; i < context.scene.shapes.size(); ++i) {
+    const Shape& shape = context.scene.shapes[i];
+    const std::string id = context.names.unique(shape.id, "shape-" + std::to_string(i + 1));
+    const pugi::xml_node node = std::visit(ShapeWriter(context, id, context.meshAttributes[i]), shape.kind);
+    if (shape.material != kNone) addRef(node, context.materialIds[shape.material], "bsdf");
+    if (shape.emitter == kNone) continue;
+    const auto& light = std::get<AreaEmitter>(context.scene.emitters[shape.emitter].kind);
+    addTexturedRgb(context, addObject(node, "emitter", "area"), "radiance", light.radiance);
+  }
+}
+
+}  // namespace wavecrest

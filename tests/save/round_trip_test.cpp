@@ -1,0 +1,223 @@
+// What scenes of the repository do not have: placements, adapters and textures of every kind read back the same.
+#include <fmt/core.h>
+
+#include <random>
+
+#include "metrics/image/image_io.h"
+#include "tests/load/mesh_text.h"
+#include "tests/save/saved_scene.h"
+
+namespace wavecrest::testing {
+namespace {
+
+void expectSame(const Folder& folder, const std::string& body) {
+  const Scene scene = loadBody(folder, body);
+  EXPECT_EQ(savedAndLoaded(scene).hash, scene.hash) << body;
+}
+void expectSame(const std::string& body) { expectSame(Folder(), body); }
+
+// Rotations, scales and offsets that no file has by design; every second one mirrors.
+std::string transformOf(std::mt19937& random, bool uniform, bool mirror) {
+  std::uniform_real_distribution<double> number(-5, 5), size(0.1, 4);
+  const double x = size(random), y = uniform ? x : size(random), z = uniform ? x : size(random);
+  return fmt::format(R"(<transform name="to_world"><scale value="{}, {}, {}"/><rotate value="{}, {}, {}" angle="{}"/>)"
+                     R"(<translate value="{}, {}, {}"/></transform>)",
+                     mirror ? -x : x, y, z, number(random), number(random), number(random), 40 * number(random),
+                     number(random), number(random), number(random));
+}
+
+TEST(RoundTrip, RectanglesAndDisksAnywhere) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 50; ++i) {
+    const char* flip = i % 3 == 0 ? R"(<boolean name="flip_normals" value="true"/>)" : "";
+    for (const char* type : {"rectangle", "disk"}) {
+      expectSame(fmt::format(R"(<shape type="{}">{}{}</shape>)", type, transformOf(random, false, i % 2 == 0), flip));
+    }
+  }
+}
+
+TEST(RoundTrip, SpheresAnywhere) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 50; ++i) {
+    expectSame(fmt::format(R"(<shape type="sphere">{}</shape>)", transformOf(random, true, i % 2 == 0)));
+  }
+  expectSame(R"(<shape type="sphere"><point name="center" value="0.1, 0.7, -3.3"/><float name="radius" value="0.3"/>
+    <boolean name="flip_normals" value="true"/></shape>)");
+}
+
+TEST(RoundTrip, CylindersAnywhere) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-5, 5);
+  for (int i = 0; i < 50; ++i) {
+    const std::string ends = fmt::format(
+        R"(<point name="p0" value="{}, {}, {}"/><point name="p1" value="{}, {}, {}"/><float name="radius" value="0.3"/>)",
+        number(random), number(random), number(random), number(random), number(random), number(random));
+    const char* flip = i % 3 == 0 ? R"(<boolean name="flip_normals" value="true"/>)" : "";
+    expectSame(fmt::format(R"(<shape type="cylinder">{}{}</shape>)", ends, flip));
+    expectSame(fmt::format(R"(<shape type="cylinder">{}{}</shape>)", transformOf(random, true, i % 2 == 0), flip));
+  }
+}
+
+// A tent of four triangles with normals that are its faces' in part.
+constexpr std::string_view kTentObj =
+    "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0.1 0.8 0.2\nvn 0.1 0.9 -0.3\nvn 0 1 0\nvn -0.7 0.6 0\n"
+    "vt 0 0\nvt 0.3 0.1\nvt 0.7 0.9\n"
+    "f 1/1/1 5/2/2 2/3/3\nf 2/1/3 5/2/2 3/3/1\nf 3/1/1 5/2/2 4/3/2\nf 4/1/1 5/2/2 1/3/1\n";
+
+TEST(RoundTrip, MeshesWithNormalsOfEveryOrigin) {
+  const Folder folder;
+  folder.write("tent.obj", kTentObj);
+  folder.write("quad.ply", kQuadPly);
+  std::mt19937 random(4);
+  for (int i = 0; i < 32; ++i) {
+    const std::string placement = i < 16 ? "" : transformOf(random, i % 8 < 4, i % 2 == 0);
+    const char* flip = i % 2 == 0 ? R"(<boolean name="flip_normals" value="true"/>)" : "";
+    const char* facets = i % 4 < 2 ? R"(<boolean name="face_normals" value="true"/>)" : "";
+    const char* kind = i % 8 < 4 ? R"(type="obj"><string name="filename" value="tent.obj"/>)"
+                                 : R"(type="ply"><string name="filename" value="quad.ply"/>)";
+    expectSame(folder, fmt::format("<shape {}{}{}{}</shape>", kind, placement, flip, facets));
+  }
+}
+
+TEST(RoundTrip, AMeshHasNormalsInItsFileOnlyIfTheyAreItsOwn) {
+  const Folder folder;
+  folder.write("quad.ply", kQuadPly);
+  const Scene scene = loadBody(folder, R"(<shape type="ply"><string name="filename" value="quad.ply"/></shape>)");
+  const Mesh& mesh = std::get<Mesh>(scene.shapes[0].kind);
+  ASSERT_FALSE(mesh.normals.empty());  // made by the loader
+  const Folder saved;
+  saveScene(planSave(scene, saved.path() / "saved.xml"));
+  std::ifstream file(saved.path() / "saved-files" / "mesh-1.ply", std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_EQ(text.find("property float nx"), std::string::npos);
+  EXPECT_NE(text.find("element vertex 4"), std::string::npos);
+}
+
+constexpr std::string_view kBoard =
+    R"(<texture type="checkerboard" id="board"><rgb name="color0" value="0.9, 0.2, 0.1"/><rgb name="color1" value="0.3"/>
+    <transform name="to_uv"><scale x="3" y="5"/><rotate z="1" angle="17"/><translate x="0.2"/></transform></texture>)";
+
+TEST(RoundTrip, AdaptersInEveryOrder) {
+  const std::string board(kBoard), use = R"(<ref id="board"/>)", opacity = R"(<ref name="opacity" id="board"/>)";
+  const std::string diffuse = R"(<bsdf type="diffuse"/>)", two = R"(<bsdf type="twosided">)", end = "</bsdf>";
+  const std::string bump = R"(<bsdf type="bumpmap">)" + use + R"(<float name="scale" value="0.3"/>)";
+  const std::string mask = R"(<bsdf type="mask">)" + opacity;
+  for (const std::string& bsdf :
+       {two + diffuse + end, bump + diffuse + end, two + bump + diffuse + end + end, bump + two + diffuse + end + end,
+        mask + bump + diffuse + end + end, mask + two + bump + diffuse + end + end + end,
+        bump + mask + two + diffuse + end + end + end}) {
+    expectSame(board + R"(<shape type="sphere">)" + bsdf + "</shape>");
+  }
+  expectSame(R"(<shape type="sphere"><bsdf type="mask"><float name="opacity" value="0.37"/><bsdf type="phong">
+    <float name="exponent" value="12.5"/></bsdf></bsdf></shape>)");
+}
+
+// Textures are numbered as they are read: those of the outer adapter first.
+TEST(RoundTrip, MapsAndMasksOfDifferentTexturesKeepTheirOrder) {
+  const std::string boards = std::string(kBoard) + R"(<texture type="checkerboard" id="other"/>)";
+  const std::string mask = R"(<bsdf type="mask"><ref name="opacity" id="board"/>)";
+  const std::string bump = R"(<bsdf type="bumpmap"><ref id="other"/>)", diffuse = R"(<bsdf type="diffuse"/>)";
+  expectSame(boards + R"(<shape type="sphere">)" + mask + bump + diffuse + "</bsdf></bsdf></shape>");
+  expectSame(boards + R"(<shape type="sphere">)" + bump + mask + diffuse + "</bsdf></bsdf></shape>");
+}
+
+// Read as numbers, the colours of a checkerboard change places: without the texture that this was done to, they must be
+// written the other way round.
+TEST(RoundTrip, ANumberWithoutItsColoursIsTheSameNumber) {
+  Scene scene = loadBody(
+      std::string(kBoard) +
+      R"(<shape type="sphere"><bsdf type="mask"><ref name="opacity" id="board"/><bsdf type="diffuse"/></bsdf></shape>)");
+  std::optional<TexturedFloat>& opacity = scene.materials[0].opacity;
+  ASSERT_EQ(opacity->texture, 1u);
+  scene.textures.erase(scene.textures.begin());
+  opacity->texture = 0;
+  const auto board = std::get<CheckerboardTexture>(scene.textures[0].kind);
+  const Scene again = savedAndLoaded(scene);
+  const auto read = std::get<CheckerboardTexture>(again.textures[again.materials[0].opacity->texture].kind);
+  EXPECT_EQ(read.color0, board.color0);
+  EXPECT_EQ(read.color1, board.color1);
+}
+
+// Colours and a grey one, in 8 bits and beyond them.
+TEST(RoundTrip, BitmapsAsColoursNumbersAndNormals) {
+  const Folder folder;
+  Image image{4, 2, 3, {}};
+  for (int i = 0; i < 24; ++i) image.pixels.push_back(static_cast<float>((i * 37) % 24) / 23.0f);
+  writePng((folder.path() / "codes.png").string(), image);
+  writeExr((folder.path() / "floats.exr").string(), image);
+  for (const char* file : {"codes.png", "floats.exr"}) {
+    for (const char* raw : {"true", "false"}) {
+      const std::string texture = fmt::format(
+          R"(<texture type="bitmap" id="t"><string name="filename" value="{}"/><boolean name="raw" value="{}"/>
+          <string name="wrap_mode" value="mirror"/><string name="filter_type" value="nearest"/></texture>)",
+          file, raw);
+      const std::string color = R"(<bsdf type="diffuse"><ref name="reflectance" id="t"/></bsdf>)";
+      const std::string number = R"(<bsdf type="roughconductor"><ref name="alpha" id="t"/></bsdf>)";
+      const std::string normal =
+          R"(<bsdf type="normalmap"><ref name="normalmap" id="t"/><bsdf type="diffuse"/>
+          <boolean name="flip_invalid_normals" value="false"/><boolean name="use_shadowing_function" value="false"/></bsdf>)";
+      const auto sphere = [](const std::string& bsdf) { return R"(<shape type="sphere">)" + bsdf + "</shape>"; };
+      expectSame(folder, texture + sphere(color));
+      expectSame(folder, texture + sphere(number));
+      expectSame(folder, texture + sphere(normal));
+      expectSame(folder, texture + sphere(normal) + sphere(number) + sphere(color));
+    }
+  }
+}
+
+TEST(RoundTrip, ABitmapIsAPngIfEightBitsSayAllOfIt) {
+  const Folder folder;
+  Image image{2, 1, 3, {0.0f, 0.25f, 0.5f, 0.75f, 0.9f, 1.0f}};
+  writePng((folder.path() / "codes.png").string(), image);
+  writeExr((folder.path() / "floats.exr").string(), image);
+  const auto nameOf = [&](const std::string& file) {
+    const Scene scene = loadBody(
+        folder,
+        R"(<shape type="sphere"><bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value=")" +
+            file + R"("/></texture></bsdf></shape>)");
+    return planSave(scene, "saved.xml").files.front().path;
+  };
+  EXPECT_EQ(nameOf("codes.png"), "saved-files/bitmap-1.png");
+  EXPECT_EQ(nameOf("floats.exr"), "saved-files/bitmap-1.exr");
+}
+
+TEST(RoundTrip, ValuesThatColoursMayNotHave) {
+  expectSame(R"(<shape type="sphere"><bsdf type="diffuse"><texture type="rawconstant" name="reflectance">
+    <vector name="value" value="1.5, 0.25, 0"/></texture></bsdf></shape>)");
+  expectSame(R"(<shape type="sphere"><bsdf type="conductor"><string name="material" value="Au"/></bsdf></shape>
+    <shape type="sphere"><bsdf type="conductor"><rgb name="eta" value="0"/><rgb name="k" value="3.1"/></bsdf></shape>)");
+}
+
+TEST(RoundTrip, EveryLightAndSensor) {
+  expectSame(
+      R"(<emitter type="spot"><transform name="to_world"><lookat origin="1, 2, 3" target="0, 0.1, 0"/></transform>
+    <rgb name="intensity" value="7, 0.1, 1e-7"/><float name="cutoff_angle" value="33.3"/></emitter>
+    <emitter type="directional"><vector name="direction" value="0.3, -1, 0.77"/></emitter>
+    <emitter type="point"><point name="position" value="0.1, 0.2, 0.3"/></emitter>
+    <emitter type="constant"><rgb name="radiance" value="0.1, 0.2, 0.3"/></emitter>
+    <shape type="rectangle"><emitter type="area"><spectrum name="radiance" value="3"/></emitter></shape>)");
+  const std::string place =
+      R"(<transform name="to_world"><lookat origin="1, 2, 3" target="0, 0.1, 0"/></transform><float name="near_clip" value="0.3"/>)";
+  expectSame(
+      R"(<sensor type="thinlens"><float name="aperture_radius" value="0.03"/><float name="focus_distance" value="4.1"/>)" +
+      place + "</sensor>");
+  expectSame(R"(<sensor type="orthographic">)" + place + "</sensor>");
+  expectSame(
+      R"(<sensor type="perspective"><float name="principal_point_offset_x" value="0.1"/><float name="fov" value="51.7"/>
+    <string name="fov_axis" value="diagonal"/><film type="hdrfilm"><integer name="crop_offset_x" value="7"/>
+    <integer name="crop_width" value="11"/>
+    <rfilter type="tent"><float name="radius" value="1.7"/></rfilter></film></sensor>)");
+}
+
+TEST(RoundTrip, IdsAreKeptAndMadeUnique) {
+  const Folder folder;
+  const Scene scene = loadBody(
+      folder, R"(<bsdf type="diffuse" id="red.paint"/><shape type="sphere" id="ball"><ref id="red.paint"/></shape>)");
+  saveScene(planSave(scene, folder.path() / "saved.xml"));
+  const Scene again = loadScene(folder.path() / "saved.xml");
+  EXPECT_EQ(again.materials[0].id, "red-paint");
+  EXPECT_EQ(again.shapes[0].id, "ball");
+}
+
+}  // namespace
+}  // namespace wavecrest::testing
