@@ -198,6 +198,7 @@ TEST_P(AnyBrightness, isTheSameImage) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, AnyBrightness, testing::ValuesIn([] {
                            std::vector<Method> methods;
+                           methods.reserve(kMethods.size());
                            for (const MethodEntry& entry : kMethods) methods.push_back(entry.method);
                            return methods;
                          }()),
