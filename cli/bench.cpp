@@ -8,9 +8,9 @@
 #include "bench/machine/machine_record.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
+#include "cli/file_check.h"
 #include "cli/option_values.h"
 #include "engine/version.h"
-#include "metrics/image/atomic_file.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {
@@ -73,12 +73,7 @@ void writeBenchJson(const BenchOptions& options, const std::string& kind, const 
                                 {"commit", kCommit},
                                 {"machine", toJson(machineRecord())}};
   all.update(figures);
-  const std::string text = all.dump(2) + "\n";
-  if (options.json == "-") {
-    fmt::print("{}", text);
-    return;
-  }
-  writeFileAtomically(options.json, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+  writeText(options.json, all.dump(2) + "\n");
 }
 
 namespace {

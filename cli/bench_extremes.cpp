@@ -31,7 +31,7 @@ int runBenchExtremes(const BenchOptions& options) {
   writeBenchJson(options, "extremes", all);
   if (!options.html.empty()) {
     const std::string page = extremesPage(results);
-    writeFileAtomically(options.html, {reinterpret_cast<const unsigned char*>(page.data()), page.size()});
+    writeFileAtomically(options.html, page);
   }
   const bool passes = std::all_of(results.begin(), results.end(), [](const auto& result) { return result.passes(); });
   return passes ? kExitDone : kExitCheck;

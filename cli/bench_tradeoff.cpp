@@ -15,14 +15,14 @@ constexpr double kTradeSeconds = 60;
 // Beyond it, images of a setting take long; settings are compared as well on small ones.
 constexpr uint32_t kMostColumns = 256;
 
-LoadOptions tradeLoading(const BenchOptions& options, const std::filesystem::path& file) {
+// The scene on a film of --size, or on its own if that is not too wide.
+Scene tradeScene(const BenchOptions& options, const std::filesystem::path& file) {
   LoadOptions loading = benchLoading(options);
-  if (loading.filmSize) return loading;
-  const FilmSettings film = loadScene(file, loading).film;
-  if (film.width > kMostColumns) {
-    loading.filmSize = {kMostColumns, std::max(1u, film.height * kMostColumns / film.width)};
-  }
-  return loading;
+  Scene scene = loadScene(file, loading);
+  const FilmSettings& film = scene.film;
+  if (loading.filmSize || film.width <= kMostColumns) return scene;
+  loading.filmSize = {kMostColumns, std::max(1u, film.height * kMostColumns / film.width)};
+  return loadScene(file, loading);
 }
 
 }  // namespace
@@ -33,11 +33,11 @@ int runBenchTradeoff(const BenchOptions& options) {
   std::vector<TradeResult> results;
   nlohmann::ordered_json all = {{"results", nlohmann::ordered_json::array()}};
   for (const std::filesystem::path& file : benchSceneFiles(options)) {
-    const Scene scene = loadScene(file, tradeLoading(options, file));
+    const Scene scene = tradeScene(options, file);
     for (const Method method : methods) {
       RenderSettings settings = benchSettings(scene, options);
-      if (options.threads == 0)
-        settings.threads = 1;  // CPU time of threads that share caches would blur the comparison
+      // CPU time of threads that share caches would blur the comparison.
+      if (options.threads == 0) settings.threads = 1;
       settings.method = method;
       results.push_back(measureTrade(scene, settings, seconds));
       printBench(options, toText(results.back()) + "\n");
@@ -47,7 +47,7 @@ int runBenchTradeoff(const BenchOptions& options) {
   writeBenchJson(options, "tradeoff", all);
   if (!options.html.empty()) {
     const std::string page = tradePage(results);
-    writeFileAtomically(options.html, {reinterpret_cast<const unsigned char*>(page.data()), page.size()});
+    writeFileAtomically(options.html, page);
   }
   return kExitDone;
 }

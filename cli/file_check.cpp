@@ -52,7 +52,7 @@ void FileCheck::output(const std::string& role, const fs::path& file) {
 
 void writeText(const std::string& file, const std::string& text) {
   if (file != kStandardStream) {
-    writeFileAtomically(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+    writeFileAtomically(file, text);
     return;
   }
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {

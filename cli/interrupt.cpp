@@ -41,6 +41,9 @@ void onStop(int signal) {
   if (session != nullptr) session->interrupt();
 }
 
+// Whether the session is to return: to end, to be saved or to pause.
+bool isWanted() { return firstRequest.load() != 0 || saveWanted.load() || pauseWanted.load(); }
+
 void pauseFor(std::atomic<bool>& reason) {
   reason.store(true);
   if (Session* const session = watched.load()) session->interrupt();
@@ -78,7 +81,7 @@ void InterruptGuard::setIdle(bool value) { endsAtOnce.store(value); }
 void InterruptGuard::watch(Session* session) {
   endsAtOnce.store(false);
   watched.store(session);
-  if (session != nullptr && (interrupted() || saveWanted.load() || pauseWanted.load())) session->interrupt();
+  if (session != nullptr && isWanted()) session->interrupt();
 }
 
 bool InterruptGuard::interrupted() const { return firstRequest.load() != 0; }
@@ -90,7 +93,7 @@ void InterruptGuard::goOn() {
   Session* const session = watched.load();
   if (session == nullptr) return;
   session->resume();
-  if (interrupted() || saveWanted.load() || pauseWanted.load()) session->interrupt();
+  if (isWanted()) session->interrupt();
 }
 
 }  // namespace wavecrest

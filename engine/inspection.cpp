@@ -38,30 +38,6 @@ std::string nameOf(const Emitter& emitter) {
                     emitter.kind);
 }
 
-std::string nameOf(Sensor::Kind kind) {
-  switch (kind) {
-    case Sensor::Kind::perspective:
-      return "perspective";
-    case Sensor::Kind::thinlens:
-      return "thinlens";
-    case Sensor::Kind::orthographic:
-      return "orthographic";
-  }
-  return "";
-}
-
-std::string nameOf(ReconstructionFilter filter) {
-  switch (filter) {
-    case ReconstructionFilter::box:
-      return "box";
-    case ReconstructionFilter::tent:
-      return "tent";
-    case ReconstructionFilter::gaussian:
-      return "gaussian";
-  }
-  return "";
-}
-
 std::vector<std::string> needsOf(const Scene& scene) {
   constexpr std::pair<uint32_t, const char*> kWords[] = {{kSpecularBsdfs, "specular BSDFs"},
                                                          {kLayeredBsdfs, "layered BSDFs"},
@@ -99,8 +75,8 @@ void countKinds(const Scene& scene, SceneInspection& out) {
 SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
   SceneInspection out;
   countKinds(scene, out);
-  out.sensor = nameOf(scene.sensor.kind);
-  out.filter = nameOf(scene.film.filter);
+  out.sensor = Sensor::kKindNames[static_cast<size_t>(scene.sensor.kind)];
+  out.filter = kFilterNames[static_cast<size_t>(scene.film.filter)];
   out.needs = needsOf(scene);
 
   const auto compiled = compileScene<float>(scene, settings.accel);

@@ -13,4 +13,20 @@ double processCpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+void RenderClock::goOnFrom(double seconds, double cpuSeconds) {
+  seconds_ = seconds;
+  cpuSeconds_ = cpuSeconds;
+  shown_.store(seconds, std::memory_order_relaxed);
+}
+
+double RenderClock::Running::look() const {
+  const double now = clock_.seconds_ + secondsSince(begin_);
+  clock_.shown_.store(now, std::memory_order_relaxed);
+  return now;
+}
+
+RenderClock::Running::~Running() {
+  clock_.goOnFrom(clock_.seconds_ + secondsSince(begin_), clock_.cpuSeconds_ + processCpuSeconds() - cpuBegin_);
+}
+
 }  // namespace wavecrest

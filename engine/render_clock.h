@@ -3,6 +3,7 @@
 
 #include <oneapi/tbb/global_control.h>
 
+#include <atomic>
 #include <chrono>
 
 namespace wavecrest {
@@ -15,6 +16,38 @@ inline double secondsSince(Clock::time_point begin) {
 
 // CPU time of the process up to now, all threads together.
 double processCpuSeconds();
+
+// The clock of a session. It runs while the session renders; other threads may look at it meanwhile.
+class RenderClock {
+ public:
+  // Up to the last stop.
+  double seconds() const { return seconds_; }
+  double cpuSeconds() const { return cpuSeconds_; }
+  // Seconds as of the last look, from any thread.
+  double shown() const { return shown_.load(std::memory_order_relaxed); }
+  // Goes on where the clock of another session stopped.
+  void goOnFrom(double seconds, double cpuSeconds);
+
+  // The clock runs while this lives.
+  class Running {
+   public:
+    explicit Running(RenderClock& clock) : clock_(clock) {}
+    ~Running();
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+    // Seconds now, which other threads see from now on. Safe from several threads.
+    double look() const;
+
+   private:
+    RenderClock& clock_;
+    const Clock::time_point begin_ = Clock::now();
+    const double cpuBegin_ = processCpuSeconds();
+  };
+
+ private:
+  double seconds_ = 0, cpuSeconds_ = 0;
+  std::atomic<double> shown_{0};
+};
 
 // TBB gives an arena of more threads than the machine has cores no workers for the surplus unless it is told to. Only
 // while a session works: the least of all limits alive counts, and several sessions may be.

@@ -5,6 +5,7 @@
 // renders by it; measurements that need single waves or single stages make one of their own.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "engine/chains/path_law.h"
@@ -53,6 +54,9 @@ MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, 
 // without a task. Images do not depend on it. Too few tasks leave threads idle at the end of a phase. Too small tasks
 // leave lanes idle and repeat the fixed cost of each stage.
 uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most);
+// How many pieces of a size some items make, and what the one of this index has.
+inline size_t piecesOf(size_t items, size_t size) { return (items + size - 1) / size; }
+inline size_t itemsOfPiece(size_t index, size_t items, size_t size) { return std::min(size, items - index * size); }
 
 // The settings with waves cut by pieceSize, for a method whose waves are pieces of work.
 RenderSettings withPieces(const RenderSettings& settings, size_t pixels);

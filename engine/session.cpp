@@ -14,6 +14,7 @@
 #include "engine/render_clock.h"
 #include "engine/render_plan.h"
 #include "engine/session_state.h"
+#include "engine/session_worker.h"
 #include "engine/stage_rows.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
@@ -45,21 +46,11 @@ class TypedSession final : public Session {
   void restore(StateReader& in) override;
   const Film& film() const override { return film_; }
   const MemoryPlan& memoryPlan() const override { return memory_; }
-  double progressSeconds() const override { return progressSeconds_.load(std::memory_order_relaxed); }
+  double progressSeconds() const override { return clock_.shown(); }
   uint64_t progressPaths() const override { return progressPaths_.load(std::memory_order_relaxed); }
 
  private:
-  // What one worker thread keeps from wave to wave; nothing is allocated while waves run.
-  struct Worker {
-    Wave<S> wave;
-    LightStore<S> light;  // of the wave under way, where light vertices do not outlive it
-    StageCounters counters;
-    std::vector<StageTally> lightTallies, cameraTallies;
-    std::optional<SplatWriter<S>> splats;
-    uint64_t paths = 0, lightPaths = 0;
-    Worker(size_t waveSize, const ColumnNeeds& needs)
-        : wave(waveSize, needs), light(waveSize, needs, {.merged = false}) {}
-  };
+  using Worker = SessionWorker<S>;
   // How far the camera paths of a wave's pixels are: 2^iterationBits iterations from `next` on are under way, and done
   // for the first `pixels` of them.
   struct CameraProgress {
@@ -71,11 +62,8 @@ class TypedSession final : public Session {
   using Finished = std::function<bool(uint64_t next)>;
 
   Worker& worker();
-  // What pass the worker's wave goes through, its paths being set; iteration: that of its paths that are not ahead.
+  // Takes the worker's wave, whose paths are set, through a pass. iteration: the first of its paths'.
   void tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker);
-  // How many pieces of `size` there are, and what the one of this index has.
-  static size_t piecesOf(size_t items, size_t size) { return (items + size - 1) / size; }
-  static size_t itemsOf(size_t index, size_t items, size_t size) { return std::min(size, items - index * size); }
   uint32_t iterationBits(uint64_t next) const;
   // Light paths or the camera paths of pixels [first, first + count), of one iteration; of camera paths 2^iterationBits
   // iterations.
@@ -84,7 +72,8 @@ class TypedSession final : public Session {
                    Worker& worker);
   void traceLightWave(size_t waveIndex, Worker& worker);
   void traceCameraWave(size_t waveIndex, Worker& worker);
-  // Goes on where a restored film stopped: until each pixel has as many samples as those that have most.
+  // A restored film may have stopped within an iteration. Renders until all its pixels have as many samples as the one
+  // that has most.
   void levelPixels(const Finished& finished);
   // Iterations of a method whose waves are independent.
   void renderWaves(const Finished& finished);
@@ -113,8 +102,8 @@ class TypedSession final : public Session {
   StageTally photonTally_;
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
   WorkDone earlier_;  // of the sessions that this one goes on for
-  double buildSeconds_ = 0, renderSeconds_ = 0, cpuSeconds_ = 0;
-  std::atomic<double> progressSeconds_{0};
+  RenderClock clock_;
+  double buildSeconds_ = 0;
   std::atomic<uint64_t> progressPaths_{0};
 };
 
@@ -147,17 +136,7 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
 template <class S>
 typename TypedSession<S>::Worker& TypedSession<S>::worker() {
   std::unique_ptr<Worker>& mine = workers_.local();
-  if (!mine) {
-    mine = std::make_unique<Worker>(settings_.waveSize, plan_.needs);
-    mine->cameraTallies.resize(plan_.pipeline.cameraPass.stageCount());
-    if (plan_.pipeline.lightPass) {
-      mine->lightTallies.resize(plan_.pipeline.lightPass->stageCount());
-      if (!plan_.pipeline.photonMap) mine->light.reserve(memory_.verticesPerWave);
-    }
-    if (plan_.pipeline.splats()) {
-      mine->splats.emplace(film_.splats(), plan_.stages->addSplats, settings_.waveSize);
-    }
-  }
+  if (!mine) mine = std::make_unique<Worker>(plan_, memory_, settings_.waveSize, film_);
   return *mine;
 }
 
@@ -196,7 +175,7 @@ void TypedSession<S>::traceLight(size_t first, size_t count, uint64_t iteration,
 template <class S>
 void TypedSession<S>::traceLightWave(size_t waveIndex, Worker& worker) {
   LightStore<S>& store = plan_.pipeline.photonMap ? *stores_[waveIndex] : worker.light;
-  const size_t count = itemsOf(waveIndex, memory_.lightPaths, settings_.waveSize);
+  const size_t count = itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
   traceLight(waveIndex * settings_.waveSize, count, lightDone_[waveIndex]++, store, worker);
 }
 
@@ -206,7 +185,7 @@ LightStore<S>* TypedSession<S>::partnersOf(size_t waveIndex, Worker& worker) {
   if (!plan_.pipeline.cameraPass.strategies.connect) return nullptr;
   const size_t pixels = film_.area().pixels.size();
   if (memory_.lightPaths == pixels) return stores_[waveIndex].get();
-  worker.light.collect(stores_, memory_.lightPaths, waveIndex * tile_, itemsOf(waveIndex, pixels, tile_));
+  worker.light.collect(stores_, memory_.lightPaths, waveIndex * tile_, itemsOfPiece(waveIndex, pixels, tile_));
   return &worker.light;
 }
 
@@ -234,7 +213,7 @@ void TypedSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration
 template <class S>
 void TypedSession<S>::traceCameraWave(size_t waveIndex, Worker& worker) {
   CameraProgress& progress = camera_[waveIndex];
-  const size_t pixels = itemsOf(waveIndex, film_.area().pixels.size(), tile_);
+  const size_t pixels = itemsOfPiece(waveIndex, film_.area().pixels.size(), tile_);
   if (progress.pixels == 0) progress.iterationBits = iterationBits(progress.next);
   const size_t some = std::min(size_t{settings_.waveSize} >> progress.iterationBits, pixels - progress.pixels);
   traceCamera(waveIndex * tile_ + progress.pixels, some, progress.next, progress.iterationBits,
@@ -318,23 +297,20 @@ void TypedSession<S>::countLightPaths() {
 
 template <class S>
 void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
-  const auto begin = Clock::now();
-  const double cpuBegin = processCpuSeconds();
-  const WorkerLimit limit(settings_.threads);
-  endIteration_ = iterations ? settings_.firstIteration + *iterations : std::numeric_limits<uint64_t>::max();
-  const Finished finished = [&](uint64_t next) {
-    if (next >= endIteration_) return true;
-    const double now = renderSeconds_ + secondsSince(begin);
-    progressSeconds_.store(now, std::memory_order_relaxed);
-    return (seconds && now >= *seconds) || interrupted();
-  };
-  arena_.execute([&] {
-    if (!level_) levelPixels(finished);
-    if (level_) plan_.pipeline.photonMap ? renderPhases(finished) : renderWaves(finished);
-  });
-  renderSeconds_ += secondsSince(begin);
-  cpuSeconds_ += processCpuSeconds() - cpuBegin;
-  progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
+  {
+    const RenderClock::Running clock(clock_);
+    const WorkerLimit limit(settings_.threads);
+    endIteration_ = iterations ? settings_.firstIteration + *iterations : std::numeric_limits<uint64_t>::max();
+    const Finished finished = [&](uint64_t next) {
+      if (next >= endIteration_) return true;
+      const double now = clock.look();
+      return (seconds && now >= *seconds) || interrupted();
+    };
+    arena_.execute([&] {
+      if (!level_) levelPixels(finished);
+      if (level_) plan_.pipeline.photonMap ? renderPhases(finished) : renderWaves(finished);
+    });
+  }
   countLightPaths();
 }
 
@@ -343,8 +319,8 @@ RenderStatistics TypedSession<S>::statistics() const {
   RenderStatistics out;
   out.iterations = film_.minSamples();
   out.buildSeconds = buildSeconds_;
-  out.renderSeconds = renderSeconds_;
-  out.cpuSeconds = cpuSeconds_;
+  out.renderSeconds = clock_.seconds();
+  out.cpuSeconds = clock_.cpuSeconds();
   out.isa = plan_.isa;
   out.specialization = plan_.specialization;
   out.accel = plan_.accel();
@@ -392,9 +368,7 @@ void TypedSession<S>::restore(StateReader& in) {
   if (!level_ && plan_.pipeline.photonMap) throw StateError("it ends within an iteration");
   for (uint64_t& next : lightDone_) next = settings_.firstIteration + done;
   for (CameraProgress& progress : camera_) progress.next = settings_.firstIteration + done;
-  renderSeconds_ = earlier_.renderSeconds;
-  cpuSeconds_ = earlier_.cpuSeconds;
-  progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
+  clock_.goOnFrom(earlier_.renderSeconds, earlier_.cpuSeconds);
   progressPaths_.store(earlier_.paths, std::memory_order_relaxed);
   countLightPaths();
 }

@@ -87,9 +87,9 @@ class Session {
   // All that a session of the same scene and settings needs to go on from here, whatever its number of threads and size
   // of waves (engine/session_state.h). No renderUntil may be running.
   virtual void save(StateWriter& out) const = 0;
-  // Takes over what another session has saved: whatever is rendered from now on, images are bit for bit those of a
-  // session that rendered all of it. Counts and clocks go on too, but for those of building. Must come before the first
-  // renderUntil. Throws StateError where the state is that of another render; the session is of no use then.
+  // Takes over the state that another session saved. Images are from then on the same, bit for bit, as if this session
+  // had rendered everything; counts and clocks go on as well, except the time for building. To be called before the
+  // first renderUntil. Throws StateError if the state belongs to another render; the session must not be used then.
   virtual void restore(StateReader& in) = 0;
 
   // Iterations of the slowest wave and seconds so far, for progress shown from another thread.

@@ -96,7 +96,7 @@ struct WorkDone {
 
   static WorkDone of(const RenderStatistics& statistics);
   void save(StateWriter& out) const;
-  // stages: the rows that this session has, by which those of the state are read.
+  // rows: the stages of this session. Throws StateError if the state has another number of them.
   void restore(StateReader& in, std::vector<RenderStatistics::StageRow> rows);
   // Adds everything to the statistics of the work since then, but clocks, which a session itself goes on with.
   void addTo(RenderStatistics& statistics) const;

@@ -55,7 +55,7 @@ void SplatFilms::save(StateWriter& out) const {
   for (size_t channel = 0; channel < 3 * pixels_; ++channel) out.value(sum(channel));
 }
 
-// All of it goes into the first film. High halves that are zero are left alone: their pages take no memory.
+// The first film takes the sums of all. High halves that are zero are not written, so that their pages stay unused.
 void SplatFilms::restore(StateReader& in) {
   if (in.value<double>() != scale_) throw StateError("its splats are in other units");
   const SplatSums& sums = films_.front()->sums();

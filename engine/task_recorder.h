@@ -34,7 +34,8 @@ class TaskRecorder {
   // What was recorded, up to now. The time of a step that its tasks do not account for is divided among them.
   TaskGraph graph();
 
-  // A step that lasts as long as this does. One that begins within a task of another belongs to that task.
+  // Records a step for as long as this object lives. A step that begins while another one is being recorded is part of
+  // a task of that one, and is not recorded by itself.
   class Step {
    public:
     explicit Step(size_t chains, bool goesOn = false);

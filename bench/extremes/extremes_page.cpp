@@ -37,10 +37,7 @@ Plot plotOf(const SweepResult& result) {
          .high = row.error + row.standardError,
          .tooltip = fmt::format("{} at {:g}: {:+.2g} \u00b1 {:.1g}", label, row.value, row.error, row.standardError)});
   }
-  for (PlotCurve& curve : plot.curves) {
-    std::sort(curve.points.begin(), curve.points.end(),
-              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
-  }
+  sortPoints(plot);
   return plot;
 }
 

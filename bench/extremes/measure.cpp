@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "bench/statistics/bands.h"
+
 namespace wavecrest {
 
 SeedValues measureSeeds(const Scene& scene, RenderSettings settings, uint64_t samples, size_t seeds) {
@@ -23,13 +25,8 @@ SeedValues measureSeeds(const Scene& scene, RenderSettings settings, uint64_t sa
 }
 
 SeedEstimate seedEstimateOf(const std::vector<double>& values) {
-  const auto count = static_cast<double>(values.size());
-  SeedEstimate out;
-  for (const double value : values) out.mean += value / count;
-  double squares = 0;
-  for (const double value : values) squares += (value - out.mean) * (value - out.mean);
-  out.error = std::sqrt(squares / (count - 1) / count);
-  return out;
+  const MeanEstimate estimate = meanOf(values);
+  return {estimate.mean, std::sqrt(estimate.variance)};
 }
 
 std::vector<double> differences(const SeedValues& a, double scale, const SeedValues& b) {

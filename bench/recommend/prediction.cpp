@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/pixel_blocks.h"
+
 namespace wavecrest {
 namespace {
 
-constexpr uint32_t kBlock = 8;
 constexpr double kSignificant = 4;  // standard errors; of thousands of blocks hardly one is above by chance
 constexpr int kBisections = 24;     // of the logarithm of time, over nine decades: to a few parts in a million
 constexpr double kFirstSeconds = 1e-2;
@@ -27,13 +28,14 @@ Image combined(const Pilot& pilot, const std::array<int, 4>& signs) {
 // Calls visit with the indices of the samples of each block and channel.
 template <class Visit>
 void forEachBlock(const Image& image, Visit&& visit) {
+  constexpr uint32_t kSide = PixelBlocks::kSide;
   std::vector<size_t> samples;
-  for (uint32_t y0 = 0; y0 < image.height; y0 += kBlock) {
-    for (uint32_t x0 = 0; x0 < image.width; x0 += kBlock) {
+  for (uint32_t y0 = 0; y0 < image.height; y0 += kSide) {
+    for (uint32_t x0 = 0; x0 < image.width; x0 += kSide) {
       for (uint32_t channel = 0; channel < 3; ++channel) {
         samples.clear();
-        for (uint32_t y = y0; y < std::min(y0 + kBlock, image.height); ++y) {
-          for (uint32_t x = x0; x < std::min(x0 + kBlock, image.width); ++x) {
+        for (uint32_t y = y0; y < std::min(y0 + kSide, image.height); ++y) {
+          for (uint32_t x = x0; x < std::min(x0 + kSide, image.width); ++x) {
             samples.push_back(3 * (size_t{y} * image.width + x) + channel);
           }
         }

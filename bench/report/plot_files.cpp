@@ -28,7 +28,7 @@ std::vector<std::filesystem::path> writePlotFiles(const ConvergenceReport& repor
     for (const ScenePlot& plot : scenePlots(report, scene)) {
       const std::string svg = renderPlotFile(plot.plot);
       paths.push_back(folder / (fileName(scene.name) + "." + fileName(plot.key) + ".svg"));
-      writeFileAtomically(paths.back().string(), {reinterpret_cast<const unsigned char*>(svg.data()), svg.size()});
+      writeFileAtomically(paths.back().string(), svg);
     }
   }
   return paths;

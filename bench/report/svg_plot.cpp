@@ -252,6 +252,13 @@ std::string drawPlot(const Plot& plot) {
 
 }  // namespace
 
+void sortPoints(Plot& plot) {
+  for (PlotCurve& curve : plot.curves) {
+    std::sort(curve.points.begin(), curve.points.end(),
+              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+  }
+}
+
 std::string renderPlot(const Plot& plot) {
   return fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">{}</svg>\n", kWidth,
                      kHeight, escapeHtml(plot.title), drawPlot(plot));

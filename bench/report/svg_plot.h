@@ -41,6 +41,9 @@ struct Plot {
   std::string guideLabel;
 };
 
+/// Puts the points of each curve in order of x.
+void sortPoints(Plot& plot);
+
 /// The `<svg>` element, for a page that has the style sheet. Points that an axis cannot show (non-finite, or not
 /// positive on a logarithmic axis) are left out; a plot without any point says so instead of drawing axes.
 std::string renderPlot(const Plot& plot);

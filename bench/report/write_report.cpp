@@ -14,9 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write(const fs::path& path, const std::string& text) {
-  writeFileAtomically(path.string(), {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
-}
+void write(const fs::path& path, const std::string& text) { writeFileAtomically(path.string(), text); }
 
 }  // namespace
 

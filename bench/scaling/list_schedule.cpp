@@ -83,6 +83,16 @@ double scheduledSeconds(const TaskGraph& graph, uint32_t threads, uint32_t times
                    [threads](const TaskStep& step, uint32_t rounds) { return scheduledStep(step, threads, rounds); });
 }
 
+double longestTask(const TaskGraph& graph) {
+  double longest = 0;
+  for (const TaskStep& step : graph.steps) {
+    for (const auto& chain : step.chains) {
+      for (const double task : chain) longest = std::max(longest, task);
+    }
+  }
+  return longest;
+}
+
 size_t taskCount(const TaskGraph& graph) {
   size_t count = 0;
   for (const TaskStep& step : graph.steps) {

@@ -12,13 +12,14 @@
 
 namespace wavecrest {
 
-// Seconds. `times`: as if the render were so many times as long, each part of it being as the one that was recorded.
-// The first and the last step are what a render does at its beginning and end, and come once.
+// In seconds, of a render `times` as long as the recorded one, which is repeated for that. The first and the last step
+// are what a render does at its beginning and end; they come once.
 double workOf(const TaskGraph& graph, uint32_t times = 1);
 double spanOf(const TaskGraph& graph, uint32_t times = 1);
 double scheduledSeconds(const TaskGraph& graph, uint32_t threads, uint32_t times = 1);
 
-// Tasks of the graph.
+// Tasks of the graph, and the seconds of the longest.
 size_t taskCount(const TaskGraph& graph);
+double longestTask(const TaskGraph& graph);
 
 }  // namespace wavecrest

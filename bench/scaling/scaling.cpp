@@ -52,12 +52,7 @@ class RecordedRender {
     const auto times = static_cast<uint32_t>(std::clamp(wanted, 1.0, most));
     rates_.push_back(static_cast<double>(slice.paths) * times / scheduledSeconds(graph, threads_, times));
     parallelisms_.push_back(workOf(graph, times) / spanOf(graph, times));
-    longest_ = 0;
-    for (const TaskStep& step : graph.steps) {
-      for (const auto& chain : step.chains) {
-        for (const double task : chain) longest_ = std::max(longest_, task);
-      }
-    }
+    longest_ = longestTask(graph);
   }
   // oneThread: paths per second of each round.
   PredictedScaling result(const std::vector<double>& oneThread) const {

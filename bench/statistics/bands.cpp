@@ -7,26 +7,27 @@
 #include <numbers>
 
 namespace wavecrest {
-namespace {
 
-struct Sample {
-  double mean = 0;
-  double meanVariance = 0;  // of the mean
-  double degreesOfFreedom = 0;
-};
-
-Sample sampleOf(std::span<const double> values) {
-  Sample sample;
+MeanEstimate meanOf(std::span<const double> values) {
+  MeanEstimate sample;
   const auto n = static_cast<double>(values.size());
   for (const double value : values) sample.mean += value / n;
   double squares = 0;
   for (const double value : values) squares += (value - sample.mean) * (value - sample.mean);
   sample.degreesOfFreedom = n - 1;
-  sample.meanVariance = n > 1 ? squares / (n - 1) / n : std::numeric_limits<double>::infinity();
+  sample.variance = n > 1 ? squares / (n - 1) / n : std::numeric_limits<double>::infinity();
   return sample;
 }
 
-}  // namespace
+MeanEstimate differenceOf(std::span<const double> a, std::span<const double> b) {
+  const MeanEstimate x = meanOf(a), y = meanOf(b);
+  MeanEstimate difference{.mean = x.mean - y.mean, .variance = x.variance + y.variance};
+  if (difference.variance == 0 || std::isinf(difference.variance)) return difference;
+  difference.degreesOfFreedom =
+      difference.variance * difference.variance /
+      (x.variance * x.variance / x.degreesOfFreedom + y.variance * y.variance / y.degreesOfFreedom);
+  return difference;
+}
 
 double studentQuantile(double degreesOfFreedom) {
   static constexpr std::array kTable{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
@@ -51,19 +52,15 @@ double studentTail(double t, int degreesOfFreedom) {
 }
 
 Band meanBand(std::span<const double> values) {
-  const Sample sample = sampleOf(values);
-  return {sample.mean, std::sqrt(sample.meanVariance) * studentQuantile(sample.degreesOfFreedom)};
+  const MeanEstimate sample = meanOf(values);
+  return {sample.mean, std::sqrt(sample.variance) * studentQuantile(sample.degreesOfFreedom)};
 }
 
 Band differenceBand(std::span<const double> a, std::span<const double> b) {
-  const Sample x = sampleOf(a), y = sampleOf(b);
-  const double variance = x.meanVariance + y.meanVariance;
-  const Band band{x.mean - y.mean, std::sqrt(variance)};
-  if (variance == 0 || std::isinf(variance)) return band;
-  const double degrees =
-      variance * variance /
-      (x.meanVariance * x.meanVariance / x.degreesOfFreedom + y.meanVariance * y.meanVariance / y.degreesOfFreedom);
-  return {band.mean, band.halfWidth * studentQuantile(degrees)};
+  const MeanEstimate difference = differenceOf(a, b);
+  const double error = std::sqrt(difference.variance);
+  if (error == 0 || std::isinf(error)) return {difference.mean, error};
+  return {difference.mean, error * studentQuantile(difference.degreesOfFreedom)};
 }
 
 }  // namespace wavecrest

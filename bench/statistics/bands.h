@@ -6,6 +6,16 @@
 
 namespace wavecrest {
 
+// A mean of independent values, or a difference of two means, and how well it is known.
+struct MeanEstimate {
+  double mean = 0;
+  double variance = 0;          // of the mean; infinite for one value alone
+  double degreesOfFreedom = 1;  // of Student's distribution
+};
+MeanEstimate meanOf(std::span<const double> values);
+// mean(a) - mean(b), with Welch's degrees of freedom; 1 where there is no variance.
+MeanEstimate differenceOf(std::span<const double> a, std::span<const double> b);
+
 struct Band {
   double mean = 0;
   double halfWidth = 0;  // infinite where there is none

@@ -3,39 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/pixel_blocks.h"
 #include "bench/statistics/bands.h"
 
 namespace wavecrest {
 namespace {
 
-constexpr size_t kBlock = 8;
-
-struct Sample {
-  double mean = 0, meanVariance = 0;
-};
-
-template <class Value>
-Sample sampleOf(size_t count, Value&& value) {
-  Sample sample;
-  const auto n = static_cast<double>(count);
-  for (size_t i = 0; i < count; ++i) sample.mean += value(i) / n;
-  for (size_t i = 0; i < count; ++i) {
-    sample.meanVariance += std::pow(value(i) - sample.mean, 2) / (n - 1) / n;
-  }
-  return sample;
-}
-
-// difference: of the means, with its variance. Values that are equal to the bit have no variance and no bias.
-Bias biasOf(const Sample& difference, double reference, double degreesOfFreedom) {
+// Values that are equal to the bit have no variance and no bias.
+Bias biasOf(const MeanEstimate& difference, double reference) {
   Bias bias;
   if (reference == 0) return bias;
-  const double error = std::sqrt(difference.meanVariance);
+  const double error = std::sqrt(difference.variance);
   bias.value = difference.mean / reference;
   bias.standardError = error / std::abs(reference);
   if (difference.mean == 0) return bias;
-  bias.probability =
-      error == 0 ? 0 : studentTail(difference.mean / error, std::max(static_cast<int>(degreesOfFreedom), 1));
+  const int degrees = std::max(static_cast<int>(difference.degreesOfFreedom), 1);
+  bias.probability = error == 0 ? 0 : studentTail(difference.mean / error, degrees);
   return bias;
+}
+
+// The means of one block in several images.
+std::vector<double> ofBlock(std::span<const BlockMeans> images, size_t block) {
+  std::vector<double> values;
+  for (const BlockMeans& means : images) values.push_back(means[block]);
+  return values;
 }
 
 // compare(i): the bias of block i, or of the image for the last.
@@ -55,20 +46,13 @@ BlockComparison overBlocks(size_t count, Compare&& compare) {
 }  // namespace
 
 BlockMeans blockMeans(std::span<const float> film, uint32_t width) {
-  const size_t height = film.size() / (size_t{3} * width), across = (width + kBlock - 1) / kBlock,
-               down = (height + kBlock - 1) / kBlock;
-  BlockMeans means(across * down + 1, 0.0);
+  const PixelBlocks blocks = PixelBlocks::of(film.size(), width);
+  BlockMeans means(blocks.count() + 1, 0.0);
   std::vector<double> samples(means.size(), 0.0);
-  for (size_t y = 0; y < height; ++y) {
-    for (size_t x = 0; x < width; ++x) {
-      const size_t block = y / kBlock * across + x / kBlock;
-      for (size_t c = 0; c < 3; ++c) {
-        const double value = film[3 * (y * width + x) + c];
-        means[block] += value;
-        means.back() += value;
-      }
-      samples[block] += 3;
-      samples.back() += 3;
+  for (size_t i = 0; i < film.size(); ++i) {
+    for (const size_t block : {blocks.ofSample(i), blocks.count()}) {
+      means[block] += film[i];
+      ++samples[block];
     }
   }
   for (size_t i = 0; i < means.size(); ++i) means[i] /= samples[i];
@@ -77,23 +61,17 @@ BlockMeans blockMeans(std::span<const float> film, uint32_t width) {
 
 BlockComparison comparePaired(std::span<const BlockMeans> own, std::span<const BlockMeans> reference) {
   return overBlocks(own.front().size(), [&](size_t i) {
-    const Sample difference = sampleOf(own.size(), [&](size_t seed) { return own[seed][i] - reference[seed][i]; });
-    const Sample base = sampleOf(reference.size(), [&](size_t seed) { return reference[seed][i]; });
-    return biasOf(difference, base.mean, static_cast<double>(own.size()) - 1);
+    const std::vector<double> base = ofBlock(reference, i);
+    std::vector<double> differences = ofBlock(own, i);
+    for (size_t seed = 0; seed < differences.size(); ++seed) differences[seed] -= base[seed];
+    return biasOf(meanOf(differences), meanOf(base).mean);
   });
 }
 
 BlockComparison compareIndependent(std::span<const BlockMeans> own, std::span<const BlockMeans> reference) {
   return overBlocks(own.front().size(), [&](size_t i) {
-    const Sample a = sampleOf(own.size(), [&](size_t seed) { return own[seed][i]; });
-    const Sample b = sampleOf(reference.size(), [&](size_t seed) { return reference[seed][i]; });
-    const double variance = a.meanVariance + b.meanVariance;
-    const double degrees = variance == 0
-                               ? 1
-                               : variance * variance /
-                                     (a.meanVariance * a.meanVariance / static_cast<double>(own.size() - 1) +
-                                      b.meanVariance * b.meanVariance / static_cast<double>(reference.size() - 1));
-    return biasOf({a.mean - b.mean, variance}, b.mean, degrees);
+    const std::vector<double> base = ofBlock(reference, i);
+    return biasOf(differenceOf(ofBlock(own, i), base), meanOf(base).mean);
   });
 }
 

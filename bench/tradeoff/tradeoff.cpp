@@ -68,7 +68,7 @@ TradeReference renderReference(const Scene& scene, const RenderSettings& base, d
   return reference;
 }
 
-// What the seeds of one setting have shown.
+// The renders of one setting with all seeds.
 struct Measured {
   std::string refusal;
   std::vector<double> cpuSeconds, variance;  // variance: of one image, from one seed to the next; the first has none

@@ -48,8 +48,8 @@ struct TradeResult {
   std::vector<TradeRow> rows;  // the baseline first
   MachineState machine;
 };
-// Where paths are the same, a last bit that is always rounded the same way is certain to be a difference; smaller ones
-// than this, relative, are no bias.
+// Relative differences below this are not called a bias. Where paths are the same, even a last bit that is always
+// rounded the same way is statistically significant.
 constexpr double kNegligibleBias = 1e-4;
 constexpr double kTradeLevel = 0.01;  // probability that any verdict of bias in a table is false
 

@@ -35,10 +35,7 @@ Plot plotOf(const TradeResult& result) {
          .tooltip = fmt::format("{} {}: {:.3g} s, bias {:+.2g} \u00b1 {:.1g}", row.knob, row.value,
                                 row.secondsToPercent, row.mean.value, row.mean.standardError)});
   }
-  for (PlotCurve& curve : plot.curves) {
-    std::sort(curve.points.begin(), curve.points.end(),
-              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
-  }
+  sortPoints(plot);
   return plot;
 }
 

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "bench/pixel_blocks.h"
 #include "bench/statistics/bands.h"
 
 namespace wavecrest {
@@ -15,33 +16,29 @@ constexpr double kMostDeviation = 0.5;
 // below a goal picks one that is low by chance. This factor makes up for both: tests/bench/until/film_error_test.cpp.
 constexpr double kWidening = 1.4;
 
-constexpr size_t kBlock = 8;
-
 // 1 / brightness^2 of each sample.
 std::vector<float> weightsOf(std::span<const float> film, size_t width) {
-  const size_t height = film.size() / (3 * width);
-  double sum = 0;
-  for (const float value : film) sum += std::max(value, 0.0f);
-  const double darkest = kDarkest * sum / static_cast<double>(film.size());
+  const PixelBlocks blocks = PixelBlocks::of(film.size(), width);
+  std::vector<double> sums(blocks.count()), counts(blocks.count());
+  double all = 0;
+  for (size_t i = 0; i < film.size(); ++i) {
+    const double value = std::max(film[i], 0.0f);
+    const size_t block = blocks.ofSample(i);
+    sums[block] += value;
+    ++counts[block];
+    all += value;
+  }
+  const double darkest = kDarkest * all / static_cast<double>(film.size());
   std::vector<float> weights(film.size());
-  for (size_t y0 = 0; y0 < height; y0 += kBlock) {
-    for (size_t x0 = 0; x0 < width; x0 += kBlock) {
-      const size_t y1 = std::min(y0 + kBlock, height), x1 = std::min(x0 + kBlock, width);
-      double block = 0;
-      for (size_t y = y0; y < y1; ++y) {
-        for (size_t i = 3 * (y * width + x0); i < 3 * (y * width + x1); ++i) block += std::max(film[i], 0.0f);
-      }
-      const double brightness = std::max(block / static_cast<double>(3 * (y1 - y0) * (x1 - x0)), darkest);
-      const auto weight = static_cast<float>(brightness > 0 ? 1 / (brightness * brightness) : 0);
-      for (size_t y = y0; y < y1; ++y) {
-        for (size_t i = 3 * (y * width + x0); i < 3 * (y * width + x1); ++i) weights[i] = weight;
-      }
-    }
+  for (size_t i = 0; i < film.size(); ++i) {
+    const size_t block = blocks.ofSample(i);
+    const double brightness = std::max(sums[block] / counts[block], darkest);
+    weights[i] = static_cast<float>(brightness > 0 ? 1 / (brightness * brightness) : 0);
   }
   return weights;
 }
 
-std::vector<float> meanOf(std::span<const std::vector<float>> slices) {
+std::vector<float> meanFilm(std::span<const std::vector<float>> slices) {
   std::vector<float> mean(slices.front().size());
   for (size_t i = 0; i < mean.size(); ++i) {
     double sum = 0;
@@ -55,7 +52,7 @@ std::vector<float> meanOf(std::span<const std::vector<float>> slices) {
 class Products {
  public:
   Products(std::span<const std::vector<float>> slices, size_t width) : count_(slices.size()), values_(count_ * count_) {
-    const std::vector<float> mean = meanOf(slices), weights = weightsOf(mean, width);
+    const std::vector<float> mean = meanFilm(slices), weights = weightsOf(mean, width);
     const auto samples = static_cast<double>(mean.size());
     for (size_t j = 0; j < count_; ++j) {
       for (size_t k = j; k < count_; ++k) {

@@ -48,7 +48,7 @@ class ChainSession final : public Session {
   void restore(StateReader& in) override;
   const Film& film() const override { return film_; }
   const MemoryPlan& memoryPlan() const override { return memory_; }
-  double progressSeconds() const override { return progressSeconds_.load(std::memory_order_relaxed); }
+  double progressSeconds() const override { return clock_.shown(); }
   uint64_t progressPaths() const override { return progressPaths_.load(std::memory_order_relaxed); }
 
  private:
@@ -84,8 +84,8 @@ class ChainSession final : public Session {
   double stepSeconds_ = 0;          // that the latest took
   std::vector<StuckChain> stuck_;   // at the ends of epochs
   WorkDone earlier_;                // of the sessions that this one goes on for; its counts but not its paths
-  double buildSeconds_ = 0, renderSeconds_ = 0, cpuSeconds_ = 0;
-  std::atomic<double> progressSeconds_{0};
+  RenderClock clock_;
+  double buildSeconds_ = 0;
   std::atomic<uint64_t> progressPaths_{0};
 };
 
@@ -108,7 +108,7 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
                                                    settings.limits.maxDepth)
                                : plainBootstrap(metropolis.bootstrapSamples));
   chains_.emplace(plan_, settings_, film_.area());
-  bootstrapped_.resize((epochs_.targets.size() + settings_.waveSize - 1) / settings_.waveSize);
+  bootstrapped_.resize(piecesOf(epochs_.targets.size(), settings_.waveSize));
   buildSeconds_ = secondsSince(begin);
 }
 
@@ -130,7 +130,7 @@ template <class S>
 void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   const FlushToZero flushToZero;
   std::vector<float>& targets = epochs_.targets;
-  const size_t first = wave * settings_.waveSize, count = std::min<size_t>(settings_.waveSize, targets.size() - first);
+  const size_t first = wave * settings_.waveSize, count = itemsOfPiece(wave, targets.size(), settings_.waveSize);
   // All steps are large, so no current numbers are kept.
   ChainState state(count, {});
   state.samples.values = nullptr;
@@ -249,36 +249,29 @@ void ChainSession<S>::updateFilm() {
 
 template <class S>
 void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
-  const auto begin = Clock::now();
-  const double cpuBegin = processCpuSeconds();
-  const WorkerLimit limit(settings_.threads);
-  const uint64_t restart = epochSteps(settings_.metropolis, epochs_.targets.size());
-  const uint64_t goal = iterations ? stepsFor(*iterations) : std::numeric_limits<uint64_t>::max();
-  constexpr double kEndless = std::numeric_limits<double>::infinity();
-  const double end = std::min(seconds.value_or(kEndless), settings_.seconds.value_or(kEndless));
-  const auto now = [&] {
-    const double charged = renderSeconds_ + secondsSince(begin);
-    progressSeconds_.store(charged, std::memory_order_relaxed);
-    return charged;
-  };
-  const Stop stop = [&] { return (seconds && now() >= *seconds) || interrupted(); };
-  arena_.execute([&] {
-    while (!stop()) {
-      if (direct() && !traceDirect(stop)) return;
-      if (step_ >= goal) return;
-      if (epochs_.count() <= step_ / restart && !beginEpoch(step_ / restart, stop)) return;
-      const double before = now();
-      const uint64_t steps = stepsInTime(std::min(restart - step_ % restart, goal - step_), end - before);
-      if (steps == 0) return;
-      if (!epochs_.dark()) advance(steps);
-      step_ += steps;
-      epochs_.addSteps(steps);
-      stepSeconds_ = (now() - before) / static_cast<double>(steps);
-    }
-  });
-  renderSeconds_ += secondsSince(begin);
-  cpuSeconds_ += processCpuSeconds() - cpuBegin;
-  progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
+  {
+    const RenderClock::Running clock(clock_);
+    const WorkerLimit limit(settings_.threads);
+    const uint64_t restart = epochSteps(settings_.metropolis, epochs_.targets.size());
+    const uint64_t goal = iterations ? stepsFor(*iterations) : std::numeric_limits<uint64_t>::max();
+    constexpr double kEndless = std::numeric_limits<double>::infinity();
+    const double end = std::min(seconds.value_or(kEndless), settings_.seconds.value_or(kEndless));
+    const Stop stop = [&] { return (seconds && clock.look() >= *seconds) || interrupted(); };
+    arena_.execute([&] {
+      while (!stop()) {
+        if (direct() && !traceDirect(stop)) return;
+        if (step_ >= goal) return;
+        if (epochs_.count() <= step_ / restart && !beginEpoch(step_ / restart, stop)) return;
+        const double before = clock.look();
+        const uint64_t steps = stepsInTime(std::min(restart - step_ % restart, goal - step_), end - before);
+        if (steps == 0) return;
+        if (!epochs_.dark()) advance(steps);
+        step_ += steps;
+        epochs_.addSteps(steps);
+        stepSeconds_ = (clock.look() - before) / static_cast<double>(steps);
+      }
+    });
+  }
   updateFilm();
 }
 
@@ -288,8 +281,8 @@ RenderStatistics ChainSession<S>::statistics() const {
   out.iterations = mutations() / film_.area().pixels.size();
   out.paths = mutations();
   out.buildSeconds = buildSeconds_;
-  out.renderSeconds = renderSeconds_;
-  out.cpuSeconds = cpuSeconds_;
+  out.renderSeconds = clock_.seconds();
+  out.cpuSeconds = clock_.cpuSeconds();
   out.isa = plan_.isa;
   out.specialization = plan_.specialization;
   out.accel = plan_.accel();
@@ -362,9 +355,7 @@ void ChainSession<S>::restore(StateReader& in) {
   chains_->restore(in, lit ? epochs_.scale() : 1);
   in.finish();
   directDone_ = film_.minSamples();
-  renderSeconds_ = earlier_.renderSeconds;
-  cpuSeconds_ = earlier_.cpuSeconds;
-  progressSeconds_.store(renderSeconds_, std::memory_order_relaxed);
+  clock_.goOnFrom(earlier_.renderSeconds, earlier_.cpuSeconds);
   progressPaths_.store(mutations(), std::memory_order_relaxed);
   updateFilm();
 }

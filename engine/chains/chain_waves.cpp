@@ -20,7 +20,7 @@ template <class S>
 ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
     : plan_(plan), settings_(settings), area_(area) {
   const ChainState::Kept kept = keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth);
-  const size_t waves = (settings.metropolis.chains + settings.waveSize - 1) / settings.waveSize;
+  const size_t waves = piecesOf(settings.metropolis.chains, settings.waveSize);
   for (size_t wave = 0; wave < waves; ++wave) {
     states_.emplace_back(chainCount(wave), kept).multiplexed = plan.pipeline.lightPass.has_value();
     if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan.pathLaws.law().maxEdges, plan.needs);
@@ -30,7 +30,7 @@ ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& setti
 
 template <class S>
 size_t ChainWaves<S>::chainCount(size_t wave) const {
-  return std::min<size_t>(settings_.waveSize, settings_.metropolis.chains - firstChain(wave));
+  return itemsOfPiece(wave, settings_.metropolis.chains, settings_.waveSize);
 }
 
 template <class S>

@@ -44,10 +44,7 @@ SavePlan planSave(const Scene& scene, const fs::path& xml) {
   saveEmitters(context);
 
   plan.files = assets.takeFiles();
-  plan.files.push_back(
-      {xml, [xml, text = textOf(document)] {
-         writeFileAtomically(xml.string(), {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
-       }});
+  plan.files.push_back({xml, [xml, text = textOf(document)] { writeFileAtomically(xml.string(), text); }});
   return plan;
 }
 

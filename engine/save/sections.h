@@ -19,9 +19,11 @@ struct SaveContext {
 
   // By index in the scene; empty: nothing refers to it. Filled by saveTextures and saveMaterials.
   std::vector<std::string> textureIds{}, materialIds{};
-  // By shape: the attribute of the mesh that is written into its file; null: none. Filled by saveTextures.
+  // For each shape of the scene: the bitmap that the loader made of an attribute of the shape's mesh, if its PLY file
+  // is to have that attribute; else null. Filled by saveTextures.
   std::vector<const Bitmap*> meshAttributes{};
-  // What to refer to where a number is asked for: the texture of which the loader made this one.
+  // For each texture of numbers that the loader derived from a colour texture: the index of that one, which a file
+  // refers to instead; else kNone.
   std::vector<uint32_t> scalarSources{};
 };
 

@@ -5,21 +5,11 @@ namespace wavecrest {
 namespace {
 
 void saveFilter(pugi::xml_node film, const FilmSettings& settings) {
-  switch (settings.filter) {
-    case ReconstructionFilter::box: {
-      const pugi::xml_node node = addObject(film, "rfilter", "box");
-      if (settings.filterRadius != 0.5) addFloat(node, "radius", settings.filterRadius);
-      break;
-    }
-    case ReconstructionFilter::tent: {
-      const pugi::xml_node node = addObject(film, "rfilter", "tent");
-      if (settings.filterRadius != 1) addFloat(node, "radius", settings.filterRadius);
-      break;
-    }
-    case ReconstructionFilter::gaussian:
-      addFloat(addObject(film, "rfilter", "gaussian"), "stddev", settings.gaussianStddev);
-      break;
-  }
+  const auto kind = static_cast<size_t>(settings.filter);
+  const pugi::xml_node node = addObject(film, "rfilter", kFilterNames[kind].data());
+  if (settings.filter == ReconstructionFilter::gaussian) return addFloat(node, "stddev", settings.gaussianStddev);
+  const double usual = settings.filter == ReconstructionFilter::box ? 0.5 : 1;
+  if (settings.filterRadius != usual) addFloat(node, "radius", settings.filterRadius);
 }
 
 void saveFilm(pugi::xml_node sensor, const FilmSettings& film) {
@@ -37,18 +27,6 @@ void saveFilm(pugi::xml_node sensor, const FilmSettings& film) {
   saveFilter(node, film);
 }
 
-const char* pluginOf(Sensor::Kind kind) {
-  switch (kind) {
-    case Sensor::Kind::perspective:
-      return "perspective";
-    case Sensor::Kind::thinlens:
-      return "thinlens";
-    case Sensor::Kind::orthographic:
-      return "orthographic";
-  }
-  return "";
-}
-
 }  // namespace
 
 void saveIntegrator(SaveContext& context) {
@@ -59,7 +37,8 @@ void saveIntegrator(SaveContext& context) {
 
 void saveSensor(SaveContext& context) {
   const Sensor& sensor = context.scene.sensor;
-  const pugi::xml_node node = addObject(context.root, "sensor", pluginOf(sensor.kind));
+  const pugi::xml_node node =
+      addObject(context.root, "sensor", Sensor::kKindNames[static_cast<size_t>(sensor.kind)].data());
   addTransform(node, "to_world", sensor.toWorld);
   addFloat(node, "near_clip", sensor.nearClip);
   addFloat(node, "far_clip", sensor.farClip);

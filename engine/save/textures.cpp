@@ -47,7 +47,7 @@ struct TextureUses {
 
 TextureUses usesOf(const Scene& scene) {
   TextureUses uses;
-  for (const Material& material : scene.materials) std::visit([&](const auto&) { uses(material); }, material.kind);
+  for (const Material& material : scene.materials) uses(material);
   for (const Emitter& emitter : scene.emitters) {
     if (const auto* area = std::get_if<AreaEmitter>(&emitter.kind)) uses(area->radiance);
     if (const auto* spot = std::get_if<SpotEmitter>(&emitter.kind)) TextureUses::add(uses.colors, spot->texture);
@@ -130,7 +130,7 @@ void saveTexture(SaveContext& context, const Texture& texture, bool isNumber, bo
   if (bitmap != nullptr) {
     saveBitmap(context, *bitmap, isData, node);
   } else {
-    // Read as numbers, the two change places (scalarTexture).
+    // The loader exchanges the colours of a checkerboard that is asked for a number (scalarTexture).
     const auto& board = std::get<CheckerboardTexture>(texture.kind);
     addRgb(node, "color0", isNumber ? board.color1 : board.color0);
     addRgb(node, "color1", isNumber ? board.color0 : board.color1);

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -197,6 +198,7 @@ struct Emitter {
 
 struct Sensor {
   enum class Kind { perspective, thinlens, orthographic };
+  static constexpr std::array<std::string_view, 3> kKindNames{"perspective", "thinlens", "orthographic"};  // plugins
   Kind kind = Kind::perspective;
   Matrix4 toWorld{};      // camera looks along +z, +x to the left of the image, +y up, as in Mitsuba
   double fovX = 39.3077;  // horizontal, degrees, already derived from fov_axis and the film's aspect
@@ -207,6 +209,7 @@ struct Sensor {
 };
 
 enum class ReconstructionFilter { box, tent, gaussian };
+constexpr std::array<std::string_view, 3> kFilterNames{"box", "tent", "gaussian"};  // plugins
 
 struct FilmSettings {
   uint32_t width = 768, height = 576;

@@ -148,6 +148,10 @@ void writeFileAtomically(const std::string& path, std::span<const unsigned char>
   file.commit();
 }
 
+void writeFileAtomically(const std::string& path, std::string_view text) {
+  writeFileAtomically(path, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
+}
+
 void removeTemporaries(const std::string& path) {
   namespace fs = std::filesystem;
   const fs::path target = fs::absolute(targetOf(path));

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace wavecrest {
@@ -12,9 +13,10 @@ namespace wavecrest {
 // The file's bytes. Throws ImageError when it is missing, unreadable or not a regular file.
 std::vector<unsigned char> readFileBytes(const std::string& path);
 
-// Writes to a temporary name in the same folder; commit() flushes it to the device and renames it over the target. A
-// symbolic link stays, and what it points to is replaced; devices and pipes are written to as they are. Without
-// commit() the target stays as it was. All throw ImageError where they fail.
+// A file that is replaced as a whole. write() fills a temporary file in the same folder; commit() flushes that to the
+// device and renames it over the target. Whoever is destroyed without commit() leaves the target as it was. If the
+// target is a symbolic link, the file that it points to is replaced. Devices and pipes are written to directly. Every
+// member throws ImageError where it fails.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path);
@@ -32,6 +34,7 @@ class AtomicFile {
 
 // All of a file at once.
 void writeFileAtomically(const std::string& path, std::span<const unsigned char> bytes);
+void writeFileAtomically(const std::string& path, std::string_view text);
 
 // Throws ImageError where writeFileAtomically would: a folder that does not exist or takes no new files, or a target
 // that is a folder. Lets a program fail before long work instead of after it.

@@ -81,8 +81,8 @@ class SessionStateTest : public testing::TestWithParam<Kind> {
   const Scene scene_ = sceneFile("cornell-diffuse", kWidth, kHeight);
 };
 
-// Counts that depend on the paths alone. Bootstraps of an interrupted epoch are traced twice, so rays of mlt may be
-// more.
+// Compares the counts that follow from the paths. mlt may have traced more rays, as it repeats a bootstrap that was
+// interrupted.
 void expectSameWork(const RenderStatistics& a, const RenderStatistics& b) {
   EXPECT_EQ(a.iterations, b.iterations);
   EXPECT_EQ(a.paths, b.paths);

@@ -7,9 +7,8 @@
 
 #include "bench/scaling/list_schedule.h"
 #include "engine/for_each.h"
-#include "engine/load/load.h"
 #include "engine/session.h"
-#include "scenes/scene_list.h"
+#include "tests/bench/small_box.h"
 
 namespace wavecrest {
 namespace {
@@ -21,14 +20,10 @@ struct Recording {
 };
 
 Recording recorded(Method method, uint32_t threads, uint32_t cutFor) {
-  LoadOptions options;
-  options.filmSize = {96, 64};
-  RenderSettings settings;
-  settings.isa = bestIsa();
-  settings.method = method;
+  RenderSettings settings = settingsOf(method);
   settings.threads = threads;
   settings.piecesForThreads = cutFor;
-  const auto session = Session::create(loadScene(findScene("cornell-diffuse"), options), settings);
+  const auto session = Session::create(smallBox(96, 64), settings);
   session->renderUntil(2, std::nullopt);
   const double before = session->statistics().renderSeconds;
   const auto begin = TaskRecorder::Clock::now();

@@ -4,31 +4,22 @@
 #include <gtest/gtest.h>
 
 #include "bench/throughput/speed.h"
-#include "engine/load/load.h"
-#include "scenes/scene_list.h"
+#include "tests/bench/small_box.h"
 
 namespace wavecrest {
 namespace {
 
-Scene smallBox() {
-  LoadOptions options;
-  options.filmSize = {24, 16};
-  return loadScene(findScene("cornell-diffuse"), options);
-}
-
-RenderSettings settingsOf(Method method) {
-  RenderSettings settings;
-  settings.isa = bestIsa();
-  settings.method = method;
+RenderSettings measured(Method method) {
+  RenderSettings settings = settingsOf(method);
   settings.measureStages = true;
   return settings;
 }
 
 TEST(Turns, slicesAreWholeIterationsAndOfEqualSize) {
-  const Scene scene = smallBox();
+  const Scene scene = smallBox(24, 16);
   for (const Method method : {Method::pt, Method::vcm, Method::lt}) {
     std::vector<std::unique_ptr<Session>> sessions;
-    sessions.push_back(Session::create(scene, settingsOf(method)));
+    sessions.push_back(Session::create(scene, measured(method)));
     const auto slices = renderInTurn(sessions, {.seconds = 0.05, .fewestRounds = 3, .mostRounds = 5});
     ASSERT_GE(slices[0].size(), 3u);
     for (const Slice& slice : slices[0]) {
@@ -39,9 +30,9 @@ TEST(Turns, slicesAreWholeIterationsAndOfEqualSize) {
 }
 
 TEST(Turns, itemsOfAPathAreTheSameInEveryMeasurement) {
-  const Scene scene = smallBox();
-  const Speed a = measureSpeed(scene, settingsOf(Method::vcm), 0.2);
-  const Speed b = measureSpeed(scene, settingsOf(Method::vcm), 0.4);
+  const Scene scene = smallBox(24, 16);
+  const Speed a = measureSpeed(scene, measured(Method::vcm), 0.2);
+  const Speed b = measureSpeed(scene, measured(Method::vcm), 0.4);
   ASSERT_EQ(a.stages.size(), b.stages.size());
   for (size_t i = 0; i < a.stages.size(); ++i) {
     // Other numbers of iterations: some 10^5 paths at the least, so a standard error of 0.3 % or less.

@@ -5,24 +5,10 @@
 
 #include <algorithm>
 
-#include "engine/load/load.h"
-#include "scenes/scene_list.h"
+#include "tests/bench/small_box.h"
 
 namespace wavecrest {
 namespace {
-
-Scene smallBox() {
-  LoadOptions options;
-  options.filmSize = {48, 32};
-  return loadScene(findScene("cornell-diffuse"), options);
-}
-
-RenderSettings settingsOf(Method method) {
-  RenderSettings settings;
-  settings.isa = bestIsa();
-  settings.method = method;
-  return settings;
-}
 
 const TradeRow& rowOf(const TradeResult& result, const std::string& knob, const std::string& value) {
   const auto found = std::find_if(result.rows.begin(), result.rows.end(),
@@ -32,7 +18,7 @@ const TradeRow& rowOf(const TradeResult& result, const std::string& knob, const 
 }
 
 TEST(Knobs, areThoseThatMeanSomethingForTheMethod) {
-  const Scene scene = smallBox();
+  const Scene scene = smallBox(48, 32);
   const auto has = [&](Method method, const std::string& knob) {
     const auto variants = variantsOf(scene, settingsOf(method));
     return std::any_of(variants.begin(), variants.end(), [&](const Variant& v) { return v.knob == knob; });
@@ -46,7 +32,7 @@ TEST(Knobs, areThoseThatMeanSomethingForTheMethod) {
 }
 
 TEST(Tradeoff, findsWhatShortPathsLeaveOutAndNoBiasInRounding) {
-  const TradeResult result = measureTrade(smallBox(), settingsOf(Method::pt), 3);
+  const TradeResult result = measureTrade(smallBox(48, 32), settingsOf(Method::pt), 3);
   EXPECT_EQ(result.rows.front().knob, "baseline");
   EXPECT_EQ(result.rows.front().efficiency.value, 1);
   const TradeRow& shortPaths = rowOf(result, "--max-depth", "4");

@@ -4,34 +4,20 @@
 #include <gtest/gtest.h>
 
 #include "bench/film_image.h"
-#include "engine/load/load.h"
-#include "scenes/scene_list.h"
+#include "tests/bench/small_box.h"
 
 namespace wavecrest {
 namespace {
 
-Scene smallBox() {
-  LoadOptions options;
-  options.filmSize = {32, 24};
-  return loadScene(findScene("cornell-diffuse"), options);
-}
-
-RenderSettings settingsOf(uint64_t seed) {
-  RenderSettings settings;
-  settings.isa = bestIsa();
-  settings.seed = seed;
-  return settings;
-}
-
 PreparedReference referenceOf(const Scene& scene) {
-  const auto session = Session::create(scene, settingsOf(1000));
+  const auto session = Session::create(scene, settingsOf(Method::pt, 1000));
   session->renderUntil(2048, std::nullopt);
   return {"reference", {filmImage(*session), Encoding::linear, {}}};
 }
 
 // The SSIM of a render of its own with so many iterations.
 double ssimAfter(const Scene& scene, const PreparedReference& reference, uint64_t iterations) {
-  const auto session = Session::create(scene, settingsOf(1));
+  const auto session = Session::create(scene, settingsOf(Method::pt, 1));
   session->renderUntil(iterations, std::nullopt);
   return reference.ssim()
       .compare(reference.prepareTest("test", {filmImage(*session), Encoding::linear, {}}).codes)
@@ -39,10 +25,10 @@ double ssimAfter(const Scene& scene, const PreparedReference& reference, uint64_
 }
 
 TEST(UntilSsim, endsAtTheFirstLookThatResemblesTheReference) {
-  const Scene scene = smallBox();
+  const Scene scene = smallBox(32, 24);
   const PreparedReference reference = referenceOf(scene);
-  const auto session = Session::create(scene, settingsOf(1));
-  const SsimNow now = renderUntilSsim(*session, settingsOf(1), {.reference = reference, .ssim = 0.9});
+  const auto session = Session::create(scene, settingsOf(Method::pt, 1));
+  const SsimNow now = renderUntilSsim(*session, settingsOf(Method::pt, 1), {.reference = reference, .ssim = 0.9});
   EXPECT_TRUE(now.reached);
   EXPECT_EQ(now.ssim, ssimAfter(scene, reference, now.iterations));
   EXPECT_GE(now.ssim, 0.9);
@@ -51,9 +37,9 @@ TEST(UntilSsim, endsAtTheFirstLookThatResemblesTheReference) {
 }
 
 TEST(UntilSsim, endsAtTheIterationsOfTheSettingsUnreached) {
-  const Scene scene = smallBox();
+  const Scene scene = smallBox(32, 24);
   const PreparedReference reference = referenceOf(scene);
-  RenderSettings settings = settingsOf(1);
+  RenderSettings settings = settingsOf(Method::pt, 1);
   settings.iterations = 7;
   const auto session = Session::create(scene, settings);
   const SsimNow now = renderUntilSsim(*session, settings, {.reference = reference, .ssim = 0.999});
