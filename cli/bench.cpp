@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/option_values.h"
+#include "cli/pinning.h"
 #include "engine/version.h"
 #include "scenes/scene_list.h"
 
@@ -29,12 +30,7 @@ std::vector<std::filesystem::path> benchSceneFiles(const BenchOptions& options) 
 
 std::vector<Method> benchMethods(const BenchOptions& options) {
   std::vector<Method> methods;
-  for (const std::string& word : options.methods) {
-    const std::optional<Method> method = parseMethod(word);
-    if (!method)
-      throw UsageError(fmt::format("--methods {}: unknown; expected names like pt, separated by commas", word));
-    methods.push_back(*method);
-  }
+  for (const std::string& word : options.methods) methods.push_back(parseMethodOption("--methods", word));
   if (methods.empty()) {
     for (const MethodEntry& entry : kMethods) methods.push_back(entry.method);
   }
@@ -49,20 +45,25 @@ void printBench(const BenchOptions& options, const std::string& text) {
 
 LoadOptions benchLoading(const BenchOptions& options) {
   LoadOptions loading;
-  if (!options.size.empty()) loading.filmSize = parseSize(options.size);
+  if (!options.size.empty()) loading.filmSize = parseSize("--size", options.size);
   return loading;
 }
 
 RenderSettings benchSettings(const Scene& scene, const BenchOptions& options) {
   RenderSettings settings;
   settings.isa = bestIsa();
-  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  settings.threads = benchThreads(options);
+  if (options.pin) settings.placement = pinnedPlacement(settings.threads, ProgressKind::none);
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   return settings;
 }
 
+uint32_t benchThreads(const BenchOptions& options) {
+  return options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+}
+
 double benchSeconds(const BenchOptions& options, double unlessGiven) {
-  return options.duration.empty() ? unlessGiven : parseDuration(options.duration);
+  return options.duration.empty() ? unlessGiven : parseDuration("--duration", options.duration);
 }
 
 void writeBenchJson(const BenchOptions& options, const std::string& kind, const nlohmann::ordered_json& figures) {
@@ -83,6 +84,8 @@ int runBench(const BenchOptions& options) {
   if (!options.against.empty()) return runBenchAgainst(options);
   if (options.tradeoff) return runBenchTradeoff(options);
   if (options.scaling) return runBenchScaling(options);
+  if (options.specialization) return runBenchSpecialization(options);
+  if (!options.score.empty()) return runBenchScore(options);
   return runBenchThroughput(options);
 }
 
@@ -94,11 +97,14 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.add("scenes", options->scenes, "built-in scenes or XML files; default: two Cornell boxes");
   command.add("--methods", options->methods, "methods, separated by commas; default: all").separatedByCommas();
   command.add("--duration", options->duration,
-              "time per scene and method, about; default: 6s, of --against and --scaling 20s, of --tradeoff 60s");
+              "time per scene and method, about; default: 6s, of --against, --scaling and --specialization 20s, of "
+              "--tradeoff 60s");
   command.add("--json", options->json, "write all figures as JSON; -: to stdout, instead of the tables");
   command.add("--size", options->size, "film size, WIDTHxHEIGHT");
   command.add("--threads", options->threads, "most threads; default: all cores, of --against and --tradeoff one")
       .between(1, 4096);
+  command.addFlag("--pin", options->pin,
+                  "bind threads to cores and spread shared memory over their nodes; not with the modes below");
   command.add("--against", options->against, "compare with another build: the path of its wavecrest");
   command.add("--compare", options->compare, "compare two stored results of one machine: BEFORE.json AFTER.json")
       .exactly(2);
@@ -110,17 +116,37 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
       .between(0.0, 0.9);
   command.addFlag("--scaling", options->scaling,
                   "speedup over threads: measured here, and predicted up to 256 from the graph of tasks");
+  command.add("--score", options->score, "one figure for this machine, from a fixed workload: small, medium or large");
+  command.add("--hashes", options->hashes, "--score: validate images by this file instead of the committed one");
+  command.add("--write-hashes", options->writeHashes,
+              "--score: measure nothing, render what validates the images and put its hashes into this file");
+  command.addFlag("--specialization", options->specialization,
+                  "kernels for what a scene has against those that render everything: image, speed, memory, code");
   command.addFlag("--tradeoff", options->tradeoff,
                   "speed, noise, bias and memory of every setting that buys one for another");
+  command
+      .add("--knobs", options->knobs,
+           "--tradeoff: settings to vary, separated by commas: precision,kernels; default: all")
+      .separatedByCommas();
+  command.add("--seeds", options->seeds, "--tradeoff: renders of each setting; default: 6").between(2, 1000);
   command.addFlag("--extremes", options->extremes, "take scenes and renders to their extremes, one property at a time");
   command.add("--html", options->html, "--extremes, --tradeoff: write a page with plots");
   command.run([options, &exitCode] {
+    const bool throughput = !options->extremes && !options->scaling && !options->tradeoff && !options->specialization &&
+                            options->score.empty() && options->against.empty() && options->compare.empty();
+    if (options->pin && !throughput) throw UsageError("--pin goes with none of bench's other modes; expected it alone");
     if (options->extremes) {
       exitCode = runBenchExtremes(*options);
       return;
     }
     if (!options->html.empty() && !options->tradeoff) {
       throw UsageError("--html goes with --extremes or --tradeoff; expected one of them");
+    }
+    if ((!options->knobs.empty() || options->seeds != 0) && !options->tradeoff) {
+      throw UsageError("--knobs and --seeds go with --tradeoff; expected it");
+    }
+    if (options->score.empty() && !(options->hashes.empty() && options->writeHashes.empty())) {
+      throw UsageError("--hashes and --write-hashes go with --score; expected it");
     }
     exitCode = runBench(*options);
   });

@@ -37,7 +37,7 @@ int runBenchAgainst(const BenchOptions& options) {
   if (access(options.against.c_str(), X_OK) != 0 || std::filesystem::is_directory(options.against)) {
     throw UsageError(fmt::format("--against {}: cannot be run; expected the path of a wavecrest", options.against));
   }
-  if (!options.size.empty()) parseSize(options.size);
+  if (!options.size.empty()) parseSize("--size", options.size);
   AgainstRequest request{.other = std::filesystem::absolute(options.against),
                          .scenes = benchSceneFiles(options),
                          .methods = {},

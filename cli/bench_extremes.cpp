@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "bench/extremes/extremes_report.h"
 #include "cli/bench_modes.h"
@@ -18,7 +17,7 @@ int runBenchExtremes(const BenchOptions& options) {
     throw UsageError("--extremes has scenes, methods and sizes of its own; expected none");
   }
   const std::vector<Sweep> sweeps = allSweeps();
-  const uint32_t threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  const uint32_t threads = benchThreads(options);
   std::vector<SweepResult> results;
   nlohmann::ordered_json all = {
       {"version", kVersion}, {"commit", kCommit}, {"sweeps", nlohmann::ordered_json::array()}};

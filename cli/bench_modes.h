@@ -19,8 +19,11 @@ struct BenchOptions {
   uint32_t threads = 0;
   std::string against;
   std::vector<std::string> compare;  // two files
-  bool extremes = false, scaling = false, tradeoff = false;
+  bool extremes = false, scaling = false, tradeoff = false, specialization = false, pin = false;
+  std::string score, hashes, writeHashes;  // score: a size
   std::string html;
+  std::vector<std::string> knobs;
+  uint32_t seeds = 0;  // 0: as many as the mode likes
   double familyLevel = 0.05, tolerance = 0;
 };
 
@@ -30,6 +33,8 @@ int runBenchAgainst(const BenchOptions& options);
 int runBenchCompare(const BenchOptions& options);
 int runBenchTradeoff(const BenchOptions& options);
 int runBenchScaling(const BenchOptions& options);
+int runBenchSpecialization(const BenchOptions& options);
+int runBenchScore(const BenchOptions& options);
 int runBenchExtremes(const BenchOptions& options);
 
 // Shared by the modes. Tables go to stdout unless the JSON does.
@@ -39,6 +44,8 @@ std::vector<Method> benchMethods(const BenchOptions& options);
 LoadOptions benchLoading(const BenchOptions& options);
 // The best instruction set, all cores unless told otherwise, and the scene's own limits of paths.
 RenderSettings benchSettings(const Scene& scene, const BenchOptions& options);
+// As many as asked for, or as the machine has.
+uint32_t benchThreads(const BenchOptions& options);
 double benchSeconds(const BenchOptions& options, double unlessGiven);
 // Writes the figures of a mode where --json asks for them, with what every result has (bench/schema.json).
 void writeBenchJson(const BenchOptions& options, const std::string& kind, const nlohmann::ordered_json& figures);

@@ -29,7 +29,8 @@ Scene tradeScene(const BenchOptions& options, const std::filesystem::path& file)
 
 int runBenchTradeoff(const BenchOptions& options) {
   const std::vector<Method> methods = benchMethods(options);
-  const double seconds = benchSeconds(options, kTradeSeconds);
+  TradeEffort effort{.seconds = benchSeconds(options, kTradeSeconds), .knobs = options.knobs};
+  if (options.seeds != 0) effort.seeds = options.seeds;
   std::vector<TradeResult> results;
   nlohmann::ordered_json all = {{"results", nlohmann::ordered_json::array()}};
   for (const std::filesystem::path& file : benchSceneFiles(options)) {
@@ -39,7 +40,11 @@ int runBenchTradeoff(const BenchOptions& options) {
       // CPU time of threads that share caches would blur the comparison.
       if (options.threads == 0) settings.threads = 1;
       settings.method = method;
-      results.push_back(measureTrade(scene, settings, seconds));
+      try {
+        results.push_back(measureTrade(scene, settings, effort));
+      } catch (const std::invalid_argument& error) {
+        throw UsageError(fmt::format("--knobs: {}; expected words of the tradeoff table's first column", error.what()));
+      }
       printBench(options, toText(results.back()) + "\n");
       all["results"].push_back(toJson(results.back()));
     }

@@ -27,7 +27,8 @@ void addCheckpointOptions(const Command& command, CheckpointOptions& options) {
 }
 
 Checkpointing::Checkpointing(const CheckpointOptions& options)
-    : seconds_(std::min(parseDuration(options.every.empty() ? kDefaultInterval : options.every), kLongestInterval)) {
+    : seconds_(std::min(parseDuration("--checkpoint-every", options.every.empty() ? kDefaultInterval : options.every),
+                        kLongestInterval)) {
   if (options.file.empty()) {
     if (!options.resume && options.every.empty()) return;
     throw UsageError(fmt::format("{}: there is no checkpoint; expected --checkpoint FILE",

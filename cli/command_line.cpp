@@ -33,6 +33,33 @@ std::vector<std::string> longNames(const CLI::App& app) {
   return names;
 }
 
+constexpr const char* kRange = "range";  // the validator that all numbers have
+
+// CLI11 itself would take "010" for 8, "nan" for a number in any range, and what is too large for the largest.
+Option withRange(CLI::Option* option, const NumberRange& range) {
+  CLI::Validator* const validator = option->get_validator(kRange);
+  validator->operation([range](std::string& word) { return checkNumber(range, word); });
+  validator->description(describe(range));
+  return Option(option);
+}
+
+template <class Number>
+Option addNumber(CLI::App& app, const std::string& name, Number& value, const std::string& description) {
+  CLI::Option* const option = withVariable(app.add_option(name, value, description), name);
+  const NumberRange range = rangeOf<Number>();
+  option->transform(CLI::Validator([range](std::string& word) { return checkNumber(range, word); }, "", kRange));
+  return Option(option);
+}
+
+// "--spp: 1 required UINT missing" for people.
+std::string withoutTypes(const CLI::ArgumentMismatch& error) {
+  std::string text = error.what();
+  const size_t end = text.find(": "), required = text.find(" required");
+  if (end == std::string::npos || required == std::string::npos) return text;
+  const std::string count = text.substr(end + 2, required - end - 2);
+  return text.substr(0, end) + (count == "1" ? ": expected a value" : ": expected " + count + " values");
+}
+
 std::string oneLine(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -44,14 +71,11 @@ std::string oneLine(std::string text) {
 Option Option::required() const { return Option(option_->required()); }
 Option Option::showDefault() const { return Option(option_->capture_default_str()); }
 Option Option::oneValue() const { return Option(option_->expected(1)); }
+Option Option::valueOr(const std::string& value) const { return Option(option_->expected(0, 1)->default_str(value)); }
 Option Option::repeatable() const { return Option(option_->allow_extra_args(false)); }
 Option Option::exactly(int values) const { return Option(option_->expected(values)); }
 Option Option::separatedByCommas() const { return Option(option_->delimiter(',')); }
-Option Option::positive() const { return Option(option_->check(CLI::PositiveNumber)); }
-Option Option::notNegative() const { return Option(option_->check(CLI::NonNegativeNumber)); }
-Option Option::between(int low, int high) const { return Option(option_->check(CLI::Range(low, high))); }
-Option Option::between(uint64_t low, uint64_t high) const { return Option(option_->check(CLI::Range(low, high))); }
-Option Option::between(double low, double high) const { return Option(option_->check(CLI::Range(low, high))); }
+Option Option::within(const NumberRange& range) const { return withRange(option_, range); }
 Option Option::checkedBy(std::function<std::string(const std::string&)> check) const {
   return Option(option_->check(std::move(check)));
 }
@@ -64,16 +88,16 @@ Option Command::add(const std::string& name, std::vector<std::string>& value, co
   return Option(withVariable(app_->add_option(name, value, description), name));
 }
 Option Command::add(const std::string& name, int& value, const std::string& description) const {
-  return Option(withVariable(app_->add_option(name, value, description), name));
+  return addNumber(*app_, name, value, description);
 }
 Option Command::add(const std::string& name, uint32_t& value, const std::string& description) const {
-  return Option(withVariable(app_->add_option(name, value, description), name));
+  return addNumber(*app_, name, value, description);
 }
 Option Command::add(const std::string& name, uint64_t& value, const std::string& description) const {
-  return Option(withVariable(app_->add_option(name, value, description), name));
+  return addNumber(*app_, name, value, description);
 }
 Option Command::add(const std::string& name, double& value, const std::string& description) const {
-  return Option(withVariable(app_->add_option(name, value, description), name));
+  return addNumber(*app_, name, value, description);
 }
 void Command::addFlag(const std::string& name, bool& value, const std::string& description) const {
   app_->add_flag(name, value, description);
@@ -118,20 +142,20 @@ void CommandLine::failParsing(const std::string& what) const {
 bool CommandLine::parse(std::vector<std::string> arguments, int& exitCode) {
   const std::vector<std::string> names = commandNames();
   if (!arguments.empty() && arguments.front() == "help") {
-    if (arguments.size() > 1) {
-      arguments = {arguments[1], "--help"};
-    } else {
-      arguments = {"--help"};
-    }
+    if (arguments.size() > 2) throw UsageError("help " + arguments[1] + " " + arguments[2] + ": expected one command");
+    arguments =
+        arguments.size() > 1 ? std::vector{arguments[1], std::string("--help")} : std::vector{std::string("--help")};
   }
   const bool isCommand = !arguments.empty() && !arguments.front().starts_with('-');
   if (isCommand && std::find(names.begin(), names.end(), arguments.front()) == names.end()) {
-    throw UsageError("unknown command '" + arguments.front() + "'" + didYouMean(arguments.front(), names) +
-                     "; expected one of those that `wavecrest help` lists");
+    throw UsageError("unknown command '" + arguments.front() + "'; expected one of " + CLI::detail::join(names, ", ") +
+                     didYouMean(arguments.front(), names));
   }
   std::reverse(arguments.begin(), arguments.end());  // CLI11 takes a stack
   try {
     app_->parse(std::move(arguments));
+  } catch (const CLI::ArgumentMismatch& error) {
+    failParsing(withoutTypes(error));
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
     if (!asked) failParsing(error.what());
@@ -146,8 +170,5 @@ std::string CommandLine::describe(DescriptionKind kind, const std::string& versi
                                   const std::vector<CompletionWords>& values) const {
   return wavecrest::describe(*app_, kind, version, values);
 }
-
-bool readNumber(const std::string& word, int& number) { return CLI::detail::lexical_cast(word, number); }
-bool readNumber(const std::string& word, double& number) { return CLI::detail::lexical_cast(word, number); }
 
 }  // namespace wavecrest

@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "cli/number_range.h"
 
 namespace CLI {
 class App;
@@ -25,14 +28,19 @@ class Option {
   Option required() const;
   Option showDefault() const;  // in --help: the value that the variable has now
   Option oneValue() const;
+  // May stand without a value and is then `value`, which --help shows.
+  Option valueOr(const std::string& value) const;
   Option repeatable() const;  // one value each time
   Option exactly(int values) const;
   Option separatedByCommas() const;
-  Option positive() const;
-  Option notNegative() const;
-  Option between(int low, int high) const;
-  Option between(uint64_t low, uint64_t high) const;
-  Option between(double low, double high) const;
+  // Of a number; otherwise it may be all that its variable holds.
+  Option within(const NumberRange& range) const;
+  Option atLeast(int64_t low) const { return within(WholeRange{low, std::numeric_limits<uint64_t>::max()}); }
+  template <std::integral Low, std::integral High>
+  Option between(Low low, High high, std::optional<int64_t> also = {}) const {
+    return within(WholeRange{static_cast<int64_t>(low), static_cast<uint64_t>(high), also});
+  }
+  Option between(double low, double high) const { return within(RealRange{low, high}); }
   // check returns what is wrong with a word, or nothing.
   Option checkedBy(std::function<std::string(const std::string&)> check) const;
   bool given() const;
@@ -85,9 +93,5 @@ class CommandLine {
 
   std::unique_ptr<CLI::App> app_;
 };
-
-// Whether a word is a number, all of it, which is then assigned.
-bool readNumber(const std::string& word, int& number);
-bool readNumber(const std::string& word, double& number);
 
 }  // namespace wavecrest

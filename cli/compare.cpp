@@ -28,12 +28,6 @@ struct CompareOptions {
   std::vector<double> limits;
 };
 
-std::string metricNames() {
-  std::string names;
-  for (const Metric& metric : metricList()) names += (names.empty() ? "" : ", ") + std::string(metric.name);
-  return names;
-}
-
 bool hasThreshold(const CompareOptions& options, size_t metric) { return options.thresholds[metric].given(); }
 
 // ---- which part of the images ---------------------------------------------------------------------------------------
@@ -104,12 +98,6 @@ std::vector<const Metric*> chosenMetrics(const CompareOptions& options, const Im
   return chosen;
 }
 
-void checkMetricNames(const CompareOptions& options) {
-  for (const std::string& name : options.metrics) {
-    if (!findMetric(name)) throw UsageError("--metrics: unknown metric '" + name + "'; expected " + metricNames());
-  }
-}
-
 // ---- what comes of it -----------------------------------------------------------------------------------------------
 
 void checkFiles(const CompareOptions& options, const std::vector<std::string>& labels) {
@@ -127,7 +115,7 @@ void checkFiles(const CompareOptions& options, const std::vector<std::string>& l
 
 void writeMaps(const CompareOptions& options, const std::vector<MeasuredTest>& tests) {
   for (const MeasuredTest& test : tests) {
-    for (const MeasuredScore& score : test.scores) {
+    for (const Measured& score : test.scores) {
       const auto file = mapFile(options.mapFolder, test.label, tests.size() == 1, *score.metric);
       std::error_code error;
       std::filesystem::create_directories(file.parent_path(), error);
@@ -148,7 +136,7 @@ bool checkThresholds(const CompareOptions& options, const MeasuredTest& test, bo
     asked = true;
     const Metric& metric = metricList()[i];
     const auto measured = std::find_if(test.scores.begin(), test.scores.end(),
-                                       [&](const MeasuredScore& score) { return score.metric == &metric; });
+                                       [&](const Measured& score) { return score.metric == &metric; });
     const double score = mainScore(metric, measured->measurement), limit = options.limits[i];
     if (metric.higherIsBetter ? score >= limit : score <= limit) continue;
     tell("wavecrest: check failed: {}{} is {:.9g}; --{} asks for {:.9g}", of, metric.name, score, metric.threshold,
@@ -172,7 +160,7 @@ MeasuredTest measure(const PreparedReference& reference, const std::string& file
 }
 
 int compare(const CompareOptions& options) {
-  checkMetricNames(options);
+  checkMetricNames(options.metrics);
   const std::vector<std::string> labels = uniqueLabels(options.tests);
   checkFiles(options, labels);
   ComparisonSettings settings;

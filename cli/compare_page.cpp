@@ -76,7 +76,7 @@ std::string comparePage(const std::string& referenceFile, const Image8& referenc
   for (const MeasuredTest& test : tests) {
     append(page, "<h2>{}</h2><div class=\"row\">\n", escapeHtml(test.file));
     addFigure(page, test.codes, test.file);
-    for (const MeasuredScore& score : test.scores) {
+    for (const Measured& score : test.scores) {
       const ShownMap map = showMap(score, test.codes.width, test.codes.height);
       addFigure(page, map.picture,
                 fmt::format("{}: 0 (dark) to {}", score.metric->symbol, formatSignificant(map.range, 3)));

@@ -8,26 +8,6 @@
 #include "metrics/false_colour.h"
 
 namespace wavecrest {
-namespace {
-
-// A metric with one number is that number; further numbers of it go beside it; otherwise it is an object.
-void addScores(nlohmann::ordered_json& json, const MeasuredScore& measured) {
-  const std::string name(measured.metric->name);
-  const auto& scores = measured.measurement.scores;
-  const bool single = scores.front().name.empty();
-  for (const Score& score : scores) {
-    if (score.name.empty()) {
-      json[name] = score.value;
-    } else if (single) {
-      json[name + "_" + std::string(score.name)] = score.value;
-    } else {
-      json[name][std::string(score.name)] = score.value;
-    }
-  }
-}
-
-}  // namespace
-
 std::vector<std::string> uniqueLabels(const std::vector<std::string>& files) {
   std::map<std::string, size_t> uses;
   std::vector<std::string> labels;
@@ -47,12 +27,7 @@ nlohmann::ordered_json toJson(const std::vector<MeasuredTest>& tests) {
   for (const MeasuredTest& test : tests) {
     nlohmann::ordered_json& json = all.emplace_back(nlohmann::ordered_json::object());
     if (tests.size() > 1) json["test"] = test.file;
-    for (const MeasuredScore& score : test.scores) addScores(json, score);
-    json["nonfinite_pixels"] = test.nonFinitePixels;
-    for (const MeasuredScore& score : test.scores) {
-      const Metric& metric = *score.metric;
-      if (!metric.conditions.empty()) json["conditions"][std::string(metric.name)] = metric.conditions;
-    }
+    json.update(comparisonJson(test.scores, test.nonFinitePixels));
   }
   return tests.size() == 1 ? all.front() : all;
 }
@@ -60,7 +35,7 @@ nlohmann::ordered_json toJson(const std::vector<MeasuredTest>& tests) {
 void printText(const std::vector<MeasuredTest>& tests) {
   for (const MeasuredTest& test : tests) {
     if (tests.size() > 1) fmt::print("{}\n", test.file);
-    for (const MeasuredScore& measured : test.scores) {
+    for (const Measured& measured : test.scores) {
       std::string line;
       for (const Score& score : measured.measurement.scores) {
         line += fmt::format("{}{}{}{:.9g}", line.empty() ? "" : "  ", score.name, score.name.empty() ? "" : " ",
@@ -73,7 +48,7 @@ void printText(const std::vector<MeasuredTest>& tests) {
   }
 }
 
-ShownMap showMap(const MeasuredScore& score, uint32_t width, uint32_t height) {
+ShownMap showMap(const Measured& score, uint32_t width, uint32_t height) {
   const std::vector<float>& map = score.measurement.map;
   const double range = score.metric->mapRange != 0 ? score.metric->mapRange : quantile(map, 0.999);
   return {falseColour(map, width, height, range), range};

@@ -6,22 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "metrics/metric_list.h"
+#include "library/comparison.h"
 
 namespace wavecrest {
-
-// One metric of one test image.
-struct MeasuredScore {
-  const Metric* metric = nullptr;
-  Measurement measurement;
-};
 
 struct MeasuredTest {
   std::string file;
   std::string label;  // names its maps and its column; unique among the tests
   Image8 codes;       // as the perceptual metrics saw it
   uint64_t nonFinitePixels = 0;
-  std::vector<MeasuredScore> scores;
+  std::vector<Measured> scores;
 };
 
 // The stem of each file, with a number where several have the same.
@@ -36,7 +30,7 @@ struct ShownMap {
   Image8 picture;
   double range = 0;
 };
-ShownMap showMap(const MeasuredScore& score, uint32_t width, uint32_t height);
+ShownMap showMap(const Measured& score, uint32_t width, uint32_t height);
 
 // Of one test FOLDER/METRIC.png, of several FOLDER/LABEL/METRIC.png.
 std::filesystem::path mapFile(const std::filesystem::path& folder, const std::string& label, bool single,

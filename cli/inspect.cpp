@@ -16,7 +16,7 @@ namespace {
 
 struct InspectOptions {
   SceneOptions scene;
-  std::string precision = "float", accel = "auto";
+  std::string precision = "float", accel = "auto", instances = "auto";
   uint32_t threads = 0, wave = RenderSettings{}.waveSize;
   bool json = false;
 };
@@ -47,26 +47,31 @@ void printFacts(const Scene& scene, const SceneInspection& facts) {
   fmt::print("sensor      {}, {} x {}, {} filter\n", facts.sensor, scene.film.width, scene.film.height, facts.filter);
   fmt::print("primitives  {} quads, {} triangles, {} spheres\n", facts.primitives.quads, facts.primitives.triangles,
              facts.primitives.spheres);
+  if (facts.instances != 0) {
+    fmt::print("instances   {} of {} shape groups, {}\n", facts.instances, facts.groups,
+               facts.keepsInstances ? "in a hierarchy of two levels" : "as copies");
+  }
   fmt::print("bounds      ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), radius {:.6g}\n", bounds.low[0],
              bounds.low[1], bounds.low[2], bounds.high[0], bounds.high[1], bounds.high[2], bounds.radius);
-  fmt::print("kernels     need {}\nintersector {}\n\n", needs.empty() ? "nothing but diffuse surfaces" : needs,
-             name(facts.accel));
+  const std::string nodes = facts.hierarchyNodes == 0 ? "" : fmt::format(", {} nodes", facts.hierarchyNodes);
+  fmt::print("kernels     need {}\nintersector {}{}; {:.0f} bytes a primitive\n\n",
+             needs.empty() ? "nothing but diffuse surfaces" : needs, name(facts.accel), nodes, facts.bytesPerPrimitive);
 }
 
 void printMemory(const SceneInspection& facts) {
   fmt::print("memory, MB (light vertices and photon map from a few waves of light paths)\n");
-  fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>9}\n", "method", "kernels", "bytes/path",
-             "scene", "waves", "film", "splats", "vertices", "photons", "chains", "total");
+  fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>9}\n", "method", "kernels",
+             "bytes/path", "scene", "waves", "film", "splats", "vertices", "photons", "chains", "image", "total");
   for (const MethodInspection& row : facts.methods) {
     if (!row.refusal.empty()) {
       fmt::print("{:<6} {}\n", toString(row.method), row.refusal);
       continue;
     }
     const MemoryUse& use = row.memory.use;
-    fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>9}\n", toString(row.method),
+    fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>9}\n", toString(row.method),
                name(row.specialization), row.memory.bytesPerPath, megabytes(use.scene), megabytes(use.waves),
                megabytes(use.film), megabytes(use.splats), megabytes(use.lightVertices), megabytes(use.photonMap),
-               megabytes(use.chains), megabytes(use.total()));
+               megabytes(use.chains), megabytes(use.image), megabytes(use.total()));
   }
 }
 
@@ -94,6 +99,7 @@ int runInspect(const InspectOptions& options) {
   RenderSettings settings;
   settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
   settings.accel = static_cast<Accel>(parseChoice("--accel", options.accel, kAccelNames));
+  settings.instancing = static_cast<Instancing>(parseChoice("--instances", options.instances, kInstancingNames));
   settings.isa = bestIsa();
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
@@ -119,6 +125,7 @@ void addInspectCommand(CommandLine& program, int& exitCode) {
   command.addFlag("--json", options->json, "as JSON");
   command.add("--precision", options->precision, "of the render that is planned").showDefault();
   command.add("--accel", options->accel, "auto, small, bvh or embree").showDefault();
+  command.add("--instances", options->instances, "of shape groups: auto, expand or keep").showDefault();
   command.add("--threads", options->threads, "of the render that is planned; default: all cores").between(1, 4096);
   command.add("--wave", options->wave, "paths per wave").showDefault().between(16, 1 << 20);
   command.run([options, &exitCode] { exitCode = runInspect(*options); });

@@ -9,35 +9,26 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <new>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "bench/checkpoint/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/suggestion.h"
 #include "engine/load/load.h"
 #include "engine/scene/scene_error.h"
 #include "engine/version.h"
+#include "library/translate.h"
 #include "metrics/image/image.h"
-#include "scenes/scene_list.h"
 
 namespace wavecrest {
 namespace {
 
 constexpr const char* kOutOfMemory =
     "wavecrest: error: out of memory; expected a smaller film or scene, fewer --threads, or a budget by --memory";
-
-// For the end of a message about a scene file that does not exist and may be meant as the name of a scene.
-std::string meantScene(const std::filesystem::path& file) {
-  if (file.has_parent_path() || file.has_extension()) return "";
-  std::vector<std::string> known;
-  for (const SceneEntry& scene : builtInScenes()) known.emplace_back(scene.name);
-  return didYouMean(file.string(), known);
-}
 
 // Says what went wrong and returns the exit code of its kind.
 int report(const std::exception_ptr& thrown) {
@@ -50,8 +41,7 @@ int report(const std::exception_ptr& thrown) {
   } catch (const UsageError& error) {
     return line(kExitUsage, error.what());
   } catch (const MissingFileError& error) {
-    const std::string hint = missingAssetHint(error.file);
-    return line(kExitInput, std::string(error.what()) + (hint.empty() ? meantScene(error.file) : ": " + hint));
+    return line(kExitInput, textOf(error));
   } catch (const LoadError& error) {
     return line(kExitInput, error.what());
   } catch (const SceneError& error) {
@@ -111,6 +101,9 @@ int run(std::vector<std::string> arguments) {
     addScenesCommand(program, exitCode);
     addDescribeCommand(program, exitCode);
     program.parse(std::move(arguments), exitCode);
+  } catch (const std::system_error&) {
+    // fmt::print throws where stdout does not take a full buffer; the state of the stream tells of that below.
+    exitCode = std::ferror(stdout) != 0 ? kExitFailure : report(std::current_exception());
   } catch (...) {
     exitCode = report(std::current_exception());
   }
@@ -125,6 +118,7 @@ int run(std::vector<std::string> arguments) {
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of writing, which is reported as such
+  std::signal(SIGUSR1, SIG_IGN);  // before there is anything to save; commands that save set their own
   std::set_terminate(wavecrest::onTerminate);
   wavecrest::openStandardStreams();
   return wavecrest::run({argv + 1, argv + argc});

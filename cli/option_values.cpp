@@ -1,6 +1,6 @@
 #include "cli/option_values.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -12,9 +12,9 @@
 
 namespace wavecrest {
 
-double parseDuration(const std::string& text) {
+double parseDuration(const std::string& option, const std::string& text) {
   const auto fail = [&]() -> double {
-    throw UsageError(fmt::format("'{}' is no duration; expected one like 6s, 2m or 1h30m", text));
+    throw UsageError(fmt::format("{} '{}': no duration; expected one like 6s, 2m or 1h30m", option, text));
   };
   double total = 0;
   const char* at = text.data();
@@ -33,23 +33,24 @@ double parseDuration(const std::string& text) {
   return std::isfinite(total) && total > 0 ? total : fail();
 }
 
-SnapshotSchedule parseSnapshotSchedule(const std::string& text) {
+SnapshotSchedule parseSnapshotSchedule(const std::string& option, const std::string& text) {
   if (text.empty()) return SnapshotSchedule::none();
-  return text == "log" ? SnapshotSchedule::logarithmic() : SnapshotSchedule::every(parseDuration(text));
+  return text == "log" ? SnapshotSchedule::logarithmic() : SnapshotSchedule::every(parseDuration(option, text));
 }
 
 Isa parseIsaOption(const std::string& word) {
   if (word == "auto") return bestIsa();
-  const std::optional<Isa> isa = parseIsa(word);
-  if (!isa) throw UsageError(fmt::format("--isa {}: expected auto, scalar, sse4, avx2 or avx512", word));
+  std::vector<std::string_view> names{"auto"};
+  for (const Isa isa : kAllIsas) names.push_back(toString(isa));
+  const Isa isa = kAllIsas[parseChoice("--isa", word, names) - 1];
   const auto& available = availableIsas();
-  if (std::find(available.begin(), available.end(), *isa) == available.end()) {
+  if (std::find(available.begin(), available.end(), isa) == available.end()) {
     throw UsageError(fmt::format("--isa {}: this machine or build does not have it", word));
   }
-  return *isa;
+  return isa;
 }
 
-std::array<uint32_t, 2> parseSize(const std::string& text) {
+std::array<uint32_t, 2> parseSize(const std::string& option, const std::string& text) {
   std::array<uint32_t, 2> size{};
   const char* const end = text.data() + text.size();
   const auto [x, widthError] = std::from_chars(text.data(), end, size[0]);
@@ -58,12 +59,12 @@ std::array<uint32_t, 2> parseSize(const std::string& text) {
     const auto valid = [](uint32_t n) { return n >= 1 && n <= 65535; };
     if (heightError == std::errc() && rest == end && valid(size[0]) && valid(size[1])) return size;
   }
-  throw UsageError(fmt::format("'{}' is no size; expected WIDTHxHEIGHT, each 1 to 65535", text));
+  throw UsageError(fmt::format("{} '{}': no size; expected WIDTHxHEIGHT, each 1 to 65535", option, text));
 }
 
-uint64_t parseMemory(const std::string& text) {
+uint64_t parseMemory(const std::string& option, const std::string& text) {
   const auto fail = [&]() -> uint64_t {
-    throw UsageError(fmt::format("'{}' is no memory size; expected one like 800M, 1.5G or 512MiB", text));
+    throw UsageError(fmt::format("{} '{}': no memory size; expected one like 800M, 1.5G or 512MiB", option, text));
   };
   double number = 0;
   const char* const end = text.data() + text.size();
@@ -79,25 +80,25 @@ uint64_t parseMemory(const std::string& text) {
   return bytes >= 1e6 && bytes <= 1e15 ? static_cast<uint64_t>(bytes) : fail();
 }
 
-size_t parseChoice(const std::string& option, const std::string& word, const std::string_view* names, size_t count) {
-  std::string choices;
-  std::vector<std::string> known;
-  for (size_t i = 0; i < count; ++i) {
+size_t parseChoice(const std::string& option, const std::string& word, std::span<const std::string_view> names) {
+  std::vector<std::string> known(names.begin(), names.end());
+  for (size_t i = 0; i < names.size(); ++i) {
     if (names[i] == word) return i;
-    choices += (i == 0 ? "" : ", ") + std::string(names[i]);
-    known.emplace_back(names[i]);
   }
-  throw UsageError(fmt::format("{} {}: unknown; expected one of {}{}", option, word, choices, didYouMean(word, known)));
+  throw UsageError(fmt::format("{} {}: unknown; expected one of {}{}", option, word, fmt::join(known, ", "),
+                               didYouMean(word, known)));
 }
 
 Method parseMethodOption(const std::string& option, const std::string& word) {
-  std::vector<std::string> known;
-  for (const MethodEntry& entry : kMethods) {
-    if (entry.name == word) return entry.method;
-    known.emplace_back(entry.name);
-  }
-  throw UsageError(
-      fmt::format("{} {}: unknown; expected one of {}{}", option, word, methodChoices(), didYouMean(word, known)));
+  std::vector<std::string_view> names;
+  for (const MethodEntry& entry : kMethods) names.push_back(entry.name);
+  return kMethods[parseChoice(option, word, names)].method;
+}
+
+SamplerKind parseSamplerOption(const std::string& option, const std::string& word) {
+  std::vector<std::string_view> names;
+  for (const SamplerKind kind : kAllSamplerKinds) names.push_back(toString(kind));
+  return kAllSamplerKinds[parseChoice(option, word, names)];
 }
 
 }  // namespace wavecrest

@@ -76,4 +76,25 @@ void Progress::show(bool last) const {
       fmt::format("\r{}{:5.1f} % {:7.1f} s {:6.2f} M paths/s {}", bar, fraction * 100, now, rate, last ? "\n" : ""));
 }
 
+WritingProgress::WritingProgress(ProgressKind kind, std::string file)
+    : kind_(resolved(kind)),
+      file_(std::move(file)),
+      next_(std::chrono::steady_clock::now() + std::chrono::seconds(1)) {}
+
+WritingProgress::~WritingProgress() {
+  if (shown_ && kind_ == ProgressKind::bar) writeStderr("\n");
+}
+
+void WritingProgress::show(double fraction) {
+  const auto now = std::chrono::steady_clock::now();
+  if (kind_ == ProgressKind::none || (now < next_ && !(shown_ && fraction >= 1))) return;
+  next_ = now + kInterval;
+  shown_ = true;
+  if (kind_ == ProgressKind::jsonl) {
+    tell("{}", nlohmann::ordered_json{{"writing", file_}, {"fraction", fraction}}.dump());
+  } else {
+    writeStderr(fmt::format("\rwriting {} {:5.1f} % ", file_, fraction * 100));
+  }
+}
+
 }  // namespace wavecrest

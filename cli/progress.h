@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -38,6 +39,23 @@ class Progress {
   const std::optional<uint64_t> paths_;
   std::atomic<bool> done_{false};
   std::thread thread_;
+};
+
+// Progress of a file that is being written; shown only once it has taken a second, and then every quarter.
+class WritingProgress {
+ public:
+  WritingProgress(ProgressKind kind, std::string file);
+  // Ends the line.
+  ~WritingProgress();
+  WritingProgress(const WritingProgress&) = delete;
+  WritingProgress& operator=(const WritingProgress&) = delete;
+  void show(double fraction);
+
+ private:
+  const ProgressKind kind_;
+  const std::string file_;
+  std::chrono::steady_clock::time_point next_;
+  bool shown_ = false;
 };
 
 }  // namespace wavecrest

@@ -18,7 +18,7 @@ namespace {
 struct RecommendOptions {
   SceneOptions scene;
   std::vector<std::string> methods;
-  std::string budget = "60s";
+  std::string budget = "60s", clock = "wall";
   double targetSsim = 0.95;
   uint32_t threads = 0;
   bool json = false;
@@ -26,13 +26,7 @@ struct RecommendOptions {
 
 std::vector<Method> recommendMethods(const RecommendOptions& options) {
   std::vector<Method> methods;
-  for (const std::string& word : options.methods) {
-    const std::optional<Method> method = parseMethod(word);
-    if (!method) {
-      throw UsageError(fmt::format("--methods {}: unknown; expected names like pt, separated by commas", word));
-    }
-    methods.push_back(*method);
-  }
+  for (const std::string& word : options.methods) methods.push_back(parseMethodOption("--methods", word));
   if (methods.empty()) {
     for (const MethodEntry& entry : kMethods) methods.push_back(entry.method);
   }
@@ -41,7 +35,10 @@ std::vector<Method> recommendMethods(const RecommendOptions& options) {
 
 void runRecommend(const RecommendOptions& options) {
   const RecommendRequest request{
-      .targetSsim = options.targetSsim, .seconds = parseDuration(options.budget), .methods = recommendMethods(options)};
+      .targetSsim = options.targetSsim,
+      .seconds = parseDuration("--budget", options.budget),
+      .methods = recommendMethods(options),
+      .clock = static_cast<PilotClock>(parseChoice("--clock", options.clock, kPilotClockNames))};
   const Scene scene = loadScene(options.scene);
   const FilmArea area = filmArea(scene.film);
   if (std::min(area.width, area.height) < kSsimSmallestSide) {
@@ -65,6 +62,8 @@ void addRecommendCommand(CommandLine& program, int& exitCode) {
   command.add("--target-ssim", options->targetSsim, "quality to get to").showDefault().between(0.01, 0.9999);
   command.add("--budget", options->budget, "render time of the pilots together").showDefault();
   command.add("--methods", options->methods, "methods, separated by commas; default: all").separatedByCommas();
+  command.add("--clock", options->clock, "what a second is: wall, or cpu over threads for a busy machine")
+      .showDefault();
   command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
   command.addFlag("--json", options->json, "as JSON");
   command.run([options, &exitCode] {

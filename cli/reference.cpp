@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "bench/campaign/file_lock.h"
+#include "bench/campaign/reference_agreement.h"
 #include "bench/campaign/render_reference.h"
+#include "bench/results/noise_floors.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/interrupt.h"
@@ -28,6 +30,7 @@ struct ReferenceOptions {
   SceneOptions scene;
   std::string method = "auto", time, sampler = "independent", precision = "float", isa = "auto", output;
   double relativeError = 0, radius = kReferenceRadius;
+  std::string agreeWith;
   uint64_t spp = 0, seed = 0;
   uint32_t threads = 0;
   std::string progress = "auto";
@@ -55,9 +58,7 @@ ReferenceChoice chosenMethod(const ReferenceOptions& options, const Scene& scene
 RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, Method method) {
   RenderSettings settings;
   settings.method = method;
-  const std::optional<SamplerKind> sampler = parseSamplerKind(options.sampler);
-  if (!sampler) throw UsageError(fmt::format("--sampler {}: expected independent or sobol", options.sampler));
-  settings.sampler = *sampler;
+  settings.sampler = parseSamplerOption("--sampler", options.sampler);
   settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
   settings.isa = parseIsaOption(options.isa);
   settings.seed = options.seed;
@@ -70,7 +71,7 @@ RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, 
 ReferenceGoal goalOf(const ReferenceOptions& options) {
   ReferenceGoal goal;
   if (options.relativeError > 0) goal.relativeError = options.relativeError;
-  if (!options.time.empty()) goal.seconds = parseDuration(options.time);
+  if (!options.time.empty()) goal.seconds = parseDuration("--time", options.time);
   if (options.spp != 0) goal.iterations = options.spp;
   if (!goal.relativeError && !goal.seconds && !goal.iterations) goal.relativeError = kDefaultRelativeError;
   return goal;
@@ -85,6 +86,7 @@ int runReference(const ReferenceOptions& options) {
   FileCheck files;
   files.input("the scene", scenePath);
   files.output("-o", output);
+  if (!options.agreeWith.empty()) files.input("--agree-with", options.agreeWith);
   const ReferenceGoal goal = goalOf(options);
   const auto kind = options.quiet
                         ? ProgressKind::none
@@ -94,6 +96,7 @@ int runReference(const ReferenceOptions& options) {
   printNotes(scene, kind);
   for (const std::string& file : scene.files) files.input("the scene", file);
   const ReferenceChoice method = chosenMethod(options, scene);
+  const RenderSettings settings = settingsFor(options, scene, method.method);
   noteLine(kind, {{"method", toString(method.method)}, {"reason", method.reason}},
            fmt::format("{} by {}: {}", scene.name, toString(method.method), method.reason));
 
@@ -111,8 +114,7 @@ int runReference(const ReferenceOptions& options) {
                              .saveNow = [&] { return std::exchange(saveNow, false) || guard.takeSaveRequest(); },
                              .advance = [&](const ReferenceInfo& info) { showAdvance(kind, info); }};
   try {
-    const Reference reference =
-        renderReference(scene, settingsFor(options, scene, method.method), method.reason, goal, output, hooks);
+    const Reference reference = renderReference(scene, settings, method.reason, goal, output, hooks);
     if (reference.info.iterations == 0) {
       tell("wavecrest: interrupted before anything was rendered; no reference was written");
       return kExitInterrupted;
@@ -120,9 +122,26 @@ int runReference(const ReferenceOptions& options) {
     fmt::print("{}: {} iterations of each half, {:.1f} s, relative error {:.5f}\n", output, reference.info.iterations,
                reference.info.renderSeconds, reference.info.relativeError);
     for (const auto& [name, value] : reference.noiseFloors) fmt::print("noise floor {:8} {:.6g}\n", name, value);
+    if (reference.info.isBiased()) {
+      fmt::print("biased by merging within {:g} of the scene's radius; compare it with one of half of that\n",
+                 reference.info.radius);
+    }
+    for (const std::string& floor : unmetFloors(reference.noiseFloors)) {
+      warn(kind, fmt::format("{}: {}; render it for longer", output, floor));
+    }
+    if (!options.agreeWith.empty() && !guard.interrupted()) {
+      const Agreement agreement = compareReferences(reference, readReference(options.agreeWith));
+      fmt::print("{} and {} {}\n", output, options.agreeWith, agreement.describe());
+      if (!agreement.agrees()) {
+        tell("wavecrest: check failed: {} and {} are of different truths", output, options.agreeWith);
+        return kExitCheck;
+      }
+    }
   } catch (const ReferenceMismatch& error) {
     throw InputError(error.what());
   } catch (const FileLockError& error) {
+    throw InputError(error.what());
+  } catch (const ReferenceComparisonError& error) {
     throw InputError(error.what());
   }
   return guard.interrupted() ? kExitInterrupted : kExitDone;
@@ -140,15 +159,17 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
            "stop when a pixel is off by this share of its value, in the mean; 0.01 if nothing else is asked for")
       .between(1e-9, 1.0);
   command.add("--time", options->time, "stop after this much render time in all: 10m, 6h");
-  command.add("--spp", options->spp, "stop after N iterations of each half").positive();
+  command.add("--spp", options->spp, "stop after N iterations of each half").atLeast(1);
   command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
-  command.add("--seed", options->seed, "seed of both halves, which differ in its high word")
-      .between(uint64_t{0}, uint64_t{0xffffffff});
+  command.add("--seed", options->seed, "seed of both halves, which differ in its high word").between(0, 0xffffffff);
   command.add("--sampler", options->sampler, "independent or sobol").showDefault();
-  command.add("--precision", options->precision, "float, double or fast").showDefault();
+  command.add("--precision", options->precision, "float, double, or fast: float with Embree's faster tests")
+      .showDefault();
   command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--radius", options->radius, "first merge radius of ppm, bpm and vcm").showDefault().between(1e-9, 10.0);
   command.add("-o,--output", options->output, "EXR file; default: SCENE.reference.exr; goes on if it exists");
+  command.add("--agree-with", options->agreeWith,
+              "another reference of the scene: fail with exit code 4 where a z-test says that they differ in truth");
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
   command.addFlag("--quiet", options->quiet, "print the result only; as --progress none");
   command.run([options, &exitCode] { exitCode = runReference(*options); });

@@ -2,15 +2,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "cli/checkpointing.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/live_render.h"
 #include "cli/messages.h"
 #include "cli/option_values.h"
+#include "cli/pinning.h"
 #include "cli/progress.h"
 #include "cli/render_outputs.h"
 #include "cli/scene_options.h"
@@ -19,84 +21,30 @@
 #include "engine/render_plan.h"
 #include "engine/session.h"
 #include "engine/snapshots.h"
+#include "library/render_settings.h"
+#include "metrics/image/atomic_file.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {
 namespace {
 
-// As written on the command line; resolved() turns words into settings.
-struct RenderOptions {
+// What the library knows, and what only a command line has.
+struct RenderOptions : api::RenderOptions {
   SceneOptions scene;
-  std::string method = "pt", time, sampler = "independent", precision = "float", isa = "auto", accel = "auto", mlt,
-              memory, snapshotEvery, stats, progress = "auto";
-  uint64_t spp = 0;
-  uint32_t threads = 0;
-  uint64_t seed = 0;
-  int maxDepth = 0, rrDepth = 0;  // 0: what the scene says
-  uint32_t wave = 2048, chains = MetropolisSettings().chains, bootstrap = MetropolisSettings().bootstrapSamples,
-           restart = 0;  // 0: by the number of samples
-  double radius = 0.001, radiusAlpha = 0.75;
+  std::string snapshotEvery, stats, progress = "auto";
   std::vector<std::string> outputs;
-  bool noDirectPass = false, dryRun = false;
+  bool dryRun = false, pin = false;
   CheckpointOptions checkpoint;
   UntilRequest until;
+  LiveOptions live;
 };
 
-MetropolisSettings chosenChains(const RenderOptions& options) {
-  MetropolisSettings settings;
-  if (!options.mlt.empty()) {
-    settings.variant = static_cast<MetropolisVariant>(parseChoice("--mlt", options.mlt, kMetropolisVariantNames));
-  }
-  settings.chains = options.chains;
-  settings.directPass = !options.noDirectPass;
-  settings.bootstrapSamples = options.bootstrap;
-  if (options.restart != 0) settings.restartSteps = options.restart;
-  return settings;
-}
-
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
-  RenderSettings settings;
-  settings.method = parseMethodOption("--method", options.method);
-  const std::optional<SamplerKind> sampler = parseSamplerKind(options.sampler);
-  if (!sampler) throw UsageError(fmt::format("--sampler {}: expected independent or sobol", options.sampler));
-  settings.sampler = *sampler;
-  settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
-  settings.accel = static_cast<Accel>(parseChoice("--accel", options.accel, kAccelNames));
-  settings.isa = parseIsaOption(options.isa);
-  settings.seed = options.seed;
-  settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-  settings.waveSize = options.wave;
-  settings.metropolis = chosenChains(options);
-  settings.radius = options.radius;
-  settings.radiusAlpha = options.radiusAlpha;
-  settings.limits = pathLimits(options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth,
-                               options.rrDepth != 0 ? options.rrDepth : scene.defaults.rrDepth);
-  if (settings.method == Method::mlt && options.maxDepth > static_cast<int>(kChainDepth)) {
-    throw UsageError(fmt::format("--max-depth {}: chains have memory for {} edges; expected that or less",
-                                 options.maxDepth, kChainDepth));
-  }
-  if (options.spp != 0) settings.iterations = options.spp;
-  if (!options.time.empty()) settings.seconds = parseDuration(options.time);
-  if (!settings.iterations && !settings.seconds && !options.until.any())
-    settings.iterations = scene.defaults.sampleCount;
-  if (!options.memory.empty()) settings.memoryBytes = parseMemory(options.memory);
+  RenderSettings settings = renderSettings(options, scene);
+  // A goal ends the render, not the scene's number of samples.
+  if (options.spp == 0 && options.until.any()) settings.iterations.reset();
   settings.measureStages = !options.stats.empty();
   return settings;
-}
-
-// Edges of the longest path: 1 to kUnlimitedDepth, or -1 for as many as roulette allows.
-std::string checkMaxDepth(const std::string& word) {
-  int depth = 0;
-  const bool valid =
-      readNumber(word, depth) && (depth == -1 || (depth >= 1 && depth <= static_cast<int>(kUnlimitedDepth)));
-  return valid ? std::string() : fmt::format("'{}' is no depth; expected 1 to {}, or -1", word, kUnlimitedDepth);
-}
-
-// CLI11's ranges let NaN through.
-std::string checkFinite(const std::string& word) {
-  double number = 0;
-  const bool valid = readNumber(word, number) && std::isfinite(number);
-  return valid ? std::string() : fmt::format("'{}' is no finite number", word);
 }
 
 std::unique_ptr<Session> createSession(const Scene& scene, const RenderSettings& settings) {
@@ -121,6 +69,7 @@ std::string describe(const MemoryPlan& plan) {
   add("light vertices", use.lightVertices);
   add("photon map", use.photonMap);
   add("chains", use.chains);
+  add("image", use.image);
   text += fmt::format("together {:.1f} MB", static_cast<double>(use.total()) / 1e6);
   if (plan.lightPaths != 0) text += fmt::format("; {} light paths in each iteration", plan.lightPaths);
   return text;
@@ -128,6 +77,9 @@ std::string describe(const MemoryPlan& plan) {
 
 // Settings that the method cannot keep to, said before it renders.
 void warnOfLimits(ProgressKind kind, const RenderSettings& settings) {
+  if (settings.precision == Precision::fast && settings.accel != Accel::embree) {
+    warn(kind, "--precision fast is float's but for --accel embree");
+  }
   if (!strategiesOf(settings.method).merge) return;
   if (settings.radius < kSmallestRadius) {
     warn(kind,
@@ -138,9 +90,21 @@ void warnOfLimits(ProgressKind kind, const RenderSettings& settings) {
   }
 }
 
+// A scene's filter that is sampled although it was to be spread.
+void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, const Session& session) {
+  const bool spreads = session.film().spreads();
+  if (scene.film.filter == ReconstructionFilter::box || settings.filterMode != FilterMode::spread || spreads) return;
+  if (settings.method == Method::mlt) return;  // chains choose one pixel each
+  warn(kind,
+       fmt::format("the scene's filter reaches further than {} pixels: samples add to one pixel each", kWidestSpread));
+}
+
 // What a render has left out.
 void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const RenderStatistics& statistics) {
   const StageCounters& counters = statistics.counters;
+  if (statistics.iterations == 0 && settings.method != Method::mlt) {  // which has no samples of pixels
+    warn(kind, "the render ended before all pixels had a sample; those without are black");
+  }
   if (counters.nonFinite != 0) {
     warn(kind, fmt::format("{} samples were not finite and count as black", counters.nonFinite));
   }
@@ -178,6 +142,7 @@ nlohmann::ordered_json toJson(const MemoryPlan& plan) {
             {"light_vertex_bytes", use.lightVertices},
             {"photon_map_bytes", use.photonMap},
             {"chain_bytes", use.chains},
+            {"image_bytes", use.image},
             {"total_bytes", use.total()},
             {"light_paths", plan.lightPaths}}}};
 }
@@ -215,6 +180,13 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
   const std::string seconds = settings.seconds ? fmt::format("{:g} s", *settings.seconds) : "";
   fmt::print("ends     after {}{}{}\n", iterations, settings.iterations && settings.seconds ? " or " : "", seconds);
   fmt::print("memory   {}\n", describe(session.memoryPlan()));
+  const auto isExr = [](const std::string& output) { return output.ends_with(".exr"); };
+  if (std::any_of(options.outputs.begin(), options.outputs.end(), isExr)) {
+    // The file is written as it is compressed, and is never in memory as a whole.
+    const size_t bytes = exrWritingBytes(session.film().area().width, session.film().area().height);
+    fmt::print("         and {:.1f} MB for the blocks of an EXR while they are compressed\n",
+               static_cast<double>(bytes) / 1e6);
+  }
   for (const std::string& output : options.outputs) fmt::print("writes   {}\n", output);
   if (!options.checkpoint.file.empty()) fmt::print("writes   {}\n", options.checkpoint.file);
   if (!options.stats.empty()) fmt::print("writes   {}\n", options.stats);
@@ -239,7 +211,8 @@ void goOn(const std::unique_ptr<Checkpoint>& earlier, const CheckpointOptions& o
 
 // Renders to the end or to a signal, with snapshots and saves on the way.
 Ending render(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
-              std::optional<UntilGoal>& until, ProgressKind kind, InterruptGuard& guard, RenderOutputs& outputs) {
+              std::optional<UntilGoal>& until, ProgressKind kind, InterruptGuard& guard, RenderOutputs& outputs,
+              LiveRender& live) {
   bool stopped = false;
   const auto goesOn = [&] {
     stopped = guard.interrupted();
@@ -250,7 +223,7 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
     guard.goOn();
     return true;
   };
-  guard.watch(&session);
+  guard.watch(&live.interruptible(session));
   std::optional<uint64_t> goalPaths;
   if (settings.iterations) goalPaths = *settings.iterations * session.film().area().pixels.size();
   {
@@ -261,8 +234,12 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
       } while (session.interrupted() && goesOn());
     } else {
       renderWithSnapshots(
-          session, settings, schedule, [&](unsigned number) { outputs.writeSnapshot(session, number); }, goesOn,
-          outputs.nextSnapshot(schedule, session));
+          session, settings, schedule,
+          [&](unsigned number) {
+            live.look(false);
+            outputs.writeSnapshot(session, number);
+          },
+          goesOn, outputs.nextSnapshot(schedule, session));
     }
   }
   guard.watch(nullptr);
@@ -271,7 +248,7 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
 }
 
 int runRender(const RenderOptions& options) {
-  const SnapshotSchedule schedule = parseSnapshotSchedule(options.snapshotEvery);
+  const SnapshotSchedule schedule = parseSnapshotSchedule("--snapshot-every", options.snapshotEvery);
   const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
   const OutputNames names{options.outputs, options.stats, options.snapshotEvery, options.checkpoint.file};
   const std::string nothing = "wavecrest: interrupted before anything was rendered; no image was written";
@@ -279,6 +256,9 @@ int runRender(const RenderOptions& options) {
   checkOutputs(names, {findScene(options.scene.scene)});
   Checkpointing checkpointing(options.checkpoint);
   std::unique_ptr<Checkpoint> earlier = checkpointing.takeEarlier();
+  if (earlier) {  // what a render left that was killed while it wrote its images; nobody else goes on from there
+    for (const std::string& output : options.outputs) removeTemporaries(output);
+  }
   const auto begin = std::chrono::steady_clock::now();
   const Scene scene = loadScene(options.scene, kind);
   printNotes(scene, kind);
@@ -286,12 +266,14 @@ int runRender(const RenderOptions& options) {
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   RenderSettings settings = resolved(options, scene);
   if (earlier) earlier->cutAlike(settings);
-  const std::unique_ptr<Session> session = createSession(scene, settings);
+  if (options.pin) settings.placement = pinnedPlacement(settings.threads, kind);
+  std::unique_ptr<Session> session = createSession(scene, settings);
   // On request, and where light paths fill the memory.
   if (settings.memoryBytes || session->memoryPlan().use.photonMap > 0) {
     noteLine(kind, toJson(session->memoryPlan()), "memory: " + describe(session->memoryPlan()));
   }
   warnOfLimits(kind, settings);
+  warnOfFilter(kind, scene, settings, *session);
   if (options.until.relativeError > 0 && strategiesOf(settings.method).merge) {
     warn(kind, "--until-relative-error leaves out the bias of merging, which falls with --radius and with time");
   }
@@ -299,22 +281,25 @@ int runRender(const RenderOptions& options) {
     showPlan(options, scene, settings, *session);
     return kExitDone;
   }
-  RenderOutputs outputs(names, scene, settings, loadSeconds);
+  LiveRender live(options.live, scene, settings, kind, session);
+  RenderOutputs outputs(names, scene, settings, loadSeconds, kind);
   goOn(earlier, options.checkpoint, scene, settings, kind, *session, outputs);
   earlier.reset();
   std::optional<UntilGoal> until;
   if (options.until.any()) until.emplace(untilGoal(options, settings, session->film().area()));
   std::optional<CheckpointTimer> timer;
   if (!options.checkpoint.file.empty()) timer.emplace(guard, checkpointing.seconds());
-  const Ending ending = render(*session, settings, schedule, until, kind, guard, outputs);
+  const Ending ending = render(*session, settings, schedule, until, kind, guard, outputs, live);
   timer.reset();
   if (until) noteLine(kind, {{"until", outputs.until()}}, UntilGoal::describe(outputs.until()));
   if (ending == Ending::stoppedBeforeAnyPath) {
     tell("{}", nothing);
     return kExitInterrupted;
   }
+  live.look(true);
   outputs.writeCheckpoint(*session);
   outputs.write(*session);
+  if (!options.outputs.empty() && !outputs.failed()) live.showFile(options.outputs.front());
   showSummary(options, settings, kind, *session);
   if (outputs.failed()) return kExitInput;
   return ending == Ending::stopped ? kExitInterrupted : kExitDone;
@@ -332,24 +317,36 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
       .add("--spp", options->spp,
            "stop after N iterations: paths, of mlt mutations, per pixel; default without --time: "
            "the scene's sample_count, or 4")
-      .positive();
+      .atLeast(1);
   command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
-  command.add("--seed", options->seed, "seed of all random numbers").showDefault().notNegative();
+  command.addFlag("--pin", options->pin, "bind threads to cores and spread shared memory over their nodes");
+  command.add("--seed", options->seed, "seed of all random numbers").showDefault();
   command.add("--sampler", options->sampler, "independent or sobol").showDefault();
-  command.add("--max-depth", options->maxDepth, "edges of the longest path; -1: unlimited").checkedBy(checkMaxDepth);
-  command.add("--rr-depth", options->rrDepth, "first vertex where roulette may end a path").positive();
-  command.add("--precision", options->precision, "float, double or fast").showDefault();
+  command
+      .add("--filter-mode", options->filterMode,
+           "spread: camera samples add to all pixels that the filter reaches; sample: to one")
+      .showDefault();
+  command.add("--max-depth", options->maxDepth, "edges of the longest path; -1: unlimited")
+      .between(1, kUnlimitedDepth, -1);
+  command.add("--rr-depth", options->rrDepth, "first vertex where roulette may end a path")
+      .between(1, std::numeric_limits<int>::max());
+  command.add("--precision", options->precision, "float, double, or fast: float with Embree's faster tests")
+      .showDefault();
   command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--accel", options->accel, "intersector: auto, small, bvh or embree").showDefault();
+  command.add("--instances", options->instances, "of shape groups: auto, expand into copies, or keep").showDefault();
   command.add("--wave", options->wave, "paths per wave").showDefault().between(16, 1 << 20);
   command.add("--radius", options->radius, "first merge radius of ppm, bpm and vcm, relative to the bounding sphere")
       .showDefault()
-      .checkedBy(checkFinite)
       .between(1e-9, 10.0);
   command.add("--radius-alpha", options->radiusAlpha, "how slowly the radius shrinks, 0 to 1")
       .showDefault()
-      .checkedBy(checkFinite)
       .between(0.0, 1.0);
+  command
+      .add("--light-paths", options->lightPaths,
+           "light paths of an iteration of ppm, bpm or vcm; default: as many as pixels")
+      .between(1, int64_t{1} << 32);
+  command.addFlag("--direct-pass", options->directPass, "ppm: direct light by next event estimation, not from photons");
   command.add("--memory", options->memory, "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
   command.add("--mlt", options->mlt, "what the chains of mlt walk in: pssmlt, mmlt or pathspace; default: mmlt");
   command.add("--chains", options->chains, "Markov chains of mlt").showDefault().between(1, 1 << 24);
@@ -364,13 +361,11 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
       .add(
           "--until-relative-error", options->until.relativeError,
           "stop when the image's relative RMSE against its expectation is E or less, with 95 % confidence; not for mlt")
-      .checkedBy(checkFinite)
       .between(1e-5, 1.0);
-  command.add("--until-ssim", options->until.ssim, "stop when the SSIM against --reference is S")
-      .checkedBy(checkFinite)
-      .between(1e-9, 1.0);
+  command.add("--until-ssim", options->until.ssim, "stop when the SSIM against --reference is S").between(1e-9, 1.0);
   command.add("--reference", options->until.reference, "image that --until-ssim compares with");
   addCheckpointOptions(command, options->checkpoint);
+  addLiveOptions(command, options->live);
   command.add("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable").repeatable();
   command.add("--stats", options->stats, "write statistics as JSON; - for stdout");
   command.addFlag("--dry-run", options->dryRun, "print plan, memory and outputs, and render nothing");

@@ -93,7 +93,12 @@ void RenderOutputs::write(const Session& session) {
   if (!until_.is_null()) all["until"] = until_;
   const Metadata metadata = statsMetadata(all);
   const Image image = names_.images.empty() ? Image() : filmImage(session);
-  for (const std::string& name : names_.images) attempt([&] { writeImage(name, image, metadata); });
+  for (const std::string& name : names_.images) {
+    attempt([&] {
+      WritingProgress progress(kind_, name);
+      writeImage(name, image, metadata, [&](double fraction) { progress.show(fraction); });
+    });
+  }
   if (!names_.stats.empty()) attempt([&] { writeText(names_.stats, all.dump(2) + "\n"); });
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/results/results.h"
+#include "cli/progress.h"
 #include "engine/scene/scene.h"
 #include "engine/session.h"
 #include "engine/snapshots.h"
@@ -30,8 +31,9 @@ void checkOutputs(const OutputNames& names, const std::vector<std::string>& inpu
 class RenderOutputs {
  public:
   // All must outlive it.
-  RenderOutputs(const OutputNames& names, const Scene& scene, const RenderSettings& settings, double loadSeconds)
-      : names_(names), scene_(scene), settings_(settings), loadSeconds_(loadSeconds) {}
+  RenderOutputs(const OutputNames& names, const Scene& scene, const RenderSettings& settings, double loadSeconds,
+                ProgressKind kind)
+      : names_(names), scene_(scene), settings_(settings), loadSeconds_(loadSeconds), kind_(kind) {}
 
   void writeSnapshot(const Session& session, unsigned number);
   // Images and statistics as they are now. May be called again later.
@@ -60,6 +62,7 @@ class RenderOutputs {
   const Scene& scene_;
   const RenderSettings& settings_;
   const double loadSeconds_;
+  const ProgressKind kind_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::vector<SnapshotRecord> snapshots_;
   nlohmann::ordered_json until_;  // null: none was asked for

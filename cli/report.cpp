@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/claims/judge_claims.h"
 #include "bench/report/results_folder.h"
 #include "bench/report/write_report.h"
+#include "bench/results/read_results.h"
 #include "bench/results/results_error.h"
+#include "bench/results/results_store.h"
 #include "cli/commands.h"
 #include "cli/findings.h"
 #include "metrics/image/image.h"
@@ -19,8 +22,18 @@ namespace {
 struct ReportOptions {
   std::vector<std::string> paths;
   ReportFiles files;
-  bool check = false;
+  bool check = false, judge = false;
 };
+
+// Judges the findings by today's conditions, and stores the verdicts in place of the old ones.
+void judgeAnew(const std::vector<std::filesystem::path>& paths) {
+  const std::filesystem::path file = std::filesystem::is_directory(paths[0]) ? paths[0] / kResultsFile : paths[0];
+  if (paths.size() > 1 || !std::filesystem::is_regular_file(file)) {
+    throw UsageError("--judge: stores verdicts in one results file; expected the folder of one campaign");
+  }
+  const std::vector<ClaimRecord> claims = judgeStudyClaims(readResults(file));
+  ResultsStore(file).putClaims(claims);
+}
 
 }  // namespace
 
@@ -35,11 +48,13 @@ void addReportCommand(CommandLine& program, int& exitCode) {
   command.addFlag("--csv", options->files.csv,
                   "also write DIR/measurements.csv, every score of every snapshot, and DIR/summary.csv and claims.csv");
   command.addFlag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");
+  command.addFlag("--judge", options->judge, "judge the study's findings anew, by the conditions of this program");
   command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
   command.run([options, &exitCode] {
     exitCode = kExitDone;
     const std::vector<std::filesystem::path> paths(options->paths.begin(), options->paths.end());
     try {
+      if (options->judge) judgeAnew(paths);
       const WrittenReport report = writeReport(paths, options->files);
       for (const auto& file : report.files) fmt::print("{}\n", file.string());
       if (!options->check) return;

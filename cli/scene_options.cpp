@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "engine/load/load.h"
+#include "library/campaign_rows.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {
@@ -22,14 +23,8 @@ Scene loadScene(const SceneOptions& options, ProgressKind kind) {
   LoadOptions load;
   load.lenient = options.lenient;
   load.keepAll = options.keepAll;
-  if (!options.size.empty()) load.filmSize = parseSize(options.size);
-  for (const std::string& define : options.defines) {
-    const size_t equals = define.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      throw UsageError(fmt::format("-D {}: expected NAME=VALUE", define));
-    }
-    load.defines[define.substr(0, equals)] = define.substr(equals + 1);
-  }
+  if (!options.size.empty()) load.filmSize = parseSize("--size", options.size);
+  load.defines = parseDefinitions(options.defines);
   Scene scene = loadScene(findScene(options.scene), load);
   for (const std::string& warning : scene.warnings) warn(kind, warning);
   if (scene.emitters.empty()) warn(kind, fmt::format("{}: the scene has no light; its image is black", options.scene));
@@ -42,7 +37,7 @@ void printNotes(const std::vector<Note>& notes, ProgressKind kind) {
 
 std::string toString(const Note& note) {
   const std::string more = note.count > 1 ? fmt::format(" ({} times)", note.count) : "";
-  return fmt::format("{}:{}: {}{}: {}", note.source.file, note.source.line, note.what, more, note.effect);
+  return fmt::format("{}: {}{}: {}", toString(note.source), note.what, more, note.effect);
 }
 
 }  // namespace wavecrest

@@ -7,23 +7,16 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "engine/film_area.h"
 #include "engine/splat_films.h"
+#include "engine/spread_sums.h"
 #include "kernels/columns/wave.h"
 
 namespace wavecrest {
-
-// The rectangle of the full film that is rendered, and the order in which its pixels are cut into waves.
-struct FilmArea {
-  uint32_t width = 0, height = 0;  // of the rendered rectangle
-  uint32_t x0 = 0, y0 = 0;         // its corner in the full film
-  std::vector<uint32_t> pixels;    // raster (y << 16 | x) in the full film, in wave order: small tiles, so that
-                                   // the camera rays of a wave stay together
-  FilmWindow window() const { return {x0, y0, width, height}; }
-  static FilmArea make(uint32_t x0, uint32_t y0, uint32_t width, uint32_t height);
-};
 
 // A splat of one pixel of the rendered rectangle, counted row by row.
 struct PendingSplat {
@@ -46,6 +39,13 @@ class Film {
   template <class S>
   uint64_t add(const Wave<S>& wave);
 
+  // From now on samples are spread over the filter's footprint: spread() takes the place of add(). For an empty film.
+  void spreadBy(const CameraView& camera);
+  bool spreads() const { return spread_.has_value(); }
+  // Adds the samples of a wave of whole tiles, a tile's in the order of their iterations; otherwise as add().
+  template <class S>
+  uint64_t spread(const Wave<S>& wave, std::span<const FilterPlace> places, SpreadSamples<S> spreadSamples);
+
   // Makes room for splats; see SplatFilms.
   void makeSplats(size_t threads, double scale) { splats_.emplace(area_.pixels.size(), threads, scale); }
   SplatFilms& splats() { return *splats_; }
@@ -58,14 +58,21 @@ class Film {
   // The image, row by row from the top, RGB: the mean of each pixel's samples (black where there are none) plus the
   // splats. No wave may be under way.
   std::vector<float> resolve() const;
+  // What resolve() takes: the image, and where samples are spread or chains owe splats, an image in double of each.
+  size_t imageBytes() const { return imageBytesFor(area_.pixels.size(), spreads(), !pending_.empty()); }
+  static size_t imageBytesFor(size_t pixels, bool spreads, bool pending);
 
   const FilmArea& area() const { return area_; }
   // Samples of the pixels: the fewest and the most of one, and of all together.
   uint64_t minSamples() const;
   uint64_t maxSamples() const;
   uint64_t allSamples() const;
-  // The pixels with fewer samples than `samples`, in runs of at most `most` pixels.
+  // The pixels with fewer samples than `samples`, in runs of at most `most` pixels; of whole tiles where the film
+  // spreads, at least one in each.
   std::vector<PixelRun> runsBelow(uint64_t samples, size_t most) const;
+
+  // Of the list of pixels, sums and numbers of samples, without splats.
+  size_t bytes() const;
 
   // Samples and splats, for checkpoints; and back into a film without any. Factor and pending splats are not among
   // them.
@@ -74,8 +81,9 @@ class Film {
 
  private:
   FilmArea area_;
-  std::vector<double> sums_;       // RGB, in wave order
-  std::vector<uint64_t> samples_;  // in wave order
+  std::vector<double> sums_;          // RGB, in wave order
+  std::vector<uint64_t> samples_;     // in wave order
+  std::optional<SpreadSums> spread_;  // in the place of sums_
   std::optional<SplatFilms> splats_;
   std::vector<PendingSplat> pending_;
   double splatFactor_ = 0;

@@ -24,7 +24,9 @@ std::string nameOf(const Material& material) {
                    return d.thin ? "thindielectric" : isRough(d.alpha) ? "roughdielectric" : "dielectric";
                  },
                  [](const Plastic& p) -> std::string { return isRough(p.alpha) ? "roughplastic" : "plastic"; },
-                 [](const Phong&) -> std::string { return "phong"; }},
+                 [](const Phong&) -> std::string { return "phong"; },
+                 [](const Principled& p) -> std::string { return p.thin ? "principledthin" : "principled"; },
+                 [](const Blend&) -> std::string { return "blendbsdf"; }},
       material.kind);
 }
 
@@ -32,20 +34,25 @@ std::string nameOf(const Emitter& emitter) {
   return std::visit(Overloaded{[](const AreaEmitter&) -> std::string { return "area"; },
                                [](const PointEmitter&) -> std::string { return "point"; },
                                [](const SpotEmitter&) -> std::string { return "spot"; },
+                               [](const SunskyEmitter&) -> std::string { return "sunsky"; },
+                               [](const ProjectorEmitter&) -> std::string { return "projector"; },
                                [](const DirectionalEmitter&) -> std::string { return "directional"; },
                                [](const ConstantEmitter&) -> std::string { return "constant"; },
                                [](const EnvmapEmitter&) -> std::string { return "envmap"; }},
                     emitter.kind);
 }
 
-std::vector<std::string> needsOf(const Scene& scene) {
-  constexpr std::pair<uint32_t, const char*> kWords[] = {{kSpecularBsdfs, "specular BSDFs"},
-                                                         {kLayeredBsdfs, "layered BSDFs"},
-                                                         {kTextures, "textures"},
-                                                         {kShadingNormals, "shading normals"},
-                                                         {kCurvedShapes, "analytic spheres"},
-                                                         {kRareLights, "spot, directional or environment lights"}};
-  const uint32_t features = sceneFeatures(scene);
+std::vector<std::string> needsOf(const Scene& scene, bool keeps) {
+  constexpr std::pair<uint32_t, const char*> kWords[] = {
+      {kSpecularBsdfs, "specular BSDFs"},
+      {kLayeredBsdfs, "layered BSDFs"},
+      {kTextures, "textures"},
+      {kShadingNormals, "shading normals"},
+      {kCurvedShapes, "analytic spheres"},
+      {kRareLights, "spot, projector, directional or environment lights"},
+      {kCompoundBsdfs, "compound BSDFs"},
+      {kInstances, "instances"}};
+  const uint32_t features = sceneFeatures(scene, keeps);
   std::vector<std::string> needs;
   for (const auto& [bit, words] : kWords) {
     if ((features & bit) != 0) needs.emplace_back(words);
@@ -77,17 +84,22 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
   countKinds(scene, out);
   out.sensor = Sensor::kKindNames[static_cast<size_t>(scene.sensor.kind)];
   out.filter = kFilterNames[static_cast<size_t>(scene.film.filter)];
-  out.needs = needsOf(scene);
 
-  const auto compiled = compileScene<float>(scene, settings.accel);
+  const auto compiled = compileScene<float>(scene, settings.accel, true, settings.instancing);
+  out.groups = scene.groups.size();
+  out.instances = scene.instances.size();
+  out.keepsInstances = compiled->view.instances != nullptr;
+  out.needs = needsOf(scene, out.keepsInstances);
   out.primitives = compiled->primitives.counts;
-  out.bounds = boundPrimitives(compiled->primitives.records);
+  out.bounds = compiled->bounds;
   for (size_t axis = 0; axis < 3; ++axis) {
     for (double* coordinate : {&out.bounds.center[axis], &out.bounds.low[axis], &out.bounds.high[axis]}) {
       *coordinate += compiled->origin[axis];
     }
   }
   out.accel = compiled->accel();
+  out.hierarchyNodes = compiled->bvh ? compiled->bvh->nodes() : 0;
+  out.bytesPerPrimitive = static_cast<double>(primitiveBytes(*compiled)) / out.primitives.total();
 
   for (const MethodEntry& entry : kMethods) {
     MethodInspection& row = out.methods.emplace_back();

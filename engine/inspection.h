@@ -23,7 +23,11 @@ struct SceneInspection {
   std::map<std::string, size_t> bsdfs, lights, textures;
   std::string sensor, filter;
   std::vector<std::string> needs;  // what the scene asks of its kernels, in words
-  PrimitiveCounts primitives;
+  PrimitiveCounts primitives;      // copies of instances among them, or those of each group once
+  size_t groups = 0, instances = 0;
+  bool keepsInstances = false;   // rather than make copies of them
+  size_t hierarchyNodes = 0;     // of `bvh`; 0: the scene has another intersector
+  double bytesPerPrimitive = 0;  // its record and attributes, and its share of the hierarchy
   BoundingSphere bounds;
   Accel accel{};
   std::vector<MethodInspection> methods;  // in the order of kMethods

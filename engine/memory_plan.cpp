@@ -7,15 +7,16 @@
 
 #include "engine/chains/chain_worker.h"
 #include "engine/flush_to_zero.h"
+#include "engine/spread_sums.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
 
 namespace wavecrest {
 namespace {
 
-template <class T>
-size_t bytesOf(const std::vector<T>& items) {
-  return items.size() * sizeof(T);
+template <class Items>
+size_t bytesOf(const Items& items) {
+  return items.size() * sizeof(items[0]);
 }
 
 // Light paths that are walked, whatever the size of waves: the unit of splats follows from them, and with it the last
@@ -87,7 +88,10 @@ class Planner {
     use.scene = sceneBytes(*plan_.scene);
     memory_.bytesPerPath = Wave<S>(1, plan_.needs).bytesPerPath();
     use.waves = settings_.threads * waveBytes(memory_.bytesPerPath, settings_.waveSize);
-    use.film = filmBytes(pixels);
+    use.film = area_.bytes() + pixels * sizeof(uint64_t);
+    use.film += spreadsSamples(plan_, settings_) ? SpreadSums::bytesFor(plan_.scene->view.camera, area_)
+                                                 : pixels * 3 * sizeof(double);
+    use.image = Film::imageBytesFor(pixels, spreadsSamples(plan_, settings_), plan_.pipeline.chains.has_value());
     if (plan_.pipeline.splats()) use.splats = SplatFilms::bytesFor(pixels, settings_.threads);
     if (plan_.pipeline.chains) {
       addChains();
@@ -180,17 +184,23 @@ class Planner {
 }  // namespace
 
 template <class S>
-size_t sceneBytes(const CompiledScene<S>& scene) {
-  return bytesOf(scene.primitives.records) + bytesOf(scene.primitives.attributes) + bytesOf(scene.materials) +
-         bytesOf(scene.textures.records) + bytesOf(scene.textures.texels) + bytesOf(scene.lights.records) +
-         bytesOf(scene.lights.table) + bytesOf(scene.lights.environment.texels) +
-         bytesOf(scene.lights.environment.probability) + bytesOf(scene.lights.environment.table) +
+size_t primitiveBytes(const CompiledScene<S>& scene) {
+  return bytesOf(scene.primitives.records) + bytesOf(scene.primitives.attributes) + bytesOf(scene.instances) +
          (scene.embree ? scene.embree->bytes() : 0) + (scene.bvh ? scene.bvh->bytes() : 0);
+}
+template size_t primitiveBytes(const CompiledScene<float>&);
+template size_t primitiveBytes(const CompiledScene<double>&);
+
+template <class S>
+size_t sceneBytes(const CompiledScene<S>& scene) {
+  return primitiveBytes(scene) + bytesOf(scene.materials) + bytesOf(scene.compounds) + bytesOf(scene.textures.records) +
+         bytesOf(scene.textures.texels) + bytesOf(scene.lights.records) + bytesOf(scene.lights.table) +
+         bytesOf(scene.lights.environment.texels) + bytesOf(scene.lights.environment.probability) +
+         bytesOf(scene.lights.environment.table);
 }
 template size_t sceneBytes(const CompiledScene<float>&);
 template size_t sceneBytes(const CompiledScene<double>&);
 
-size_t filmBytes(size_t pixels) { return pixels * (3 * sizeof(double) + sizeof(uint64_t)); }
 size_t waveBytes(size_t bytesPerPath, size_t waveSize) { return bytesPerPath * paddedItems(waveSize); }
 
 template <class S>
@@ -203,7 +213,7 @@ template MemoryPlan planMemory(const RenderPlan<double>&, const RenderSettings&,
 MemoryPlan planMemory(const Scene& scene, const RenderSettings& asked) {
   const RenderSettings settings = withinDepthOfMethod(asked);
   const FilmArea area = filmArea(scene.film);
-  const RenderSettings cut = withPieces(settings, area.pixels.size());
+  const RenderSettings cut = withPieces(settings, scene.film, area.pixels.size());
   return settings.precision == Precision::doubled ? planMemory(planRender<double>(scene, cut), cut, area)
                                                   : planMemory(planRender<float>(scene, cut), cut, area);
 }

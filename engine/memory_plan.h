@@ -1,8 +1,8 @@
 // The memory that a render will take, before it is taken.
 //
 // in: a scene and settings. out: bytes by what they are for, and how many light paths an iteration may have so that all
-// of it fits the settings' budget. Waves, film, splats and the compiled scene are known exactly. Light vertices depend
-// on where light paths go: those of a few waves are made and counted, and stand for all. Fewer light paths leave
+// of it fits the settings' budget. Waves, film, splats, image and the compiled scene are known exactly. Light vertices
+// depend on where light paths go: those of a few waves are made and counted, and stand for all. Fewer light paths leave
 // nothing out of the image: weights, densities and splats follow their number (METHODS 5.1). What a session really
 // holds is reported in the same form (Session::statistics), so the two can be compared.
 #pragma once
@@ -17,19 +17,22 @@ namespace wavecrest {
 struct MemoryUse {
   size_t scene = 0;          // primitives, attributes, materials, textures, lights, and the hierarchy
   size_t waves = 0;          // columns of one wave per thread
-  size_t film = 0;           // sums of the pixels
+  size_t film = 0;           // list of the pixels, and their sums
   size_t splats = 0;         // sums of t = 1, in at most kSplatFilms films
   size_t lightVertices = 0;  // of a wave per thread, or with a photon map of all waves
   size_t photonMap = 0;
   size_t chains = 0;  // state of the Markov chains
+  size_t image = 0;   // the film resolved to floats, and what that takes on the way; while it is written or looked at
 
-  size_t total() const { return scene + waves + film + splats + lightVertices + photonMap + chains; }
+  size_t total() const { return scene + waves + film + splats + lightVertices + photonMap + chains + image; }
 };
 
 // The exact parts, for sessions and for plans.
 template <class S>
 size_t sceneBytes(const CompiledScene<S>& scene);
-size_t filmBytes(size_t pixels);
+// Of these the records and attributes of primitives, and the hierarchy.
+template <class S>
+size_t primitiveBytes(const CompiledScene<S>& scene);
 // Of one wave's columns.
 size_t waveBytes(size_t bytesPerPath, size_t waveSize);
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/stage_contracts.h"
+#include "engine/stage_observer.h"
 #include "kernels/columns/light_vertices.h"
 
 namespace wavecrest {
@@ -197,9 +198,12 @@ void timeStage(const StageCall<S>& stage, const StageContext<S>& context, Wave<S
   const size_t items = stage.countedOnce && context.repetition != 0 ? 0 : stage.items(wave);
   tally->items += items;
   tally->laneSlots += (items + stage.lanes - 1) / stage.lanes * stage.lanes;
+  StageObserver* const observer = stageObserver.load(std::memory_order_relaxed);
+  if (observer != nullptr) observer->begin();
   const uint64_t begin = readTicks();
   stage.run(context, wave);
   tally->ticks += readTicks() - begin;
+  if (observer != nullptr) observer->end(stage.name);
 }
 
 }  // namespace

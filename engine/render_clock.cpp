@@ -1,32 +1,33 @@
 #include "engine/render_clock.h"
 
-#include <sys/resource.h>
+#include <ctime>
 
 namespace wavecrest {
 
 double processCpuSeconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-void RenderClock::goOnFrom(double seconds, double cpuSeconds) {
-  seconds_ = seconds;
+double RenderClock::charged(double wall, double cpu) const { return kind_ == ClockKind::cpu ? cpu / threads_ : wall; }
+
+void RenderClock::goOnFrom(double wallSeconds, double cpuSeconds) {
+  wallSeconds_ = wallSeconds;
   cpuSeconds_ = cpuSeconds;
-  shown_.store(seconds, std::memory_order_relaxed);
+  shown_.store(seconds(), std::memory_order_relaxed);
 }
 
 double RenderClock::Running::look() const {
-  const double now = clock_.seconds_ + secondsSince(begin_);
+  // The CPU's clock takes a system call, so it is read only where it counts.
+  const double cpu = clock_.kind_ == ClockKind::cpu ? clock_.cpuSeconds_ + processCpuSeconds() - cpuBegin_ : 0;
+  const double now = clock_.charged(clock_.wallSeconds_ + secondsSince(begin_), cpu);
   clock_.shown_.store(now, std::memory_order_relaxed);
   return now;
 }
 
 RenderClock::Running::~Running() {
-  clock_.goOnFrom(clock_.seconds_ + secondsSince(begin_), clock_.cpuSeconds_ + processCpuSeconds() - cpuBegin_);
+  clock_.goOnFrom(clock_.wallSeconds_ + secondsSince(begin_), clock_.cpuSeconds_ + processCpuSeconds() - cpuBegin_);
 }
 
 }  // namespace wavecrest

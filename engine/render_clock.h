@@ -6,6 +6,8 @@
 #include <atomic>
 #include <chrono>
 
+#include "engine/clock_kind.h"
+
 namespace wavecrest {
 
 using Clock = std::chrono::steady_clock;
@@ -20,13 +22,16 @@ double processCpuSeconds();
 // The clock of a session. It runs while the session renders; other threads may look at it meanwhile.
 class RenderClock {
  public:
-  // Up to the last stop.
-  double seconds() const { return seconds_; }
+  RenderClock(ClockKind kind, unsigned threads) : kind_(kind), threads_(threads) {}
+
+  // What is charged up to the last stop, and both clocks there.
+  double seconds() const { return charged(wallSeconds_, cpuSeconds_); }
+  double wallSeconds() const { return wallSeconds_; }
   double cpuSeconds() const { return cpuSeconds_; }
   // Seconds as of the last look, from any thread.
   double shown() const { return shown_.load(std::memory_order_relaxed); }
   // Goes on where the clock of another session stopped.
-  void goOnFrom(double seconds, double cpuSeconds);
+  void goOnFrom(double wallSeconds, double cpuSeconds);
 
   // The clock runs while this lives.
   class Running {
@@ -45,7 +50,11 @@ class RenderClock {
   };
 
  private:
-  double seconds_ = 0, cpuSeconds_ = 0;
+  double charged(double wall, double cpu) const;
+
+  const ClockKind kind_;
+  const double threads_;
+  double wallSeconds_ = 0, cpuSeconds_ = 0;
   std::atomic<double> shown_{0};
 };
 

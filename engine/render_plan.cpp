@@ -1,4 +1,5 @@
 #include "engine/render_plan.h"
+#include "engine/spread_sums.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,46 +7,68 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/compile/materials.h"
 #include "engine/scene/scene_error.h"
 
 namespace wavecrest {
 namespace {
 
-ColumnNeeds columnNeeds(const Scene& scene, Specialization specialization) {
+ColumnNeeds columnNeeds(const Scene& scene, Specialization specialization, bool keepsInstances) {
   const uint32_t features = featuresOf(specialization);
   return {.shadingNormals = (features & kShadingNormals) != 0,
           .textures = (features & kTextures) != 0,
           .normalMaps = (features & sceneFeatures(scene) & kNormalMaps) != 0,
+          .tangents = (features & kCompoundBsdfs) != 0 && hasTangents(scene),
+          .instances = keepsInstances,
           .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
           .connections = (features & kBidirectional) != 0,
           .bsdfOrder = (features & (kSpecularBsdfs | kLayeredBsdfs)) != 0};
 }
 
-bool isBidirectional(const RenderSettings& settings) {
-  return isBidirectional(pageOf(settings.method, settings.metropolis.variant));
+// Mutations of path space keep the events of a path: reflection, refraction or passing, but not which part of a blend.
+void refuseDeltaBlends(const Scene& scene) {
+  for (const Shape& shape : scene.shapes) {
+    if (shape.material == kNone) continue;
+    const Material& material = scene.materials[shape.material];
+    if (!std::holds_alternative<Blend>(material.kind)) continue;
+    Material whole = material;
+    whole.opacity.reset();
+    if ((compileMaterial(whole, scene).flags & kHasDelta) == 0) continue;
+    throw SceneError(material.source,
+                     "pathspace cannot tell the delta lobes of a blend apart; expected BSDFs without "
+                     "them in it, or --mlt mmlt");
+  }
 }
+
+MethodPage pageOf(const RenderSettings& settings) {
+  return pageOf(settings.method, settings.metropolis.variant, settings.directPass);
+}
+
+bool isBidirectional(const RenderSettings& settings) { return isBidirectional(pageOf(settings)); }
 
 }  // namespace
 
 Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
-  const uint32_t features = sceneFeatures(scene) | (isBidirectional(settings) ? kBidirectional : 0u);
+  const bool keeps = keepsInstances(scene, settings.accel, settings.instancing);
+  const uint32_t features = sceneFeatures(scene, keeps) | (isBidirectional(settings) ? kBidirectional : 0u);
   const Specialization least = chooseSpecialization(features, settings.precision);
   if (!settings.specialization) return least;
   if ((features & ~featuresOf(*settings.specialization)) != 0) {
-    throw std::runtime_error("scene and method need the '" +
-                             std::string(kSpecializationNames[static_cast<size_t>(least)]) + "' kernels");
+    throw SceneError({scene.name}, "scene and method need the '" +
+                                       std::string(kSpecializationNames[static_cast<size_t>(least)]) + "' kernels");
   }
   return chooseSpecialization(featuresOf(*settings.specialization), settings.precision);
 }
 
 template <class S>
-Intersector<S> chooseIntersector(const Stages<S>& stages, Accel accel) {
-  if (accel == Accel::small) return {stages.extendSmall, stages.occludeSmall, stages.lanes};
-  if (accel == Accel::bvh) return {stages.extendBvh, stages.occludeBvh, stages.lanes};
+Intersector<S> chooseIntersector(const Stages<S>& stages, const CompiledScene<S>& scene) {
+  if (scene.accel() == Accel::small) return {stages.extendSmall, stages.occludeSmall, stages.lanes};
+  if (scene.view.instances != nullptr) return {stages.extendInstances, stages.occludeInstances, stages.lanes};
+  if (scene.accel() == Accel::bvh) return {stages.extendBvh, stages.occludeBvh, stages.lanes};
   return {extendEmbree<S>, occludeEmbree<S>, kEmbreePacket};
 }
-template Intersector<float> chooseIntersector(const Stages<float>&, Accel);
-template Intersector<double> chooseIntersector(const Stages<double>&, Accel);
+template Intersector<float> chooseIntersector(const Stages<float>&, const CompiledScene<float>&);
+template Intersector<double> chooseIntersector(const Stages<double>&, const CompiledScene<double>&);
 
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
@@ -57,8 +80,9 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
     throw SceneError({scene.name}, "pathspace needs a pinhole; expected one, or --mlt mmlt");
   }
   plan.specialization = specializationFor(scene, settings);
-  plan.needs = columnNeeds(scene, plan.specialization);
-  plan.scene = compileScene<S>(scene, settings.accel, settings.precision != Precision::fast);
+  if (inPathSpace) refuseDeltaBlends(scene);
+  plan.scene = compileScene<S>(scene, settings.accel, settings.precision != Precision::fast, settings.instancing);
+  plan.needs = columnNeeds(scene, plan.specialization, plan.scene->view.instances != nullptr);
   const CameraView& camera = plan.scene->view.camera;
   const bool clipped = camera.nearClip > 0 || std::isfinite(camera.farClip);
   if (clipped && settings.method == Method::mlt && settings.metropolis.variant == MetropolisVariant::pathspace) {
@@ -69,8 +93,7 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, plan.specialization);
   plan.isa = stages.isa;
   plan.stages = &stages;
-  plan.pipeline = makePipeline(pageOf(settings.method, settings.metropolis.variant), stages,
-                               chooseIntersector(stages, plan.accel()));
+  plan.pipeline = makePipeline(pageOf(settings), stages, chooseIntersector(stages, *plan.scene));
   plan.needs.splats = plan.pipeline.splats();
   plan.lightUse = {.connected = !plan.pipeline.photonMap || plan.pipeline.cameraPass.strategies.connect,
                    .merged = plan.pipeline.photonMap};
@@ -84,6 +107,14 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
 template RenderPlan<float> planRender(const Scene&, const RenderSettings&);
 template RenderPlan<double> planRender(const Scene&, const RenderSettings&);
 
+template <class S>
+bool spreadsSamples(const RenderPlan<S>& plan, const RenderSettings& settings) {
+  const bool samples = !plan.pipeline.chains || plan.pipeline.chains->directPass;
+  return samples && settings.filterMode == FilterMode::spread && canSpread(plan.scene->view.camera);
+}
+template bool spreadsSamples(const RenderPlan<float>&, const RenderSettings&);
+template bool spreadsSamples(const RenderPlan<double>&, const RenderSettings&);
+
 MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t count,
                         uint64_t iteration) {
   const auto lightPaths = static_cast<double>(count);
@@ -93,7 +124,7 @@ MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, 
   strategies.radius = std::max(settings.radius * shrink, kSmallestRadius) * sceneRadius;
   const double density = std::numbers::pi * strategies.radius * strategies.radius * lightPaths;
   strategies.mergeNorm = 1 / density;
-  strategies.kVM = strategies.merge ? density : 0;
+  strategies.kVM = strategies.merge && strategies.mergeWeights ? density : 0;
   strategies.kVC = strategies.merge && strategies.connect ? 1 / density : 0;
   return strategies;
 }
@@ -106,13 +137,17 @@ uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most) {
   return static_cast<uint32_t>(std::min<size_t>(most, std::max(whole, kLeast)));
 }
 
-RenderSettings withPieces(const RenderSettings& settings, size_t pixels) {
+RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film, size_t pixels) {
+  RenderSettings settings = asked;
+  const bool spreads = settings.filterMode == FilterMode::spread && film.filter != ReconstructionFilter::box;
+  const auto least = static_cast<uint32_t>(spreads ? kTilePixels : 1);
+  settings.waveSize = std::max(settings.waveSize, least);
   RenderSettings cut = settings;
-  const MethodPage page = pageOf(settings.method, settings.metropolis.variant);
+  const MethodPage page = pageOf(settings);
   // Camera walks alone take several iterations of a pixel at once: their waves stay, over fewer pixels.
   if (!page.hasChains() && page.walk(Walk::light) == nullptr) return cut;
   const size_t items = page.hasChains() ? std::max<size_t>(settings.metropolis.chains, 1) : pixels;
-  cut.waveSize = pieceSize(items, settings.cutForThreads(), settings.waveSize);
+  cut.waveSize = std::max(pieceSize(items, settings.cutForThreads(), settings.waveSize), least);
   return cut;
 }
 

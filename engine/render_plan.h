@@ -34,13 +34,17 @@ struct RenderPlan {
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings);
 
+// Whether camera samples are spread over the filter's footprint. Those of Markov chains are not.
+template <class S>
+bool spreadsSamples(const RenderPlan<S>& plan, const RenderSettings& settings);
+
 // The kernels that the settings' own choice, or else the scene and method, lead to. Throws std::runtime_error where the
 // choice does not cover the scene.
 Specialization specializationFor(const Scene& scene, const RenderSettings& settings);
 
-// The intersector of a scene that was compiled for this structure.
+// The intersector that the scene was compiled for.
 template <class S>
-Intersector<S> chooseIntersector(const Stages<S>& stages, Accel accel);
+Intersector<S> chooseIntersector(const Stages<S>& stages, const CompiledScene<S>& scene);
 
 // Of the scene's radius. Positions have 24 bits: of a smaller radius nothing would be left but their rounding.
 constexpr double kSmallestRadius = 16 * 0x1p-24;
@@ -58,8 +62,9 @@ uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most);
 inline size_t piecesOf(size_t items, size_t size) { return (items + size - 1) / size; }
 inline size_t itemsOfPiece(size_t index, size_t items, size_t size) { return std::min(size, items - index * size); }
 
-// The settings with waves cut by pieceSize, for a method whose waves are pieces of work.
-RenderSettings withPieces(const RenderSettings& settings, size_t pixels);
+// The settings with waves cut by pieceSize, for a method whose waves are pieces of work. pixels: of the rendered part
+// of the film. Where samples are spread, a wave has room for a tile.
+RenderSettings withPieces(const RenderSettings& settings, const FilmSettings& film, size_t pixels);
 
 // The rectangle of the film that is rendered: its crop window, or all of it.
 FilmArea filmArea(const FilmSettings& film);

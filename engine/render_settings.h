@@ -2,11 +2,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
+#include "engine/clock_kind.h"
 #include "engine/compile/compiled_scene.h"
 #include "engine/methods/method_list.h"
+#include "engine/placement.h"
 #include "kernels/mutate/path_law.h"
 
 namespace wavecrest {
@@ -47,30 +51,41 @@ inline PathLimits pathLimits(int maxDepth, int rouletteDepth) {
   return limits;
 }
 
+// What a camera sample adds to: all pixels that the reconstruction filter spreads it to
+// (kernels/splat/filter_spread.h), or the one pixel that it was drawn for. Filters that are too wide to be spread are
+// sampled; a box is the same by both.
+enum class FilterMode { spread, sample };
+constexpr std::array<std::string_view, 2> kFilterModeNames{"spread", "sample"};
+
 struct RenderSettings {
   Method method = Method::pt;
   MetropolisSettings metropolis;
   Precision precision = Precision::floating;
   Isa isa = Isa::scalar;
   Accel accel = Accel::automatic;
+  Instancing instancing = Instancing::automatic;
   SamplerKind sampler = SamplerKind::independent;
+  FilterMode filterMode = FilterMode::spread;
   uint64_t seed = 0;
   uint32_t threads = 1;
   uint32_t waveSize = 2048;  // paths
   PathLimits limits;
   double radius = 0.001;        // of the first merges, relative to the bounding sphere's
   double radiusAlpha = 0.75;    // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
+  bool directPass = false;      // ppm: direct light by next event estimation, the rest from photons
   uint64_t firstIteration = 0;  // of this session: what came before was rendered by another
   // N_L, the light paths of an iteration: one per pixel unless stated. Only methods with a photon map may have another
   // number; the others join each light path with its own camera path.
   std::optional<uint64_t> lightPaths;
   std::optional<uint64_t> memoryBytes;           // budget; lowers N_L where that is what fills the memory
   std::optional<uint64_t> iterations;            // stop after this many,
-  std::optional<double> seconds;                 // or after this much render time, whichever comes first
+  std::optional<double> seconds;                 // or after this much render time, whichever comes first,
+  ClockKind clock = ClockKind::wall;             // as this clock counts it; a session that goes on for another: wall
   std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene
   bool measureStages = false;
   // Work is cut into pieces as for so many threads, however many there are; unset: for those that there are.
   std::optional<uint32_t> piecesForThreads;
+  Placement placement;  // of the threads and the memory that they share; images do not depend on it
 
   uint32_t cutForThreads() const { return piecesForThreads.value_or(threads); }
 };

@@ -32,6 +32,10 @@ bool isGlossy(const MaterialRecord& m) {
     case BsdfKind::roughDielectric:
     case BsdfKind::beckmannConductor:
     case BsdfKind::beckmannDielectric:
+    case BsdfKind::anisotropicConductor:
+    case BsdfKind::anisotropicDielectric:
+    case BsdfKind::anisotropicBeckmannConductor:
+    case BsdfKind::anisotropicBeckmannDielectric:
       return true;
     default:
       return false;
@@ -53,7 +57,8 @@ void add(SceneLinks::ByEvent& seen, uint8_t events) {
 }
 
 bool isDelta(LightKind kind) {
-  return kind == LightKind::point || kind == LightKind::spot || kind == LightKind::directional;
+  return kind == LightKind::point || kind == LightKind::spot || kind == LightKind::projector ||
+         kind == LightKind::directional;
 }
 
 // ---- the size of a light --------------------------------------------------------------------------------------------
@@ -71,6 +76,12 @@ double effectiveSolidAngle(const EnvironmentView& map) {
       sum += weight * value;
       squares += weight * value * value;
     }
+  }
+  if (map.sunShare > 0) {
+    const double value = (map.sunRadiance[0] + map.sunRadiance[1] + map.sunRadiance[2]) / 3;
+    const double weight = std::numbers::pi * map.sunChord2;
+    sum += weight * value;
+    squares += weight * value * value;
   }
   return squares > 0 ? sum * sum / squares : 0;
 }
@@ -100,7 +111,7 @@ class Walker {
   explicit Walker(const Scene& scene)
       : plan_(planRender<float>(scene, settings())),
         stages_(findStages<float>(plan_.isa, Precision::floating, plan_.specialization)),
-        intersector_(chooseIntersector(stages_, plan_.accel())),
+        intersector_(chooseIntersector(stages_, *plan_.scene)),
         area_(filmArea(scene.film)),
         wave_(kPaths, plan_.needs) {
     for (const MaterialRecord& material : plan_.scene->materials) events_.push_back(eventsOf(material));

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "engine/add_samples.h"
 #include "engine/chains/chain_session.h"
 #include "engine/flush_to_zero.h"
 #include "engine/for_each.h"
@@ -16,6 +17,7 @@
 #include "engine/session_state.h"
 #include "engine/session_worker.h"
 #include "engine/stage_rows.h"
+#include "engine/thread_pins.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
 
@@ -64,6 +66,11 @@ class TypedSession final : public Session {
   Worker& worker();
   // Takes the worker's wave, whose paths are set, through a pass. iteration: the first of its paths'.
   void tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker);
+  // The logarithm of how many iterations a camera wave takes at most: of spread samples as many as leave it whole
+  // tiles.
+  uint32_t mostIterationBits() const {
+    return plan_.pipeline.mostIterationBits(settings_.waveSize / (film_.spreads() ? uint32_t{kTilePixels} : 1));
+  }
   uint32_t iterationBits(uint64_t next) const;
   // Light paths or the camera paths of pixels [first, first + count), of one iteration; of camera paths 2^iterationBits
   // iterations.
@@ -86,11 +93,12 @@ class TypedSession final : public Session {
   void countLightPaths();
 
   oneapi::tbb::task_arena arena_;
+  std::optional<ThreadPins> pins_;  // once the session is built
   Film film_;
   const RenderSettings settings_;
   RenderPlan<S> plan_;
   MemoryPlan memory_;
-  size_t tile_ = 0;                     // pixels of a camera wave's own
+  std::vector<size_t> pieces_;          // the first pixel of each camera wave's own, and the end (FilmArea::pieces)
   uint64_t endIteration_ = 0;           // of this renderUntil
   std::vector<uint64_t> lightDone_;     // next iteration of each wave
   std::vector<CameraProgress> camera_;  // of each tile
@@ -102,7 +110,7 @@ class TypedSession final : public Session {
   StageTally photonTally_;
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
   WorkDone earlier_;  // of the sessions that this one goes on for
-  RenderClock clock_;
+  RenderClock clock_{settings_.clock, settings_.threads};
   double buildSeconds_ = 0;
   std::atomic<uint64_t> progressPaths_{0};
 };
@@ -111,17 +119,21 @@ template <class S>
 TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings)
     : arena_(static_cast<int>(settings.threads)),
       film_(filmArea(scene.film)),
-      settings_(withPieces(settings, film_.area().pixels.size())) {
+      settings_(withPieces(settings, scene.film, film_.area().pixels.size())) {
   const auto begin = Clock::now();
   const WorkerLimit limit(settings.threads);
+  const SpreadMemory spread(settings.placement);
   const size_t pixels = film_.area().pixels.size();
   arena_.execute([&] { plan_ = planRender<S>(scene, settings_); });
   memory_ = planMemory(plan_, settings_, film_.area());
   if (plan_.pipeline.splats()) film_.makeSplats(settings.threads, memory_.splatScale);
-  const uint32_t together = 1u << plan_.pipeline.mostIterationBits(settings_.waveSize);
-  tile_ = pieceSize(pixels * together, settings.cutForThreads(), settings_.waveSize * together) / together;
+  if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.scene->view.camera);
+  const uint32_t together = 1u << mostIterationBits();
+  pieces_ = film_.area().pieces(
+      pieceSize(pixels * together, settings.cutForThreads(), settings_.waveSize * together) / together,
+      film_.spreads());
   lightDone_.resize(piecesOf(memory_.lightPaths, settings_.waveSize), settings.firstIteration);
-  camera_.resize(piecesOf(pixels, tile_), {.next = settings.firstIteration});
+  camera_.resize(pieces_.size() - 1, {.next = settings.firstIteration});
   if (plan_.pipeline.photonMap) {
     for (size_t i = 0; i < lightDone_.size(); ++i) {
       stores_.push_back(std::make_unique<LightStore<S>>(settings_.waveSize, plan_.needs, plan_.lightUse));
@@ -130,6 +142,7 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
       store.reserve(memory_.verticesPerWave, storeMemory_);
     }
   }
+  pins_.emplace(arena_, settings_.placement);
   buildSeconds_ = secondsSince(begin);
 }
 
@@ -155,6 +168,7 @@ void TypedSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSt
                           .photonGrid = photonGrid(mis.radius),
                           .photons = &photons_,
                           .film = area.window(),
+                          .sharedPlace = film_.spreads(),
                           .counters = &worker.counters};
   auto& tallies = pass.walk == Walk::light ? worker.lightTallies : worker.cameraTallies;
   SplatDrain<S> drain;
@@ -174,18 +188,19 @@ void TypedSession<S>::traceLight(size_t first, size_t count, uint64_t iteration,
 
 template <class S>
 void TypedSession<S>::traceLightWave(size_t waveIndex, Worker& worker) {
-  LightStore<S>& store = plan_.pipeline.photonMap ? *stores_[waveIndex] : worker.light;
   const size_t count = itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
-  traceLight(waveIndex * settings_.waveSize, count, lightDone_[waveIndex]++, store, worker);
+  traceLight(waveIndex * settings_.waveSize, count, lightDone_[waveIndex]++, *stores_[waveIndex], worker);
 }
 
 template <class S>
 LightStore<S>* TypedSession<S>::partnersOf(size_t waveIndex, Worker& worker) {
   if (!plan_.pipeline.photonMap) return &worker.light;
   if (!plan_.pipeline.cameraPass.strategies.connect) return nullptr;
-  const size_t pixels = film_.area().pixels.size();
-  if (memory_.lightPaths == pixels) return stores_[waveIndex].get();
-  worker.light.collect(stores_, memory_.lightPaths, waveIndex * tile_, itemsOfPiece(waveIndex, pixels, tile_));
+  const size_t first = pieces_[waveIndex], count = pieces_[waveIndex + 1] - first;
+  const bool sameCut = waveIndex < stores_.size() && first == waveIndex * settings_.waveSize &&
+                       count == itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
+  if (sameCut && memory_.lightPaths == film_.area().pixels.size()) return stores_[waveIndex].get();
+  worker.light.collect(stores_, memory_.lightPaths, first, count);
   return &worker.light;
 }
 
@@ -193,7 +208,7 @@ LightStore<S>* TypedSession<S>::partnersOf(size_t waveIndex, Worker& worker) {
 template <class S>
 uint32_t TypedSession<S>::iterationBits(uint64_t next) const {
   const auto log2 = [](uint64_t n) { return static_cast<uint32_t>(std::bit_width(std::max<uint64_t>(n, 1))) - 1; };
-  return std::min({plan_.pipeline.mostIterationBits(settings_.waveSize), static_cast<uint32_t>(std::countr_zero(next)),
+  return std::min({mostIterationBits(), static_cast<uint32_t>(std::countr_zero(next)),
                    log2(next - settings_.firstIteration), log2(endIteration_ - next)});
 }
 
@@ -205,7 +220,7 @@ void TypedSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration
   wave.iterationBits = iterationBits;
   wave.pathCount = count << iterationBits;
   tracePass(plan_.pipeline.cameraPass, iteration, partners, worker);
-  worker.counters.nonFinite += film_.add(wave);
+  worker.counters.nonFinite += addSamples(film_, plan_, {settings_.sampler, settings_.seed, iteration}, wave);
   worker.paths += wave.pathCount;
   progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
 }
@@ -213,11 +228,12 @@ void TypedSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration
 template <class S>
 void TypedSession<S>::traceCameraWave(size_t waveIndex, Worker& worker) {
   CameraProgress& progress = camera_[waveIndex];
-  const size_t pixels = itemsOfPiece(waveIndex, film_.area().pixels.size(), tile_);
+  const size_t first = pieces_[waveIndex], pixels = pieces_[waveIndex + 1] - first;
   if (progress.pixels == 0) progress.iterationBits = iterationBits(progress.next);
-  const size_t some = std::min(size_t{settings_.waveSize} >> progress.iterationBits, pixels - progress.pixels);
-  traceCamera(waveIndex * tile_ + progress.pixels, some, progress.next, progress.iterationBits,
-              partnersOf(waveIndex, worker), worker);
+  const size_t some = film_.area().pixelsFrom(first + progress.pixels, pixels - progress.pixels,
+                                              settings_.waveSize >> progress.iterationBits, film_.spreads());
+  traceCamera(first + progress.pixels, some, progress.next, progress.iterationBits, partnersOf(waveIndex, worker),
+              worker);
   progress.pixels += some;
   if (progress.pixels < pixels) return;
   progress.next += uint64_t{1} << progress.iterationBits;
@@ -229,7 +245,9 @@ void TypedSession<S>::renderWaves(const Finished& finished) {
   takeTurns(camera_.size(), settings_.threads, [&](size_t wave) {
     if (finished(camera_[wave].next)) return false;
     Worker& mine = worker();
-    if (plan_.pipeline.lightPass) traceLightWave(wave, mine);
+    if (plan_.pipeline.lightPass) {
+      traceLight(pieces_[wave], pieces_[wave + 1] - pieces_[wave], camera_[wave].next, mine.light, mine);
+    }
     traceCameraWave(wave, mine);
     return !finished(camera_[wave].next);
   });
@@ -250,6 +268,7 @@ void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
   const uint64_t begin = readTicks();
   const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
                                       memory_.lightPaths, iteration);
+  const SpreadMemory spread(settings_.placement);
   photons_.build(stores, photonGrid(mis.radius), forEach);
   photonTally_.ticks += readTicks() - begin;
   photonTally_.items += photons_.size;
@@ -320,12 +339,15 @@ RenderStatistics TypedSession<S>::statistics() const {
   out.iterations = film_.minSamples();
   out.buildSeconds = buildSeconds_;
   out.renderSeconds = clock_.seconds();
+  out.renderWallSeconds = clock_.wallSeconds();
   out.cpuSeconds = clock_.cpuSeconds();
   out.isa = plan_.isa;
   out.specialization = plan_.specialization;
   out.accel = plan_.accel();
+  out.filterMode = film_.spreads() ? FilterMode::spread : FilterMode::sample;
   out.memory.scene = sceneBytes(*plan_.scene);
-  out.memory.film = filmBytes(film_.area().pixels.size());
+  out.memory.film = film_.bytes();
+  out.memory.image = film_.imageBytes();
   if (plan_.pipeline.splats()) out.memory.splats = film_.splats().bytes();
   if (plan_.pipeline.lightPass) addRows(*plan_.pipeline.lightPass, out.stages);
   const size_t cameraRow = out.stages.size();

@@ -51,7 +51,8 @@ struct RenderStatistics {
   uint64_t paths = 0;       // camera paths
   uint64_t lightPaths = 0;
   StageCounters counters;
-  double buildSeconds = 0, renderSeconds = 0, cpuSeconds = 0;
+  double buildSeconds = 0, renderSeconds = 0, cpuSeconds = 0;  // renderSeconds: by the clock of the settings
+  double renderWallSeconds = 0;
   struct StageRow {
     std::string name;
     uint64_t items = 0;
@@ -62,6 +63,7 @@ struct RenderStatistics {
   Isa isa{};
   Specialization specialization{};
   Accel accel{};
+  FilterMode filterMode{};                // what the film does: boxes and very wide filters are never spread
   size_t bytesPerPath = 0;                // of a wave's columns
   MemoryUse memory;                       // of all threads that have worked
   std::optional<ChainStatistics> chains;  // of mlt

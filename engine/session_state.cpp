@@ -32,7 +32,7 @@ WorkDone WorkDone::of(const RenderStatistics& statistics) {
   return {.paths = statistics.paths,
           .lightPaths = statistics.lightPaths,
           .counters = statistics.counters,
-          .renderSeconds = statistics.renderSeconds,
+          .renderSeconds = statistics.renderWallSeconds,
           .cpuSeconds = statistics.cpuSeconds,
           .stages = statistics.stages};
 }

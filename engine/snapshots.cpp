@@ -10,6 +10,8 @@ namespace {
 constexpr double kFirstLogSnapshot = 0.1;
 constexpr double kSnapshotsPerDecade = 6;
 
+double logarithmicTime(unsigned number) { return kFirstLogSnapshot * std::pow(10.0, number / kSnapshotsPerDecade); }
+
 // Whichever comes first.
 template <class T>
 std::optional<T> earlier(std::optional<T> a, std::optional<T> b) {
@@ -27,7 +29,14 @@ SnapshotSchedule::Due SnapshotSchedule::due(unsigned number) const {
     case Kind::regular:
       return {.seconds = interval_ * (number + 1), .iterations = std::nullopt};
     case Kind::time:
-      return {.seconds = kFirstLogSnapshot * std::pow(10.0, number / kSnapshotsPerDecade), .iterations = std::nullopt};
+      return {.seconds = logarithmicTime(number), .iterations = std::nullopt};
+    case Kind::timeThenRegular: {
+      unsigned last = 0;  // at a time of a fixed ratio
+      while (logarithmicTime(last + 1) - logarithmicTime(last) <= interval_) ++last;
+      if (number <= last) return {.seconds = logarithmicTime(number), .iterations = std::nullopt};
+      const double before = std::floor(logarithmicTime(last) / interval_);
+      return {.seconds = interval_ * (before + number - last), .iterations = std::nullopt};
+    }
     case Kind::doubling:
       return {.seconds = std::nullopt, .iterations = uint64_t{1} << std::min(number, 63u)};
   }
@@ -55,10 +64,14 @@ unsigned renderWithSnapshots(Session& session, const RenderSettings& settings, c
       if (!session.interrupted()) break;
       if (!goesOn || !goesOn()) return number;
     }
-    // The last one is due at the limit, a moment before which a session may have nothing left to do.
-    const bool atLimit = inTime && !settings.iterations && *due.seconds == settings.seconds;
-    const bool reached = atLimit || (inTime && session.progressSeconds() >= *due.seconds) ||
-                         (inIterations && session.statistics().iterations >= *due.iterations);
+    // A session that has iterations left and yet ends before its time has no time for another step (chains): what it
+    // has is what there will be.
+    const auto hasIterations = [&](const std::optional<uint64_t>& count) {
+      return count && session.statistics().iterations >= *count;
+    };
+    const bool reached =
+        (inTime && (session.progressSeconds() >= *due.seconds || !hasIterations(settings.iterations))) ||
+        (inIterations && hasIterations(due.iterations));
     if (!reached) return number;  // an interrupt that comes after the render has returned is the next call's
     onSnapshot(number);
   }

@@ -12,8 +12,12 @@ namespace wavecrest {
 class SnapshotSchedule {
  public:
   static SnapshotSchedule none() { return SnapshotSchedule(Kind::none); }
-  static SnapshotSchedule every(double seconds);                                   // of render time
-  static SnapshotSchedule logarithmic() { return SnapshotSchedule(Kind::time); }   // render times of a fixed ratio
+  static SnapshotSchedule every(double seconds);                                  // of render time
+  static SnapshotSchedule logarithmic() { return SnapshotSchedule(Kind::time); }  // render times of a fixed ratio
+  // At render times of a fixed ratio until they are further apart than this, then at its multiples.
+  static SnapshotSchedule logarithmicThenEvery(double seconds) {
+    return SnapshotSchedule(Kind::timeThenRegular, seconds);
+  }
   static SnapshotSchedule doubling() { return SnapshotSchedule(Kind::doubling); }  // after 1, 2, 4, ... iterations
 
   // What the snapshot of this number, from 0 on, waits for: render seconds, or iterations, or neither if there is none.
@@ -26,7 +30,7 @@ class SnapshotSchedule {
   unsigned firstAfter(double seconds, uint64_t iterations) const;
 
  private:
-  enum class Kind { none, regular, time, doubling };
+  enum class Kind { none, regular, time, timeThenRegular, doubling };
   explicit SnapshotSchedule(Kind kind, double interval = 0) : kind_(kind), interval_(interval) {}
 
   Kind kind_;

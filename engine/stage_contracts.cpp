@@ -10,8 +10,7 @@
 namespace wavecrest {
 namespace {
 
-// Directions are made with reciprocal estimates where the precision is `fast`.
-constexpr double kUnitTolerance = 1e-3;
+constexpr double kUnitTolerance = 1e-4;
 
 template <class S>
 bool isUnit(S x, S y, S z) {
@@ -72,6 +71,8 @@ std::string_view brokenHits(const SceneView<S>& scene, const Wave<S>& wave) {
     const uint32_t primitive = wave.hits.primitive[i];
     if (primitive != kMiss && primitive >= scene.primitiveCount) return "primitives of the scene";
     if (primitive != kMiss && !std::isfinite(wave.hits.u[i] + wave.hits.v[i])) return "finite coordinates of hits";
+    if (primitive == kMiss || scene.instances == nullptr || wave.hits.instance[i] == kNoIndex) continue;
+    if (wave.hits.instance[i] >= scene.instanceCount) return "instances of the scene";
   }
   return {};
 }

@@ -9,7 +9,10 @@ namespace wavecrest {
 
 using D3 = std::array<double, 3>;
 
-inline D3 vec(const double (&a)[3]) { return {a[0], a[1], a[2]}; }
+template <class Real>
+D3 vec(const Real (&a)[3]) {
+  return {a[0], a[1], a[2]};
+}
 inline D3 operator+(const D3& a, const D3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline D3 operator-(const D3& a, const D3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline D3 operator*(double s, const D3& a) { return {s * a[0], s * a[1], s * a[2]}; }

@@ -13,41 +13,21 @@ struct FloatPrecision {
   using Real = Float;
   using Storage = float;
   static constexpr Precision kPrecision = Precision::floating;
-  static constexpr bool kApproximate = false;
 };
 struct DoublePrecision {
   using Real = Double;
   using Storage = double;
   static constexpr Precision kPrecision = Precision::doubled;
-  static constexpr bool kApproximate = false;
-};
-struct FastPrecision {
-  using Real = Float;
-  using Storage = float;
-  static constexpr Precision kPrecision = Precision::fast;
-  static constexpr bool kApproximate = true;
 };
 
-template <class P>
-WAVECREST_INLINE typename P::Real reciprocal(typename P::Real a) {
-  if constexpr (P::kApproximate) {
-    return approximateReciprocal(a);
-  } else {
-    return typename P::Real(1) / a;
-  }
+template <class Real>
+WAVECREST_INLINE Real reciprocal(Real a) {
+  return Real(1) / a;
 }
 // 1 / sqrt(a)
-template <class P>
-WAVECREST_INLINE typename P::Real reciprocalSqrt(typename P::Real a) {
-  if constexpr (P::kApproximate) {
-    return approximateReciprocalSqrt(a);
-  } else {
-    return typename P::Real(1) / sqrt(a);
-  }
-}
-template <class P>
-WAVECREST_INLINE Vec3<typename P::Real> normalizeFast(Vec3<typename P::Real> a) {
-  return a * reciprocalSqrt<P>(length2(a));
+template <class Real>
+WAVECREST_INLINE Real reciprocalSqrt(Real a) {
+  return Real(1) / sqrt(a);
 }
 
 // ---- columns --------------------------------------------------------------------------------------------------------
@@ -304,22 +284,22 @@ WAVECREST_SIMD_END
 #ifdef WAVECREST_ONLY_GENERAL_KERNELS
 #define WAVECREST_INSTANTIATE_PLAIN(STAGE)
 #define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)
+#define WAVECREST_INSTANTIATE_GENERAL(STAGE)
 #else
+#define WAVECREST_INSTANTIATE_GENERAL(STAGE) WAVECREST_INSTANTIATE(STAGE, FloatPrecision, general)
 #define WAVECREST_INSTANTIATE_PLAIN(STAGE)              \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuse) \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smooth)  \
-  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, plain)   \
-  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuse)
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, plain)
 #define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)                   \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuseBidirectional) \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smoothBidirectional)  \
-  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, plainBidirectional)   \
-  WAVECREST_INSTANTIATE(STAGE, FastPrecision, diffuseBidirectional)
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, plainBidirectional)
 #endif
-#define WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)       \
-  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, general) \
-  WAVECREST_INSTANTIATE(STAGE, FastPrecision, general)  \
-  WAVECREST_INSTANTIATE(STAGE, DoublePrecision, general)
+#define WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)        \
+  WAVECREST_INSTANTIATE_GENERAL(STAGE)                   \
+  WAVECREST_INSTANTIATE(STAGE, FloatPrecision, complete) \
+  WAVECREST_INSTANTIATE(STAGE, DoublePrecision, complete)
 #define WAVECREST_INSTANTIATE_STAGE(STAGE)   \
   WAVECREST_SIMD_BEGIN                       \
   WAVECREST_INSTANTIATE_PLAIN(STAGE)         \
@@ -336,7 +316,6 @@ WAVECREST_SIMD_END
 #define WAVECREST_INSTANTIATE_COMMON_STAGE(STAGE)             \
   WAVECREST_SIMD_BEGIN                                        \
   WAVECREST_INSTANTIATE_FOR_PRECISION(STAGE, FloatPrecision)  \
-  WAVECREST_INSTANTIATE_FOR_PRECISION(STAGE, FastPrecision)   \
   WAVECREST_INSTANTIATE_FOR_PRECISION(STAGE, DoublePrecision) \
   WAVECREST_SIMD_END
 #define WAVECREST_INSTANTIATE_FOR_PRECISION(STAGE, PRECISION) \

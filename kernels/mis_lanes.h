@@ -77,7 +77,7 @@ WAVECREST_INLINE MisSums<typename P::Real> scatterMis(const MisSettings& setting
                                                       const MisSums<typename P::Real>& mis, typename P::Real pdf,
                                                       typename P::Real pdfReverse, typename P::Real genCosine) {
   using Real = typename P::Real;
-  const Real inversePdf = reciprocal<P>(pdf);
+  const Real inversePdf = reciprocal(pdf);
   if constexpr (has(kFeatures, kBidirectional)) {
     const Real scale = genCosine * inversePdf;
     return {inversePdf, scale * behindConnection(settings, depth, mis, pdfReverse),

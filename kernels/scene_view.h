@@ -33,6 +33,13 @@ struct alignas(64) AttributeRecord {
   uint32_t hasNormals;
 };
 
+// A group of shapes in its place: a point p of the group is at place + toWorld p, and toObject is the inverse of
+// toWorld. Affine, of either handedness. Normals of a group are on the side that they are on in the group.
+template <class S>
+struct alignas(sizeof(S) * 32) InstanceRecord {
+  S place[3], toWorld[3][3], toObject[3][3];  // matrices by rows
+};
+
 enum class BsdfKind : uint32_t {
   diffuse,
   conductor,
@@ -45,8 +52,23 @@ enum class BsdfKind : uint32_t {
   phong,
   beckmannConductor,  // the rough kinds with Beckmann's distribution of normals instead of GGX
   beckmannDielectric,
-  beckmannPlastic
+  beckmannPlastic,
+  // Compound BSDFs, whose other numbers are in a CompoundRecord.
+  anisotropicConductor,  // rough kinds with two roughnesses, along dp/du and across
+  anisotropicDielectric,
+  anisotropicBeckmannConductor,
+  anisotropicBeckmannDielectric,
+  principled,
+  principledThin,
+  blend,
+  deltaBlend  // of BSDFs with delta lobes alone
 };
+constexpr uint32_t bitOf(BsdfKind kind) { return 1u << static_cast<uint32_t>(kind); }
+constexpr uint32_t kBlendKinds = bitOf(BsdfKind::blend) | bitOf(BsdfKind::deltaBlend);
+constexpr uint32_t kCompoundKinds = kBlendKinds | bitOf(BsdfKind::principled) | bitOf(BsdfKind::principledThin) |
+                                    bitOf(BsdfKind::anisotropicConductor) | bitOf(BsdfKind::anisotropicDielectric) |
+                                    bitOf(BsdfKind::anisotropicBeckmannConductor) |
+                                    bitOf(BsdfKind::anisotropicBeckmannDielectric);
 
 enum MaterialFlags : uint32_t {
   kTwoSided = 1,   // the back looks like the front
@@ -84,6 +106,36 @@ struct alignas(128) MaterialRecord {
   float roughTransmittance[kTransmittanceSize];  // rough plastic: share of light that enters, shadowing included
 };
 
+// Parameters of compound BSDFs, by Mitsuba 3's names, that are constants or textures. Those of principled BSDFs that
+// are also in a MaterialRecord: base_color is its reflectance, roughness its alpha, eta its eta[0].
+enum class CompoundParameter : uint32_t {
+  alphaV,  // of anisotropic kinds, across dp/du; alpha is along it
+  anisotropic,
+  metallic,
+  specTrans,
+  specTint,
+  sheen,
+  sheenTint,
+  flatness,
+  clearcoat,
+  clearcoatGloss,
+  diffTrans
+};
+constexpr size_t kCompoundParameters = 11;
+
+constexpr uint32_t kMostParts = 8;
+
+// What a compound BSDF has that is not in its MaterialRecord. `parts` of a blend are materials without bump and normal
+// maps that are no blends themselves; f is the sum of theirs, times their weights. With a weight texture t there are
+// two parts, with weights 1 - t and t.
+struct alignas(64) CompoundRecord {
+  float value[kCompoundParameters];  // 1 where there is a texture
+  uint32_t texture[kCompoundParameters];
+  uint32_t partCount, part[kMostParts];
+  float weight[kMostParts];
+  uint32_t weightTexture;
+};
+
 // A vertex keeps its material and its depth in one number of 32 bits.
 constexpr uint32_t kMaterialBits = 20, kMaxMaterials = 1u << kMaterialBits,
                    kMostEdges = (1u << (32 - kMaterialBits)) - 1;
@@ -114,21 +166,23 @@ struct alignas(128) TextureRecord {
   float color0[3], color1[3];
 };
 
-enum class LightKind : uint32_t { quad, triangle, sphere, point, spot, directional, constant, envmap };
+enum class LightKind : uint32_t { quad, triangle, sphere, point, spot, directional, constant, envmap, projector };
 
-// quad, triangle: y = p0 + u e1 + v e2, normal. sphere: centre p0, radius, e1.y as in its primitive. point, spot: p0.
-// infinite lights: direction of travel in `normal` (directional).
+// quad, triangle: y = p0 + u e1 + v e2, normal. sphere: centre p0, radius, e1.y as in its primitive. point: p0. spot,
+// projector: p0, axis in `normal`; on the plane at distance 1 along it the picture, of a spot's texture or a projector,
+// is where |dot(e1, place)| and |dot(e2, place)| are at most 1. infinite lights: direction of travel in `normal`
+// (directional).
 template <class S>
 struct alignas(sizeof(S) * 32) LightRecord {
   S p0[3], e1[3], e2[3], normal[3];
   S radiance[3];  // radiance, intensity or perpendicular irradiance
   S pick;         // probability that light selection takes this light
-  S inverseArea;  // 1 / area of an area light
+  S inverseArea;  // 1 / area of an area light, or of a projector's picture
   S radius;
   S offset;  // bound on the error of a sampled point along the normal
   S cosTotal, cosFalloff;
   uint32_t kind;     // LightKind
-  uint32_t texture;  // factor of an area light's radiance, or kNoIndex
+  uint32_t texture;  // factor of the radiance of an area light, a spot or a projector, or kNoIndex
 };
 
 // Alias table: entry i is kept with probability `keep`, else replaced by `other` (Walker 1977, Vose 1991).
@@ -165,12 +219,20 @@ constexpr uint32_t kTexelBits = 16, kMostTexelsAcross = 1u << kTexelBits;
 // row by row, whose `other` is a column and, kTexelBits higher, a row. Sampled by texel with probability[texel], then
 // uniformly within; the texel of (u, v) is (floor(u width), floor(v height)). Radiance is interpolated as Mitsuba does:
 // columns by their centres and around, rows from pole to pole.
+//
+// A sky has nothing below its horizon, the middle of the map, and may have a sun: a disc of even radiance in front of
+// the map, sampled uniformly with probability sunShare.
 struct EnvironmentView {
   const float* texels = nullptr;  // RGB, radiance scale included
   const float* probability = nullptr;
   const AliasEntry* table = nullptr;
   uint32_t width = 0, height = 0;
   float toLocal[3][3]{};  // rows: world to the map's frame, orthonormal
+  bool isSky = false;
+  float sunShare = 0;        // 0: no sun
+  double sunDirection[3]{};  // from the scene, in the world
+  double sunChord2 = 0;      // squared distance of unit vectors to the sun's middle and rim, 2 (1 - cos)
+  double sunRadiance[3]{};
 };
 
 struct SmallSceneView;  // kernels/extend/small_scene.h
@@ -180,11 +242,14 @@ template <class S>
 struct SceneView {
   const PrimitiveRecord<S>* primitives = nullptr;
   const AttributeRecord* attributes = nullptr;
+  const InstanceRecord<S>* instances = nullptr;  // null in scenes without instances, or where they are copies
   const MaterialRecord* materials = nullptr;
+  const CompoundRecord* compounds = nullptr;  // of each material; null in scenes without compound BSDFs
   // The same, if they are few; of primitives in float alone.
   const PrimitiveTable* primitiveTable = nullptr;
   const MaterialTable* materialTable = nullptr;
-  uint32_t primitiveCount = 0;
+  uint32_t primitiveCount = 0;  // those of the world, then those of each group
+  uint32_t instanceCount = 0;
   uint32_t materialCount = 0;
   uint32_t bsdfKinds = ~0u;  // bit k: some material is, or may be, of BsdfKind k
   const LightRecord<S>* lights = nullptr;
@@ -194,9 +259,12 @@ struct SceneView {
   const AliasEntry* lightTable = nullptr;
   uint32_t lightCount = 0;
   uint32_t infiniteLight = kNoIndex;  // the constant or environment light that rays leaving the scene see
+  bool hidesInfinite = false;         // not the first of a camera path
   bool spheres = false;               // some primitive is a sphere
   bool normalMaps = false;            // some material has a bump or normal map
+  bool tangents = false;              // some BSDF depends on the direction of dp/du
   double center[3]{}, radius = 0;     // bounding sphere
+  double halfExtent[3]{};             // of the box around the same centre that light from far away enters by
   CameraView camera;
   const SmallSceneView* small = nullptr;  // one of these three
   const BvhView* bvh = nullptr;

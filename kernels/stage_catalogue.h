@@ -25,10 +25,12 @@ enum class StageFamily : uint8_t { featured, bidirectional, common };
   STAGE(generateCameraPaths, "generate", beginning, featured, block)     /* generate_camera.cpp */                 \
   STAGE(generateLightPaths, "generate", beginning, bidirectional, block) /* generate_light.cpp */                  \
   /* extend/: closest hits and visibility; methods name `extend` and `occlude`, the scene decides between these */ \
-  STAGE(extendSmall, "extend", live, common, block)         /* extend_small.cpp */                                 \
-  STAGE(occludeSmall, "occlude", shadowRays, common, block) /* occlude_small.cpp */                                \
-  STAGE(extendBvh, "extend", live, common, block)           /* extend_bvh.cpp */                                   \
-  STAGE(occludeBvh, "occlude", shadowRays, common, block)   /* occlude_bvh.cpp */                                  \
+  STAGE(extendSmall, "extend", live, common, block)             /* extend_small.cpp */                             \
+  STAGE(occludeSmall, "occlude", shadowRays, common, block)     /* occlude_small.cpp */                            \
+  STAGE(extendBvh, "extend", live, common, block)               /* extend_bvh.cpp */                               \
+  STAGE(occludeBvh, "occlude", shadowRays, common, block)       /* occlude_bvh.cpp */                              \
+  STAGE(extendInstances, "extend", live, common, block)         /* extend_instances.cpp */                         \
+  STAGE(occludeInstances, "occlude", shadowRays, common, block) /* occlude_instances.cpp */                        \
   /* shade/ */                                                                                                     \
   STAGE(arrive, "arrive", live, featured, block)                    /* arrive.cpp */                               \
   STAGE(scatter, "scatter", live, featured, block)                  /* scatter.cpp */                              \

@@ -14,6 +14,8 @@ constexpr Stages<typename P::Storage> makeStages() {
   stages.isa = kIsa;
   stages.lanes = kLanes;
   stages.addSplats = addSplats<typename P::Storage>;
+  stages.spreadSamples = spreadSamples<typename P::Storage>;
+  stages.filterPlaces = filterPlaces<typename P::Storage>;
 #define WAVECREST_ENTER_featured(NAME) stages.NAME = NAME<P, kFeatures>;
 #define WAVECREST_ENTER_bidirectional(NAME) \
   if constexpr (has(kFeatures, kBidirectional)) stages.NAME = NAME<P, kFeatures>;
@@ -45,7 +47,6 @@ constexpr auto kTable = makeTable<P>(std::make_index_sequence<kSpecializationCou
 }  // namespace
 
 const Stages<float>* floatStages() { return kTable<FloatPrecision>.data(); }
-const Stages<float>* fastStages() { return kTable<FastPrecision>.data(); }
 const Stages<double>* doubleStages() { return kTable<DoublePrecision>.data(); }
 
 WAVECREST_SIMD_END

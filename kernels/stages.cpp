@@ -12,7 +12,6 @@ namespace wavecrest {
 #define WAVECREST_DECLARE_TABLES(NAMESPACE) \
   namespace NAMESPACE {                     \
   const Stages<float>* floatStages();       \
-  const Stages<float>* fastStages();        \
   const Stages<double>* doubleStages();     \
   }
 WAVECREST_DECLARE_TABLES(N_SCALAR)
@@ -25,7 +24,6 @@ namespace {
 
 struct Tables {
   const Stages<float>* floating;
-  const Stages<float>* fast;
   const Stages<double>* doubled;
 };
 
@@ -33,19 +31,19 @@ Tables tablesOf(Isa isa) {
   switch (isa) {
 #ifdef WAVECREST_ISA_SCALAR
     case Isa::scalar:
-      return {N_SCALAR::floatStages(), N_SCALAR::fastStages(), N_SCALAR::doubleStages()};
+      return {N_SCALAR::floatStages(), N_SCALAR::doubleStages()};
 #endif
 #ifdef WAVECREST_ISA_SSE4
     case Isa::sse4:
-      return {N_SSE4::floatStages(), N_SSE4::fastStages(), N_SSE4::doubleStages()};
+      return {N_SSE4::floatStages(), N_SSE4::doubleStages()};
 #endif
 #ifdef WAVECREST_ISA_AVX2
     case Isa::avx2:
-      return {N_AVX2::floatStages(), N_AVX2::fastStages(), N_AVX2::doubleStages()};
+      return {N_AVX2::floatStages(), N_AVX2::doubleStages()};
 #endif
 #ifdef WAVECREST_ISA_AVX512
     case Isa::avx512:
-      return {N_AVX3::floatStages(), N_AVX3::fastStages(), N_AVX3::doubleStages()};
+      return {N_AVX3::floatStages(), N_AVX3::doubleStages()};
 #endif
     default:
       throw std::invalid_argument("no kernels were compiled for " + std::string(toString(isa)));
@@ -55,11 +53,9 @@ Tables tablesOf(Isa isa) {
 }  // namespace
 
 template <>
-const Stages<float>& findStages<float>(Isa isa, Precision precision, Specialization specialization) {
+const Stages<float>& findStages<float>(Isa isa, [[maybe_unused]] Precision precision, Specialization specialization) {
   assert(isCompiled(precision, specialization));
-  const Tables tables = tablesOf(isa);
-  const Stages<float>* table = precision == Precision::fast ? tables.fast : tables.floating;
-  return table[static_cast<size_t>(specialization)];
+  return tablesOf(isa).floating[static_cast<size_t>(specialization)];
 }
 
 template <>

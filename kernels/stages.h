@@ -15,33 +15,41 @@
 #include "kernels/sampling/sampler.h"
 #include "kernels/scene_view.h"
 #include "kernels/simd/isa.h"
+#include "kernels/splat/filter_spread.h"
 #include "kernels/splat/splat_sums.h"
 #include "kernels/stage_catalogue.h"
 
 namespace wavecrest {
 
 // How numbers are kept and computed. Users trade speed for accuracy: `floating` is the default; `doubled` does shading,
-// throughput, densities and MIS weights in double and recomputes hit points in double; `fast` replaces divisions and
-// square roots by reciprocal estimates with one Newton step, and where a render asks for Embree lets it intersect
-// without its watertight tests: of random rays in a closed mesh of 871,000 triangles one in a million then slips
-// through an edge.
+// throughput, densities and MIS weights in double and recomputes hit points in double; `fast` is `floating` that,
+// where a render asks for Embree, lets it intersect without its watertight tests: of random rays in a closed mesh of
+// 871,000 triangles one in a million then slips through an edge.
 enum class Precision { floating, doubled, fast };
 constexpr std::array<std::string_view, 3> kPrecisionNames{"float", "double", "fast"};
 
+// Whose kernels a precision runs.
+constexpr Precision arithmeticOf(Precision precision) {
+  return precision == Precision::fast ? Precision::floating : precision;
+}
+
 // Bits of a feature set. What a set lacks costs nothing in its kernels.
 enum Feature : uint32_t {
-  kSpecularBsdfs = 1,   // mirror, conductor, dielectric, rough conductor
-  kLayeredBsdfs = 2,    // plastic, rough dielectric, thin dielectric, phong, opacity
-  kTextures = 4,        // textures
-  kShadingNormals = 8,  // interpolated vertex normals
-  kCurvedShapes = 16,   // analytic spheres, as geometry or as lights
-  kRareLights = 32,     // spot, directional, environment map
-  kBidirectional = 64,  // light paths, connections, merging: the whole MIS recursion
-  kNormalMaps = 128,    // bump and normal maps
+  kSpecularBsdfs = 1,    // mirror, conductor, dielectric, rough conductor
+  kLayeredBsdfs = 2,     // plastic, rough dielectric, thin dielectric, phong, opacity
+  kTextures = 4,         // textures
+  kShadingNormals = 8,   // interpolated vertex normals
+  kCurvedShapes = 16,    // analytic spheres, as geometry or as lights
+  kRareLights = 32,      // spot, directional, environment map
+  kBidirectional = 64,   // light paths, connections, merging: the whole MIS recursion
+  kNormalMaps = 128,     // bump and normal maps
+  kCompoundBsdfs = 256,  // BSDFs made of others, anisotropic and principled ones
+  kInstances = 512,      // hits in instances of shape groups
 };
 
 // What kernels are instantiated for: feature sets, in the order in which a scene and method try them; the last has all.
-// plain: everything but textures and shading normals, which are what makes each vertex dearer (kernels/README.md).
+// plain: general without textures and shading normals, which are what makes each vertex dearer (kernels/README.md).
+// general: what most scenes are made of. complete: the rest as well.
 enum class Specialization {
   diffuse,
   smooth,
@@ -49,13 +57,16 @@ enum class Specialization {
   diffuseBidirectional,
   smoothBidirectional,
   plainBidirectional,
-  general
+  general,
+  complete
 };
-constexpr size_t kSpecializationCount = 7;
+constexpr size_t kSpecializationCount = 8;
 constexpr std::array<std::string_view, kSpecializationCount> kSpecializationNames{
-    "diffuse", "smooth", "plain", "diffuse-bidirectional", "smooth-bidirectional", "plain-bidirectional", "general"};
-constexpr uint32_t kAllFeatures = 255;
-constexpr uint32_t kPlainFeatures = kAllFeatures & ~(kTextures | kShadingNormals | kNormalMaps | kBidirectional);
+    "diffuse", "smooth",  "plain", "diffuse-bidirectional", "smooth-bidirectional", "plain-bidirectional",
+    "general", "complete"};
+constexpr uint32_t kAllFeatures = 1023;
+constexpr uint32_t kGeneralFeatures = kAllFeatures & ~(kCompoundBsdfs | kInstances);
+constexpr uint32_t kPlainFeatures = kGeneralFeatures & ~(kTextures | kShadingNormals | kNormalMaps | kBidirectional);
 constexpr uint32_t kSmoothFeatures = kSpecularBsdfs | kCurvedShapes;
 constexpr std::array<uint32_t, kSpecializationCount> kSpecializationFeatures{0,
                                                                              kSmoothFeatures,
@@ -63,29 +74,22 @@ constexpr std::array<uint32_t, kSpecializationCount> kSpecializationFeatures{0,
                                                                              kBidirectional,
                                                                              kSmoothFeatures | kBidirectional,
                                                                              kPlainFeatures | kBidirectional,
+                                                                             kGeneralFeatures,
                                                                              kAllFeatures};
 
 constexpr uint32_t featuresOf(Specialization specialization) {
   return kSpecializationFeatures[static_cast<size_t>(specialization)];
 }
 
-// float is specialised for every feature set, fast for the plainest and the general ones, double for none: its users
-// wait for accuracy anyway, and each instantiation is paid for in compile time on every instruction set.
-// With WAVECREST_ONLY_GENERAL_KERNELS (CMakeLists.txt) every scene and method runs on the general ones.
+// float is specialised for every feature set, double for the complete one alone: its users wait for accuracy anyway,
+// and each instantiation is paid for in compile time on every instruction set. With WAVECREST_ONLY_GENERAL_KERNELS
+// (CMakeLists.txt) every scene and method runs on the complete kernels.
 constexpr bool isCompiled(Precision precision, Specialization specialization) {
+  if (specialization == Specialization::complete) return true;
 #ifdef WAVECREST_ONLY_GENERAL_KERNELS
-  return specialization == Specialization::general;
-#endif
-  switch (precision) {
-    case Precision::floating:
-      return true;
-    case Precision::fast:
-      return specialization == Specialization::diffuse || specialization == Specialization::diffuseBidirectional ||
-             specialization == Specialization::general;
-    case Precision::doubled:
-      return specialization == Specialization::general;
-  }
   return false;
+#endif
+  return arithmeticOf(precision) == Precision::floating;
 }
 
 // The first specialisation compiled for the precision that covers these features.
@@ -94,7 +98,7 @@ constexpr Specialization chooseSpecialization(uint32_t features, Precision preci
     const auto specialization = static_cast<Specialization>(i);
     if (isCompiled(precision, specialization) && (features & ~featuresOf(specialization)) == 0) return specialization;
   }
-  return Specialization::general;
+  return Specialization::complete;
 }
 
 // Which way a sub-path is walked: from the eye, so that the generated direction points to the light's side, or from a
@@ -187,6 +191,9 @@ struct StageContext {
   PhotonGrid<S> photonGrid{};             // where they are in it, if they are to be merged
   const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place
   FilmWindow film;
+  // Camera paths of an iteration all have the same place in their pixel's filter, and the film spreads their samples
+  // (kernels/splat/filter_spread.h).
+  bool sharedPlace = false;
   bool splatting = true;              // light walks push Splats; else they add to their lanes, as those of chains do
   ChainState* chains = nullptr;       // of Markov chains: their state, one chain to a lane
   WalkEnds<S>* ends = nullptr;        // of multiplexed chains: where walks stop to be joined
@@ -203,12 +210,22 @@ using Stage = void (*)(const StageContext<S>&, Wave<S>&);
 template <class S>
 using AddSplats = void (*)(const Splats<S>&, size_t begin, size_t end, const SplatSums&, StageCounters&);
 
+// Adds the samples of one tile and iteration to the sums around it; returns how many were not finite
+// (kernels/splat/spread_samples.cpp).
+template <class S>
+using SpreadSamples = uint64_t (*)(const TileSamples<S>&, const SpreadAxis& x, const SpreadAxis& y, const TileSums&);
+
+// The shared places of `count` iterations from the sampler's on (kernels/splat/spread_samples.cpp).
+using FilterPlaces = void (*)(const CameraView&, const SamplerSettings&, size_t count, FilterPlace*);
+
 // The functions of the catalogue for one choice; null where a stage's family is not compiled for the feature set.
 template <class S>
 struct Stages {
   Isa isa{};
   size_t lanes = 0;
   AddSplats<S> addSplats = nullptr;
+  SpreadSamples<S> spreadSamples = nullptr;
+  FilterPlaces filterPlaces = nullptr;
 #define WAVECREST_STAGE_MEMBER(NAME, ...) Stage<S> NAME = nullptr;
   WAVECREST_STAGE_CATALOGUE(WAVECREST_STAGE_MEMBER)
 #undef WAVECREST_STAGE_MEMBER

@@ -14,6 +14,8 @@
 #include "bench/results/results_store.h"
 #include "cli/commands.h"
 #include "cli/option_values.h"
+#include "library/campaign_resume.h"
+#include "library/campaign_rows.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {
@@ -23,9 +25,15 @@ namespace fs = std::filesystem;
 using api::CampaignOptions;
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 11> kDefiningOptions{"scenes",           "--methods", "--profile", "--time",
-                                                            "--snapshot-every", "--spp",     "--seeds",   "--precision",
-                                                            "--sampler",        "--size",    "--images"};
+constexpr std::array<std::string_view, 18> kDefiningOptions{"scenes",         "--profile",
+                                                            "--time",         "--snapshot-every",
+                                                            "--spp",          "--seeds",
+                                                            "--precision",    "--sampler",
+                                                            "--size",         "--images",
+                                                            "--methods",      "--radius",
+                                                            "--radius-alpha", "--light-paths",
+                                                            "--direct-pass",  "--mlt",
+                                                            "--clock",        "-D"};
 
 bool has(const CampaignOptions& options, const char* name) { return options.defining.contains(name); }
 
@@ -59,34 +67,18 @@ Shard parseShard(const std::string& text) {
   return shard;
 }
 
-std::vector<Method> chosenMethods(const CampaignOptions& options) {
-  std::vector<Method> methods;
-  if (!has(options, "--methods")) {
-    for (const MethodEntry& entry : kMethods) methods.push_back(entry.method);
-    return methods;
-  }
-  for (const std::string& word : options.defining.at("--methods")) {
-    const std::optional<Method> method = parseMethod(word);
-    if (!method) throw UsageError(fmt::format("--methods {}: unknown; expected some of {}", word, methodChoices()));
-    if (std::find(methods.begin(), methods.end(), *method) == methods.end()) methods.push_back(*method);
-  }
-  return methods;
-}
-
 const Profile& chosenProfile(const CampaignOptions& options) {
-  const std::string name = get(options, "--profile", "quick");
-  if (const Profile* profile = findProfile(name)) return *profile;
-  std::string names;
-  for (const Profile& profile : profiles()) names += (names.empty() ? "" : ", ") + std::string(profile.name);
-  throw UsageError(fmt::format("--profile {}: unknown; expected one of {}", name, names));
+  std::vector<std::string_view> names;
+  for (const Profile& profile : profiles()) names.push_back(profile.name);
+  return profiles()[parseChoice("--profile", get(options, "--profile", "quick"), names)];
 }
 
 Effort effortOf(const CampaignOptions& options, const Profile& profile, std::string_view scene) {
   Effort effort = profile.effort(scene);
-  if (has(options, "--time")) effort.seconds = parseDuration(get(options, "--time"));
+  if (has(options, "--time")) effort.seconds = parseDuration("--time", get(options, "--time"));
   if (has(options, "--snapshot-every")) {
     const std::string every = get(options, "--snapshot-every");
-    effort.snapshotSeconds = every == "log" ? 0 : parseDuration(every);
+    effort.snapshotSeconds = every == "log" ? 0 : parseDuration("--snapshot-every", every);
   }
   return effort;
 }
@@ -115,17 +107,15 @@ RenderSettings renderSettings(const CampaignOptions& options) {
   render.isa = parseIsaOption(options.isa);
   render.precision =
       static_cast<Precision>(parseChoice("--precision", get(options, "--precision", "float"), kPrecisionNames));
-  const std::string sampler = get(options, "--sampler", "independent");
-  const std::optional<SamplerKind> kind = parseSamplerKind(sampler);
-  if (!kind) throw UsageError(fmt::format("--sampler {}: expected independent or sobol", sampler));
-  render.sampler = *kind;
+  render.sampler = parseSamplerOption("--sampler", get(options, "--sampler", "independent"));
   return render;
 }
+
+}  // namespace
 
 CampaignSettings campaignSettings(const CampaignOptions& options) {
   const Profile& profile = chosenProfile(options);
   CampaignSettings settings;
-  settings.methods = chosenMethods(options);
   settings.scenes = chosenScenes(options, profile);
   settings.seeds = profile.seeds;
   if (has(options, "--seeds")) settings.seeds = parseCount("--seeds", get(options, "--seeds"));
@@ -135,8 +125,9 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
         "--spp counts iterations and takes snapshots after 1, 2, 4, ...; expected no --time or "
         "--snapshot-every beside it");
   }
-  settings.size = has(options, "--size") ? parseSize(get(options, "--size")) : profile.size;
+  settings.size = has(options, "--size") ? parseSize("--size", get(options, "--size")) : profile.size;
   settings.render = renderSettings(options);
+  chooseRows(options.defining, profile, settings);
   settings.out = options.out;
   settings.shard = parseShard(options.shard);
   constexpr std::array<std::string_view, 2> kImageChoices{"all", "last"};
@@ -153,6 +144,8 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
   }
   return settings;
 }
+
+namespace {
 
 // ---- what the results file says of it -------------------------------------------------------------------------------
 
@@ -177,19 +170,18 @@ std::string perScene(const CampaignSettings& settings, Value value) {
 }  // namespace
 
 std::map<std::string, std::string> campaignKeys(const CampaignOptions& options, const CampaignSettings& settings) {
-  std::vector<std::string> scenes, methods;
+  std::vector<std::string> scenes;
   for (const CampaignScene& scene : settings.scenes) scenes.push_back(scene.name);
-  for (const Method method : settings.methods) methods.emplace_back(toString(method));
   std::map<std::string, std::string> keys{
       {"options", json(options.defining).dump()},
       {"profile", std::string(chosenProfile(options).name)},
       {"scenes", joined(scenes)},
-      {"methods", joined(methods)},
       {"seeds", std::to_string(settings.seeds)},
       {"size", fmt::format("{}x{}", settings.size[0], settings.size[1])},
       {"precision", std::string(kPrecisionNames[static_cast<size_t>(settings.render.precision)])},
       {"sampler", std::string(toString(settings.render.sampler))},
       {"shard", fmt::format("{}/{}", settings.shard.index, settings.shard.count)}};
+  addRowKeys(settings, keys);
   if (settings.iterations) {
     keys["spp"] = std::to_string(*settings.iterations);
     keys["snapshots"] = "doubling";
@@ -201,27 +193,6 @@ std::map<std::string, std::string> campaignKeys(const CampaignOptions& options, 
   }
   return keys;
 }
-
-namespace {
-
-// Takes from an earlier process of the same campaign what was not given again.
-void resume(CampaignOptions& options, const fs::path& results) {
-  const ResultsStore whole(results);  // also where a process died before it had made the tables
-  const CampaignResults before = readResults(results);
-  const auto stored = before.campaign.find("options");
-  if (stored == before.campaign.end()) return;  // it died before it began
-  const auto defining = json::parse(stored->second).get<std::map<std::string, std::vector<std::string>>>();
-  for (const auto& [name, words] : options.defining) {
-    const auto known = defining.find(name);
-    if (known != defining.end() && known->second == words) continue;
-    throw UsageError(fmt::format("{} {}: {} was begun with {}; expected the same, or another --out", name,
-                                 joined(words), results.string(),
-                                 known == defining.end() ? "the default" : joined(known->second)));
-  }
-  options.defining = defining;
-}
-
-}  // namespace
 
 std::span<const std::string_view> campaignWords() { return kDefiningOptions; }
 
@@ -238,7 +209,7 @@ CampaignSettings begunCampaign(CampaignOptions& options) {
   if (!options.resume) {
     throw UsageError(fmt::format("{} exists; expected --resume to go on with it, or another --out", results.string()));
   }
-  resume(options, results);
+  resumeCampaign(options, results);
   return campaignSettings(options);
 }
 

@@ -15,9 +15,12 @@ namespace wavecrest {
 // The keys that CampaignOptions::defining may have.
 std::span<const std::string_view> campaignWords();
 
-// The campaign that these options ask for. If its results file exists, the campaign goes on: options takes from the
-// file what was not given again. Throws UsageError, also for a file that exists without options.resume, or that was
-// begun with other options.
+// The campaign that these options ask for, whatever its results file holds. Throws UsageError.
+CampaignSettings campaignSettings(const api::CampaignOptions& options);
+
+// The same once its names are checked. If its results file exists, the campaign goes on: options takes from the
+// file what was not given again (library/campaign_resume.h). Throws UsageError, also for a file that exists without
+// options.resume.
 CampaignSettings begunCampaign(api::CampaignOptions& options);
 
 // What the results file says of the campaign beside its environment.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/suggestion.h"
 
 namespace wavecrest {
 namespace {
@@ -29,10 +30,18 @@ std::string metricNames() {
   return names;
 }
 
-std::vector<const Metric*> chosenMetrics(const std::vector<std::string>& names, const Image& image) {
+void checkMetricNames(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const Metric& metric : metricList()) known.emplace_back(metric.name);
   for (const std::string& name : names) {
-    if (!findMetric(name)) throw UsageError("--metrics: unknown metric '" + name + "'; expected " + metricNames());
+    if (findMetric(name)) continue;
+    throw UsageError(
+        fmt::format("--metrics {}: unknown; expected some of {}{}", name, metricNames(), didYouMean(name, known)));
   }
+}
+
+std::vector<const Metric*> chosenMetrics(const std::vector<std::string>& names, const Image& image) {
+  checkMetricNames(names);
   std::vector<const Metric*> chosen;
   for (const Metric& metric : metricList()) {
     const bool named = std::find(names.begin(), names.end(), metric.name) != names.end();

@@ -17,8 +17,11 @@ struct Measured {
 // "rmse, relmse, ...": what metrics may be called.
 std::string metricNames();
 
+// Throws UsageError for a name that no metric has.
+void checkMetricNames(const std::vector<std::string>& names);
+
 // Those that are named, in the list's order; none named: those that are measured by default and that the image is large
-// enough for. Throws UsageError for a name that no metric has.
+// enough for. Throws as checkMetricNames does.
 std::vector<const Metric*> chosenMetrics(const std::vector<std::string>& names, const Image& image);
 
 // Throws ImageError where the image is too small for one of the metrics, before it measures any.

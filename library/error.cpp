@@ -1,10 +1,12 @@
 #include "wavecrest/error.h"
 
+#include "bench/campaign/file_lock.h"
 #include "bench/campaign/render_reference.h"
 #include "bench/campaign/scene_reference.h"
 #include "bench/report/results_folder.h"
 #include "bench/results/results_error.h"
 #include "cli/commands.h"
+#include "cli/suggestion.h"
 #include "engine/load/load.h"
 #include "engine/memory_plan.h"
 #include "engine/scene/scene_error.h"
@@ -25,12 +27,22 @@ namespace {
 
 api::Error inputError(const std::exception& error) { return {api::ErrorKind::input, error.what()}; }
 
-api::Error loadError(const LoadError& error, const std::string& hint = {}) {
-  return {api::ErrorKind::input, error.what() + (hint.empty() ? "" : ": " + hint), error.location.file,
-          static_cast<int>(error.location.line)};
+api::Error loadError(const LoadError& error, const std::string& text) {
+  return {api::ErrorKind::input, text, error.location.file, static_cast<int>(error.location.line)};
 }
 
 }  // namespace
+
+std::string textOf(const MissingFileError& error) {
+  const std::string hint = missingAssetHint(error.file);
+  if (!hint.empty()) return std::string(error.what()) + ": " + hint;
+  const bool maybeName = error.location.line == 0 && !error.file.has_parent_path() && !error.file.has_extension();
+  if (!maybeName) return error.what();
+  std::vector<std::string> known;
+  for (const SceneEntry& scene : builtInScenes()) known.emplace_back(scene.name);
+  return std::string(error.what()) + ", or a name that `wavecrest scenes` lists" +
+         didYouMean(error.file.string(), known);
+}
 
 api::Error currentError() {
   try {
@@ -42,14 +54,16 @@ api::Error currentError() {
   } catch (const MemoryBudgetError& error) {
     return {api::ErrorKind::usage, std::string("--memory: ") + error.what()};
   } catch (const MissingFileError& error) {
-    return loadError(error, missingAssetHint(error.file));
+    return loadError(error, textOf(error));
   } catch (const LoadError& error) {
-    return loadError(error);
+    return loadError(error, error.what());
   } catch (const SceneError& error) {
     return {api::ErrorKind::input, error.what(), error.location.file, static_cast<int>(error.location.line)};
   } catch (const ImageError& error) {
     return inputError(error);
   } catch (const ReferenceError& error) {
+    return inputError(error);
+  } catch (const FileLockError& error) {
     return inputError(error);
   } catch (const ReferenceMismatch& error) {
     return inputError(error);

@@ -20,6 +20,7 @@ ordered_json toJson(const MethodInspection& row) {
           {"light_vertex_bytes", use.lightVertices},
           {"photon_map_bytes", use.photonMap},
           {"chain_bytes", use.chains},
+          {"image_bytes", use.image},
           {"total_bytes", use.total()}};
 }
 
@@ -62,7 +63,10 @@ ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts) {
             {"triangles", facts.primitives.triangles},
             {"spheres", facts.primitives.spheres},
             {"total", facts.primitives.total()},
+            {"hierarchy_nodes", facts.hierarchyNodes},
+            {"bytes_each", facts.bytesPerPrimitive},
             {"dropped_triangles", scene.droppedTriangles}}},
+          {"instances", {{"groups", facts.groups}, {"instances", facts.instances}, {"copied", !facts.keepsInstances}}},
           {"bounds",
            {{"min", vec(bounds.low)},
             {"max", vec(bounds.high)},

@@ -100,9 +100,9 @@ def step_release(tally):
         return
     if os.environ.get("CHECK_OFFLINE") == "1":
         print("CHECK_OFFLINE=1: the tests against Mitsuba (label oracle) are left out")
-        test(tally, "release", "--label-exclude", "^(oracle|long)$")
+        test(tally, "release", "--label-exclude", "^(oracle|long|slurm)$")
     else:
-        test(tally, "release", "--label-exclude", "^long$")
+        test(tally, "release", "--label-exclude", "^(long|slurm)$")
 
 
 def python_options(tally):
@@ -175,6 +175,12 @@ def step_tsan(tally):
         test(tally, "tsan", "--tests-regex", THREADED_CASES, "--exclude-regex", "_NOT_BUILT$", TSAN_OPTIONS=options)
 
 
+def step_slurm(tally):
+    """The Slurm recipe, on a cluster of this machine alone (Debian's slurm-wlm and munge)."""
+    if build(tally, "release", targets=("wavecrest",)):
+        test(tally, "release", "--label-regex", "^slurm$")
+
+
 def step_wheel(tally):
     """The wheel, carrying its libraries, in a Debian 12 that has none of them. Needs root for chroot."""
     targets = ("wavecrest_python_stub", "wavecrest_scene_assets")
@@ -201,6 +207,7 @@ STEPS = {
     "lint": step_lint,
     "tidy": step_tidy,
     "python": step_python,
+    "slurm": step_slurm,
     "wheel": step_wheel,
 }
 # To ask for: pictures of all scenes, ten thousand damaged files, data races, and clang-tidy over the whole tree, which

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <future>
 #include <nlohmann/json.hpp>
 
 namespace wavecrest {
@@ -91,6 +92,21 @@ nlohmann::json renderInChild(const fs::path& binary, const ChildRequest& request
     throw ChildError(fmt::format("{}: its --stats are not those of a wavecrest render", binary.string()));
   }
   return all;
+}
+
+double rateOfProcesses(uint32_t count, const ChildRequest& request) {
+  std::vector<std::future<double>> rates;
+  for (uint32_t i = 0; i < count; ++i) {
+    ChildRequest own = request;
+    own.seed = i;
+    rates.push_back(std::async(std::launch::async, [own = std::move(own)] {
+      const ScratchFolder folder;
+      return renderInChild(ownBinary(), own, folder).at("paths_per_second").get<double>();
+    }));
+  }
+  double sum = 0;
+  for (auto& rate : rates) sum += rate.get();
+  return sum;
 }
 
 fs::path ownBinary() { return fs::read_symlink("/proc/self/exe"); }

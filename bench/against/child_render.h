@@ -43,6 +43,10 @@ struct ChildRequest {
 nlohmann::json renderInChild(const std::filesystem::path& binary, const ChildRequest& request,
                              const ScratchFolder& folder);
 
+// Paths per second of as many processes of this program that render the same at the same time, on one thread each, with
+// seeds from 0 on: their sum.
+double rateOfProcesses(uint32_t count, const ChildRequest& request);
+
 // The file that this process runs.
 std::filesystem::path ownBinary();
 

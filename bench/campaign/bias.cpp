@@ -31,6 +31,21 @@ ErrorParts errorParts(std::span<const Image> images, const Reference& reference)
   return {.meanSquareError = same / n, .variance = (same - across) / n, .biasSquared = across / n};
 }
 
+std::optional<double> unbiasedMse(const Image& image, const Reference& reference) {
+  if (!reference.difference) return std::nullopt;
+  const Image &mean = reference.mean, &difference = *reference.difference;
+  double sum = 0, samples = 0;
+  for (size_t i = 0; i < mean.pixels.size(); ++i) {
+    // (T - M - D)(T - M + D)
+    const double error = double{image.pixels.at(i)} - mean.pixels[i], half = difference.pixels[i];
+    const double product = error * error - half * half;
+    if (!std::isfinite(product)) continue;
+    sum += product;
+    ++samples;
+  }
+  return sum / samples;
+}
+
 std::vector<BiasRecord> measureBiases(std::span<const RunRecord* const> runs, const Reference& reference) {
   std::vector<BiasRecord> biases;
   if (runs.size() < 2) return biases;

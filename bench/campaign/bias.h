@@ -5,6 +5,7 @@
 // variance is the difference, mean square error - bias^2.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct ErrorParts {
 // At least two images of the reference's size. Samples that are not finite anywhere are left out. Of a reference
 // without halves the noise stays in mean square error and squared bias.
 ErrorParts errorParts(std::span<const Image> images, const Reference& reference);
+
+// The mean of (T - A)(T - B) over samples: the mean square error of an image without the noise of the reference,
+// negative where noise decides. Nothing for a reference without halves.
+std::optional<double> unbiasedMse(const Image& image, const Reference& reference);
 
 // For every snapshot that all these runs of one scene and method have an image of; empty for fewer than two runs.
 std::vector<BiasRecord> measureBiases(std::span<const RunRecord* const> runs, const Reference& reference);

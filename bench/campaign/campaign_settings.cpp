@@ -4,22 +4,26 @@
 
 #include <algorithm>
 
+#include "bench/claims/study.h"
 #include "bench/results/read_results.h"
 
 namespace wavecrest {
 namespace {
 
 // The study: 30, 60 or 120 minutes by complexity, a snapshot each 6 s in simple scenes and each 20 s in the others.
-Effort studyEffort(std::string_view scene) {
-  constexpr std::string_view kSimple[] = {"cornell-diffuse", "cornell-mirror", "cornell-glossy"};
-  constexpr std::string_view kComplex[] = {"dragon-caustics", "dragon-caustics-glossy", "veach-door"};
-  const auto in = [&](const auto& list) {
-    return std::find(std::begin(list), std::end(list), scene) != std::end(list);
-  };
-  constexpr double kMinute = 60;
-  if (in(kSimple)) return {.seconds = 30 * kMinute, .snapshotSeconds = 6};
-  return {.seconds = (in(kComplex) ? 120 : 60) * kMinute, .snapshotSeconds = 20};
+Effort paperEffort(std::string_view scene) {
+  const bool simple = studyComplexity(scene) == StudyComplexity::simple;
+  return {.seconds = 60 * studyMinutes(scene), .snapshotSeconds = simple ? 6.0 : 20.0};
 }
+
+// A tenth of that: 3, 6 or 12 minutes, in the study's proportions 1 : 2 : 4. Snapshots are close together at first,
+// where curves are steep, and a 24th of the run apart later.
+Effort studyEffort(std::string_view scene) {
+  const double seconds = 6 * studyMinutes(scene);
+  return {.seconds = seconds, .snapshotSeconds = seconds / 24, .logarithmicFirst = true};
+}
+
+constexpr uint64_t kStudyLightPaths = 1024 * 768;
 
 constexpr std::array kProfiles{
     Profile{.name = "quick",
@@ -27,19 +31,33 @@ constexpr std::array kProfiles{
             .size = {256, 192},
             .seeds = 2,
             .ownReferences = false,
+            .lightPaths = 0,
+            .studyRows = false,
             .effort = [](std::string_view) { return Effort{.seconds = 4}; }},
     Profile{.name = "standard",
             .description = "small images with error bands: an hour or two",
             .size = {256, 192},
             .seeds = 3,
             .ownReferences = false,
+            .lightPaths = kStudyLightPaths,
+            .studyRows = true,
             .effort = [](std::string_view) { return Effort{.seconds = 30}; }},
+    Profile{.name = "study",
+            .description = "the study's size, light paths and radius in a tenth of its time: ten hours a seed",
+            .size = {1024, 768},
+            .seeds = 1,
+            .ownReferences = true,
+            .lightPaths = kStudyLightPaths,
+            .studyRows = true,
+            .effort = studyEffort},
     Profile{.name = "paper",
             .description = "the protocol of the study: 1024x768, 30 to 120 minutes a run",
             .size = {1024, 768},
             .seeds = 1,
             .ownReferences = true,
-            .effort = studyEffort},
+            .lightPaths = kStudyLightPaths,
+            .studyRows = true,
+            .effort = paperEffort},
 };
 
 }  // namespace
@@ -49,6 +67,27 @@ std::span<const Profile> profiles() { return kProfiles; }
 const Profile* findProfile(std::string_view name) {
   const auto found = std::find_if(kProfiles.begin(), kProfiles.end(), [&](const Profile& p) { return p.name == name; });
   return found == kProfiles.end() ? nullptr : &*found;
+}
+
+std::string CampaignMethod::name() const {
+  std::string name(toString(method));
+  if (method == Method::mlt && variant != MetropolisVariant::mmlt) {
+    name += "-" + std::string(kMetropolisVariantNames[static_cast<size_t>(variant)]);
+  }
+  return directPass ? name + "-direct" : name;
+}
+
+std::vector<CampaignMethod> rowsOf(Method method, std::span<const MetropolisVariant> variants, DirectPass directPass) {
+  std::vector<CampaignMethod> rows;
+  if (method == Method::mlt) {
+    for (const MetropolisVariant variant : variants) rows.push_back({.method = method, .variant = variant});
+  } else if (method == Method::ppm) {
+    if (directPass != DirectPass::only) rows.push_back({.method = method});
+    if (directPass != DirectPass::no) rows.push_back({.method = method, .directPass = true});
+  } else {
+    rows.push_back({.method = method});
+  }
+  return rows;
 }
 
 std::filesystem::path resultsFile(const CampaignSettings& settings) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,20 +14,40 @@
 
 namespace wavecrest {
 
+// A row of a campaign: a method with the choices that make it another one, which its name tells: "mlt-pathspace" is mlt
+// with chains in path space, "ppm-direct" ppm with direct light by next event estimation.
+struct CampaignMethod {
+  Method method = Method::pt;
+  MetropolisVariant variant = MetropolisVariant::mmlt;
+  bool directPass = false;
+
+  std::string name() const;
+  bool operator==(const CampaignMethod&) const = default;
+};
+
+// The rows of a method: one, but of mlt one for each variant, and of ppm where both are asked for the plain one first.
+enum class DirectPass { no, only, both };
+std::vector<CampaignMethod> rowsOf(Method method, std::span<const MetropolisVariant> variants, DirectPass directPass);
+
 // Render time of each run of a scene, and when its snapshots are taken.
 struct Effort {
   double seconds = 0;
-  double snapshotSeconds = 0;  // 0: at render times of a fixed ratio
+  double snapshotSeconds = 0;     // 0: at render times of a fixed ratio
+  bool logarithmicFirst = false;  // at such times until they are further apart than snapshotSeconds
 };
 
 // A named choice of everything. quick and standard are for small images and use the references that come with the
-// scenes; paper is the protocol of the study.
+// scenes; study and paper have the study's size, light paths and radius, paper its run times too.
 struct Profile {
   std::string_view name;
   std::string_view description;  // one line
   std::array<uint32_t, 2> size;
   unsigned seeds;
   bool ownReferences;  // renders them itself, if none are given
+  // Of methods that merge: light paths of an iteration, 0 for one per pixel; of mlt: in path space as well; of ppm:
+  // with a direct pass as well.
+  uint64_t lightPaths;
+  bool studyRows;
   Effort (*effort)(std::string_view scene);
 };
 
@@ -47,15 +68,16 @@ struct Shard {
 
 struct CampaignSettings {
   std::vector<CampaignScene> scenes;
-  std::vector<Method> methods;
+  std::vector<CampaignMethod> methods;
   unsigned seeds = 1;                  // 1, 2, ...
   std::optional<uint64_t> iterations;  // of each run, with snapshots after 1, 2, 4, ...; else the scenes' efforts
   std::array<uint32_t, 2> size{};
-  RenderSettings render;                  // threads, precision, ISA and sampler of every run
-  std::filesystem::path out;              // folder of everything that is written
-  std::filesystem::path referenceFolder;  // of SCENE.exr
-  bool referenceRequired = false;         // a reference that is not there is an error, else it is rendered
-  bool keepImages = true;                 // of all snapshots, else of the last of each run
+  RenderSettings render;  // threads, clock, precision, ISA, sampler, radius, light paths of every run
+  std::map<std::string, std::string> definitions;  // values of every scene's variables
+  std::filesystem::path out;                       // folder of everything that is written
+  std::filesystem::path referenceFolder;           // of SCENE.exr
+  bool referenceRequired = false;                  // a reference that is not there is an error, else it is rendered
+  bool keepImages = true;                          // of all snapshots, else of the last of each run
   Shard shard;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "bench/campaign/bias.h"
 #include "bench/campaign/environment.h"
 #include "bench/campaign/render_stats.h"
 #include "bench/film_image.h"
@@ -42,6 +43,14 @@ class SnapshotTaker {
       before.file.clear();
     }
     snapshot.values = measureImage(request_.reference, snapshot.file, image);
+    if (request_.halves != nullptr) {
+      if (const std::optional<double> mse = unbiasedMse(image, *request_.halves)) snapshot.values[kUnbiasedMse] = *mse;
+    }
+    // Both clocks, whichever is charged; counted iterations repeat to the bit, so they have none.
+    if (!request_.settings.iterations) {
+      snapshot.values[kWallSeconds] = statistics.renderWallSeconds;
+      snapshot.values[kCpuSeconds] = statistics.cpuSeconds;
+    }
   }
 
   // Whether anything was rendered since the last snapshot.
@@ -83,7 +92,7 @@ MetricValues measureImage(const PreparedReference& reference, const std::string&
 
 std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHooks& hooks) {
   RunRecord run{.scene = request.scene.name,
-                .method = std::string(toString(request.settings.method)),
+                .method = request.row.empty() ? std::string(toString(request.settings.method)) : request.row,
                 .seed = request.settings.seed};
   std::unique_ptr<Session> session;
   try {

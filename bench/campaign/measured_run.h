@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 
+#include "bench/campaign/reference_file.h"
 #include "bench/campaign/session_hooks.h"
 #include "bench/results/results.h"
 #include "engine/snapshots.h"
@@ -20,9 +21,11 @@ struct RunRequest {
   RenderSettings settings;  // with method, seed and the end of the run
   SnapshotSchedule schedule;
   const PreparedReference& reference;
-  std::filesystem::path out;  // images go to out/images/SCENE.METHOD.SEED.NUMBER.exr
-  bool keepImages = true;     // of all snapshots, else of the last
-  double loadSeconds = 0;     // of the scene, for the record
+  const Reference* halves = nullptr;  // the same: to measure error without its noise, where it is given
+  std::string row = {};               // under which the campaign keeps the run; empty: the method's name
+  std::filesystem::path out;          // images go to out/images/SCENE.METHOD.SEED.NUMBER.exr
+  bool keepImages = true;             // of all snapshots, else of the last
+  double loadSeconds = 0;             // of the scene, for the record
 };
 
 // Nothing if the run was interrupted; its images are of no use then and the next attempt overwrites them. A method that

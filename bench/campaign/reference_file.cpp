@@ -65,6 +65,7 @@ Metadata toMetadata(const Reference& reference) {
   visitInfo(reference.info, [&](const char* name, const auto& value) {
     metadata[std::string(kPrefix) + name] = fmt::format("{}", value);
   });
+  metadata[std::string(kPrefix) + "biased"] = reference.info.isBiased() ? "true" : "false";
   for (const auto& [name, value] : reference.noiseFloors) metadata[kFloorPrefix + name] = fmt::format("{}", value);
   return metadata;
 }

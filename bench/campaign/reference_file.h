@@ -28,6 +28,8 @@ struct ReferenceInfo {
   double renderSeconds = 0;  // of both halves
   double relativeError = 0;  // root of the mean relative variance, see relativeError()
   std::string version, commit;
+
+  bool isBiased() const { return radius > 0; }
 };
 
 struct Reference {

@@ -11,6 +11,7 @@
 #include "bench/campaign/file_lock.h"
 #include "bench/film_image.h"
 #include "engine/version.h"
+#include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
 namespace {
@@ -104,7 +105,7 @@ class HalfSessions {
     const IdleScope building(hooks);
     for (size_t half = 0; half < 2; ++half) {
       RenderSettings own = settings;
-      own.seed = referenceSeed(settings.seed, half, firstIteration_);
+      own.seed = referenceSeed(settings.seed, half);
       own.firstIteration = firstIteration_;
       sessions_[half] = Session::create(scene, own);
     }
@@ -148,16 +149,15 @@ class HalfSessions {
 
 }  // namespace
 
-uint64_t referenceSeed(uint64_t seed, size_t half, uint64_t firstIteration) {
-  uint64_t mixed = firstIteration * 0x9e3779b97f4a7c15u;
-  mixed = (mixed ^ (mixed >> 29)) * 0xbf58476d1ce4e5b9u;
-  return (static_cast<uint64_t>(half + 1) << 32) | static_cast<uint32_t>(seed ^ (mixed >> 32));
+uint64_t referenceSeed(uint64_t seed, size_t half) {
+  return (static_cast<uint64_t>(half + 1) << 32) | static_cast<uint32_t>(seed);
 }
 
 Reference renderReference(const Scene& scene, const RenderSettings& settings, const std::string& methodReason,
                           const ReferenceGoal& goal, const std::filesystem::path& file, const ReferenceHooks& hooks) {
   const ReferenceInfo wanted = describe(scene, settings, methodReason);
   const FileLock lock(file);
+  removeTemporaries(file.string());
   Reference reference{.mean = {}, .difference = {}, .info = wanted, .noiseFloors = {}};
   if (std::filesystem::exists(file)) {
     reference = readReference(file);

@@ -34,9 +34,9 @@ struct ReferenceMismatch : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The seed of a half that begins with this iteration: unlike that of any other render, because campaigns and users
-// count from 0 and seldom reach 2^32. A continuation has numbers of its own.
-uint64_t referenceSeed(uint64_t seed, size_t half, uint64_t firstIteration);
+// The seed of a half: unlike that of any other render, because campaigns and users count from 0 and seldom reach 2^32.
+// A continuation has it too, and begins at a later iteration: it adds what an unbroken render would have added.
+uint64_t referenceSeed(uint64_t seed, size_t half);
 
 // settings.seed is the seed of both halves, which differ in its high word. Renders nothing if the file has reached the
 // goal. Throws ReferenceMismatch, FileLockError where another process works on it, ImageError, and what Session::create

@@ -83,6 +83,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"method", std::string(toString(settings.method))},
       {"seed", settings.seed},
       {"sampler", std::string(toString(settings.sampler))},
+      {"filter_mode", enumeratorName(kFilterModeNames, statistics.filterMode)},
       {"width", scene.film.cropWidth != 0 ? scene.film.cropWidth : scene.film.width},
       {"height", scene.film.cropHeight != 0 ? scene.film.cropHeight : scene.film.height},
       {"threads", settings.threads},
@@ -102,6 +103,8 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"load_seconds", loadSeconds},
       {"build_seconds", statistics.buildSeconds},
       {"render_seconds", seconds},
+      {"clock", enumeratorName(kClockNames, settings.clock)},
+      {"render_wall_seconds", statistics.renderWallSeconds},
       {"wall_seconds", wallSeconds},
       {"cpu_seconds", statistics.cpuSeconds},
       {"paths_per_second", perSecond(settings.method == Method::lt ? statistics.lightPaths : statistics.paths)},
@@ -115,9 +118,14 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"paths_cut", statistics.counters.cutPaths},
       {"throughput_cut", statistics.counters.cutThroughput},
       {"machine", toJson(machineRecord())},
+      {"pinned", {{"cpus", settings.placement.cpus}, {"nodes", settings.placement.nodes}}},
       {"stages", stages},
       {"snapshots", snapshotRows},
   };
+  if (strategiesOf(settings.method).merge) {
+    stats.update({{"radius", settings.radius}, {"radius_alpha", settings.radiusAlpha}});
+    if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
+  }
   if (statistics.chains) stats.update(chainStats(settings, *statistics.chains));
   return stats;
 }

@@ -16,6 +16,7 @@
 #include "bench/results/results_store.h"
 #include "engine/load/load.h"
 #include "engine/path_classes.h"
+#include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
 namespace {
@@ -28,8 +29,8 @@ double secondsSince(Clock::time_point begin) { return std::chrono::duration<doub
 std::string hashOf(const Scene& scene) { return fmt::format("{:016x}", scene.hash); }
 
 // The methods of a scene that this shard does.
-std::vector<Method> methodsOfShard(const CampaignSettings& settings, size_t scene) {
-  std::vector<Method> methods;
+std::vector<CampaignMethod> methodsOfShard(const CampaignSettings& settings, size_t scene) {
+  std::vector<CampaignMethod> methods;
   for (size_t i = 0; i < settings.methods.size(); ++i) {
     const size_t group = scene * settings.methods.size() + i;
     if (group % settings.shard.count == settings.shard.index - 1) methods.push_back(settings.methods[i]);
@@ -81,6 +82,9 @@ class Campaign {
       store_.emplace(resultsFile(settings_));
       plan();
       createFolders();
+      // What a process left that was killed while it wrote.
+      removeTemporariesIn((settings_.out / "images").string());
+      removeTemporariesIn((settings_.out / "references").string());
     } else {
       plan();
       create();
@@ -110,11 +114,12 @@ class Campaign {
     store_.emplace(results);
   }
 
-  std::optional<ResultsStore::KnownRun> knownRun(const CampaignScene& scene, Method method, uint64_t seed) {
-    return store_ ? store_->findRun(scene.name, std::string(toString(method)), seed) : std::nullopt;
+  std::optional<ResultsStore::KnownRun> knownRun(const CampaignScene& scene, const CampaignMethod& method,
+                                                 uint64_t seed) {
+    return store_ ? store_->findRun(scene.name, method.name(), seed) : std::nullopt;
   }
   // Whether a run is there, as long as it is asked for.
-  bool isDone(const CampaignScene& scene, Method method, uint64_t seed) {
+  bool isDone(const CampaignScene& scene, const CampaignMethod& method, uint64_t seed) {
     const std::optional<ResultsStore::KnownRun> run = knownRun(scene, method, seed);
     if (!run || run->state == RunState::refused) return run.has_value();
     const nlohmann::json stats = nlohmann::json::parse(run->stats);
@@ -130,7 +135,7 @@ class Campaign {
     double ahead = 0;
     for (size_t s = 0; s < settings_.scenes.size(); ++s) {
       const CampaignScene& entry = settings_.scenes[s];
-      const std::vector<Method> methods = methodsOfShard(settings_, s);
+      const std::vector<CampaignMethod> methods = methodsOfShard(settings_, s);
       const size_t missing = missingRuns(entry, methods);
       plan.runs += methods.size() * settings_.seeds;
       plan.done += methods.size() * settings_.seeds - missing;
@@ -164,22 +169,23 @@ class Campaign {
   Scene load(const CampaignScene& entry) const {
     LoadOptions loading;
     loading.filmSize = settings_.size;
+    loading.defines = settings_.definitions;
     const IdleScope idle(hooks_.session);
     return loadScene(entry.file, loading);
   }
 
   bool stopped() const { return hooks_.stopped && hooks_.stopped(); }
 
-  size_t missingRuns(const CampaignScene& entry, const std::vector<Method>& methods) {
+  size_t missingRuns(const CampaignScene& entry, const std::vector<CampaignMethod>& methods) {
     size_t missing = 0;
-    for (const Method method : methods) {
+    for (const CampaignMethod& method : methods) {
       for (uint64_t seed = 1; seed <= settings_.seeds; ++seed) missing += isDone(entry, method, seed) ? 0 : 1;
     }
     return missing;
   }
 
   // False if it was stopped.
-  bool runScene(const CampaignScene& entry, const std::vector<Method>& methods) {
+  bool runScene(const CampaignScene& entry, const std::vector<CampaignMethod>& methods) {
     if (methods.empty()) return true;
     if (missingRuns(entry, methods) > 0) {
       const auto begin = Clock::now();
@@ -188,7 +194,7 @@ class Campaign {
       const Reference reference = this->reference(entry, scene);
       if (stopped()) return false;
       const PreparedReference prepared(referenceFile(entry.name).string(), {reference.mean, Encoding::linear, {}});
-      if (!runMissing(entry, scene, methods, prepared, loadSeconds)) return false;
+      if (!runMissing(entry, scene, methods, prepared, reference, loadSeconds)) return false;
     }
     putBiases(entry, methods);
     return true;
@@ -227,25 +233,26 @@ class Campaign {
     const PathClassTable table = classifyPaths(scene);
     std::vector<PathClassRecord> records;
     for (const PathClass& entry : table.classes) {
-      for (const Method method : settings_.methods) {
-        const Verdict verdict = table.verdict(entry, method);
-        records.push_back(
-            {entry.signature, std::string(toString(method)), std::string(kVerdictNames[static_cast<size_t>(verdict)])});
+      for (const CampaignMethod& method : settings_.methods) {
+        const Verdict verdict = table.verdict(entry, method.method);
+        records.push_back({entry.signature, method.name(), std::string(kVerdictNames[static_cast<size_t>(verdict)])});
       }
     }
     return records;
   }
 
-  bool runMissing(const CampaignScene& entry, const Scene& scene, const std::vector<Method>& methods,
-                  const PreparedReference& reference, double loadSeconds) {
+  bool runMissing(const CampaignScene& entry, const Scene& scene, const std::vector<CampaignMethod>& methods,
+                  const PreparedReference& prepared, const Reference& reference, double loadSeconds) {
     for (uint64_t seed = 1; seed <= settings_.seeds; ++seed) {
-      for (const Method method : methods) {
+      for (const CampaignMethod& method : methods) {
         if (isDone(entry, method, seed)) continue;
         const auto begin = Clock::now();
         const std::optional<RunRecord> run = measuredRun({.scene = scene,
                                                           .settings = runSettings(entry, scene, method, seed),
                                                           .schedule = schedule(entry),
-                                                          .reference = reference,
+                                                          .reference = prepared,
+                                                          .halves = &reference,
+                                                          .row = method.name(),
                                                           .out = settings_.out,
                                                           .keepImages = settings_.keepImages,
                                                           .loadSeconds = loadSeconds},
@@ -259,9 +266,13 @@ class Campaign {
     return true;
   }
 
-  RenderSettings runSettings(const CampaignScene& entry, const Scene& scene, Method method, uint64_t seed) const {
+  RenderSettings runSettings(const CampaignScene& entry, const Scene& scene, const CampaignMethod& method,
+                             uint64_t seed) const {
     RenderSettings render = settings_.render;
-    render.method = method;
+    render.method = method.method;
+    render.metropolis.variant = method.variant;
+    render.directPass = method.directPass;
+    if (!strategiesOf(method.method).merge) render.lightPaths.reset();
     render.seed = seed;
     render.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
     render.measureStages = true;
@@ -273,16 +284,18 @@ class Campaign {
   SnapshotSchedule schedule(const CampaignScene& entry) const {
     if (settings_.iterations) return SnapshotSchedule::doubling();
     const double interval = entry.effort.snapshotSeconds;
-    return interval > 0 ? SnapshotSchedule::every(interval) : SnapshotSchedule::logarithmic();
+    if (!(interval > 0)) return SnapshotSchedule::logarithmic();
+    return entry.effort.logarithmicFirst ? SnapshotSchedule::logarithmicThenEvery(interval)
+                                         : SnapshotSchedule::every(interval);
   }
 
   // Of the methods that have none yet of all these seeds and of the last snapshot. Every seed of them is done.
-  void putBiases(const CampaignScene& entry, const std::vector<Method>& methods) {
+  void putBiases(const CampaignScene& entry, const std::vector<CampaignMethod>& methods) {
     if (settings_.seeds < 2) return;
     const CampaignResults results = readResults(resultsFile(settings_));
     const Reference reference = readReference(settings_.out / referenceFile(entry.name));
-    for (const Method method : methods) {
-      const std::string name(toString(method));
+    for (const CampaignMethod& method : methods) {
+      const std::string name = method.name();
       std::vector<const RunRecord*> runs;
       unsigned last = std::numeric_limits<unsigned>::max();
       for (const RunRecord& run : results.runs) {

@@ -62,16 +62,19 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                    {"seed", settings.seed},
                    {"first_iteration", settings.firstIteration},
                    {"sampler", std::string(toString(settings.sampler))},
+                   {"filter_mode", enumeratorName(kFilterModeNames, statistics.filterMode)},
                    {"precision", enumeratorName(kPrecisionNames, settings.precision)},
                    {"isa", std::string(toString(statistics.isa))},
                    {"accel", enumeratorName(kAccelNames, statistics.accel)},
                    {"specialization", enumeratorName(kSpecializationNames, statistics.specialization)},
                    {"max_depth", limits.maxDepth},
                    {"rr_depth", limits.rouletteDepth}};
+  if (!scene.instances.empty()) identity["instances"] = enumeratorName(kInstancingNames, settings.instancing);
   if (dependsOnWaves(settings)) {
     identity.update({{"radius", settings.radius},
                      {"radius_alpha", settings.radiusAlpha},
                      {"light_paths", session.memoryPlan().lightPaths},
+                     {"direct_pass", settings.directPass},
                      {"wave", settings.waveSize}});
   }
   if (settings.method == Method::mlt) identity.update(chainIdentity(settings.metropolis));

@@ -15,14 +15,18 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::pair<std::string_view, ConditionKind>, 8> kKinds{{{"better", ConditionKind::better},
-                                                                            {"good", ConditionKind::good},
-                                                                            {"poor", ConditionKind::poor},
-                                                                            {"equal", ConditionKind::equal},
-                                                                            {"reaches", ConditionKind::reaches},
-                                                                            {"misses", ConditionKind::misses},
-                                                                            {"stalls", ConditionKind::stalls},
-                                                                            {"biased", ConditionKind::biased}}};
+constexpr std::array<std::pair<std::string_view, ConditionKind>, 12> kKinds{{{"better", ConditionKind::better},
+                                                                             {"faster", ConditionKind::faster},
+                                                                             {"good", ConditionKind::good},
+                                                                             {"poor", ConditionKind::poor},
+                                                                             {"equal", ConditionKind::equal},
+                                                                             {"leads", ConditionKind::leads},
+                                                                             {"behind", ConditionKind::behind},
+                                                                             {"worse_here", ConditionKind::worseHere},
+                                                                             {"reaches", ConditionKind::reaches},
+                                                                             {"misses", ConditionKind::misses},
+                                                                             {"stalls", ConditionKind::stalls},
+                                                                             {"biased", ConditionKind::biased}}};
 
 ConditionKind parseKind(const std::string& id, const std::string& word) {
   const auto found = std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& kind) { return kind.first == word; });
@@ -37,7 +41,7 @@ void requireKeys(const std::string& id, const json& object, const std::set<std::
 }
 
 Condition parseCondition(const std::string& id, const json& object) {
-  requireKeys(id, object, {"kind", "metrics", "methods", "than", "factor", "score", "slope", "share"});
+  requireKeys(id, object, {"kind", "metrics", "methods", "than", "factor", "score", "slope", "share", "control"});
   Condition condition;
   condition.kind = parseKind(id, object.at("kind").get<std::string>());
   object.at("metrics").get_to(condition.metrics);
@@ -47,7 +51,13 @@ Condition parseCondition(const std::string& id, const json& object) {
   condition.score = object.value("score", condition.score);
   condition.slope = object.value("slope", condition.slope);
   condition.share = object.value("share", condition.share);
+  condition.control = object.value("control", "");
   return condition;
+}
+
+ClaimNeeds parseNeeds(const std::string& id, const json& object) {
+  requireKeys(id, object, {"light_paths", "paths"});
+  return {.lightPaths = object.value("light_paths", 0.0), .paths = object.value("paths", 0.0)};
 }
 
 }  // namespace
@@ -62,9 +72,15 @@ std::vector<Claim> parseClaims(std::string_view text) {
                   .statement = object.at("statement"),
                   .source = object.value("source", ""),
                   .explanation = object.value("explanation", "")};
-      requireKeys(claim.id, object, {"id", "scene", "statement", "source", "explanation", "all"});
+      requireKeys(claim.id, object,
+                  {"id", "scene", "statement", "source", "explanation", "all", "needs", "scenes", "at_least"});
       if (!ids.insert(claim.id).second) throw ClaimListError("claim " + claim.id + ": a second one of this id");
       for (const json& condition : object.at("all")) claim.conditions.push_back(parseCondition(claim.id, condition));
+      if (object.contains("needs")) claim.needs = parseNeeds(claim.id, object.at("needs"));
+      if (object.contains("scenes")) {
+        object.at("scenes").get_to(claim.scenes);
+        object.at("at_least").get_to(claim.atLeast);
+      }
       if (claim.conditions.empty()) throw ClaimListError("claim " + claim.id + ": has no condition");
       claims.push_back(std::move(claim));
     }

@@ -1,8 +1,9 @@
-// Judges claims on the results of a campaign: holds, does not hold, or undecided within noise, with the evidence.
+// Judges claims on the results of a campaign: holds, does not hold, undecided within noise, or not judged here.
 //
-// Losses are compared by their logarithms at the end of runs of equal render time, with 95 % bands from the seeds. A
-// comparison that the bands leave open is undecided, and so is one of losses that are no more than the reference's own
-// noise, of methods that were not measured, and of a single seed, which has no band.
+// Losses are compared by their logarithms at the end of runs of equal render time, times to equal quality likewise,
+// with 95 % bands from the seeds; a single seed gets the spread that seeds had in a campaign of three (scene_losses.h).
+// What the bands leave open is undecided. A claim is not judged, and counts for nothing, where the campaign lacks what
+// the claim is about: light paths, time, methods, a control, or a reference clean enough to see a difference.
 #pragma once
 
 #include <span>
@@ -13,7 +14,7 @@
 
 namespace wavecrest {
 
-enum class ClaimVerdict { holds, fails, undecided };
+enum class ClaimVerdict { holds, fails, undecided, notJudged };
 std::string_view toString(ClaimVerdict verdict);  // as in the results file's claim table
 
 ClaimRecord judgeClaim(const Claim& claim, const CampaignResults& results);

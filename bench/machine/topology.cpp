@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <memory>
 #include <stdexcept>
+#include <utility>
+
+#include "bench/machine/placement.h"
 
 namespace wavecrest {
 namespace {
@@ -59,27 +62,31 @@ TopologyHandle makeTopology() {
   return TopologyHandle(raw);
 }
 
-}  // namespace
+// A topology and the hardware threads in it that may be used.
+struct Machine {
+  TopologyHandle topology;
+  Bitmap usable;
+};
 
-Topology topologyOfThisMachine() {
-  const TopologyHandle topology = makeTopology();
+Machine thisMachine() {
+  TopologyHandle topology = makeTopology();
   // What a container hides is part of the machine all the same; the affinity mask says what may be used.
   hwloc_topology_set_flags(topology.get(), HWLOC_TOPOLOGY_FLAG_INCLUDE_DISALLOWED);
   if (hwloc_topology_load(topology.get()) != 0) throw std::runtime_error("hwloc cannot read this machine's topology");
-  const Bitmap usable(hwloc_bitmap_alloc());
+  Bitmap usable(hwloc_bitmap_alloc());
   if (hwloc_get_cpubind(topology.get(), usable.get(), HWLOC_CPUBIND_PROCESS) != 0) {
     hwloc_bitmap_copy(usable.get(), hwloc_topology_get_allowed_cpuset(topology.get()));
   }
-  return describe(topology, usable);
+  return {std::move(topology), std::move(usable)};
 }
 
-Topology syntheticTopology(const std::string& description, const std::string& affinity) {
-  const TopologyHandle topology = makeTopology();
+Machine syntheticMachine(const std::string& description, const std::string& affinity) {
+  TopologyHandle topology = makeTopology();
   if (hwloc_topology_set_synthetic(topology.get(), description.c_str()) != 0 ||
       hwloc_topology_load(topology.get()) != 0) {
     throw std::invalid_argument("not a topology: " + description);
   }
-  const Bitmap usable(hwloc_bitmap_dup(hwloc_topology_get_topology_cpuset(topology.get())));
+  Bitmap usable(hwloc_bitmap_dup(hwloc_topology_get_topology_cpuset(topology.get())));
   if (!affinity.empty()) {
     const Bitmap asked(hwloc_bitmap_alloc());
     if (hwloc_bitmap_list_sscanf(asked.get(), affinity.c_str()) != 0) {
@@ -87,7 +94,37 @@ Topology syntheticTopology(const std::string& description, const std::string& af
     }
     hwloc_bitmap_and(usable.get(), usable.get(), asked.get());
   }
-  return describe(topology, usable);
+  return {std::move(topology), std::move(usable)};
+}
+
+std::vector<HardwareThread> hardwareThreads(const Machine& machine) {
+  std::vector<HardwareThread> threads;
+  hwloc_obj_t unit = nullptr;
+  while ((unit = hwloc_get_next_obj_by_type(machine.topology.get(), HWLOC_OBJ_PU, unit)) != nullptr) {
+    if (hwloc_bitmap_isset(machine.usable.get(), unit->os_index) == 0) continue;
+    const hwloc_obj_t core = hwloc_get_ancestor_obj_by_type(machine.topology.get(), HWLOC_OBJ_CORE, unit);
+    const int node = hwloc_bitmap_first(unit->nodeset);
+    threads.push_back({.cpu = unit->os_index,
+                       .core = core == nullptr ? unit->logical_index : core->logical_index,
+                       .node = static_cast<uint32_t>(std::max(node, 0))});
+  }
+  return threads;
+}
+
+}  // namespace
+
+Topology topologyOfThisMachine() {
+  const Machine machine = thisMachine();
+  return describe(machine.topology, machine.usable);
+}
+Topology syntheticTopology(const std::string& description, const std::string& affinity) {
+  const Machine machine = syntheticMachine(description, affinity);
+  return describe(machine.topology, machine.usable);
+}
+
+std::vector<HardwareThread> usableHardwareThreads() { return hardwareThreads(thisMachine()); }
+std::vector<HardwareThread> syntheticHardwareThreads(const std::string& description, const std::string& affinity) {
+  return hardwareThreads(syntheticMachine(description, affinity));
 }
 
 }  // namespace wavecrest

@@ -36,7 +36,7 @@ void function(benchmark::State& state, Isa isa, size_t index) {
   const MathFunction<T> measured = functionsOf<T>(isa)[index];
   functionsOf<T>(Isa::scalar)[index].run(a.data(), b.data(), twin.data(), kItems);
   measured.run(a.data(), b.data(), out.data(), kItems);
-  // Each is within its stated error of the truth; the loosest are the fast ones.
+  // Each is within its stated error of the truth (tests/kernels/math_test.cpp).
   if (!checkAgainstTwin(state, out, twin, 256 * std::numeric_limits<T>::epsilon())) return;
   for (auto _ : state) {
     measured.run(a.data(), b.data(), out.data(), kItems);

@@ -11,6 +11,7 @@ namespace wavecrest {
 void registerStageBenchmarks();          // walk_bench.cpp
 void registerCrossoverBenchmarks();      // crossover_bench.cpp
 void registerBidirectionalBenchmarks();  // bidirectional_bench.cpp
+void registerInstanceBenchmarks();       // instances_bench.cpp
 
 // Times are set by the benchmark itself (SetIterationTime). The minimum over repetitions is the figure that other
 // programs on the machine disturb least.

@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   wavecrest::registerStageBenchmarks();
   wavecrest::registerCrossoverBenchmarks();
   wavecrest::registerBidirectionalBenchmarks();
+  wavecrest::registerInstanceBenchmarks();
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
   benchmark::RunSpecifiedBenchmarks();

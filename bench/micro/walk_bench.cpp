@@ -156,8 +156,7 @@ void registerPrecision(Precision precision) {
   add("occludeSmall", "occlude", &Stages<S>::occludeSmall);
   add("occludeBvh", "occlude", &Stages<S>::occludeBvh);
   add("scatter", "scatter", &Stages<S>::scatter);
-  if (precision == Precision::fast) return;  // Embree knows no precision; double differs in the columns it reads
-
+  // Embree knows no precision; double differs in the columns it reads.
   const auto addEmbree = [&](size_t width, Stage<S> extend, Stage<S> occlude) {
     registerShapes<S>({fmt::format("extendEmbree/packet:{}", width), "extend", extend, twin.extendSmall,
                        toleranceOf("extend", precision)},
@@ -176,7 +175,6 @@ void registerPrecision(Precision precision) {
 void registerStageBenchmarks() {
   registerPrecision<float>(Precision::floating);
   registerPrecision<double>(Precision::doubled);
-  registerPrecision<float>(Precision::fast);
 }
 
 }  // namespace wavecrest

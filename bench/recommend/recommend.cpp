@@ -17,14 +17,28 @@ constexpr double kReferencePart = 0.5;  // of the render time
 // Unlike any that a user picks; the reference's differ, or its own method would find its own noise in it.
 constexpr uint64_t kReferenceSeed = 0x7265666572656e63, kPilotSeed = 0x70696c6f74706963;
 
-Pilot renderPilot(const Scene& scene, RenderSettings settings, uint64_t firstSeed, double seconds) {
+double secondsBy(PilotClock clock, const Session& session, uint32_t threads) {
+  const RenderStatistics statistics = session.statistics();
+  return clock == PilotClock::wall ? statistics.renderSeconds : statistics.cpuSeconds / threads;
+}
+
+// Renders for so many seconds of the clock; returns how many it were. A session stops by wall time, of which others may
+// have taken a part.
+double renderBy(PilotClock clock, Session& session, uint32_t threads, double seconds) {
+  constexpr double kEnough = 0.98;
+  for (double done = 0; done < kEnough * seconds; done = secondsBy(clock, session, threads)) {
+    session.renderUntil(std::nullopt, session.statistics().renderSeconds + seconds - done);
+  }
+  return secondsBy(clock, session, threads);
+}
+
+Pilot renderPilot(const Scene& scene, RenderSettings settings, uint64_t firstSeed, double seconds, PilotClock clock) {
   Pilot pilot;
   for (size_t part = 0; part < pilot.parts.size(); ++part) {
     settings.seed = firstSeed + part;
     const auto session = Session::create(scene, settings);
-    session->renderUntil(std::nullopt, seconds / static_cast<double>(pilot.parts.size()));
+    pilot.seconds += renderBy(clock, *session, settings.threads, seconds / static_cast<double>(pilot.parts.size()));
     pilot.parts[part] = filmImage(*session);
-    pilot.seconds += session->statistics().renderSeconds;
   }
   if (strategiesOf(settings.method).merge) pilot.biasExponent = biasDecay(settings.radiusAlpha);
   return pilot;
@@ -95,7 +109,8 @@ Recommendation recommend(const Scene& scene, const RenderSettings& settings, con
   Recommendation result{.scene = scene.name, .targetSsim = request.targetSsim, .rows = {}};
   RenderSettings own = settings;
   own.method = result.referenceMethod = classifyPaths(scene).reference.method;
-  const PilotReference halves = referenceOf(renderPilot(scene, own, kReferenceSeed, kReferencePart * request.seconds));
+  const PilotReference halves =
+      referenceOf(renderPilot(scene, own, kReferenceSeed, kReferencePart * request.seconds, request.clock));
   const PreparedReference reference("reference", {halves.mean, Encoding::linear, {}});
   result.referenceSsim = ssimWithNoise(reference, halves.noise);
   const double share = (1 - kReferencePart) * request.seconds / static_cast<double>(request.methods.size());
@@ -104,7 +119,7 @@ Recommendation recommend(const Scene& scene, const RenderSettings& settings, con
     RecommendRow& row = result.rows.emplace_back();
     row.method = method;
     try {
-      const Pilot pilot = renderPilot(scene, own, kPilotSeed, share);
+      const Pilot pilot = renderPilot(scene, own, kPilotSeed, share, request.clock);
       row.pilotSeconds = pilot.seconds;
       row.prediction = predict(reference, halves.noise, pilot, request.targetSsim);
     } catch (const SceneError& error) {

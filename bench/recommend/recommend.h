@@ -4,8 +4,10 @@
 // renders of different seeds each. From those follow noise, bias and speed, and from those the time (prediction.h).
 #pragma once
 
+#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/recommend/prediction.h"
@@ -13,10 +15,16 @@
 
 namespace wavecrest {
 
+// What a second is: of the wall clock while rendering, or of CPU time over the number of threads, which leaves out what
+// other programs take on a busy machine.
+enum class PilotClock { wall, cpu };
+constexpr std::array<std::string_view, 2> kPilotClockNames{"wall", "cpu"};
+
 struct RecommendRequest {
   double targetSsim = 0.95;
   double seconds = 60;  // render time of all pilots together
   std::vector<Method> methods;
+  PilotClock clock = PilotClock::wall;
 };
 
 struct RecommendRow {

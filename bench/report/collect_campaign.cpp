@@ -14,6 +14,7 @@
 #include "bench/report/html_text.h"
 #include "bench/report/series_facts.h"
 #include "bench/report/shown_metrics.h"
+#include "bench/results/noise_floors.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {
@@ -154,9 +155,22 @@ std::string originOf(const Metadata& metadata) {
   };
   std::string text;
   if (!value("method").empty()) text += fmt::format(", two halves by {}", value("method"));
+  // Files of earlier versions do not say that they are biased, but methods that merge have a radius.
+  if (std::strtod(value("radius").c_str(), nullptr) > 0) text += ", biased by its merge radius";
   const double error = std::strtod(value("relative_error").c_str(), nullptr);
   if (error > 0) text += fmt::format(", off by about {} % of a sample's value", formatSignificant(100 * error, 2));
   return text;
+}
+
+// The least relMSE that any run of the scene ended with.
+std::optional<double> bestRelmse(const CampaignResults& results, const std::string& scene) {
+  std::optional<double> best;
+  for (const RunRecord& run : results.runs) {
+    if (run.scene != scene || run.snapshots.empty()) continue;
+    const double value = valueOf(run.snapshots.back().values, "relmse");
+    if (std::isfinite(value)) best = std::min(best.value_or(value), value);
+  }
+  return best;
 }
 
 ReportScene collectScene(const CampaignResults& results, const SceneRecord& record, ConvergenceReport& report) {
@@ -175,6 +189,9 @@ ReportScene collectScene(const CampaignResults& results, const SceneRecord& reco
     lastImages.push_back(lastImage(group));
   }
   scene.pathClasses = pathClassesOf(record);
+  for (const std::string& floor : unmetFloors(record.noiseFloors, bestRelmse(results, record.name))) {
+    report.remarks.push_back(fmt::format("{}: the reference is noisy: {}.", record.name, floor));
+  }
   addRefusals(scene, results);
   if (!fs::is_regular_file(record.referenceFile)) {
     report.remarks.push_back(fmt::format("{}: no pictures, as {} is not there.", record.name, record.referenceFile));
@@ -197,12 +214,18 @@ std::string profileOf(const CampaignResults& results) {
 // With what bench/claims says about it today: explanations are written once the results of the standard profile are
 // known, and speak of those.
 ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile) {
-  ReportClaim shown{record.scene, record.statement, record.verdict, record.evidence};
+  ReportClaim shown{.scene = record.scene,
+                    .statement = record.statement,
+                    .verdict = record.verdict,
+                    .figure = record.figure,
+                    .evidence = record.evidence};
   const Claim* claim = findStudyClaim(record.id);
   if (claim == nullptr) return shown;
   shown.id = claim->id;
   shown.source = claim->source;
-  if (claim->explanation.empty() || record.verdict == toString(ClaimVerdict::holds)) return shown;
+  const bool open =
+      record.verdict == toString(ClaimVerdict::fails) || record.verdict == toString(ClaimVerdict::undecided);
+  if (claim->explanation.empty() || !open) return shown;
   shown.explanation = (profile == "standard" ? "" : "In the standard campaign: ") + claim->explanation;
   return shown;
 }

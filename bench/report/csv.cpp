@@ -46,16 +46,18 @@ std::string measurementsAsCsv(const ConvergenceReport& report) {
 }
 
 std::string claimsAsCsv(const ConvergenceReport& report) {
-  std::string csv = "id,scene,statement,source,verdict,explanation,evidence\n";
+  std::string csv = "id,scene,statement,source,verdict,figure,explanation,evidence\n";
   for (const ReportClaim& claim : report.claims) {
-    append(csv, "{},{},{},{},{},{},{}\n", field(claim.id), field(claim.scene), field(claim.statement),
-           field(claim.source), field(claim.verdict), field(claim.explanation), field(claim.evidence));
+    append(csv, "{},{},{},{},{},{},{},{}\n", field(claim.id), field(claim.scene), field(claim.statement),
+           field(claim.source), field(claim.verdict), field(claim.figure), field(claim.explanation),
+           field(claim.evidence));
   }
   return csv;
 }
 
 std::string summaryAsCsv(const ConvergenceReport& report) {
-  std::string csv = "scene,method,series,seeds,metric,mean,low,high,noise_floor,target,seconds_to_target\n";
+  std::string csv =
+      "scene,method,series,seeds,metric,mean,low,high,noise_floor,best,target,seconds_to_target,at_most,fastest\n";
   for (const ReportScene& scene : report.scenes) {
     for (const ReportSeries& series : scene.series) {
       for (size_t m = 0; m < report.metrics.size(); ++m) {
@@ -65,11 +67,14 @@ std::string summaryAsCsv(const ConvergenceReport& report) {
         append(csv, "{},{},{},{},{},{},{},{},{}", field(scene.name), field(series.method), field(series.label),
                series.runs.size(), field(metric.key), number(finalValue(series, m)), number(range.low),
                number(range.high), hasFloor ? number(*scene.noiseFloors[m]) : "");
+        append(csv, ",{}", isClearlyBest(scene, series, metric, m) ? "yes" : "");
         if (metric.target) {
-          const std::optional<double> seconds = timeToReach(series, metric, m, *metric.target);
-          append(csv, ",{},{}\n", number(*metric.target), seconds ? number(*seconds) : "");
+          const std::optional<TargetTime> time = timeToReach(series, metric, m, *metric.target);
+          append(csv, ",{},{},{},{}\n", number(*metric.target), time ? number(time->seconds) : "",
+                 time && time->atMost ? "yes" : "",
+                 isClearlyFastest(scene, series, metric, m, *metric.target) ? "yes" : "");
         } else {
-          csv += ",,\n";
+          csv += ",,,,\n";
         }
       }
     }

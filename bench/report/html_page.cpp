@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "bench/report/answer_section.h"
 #include "bench/report/assets.h"
 #include "bench/report/embedded_images.h"
 #include "bench/report/html_text.h"
@@ -48,16 +49,26 @@ std::string renderEnvironment(const ConvergenceReport& report) {
   return html + "</tbody></table></section>\n";
 }
 
+// What a reader must know; behind a click where it is long, so that the answer stays in sight of the figures.
+std::string renderRemarks(const ConvergenceReport& report, const EmbeddedImages& images) {
+  constexpr size_t kShortList = 3;
+  std::vector<std::string> remarks = report.remarks;
+  if (!images.remark().empty()) remarks.push_back(images.remark());
+  std::string html;
+  for (const std::string& remark : remarks) append(html, "<p class=\"facts\">{}</p>\n", escapeHtml(remark));
+  if (remarks.size() <= kShortList) return html;
+  return fmt::format(
+      "<details class=\"remarks\"><summary>{} remarks on references and pictures</summary>{}</details>\n",
+      remarks.size(), html);
+}
+
 std::string renderHeader(const ConvergenceReport& report, const EmbeddedImages& images) {
   std::string html = fmt::format("<header><h1>{}</h1>\n<p class=\"methods\">", escapeHtml(report.title));
   for (const std::string& method : methodsOf(report)) {
     append(html, "<span><i class=\"swatch m-{0}\"></i><b>{0}</b> {1}</span> ", escapeHtml(method),
            escapeHtml(methodStyle(method).name));
   }
-  html += "</p>\n";
-  for (const std::string& remark : report.remarks) append(html, "<p class=\"facts\">{}</p>\n", escapeHtml(remark));
-  if (!images.remark().empty()) append(html, "<p class=\"facts\">{}</p>\n", escapeHtml(images.remark()));
-  return html + "</header>\n";
+  return html + "</p>\n" + renderAnswer(report) + renderRemarks(report, images) + "</header>\n";
 }
 
 // Where to go on a long page; a single scene needs none.

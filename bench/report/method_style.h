@@ -16,12 +16,15 @@ struct MethodStyle {
   CurveMark mark;
 };
 
-inline constexpr std::array<MethodStyle, 7> kMethodStyles = {{
+inline constexpr std::array<MethodStyle, 10> kMethodStyles = {{
     {"pt", "path tracing", CurveMark::kCircle},
     {"lt", "light tracing", CurveMark::kSquare},
     {"bpt", "bidirectional path tracing", CurveMark::kTriangleUp},
-    {"mlt", "Metropolis light transport", CurveMark::kDiamond},
+    {"mlt-pathspace", "Metropolis light transport in path space", CurveMark::kDiamond},
+    {"mlt", "Metropolis light transport, multiplexed", CurveMark::kDiamond},
+    {"mlt-pssmlt", "Metropolis light transport in primary sample space", CurveMark::kDiamond},
     {"ppm", "progressive photon mapping", CurveMark::kTriangleDown},
+    {"ppm-direct", "progressive photon mapping, direct light by next event estimation", CurveMark::kTriangleDown},
     {"bpm", "bidirectional photon mapping", CurveMark::kPlus},
     {"vcm", "vertex connection and merging", CurveMark::kCross},
 }};

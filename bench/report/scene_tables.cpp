@@ -28,9 +28,11 @@ std::string methodCell(const ReportSeries& series) {
 }
 
 // "12 s", or for a method that never got there a dash.
-std::string targetCell(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex) {
-  const std::optional<double> time = timeToReach(series, metric, metricIndex, *metric.target);
-  return fmt::format("<td class=\"n\">{}", time ? formatSeconds(*time) : "–");
+std::string targetCell(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
+                       size_t metricIndex) {
+  const std::optional<TargetTime> time = timeToReach(series, metric, metricIndex, *metric.target);
+  const bool fastest = isClearlyFastest(scene, series, metric, metricIndex, *metric.target);
+  return fmt::format("<td class=\"n{}\">{}", fastest ? " best" : "", time ? formatTime(*time) : "–");
 }
 
 std::string resultHead(const ConvergenceReport& report) {
@@ -81,11 +83,11 @@ std::string renderResults(const ConvergenceReport& report, const ReportScene& sc
     append(html, "<td class=\"n\">{}", formatCount(static_cast<double>(last.iterations)));
     for (size_t m = 0; m < report.metrics.size(); ++m) {
       const double value = finalValue(*series, m);
-      const bool best = scene.series.size() > 1 && value == bestFinalValue(scene, report.metrics[m], m);
+      const bool best = isClearlyBest(scene, *series, report.metrics[m], m);
       append(html, "<td class=\"n{}\">{}", best ? " best" : "", std::isnan(value) ? "–" : formatSignificant(value));
     }
     for (size_t m = 0; m < report.metrics.size(); ++m) {
-      if (report.metrics[m].target) html += targetCell(*series, report.metrics[m], m);
+      if (report.metrics[m].target) html += targetCell(scene, *series, report.metrics[m], m);
     }
     append(html, "<td class=\"n\">{}<td class=\"n\">{}", formatCount(series->pathsPerSecond),
            formatSeconds(series->cpuSeconds));

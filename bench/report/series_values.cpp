@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "bench/report/html_text.h"
 #include "bench/report/method_style.h"
+#include "bench/statistics/bands.h"
 
 namespace wavecrest {
 
@@ -79,17 +81,79 @@ double bestFinalValue(const ReportScene& scene, const ReportMetric& metric, size
   return best;
 }
 
-std::optional<double> timeToReach(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
-                                  double target) {
+std::optional<TargetTime> timeToReach(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
+                                      double target) {
   const std::vector<CurvePoint> curve = meanCurve(series, metricIndex);
   const auto reached = std::find_if(curve.begin(), curve.end(),
                                     [&](const CurvePoint& point) { return !isBetter(metric, target, point.mean); });
   if (reached == curve.end()) return std::nullopt;
-  if (reached == curve.begin()) return reached->seconds;
+  if (reached == curve.begin()) return TargetTime{.seconds = reached->seconds, .atMost = true};
   const CurvePoint& before = *(reached - 1);
   const double part = (target - before.mean) / (reached->mean - before.mean);
-  if (!(before.seconds > 0)) return before.seconds + part * (reached->seconds - before.seconds);
-  return before.seconds * std::pow(reached->seconds / before.seconds, part);
+  if (!(before.seconds > 0)) return TargetTime{.seconds = before.seconds + part * (reached->seconds - before.seconds)};
+  return TargetTime{.seconds = before.seconds * std::pow(reached->seconds / before.seconds, part)};
+}
+
+std::string formatTime(const TargetTime& time) { return (time.atMost ? "≤ " : "") + formatSeconds(time.seconds); }
+
+namespace {
+
+// Whether the numbers of a lie below those of b beyond noise.
+bool isClearlyLess(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.size() < 2 || b.size() < 2) return false;
+  const Band band = differenceBand(b, a);
+  return band.mean - band.halfWidth > 0;
+}
+
+std::vector<double> finalValues(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex) {
+  std::vector<double> values;
+  for (const ReportRun& run : series.runs) {
+    if (run.points.empty() || !std::isfinite(run.points.back().values[metricIndex])) continue;
+    const double value = run.points.back().values[metricIndex];
+    values.push_back(metric.higherIsBetter ? -value : value);
+  }
+  return values;
+}
+
+// Logarithms of the times of each seed, its end where it does not get there.
+std::vector<double> logTimes(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
+                             double target) {
+  std::vector<double> times;
+  for (const ReportRun& run : series.runs) {
+    if (run.points.empty()) continue;
+    const ReportSeries alone{.runs = {run}};
+    const std::optional<TargetTime> time = timeToReach(alone, metric, metricIndex, target);
+    times.push_back(std::log(std::max(time ? time->seconds : run.points.back().seconds, 1e-9)));
+  }
+  return times;
+}
+
+template <class Better>
+bool isAheadOfAll(const ReportScene& scene, const ReportSeries& series, Better better) {
+  return scene.series.size() > 1 &&
+         std::all_of(scene.series.begin(), scene.series.end(),
+                     [&](const ReportSeries& other) { return &other == &series || better(other); });
+}
+
+}  // namespace
+
+bool isClearlyBest(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
+                   size_t metricIndex) {
+  const std::vector<double> own = finalValues(series, metric, metricIndex);
+  return isAheadOfAll(scene, series, [&](const ReportSeries& other) {
+    const std::vector<double> values = finalValues(other, metric, metricIndex);
+    return values.empty() ? !own.empty() : isClearlyLess(own, values);
+  });
+}
+
+bool isClearlyFastest(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
+                      size_t metricIndex, double target) {
+  if (!timeToReach(series, metric, metricIndex, target)) return false;
+  const std::vector<double> own = logTimes(series, metric, metricIndex, target);
+  return isAheadOfAll(scene, series, [&](const ReportSeries& other) {
+    const std::optional<TargetTime> time = timeToReach(other, metric, metricIndex, target);
+    return !time || (!time->atMost && isClearlyLess(own, logTimes(other, metric, metricIndex, target)));
+  });
 }
 
 std::vector<std::string> methodsOf(const ConvergenceReport& report) {

@@ -38,10 +38,26 @@ bool isBetter(const ReportMetric& metric, double a, double b);
 /// The best of the final values of all series of a scene; NaN if there is none.
 double bestFinalValue(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex);
 
+/// When a score is reached. atMost: the first snapshot has it already, so it may have been sooner.
+struct TargetTime {
+  double seconds = 0;
+  bool atMost = false;
+};
 /// When the mean curve first reaches a score: between snapshots by straight lines over the logarithm of time. Nothing
 /// if it never does.
-std::optional<double> timeToReach(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
-                                  double target);
+std::optional<TargetTime> timeToReach(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
+                                      double target);
+/// "2.1 s", or "≤ 0.1 s".
+std::string formatTime(const TargetTime& time);
+
+/// Whether a series is the best of its scene beyond noise: its final values against those of every other one, by the
+/// 95 % band of their difference over seeds. A single seed has no band, so none is best.
+bool isClearlyBest(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
+                   size_t metricIndex);
+/// The same of the time to a score: against those that reach it. A series whose time is an upper bound is first only
+/// before those that take longer than that.
+bool isClearlyFastest(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
+                      size_t metricIndex, double target);
 
 /// Every method that occurs, in the order of kMethodStyles, then any others.
 std::vector<std::string> methodsOf(const ConvergenceReport& report);

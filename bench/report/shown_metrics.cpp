@@ -7,8 +7,8 @@
 namespace wavecrest {
 namespace {
 
-// From here on the study calls an image good.
-constexpr double kGoodSsim = 0.9;
+// From here on people see no difference at a glance.
+constexpr double kGoodSsim = 0.95, kGoodMos = 90;
 
 }  // namespace
 
@@ -22,6 +22,7 @@ ReportMetric shownMetric(const Metric& metric) {
   shown.logarithmic = !metric.higherIsBetter;
   if (metric.sampleExponent != 0) shown.idealSlope = metric.sampleExponent;
   if (metric.name == "ssim") shown.target = kGoodSsim;
+  if (shown.key == "q_mos") shown.target = kGoodMos;
   return shown;
 }
 

@@ -21,25 +21,29 @@ struct HeatMap {
   std::string name, explanation;
   std::function<double(const ReportScene&, const ReportSeries&)> value;
   std::function<double(double value, double best)> behind;
-  std::function<std::string(double)> text;
+  std::function<std::string(const ReportSeries&, double)> text;
+  std::function<bool(const ReportScene&, const ReportSeries&)> isBest;  // beyond noise
   bool higherIsBetter = false;
 };
 
-std::string significant(double value) { return formatSignificant(value); }
+std::string significant(const ReportSeries&, double value) { return formatSignificant(value); }
 
 // Logarithmic metrics count in factors of two, four of which are the full shade; others by the distance to the best.
 HeatMap metricMap(const ReportMetric& metric, size_t index) {
-  return {.name = metric.name,
-          .explanation = fmt::format("{} at the end of each run, {}", metric.name,
-                                     metric.higherIsBetter ? "higher is better" : "lower is better"),
-          .value = [index](const ReportScene&, const ReportSeries& series) { return finalValue(series, index); },
-          .behind =
-              [logarithmic = metric.logarithmic](double value, double best) {
-                if (logarithmic) return std::abs(std::log2(value / best)) / 4;
-                return std::abs(value - best) / std::max(std::abs(best), 1e-12) * 2;
-              },
-          .text = significant,
-          .higherIsBetter = metric.higherIsBetter};
+  return {
+      .name = metric.name,
+      .explanation = fmt::format("{} at the end of each run, {}", metric.name,
+                                 metric.higherIsBetter ? "higher is better" : "lower is better"),
+      .value = [index](const ReportScene&, const ReportSeries& series) { return finalValue(series, index); },
+      .behind =
+          [logarithmic = metric.logarithmic](double value, double best) {
+            if (logarithmic) return std::abs(std::log2(value / best)) / 4;
+            return std::abs(value - best) / std::max(std::abs(best), 1e-12) * 2;
+          },
+      .text = significant,
+      .isBest = [&metric, index](const ReportScene& scene,
+                                 const ReportSeries& series) { return isClearlyBest(scene, series, metric, index); },
+      .higherIsBetter = metric.higherIsBetter};
 }
 
 HeatMap targetMap(const ReportMetric& metric, size_t index) {
@@ -48,10 +52,15 @@ HeatMap targetMap(const ReportMetric& metric, size_t index) {
       .explanation = fmt::format("render time until {} reaches {}; – where it never did", metric.name, *metric.target),
       .value =
           [&metric, index](const ReportScene&, const ReportSeries& series) {
-            return timeToReach(series, metric, index, *metric.target).value_or(kNan);
+            return timeToReach(series, metric, index, *metric.target).value_or(TargetTime{kNan}).seconds;
           },
       .behind = [](double value, double best) { return std::abs(std::log2(value / best)) / 4; },
-      .text = formatSeconds,
+      .text = [&metric, index](const ReportSeries& series,
+                               double) { return formatTime(*timeToReach(series, metric, index, *metric.target)); },
+      .isBest =
+          [&metric, index](const ReportScene& scene, const ReportSeries& series) {
+            return isClearlyFastest(scene, series, metric, index, *metric.target);
+          },
       .higherIsBetter = false};
 }
 
@@ -66,15 +75,17 @@ std::string renderRow(const HeatMap& map, const ReportScene& scene, const std::v
     if (isBetter(order, values.back(), best)) best = values.back();
   }
   std::string html;
-  for (const double value : values) {
+  for (size_t i = 0; i < methods.size(); ++i) {
+    const double value = values[i];
     if (std::isnan(value)) {
       html += "<td class=\"n none\">–";
       continue;
     }
+    const ReportSeries& series = *seriesOf(scene, methods[i]);
     // The best is not behind itself, even where both are zero.
     const double behind = value == best ? 0 : map.behind(value, best);
-    append(html, "<td class=\"n{}\" style=\"--behind:{:.2f}\">{}", value == best ? " best" : "",
-           std::isfinite(behind) ? std::min(1.0, behind) : 1.0, map.text(value));
+    append(html, "<td class=\"n{}\" style=\"--behind:{:.2f}\">{}", map.isBest(scene, series) ? " best" : "",
+           std::isfinite(behind) ? std::min(1.0, behind) : 1.0, map.text(series, value));
   }
   return html;
 }
@@ -140,7 +151,20 @@ std::string numberCell(double value, const char* unit) {
 
 std::string verdictClass(const std::string& verdict) {
   if (verdict == "holds") return "holds";
+  if (verdict == "not judged") return "unjudged";
   return verdict == "undecided" ? "undecided" : "fails";
+}
+
+// A row: what decides in a line, the rest behind a click.
+std::string renderClaim(const ReportClaim& claim) {
+  std::string html = fmt::format("<tr><th>{}<td>{}", escapeHtml(claim.scene), escapeHtml(claim.statement));
+  if (!claim.source.empty()) append(html, "<small class=\"source\">{}</small>", escapeHtml(claim.source));
+  append(html, "<td><span class=\"verdict {}\">{}</span><td>{}", verdictClass(claim.verdict), escapeHtml(claim.verdict),
+         escapeHtml(claim.figure));
+  if (claim.explanation.empty() && claim.evidence.empty()) return html;
+  html += "<details><summary>evidence</summary>";
+  if (!claim.explanation.empty()) append(html, "<p>{}</p>", escapeHtml(claim.explanation));
+  return html + escapeHtml(claim.evidence) + "</details>";
 }
 
 }  // namespace
@@ -152,7 +176,8 @@ std::string renderHeatMaps(const ConvergenceReport& report) {
     if (report.metrics[m].target) html += renderHeatMap(report, targetMap(report.metrics[m], m));
   }
   return html +
-         "</div><p class=\"facts\">The stronger the tint, the further behind the best of its row, which is bold.</p>\n";
+         "</div><p class=\"facts\">The stronger the tint, the further behind the best of its row, which is bold where "
+         "seeds tell it from all others.</p>\n";
 }
 
 std::string renderRanking(const ConvergenceReport& report) {
@@ -185,19 +210,24 @@ std::string renderClaims(const ConvergenceReport& report) {
     return std::count_if(report.claims.begin(), report.claims.end(),
                          [&](const ReportClaim& claim) { return claim.verdict == verdict; });
   };
-  std::string html = fmt::format(
-      "<section id=\"claims\"><h2>The study's findings</h2><p class=\"facts\">{} hold, {} do not, {} are undecided "
-      "within noise.</p><div class=\"scroll\"><table class=\"claims\"><thead><tr><th>scene<th>finding<th>verdict"
-      "<th>evidence</thead><tbody>",
-      count("holds"), count("does not hold"), count("undecided"));
-  for (const ReportClaim& claim : report.claims) {
-    append(html, "<tr><th>{}<td>{}", escapeHtml(claim.scene), escapeHtml(claim.statement));
-    if (!claim.source.empty()) append(html, "<small class=\"source\">{}</small>", escapeHtml(claim.source));
-    append(html, "<td><span class=\"verdict {}\">{}</span><td>", verdictClass(claim.verdict),
-           escapeHtml(claim.verdict));
-    if (!claim.explanation.empty()) append(html, "<p>{}</p>", escapeHtml(claim.explanation));
-    html += escapeHtml(claim.evidence);
+  const auto judged = count("holds") + count("does not hold") + count("undecided");
+  std::string html = "<section id=\"claims\"><h2>The study's findings</h2><p class=\"facts\">";
+  if (judged > 0) {
+    append(html, "{} hold, {} do not, {} are undecided within noise. ", count("holds"), count("does not hold"),
+           count("undecided"));
   }
+  if (count("not judged") > 0) {
+    append(html, "{} cannot be judged by this campaign, which counts neither for nor against them.",
+           judged == 0 ? fmt::format("All {}", count("not judged")) : std::to_string(count("not judged")));
+  }
+  html +=
+      "</p><div class=\"scroll\"><table class=\"claims\"><thead><tr><th>scene<th>finding<th>verdict<th>why</thead>"
+      "<tbody>";
+  // What was decided comes first; the order of scenes stays within.
+  std::vector<const ReportClaim*> order;
+  for (const ReportClaim& claim : report.claims) order.push_back(&claim);
+  std::stable_partition(order.begin(), order.end(), [](const ReportClaim* c) { return c->verdict != "not judged"; });
+  for (const ReportClaim* claim : order) html += renderClaim(*claim);
   return html + "</tbody></table></div></section>\n";
 }
 

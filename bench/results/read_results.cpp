@@ -100,8 +100,16 @@ std::vector<BiasRecord> readBiases(Database& database) {
 
 std::vector<ClaimRecord> readClaims(Database& database) {
   std::vector<ClaimRecord> claims;
-  Statement row(database, "SELECT id, scene, statement, verdict, evidence FROM claim ORDER BY rowid");
-  while (row.step()) claims.push_back({row.text(0), row.text(1), row.text(2), row.text(3), row.text(4)});
+  const std::string figure = hasClaimFigures(database) ? "figure" : "''";
+  Statement row(database, "SELECT id, scene, statement, verdict, " + figure + ", evidence FROM claim ORDER BY rowid");
+  while (row.step()) {
+    claims.push_back({.id = row.text(0),
+                      .scene = row.text(1),
+                      .statement = row.text(2),
+                      .verdict = row.text(3),
+                      .figure = row.text(4),
+                      .evidence = row.text(5)});
+  }
   return claims;
 }
 

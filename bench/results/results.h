@@ -18,6 +18,12 @@ namespace wavecrest {
 
 using MetricValues = std::map<std::string, double>;
 
+// Among the values of a snapshot: the mean of (T - A)(T - B) over samples, for an image T and the reference's halves A
+// and B. It is the mean square error without the reference's noise, and may come out negative near zero.
+constexpr const char* kUnbiasedMse = "unbiased_mse";
+// Likewise: seconds that rendering took by both clocks, CPU time being that of all threads together.
+constexpr const char *kWallSeconds = "wall_seconds", *kCpuSeconds = "cpu_seconds";
+
 // How one class of light paths fares under one method: "sampled", "inefficient" or "impossible".
 struct PathClassRecord {
   std::string pathClass, method, verdict;
@@ -76,8 +82,9 @@ struct BiasRecord {
 // One of the study's findings, judged on this campaign.
 struct ClaimRecord {
   std::string id, scene, statement;
-  std::string verdict;   // "holds", "does not hold", "undecided"
-  std::string evidence;  // values and bands, for people
+  std::string verdict;        // "holds", "does not hold", "undecided", "not judged"
+  std::string figure = {};    // in some ten words: what decides it, or why it is not judged
+  std::string evidence = {};  // values and bands, for people
 };
 
 // Appends a value to a list "a, b" that lacks it: how facts of the environment that differ are told.

@@ -103,9 +103,9 @@ void ResultsStore::putBiases(const std::vector<BiasRecord>& biases) {
 void ResultsStore::putClaims(const std::vector<ClaimRecord>& claims) {
   Transaction transaction(database_);
   database_.execute("DELETE FROM claim");
-  Statement row(database_, "INSERT INTO claim VALUES(?, ?, ?, ?, ?)");
+  Statement row(database_, "INSERT INTO claim VALUES(?, ?, ?, ?, ?, ?)");
   for (const ClaimRecord& claim : claims) {
-    row.bind(claim.id, claim.scene, claim.statement, claim.verdict, claim.evidence).run();
+    row.bind(claim.id, claim.scene, claim.statement, claim.verdict, claim.figure, claim.evidence).run();
   }
   transaction.commit();
 }

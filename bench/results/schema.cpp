@@ -61,12 +61,25 @@ CREATE TABLE bias(
   variance REAL,
   bias_squared REAL,
   PRIMARY KEY(scene, method, number)) WITHOUT ROWID;
+)";
+
+constexpr const char* kClaimTable = R"(
 CREATE TABLE claim(
   id TEXT PRIMARY KEY,
   scene TEXT NOT NULL,
   statement TEXT NOT NULL,
-  verdict TEXT NOT NULL CHECK(verdict IN ('holds', 'does not hold', 'undecided')),
+  verdict TEXT NOT NULL CHECK(verdict IN ('holds', 'does not hold', 'undecided', 'not judged')),
+  figure TEXT NOT NULL,
   evidence TEXT NOT NULL);
+)";
+
+// Version 1 had claims without a figure, and none that was not judged.
+constexpr const char* kOlderClaims = R"(
+ALTER TABLE claim RENAME TO older_claim;
+)";
+constexpr const char* kMoveClaims = R"(
+INSERT INTO claim SELECT id, scene, statement, verdict, '', evidence FROM older_claim ORDER BY rowid;
+DROP TABLE older_claim;
 )";
 
 int64_t versionOf(Database& database) {
@@ -77,12 +90,14 @@ int64_t versionOf(Database& database) {
 
 [[noreturn]] void failVersion(const Database& database, int64_t version) {
   throw ResultsFileError(database.path().string() + ": has results of version " + std::to_string(version) +
-                         "; expected version " + std::to_string(kResultsVersion));
+                         "; expected version " + std::to_string(kResultsVersion) + " or " +
+                         std::to_string(kOldestResultsVersion));
 }
 
 }  // namespace
 
 void createSchema(Database& database) {
+  const std::string setVersion = "PRAGMA user_version = " + std::to_string(kResultsVersion);
   // One writer, readers beside it, and a file that is whole after a power cut.
   database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
   Transaction transaction(database);
@@ -90,7 +105,9 @@ void createSchema(Database& database) {
   if (version == 0) {
     Statement tables(database, "SELECT count(*) FROM sqlite_master");
     if (tables.step() && tables.integer(0) != 0) failVersion(database, version);  // a database of somebody else
-    database.execute(std::string(kTables) + "PRAGMA user_version = " + std::to_string(kResultsVersion));
+    database.execute(std::string(kTables) + kClaimTable + setVersion);
+  } else if (version == kOldestResultsVersion) {
+    database.execute(std::string(kOlderClaims) + kClaimTable + kMoveClaims + setVersion);
   } else if (version != kResultsVersion) {
     failVersion(database, version);
   }
@@ -99,7 +116,9 @@ void createSchema(Database& database) {
 
 void requireSchema(Database& database) {
   const int64_t version = versionOf(database);
-  if (version != kResultsVersion) failVersion(database, version);
+  if (version != kResultsVersion && version != kOldestResultsVersion) failVersion(database, version);
 }
+
+bool hasClaimFigures(Database& database) { return versionOf(database) > kOldestResultsVersion; }
 
 }  // namespace wavecrest

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -79,22 +78,6 @@ class RecordedRender {
   size_t tasks_ = 0;
   double longest_ = 0;
 };
-
-// The rates of as many processes of one thread each that run at the same time, added up.
-double rateOfProcesses(uint32_t count, const ChildRequest& request) {
-  std::vector<std::future<double>> rates;
-  for (uint32_t i = 0; i < count; ++i) {
-    ChildRequest own = request;
-    own.seed = i;
-    rates.push_back(std::async(std::launch::async, [own = std::move(own)] {
-      const ScratchFolder folder;
-      return renderInChild(ownBinary(), own, folder).at("paths_per_second").get<double>();
-    }));
-  }
-  double sum = 0;
-  for (auto& rate : rates) sum += rate.get();
-  return sum;
-}
 
 }  // namespace
 

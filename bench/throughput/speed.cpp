@@ -36,7 +36,17 @@ Estimate scaled(Estimate estimate, double factor) {
   return {estimate.value * factor, {estimate.interval.low * factor, estimate.interval.high * factor}};
 }
 
-// slices: of one thread, each of whole iterations.
+double restIn(const Slice& slice) {
+  double rest = 1;
+  for (size_t i = 0; i < slice.stages.size(); ++i) rest -= shareIn(slice, i);
+  return rest;
+}
+
+double wallRate(const Slice& slice) { return slice.pathsPerSecond(); }
+double cpuRate(const Slice& slice) { return slice.pathsPerCpuSecond(); }
+
+}  // namespace
+
 std::vector<StageShare> stageShares(const std::vector<Slice>& slices) {
   std::vector<StageShare> shares;
   for (size_t i = 0; i < slices.front().stages.size(); ++i) {
@@ -56,17 +66,6 @@ std::vector<StageShare> stageShares(const std::vector<Slice>& slices) {
   }
   return shares;
 }
-
-double restIn(const Slice& slice) {
-  double rest = 1;
-  for (size_t i = 0; i < slice.stages.size(); ++i) rest -= shareIn(slice, i);
-  return rest;
-}
-
-double wallRate(const Slice& slice) { return slice.pathsPerSecond(); }
-double cpuRate(const Slice& slice) { return slice.pathsPerCpuSecond(); }
-
-}  // namespace
 
 Speed measureSpeed(const Scene& scene, const RenderSettings& settings, double seconds) {
   const std::vector<uint32_t> threads = threadCounts(settings.threads);

@@ -20,6 +20,9 @@ struct StageShare {
   std::optional<double> laneUse;  // items / lanes of the blocks they filled; of stages that work in blocks
 };
 
+// slices: of one thread that measures its stages, each of whole iterations.
+std::vector<StageShare> stageShares(const std::vector<Slice>& slices);
+
 struct ScalingRow {
   uint32_t threads = 1;
   Estimate pathsPerSecond;  // wall time

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "bench/enumerator_name.h"
 #include "engine/film.h"
 #include "engine/render_plan.h"
@@ -27,7 +30,6 @@ class Variants {
 
 void addArithmetic(Variants& variants, const RenderSettings& base) {
   variants.add("--precision", "double", true).precision = Precision::doubled;
-  variants.add("--precision", "fast", true).precision = Precision::fast;
   for (const Isa isa : availableIsas()) {
     if (isa != base.isa) variants.add("--isa", toString(isa), true).isa = isa;
   }
@@ -41,6 +43,10 @@ void addTracing(Variants& variants) {
   for (const Accel accel : {Accel::small, Accel::bvh, Accel::embree}) {
     variants.add("--accel", enumeratorName(kAccelNames, accel), true).accel = accel;
   }
+  // All that `fast` changes: it leaves out Embree's watertight tests.
+  RenderSettings& fastEmbree = variants.add("--accel", "embree --precision fast", true);
+  fastEmbree.accel = Accel::embree;
+  fastEmbree.precision = Precision::fast;
 }
 
 void addPaths(Variants& variants, const RenderSettings& base) {
@@ -56,6 +62,11 @@ void addPaths(Variants& variants, const RenderSettings& base) {
     const SamplerKind other = base.sampler == SamplerKind::sobol ? SamplerKind::independent : SamplerKind::sobol;
     variants.add("--sampler", toString(other)).sampler = other;
   }
+}
+
+void addFilter(Variants& variants, const RenderSettings& base) {
+  const FilterMode other = base.filterMode == FilterMode::spread ? FilterMode::sample : FilterMode::spread;
+  variants.add("--filter-mode", enumeratorName(kFilterModeNames, other)).filterMode = other;
 }
 
 void addMerging(Variants& variants, const RenderSettings& base, uint64_t pixels) {
@@ -89,9 +100,31 @@ std::vector<Variant> variantsOf(const Scene& scene, const RenderSettings& base) 
   addArithmetic(variants, base);
   addTracing(variants);
   addPaths(variants, base);
+  if (scene.film.filter != ReconstructionFilter::box) addFilter(variants, base);
   if (strategiesOf(base.method).merge) addMerging(variants, base, filmArea(scene.film).pixels.size());
   if (base.method == Method::mlt) addChains(variants, base);
   return variants.take();
+}
+
+std::vector<Variant> chooseVariants(std::vector<Variant> all, std::span<const std::string> knobs) {
+  const auto bare = [](std::string_view knob) {
+    return knob.substr(std::min(knob.find_first_not_of('-'), knob.size()));
+  };
+  const auto names = [&](const Variant& variant, std::string_view word) { return bare(variant.knob) == bare(word); };
+  for (const std::string& word : knobs) {
+    if (std::none_of(all.begin() + 1, all.end(), [&](const Variant& variant) { return names(variant, word); })) {
+      throw std::invalid_argument(fmt::format("'{}' is no setting that is varied here", word));
+    }
+  }
+  std::vector<Variant> chosen;
+  for (size_t i = 0; i < all.size(); ++i) {
+    // The baseline and double precision, with which the others are compared.
+    const bool compared = i < 2;
+    if (compared || std::any_of(knobs.begin(), knobs.end(), [&](const auto& word) { return names(all[i], word); })) {
+      chosen.push_back(std::move(all[i]));
+    }
+  }
+  return chosen;
 }
 
 }  // namespace wavecrest

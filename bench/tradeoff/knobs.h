@@ -1,6 +1,7 @@
 // The settings that buy speed, accuracy or memory, one changed at a time.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,5 +20,9 @@ struct Variant {
 // The baseline first, then double precision, then every other setting that means something for the method and the
 // scene. base: the settings that are varied, of precision float.
 std::vector<Variant> variantsOf(const Scene& scene, const RenderSettings& base);
+
+// The baseline, double precision, and those of the variants whose knob is one of these words, written with or without
+// leading dashes. Throws std::invalid_argument for a word that is no knob of any of them.
+std::vector<Variant> chooseVariants(std::vector<Variant> all, std::span<const std::string> knobs);
 
 }  // namespace wavecrest

@@ -16,7 +16,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kSeeds = 6, kReferenceSeeds = 6;
+constexpr size_t kReferenceSeeds = 6;
 constexpr double kReferencePart = 0.3;                  // of the time
 constexpr uint64_t kFirstReferenceSeed = 0x7472616465;  // unlike any that a user picks
 
@@ -27,6 +27,7 @@ struct OneRender {
   double cpuSeconds = 0, paths = 0;
   size_t bytes = 0;
   std::optional<double> joules;
+  Accel accel{};
 };
 
 OneRender render(const Scene& scene, const RenderSettings& settings, std::optional<uint64_t> iterations,
@@ -40,7 +41,8 @@ OneRender render(const Scene& scene, const RenderSettings& settings, std::option
                  .cpuSeconds = statistics.cpuSeconds,
                  .paths = static_cast<double>(statistics.paths),
                  .bytes = statistics.memory.total(),
-                 .joules = {}};
+                 .joules = {},
+                 .accel = statistics.accel};
   if (energy && energyAfter && *energyAfter > *energy) done.joules = *energyAfter - *energy;
   return done;
 }
@@ -145,24 +147,32 @@ void judge(std::vector<TradeRow>& rows) {
 
 }  // namespace
 
-TradeResult measureTrade(const Scene& scene, const RenderSettings& base, double seconds) {
+TradeResult measureTrade(const Scene& scene, const RenderSettings& base, const TradeEffort& effort) {
   const FilmArea area = filmArea(scene.film);
   TradeResult result;
   result.scene = scene.name;
   result.method = base.method;
   result.width = area.width;
   result.height = area.height;
-  result.seeds = kSeeds;
+  result.seeds = effort.seeds;
+  std::vector<Variant> variants = variantsOf(scene, base);
+  if (!effort.knobs.empty()) variants = chooseVariants(std::move(variants), effort.knobs);
   MachineWatch watch;
-  const TradeReference reference = renderReference(scene, base, kReferencePart * seconds);
+  const TradeReference reference = renderReference(scene, base, kReferencePart * effort.seconds);
   result.referenceMethod = reference.method;
 
-  const std::vector<Variant> variants = variantsOf(scene, base);
-  const double oneIteration = render(scene, base, 1, {}).cpuSeconds / base.threads;
-  const double share = (1 - kReferencePart) * seconds / static_cast<double>(kSeeds * variants.size());
+  const OneRender first = render(scene, base, 1, {});
+  const double oneIteration = first.cpuSeconds / base.threads;
+  const double share = (1 - kReferencePart) * effort.seconds / static_cast<double>(effort.seeds * variants.size());
   result.iterations = std::max<uint64_t>(1, static_cast<uint64_t>(share / std::max(oneIteration, 1e-6)));
   std::vector<Measured> measured(variants.size());
-  for (size_t seed = 0; seed < kSeeds; ++seed) {
+  for (size_t i = 0; i < variants.size(); ++i) {
+    // `small` tests every primitive of the scene for every ray: in a large mesh an iteration takes minutes.
+    if (variants[i].settings.accel == Accel::small && first.accel != Accel::small) {
+      measured[i].refusal = "for scenes of few primitives; this one has too many";
+    }
+  }
+  for (size_t seed = 0; seed < effort.seeds; ++seed) {
     for (size_t k = 0; k < variants.size(); ++k) {
       const size_t i = seed % 2 == 0 ? k : variants.size() - 1 - k;
       if (!measured[i].refusal.empty()) continue;

@@ -53,8 +53,12 @@ struct TradeResult {
 constexpr double kNegligibleBias = 1e-4;
 constexpr double kTradeLevel = 0.01;  // probability that any verdict of bias in a table is false
 
-// seconds: render time of everything, about.
-TradeResult measureTrade(const Scene& scene, const RenderSettings& base, double seconds);
+struct TradeEffort {
+  double seconds = 60;               // render time of everything, about
+  uint32_t seeds = 6;                // at least two
+  std::vector<std::string> knobs{};  // which settings are varied (chooseVariants); none: all
+};
+TradeResult measureTrade(const Scene& scene, const RenderSettings& base, const TradeEffort& effort);
 
 std::string toText(const TradeResult& result);
 nlohmann::ordered_json toJson(const TradeResult& result);

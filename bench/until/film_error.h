@@ -45,6 +45,8 @@ constexpr size_t kFewestSlices = 8;
 // Cuts a growing film into equal slices, and joins them in pairs when they are 2 kFewestSlices.
 class FilmSlices {
  public:
+  // sliceIterations: of each slice at first.
+  explicit FilmSlices(uint64_t sliceIterations = 1) : sliceIterations_(sliceIterations) {}
   // Iterations at which the film is to be added next.
   uint64_t nextIterations() const { return (slices_.size() + 1) * sliceIterations_; }
   // film: the mean of nextIterations() iterations.
@@ -52,7 +54,7 @@ class FilmSlices {
   std::span<const std::vector<float>> slices() const { return slices_; }
 
  private:
-  uint64_t sliceIterations_ = 1;
+  uint64_t sliceIterations_;
   std::vector<float> film_;  // as of the last add
   std::vector<std::vector<float>> slices_;
 };

@@ -28,7 +28,7 @@ SsimNow renderUntilSsim(Session& session, const RenderSettings& settings, const 
     now.iterations = session.statistics().iterations;
     now.ssim = ssimNow(session, goal.reference);
     now.reached = now.ssim >= goal.ssim;
-    if (session.interrupted() || (settings.seconds && session.progressSeconds() >= *settings.seconds)) break;
+    if (now.iterations < asked) break;  // its time is over, or it was interrupted
   }
   return now;
 }
@@ -44,8 +44,7 @@ ErrorNow FilmErrorWatch::renderUntil(Session& session, const RenderSettings& set
       now_.error = estimateFilmError(slices_.slices(), session.film().area().width);
       now_.reached = now_.error && now_.error->interval.high <= relativeError;
     }
-    const bool timeIsUp = settings.seconds && session.progressSeconds() >= *settings.seconds;
-    if (next >= most || session.interrupted() || timeIsUp) break;
+    if (next >= most || session.statistics().iterations < next) break;  // its time is over, or it was interrupted
   }
   return now_;
 }

@@ -1,4 +1,5 @@
 #include "engine/chains/chain_session.h"
+#include "engine/add_samples.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/task_arena.h>
@@ -6,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "engine/chains/chain_waves.h"
@@ -16,6 +18,7 @@
 #include "engine/render_clock.h"
 #include "engine/session_state.h"
 #include "engine/stage_rows.h"
+#include "engine/thread_pins.h"
 
 namespace wavecrest {
 namespace {
@@ -71,6 +74,7 @@ class ChainSession final : public Session {
   void updateFilm();
 
   oneapi::tbb::task_arena arena_;
+  std::optional<ThreadPins> pins_;  // once the session is built
   Film film_;
   const RenderSettings settings_;
   RenderPlan<S> plan_;
@@ -84,7 +88,7 @@ class ChainSession final : public Session {
   double stepSeconds_ = 0;          // that the latest took
   std::vector<StuckChain> stuck_;   // at the ends of epochs
   WorkDone earlier_;                // of the sessions that this one goes on for; its counts but not its paths
-  RenderClock clock_;
+  RenderClock clock_{settings_.clock, settings_.threads};
   double buildSeconds_ = 0;
   std::atomic<uint64_t> progressPaths_{0};
 };
@@ -93,15 +97,17 @@ template <class S>
 ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings)
     : arena_(static_cast<int>(settings.threads)),
       film_(filmArea(scene.film)),
-      settings_(withPieces(settings, film_.area().pixels.size())) {
+      settings_(withPieces(settings, scene.film, film_.area().pixels.size())) {
   if (settings.firstIteration != 0) {
     throw std::invalid_argument("ChainSession: chains cannot begin in the middle; expected the first iteration");
   }
   const auto begin = Clock::now();
   const WorkerLimit limit(settings.threads);
+  const SpreadMemory spread(settings.placement);
   arena_.execute([&] { plan_ = planRender<S>(scene, settings_); });
   memory_ = planMemory(plan_, settings_, film_.area());
   film_.makeSplats(settings.threads, memory_.splatScale);
+  if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.scene->view.camera);
   const MetropolisSettings& metropolis = settings.metropolis;
   const bool multiplexed = plan_.pipeline.lightPass.has_value();
   epochs_ = Epochs(multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,
@@ -109,6 +115,7 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
                                : plainBootstrap(metropolis.bootstrapSamples));
   chains_.emplace(plan_, settings_, film_.area());
   bootstrapped_.resize(piecesOf(epochs_.targets.size(), settings_.waveSize));
+  pins_.emplace(arena_, settings_.placement);
   buildSeconds_ = secondsSince(begin);
 }
 
@@ -208,9 +215,10 @@ bool ChainSession<S>::traceDirect(const Stop& stop) {
     for (uint64_t done = run.samples; done < goal && !stop(); ++done) {
       StageContext<S> context = chainContext(plan_, settings_, area);
       context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(done), nullptr};
+      context.sharedPlace = film_.spreads();
       ChainWorker<S>& mine = worker();
       mine.traceDirect(context, area, run.first, run.count);
-      mine.counters.nonFinite += film_.add(mine.wave());
+      mine.counters.nonFinite += addSamples(film_, plan_, context.sampler, mine.wave());
     }
   });
   directDone_ = film_.minSamples();
@@ -282,10 +290,12 @@ RenderStatistics ChainSession<S>::statistics() const {
   out.paths = mutations();
   out.buildSeconds = buildSeconds_;
   out.renderSeconds = clock_.seconds();
+  out.renderWallSeconds = clock_.wallSeconds();
   out.cpuSeconds = clock_.cpuSeconds();
   out.isa = plan_.isa;
   out.specialization = plan_.specialization;
   out.accel = plan_.accel();
+  out.filterMode = film_.spreads() ? FilterMode::spread : FilterMode::sample;
   for (std::string& name : stageNames(plan_.pipeline)) out.stages.push_back({std::move(name)});
   for (const auto& worker : workers_) {
     out.counters += worker->counters;
@@ -322,7 +332,8 @@ RenderStatistics ChainSession<S>::statistics() const {
   out.counters.cutPaths = 0;
   out.counters.cutThroughput = 0;
   out.memory.scene = sceneBytes(*plan_.scene);
-  out.memory.film = filmBytes(film_.area().pixels.size());
+  out.memory.film = film_.bytes();
+  out.memory.image = film_.imageBytes();
   out.memory.splats = film_.splats().bytes();
   out.memory.chains = chains.bytes;
   return out;

@@ -3,22 +3,26 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "engine/compile/materials.h"
+#include "engine/compile/scene_geometry.h"
 #include "engine/compile/tabulate.h"
+#include "engine/parallel_for.h"
 #include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
 
 namespace wavecrest {
 
-uint32_t sceneFeatures(const Scene& scene) {
-  uint32_t features = 0;
+uint32_t sceneFeatures(const Scene& scene, bool keeps) {
+  uint32_t features = keeps ? uint32_t{kInstances} : 0;
   for (const Shape& shape : scene.shapes) {
-    if (shape.material != kNone) features |= materialFeatures(scene.materials[shape.material]);
+    if (shape.material != kNone) features |= materialFeatures(scene.materials[shape.material], scene);
     if (std::holds_alternative<Sphere>(shape.kind)) features |= kCurvedShapes;
     if (std::holds_alternative<Cylinder>(shape.kind)) features |= kShadingNormals;
     if (const Mesh* mesh = std::get_if<Mesh>(&shape.kind); mesh != nullptr && !mesh->normals.empty()) {
@@ -26,14 +30,25 @@ uint32_t sceneFeatures(const Scene& scene) {
     }
   }
   for (const Emitter& emitter : scene.emitters) {
-    if (std::holds_alternative<SpotEmitter>(emitter.kind) || std::holds_alternative<DirectionalEmitter>(emitter.kind) ||
-        std::holds_alternative<EnvmapEmitter>(emitter.kind)) {
+    if (std::holds_alternative<SpotEmitter>(emitter.kind) || std::holds_alternative<ProjectorEmitter>(emitter.kind) ||
+        std::holds_alternative<DirectionalEmitter>(emitter.kind) ||
+        std::holds_alternative<EnvmapEmitter>(emitter.kind) || std::holds_alternative<SunskyEmitter>(emitter.kind)) {
       features |= kRareLights;
     }
     const auto* area = std::get_if<AreaEmitter>(&emitter.kind);
     if (area != nullptr && area->radiance.texture != kNone) features |= kTextures;
+    const auto* spot = std::get_if<SpotEmitter>(&emitter.kind);
+    if (spot != nullptr && spot->texture != kNone) features |= kTextures;
+    const auto* projector = std::get_if<ProjectorEmitter>(&emitter.kind);
+    if (projector != nullptr && projector->irradiance.texture != kNone) features |= kTextures;
   }
   return features;
+}
+
+bool hasTangents(const Scene& scene) {
+  return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
+    return shape.material != kNone && isAnisotropic(scene.materials[shape.material], scene);
+  });
 }
 
 CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const Double3& origin) {
@@ -58,7 +73,6 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const D
   assign(camera.du, transformVector(sensor.toWorld, {-2 * halfWidth / film.width, 0, 0}));
   assign(camera.dv, transformVector(sensor.toWorld, {0, -2 * halfHeight / film.height, 0}));
   assign(camera.axis, normalized(transformVector(sensor.toWorld, {0, 0, 1})));
-  const auto vec = [](const double(&a)[3]) { return Double3{a[0], a[1], a[2]}; };
   camera.planeDepth = dot(vec(camera.corner), vec(camera.axis));
   camera.inverseDu2 = 1 / dot(vec(camera.du), vec(camera.du));
   camera.inverseDv2 = 1 / dot(vec(camera.dv), vec(camera.dv));
@@ -87,7 +101,6 @@ struct NearBox {
   Double3 low, high;
 
   NearBox(const CameraView& camera, double nearClip) {
-    const auto vec = [](const double(&a)[3]) { return Double3{a[0], a[1], a[2]}; };
     const Double3 origin = vec(camera.origin);
     low = high = origin;
     const double around = 1 + 4.5 * camera.filterScale;  // pixels; filters reach over the picture's border
@@ -110,8 +123,11 @@ struct NearBox {
   bool touches(const PrimitiveRecord<double>& primitive) const {
     if (static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere) return touchesSphere(primitive);
     const BoundingSphere bounds = boundPrimitives(std::span<const PrimitiveRecord<double>>(&primitive, 1));
+    return touches(vec(bounds.low), vec(bounds.high));
+  }
+  bool touches(const Double3& boxLow, const Double3& boxHigh) const {
     for (size_t i = 0; i < 3; ++i) {
-      if (bounds.high[i] < low[i] || bounds.low[i] > high[i]) return false;
+      if (boxHigh[i] < low[i] || boxLow[i] > high[i]) return false;
     }
     return true;
   }
@@ -134,10 +150,11 @@ struct NearBox {
 // Rays are intersected in single precision, which holds numbers from 1e-38 to 3e38, and intersectors square lengths.
 constexpr double kLargestExtent = 1e18, kSmallestSphere = 1e-18;
 
-void checkRange(const Scene& scene, const BoundingSphere& bounds) {
-  if (!(bounds.radius <= kLargestExtent)) {
+// radius: of the scene, or of a group in its space if that is larger.
+void checkRange(const Scene& scene, double radius) {
+  if (!(radius <= kLargestExtent)) {
     throw SceneError(SourceLocation{scene.name},
-                     fmt::format("the scene's radius is {:g}; expected at most {:g}", bounds.radius, kLargestExtent));
+                     fmt::format("the scene's radius is {:g}; expected at most {:g}", radius, kLargestExtent));
   }
   for (const Shape& shape : scene.shapes) {
     const auto* sphere = std::get_if<Sphere>(&shape.kind);
@@ -149,14 +166,25 @@ void checkRange(const Scene& scene, const BoundingSphere& bounds) {
 
 }  // namespace
 
-void setClips(const Sensor& sensor, const std::vector<PrimitiveRecord<double>>& primitives, CameraView& camera) {
+void setClips(const Sensor& sensor, const SceneGeometry& geometry, CameraView& camera) {
+  const PrimitiveList& primitives = geometry.world();
   // An orthographic camera's rays begin at the near clip anyway.
   if (!camera.parallel) {
     const NearBox box(camera, sensor.nearClip);
-    const auto touches = [&](const auto& primitive) { return box.touches(primitive); };
-    if (std::any_of(primitives.begin(), primitives.end(), touches)) camera.nearClip = sensor.nearClip;
+    std::atomic<bool> touched{false};
+    forEachRange(parallelFor, primitives.counts().total(), [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end && !touched; ++i) {
+        if (box.touches(primitives.geometry<double>(i))) touched = true;
+      }
+    });
+    for (const BvhInstance& instance : geometry.instances()) {
+      if (touched || !box.touches(vec(instance.box.low), vec(instance.box.high))) continue;
+      touched = geometry.anyInInstance(instance,
+                                       [&](const Double3& low, const Double3& high) { return box.touches(low, high); });
+    }
+    if (touched) camera.nearClip = sensor.nearClip;
   }
-  const BoundingSphere bounds = boundPrimitives(primitives);
+  const BoundingSphere bounds = geometry.bounds<double>();
   double farthest = 0;
   for (size_t i = 0; i < 3; ++i) {
     farthest += ((camera.axis[i] > 0 ? bounds.high[i] : bounds.low[i]) - camera.origin[i]) * camera.axis[i];
@@ -166,63 +194,83 @@ void setClips(const Sensor& sensor, const std::vector<PrimitiveRecord<double>>& 
 }
 
 template <class S>
-std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree) {
+std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree,
+                                               Instancing instancing) {
   auto compiled = std::make_unique<CompiledScene<S>>();
-  const uint32_t features = sceneFeatures(scene);
-  const bool textured = (features & kTextures) != 0;
-  auto& primitives = compiled->primitives = compilePrimitives<S>(scene, textured);
-  if (primitives.records.empty()) {
+  const bool keeps = keepsInstances(scene, accel, instancing);
+  const uint32_t features = sceneFeatures(scene, keeps);
+  SceneGeometry geometry(scene, (features & kTextures) != 0, keeps);
+  if (geometry.counts().total() == 0) {
     const SourceLocation where = scene.shapes.empty() ? SourceLocation{scene.name} : scene.shapes.front().source;
     throw SceneError(where, "no shape of the scene has a surface; expected one of positive area");
   }
-  BoundingSphere bounds = boundPrimitives(primitives.records);
-  checkRange(scene, bounds);
+  BoundingSphere bounds = geometry.bounds<S>();
+  checkRange(scene, std::max(bounds.radius, geometry.groupExtent()));
   const Double3 origin = compiled->origin = originOf(bounds);
   if (origin != Double3{}) {
-    primitives = compilePrimitives<S>(scene, textured, origin);
-    bounds = boundPrimitives(primitives.records);
+    geometry.moveTo(origin);
+    bounds = geometry.bounds<S>();
   }
-  compiled->lights = compileLights(scene, bounds, primitives, origin);
-  if (scene.materials.size() > kMaxMaterials) {
-    throw SceneError(SourceLocation{scene.name}, "more than " + std::to_string(kMaxMaterials) + " materials");
-  }
-  for (const Material& material : scene.materials) compiled->materials.push_back(compileMaterial(material, scene));
-
-  compiled->textures = compileTextures(scene);
-  bindLightTextures(scene, primitives, compiled->lights, compiled->textures);
-
+  compiled->bounds = bounds;
   SceneView<S>& view = compiled->view;
   view.camera = compileCamera(scene.sensor, scene.film, origin);
-  const std::vector<PrimitiveRecord<double>> precise = compilePrimitives<double>(scene, false, origin).records;
-  setClips(scene.sensor, precise, view.camera);
+  setClips(scene.sensor, geometry, view.camera);
+
+  // Intersectors first: what they need only while they are built is gone before the records are made.
+  const PrimitiveList& world = geometry.world();
   if (accel == Accel::automatic) {
-    accel = primitives.counts.total() <= kSmallSceneLimit ? Accel::small : Accel::bvh;
+    accel = !keeps && world.counts().total() <= kSmallSceneLimit ? Accel::small : Accel::bvh;
   }
+  if (accel == Accel::small) {
+    std::vector<PrimitiveRecord<double>> precise(world.counts().total());
+    for (size_t i = 0; i < precise.size(); ++i) precise[i] = world.geometry<double>(i);
+    compiled->small = std::make_unique<SmallScene>(precise.data(), precise.size(), view.camera.origin);
+    view.small = &compiled->small->view();
+  } else if (accel == Accel::bvh) {
+    compiled->bvh =
+        std::make_unique<Bvh>(world.source(), geometry.groups(), geometry.instances(), view.camera.origin, parallelFor);
+    view.bvh = &compiled->bvh->view();
+  }
+  auto& primitives = compiled->primitives = geometry.compile<S>();
+  compiled->instances = geometry.compileInstances<S>();
   if (accel == Accel::embree) {
     compiled->embree =
         std::make_unique<EmbreeScene>(primitives.records.data(), primitives.counts.quads, primitives.counts.triangles,
                                       primitives.counts.spheres, watertightEmbree);
     view.embree = compiled->embree->handle();
-  } else {
-    if (accel == Accel::small) {
-      compiled->small = std::make_unique<SmallScene>(precise.data(), precise.size(), view.camera.origin);
-      view.small = &compiled->small->view();
-    } else {
-      compiled->bvh = std::make_unique<Bvh>(precise.data(), precise.size(), view.camera.origin);
-      view.bvh = &compiled->bvh->view();
+  }
+
+  compiled->lights = compileLights(scene, bounds, primitives, origin);
+  if (scene.materials.size() > kMaxMaterials) {
+    throw SceneError(SourceLocation{scene.name}, "more than " + std::to_string(kMaxMaterials) + " materials");
+  }
+  for (const Material& material : scene.materials) compiled->materials.push_back(compileMaterial(material, scene));
+  if ((features & kCompoundBsdfs) != 0) {
+    for (const Material& material : scene.materials) {
+      compiled->compounds.push_back(compileCompound(material));
     }
   }
+
+  compiled->textures = compileTextures(scene);
+  bindLightTextures(scene, primitives, compiled->lights, compiled->textures);
+
   view.primitives = primitives.records.data();
   view.primitiveCount = static_cast<uint32_t>(primitives.records.size());
   if constexpr (sizeof(S) == sizeof(float)) {
-    compiled->primitiveTable = tabulate<PrimitiveTable>(std::span<const PrimitiveRecord<S>>(primitives.records));
+    compiled->primitiveTable = tabulate<PrimitiveTable>(
+        std::span<const PrimitiveRecord<S>>(primitives.records.data(), primitives.records.size()));
     view.primitiveTable = compiled->primitiveTable.get();
   }
   view.attributes = primitives.attributes.data();
+  if (keeps) view.instances = compiled->instances.data();
+  view.instanceCount = static_cast<uint32_t>(compiled->instances.size());
   view.materials = compiled->materials.data();
+  if (!compiled->compounds.empty()) view.compounds = compiled->compounds.data();
   view.materialCount = static_cast<uint32_t>(compiled->materials.size());
   view.bsdfKinds = 0;
   for (const MaterialRecord& material : compiled->materials) view.bsdfKinds |= 1u << material.kind;
+  // Without the feature no shape has one.
+  if (compiled->compounds.empty()) view.bsdfKinds &= ~kCompoundKinds;
   compiled->materialTable = tabulate<MaterialTable>(std::span<const MaterialRecord>(compiled->materials));
   view.materialTable = compiled->materialTable.get();
   view.textures = compiled->textures.records.data();
@@ -232,15 +280,20 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   view.lightTable = compiled->lights.table.data();
   view.lightCount = static_cast<uint32_t>(compiled->lights.records.size());
   view.infiniteLight = compiled->lights.infinite;
+  view.hidesInfinite = scene.defaults.hideEmitters;
   view.normalMaps = (features & kNormalMaps) != 0;
+  view.tangents = hasTangents(scene);
   view.spheres = primitives.counts.spheres != 0;
   view.firstPrimitive[1] = primitives.counts.quads;
   view.firstPrimitive[2] = primitives.counts.quads + primitives.counts.triangles;
-  for (size_t i = 0; i < 3; ++i) view.center[i] = bounds.center[i];
+  for (size_t i = 0; i < 3; ++i) {
+    view.center[i] = bounds.center[i];
+    view.halfExtent[i] = bounds.halfExtent(i);
+  }
   view.radius = bounds.radius;
   return compiled;
 }
-template std::unique_ptr<CompiledScene<float>> compileScene(const Scene&, Accel, bool);
-template std::unique_ptr<CompiledScene<double>> compileScene(const Scene&, Accel, bool);
+template std::unique_ptr<CompiledScene<float>> compileScene(const Scene&, Accel, bool, Instancing);
+template std::unique_ptr<CompiledScene<double>> compileScene(const Scene&, Accel, bool, Instancing);
 
 }  // namespace wavecrest

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/compile/instances.h"
 #include "engine/compile/lights.h"
 #include "engine/compile/primitives.h"
 #include "engine/compile/textures.h"
@@ -14,22 +15,23 @@
 
 namespace wavecrest {
 
-// small: a loop over all primitives, for small scenes. bvh: our own hierarchy, for all others. embree: what bvh is
-// measured against, and an independent check of it.
-enum class Accel { automatic, embree, small, bvh };
-constexpr std::array<std::string_view, 4> kAccelNames{"auto", "embree", "small", "bvh"};
-
 // Scenes of up to this many primitives are faster without a hierarchy (measured: bench/micro, crossover).
 constexpr uint32_t kSmallSceneLimit = 96;
 
-// What a scene asks of the kernels, before anything is compiled: Feature bits.
-uint32_t sceneFeatures(const Scene& scene);
+// What a scene asks of the kernels, before anything is compiled: Feature bits. keeps: its instances (instances.h).
+uint32_t sceneFeatures(const Scene& scene, bool keeps = false);
+
+// Whether a shape's BSDF depends on the direction of dp/du.
+bool hasTangents(const Scene& scene);
 
 template <class S>
 struct CompiledScene {
   Double3 origin{};  // of all coordinates below, in those of the scene (originOf)
+  BoundingSphere bounds;
   Primitives<S> primitives;
+  RecordArray<InstanceRecord<S>> instances;  // if the scene keeps its instances
   std::vector<MaterialRecord> materials;
+  std::vector<CompoundRecord> compounds;           // of each material, if one is a compound BSDF
   std::unique_ptr<PrimitiveTable> primitiveTable;  // if they are few, and in float
   std::unique_ptr<MaterialTable> materialTable;    // if they are few
   Textures textures;
@@ -50,13 +52,16 @@ struct CompiledScene {
 // Builds everything, the hierarchy on all threads of the task arena. Throws SceneError where the scene cannot be
 // rendered.
 template <class S>
-std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree = true);
+std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree = true,
+                                               Instancing instancing = Instancing::automatic);
+
+class SceneGeometry;
 
 // The camera of a sensor over its full film, relative to `origin`.
 CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const Double3& origin = {});
 
 // Sets the camera's clips where a primitive, in the camera's coordinates, may lie outside of them. Most scenes have
-// nothing there, and then rays begin at the lens and need no test.
-void setClips(const Sensor& sensor, const std::vector<PrimitiveRecord<double>>& primitives, CameraView& camera);
+// nothing there, and then rays begin at the lens and need no test. Of spheres in instances their boxes count.
+void setClips(const Sensor& sensor, const SceneGeometry& geometry, CameraView& camera);
 
 }  // namespace wavecrest

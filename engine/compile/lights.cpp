@@ -4,6 +4,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "engine/compile/sky.h"
 #include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
 #include "kernels/extend/offset.h"
@@ -125,7 +126,32 @@ class LightCollector {
     light.cosTotal = static_cast<S>(cosTotal);
     light.cosFalloff = static_cast<S>(cosFalloff);
     light.kind = static_cast<uint32_t>(LightKind::spot);
+    if (spot.texture != kNone) {  // its square touches the circle of the cutoff
+      light.texture = spot.texture;
+      const double half = std::tan(spot.cutoffAngle * std::numbers::pi / 180);
+      assign(light.e1, pictureAxis(spot.toWorld, 0, half));
+      assign(light.e2, pictureAxis(spot.toWorld, 1, half));
+    }
     add(light, 2 * std::numbers::pi * (1 - (cosTotal + cosFalloff) / 2) * luminance(spot.intensity));
+  }
+  void visit(const ProjectorEmitter& projector) {
+    LightRecord<S> light = blank();
+    const Matrix4& m = projector.toWorld;
+    const double halfWidth = std::tan(projector.fovX * std::numbers::pi / 360),
+                 halfHeight = halfWidth / projector.aspect;
+    const double area = 4 * halfWidth * halfHeight;
+    const bool textured = projector.irradiance.texture != kNone;
+    const Rgb irradiance = textured ? Rgb{1, 1, 1} : projector.irradiance.value;
+    assign(light.p0, Double3{m[0][3], m[1][3], m[2][3]} - origin_);
+    assign(light.normal, normalized(column(m, 2)));
+    // As a camera's picture: x grows to the left, y upwards.
+    assign(light.e1, -1.0 * pictureAxis(m, 0, halfWidth));
+    assign(light.e2, -1.0 * pictureAxis(m, 1, halfHeight));
+    assign(light.radiance, (std::numbers::pi * projector.scale) * irradiance);
+    light.inverseArea = static_cast<S>(1 / area);
+    light.texture = projector.irradiance.texture;
+    light.kind = static_cast<uint32_t>(LightKind::projector);
+    add(light, std::numbers::pi * projector.scale * luminance(irradiance) * area);
   }
   void visit(const DirectionalEmitter& directional) {
     LightRecord<S> light = blank();
@@ -150,6 +176,12 @@ class LightCollector {
     lights_.environment = compileEnvironment(envmap);
     addInfinite(light, lights_.environment.meanLuminance);
   }
+  void visit(const SunskyEmitter& sunsky) {
+    LightRecord<S> light = blank();
+    light.kind = static_cast<uint32_t>(LightKind::envmap);
+    lights_.environment = compileSky(sunsky);
+    addInfinite(light, lights_.environment.meanLuminance);
+  }
 
   void addInfinite(const LightRecord<S>& light, double meanLuminance) {
     if (lights_.infinite != kNoIndex) {
@@ -157,6 +189,13 @@ class LightCollector {
     }
     lights_.infinite = static_cast<uint32_t>(lights_.records.size());
     add(light, 4 * std::numbers::pi * discArea() * meanLuminance);
+  }
+  static Double3 column(const Matrix4& m, size_t i) { return {m[0][i], m[1][i], m[2][i]}; }
+  // What gives -1 and 1 at the sides of a light's picture, which is on the plane at distance 1 along its z axis and
+  // 2 `half` wide along its axis i.
+  static Double3 pictureAxis(const Matrix4& toWorld, size_t i, double half) {
+    const Double3 axis = column(toWorld, i);
+    return (length(column(toWorld, 2)) / (dot(axis, axis) * half)) * axis;
   }
   double discArea() const { return std::numbers::pi * bounds_.radius * bounds_.radius; }
   static LightRecord<S> blank() {
@@ -179,7 +218,7 @@ namespace {
 
 // toUv after the affine map of a primitive's (u, v) to the texture coordinates at its corners.
 template <class S>
-void composeWithCorners(const PrimitiveRecord<S>& primitive, const std::vector<AttributeRecord>& attributes,
+void composeWithCorners(const PrimitiveRecord<S>& primitive, const RecordArray<AttributeRecord>& attributes,
                         float (&toUv)[6]) {
   if (primitive.attributes == kNoIndex) return;
   const auto& uv = attributes[primitive.attributes].uv;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/compile/rough_boundary.h"
+#include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
 #include "kernels/stages.h"
 
@@ -33,17 +34,26 @@ bool isSmooth(const TexturedFloat& alpha) { return alpha.texture == kNone && alp
 
 double relativeIor(const Dielectric& dielectric) {
   const double ratio = dielectric.intIor / dielectric.extIor;
-  if (dielectric.thin || isSmooth(dielectric.alpha) || std::abs(ratio - 1) >= kIndexMatched) return ratio;
+  if (dielectric.thin || (isSmooth(dielectric.alpha) && !dielectric.alphaV) || std::abs(ratio - 1) >= kIndexMatched)
+    return ratio;
   return ratio < 1 ? 1 - kIndexMatched : 1 + kIndexMatched;
 }
 
 BsdfKind kindOf(const Diffuse&) { return BsdfKind::diffuse; }
 BsdfKind kindOf(const Conductor& conductor) {
+  if (conductor.alphaV) {
+    return conductor.distribution == Distribution::ggx ? BsdfKind::anisotropicConductor
+                                                       : BsdfKind::anisotropicBeckmannConductor;
+  }
   if (isSmooth(conductor.alpha)) return BsdfKind::conductor;
   return conductor.distribution == Distribution::ggx ? BsdfKind::roughConductor : BsdfKind::beckmannConductor;
 }
 BsdfKind kindOf(const Dielectric& dielectric) {
   if (dielectric.thin) return BsdfKind::thinDielectric;
+  if (dielectric.alphaV) {
+    return dielectric.distribution == Distribution::ggx ? BsdfKind::anisotropicDielectric
+                                                        : BsdfKind::anisotropicBeckmannDielectric;
+  }
   if (isSmooth(dielectric.alpha)) return BsdfKind::dielectric;
   return dielectric.distribution == Distribution::ggx ? BsdfKind::roughDielectric : BsdfKind::beckmannDielectric;
 }
@@ -52,11 +62,32 @@ BsdfKind kindOf(const Plastic& plastic) {
   return plastic.distribution == Distribution::ggx ? BsdfKind::roughPlastic : BsdfKind::beckmannPlastic;
 }
 BsdfKind kindOf(const Phong&) { return BsdfKind::phong; }
-BsdfKind kindOf(const Material& material) {
-  return std::visit([](const auto& bsdf) { return kindOf(bsdf); }, material.kind);
+BsdfKind kindOf(const Principled& principled) {
+  return principled.thin ? BsdfKind::principledThin : BsdfKind::principled;
+}
+
+uint32_t lobesOf(BsdfKind kind);
+BsdfKind kindOf(const Material& material, const Scene& scene);
+
+// The lobes of a blend's parts.
+uint32_t lobesOf(const Blend& blend, const Scene& scene) {
+  uint32_t lobes = 0;
+  for (const uint32_t part : blend.materials) {
+    lobes |= lobesOf(kindOf(scene.materials[part], scene)) | (scene.materials[part].opacity ? kHasDelta : 0u);
+  }
+  return lobes;
+}
+BsdfKind kindOf(const Material& material, const Scene& scene) {
+  return std::visit(Overloaded{[&](const Blend& blend) {
+                                 return (lobesOf(blend, scene) & kHasFinite) != 0 ? BsdfKind::blend
+                                                                                  : BsdfKind::deltaBlend;
+                               },
+                               [](const auto& bsdf) { return kindOf(bsdf); }},
+                    material.kind);
 }
 
 uint32_t featureOf(BsdfKind kind) {
+  if ((bitOf(kind) & kCompoundKinds) != 0) return kCompoundBsdfs | kLayeredBsdfs | kSpecularBsdfs;
   switch (kind) {
     case BsdfKind::diffuse:
       return 0;
@@ -74,6 +105,7 @@ uint32_t lobesOf(BsdfKind kind) {
     case BsdfKind::conductor:
     case BsdfKind::dielectric:
     case BsdfKind::thinDielectric:
+    case BsdfKind::deltaBlend:
       return kHasDelta;
     case BsdfKind::plastic:
       return kHasDelta | kHasFinite;
@@ -140,6 +172,14 @@ class Compiler {
     assignTextured(record_.alpha, record_.alphaTexture, dielectric.alpha);
   }
 
+  void operator()(const Principled& principled) {
+    record_.eta[0] = static_cast<float>(principled.eta);
+    assignTextured(record_.reflectance, record_.reflectanceTexture, principled.baseColor);
+    assignTextured(record_.alpha, record_.alphaTexture, principled.roughness);
+  }
+
+  void operator()(const Blend& blend) { record_.flags |= lobesOf(blend, scene_); }
+
   void operator()(const Plastic& plastic) {
     const double eta = plastic.intIor / plastic.extIor;
     record_.eta[0] = static_cast<float>(eta);
@@ -198,25 +238,52 @@ uint32_t sidesOf(const Material& material) {
 
 }  // namespace
 
-uint32_t materialFeatures(const Material& material) {
-  uint32_t features = featureOf(kindOf(material));
-  if (material.opacity) features |= kLayeredBsdfs | kSpecularBsdfs;
+bool isTextured(const Material& material, const Scene& scene) {
   const auto textured = [](const auto&... values) { return ((values.texture != kNone) || ...); };
+  const auto across = [&](const auto& bsdf) { return bsdf.alphaV && textured(*bsdf.alphaV); };
+  const auto part = [&](uint32_t index) { return isTextured(scene.materials[index], scene); };
   const bool anyTexture = std::visit(
       Overloaded{[&](const Diffuse& d) { return textured(d.reflectance); },
-                 [&](const Conductor& c) { return textured(c.specularReflectance, c.alpha); },
-                 [&](const Dielectric& d) { return textured(d.specularReflectance, d.specularTransmittance, d.alpha); },
+                 [&](const Conductor& c) { return textured(c.specularReflectance, c.alpha) || across(c); },
+                 [&](const Dielectric& d) {
+                   return textured(d.specularReflectance, d.specularTransmittance, d.alpha) || across(d);
+                 },
                  [&](const Plastic& p) { return textured(p.diffuseReflectance, p.specularReflectance, p.alpha); },
-                 [&](const Phong& p) { return textured(p.diffuseReflectance, p.specularReflectance); }},
+                 [&](const Phong& p) { return textured(p.diffuseReflectance, p.specularReflectance); },
+                 [&](const Principled& p) {
+                   return textured(p.baseColor, p.roughness, p.anisotropic, p.specTrans, p.specTint, p.sheen,
+                                   p.sheenTint, p.flatness, p.metallic, p.clearcoat, p.clearcoatGloss, p.diffTrans);
+                 },
+                 [&](const Blend& b) {
+                   return b.weightTexture != kNone || std::any_of(b.materials.begin(), b.materials.end(), part);
+                 }},
       material.kind);
-  if (anyTexture || (material.opacity && textured(*material.opacity))) features |= kTextures;
+  return anyTexture || hasNormalMap(material) || (material.opacity && textured(*material.opacity));
+}
+
+bool isAnisotropic(const Material& material, const Scene& scene) {
+  const auto part = [&](uint32_t index) { return isAnisotropic(scene.materials[index], scene); };
+  return std::visit(
+      Overloaded{[](const Conductor& c) { return c.alphaV.has_value(); },
+                 [](const Dielectric& d) { return d.alphaV.has_value(); },
+                 [](const Principled& p) { return p.anisotropic.texture != kNone || p.anisotropic.value != 0; },
+                 [&](const Blend& b) { return std::any_of(b.materials.begin(), b.materials.end(), part); },
+                 [](const auto&) { return false; }},
+      material.kind);
+}
+
+uint32_t materialFeatures(const Material& material, const Scene& scene) {
+  uint32_t features = featureOf(kindOf(material, scene));
+  if (material.opacity) features |= kLayeredBsdfs | kSpecularBsdfs;
+  // Tangents come from texture coordinates.
+  if (isTextured(material, scene) || isAnisotropic(material, scene)) features |= kTextures;
   if (hasNormalMap(material)) features |= kTextures | kNormalMaps;
   return features;
 }
 
 MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
   MaterialRecord record{};
-  const BsdfKind kind = kindOf(material);
+  const BsdfKind kind = kindOf(material, scene);
   record.kind = static_cast<uint32_t>(kind);
   record.flags = lobesOf(kind);
   record.flags |= sidesOf(material);
@@ -233,6 +300,48 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
     if (record.opacity < 1 || record.opacityTexture != kNone) record.flags |= kHasDelta;
   }
   std::visit(Compiler(record, scene), material.kind);
+  return record;
+}
+
+CompoundRecord compileCompound(const Material& material) {
+  CompoundRecord record{};
+  record.weightTexture = kNone;
+  std::ranges::fill(record.texture, kNone);
+  const auto parameter = [&](CompoundParameter name, const TexturedFloat& value) {
+    const auto k = static_cast<size_t>(name);
+    assignTextured(record.value[k], record.texture[k], value);
+  };
+  const auto across = [&](const auto& bsdf) {
+    if (bsdf.alphaV) parameter(CompoundParameter::alphaV, *bsdf.alphaV);
+  };
+  std::visit(Overloaded{[&](const Conductor& c) { across(c); }, [&](const Dielectric& d) { across(d); },
+                        [&](const Principled& p) {
+                          parameter(CompoundParameter::anisotropic, p.anisotropic);
+                          parameter(CompoundParameter::metallic, p.metallic);
+                          parameter(CompoundParameter::specTrans, p.specTrans);
+                          parameter(CompoundParameter::specTint, p.specTint);
+                          parameter(CompoundParameter::sheen, p.sheen);
+                          parameter(CompoundParameter::sheenTint, p.sheenTint);
+                          parameter(CompoundParameter::flatness, p.flatness);
+                          parameter(CompoundParameter::clearcoat, p.clearcoat);
+                          parameter(CompoundParameter::clearcoatGloss, p.clearcoatGloss);
+                          parameter(CompoundParameter::diffTrans, p.diffTrans);
+                        },
+                        [&](const Blend& blend) {
+                          if (blend.materials.size() > kMostParts) {
+                            throw SceneError(material.source, "a blend of " + std::to_string(blend.materials.size()) +
+                                                                  " BSDFs; expected at most " +
+                                                                  std::to_string(kMostParts));
+                          }
+                          record.partCount = static_cast<uint32_t>(blend.materials.size());
+                          std::ranges::copy(blend.materials, record.part);
+                          for (size_t i = 0; i < blend.weights.size(); ++i) {
+                            record.weight[i] = static_cast<float>(blend.weights[i]);
+                          }
+                          record.weightTexture = blend.weightTexture;
+                        },
+                        [](const auto&) {}},
+             material.kind);
   return record;
 }
 

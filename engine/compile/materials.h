@@ -7,10 +7,16 @@
 namespace wavecrest {
 
 // What a material asks of the kernels: Feature bits (kernels/stages.h).
-uint32_t materialFeatures(const Material& material);
+uint32_t materialFeatures(const Material& material, const Scene& scene);
+
+// Whether the direction of dp/du matters to it, and whether the material, or a part of it, has any texture.
+bool isAnisotropic(const Material& material, const Scene& scene);
+bool isTextured(const Material& material, const Scene& scene);
 
 // The scene is read for the means of textures, which decide how often a lobe is sampled.
 MaterialRecord compileMaterial(const Material& material, const Scene& scene);
+// What a compound BSDF has beside that; empty for other materials.
+CompoundRecord compileCompound(const Material& material);
 
 // Reflectance of a smooth dielectric boundary for diffuse light: INT_0^1 F(c, eta) 2 c dc, by quadrature; eta is the
 // index beyond the boundary over the index on the light's side.

@@ -1,287 +1,87 @@
 #include "engine/compile/primitives.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <map>
-#include <numbers>
-#include <utility>
 
+#include "engine/compile/materials.h"
+#include "engine/compile/tessellate.h"
+#include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
+#include "kernels/extend/leaves.h"
 
 namespace wavecrest {
 namespace {
 
-// Only small meshes are searched for parallelograms: larger ones go to Embree, which is as fast on triangles.
-constexpr size_t kMergeLimit = 4096;
-// Segments that replace the curve of discs and cylinders.
-constexpr uint32_t kSegments = 256;
-
-Double3 position(const Mesh& mesh, uint32_t vertex) { return widened(mesh.positions[vertex]); }
-
-// A triangle pair merged into a parallelogram: corner, then its neighbours along u and v.
-struct Parallelogram {
-  uint32_t corner, alongU, alongV;
-};
-
-using Edge = std::pair<uint32_t, uint32_t>;
-
-// Whether the triangles (a, b, c) and (a', c', b') that share the edge b-c, a and d opposite, are one parallelogram
-// with a continuous parameterisation: d = b + c - a in position, uv and normal.
-bool formParallelogram(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
-  const Double3 e1 = position(mesh, b) - position(mesh, a), e2 = position(mesh, c) - position(mesh, a);
-  const Double3 gap = position(mesh, d) - position(mesh, a) - e1 - e2;
-  if (length(gap) > 1e-6 * (length(e1) + length(e2))) return false;
-  if (!mesh.uvs.empty()) {
-    for (size_t i = 0; i < 2; ++i) {
-      if (std::abs(mesh.uvs[d][i] + mesh.uvs[a][i] - mesh.uvs[b][i] - mesh.uvs[c][i]) > 1e-5f) return false;
-    }
-  }
-  if (!mesh.normals.empty()) {
-    const Double3 face = normalized(cross(e1, e2));
-    for (const uint32_t vertex : {a, b, c, d}) {
-      if (dot(widened(mesh.normals[vertex]), face) < 1 - 1e-6) return false;
-    }
-  }
-  return true;
-}
-
-// Vertices at the same place count as one when edges are matched: cubes split theirs for flat normals.
-std::vector<uint32_t> weldedVertices(const Mesh& mesh) {
-  std::map<Float3, uint32_t> first;
-  std::vector<uint32_t> welded(mesh.positions.size());
-  for (uint32_t i = 0; i < welded.size(); ++i) welded[i] = first.try_emplace(mesh.positions[i], i).first->second;
-  return welded;
-}
-
-// Partitions a mesh: which triangles pair up, and the rest.
-struct MeshFaces {
-  std::vector<Parallelogram> quads;
-  std::vector<uint32_t> triangles;
-};
-
-MeshFaces pairFaces(const Mesh& mesh) {
-  MeshFaces faces;
-  const auto count = static_cast<uint32_t>(mesh.triangles.size());
-  if (count > kMergeLimit) {
-    faces.triangles.resize(count);
-    for (uint32_t i = 0; i < count; ++i) faces.triangles[i] = i;
-    return faces;
-  }
-  const std::vector<uint32_t> welded = weldedVertices(mesh);
-  std::map<Edge, uint32_t> open;  // directed edge of an unpaired triangle -> 3 * triangle + index of opposite corner
-  std::vector<bool> used(count, false);
-  for (uint32_t i = 0; i < count; ++i) {
-    const auto& t = mesh.triangles[i];
-    for (uint32_t k = 0; k < 3 && !used[i]; ++k) {
-      const uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];  // edge b-c opposite a
-      const auto twin = open.find({welded[c], welded[b]});
-      if (twin == open.end()) continue;
-      const uint32_t other = twin->second / 3, d = mesh.triangles[other][twin->second % 3];
-      if (used[other] || !formParallelogram(mesh, a, b, c, d)) continue;
-      used[i] = used[other] = true;
-      faces.quads.push_back({a, b, c});
-    }
-    for (uint32_t k = 0; k < 3 && !used[i]; ++k) {
-      open[{welded[t[(k + 1) % 3]], welded[t[(k + 2) % 3]]}] = 3 * i + k;
-    }
-  }
-  for (uint32_t i = 0; i < count; ++i) {
-    if (!used[i]) faces.triangles.push_back(i);
-  }
-  return faces;
-}
-
-// A disc as a fan, a cylinder as a ring of quads with the true normals at the vertices.
-Mesh tessellated(const Disk& disk) {
-  Mesh mesh;
-  const auto add = [&](const Double3& p, float r, float angle) {
-    mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-    mesh.uvs.push_back({r, angle});
-  };
-  for (uint32_t i = 0; i < kSegments; ++i) {
-    const auto angleOf = [](uint32_t k) { return 2 * std::numbers::pi * k / kSegments; };
-    const auto rim = [&](double a) { return disk.center + disk.axisU * std::cos(a) + disk.axisV * std::sin(a); };
-    const auto base = static_cast<uint32_t>(mesh.positions.size());
-    add(disk.center, 0, static_cast<float>(i) / kSegments);
-    add(rim(angleOf(i)), 1, static_cast<float>(i) / kSegments);
-    add(rim(angleOf(i + 1)), 1, static_cast<float>(i + 1) / kSegments);
-    mesh.triangles.push_back({base, base + 1, base + 2});
-  }
-  return mesh;
-}
-
-Mesh tessellated(const Cylinder& cylinder) {
-  Mesh mesh;
-  const Double3 axis = cylinder.p1 - cylinder.p0, x = cylinder.phi0, y = cylinder.phi90;
-  const bool mirrored = dot(cross(x, y), axis) < 0;
-  const double side = cylinder.flipNormals ? -1 : 1;
-  for (uint32_t i = 0; i <= kSegments; ++i) {
-    const double angle = 2 * std::numbers::pi * i / kSegments;
-    const Double3 n = x * std::cos(angle) + y * std::sin(angle);
-    for (uint32_t end = 0; end < 2; ++end) {
-      const Double3 p = cylinder.p0 + axis * end + n * cylinder.radius;
-      mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-      mesh.normals.push_back(
-          {static_cast<float>(n[0] * side), static_cast<float>(n[1] * side), static_cast<float>(n[2] * side)});
-      mesh.uvs.push_back({static_cast<float>(i) / kSegments, static_cast<float>(end)});
-    }
-  }
-  for (uint32_t i = 0; i < kSegments; ++i) {
-    const uint32_t a = 2 * i, b = a + 1, c = a + 2, d = a + 3;
-    if (cylinder.flipNormals != mirrored) {
-      mesh.triangles.push_back({a, b, c});
-      mesh.triangles.push_back({d, c, b});
-    } else {
-      mesh.triangles.push_back({a, c, b});
-      mesh.triangles.push_back({d, b, c});
-    }
-  }
-  return mesh;
-}
-
-// Collects the records of all shapes, one kind after the other.
 template <class S>
-class PrimitiveCollector {
- public:
-  PrimitiveCollector(const Scene& scene, bool textured, const Double3& origin)
-      : scene_(scene), textured_(textured), origin_(origin) {
-    for (const Shape& shape : scene.shapes) emits_ = emits_ || shape.emitter != kNone;
-  }
+void setFace(PrimitiveRecord<S>& record, const Double3& p0, const Double3& e1, const Double3& e2,
+             const Double3& normal) {
+  assign(record.p0, p0);
+  assign(record.e1, e1);
+  assign(record.e2, e2);
+  assign(record.normal, normal);
+}
 
-  Primitives<S> collect() {
-    for (uint32_t i = 0; i < scene_.shapes.size(); ++i) {
-      shape_ = i;
-      std::visit([&](const auto& kind) { visit(kind); }, scene_.shapes[i].kind);
-    }
-    Primitives<S>& out = out_;
-    out.counts = {static_cast<uint32_t>(quads_.size()), static_cast<uint32_t>(triangles_.size()),
-                  static_cast<uint32_t>(spheres_.size())};
-    for (auto* list : {&quads_, &triangles_, &spheres_}) {
-      if (out.records.empty()) {
-        out.records = std::move(*list);
-      } else {
-        out.records.insert(out.records.end(), list->begin(), list->end());
-      }
-    }
-    for (auto* list : {&quadShapes_, &triangleShapes_, &sphereShapes_}) {
-      out.shapeOf.insert(out.shapeOf.end(), list->begin(), list->end());
-    }
-    return std::move(out_);
-  }
+// placed: uniform, or nullptr. The normal is on the same side of a mirrored copy.
+template <class S>
+void setSphere(PrimitiveRecord<S>& record, const Sphere& sphere, const Affine* placed, const Double3& origin) {
+  const auto axis = [&](size_t j) {
+    const Matrix4& m = sphere.toWorld;
+    const Double3 own{m[0][j], m[1][j], m[2][j]};
+    return normalized(placed != nullptr ? placed->vector(own) : own);
+  };
+  const Double3 x = axis(0), z = axis(2);
+  const double handedness = dot(cross(z, x), axis(1)) < 0 ? -1 : 1;
+  const Double3 center = placed != nullptr ? placed->point(sphere.center) : sphere.center;
+  const double radius = placed != nullptr ? placed->scale() * sphere.radius : sphere.radius;
+  setFace(record, center - origin, {radius, sphere.flipNormals ? -1.0 : 1.0, handedness}, z, x);
+}
 
- private:
-  PrimitiveRecord<S>& add(PrimitiveKind kind, const Double3& p0, const Double3& e1, const Double3& e2,
-                          const Double3& normal) {
-    auto& list = kind == PrimitiveKind::quad ? quads_ : kind == PrimitiveKind::triangle ? triangles_ : spheres_;
-    auto& shapes = kind == PrimitiveKind::quad       ? quadShapes_
-                   : kind == PrimitiveKind::triangle ? triangleShapes_
-                                                     : sphereShapes_;
-    PrimitiveRecord<S>& record = list.emplace_back();
-    assign(record.p0, p0);
-    assign(record.e1, e1);
-    assign(record.e2, e2);
-    assign(record.normal, normal);
-    record.material = scene_.shapes[shape_].material;
-    record.light = kNoIndex;
-    record.kind = static_cast<uint32_t>(kind);
-    record.attributes = kNoIndex;
-    if (emits_) shapes.push_back(scene_.shapes[shape_].emitter != kNone ? shape_ : kNone);
-    return record;
-  }
+// A vertex normal of a copy, for its AttributeRecord. All normals of a copy are scaled alike and not made unit vectors,
+// so that what is interpolated between vertices is what the transform makes of the group's interpolated normal; their
+// lengths are at most 1.
+Float3 placedNormal(const Affine& placed, const Float3& normal) {
+  double most = 0;
+  for (const Double3& row : placed.inverse) most += dot(row, row);
+  const Double3 there = placed.normal(widened(normal)) * (1 / std::sqrt(most));
+  return {static_cast<float>(there[0]), static_cast<float>(there[1]), static_cast<float>(there[2])};
+}
+// In the group's space, of a face's normal in the world.
+Double3 groupNormal(const Affine& placed, const Double3& n) {
+  const Double3* const rows = placed.linear;
+  return normalized(rows[0] * n[0] + rows[1] * n[1] + rows[2] * n[2]);
+}
 
-  void addAttributes(PrimitiveRecord<S>& record, const Mesh& mesh, const std::array<uint32_t, 3>& corners) {
-    if (mesh.normals.empty() && !textured_) return;
-    record.attributes = static_cast<uint32_t>(out_.attributes.size());
-    AttributeRecord& attributes = out_.attributes.emplace_back();
-    attributes.hasNormals = mesh.normals.empty() ? 0 : 1;
-    constexpr float kDefaultUv[3][2] = {{0, 0}, {1, 0}, {0, 1}};
-    for (size_t k = 0; k < 3; ++k) {
-      for (size_t axis = 0; axis < 3 && attributes.hasNormals != 0; ++axis) {
-        attributes.normal[k][axis] = mesh.normals[corners[k]][axis];
-      }
-      for (size_t axis = 0; axis < 2; ++axis) {
-        attributes.uv[k][axis] = mesh.uvs.empty() ? kDefaultUv[k][axis] : mesh.uvs[corners[k]][axis];
-      }
-    }
+// Texture coordinates whose dp/du is Mitsuba's without any: the first axis of Duff's frame of the face's normal.
+void setFaceTangents(AttributeRecord& attributes, const Mesh& mesh, const FaceCorners& corners, const Double3& n) {
+  const double sign = std::copysign(1.0, n[2]), a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
+  const Double3 s{1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]}, t{b, sign + n[1] * n[1] * a, -n[1]};
+  for (size_t k = 0; k < 3; ++k) {
+    const Double3 p = widened(mesh.positions[corners[k]]) - widened(mesh.positions[corners[0]]);
+    attributes.uv[k][0] = static_cast<float>(dot(p, s));
+    attributes.uv[k][1] = static_cast<float>(dot(p, t));
   }
-
-  void addFace(PrimitiveKind kind, const Mesh& mesh, const Double3& origin, const std::array<uint32_t, 3>& corners) {
-    const Double3 p0 = position(mesh, corners[0]);
-    const Double3 e1 = position(mesh, corners[1]) - p0, e2 = position(mesh, corners[2]) - p0;
-    const Double3 across = cross(e1, e2);
-    const double area = length(across);
-    if (!(area > 0)) return;  // zero area: cannot be hit
-    addAttributes(add(kind, p0 - origin, e1, e2, across * (1 / area)), mesh, corners);
-  }
-
-  void addMesh(const Mesh& mesh, const Double3& origin) {
-    const MeshFaces faces = pairFaces(mesh);
-    for (const Parallelogram& q : faces.quads) {
-      addFace(PrimitiveKind::quad, mesh, origin, {q.corner, q.alongU, q.alongV});
-    }
-    triangles_.reserve(triangles_.size() + faces.triangles.size());
-    for (const uint32_t t : faces.triangles) addFace(PrimitiveKind::triangle, mesh, origin, mesh.triangles[t]);
-  }
-
-  void visit(const Mesh& mesh) { addMesh(mesh, origin_); }
-  void visit(const Rectangle& r) {
-    PrimitiveRecord<S>& record =
-        add(PrimitiveKind::quad, r.corner - origin_, r.edgeU, r.edgeV, normalized(cross(r.edgeU, r.edgeV)));
-    if (!textured_) return;
-    Mesh corners;
-    corners.uvs =
-        r.mirrored ? std::vector<Float2>{{1, 0}, {0, 0}, {1, 1}} : std::vector<Float2>{{0, 0}, {1, 0}, {0, 1}};
-    addAttributes(record, corners, {0, 1, 2});
-  }
-  // Moved before their vertices are rounded to float.
-  void visit(Disk disk) {
-    disk.center = disk.center - origin_;
-    addMesh(tessellated(disk), {});
-  }
-  void visit(Cylinder cylinder) {
-    cylinder.p0 = cylinder.p0 - origin_;
-    cylinder.p1 = cylinder.p1 - origin_;
-    addMesh(tessellated(cylinder), {});
-  }
-  void visit(const Sphere& sphere) {
-    const auto axis = [&](size_t j) {
-      const Matrix4& m = sphere.toWorld;
-      return normalized(Double3{m[0][j], m[1][j], m[2][j]});
-    };
-    const Double3 x = axis(0), z = axis(2);
-    const double handedness = dot(cross(z, x), axis(1)) < 0 ? -1 : 1;
-    add(PrimitiveKind::sphere, sphere.center - origin_, {sphere.radius, sphere.flipNormals ? -1.0 : 1.0, handedness}, z,
-        x);
-  }
-
-  const Scene& scene_;
-  const bool textured_;
-  const Double3 origin_;
-  bool emits_ = false;
-  uint32_t shape_ = 0;
-  Primitives<S> out_;
-  std::vector<PrimitiveRecord<S>> quads_, triangles_, spheres_;
-  std::vector<uint32_t> quadShapes_, triangleShapes_, sphereShapes_;
-};
+}
 
 }  // namespace
 
-template <class S>
-Primitives<S> compilePrimitives(const Scene& scene, bool textured, const Double3& origin) {
-  return PrimitiveCollector<S>(scene, textured, origin).collect();
-}
-template Primitives<float> compilePrimitives(const Scene&, bool, const Double3&);
-template Primitives<double> compilePrimitives(const Scene&, bool, const Double3&);
+// The least and the greatest coordinates of what was included.
+struct PrimitiveExtent {
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  Double3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
 
-template <class S>
-BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<S>> records) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Double3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
-  const auto include = [&](size_t axis, double x) {
+  void include(size_t axis, double x) {
     low[axis] = std::min(low[axis], x);
     high[axis] = std::max(high[axis], x);
-  };
-  for (const auto& r : records) {
+  }
+  void include(const PrimitiveExtent& other) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      include(axis, other.low[axis]);
+      include(axis, other.high[axis]);
+    }
+  }
+  template <class S>
+  void include(const PrimitiveRecord<S>& r) {
     const bool sphere = static_cast<PrimitiveKind>(r.kind) == PrimitiveKind::sphere;
     const bool quad = static_cast<PrimitiveKind>(r.kind) == PrimitiveKind::quad;
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -295,6 +95,10 @@ BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<S>> records) {
       for (const double x : {p, u, v, quad ? u + v - p : p}) include(axis, x);
     }
   }
+  BoundingSphere sphere() const { return boundingSphere(low, high); }
+};
+
+BoundingSphere boundingSphere(const Double3& low, const Double3& high) {
   BoundingSphere bounds;
   for (size_t axis = 0; axis < 3; ++axis) {
     bounds.low[axis] = low[axis];
@@ -303,6 +107,264 @@ BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<S>> records) {
   }
   bounds.radius = length(high - low) / 2 * 1.0001;
   return bounds;
+}
+
+PrimitiveList::PrimitiveList(const Scene& scene, bool textured, const ParallelFor& parallelFor, const Double3& origin,
+                             PrimitiveChoice choice)
+    : scene_(scene), textured_(textured), parallelFor_(parallelFor), origin_(origin) {
+  std::vector<std::vector<uint32_t>> members(scene.groups.size());
+  for (uint32_t i = 0; i < scene.shapes.size(); ++i) {
+    const uint32_t group = scene.shapes[i].group;
+    if (group == choice.group) addShape(i, nullptr);
+    if (group != kNone) members[group].push_back(i);
+  }
+  if (choice.group == kNone && choice.copies) {
+    for (const Instance& instance : scene.instances) {
+      const Affine& placed = placements_.emplace_back(instance.toWorld);
+      for (const uint32_t shape : members[instance.group]) addShape(shape, &placed);
+    }
+  }
+  orderRuns();
+}
+
+void PrimitiveList::addShape(uint32_t shape, const Affine* placed) {
+  const auto& kind = scene_.shapes[shape].kind;
+  Run run{.shape = shape,
+          .kind = PrimitiveKind::triangle,
+          .first = 0,
+          .count = 0,
+          .firstAttribute = kNoIndex,
+          .mesh = nullptr,
+          .faces = nullptr,
+          .moved = false,
+          .placed = placed};
+  if (std::holds_alternative<Rectangle>(kind) || std::holds_alternative<Sphere>(kind)) {
+    run.kind = std::holds_alternative<Sphere>(kind) ? PrimitiveKind::sphere : PrimitiveKind::quad;
+    return addRun(run, 1);
+  }
+  auto known = surfaces_.find(shape);
+  if (known == surfaces_.end()) {
+    known = surfaces_.emplace(shape, surfaceOf(scene_.shapes[shape], placed != nullptr)).first;
+  }
+  run.mesh = known->second.mesh;
+  run.faces = known->second.faces;
+  run.moved = known->second.moved;
+  run.kind = PrimitiveKind::quad;
+  addRun(run, run.faces->quads.size());
+  run.kind = PrimitiveKind::triangle;
+  addRun(run, run.faces->triangleCount(*run.mesh));
+}
+
+// Tessellations are moved before their vertices are rounded to float, but not those that a copy moves anyway.
+PrimitiveList::Surface PrimitiveList::surfaceOf(const Shape& shape, bool copied) {
+  Surface surface;
+  const Double3 origin = copied ? Double3{} : origin_;
+  if (const auto* mesh = std::get_if<Mesh>(&shape.kind)) surface.mesh = mesh;
+  if (const auto* disk = std::get_if<Disk>(&shape.kind)) {
+    Disk there = *disk;
+    there.center = there.center - origin;
+    surface.mesh = &tessellations_.emplace_back(tessellated(there));
+    surface.moved = !copied;
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape.kind)) {
+    Cylinder there = *cylinder;
+    there.p0 = there.p0 - origin;
+    there.p1 = there.p1 - origin;
+    surface.mesh = &tessellations_.emplace_back(tessellated(there));
+    surface.moved = !copied;
+  }
+  surface.faces = &faces_.emplace_back(facesOf(*surface.mesh, parallelFor_));
+  return surface;
+}
+
+void PrimitiveList::addRun(Run run, size_t count) {
+  if (count == 0) return;
+  const bool smooth = run.mesh != nullptr && !run.mesh->normals.empty();
+  const bool attributed = smooth || (textured_ && run.kind != PrimitiveKind::sphere);
+  run.count = static_cast<uint32_t>(count);
+  run.firstAttribute = attributed ? 0 : kNoIndex;
+  runs_.push_back(run);
+}
+
+// Quads, then triangles, then spheres.
+void PrimitiveList::orderRuns() {
+  std::stable_sort(runs_.begin(), runs_.end(), [](const Run& a, const Run& b) {
+    const auto place = [](const Run& run) {
+      return run.kind == PrimitiveKind::quad ? 0 : run.kind == PrimitiveKind::triangle ? 1 : 2;
+    };
+    return place(a) < place(b);
+  });
+  size_t first = 0;
+  for (Run& run : runs_) {
+    run.first = static_cast<uint32_t>(first);
+    first += run.count;
+    if (first > kFacePrimitiveMask) {
+      throw SceneError(scene_.shapes[run.shape].source,
+                       "more than " + std::to_string(kFacePrimitiveMask) + " primitives; expected fewer");
+    }
+    if (run.firstAttribute != kNoIndex) {
+      run.firstAttribute = static_cast<uint32_t>(attributes_);
+      attributes_ += run.count;
+    }
+    uint32_t& count = run.kind == PrimitiveKind::quad       ? counts_.quads
+                      : run.kind == PrimitiveKind::triangle ? counts_.triangles
+                                                            : counts_.spheres;
+    count += run.count;
+  }
+}
+
+const PrimitiveList::Run& PrimitiveList::runOf(size_t index) const {
+  const auto after = std::upper_bound(runs_.begin(), runs_.end(), index,
+                                      [](size_t wanted, const Run& run) { return wanted < run.first; });
+  return *(after - 1);
+}
+
+// A mirrored copy's second and third change places, so that its normal stays on its side.
+FaceCorners PrimitiveList::cornersOf(const Run& run, size_t index) const {
+  const size_t i = index - run.first;
+  FaceCorners corners = run.kind == PrimitiveKind::quad ? run.faces->quads[i] : run.faces->triangle(*run.mesh, i);
+  if (run.placed != nullptr && run.placed->mirrors) std::swap(corners[1], corners[2]);
+  return corners;
+}
+
+// Rounded to float where it is, so that the faces around a copy's vertex agree on it.
+Double3 PrimitiveList::cornerOf(const Run& run, uint32_t vertex) const {
+  const Double3 p = widened(run.mesh->positions[vertex]);
+  if (run.placed == nullptr) return p;
+  Double3 there = run.placed->point(p);
+  for (double& coordinate : there) coordinate = static_cast<float>(coordinate);
+  return there;
+}
+
+Rectangle PrimitiveList::rectangleOf(const Run& run) const {
+  Rectangle r = std::get<Rectangle>(scene_.shapes[run.shape].kind);
+  if (run.placed == nullptr) return r;
+  r.corner = run.placed->point(r.corner);
+  r.edgeU = run.placed->vector(r.edgeU);
+  r.edgeV = run.placed->vector(r.edgeV);
+  if (run.placed->mirrors) {
+    r.corner = r.corner + r.edgeU;
+    r.edgeU = -1 * r.edgeU;
+    r.mirrored = !r.mirrored;
+  }
+  return r;
+}
+
+template <class S>
+PrimitiveRecord<S> PrimitiveList::geometry(const Run& run, size_t index) const {
+  PrimitiveRecord<S> record;
+  record.kind = static_cast<uint32_t>(run.kind);
+  record.material = scene_.shapes[run.shape].material;
+  record.light = record.attributes = kNoIndex;
+  if (run.mesh != nullptr) {
+    const FaceCorners corners = cornersOf(run, index);
+    const auto at = [&](size_t k) { return cornerOf(run, corners[k]); };
+    const Double3 p0 = at(0), e1 = at(1) - p0, e2 = at(2) - p0, across = cross(e1, e2);
+    setFace(record, run.moved ? p0 : p0 - origin_, e1, e2, across * (1 / length(across)));
+  } else if (std::holds_alternative<Rectangle>(scene_.shapes[run.shape].kind)) {
+    const Rectangle r = rectangleOf(run);
+    setFace(record, r.corner - origin_, r.edgeU, r.edgeV, normalized(cross(r.edgeU, r.edgeV)));
+  } else {
+    setSphere(record, std::get<Sphere>(scene_.shapes[run.shape].kind), run.placed, origin_);
+  }
+  return record;
+}
+
+template <class S>
+PrimitiveRecord<S> PrimitiveList::geometry(size_t index) const {
+  return geometry<S>(runOf(index), index);
+}
+template PrimitiveRecord<float> PrimitiveList::geometry(size_t) const;
+template PrimitiveRecord<double> PrimitiveList::geometry(size_t) const;
+
+// Whether tangents without texture coordinates are asked for, and texture coordinates are not.
+bool PrimitiveList::usesFaceTangents(const Run& run) const {
+  const uint32_t material = scene_.shapes[run.shape].material;
+  return run.mesh != nullptr && run.mesh->uvs.empty() && material != kNone &&
+         isAnisotropic(scene_.materials[material], scene_) && !isTextured(scene_.materials[material], scene_);
+}
+
+template <class S>
+AttributeRecord PrimitiveList::attribute(const Run& run, size_t index, const PrimitiveRecord<S>& record) const {
+  AttributeRecord attributes{};
+  constexpr Float2 kDefaultUv[3] = {{0, 0}, {1, 0}, {0, 1}}, kMirroredUv[3] = {{1, 0}, {0, 0}, {1, 1}};
+  const Float2* uvs = kDefaultUv;
+  Float2 ofMesh[3];
+  if (run.mesh == nullptr) {
+    if (rectangleOf(run).mirrored) uvs = kMirroredUv;
+  } else {
+    const FaceCorners corners = cornersOf(run, index);
+    attributes.hasNormals = run.mesh->normals.empty() ? 0 : 1;
+    for (size_t k = 0; k < 3; ++k) {
+      if (attributes.hasNormals != 0) {
+        const Float3& normal = run.mesh->normals[corners[k]];
+        std::ranges::copy(run.placed != nullptr ? placedNormal(*run.placed, normal) : normal, attributes.normal[k]);
+      }
+      ofMesh[k] = run.mesh->uvs.empty() ? kDefaultUv[k] : run.mesh->uvs[corners[k]];
+    }
+    // Where a mirrored copy's corners have changed places, their default coordinates have, too.
+    if (run.mesh->uvs.empty() && run.placed != nullptr && run.placed->mirrors) std::swap(ofMesh[1], ofMesh[2]);
+    uvs = ofMesh;
+  }
+  for (size_t k = 0; k < 3; ++k) std::ranges::copy(uvs[k], attributes.uv[k]);
+  if (usesFaceTangents(run)) {
+    Double3 normal{record.normal[0], record.normal[1], record.normal[2]};
+    if (run.placed != nullptr) normal = groupNormal(*run.placed, normal);
+    setFaceTangents(attributes, *run.mesh, cornersOf(run, index), normal);
+  }
+  return attributes;
+}
+
+PrimitiveSource PrimitiveList::source(size_t first) const {
+  return {.quads = {first, counts_.quads},
+          .triangles = {first + counts_.quads, counts_.triangles},
+          .spheres = {first + counts_.quads + counts_.triangles, counts_.spheres},
+          .at = [this, first](size_t i) { return geometry<double>(i - first); }};
+}
+
+template <class S>
+BoundingSphere PrimitiveList::bounds() const {
+  PrimitiveExtent all;
+  for (const Run& run : runs_) {
+    std::vector<PrimitiveExtent> parts(rangesOf(run.count));
+    forEachRange(parallelFor_, run.count, [&](size_t begin, size_t end) {
+      PrimitiveExtent& part = parts[rangesOf(begin)];
+      for (size_t i = begin; i < end; ++i) part.include(geometry<S>(run, run.first + i));
+    });
+    for (const PrimitiveExtent& part : parts) all.include(part);
+  }
+  return all.sphere();
+}
+template BoundingSphere PrimitiveList::bounds<float>() const;
+template BoundingSphere PrimitiveList::bounds<double>() const;
+
+template <class S>
+void PrimitiveList::compile(Primitives<S>& out, size_t firstRecord, size_t firstAttribute) const {
+  for (const Run& run : runs_) {
+    forEachRange(parallelFor_, run.count, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        PrimitiveRecord<S>& record = out.records[firstRecord + run.first + i] = geometry<S>(run, run.first + i);
+        if (run.firstAttribute == kNoIndex) continue;
+        record.attributes = static_cast<uint32_t>(firstAttribute + run.firstAttribute + i);
+        out.attributes[record.attributes] = attribute(run, run.first + i, record);
+      }
+    });
+  }
+  const bool emits = std::ranges::any_of(scene_.shapes, [](const Shape& shape) { return shape.emitter != kNone; });
+  if (!emits) return;
+  for (const Run& run : runs_) {
+    const bool lit = scene_.shapes[run.shape].emitter != kNone;
+    out.shapeOf.insert(out.shapeOf.end(), run.count, lit ? run.shape : kNone);
+  }
+}
+template void PrimitiveList::compile(Primitives<float>&, size_t, size_t) const;
+template void PrimitiveList::compile(Primitives<double>&, size_t, size_t) const;
+
+template <class S>
+BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<S>> records) {
+  PrimitiveExtent all;
+  for (const PrimitiveRecord<S>& record : records) all.include(record);
+  return all.sphere();
 }
 template BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<float>>);
 template BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<double>>);

@@ -1,10 +1,19 @@
 // Shapes to primitive records: the scene's geometry as the kernels see it.
+//
+// A PrimitiveList knows what every record will be and makes each when it is asked for, from any thread: the hierarchy
+// is built from records in double, the kernels read others in their own precision, and only the latter are kept.
 #pragma once
 
+#include <deque>
+#include <map>
 #include <span>
 #include <vector>
 
+#include "engine/compile/affine.h"
+#include "engine/compile/mesh_faces.h"
+#include "engine/compile/record_array.h"
 #include "engine/scene/scene.h"
+#include "kernels/extend/primitive_source.h"
 #include "kernels/scene_view.h"
 
 namespace wavecrest {
@@ -14,31 +23,110 @@ struct PrimitiveCounts {
   uint32_t total() const { return quads + triangles + spheres; }
 };
 
-template <class S>
-struct Primitives {
-  std::vector<PrimitiveRecord<S>> records;  // quads, then triangles, then spheres
-  std::vector<AttributeRecord> attributes;
-  PrimitiveCounts counts;
-  std::vector<uint32_t> shapeOf;  // of each record whose shape emits light, else kNone; empty if no shape does
-};
-
-// Rectangles become quads, meshes triangles, and coplanar triangle pairs of small meshes that form a parallelogram
-// (each face of a cube) become quads again. Records are computed in double and rounded once to S.
-// Attributes are kept where shading needs them: for smooth meshes, and for all that may be textured if `textured`.
-// Positions are relative to `origin`.
-template <class S>
-Primitives<S> compilePrimitives(const Scene& scene, bool textured, const Double3& origin = {});
-
 // Bounding sphere of all primitives: centre and half diagonal of the bounding box, times 1.0001.
 struct BoundingSphere {
   double center[3]{}, radius = 0;
   double low[3]{}, high[3]{};  // corners of the box
+
+  // Half edge of a box around all primitives which touches none, so that rays which start on it meet what lies along
+  // its faces.
+  double halfExtent(size_t axis) const {
+    constexpr double kClearance = 1e-4;  // relative to the radius: some hundred times the rounding of a position
+    return (high[axis] - low[axis]) / 2 + kClearance * radius;
+  }
 };
+
+template <class S>
+struct Primitives {
+  RecordArray<PrimitiveRecord<S>> records;  // quads, then triangles, then spheres
+  RecordArray<AttributeRecord> attributes;
+  PrimitiveCounts counts;
+  std::vector<uint32_t> shapeOf;  // of each record whose shape emits light, else kNone; empty if no shape does
+};
+
+// Which primitives of a scene a list has: those of one group, in its space; or those of the world, with a copy of each
+// group's for every instance or without.
+struct PrimitiveChoice {
+  uint32_t group = kNone;
+  bool copies = true;
+};
+
+// Rectangles become quads, meshes triangles and quads (mesh_faces.h). Records are computed in double and rounded once
+// to S. Attributes are kept where shading needs them: for smooth meshes, and for all that may be textured if
+// `textured`. Positions are relative to `origin`.
+class PrimitiveList {
+ public:
+  // The scene must outlive the list. Throws SceneError where there are more primitives than hits can name.
+  PrimitiveList(const Scene& scene, bool textured, const ParallelFor& parallelFor, const Double3& origin = {},
+                PrimitiveChoice choice = {});
+
+  const PrimitiveCounts& counts() const { return counts_; }
+  // Without material, light and attributes, which intersectors do not read.
+  template <class S>
+  PrimitiveRecord<S> geometry(size_t index) const;
+  // For the hierarchy. first: where the list's records begin among those of the whole scene.
+  PrimitiveSource source(size_t first = 0) const;
+  // As S has it.
+  template <class S>
+  BoundingSphere bounds() const;
+  size_t attributes() const { return attributes_; }
+  // Writes its records from these indices on.
+  template <class S>
+  void compile(Primitives<S>& out, size_t firstRecord, size_t firstAttribute) const;
+
+ private:
+  // Consecutive primitives of one shape and kind.
+  struct Run {
+    uint32_t shape;
+    PrimitiveKind kind;
+    uint32_t first, count;    // primitives
+    uint32_t firstAttribute;  // or kNoIndex: they have none
+    const Mesh* mesh;         // or nullptr: of a rectangle or sphere
+    const MeshFaces* faces;
+    bool moved;            // the mesh is relative to the origin already
+    const Affine* placed;  // of a copy, or nullptr
+  };
+  // The triangles of a shape, if it has any.
+  struct Surface {
+    const Mesh* mesh = nullptr;
+    const MeshFaces* faces = nullptr;
+    bool moved = false;
+  };
+
+  void addShape(uint32_t shape, const Affine* placed);
+  Surface surfaceOf(const Shape& shape, bool copied);
+  void addRun(Run run, size_t count);
+  void orderRuns();
+  const Run& runOf(size_t index) const;
+  FaceCorners cornersOf(const Run& run, size_t index) const;
+  Double3 cornerOf(const Run& run, uint32_t vertex) const;
+  Rectangle rectangleOf(const Run& run) const;
+  template <class S>
+  PrimitiveRecord<S> geometry(const Run& run, size_t index) const;
+  bool usesFaceTangents(const Run& run) const;
+  template <class S>
+  AttributeRecord attribute(const Run& run, size_t index, const PrimitiveRecord<S>& record) const;
+
+  const Scene& scene_;
+  const bool textured_;
+  const ParallelFor parallelFor_;
+  const Double3 origin_;
+  std::deque<Mesh> tessellations_;
+  std::deque<MeshFaces> faces_;
+  std::deque<Affine> placements_;
+  std::map<uint32_t, Surface> surfaces_;  // by shape
+  std::vector<Run> runs_;
+  PrimitiveCounts counts_;
+  size_t attributes_ = 0;
+};
+
+// Of the box between two corners.
+BoundingSphere boundingSphere(const Double3& low, const Double3& high);
 template <class S>
 BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<S>> records);
 template <class S>
-BoundingSphere boundPrimitives(const std::vector<PrimitiveRecord<S>>& records) {
-  return boundPrimitives(std::span<const PrimitiveRecord<S>>(records));
+BoundingSphere boundPrimitives(const RecordArray<PrimitiveRecord<S>>& records) {
+  return boundPrimitives(std::span<const PrimitiveRecord<S>>(records.data(), records.size()));
 }
 
 // Where kernels have their origin, so that float resolves a scene that is far from its own: on each axis 0, or the

@@ -2,6 +2,7 @@
 #include "engine/load/bsdfs.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/load/color.h"
 #include "engine/load/ior_table.h"
@@ -21,33 +22,47 @@ Distribution readDistribution(Parameters& parameters) {
                   "unknown distribution " + inQuotes(name) + "; expected beckmann or ggx");
 }
 
-TexturedFloat readAlpha(LoadContext& context, Parameters& parameters) {
+// Of a microfacet distribution: along dp/du, and across if that differs.
+struct Roughness {
+  TexturedFloat alpha;
+  std::optional<TexturedFloat> alphaV;
+};
+Roughness readRoughness(LoadContext& context, Parameters& parameters) {
   constexpr double kSmallest = 1e-4;  // Mitsuba's, below which its microfacet model is not evaluated
-  TexturedFloat alpha = readTexturedFloat(context, parameters, "alpha", 0.1);
+  const auto read = [&](const char* name) {
+    TexturedFloat alpha = readTexturedFloat(context, parameters, name, 0.1);
+    if (alpha.texture == kNone) alpha.value = std::max(alpha.value, kSmallest);
+    return alpha;
+  };
   const bool hasU = parameters.has("alpha_u"), hasV = parameters.has("alpha_v");
   if (hasU != hasV) {
     throw LoadError(parameters.locationOf(hasU ? "alpha_u" : "alpha_v"),
                     "one of alpha_u and alpha_v is missing; expected both or neither");
   }
-  if (hasU) {
-    if (parameters.has("alpha")) {
-      throw LoadError(parameters.locationOf("alpha"), "alpha stands beside alpha_u; expected one of the two");
-    }
-    alpha = readTexturedFloat(context, parameters, "alpha_u", 0.1);
-    const TexturedFloat alphaV = readTexturedFloat(context, parameters, "alpha_v", 0.1);
-    if (alpha.value != alphaV.value || alpha.texture != alphaV.texture) {
-      context.unsupported(parameters.locationOf("alpha_v"),
-                          "anisotropic roughness is not supported; expected alpha_u equal to alpha_v");
-    }
+  if (!hasU) return {.alpha = read("alpha"), .alphaV = {}};
+  if (parameters.has("alpha")) {
+    throw LoadError(parameters.locationOf("alpha"), "alpha stands beside alpha_u; expected one of the two");
   }
-  if (alpha.texture == kNone) alpha.value = std::max(alpha.value, kSmallest);
-  return alpha;
+  Roughness roughness{.alpha = read("alpha_u"), .alphaV = read("alpha_v")};
+  if (roughness.alpha.value == roughness.alphaV->value && roughness.alpha.texture == roughness.alphaV->texture) {
+    roughness.alphaV.reset();
+  }
+  return roughness;
+}
+
+// Where there is no anisotropy.
+TexturedFloat readAlpha(LoadContext& context, Parameters& parameters) {
+  const Roughness roughness = readRoughness(context, parameters);
+  if (roughness.alphaV) {
+    throw LoadError(parameters.locationOf("alpha_v"), parameters.describe() + " is isotropic; expected alpha");
+  }
+  return roughness.alpha;
 }
 
 Rgb readIndexColor(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
   const XmlElement* element = parameters.element(name);
   if (!element) return {fallback, fallback, fallback};
-  return readColor(context, *element, ColorRole::unbounded);
+  return readColor(context, *element, ColorRole::refraction);
 }
 
 Conductor readAnyConductor(LoadContext& context, Parameters& parameters) {
@@ -72,6 +87,11 @@ Conductor readAnyConductor(LoadContext& context, Parameters& parameters) {
     // Fresnel's factor for eta = 0 is 1 at every angle, whatever k.
     conductor.perfectMirror = conductor.eta == Rgb{0, 0, 0};
   }
+  if (parameters.has("ext_eta")) {  // of version 0.6, where eta and k are those of the metal in a vacuum
+    const double outside = parameters.ior("ext_eta", "air");
+    conductor.eta = (1 / outside) * conductor.eta;
+    conductor.k = (1 / outside) * conductor.k;
+  }
   conductor.specularReflectance = readTexturedRgb(context, parameters, "specular_reflectance", 1);
   return conductor;
 }
@@ -95,7 +115,16 @@ Plastic readAnyPlastic(LoadContext& context, Parameters& parameters) {
   return plastic;
 }
 
-bool transmits(const Material& material) { return std::holds_alternative<Dielectric>(material.kind); }
+// Whether any light goes through, by opacity too.
+bool transmits(const Material& material, const Scene& scene) {
+  if (material.opacity || std::holds_alternative<Dielectric>(material.kind)) return true;
+  if (const auto* principled = std::get_if<Principled>(&material.kind)) {
+    return principled->thin || principled->specTrans.texture != kNone || principled->specTrans.value != 0;
+  }
+  const auto* blend = std::get_if<Blend>(&material.kind);
+  return blend != nullptr &&
+         std::ranges::any_of(blend->materials, [&](uint32_t part) { return transmits(scene.materials[part], scene); });
+}
 
 [[noreturn]] void failTwice(const Parameters& parameters) {
   throw LoadError(parameters.location(), parameters.describe() + " is nested in another one; expected it once");
@@ -114,7 +143,9 @@ void readConductor(LoadContext& context, Parameters& parameters, Material& mater
 void readRoughConductor(LoadContext& context, Parameters& parameters, Material& material) {
   Conductor conductor = readAnyConductor(context, parameters);
   conductor.distribution = readDistribution(parameters);
-  conductor.alpha = readAlpha(context, parameters);
+  const Roughness roughness = readRoughness(context, parameters);
+  conductor.alpha = roughness.alpha;
+  conductor.alphaV = roughness.alphaV;
   material.kind = conductor;
 }
 
@@ -131,7 +162,9 @@ void readThinDielectric(LoadContext& context, Parameters& parameters, Material& 
 void readRoughDielectric(LoadContext& context, Parameters& parameters, Material& material) {
   Dielectric dielectric = readAnyDielectric(context, parameters);
   dielectric.distribution = readDistribution(parameters);
-  dielectric.alpha = readAlpha(context, parameters);
+  const Roughness roughness = readRoughness(context, parameters);
+  dielectric.alpha = roughness.alpha;
+  dielectric.alphaV = roughness.alphaV;
   material.kind = dielectric;
 }
 
@@ -155,6 +188,65 @@ void readPhong(LoadContext& context, Parameters& parameters, Material& material)
                         .exponent = parameters.positiveReal("exponent", 30)};
 }
 
+namespace {
+
+// What both principled BSDFs have.
+Principled readAnyPrincipled(LoadContext& context, Parameters& parameters) {
+  const auto number = [&](const char* name, double fallback) {
+    return readTexturedFloat(context, parameters, name, fallback);
+  };
+  Principled principled;
+  principled.baseColor = readTexturedRgb(context, parameters, "base_color", 0.5);
+  principled.roughness = number("roughness", 0.5);
+  principled.anisotropic = number("anisotropic", 0);
+  principled.specTrans = number("spec_trans", 0);
+  principled.specTint = number("spec_tint", 0);
+  principled.sheen = number("sheen", 0);
+  principled.sheenTint = number("sheen_tint", 0);
+  principled.flatness = number("flatness", 0);
+  return principled;
+}
+
+}  // namespace
+
+void readPrincipled(LoadContext& context, Parameters& parameters, Material& material) {
+  Principled principled = readAnyPrincipled(context, parameters);
+  principled.metallic = readTexturedFloat(context, parameters, "metallic", 0);
+  principled.clearcoat = readTexturedFloat(context, parameters, "clearcoat", 0);
+  principled.clearcoatGloss = readTexturedFloat(context, parameters, "clearcoat_gloss", 0);
+  const bool transmits = principled.specTrans.texture != kNone || principled.specTrans.value != 0;
+  if (parameters.has("eta") && parameters.has("specular")) {
+    throw LoadError(parameters.locationOf("specular"), "specular stands beside eta; expected one of the two");
+  }
+  if (parameters.has("eta")) {
+    principled.eta = parameters.positiveReal("eta", 1.5);
+    if (transmits && principled.eta == 1) principled.eta = 1.001;  // as Mitsuba does: nothing bends without it
+  } else {
+    double specular = parameters.real("specular", 0.5);
+    if (!(specular >= 0 && specular <= 1)) {
+      throw LoadError(parameters.locationOf("specular"), "specular is outside of its range; expected 0 to 1");
+    }
+    if (transmits && specular == 0) specular = 1e-3;
+    principled.eta = 2 / (1 - std::sqrt(0.08 * specular)) - 1;
+  }
+  parameters.ignore({"diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"});
+  material.kind = principled;
+}
+
+void readPrincipledThin(LoadContext& context, Parameters& parameters, Material& material) {
+  Principled principled = readAnyPrincipled(context, parameters);
+  principled.thin = true;
+  principled.diffTrans = readTexturedFloat(context, parameters, "diff_trans", 0);
+  const TexturedFloat eta = readTexturedFloat(context, parameters, "eta", 1.5);
+  if (eta.texture != kNone || !(eta.value > 0)) {
+    throw LoadError(parameters.locationOf("eta"), "eta is not a constant above 0; expected one number");
+  }
+  principled.eta = eta.value;
+  parameters.ignore({"diffuse_reflectance_sampling_rate", "specular_reflectance_sampling_rate",
+                     "specular_transmittance_sampling_rate", "diffuse_transmittance_sampling_rate"});
+  material.kind = principled;
+}
+
 void readTwoSided(LoadContext& context, Parameters& parameters, Material& material) {
   const std::vector<const XmlElement*> sides = parameters.objects("bsdf");
   if (sides.size() == 2 && sides[0] != sides[1]) {
@@ -166,17 +258,28 @@ void readTwoSided(LoadContext& context, Parameters& parameters, Material& materi
   }
   if (material.twoSided) failTwice(parameters);
   readBsdf(context, *sides.front(), material);
-  if (transmits(material) || material.opacity) {
+  if (transmits(material, context.scene)) {
     throw LoadError(parameters.location(), "twosided around a BSDF that transmits; expected one that only reflects");
   }
   material.twoSided = true;
 }
 
+// A surface that is not there.
+void readNull(LoadContext&, Parameters&, Material& material) {
+  material.kind = Diffuse{};
+  material.opacity = TexturedFloat{0};
+}
+
 void readMask(LoadContext& context, Parameters& parameters, Material& material) {
   const TexturedFloat opacity = readTexturedFloat(context, parameters, "opacity", 0.5);
   readBsdf(context, parameters.onlyObject("bsdf"), material);
-  if (material.opacity) failTwice(parameters);
-  material.opacity = opacity;
+  if (!material.opacity) {
+    material.opacity = opacity;
+  } else if (material.opacity->texture == kNone && opacity.texture == kNone) {
+    material.opacity->value *= opacity.value;
+  } else {
+    failTwice(parameters);
+  }
 }
 
 // What bump and normal maps have in common; the nested BSDF has been read.

@@ -160,7 +160,12 @@ Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role) {
     color = readSpectrum(*value, where, role);
   else
     color = grey(parseReal(*value, where));
-  for (const double channel : color) {
+  constexpr double kSlightlyBelow = -0.1;
+  for (double& channel : color) {
+    if (role == ColorRole::refraction && channel < 0 && channel >= kSlightlyBelow) {
+      context.note(where, "index of refraction below 0", "0 is used");
+      channel = 0;
+    }
     if (!(channel >= 0) || (role == ColorRole::reflectance && channel > 1)) {
       throw LoadError(where, "colour " + inQuotes(*value) + " is out of range; expected " +
                                  (role == ColorRole::reflectance ? "values from 0 to 1" : "values from 0"));

@@ -13,7 +13,8 @@ namespace wavecrest {
 
 enum class ColorRole {
   reflectance,  // in [0, 1]
-  unbounded,    // not a reflectance: index of refraction, roughness
+  unbounded,    // not a reflectance: roughness, absorption
+  refraction,   // index of refraction: slightly below 0, as fits of measurements leave it, it is 0 with a note
   emission,
 };
 

@@ -15,18 +15,27 @@ const XmlElement& LoadContext::resolve(const XmlElement& element) const {
   return *target->second;
 }
 
-std::filesystem::path LoadContext::resolvePath(std::string_view name, const XmlElement& namedIn) {
+std::filesystem::path LoadContext::findFile(std::string_view name, const XmlElement& namedIn) const {
   const auto folderOf = [](const std::string& file) { return std::filesystem::path(file).parent_path(); };
   std::filesystem::path besideScene = (folderOf(document.files.front()) / name).lexically_normal();
   std::vector<std::filesystem::path> candidates = {besideScene, folderOf(*namedIn.file) / name};
   for (const std::filesystem::path& folder : document.searchPaths) candidates.push_back(folder / name);
   for (const std::filesystem::path& candidate : candidates) {
     std::error_code error;
-    if (!std::filesystem::exists(candidate, error)) continue;
-    scene.files.push_back(candidate.lexically_normal().string());
-    return scene.files.back();
+    if (std::filesystem::exists(candidate, error)) return candidate.lexically_normal();
   }
   return besideScene;
+}
+
+void LoadContext::listFile(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) scene.files.push_back(path.string());
+}
+
+std::filesystem::path LoadContext::resolvePath(std::string_view name, const XmlElement& namedIn) {
+  std::filesystem::path path = findFile(name, namedIn);
+  listFile(path);
+  return path;
 }
 
 void LoadContext::unsupported(const SourceLocation& where, const std::string& message) {
@@ -35,7 +44,7 @@ void LoadContext::unsupported(const SourceLocation& where, const std::string& me
 }
 
 void LoadContext::warn(const SourceLocation& where, const std::string& message) {
-  scene.warnings.push_back(where.file + ":" + std::to_string(where.line) + ": " + message);
+  scene.warnings.push_back(toString(where) + ": " + message);
 }
 
 void LoadContext::note(const SourceLocation& where, const std::string& what, const std::string& effect) {

@@ -11,7 +11,7 @@
 
 namespace wavecrest {
 
-struct TriangleSoup;
+class MeshesAhead;
 
 struct LoadContext {
   const LoadOptions& options;
@@ -24,20 +24,23 @@ struct LoadContext {
   std::map<uint32_t, uint32_t> scalarTextures{};  // what stands in for a texture where a number is asked for
   std::set<const XmlElement*> reading{};          // objects being read, to find reference cycles
   std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps{};                  // by path and colour treatment
-  std::map<std::string, std::shared_ptr<const TriangleSoup>> groupMeshes{};        // mesh files inside shape groups
   std::map<std::string, std::shared_ptr<const std::vector<char>>> meshArchives{};  // files of many meshes, by path
-  std::set<const XmlElement*> areaLights{};                                        // that shapes have
+  std::shared_ptr<MeshesAhead> meshesAhead{};
+  std::set<const XmlElement*> areaLights{};         // that shapes have
   std::string meshAttribute{};                      // that the shape being read asks its mesh for, and
   std::shared_ptr<const Bitmap> attributeBitmap{};  // what became of it
-  bool inShapeGroup = false;
-  uint32_t defaultMaterial[2] = {kNone, kNone};      // of surfaces, of lights
-  uint64_t instancedShapes = 0, instancedBytes = 0;  // copies made by instances
+  std::map<const XmlElement*, uint32_t> groups{};   // of the scene, by their definitions
+  uint32_t shapeGroup = kNone;                      // the one whose shapes are being read
+  uint32_t defaultMaterial[2] = {kNone, kNone};     // of surfaces, of lights
 
   // Follows <ref>; any other element is itself.
   const XmlElement& resolve(const XmlElement& element) const;
-  // A file named in the XML, relative to the scene file (as Mitsuba takes it, also in included files), else to the file
-  // that names it, else to a <path>. The first that exists; if none does, the one beside the scene file. Listed in
-  // Scene::files.
+  // The path of a file named in the XML, relative to the scene file (as Mitsuba takes it, also in included files), else
+  // to the file that names it, else to a <path>. The first that exists; if none does, the one beside the scene file.
+  std::filesystem::path findFile(std::string_view name, const XmlElement& namedIn) const;
+  // Names a file in Scene::files, if it exists.
+  void listFile(const std::filesystem::path& path);
+  // Both at once.
   std::filesystem::path resolvePath(std::string_view name, const XmlElement& namedIn);
 
   // Something well-formed that wavecrest does not support: an error, or with --lenient a warning after which the

@@ -5,6 +5,7 @@
 
 #include "engine/load/bitmap_file.h"
 #include "engine/load/materials.h"
+#include "engine/load/perspective.h"
 #include "engine/load/values.h"
 
 namespace wavecrest {
@@ -26,7 +27,8 @@ Double3 unitDirection(const Parameters& parameters, const Double3& v, std::strin
 }
 
 bool isInfinite(const EmitterKind& kind) {
-  return std::holds_alternative<ConstantEmitter>(kind) || std::holds_alternative<EnvmapEmitter>(kind);
+  return std::holds_alternative<ConstantEmitter>(kind) || std::holds_alternative<EnvmapEmitter>(kind) ||
+         std::holds_alternative<SunskyEmitter>(kind);
 }
 
 }  // namespace
@@ -45,7 +47,8 @@ void addEmitter(LoadContext& context, const XmlElement& emitter) {
   ignoreCommonParameters(parameters);
   parameters.finish();
   if (isInfinite(kind)) {
-    for (const Emitter& other : context.scene.emitters) {
+    for (Emitter& other : context.scene.emitters) {
+      if (joinSunAndSky(other.kind, kind)) return;
       if (isInfinite(other.kind)) {
         throw LoadError(emitter.location(), "second environment light (the first is at line " +
                                                 std::to_string(other.source.line) + "); expected at most one");
@@ -96,9 +99,35 @@ EmitterKind readSpot(LoadContext& context, Parameters& parameters) {
                                                              std::to_string(spot.cutoffAngle) + " degrees");
   }
   if (const XmlElement* texture = parameters.element("texture")) {
-    context.unsupported(texture->location(), "texture of a spot light is not supported; expected none");
+    checkPerpendicular(spot.toWorld, "the spot light", parameters.locationOf("to_world"));
+    spot.texture = textureOf(context, *texture);
   }
   return spot;
+}
+
+namespace {
+
+// Width over height of a texture's picture; 1 where it has no resolution.
+double aspectOf(const LoadContext& context, const TexturedRgb& value) {
+  if (value.texture == kNone) return 1;
+  const auto* const bitmap = std::get_if<BitmapTexture>(&context.scene.textures[value.texture].kind);
+  if (bitmap == nullptr) return 1;
+  return static_cast<double>(bitmap->bitmap->width) / bitmap->bitmap->height;
+}
+
+}  // namespace
+
+EmitterKind readProjector(LoadContext& context, Parameters& parameters) {
+  ProjectorEmitter projector{.irradiance = readTexturedEmission(context, parameters, "irradiance"),
+                             .scale = parameters.real("scale", 1),
+                             .toWorld = readToWorld(parameters)};
+  if (!(projector.scale >= 0)) {
+    throw LoadError(parameters.locationOf("scale"), "scale of the projector is negative; expected 0 or more");
+  }
+  checkRigid(projector.toWorld, "the projector", parameters.locationOf("to_world"));
+  projector.aspect = aspectOf(context, projector.irradiance);
+  projector.fovX = readHorizontalFov(parameters, projector.aspect);
+  return projector;
 }
 
 EmitterKind readDirectional(LoadContext& context, Parameters& parameters) {

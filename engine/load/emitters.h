@@ -14,8 +14,14 @@ AreaEmitter readAreaEmitter(LoadContext& context, const XmlElement& emitter, uin
 
 EmitterKind readPoint(LoadContext&, Parameters&);
 EmitterKind readSpot(LoadContext&, Parameters&);
+EmitterKind readProjector(LoadContext&, Parameters&);
 EmitterKind readDirectional(LoadContext&, Parameters&);
 EmitterKind readConstant(LoadContext&, Parameters&);
 EmitterKind readEnvmap(LoadContext&, Parameters&);
+EmitterKind readSunsky(LoadContext&, Parameters&);  // also `sky` and `sun`
+
+// Makes one light of the first and second, if one is the sun and the other the sky of the same day: `sun` and `sky` of
+// Mitsuba 0.6 beside each other.
+bool joinSunAndSky(EmitterKind& first, const EmitterKind& second);
 
 }  // namespace wavecrest

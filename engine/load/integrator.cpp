@@ -55,10 +55,7 @@ void readIntegrator(LoadContext& context, const XmlElement& element) {
   const int64_t fallback = element.get("type") == "direct" ? 2 : -1;
   defaults.maxDepth = static_cast<int>(parameters.integer("max_depth", fallback, -1, kMost));
   defaults.rrDepth = static_cast<int>(parameters.integer("rr_depth", 5, 1, kMost));
-  if (parameters.boolean("hide_emitters", false)) {
-    context.unsupported(parameters.locationOf("hide_emitters"),
-                        "hide_emitters is not supported: lamps and sky are part of the picture; expected false");
-  }
+  defaults.hideEmitters = parameters.boolean("hide_emitters", false);
   noteMethod(context, parameters, parameters.takeOthers());
 }
 

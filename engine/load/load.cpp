@@ -7,6 +7,7 @@
 #include "engine/load/input_file.h"
 #include "engine/load/integrator.h"
 #include "engine/load/materials.h"
+#include "engine/load/meshes_ahead.h"
 #include "engine/load/scene_hash.h"
 #include "engine/load/sensor.h"
 #include "engine/load/shapes.h"
@@ -44,6 +45,17 @@ void readSensors(LoadContext& context, const std::vector<const XmlElement*>& sen
   }
 }
 
+// The sky can be hidden; a lamp would have to be transparent for rays from the camera alone.
+void checkHiddenEmitters(LoadContext& context) {
+  for (const Emitter& emitter : context.scene.emitters) {
+    if (!std::holds_alternative<AreaEmitter>(emitter.kind)) continue;
+    context.unsupported(emitter.source,
+                        "hide_emitters with an area light is not supported: the lamp stays in the picture; expected "
+                        "lights without a shape");
+    return;
+  }
+}
+
 void readScene(LoadContext& context) {
   Parameters parameters(context, context.document.scene);
   const std::vector<const XmlElement*> integrators = parameters.objects("integrator");
@@ -52,8 +64,11 @@ void readScene(LoadContext& context) {
   }
   if (!integrators.empty()) readIntegrator(context, *integrators.front());
   readSensors(context, parameters.objects("sensor"));
-  for (const XmlElement* shape : parameters.objects("shape")) addShape(context, *shape);
+  const std::vector<const XmlElement*> shapes = parameters.objects("shape");
+  context.meshesAhead->read(context, shapes);
+  for (const XmlElement* shape : shapes) addShape(context, *shape);
   for (const XmlElement* emitter : parameters.objects("emitter")) addEmitter(context, *emitter);
+  if (context.scene.defaults.hideEmitters) checkHiddenEmitters(context);
   for (const XmlElement* bsdf : parameters.objects("bsdf")) checkUnusedDefinition(context, *bsdf);
   for (const XmlElement* texture : parameters.objects("texture")) checkUnusedDefinition(context, *texture);
   // Definitions that the sensor refers to, or nobody does.
@@ -70,6 +85,7 @@ Scene loadScene(const std::filesystem::path& xml, const LoadOptions& options) {
   try {
     const std::unique_ptr<XmlDocument> document = readXmlDocument(xml, options);
     LoadContext context{.options = options, .document = *document, .scene = {}};
+    context.meshesAhead = std::make_shared<MeshesAhead>();
     context.scene.name = xml == kStandardInput ? "stdin" : xml.stem().string();
     context.scene.files.assign(document->files.begin(), document->files.end());
     context.scene.warnings = document->warnings;

@@ -14,26 +14,28 @@
 #include <string>
 
 #include "engine/scene/scene.h"
+#include "engine/scene/scene_error.h"
 
 namespace wavecrest {
 
-// What is wrong with an input file; what() reads "FILE:LINE: what is wrong; what was expected". Line 0: the whole file.
+// What is wrong with an input file; what() reads "FILE:LINE: what is wrong; what was expected", of the
+// whole file (line 0) "FILE: ...".
 class LoadError : public std::runtime_error {
  public:
   LoadError(const SourceLocation& where, const std::string& message)
-      : std::runtime_error(where.file + ":" + std::to_string(where.line) + ": " + message),
-        location(where),
-        text(message) {}
+      : std::runtime_error(toString(where) + ": " + message), location(where), text(message) {}
 
   SourceLocation location;
   std::string text;  // without the location
 };
 
-// A file that is named somewhere and does not exist.
+// A file that does not exist: named in another one at `where`, or at line 0 the scene file itself.
 class MissingFileError : public LoadError {
  public:
   MissingFileError(const SourceLocation& where, const std::filesystem::path& missing)
-      : LoadError(where, "file \"" + missing.string() + "\" not found; expected an existing file"), file(missing) {}
+      : LoadError(where, where.line == 0 ? "no such file; expected a Mitsuba scene file"
+                                         : "file \"" + missing.string() + "\" not found; expected an existing file"),
+        file(missing) {}
 
   std::filesystem::path file;
 };

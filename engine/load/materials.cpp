@@ -90,17 +90,27 @@ uint32_t textureOf(LoadContext& context, const XmlElement& texture) {
 
 namespace {
 
-// Pixels that reflect more than arrives are taken as they are, as in Mitsuba; less than nothing is refused.
-void checkReflectance(LoadContext& context, const Texture& texture, const SourceLocation& where) {
-  const auto* const bitmap = std::get_if<BitmapTexture>(&texture.kind);
-  if (bitmap == nullptr || bitmap->bitmap->pixels.empty()) return;
-  const std::vector<float>& pixels = bitmap->bitmap->pixels;
-  const auto [least, most] = std::minmax_element(pixels.begin(), pixels.end());
-  if (*least < 0) {
-    throw LoadError(where, "reflectance texture has a value of " + std::to_string(*least) + "; expected 0 to 1");
+// The smallest and the largest value of a texture.
+std::pair<double, double> rangeOf(const Texture& texture) {
+  if (const auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
+    const auto [least0, most0] = std::ranges::minmax(board->color0);
+    const auto [least1, most1] = std::ranges::minmax(board->color1);
+    return {std::min(least0, least1), std::max(most0, most1)};
   }
-  if (*most > 1) {
-    context.warn(where, "reflectance texture has values up to " + std::to_string(*most) +
+  const std::vector<float>& pixels = std::get<BitmapTexture>(texture.kind).bitmap->pixels;
+  if (pixels.empty()) return {0, 0};
+  const auto [least, most] = std::ranges::minmax(pixels);
+  return {least, most};
+}
+
+// Textures that reflect more than arrives are taken as they are, as in Mitsuba; less than nothing is refused.
+void checkReflectance(LoadContext& context, const Texture& texture, const SourceLocation& where) {
+  const auto [least, most] = rangeOf(texture);
+  if (least < 0) {
+    throw LoadError(where, "reflectance texture has a value of " + std::to_string(least) + "; expected 0 to 1");
+  }
+  if (most > 1) {
+    context.warn(where, "reflectance texture has values up to " + std::to_string(most) +
                             ", which reflect more light than arrives; expected 0 to 1");
   }
 }

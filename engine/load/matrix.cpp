@@ -80,6 +80,15 @@ bool isFinite(const Matrix4& m) {
   });
 }
 
+bool hasInverse(const Matrix4& m) {
+  // Next to the lengths of the columns a determinant this small is rounding.
+  constexpr double kResidue = 1e-14;
+  double size = 1;
+  for (size_t j = 0; j < 3; ++j) size *= length(Double3{m[0][j], m[1][j], m[2][j]});
+  const double determinant = determinant3(m);
+  return isFinite(m) && std::abs(determinant) > kResidue * size && std::isfinite(1 / determinant);
+}
+
 bool isIdentity(const Matrix4& m) { return m == identityMatrix(); }
 
 }  // namespace wavecrest

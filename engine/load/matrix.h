@@ -17,6 +17,8 @@ double determinant3(const Matrix4& m);  // of the linear part
 // A matrix proportional to the inverse transpose of the linear part, for normals: the cofactors times the sign of the
 // determinant. Needs no division, so it holds for singular matrices too.
 Matrix4 normalMatrix(const Matrix4& m);
+// Whether the linear part has an inverse, and both are numbers.
+bool hasInverse(const Matrix4& m);
 bool isFinite(const Matrix4& m);
 bool isIdentity(const Matrix4& m);
 

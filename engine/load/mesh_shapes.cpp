@@ -1,13 +1,15 @@
 // Readers of the shapes `ply`, `obj` and `serialized`.
+#include "engine/load/mesh_shapes.h"
+
+#include <optional>
+
 #include "engine/load/input_file.h"
-#include "engine/load/mesh_files.h"
+#include "engine/load/meshes_ahead.h"
 #include "engine/load/shapes.h"
 
 namespace wavecrest {
 
 namespace {
-
-using FileReader = TriangleSoup (*)(const std::filesystem::path&, bool, const SourceLocation&);
 
 MeshPlacement readPlacement(Parameters& parameters, const Matrix4& toWorld) {
   const MeshPlacement placement{.toWorld = toWorld,
@@ -20,56 +22,71 @@ MeshPlacement readPlacement(Parameters& parameters, const Matrix4& toWorld) {
   return placement;
 }
 
-Geometry readMeshShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld, FileReader read,
-                       bool flipTexCoordsDefault) {
+Geometry readMeshShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
   const MeshPlacement placement = readPlacement(parameters, toWorld);
-  const bool flipTexCoords = parameters.boolean("flip_tex_coords", flipTexCoordsDefault);
-  const std::string filename = parameters.requiredString("filename");
-  const SourceLocation where = parameters.locationOf("filename");
-  const std::filesystem::path path = context.resolvePath(filename, parameters.object());
-  if (!context.inShapeGroup) return buildMesh(context, read(path, flipTexCoords, where), placement, where);
-  // Every instance of the group asks for the same file.
-  std::shared_ptr<const TriangleSoup>& soup = context.groupMeshes[(flipTexCoords ? "flipped:" : "") + path.string()];
-  if (!soup) soup = std::make_shared<const TriangleSoup>(read(path, flipTexCoords, where));
-  return buildMesh(context, *soup, placement, where);
+  const MeshFile file = meshFileOf(context, parameters);
+  context.listFile(file.path);
+  if (std::optional<SerializedMesh> mesh = context.meshesAhead->take(parameters.object())) {
+    return buildMesh(context, std::move(mesh->soup), placement, file.where);
+  }
+  return buildMesh(context, readMeshFile(file), placement, file.where);
 }
 
 }  // namespace
 
-Geometry readPlyShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
-  const auto read = [](const std::filesystem::path& path, bool flip, const SourceLocation& where) {
-    return readPly(path, flip, where);
-  };
-  if (context.meshAttribute.empty()) return readMeshShape(context, parameters, toWorld, read, false);
-  const MeshPlacement placement = readPlacement(parameters, toWorld);
-  const bool flipTexCoords = parameters.boolean("flip_tex_coords", false);
+MeshFile meshFileOf(const LoadContext& context, Parameters& parameters) {
+  constexpr int64_t kMostMeshes = int64_t{1} << 31;
+  const std::string_view type = parameters.object().get("type");
+  MeshFile file{.kind = type == "obj"          ? MeshFile::Kind::obj
+                        : type == "serialized" ? MeshFile::Kind::serialized
+                                               : MeshFile::Kind::ply,
+                .path = {},
+                .where = {}};
+  file.flipTexCoords = parameters.boolean("flip_tex_coords", file.kind == MeshFile::Kind::obj);
+  if (file.kind == MeshFile::Kind::serialized) {
+    file.index = static_cast<uint32_t>(parameters.integer("shape_index", 0, 0, kMostMeshes));
+  }
   const std::string filename = parameters.requiredString("filename");
-  const SourceLocation where = parameters.locationOf("filename");
-  const std::filesystem::path path = context.resolvePath(filename, parameters.object());
-  return buildMesh(context, readPly(path, flipTexCoords, where, context.meshAttribute), placement, where);
+  file.where = parameters.locationOf("filename");
+  file.path = context.findFile(filename, parameters.object());
+  return file;
+}
+
+TriangleSoup readMeshFile(const MeshFile& file) {
+  return file.kind == MeshFile::Kind::obj ? readObj(file.path, file.flipTexCoords, file.where)
+                                          : readPly(file.path, file.flipTexCoords, file.where);
+}
+
+Geometry readPlyShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
+  if (context.meshAttribute.empty()) return readMeshShape(context, parameters, toWorld);
+  const MeshPlacement placement = readPlacement(parameters, toWorld);
+  const MeshFile file = meshFileOf(context, parameters);
+  context.listFile(file.path);
+  return buildMesh(context, readPly(file.path, file.flipTexCoords, file.where, context.meshAttribute), placement,
+                   file.where);
 }
 
 Geometry readObjShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
-  return readMeshShape(context, parameters, toWorld, &readObj, true);
+  return readMeshShape(context, parameters, toWorld);
 }
 
 Geometry readSerializedShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
-  constexpr int64_t kMostMeshes = int64_t{1} << 31;
   MeshPlacement placement = readPlacement(parameters, toWorld);
-  const bool flipTexCoords = parameters.boolean("flip_tex_coords", false);
-  const auto index = static_cast<uint32_t>(parameters.integer("shape_index", 0, 0, kMostMeshes));
-  const std::string filename = parameters.requiredString("filename");
-  const SourceLocation where = parameters.locationOf("filename");
-  const std::string path = context.resolvePath(filename, parameters.object()).string();
-  // A scene's meshes mostly share one file.
-  std::shared_ptr<const std::vector<char>>& archive = context.meshArchives[path];
-  if (!archive) archive = std::make_shared<const std::vector<char>>(readInputFile(path, where));
-  SerializedMesh mesh = readSerialized(*archive, path, index);
-  placement.faceNormals = placement.faceNormals || mesh.faceNormals;
-  if (flipTexCoords) {
-    for (Float2& uv : mesh.soup.uvs) uv[1] = 1 - uv[1];
+  const MeshFile file = meshFileOf(context, parameters);
+  context.listFile(file.path);
+  std::optional<SerializedMesh> mesh = context.meshesAhead->take(parameters.object());
+  if (!mesh) {
+    const std::string path = file.path.string();
+    // A scene's meshes mostly share one file.
+    std::shared_ptr<const std::vector<char>>& archive = context.meshArchives[path];
+    if (!archive) archive = std::make_shared<const std::vector<char>>(readInputFile(path, file.where));
+    mesh = readSerialized(*archive, path, file.index);
   }
-  return buildMesh(context, std::move(mesh.soup), placement, where);
+  placement.faceNormals = placement.faceNormals || mesh->faceNormals;
+  if (file.flipTexCoords) {
+    for (Float2& uv : mesh->soup.uvs) uv[1] = 1 - uv[1];
+  }
+  return buildMesh(context, std::move(mesh->soup), placement, file.where);
 }
 
 }  // namespace wavecrest

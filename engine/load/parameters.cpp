@@ -152,7 +152,7 @@ std::optional<Matrix4> Parameters::transform(std::string_view name) {
     throw LoadError(child->site->location(),
                     "parameter " + inQuotes(name) + " is a " + article(child->site->tag) + "; expected <transform>");
   }
-  return readTransform(*child->site);
+  return readTransform(context_, *child->site);
 }
 
 double Parameters::ior(std::string_view name, std::string_view fallback) {

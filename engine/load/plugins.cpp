@@ -10,6 +10,30 @@
 
 namespace wavecrest {
 
+std::string outOfScope(const XmlElement& object) {
+  struct Subject {
+    std::string_view tag, type, about;
+  };
+  constexpr Subject kSubjects[] = {{"bsdf", "hair", "hair"},
+                                   {"bsdf", "measured", "measured BSDFs"},
+                                   {"bsdf", "measured_polarized", "measured BSDFs and polarisation"},
+                                   {"bsdf", "pplastic", "polarisation"},
+                                   {"bsdf", "polarizer", "polarisation"},
+                                   {"bsdf", "retarder", "polarisation"},
+                                   {"bsdf", "circular", "polarisation"},
+                                   {"shape", "bsplinecurve", "curves"},
+                                   {"shape", "linearcurve", "curves"},
+                                   {"shape", "hair", "hair"},
+                                   {"shape", "sdfgrid", "signed distance fields"},
+                                   {"shape", "ellipsoids", "volumes of ellipsoids"},
+                                   {"shape", "ellipsoidsmesh", "volumes of ellipsoids"}};
+  for (const Subject& subject : kSubjects) {
+    if (object.tag != subject.tag || object.get("type") != subject.type) continue;
+    return ", since wavecrest renders no " + std::string(subject.about);
+  }
+  return {};
+}
+
 std::span<const BsdfPlugin> bsdfPlugins() {
   static constexpr BsdfPlugin kPlugins[] = {{"diffuse", &readDiffuse},
                                             {"conductor", &readConductor},
@@ -20,7 +44,14 @@ std::span<const BsdfPlugin> bsdfPlugins() {
                                             {"plastic", &readPlastic},
                                             {"roughplastic", &readRoughPlastic},
                                             {"phong", &readPhong},
+                                            {"principled", &readPrincipled},
+                                            {"principledthin", &readPrincipledThin},
+                                            {"blendbsdf", &readBlend},
+                                            {"mixturebsdf", &readMixture},
+                                            {"coating", &readCoating},
+                                            {"roughcoating", &readRoughCoating},
                                             {"twosided", &readTwoSided},
+                                            {"null", &readNull},
                                             {"mask", &readMask},
                                             {"bumpmap", &readBumpMap},
                                             {"normalmap", &readNormalMap}};
@@ -46,11 +77,11 @@ std::span<const ShapePlugin> shapePlugins() {
 }
 
 std::span<const EmitterPlugin> emitterPlugins() {
-  static constexpr EmitterPlugin kPlugins[] = {{"point", &readPoint},
-                                               {"spot", &readSpot},
-                                               {"directional", &readDirectional},
-                                               {"constant", &readConstant},
-                                               {"envmap", &readEnvmap}};
+  static constexpr EmitterPlugin kPlugins[] = {{"point", &readPoint},         {"spot", &readSpot},
+                                               {"projector", &readProjector}, {"directional", &readDirectional},
+                                               {"constant", &readConstant},   {"envmap", &readEnvmap},
+                                               {"sunsky", &readSunsky},       {"sky", &readSunsky},
+                                               {"sun", &readSunsky}};
   return kPlugins;
 }
 

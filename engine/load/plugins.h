@@ -35,6 +35,10 @@ std::span<const EmitterPlugin> emitterPlugins();  // all but `area`, which belon
 std::span<const SensorPlugin> sensorPlugins();
 std::span<const FilterPlugin> filterPlugins();
 
+// What a plugin of Mitsuba is about that wavecrest does not render at all, ", since wavecrest renders no hair"; else
+// nothing.
+std::string outOfScope(const XmlElement& object);
+
 // The reader of the object's type. Unknown: an error, or with --lenient a warning that says what happens instead, and
 // null.
 template <class Reader>
@@ -47,7 +51,7 @@ const Plugin<Reader>* findPlugin(LoadContext& context, std::span<const Plugin<Re
     list += (list.empty() ? "" : ", ") + std::string(plugin.type);
   }
   context.unsupported(object.location(),
-                      object.tag + " \"" + std::string(type) + "\" is not supported" +
+                      object.tag + " \"" + std::string(type) + "\" is not supported" + outOfScope(object) +
                           (context.options.lenient ? " (" + std::string(lenientFallback) + ")" : "") +
                           "; expected one of " + list);
   return nullptr;

@@ -70,14 +70,26 @@ class Hasher {
   void add(const TexturedFloat& t) { all(t.value, t.texture); }
 
   void add(const Diffuse& m) { all(m.reflectance); }
-  void add(const Conductor& m) { all(m.eta, m.k, m.perfectMirror, m.specularReflectance, m.alpha, m.distribution); }
+  void add(const Conductor& m) {
+    all(m.eta, m.k, m.perfectMirror, m.specularReflectance, m.alpha, m.distribution);
+    if (m.alphaV) add(*m.alphaV);
+  }
   void add(const Dielectric& m) {
     all(m.intIor, m.extIor, m.specularReflectance, m.specularTransmittance, m.alpha, m.thin, m.distribution);
+    if (m.alphaV) add(*m.alphaV);
   }
   void add(const Plastic& m) {
     all(m.intIor, m.extIor, m.diffuseReflectance, m.specularReflectance, m.alpha, m.nonlinear, m.distribution);
   }
   void add(const Phong& m) { all(m.diffuseReflectance, m.specularReflectance, m.exponent); }
+  void add(const Principled& m) {
+    all(m.thin, m.baseColor, m.eta, m.roughness, m.anisotropic, m.specTrans, m.specTint, m.sheen, m.sheenTint,
+        m.flatness, m.metallic, m.clearcoat, m.clearcoatGloss, m.diffTrans);
+  }
+  // Weights as kernels have them: a file may give them in another way, with other last digits.
+  void add(const Blend& m) {
+    all(m.materials, std::vector<float>(m.weights.begin(), m.weights.end()), m.weightTexture);
+  }
   void add(const NormalMapping& m) { all(m.flipInvalidNormals, m.shadowing, m.aroundTwoSided); }
   void add(const Material& m) {
     all(m.kind, m.twoSided, m.opacity, m.bumpTexture, m.bumpScale, m.normalTexture);
@@ -98,6 +110,10 @@ class Hasher {
   }
   void add(const DirectionalEmitter& e) { all(e.direction, e.irradiance); }
   void add(const ConstantEmitter& e) { all(e.radiance); }
+  void add(const ProjectorEmitter& e) { all(e.irradiance, e.scale, e.fovX, e.aspect, e.toWorld); }
+  void add(const SunskyEmitter& e) {
+    all(e.turbidity, e.albedo, e.sunDirection, e.sunScale, e.skyScale, e.sunAperture, e.toWorld);
+  }
   void add(const EnvmapEmitter& e) { all(*e.bitmap, e.scale, e.toWorld); }
   void add(const Emitter& e) { all(e.kind); }
 
@@ -107,9 +123,7 @@ class Hasher {
   void add(const FilmSettings& f) {
     all(f.width, f.height, f.cropX, f.cropY, f.cropWidth, f.cropHeight, f.filter, f.filterRadius, f.gaussianStddev);
   }
-  void add(const RenderDefaults& d) {
-    all(d.maxDepth, d.rrDepth, d.sampleCount, false);
-  }  // false: as in the hashes of stored references
+  void add(const RenderDefaults& d) { all(d.maxDepth, d.rrDepth, d.sampleCount, d.hideEmitters); }
 
   uint64_t state_ = 0x243f6a8885a308d3u;  // fractional digits of pi
 };
@@ -119,6 +133,10 @@ class Hasher {
 uint64_t hashScene(const Scene& scene) {
   Hasher hasher;
   hasher.all(scene.textures, scene.materials, scene.shapes, scene.emitters, scene.sensor, scene.film, scene.defaults);
+  if (!scene.instances.empty()) {
+    for (const Shape& shape : scene.shapes) hasher.word(shape.group);
+    for (const Instance& instance : scene.instances) hasher.all(instance.group, instance.toWorld);
+  }
   return hasher.value();
 }
 

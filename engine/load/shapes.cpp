@@ -6,6 +6,7 @@
 #include "engine/load/emitters.h"
 #include "engine/load/materials.h"
 #include "engine/load/mesh_attributes.h"
+#include "engine/load/meshes_ahead.h"
 #include "engine/load/values.h"
 
 namespace wavecrest {
@@ -53,12 +54,24 @@ void attachAreaLight(LoadContext& context, const XmlElement& element, uint32_t s
       {.kind = readAreaEmitter(context, element, shapeIndex), .source = element.location()});
 }
 
-// `placement` is applied after the shape's own to_world: that of the instance, when inside a shape group.
-void addPlacedShape(LoadContext& context, const XmlElement& element, const Matrix4& placement);
+// The index of a group in the scene; at its first instance its shapes are read.
+uint32_t groupOf(LoadContext& context, const XmlElement& group) {
+  if (const auto known = context.groups.find(&group); known != context.groups.end()) return known->second;
+  const auto index = static_cast<uint32_t>(context.scene.groups.size());
+  context.groups[&group] = index;
+  context.scene.groups.push_back({.id = std::string(group.get("id")), .source = group.location()});
+  Parameters members(context, group);
+  const std::vector<const XmlElement*> shapes = members.objects("shape");
+  members.finish();
+  context.shapeGroup = index;
+  context.meshesAhead->read(context, shapes);
+  for (const XmlElement* shape : shapes) addShape(context, *shape);
+  context.shapeGroup = kNone;
+  return index;
+}
 
-// Instances are flattened: each becomes a copy of the group's shapes in world space.
-void addInstance(LoadContext& context, Parameters& parameters) {
-  if (context.inShapeGroup) {
+void addInstance(LoadContext& context, const XmlElement& element, Parameters& parameters) {
+  if (context.shapeGroup != kNone) {
     throw LoadError(parameters.location(), "instance inside a shapegroup; expected only plain shapes in a shapegroup");
   }
   const XmlElement& group = parameters.onlyObject("shape");
@@ -68,33 +81,24 @@ void addInstance(LoadContext& context, Parameters& parameters) {
   }
   const Matrix4 toWorld = parameters.transform("to_world").value_or(identityMatrix());
   parameters.finish();
-  Parameters members(context, group);
-  const std::vector<const XmlElement*> shapes = members.objects("shape");
-  members.finish();
-  context.inShapeGroup = true;
-  for (const XmlElement* shape : shapes) addPlacedShape(context, *shape, toWorld);
-  context.inShapeGroup = false;
+  if (!hasInverse(toWorld)) {
+    context.unsupported(parameters.locationOf("to_world"),
+                        "instance that is flat in some direction; expected a to_world that has an inverse");
+    return;
+  }
+  context.scene.instances.push_back({.id = std::string(element.get("id")),
+                                     .group = groupOf(context, group),
+                                     .toWorld = toWorld,
+                                     .source = element.location()});
 }
 
-// A few lines of XML can ask for any number of copies.
-void countCopy(LoadContext& context, const Geometry& geometry, const SourceLocation& where) {
-  constexpr uint64_t kMostBytes = uint64_t{1} << 30, kMostCopies = 100'000;
-  ++context.instancedShapes;
-  if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) {
-    context.instancedBytes += mesh->positions.size() * sizeof(Float3) + mesh->normals.size() * sizeof(Float3) +
-                              mesh->uvs.size() * sizeof(Float2) + mesh->triangles.size() * sizeof(mesh->triangles[0]);
-  }
-  if (context.instancedShapes > kMostCopies || context.instancedBytes > kMostBytes) {
-    throw LoadError(where, "instances add up to more than " + std::to_string(kMostCopies) +
-                               " shapes or 1 GiB; expected fewer, since each becomes a copy");
-  }
-}
+}  // namespace
 
-void addPlacedShape(LoadContext& context, const XmlElement& element, const Matrix4& placement) {
+void addShape(LoadContext& context, const XmlElement& element) {
   const std::string_view type = element.get("type");
-  if (type == "shapegroup" && !context.inShapeGroup) return;  // a definition: only its instances appear
+  if (type == "shapegroup" && context.shapeGroup == kNone) return;  // a definition: only its instances appear
   Parameters parameters(context, element);
-  if (type == "instance") return addInstance(context, parameters);
+  if (type == "instance") return addInstance(context, element, parameters);
   const ShapePlugin* plugin = findPlugin(context, shapePlugins(), element, "left out");
   if (!plugin) return;
 
@@ -104,7 +108,7 @@ void addPlacedShape(LoadContext& context, const XmlElement& element, const Matri
   shape.source = element.location();
   context.meshAttribute = meshAttributeOf(context, element);
   context.attributeBitmap = nullptr;
-  shape.kind = plugin->read(context, parameters, multiply(placement, own));
+  shape.kind = plugin->read(context, parameters, own);
   if (!context.meshAttribute.empty() && !context.attributeBitmap) {
     throw LoadError(element.location(), parameters.describe() + " has no attribute " + inQuotes(context.meshAttribute) +
                                             "; expected a ply mesh with that attribute");
@@ -115,7 +119,6 @@ void addPlacedShape(LoadContext& context, const XmlElement& element, const Matri
   ignoreCommonParameters(parameters);
   parameters.finish();
 
-  if (context.inShapeGroup) countCopy(context, shape.kind, element.location());
   const double area = surfaceArea(shape.kind);
   if (!(area > 0) || !std::isfinite(area)) {
     const std::string message = parameters.describe() + (light ? ", a light," : "") +
@@ -124,13 +127,16 @@ void addPlacedShape(LoadContext& context, const XmlElement& element, const Matri
     context.unsupported(element.location(), message);
     return;
   }
-  if (context.inShapeGroup && light) {
+  if (context.shapeGroup != kNone && light) {
     throw LoadError(light->location(), "light inside a shapegroup; expected instances without lights");
   }
   shape.material = bsdf ? materialOf(context, *bsdf) : defaultMaterial(context, light != nullptr);
   if (light) attachAreaLight(context, *light, static_cast<uint32_t>(context.scene.shapes.size()), shape);
+  shape.group = context.shapeGroup;
   context.scene.shapes.push_back(std::move(shape));
 }
+
+namespace {
 
 struct Area {
   double operator()(const Mesh& mesh) const {
@@ -153,7 +159,5 @@ struct Area {
 }  // namespace
 
 double surfaceArea(const Geometry& geometry) { return std::visit(Area{}, geometry); }
-
-void addShape(LoadContext& context, const XmlElement& shape) { addPlacedShape(context, shape, identityMatrix()); }
 
 }  // namespace wavecrest

@@ -5,7 +5,7 @@
 
 namespace wavecrest {
 
-// Adds a <shape> to the scene; an instance adds a copy of every shape of its group.
+// Adds a <shape> to the scene. A group's shapes are added with its first instance.
 void addShape(LoadContext& context, const XmlElement& shape);
 
 Geometry readRectangle(LoadContext&, Parameters&, const Matrix4& toWorld);

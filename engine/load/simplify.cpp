@@ -61,12 +61,12 @@ class Simplifier {
   void operator()(Diffuse& diffuse) const { (*this)(diffuse.reflectance); }
   void operator()(Conductor& conductor) const {
     (*this)(conductor.specularReflectance);
-    (*this)(conductor.alpha);
+    simplifyRoughness(conductor);
   }
   void operator()(Dielectric& dielectric) const {
     (*this)(dielectric.specularReflectance);
     (*this)(dielectric.specularTransmittance);
-    (*this)(dielectric.alpha);
+    simplifyRoughness(dielectric);
   }
   void operator()(Plastic& plastic) const {
     (*this)(plastic.diffuseReflectance);
@@ -76,6 +76,31 @@ class Simplifier {
   void operator()(Phong& phong) const {
     (*this)(phong.diffuseReflectance);
     (*this)(phong.specularReflectance);
+  }
+  void operator()(Principled& principled) const {
+    (*this)(principled.baseColor);
+    for (TexturedFloat* value :
+         {&principled.roughness, &principled.anisotropic, &principled.specTrans, &principled.specTint,
+          &principled.sheen, &principled.sheenTint, &principled.flatness, &principled.metallic, &principled.clearcoat,
+          &principled.clearcoatGloss, &principled.diffTrans}) {
+      (*this)(*value);
+    }
+  }
+  // Without parts of no weight.
+  void operator()(Blend& blend) const {
+    if (blend.weightTexture != kNone) {
+      TexturedFloat weight{0, blend.weightTexture};
+      (*this)(weight);
+      if (weight.texture != kNone) return;
+      const double second = std::clamp(weight.value, 0.0, 1.0);
+      blend.weightTexture = kNone;
+      blend.weights = {1 - second, second};
+    }
+    for (size_t i = blend.materials.size(); i-- > 0;) {
+      if (blend.weights[i] != 0 || blend.materials.size() == 1) continue;
+      blend.materials.erase(blend.materials.begin() + static_cast<ptrdiff_t>(i));
+      blend.weights.erase(blend.weights.begin() + static_cast<ptrdiff_t>(i));
+    }
   }
   // Of other kinds of materials nothing is known here.
   template <class Kind>
@@ -94,10 +119,34 @@ class Simplifier {
   }
 
  private:
+  template <class Rough>
+  void simplifyRoughness(Rough& bsdf) const {
+    (*this)(bsdf.alpha);
+    if (!bsdf.alphaV) return;
+    (*this)(*bsdf.alphaV);
+    if (bsdf.alpha.texture == bsdf.alphaV->texture && bsdf.alpha.value == bsdf.alphaV->value) bsdf.alphaV.reset();
+  }
+
   std::optional<Rgb> colourOf(uint32_t texture) const { return texture == kNone ? std::nullopt : colours_[texture]; }
 
   std::vector<std::optional<Rgb>> colours_;
 };
+
+// A blend of one BSDF with weight 1 is that BSDF, in the blend's own adapters. What both have adapters around stays.
+void unwrapBlend(Material& material, const Scene& scene) {
+  const auto* blend = std::get_if<Blend>(&material.kind);
+  if (blend == nullptr || blend->weightTexture != kNone || blend->materials.size() != 1 || blend->weights[0] != 1) {
+    return;
+  }
+  const Material& part = scene.materials[blend->materials[0]];
+  const bool mapped = material.bumpTexture != kNone || material.normalTexture != kNone;
+  if (part.opacity && material.opacity) return;
+  if (mapped && (part.opacity || part.twoSided)) return;
+  material.twoSided = material.twoSided || part.twoSided;
+  if (part.opacity) material.opacity = part.opacity;
+  const auto kind = part.kind;
+  material.kind = kind;
+}
 
 }  // namespace
 
@@ -107,9 +156,14 @@ void simplifyScene(Scene& scene) {
     if (mesh != nullptr && !mesh->normals.empty() && isFlat(*mesh)) mesh->normals = {};
   }
   const Simplifier simplify(scene);
-  for (Material& material : scene.materials) simplify(material);
+  // Parts of blends come before them.
+  for (Material& material : scene.materials) {
+    simplify(material);
+    unwrapBlend(material, scene);
+  }
   for (Emitter& emitter : scene.emitters) {
     if (auto* area = std::get_if<AreaEmitter>(&emitter.kind)) simplify(area->radiance);
+    if (auto* projector = std::get_if<ProjectorEmitter>(&emitter.kind)) simplify(projector->irradiance);
   }
 }
 

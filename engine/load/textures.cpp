@@ -20,10 +20,12 @@ Matrix4 readToUv(Parameters& parameters) {
   return uv;
 }
 
+// A colour is a reflectance; a number may stand for something else, as for diff_trans, which reaches 2.
 Rgb readColorOr(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
   const XmlElement* element = parameters.element(name);
   if (!element) return {fallback, fallback, fallback};
-  return readColor(context, *element, ColorRole::reflectance);
+  const bool isNumber = element->tag == "float" || element->tag == "integer";
+  return readColor(context, *element, isNumber ? ColorRole::unbounded : ColorRole::reflectance);
 }
 
 Filter readFilter(LoadContext& context, Parameters& parameters) {

@@ -39,13 +39,18 @@ Double3 readVectorAttributes(const XmlElement& element, double fallback) {
 
 namespace {
 
-Matrix4 readRotate(const XmlElement& element) {
+Matrix4 readRotate(LoadContext& context, const XmlElement& element) {
   checkAttributes(element, {"angle", "x", "y", "z", "value"});
   const std::string* angle = element.find("angle");
   if (!angle) throw LoadError(element.location(), "<rotate> has no angle; expected degrees");
   const Double3 axis = readVectorAttributes(element, 0);
   if (!(length(axis) > 0) || !std::isfinite(length(axis))) {
     throw LoadError(element.location(), "rotation axis has no direction; expected x, y, z not all zero");
+  }
+  constexpr double kRoundedDigits = 1e-3;
+  if (std::abs(length(axis) - 1) > kRoundedDigits) {
+    context.note(element.location(), "rotation about an axis of another length than 1",
+                 "its direction counts, where Mitsuba 3 shears");
   }
   return rotation(axis, parseReal(*angle, element.location()));
 }
@@ -90,7 +95,7 @@ Matrix4 readMatrix(const XmlElement& element) {
   return m;
 }
 
-Matrix4 readOperation(const XmlElement& element) {
+Matrix4 readOperation(LoadContext& context, const XmlElement& element) {
   if (element.tag == "translate") {
     checkAttributes(element, {"x", "y", "z", "value"});
     return translation(readVectorAttributes(element, 0));
@@ -99,7 +104,7 @@ Matrix4 readOperation(const XmlElement& element) {
     checkAttributes(element, {"x", "y", "z", "value"});
     return scaling(readVectorAttributes(element, 1));
   }
-  if (element.tag == "rotate") return readRotate(element);
+  if (element.tag == "rotate") return readRotate(context, element);
   if (element.tag == "lookat" || element.tag == "look_at") return readLookAt(element);
   if (element.tag == "matrix") return readMatrix(element);
   throw LoadError(element.location(),
@@ -108,10 +113,10 @@ Matrix4 readOperation(const XmlElement& element) {
 
 }  // namespace
 
-Matrix4 readTransform(const XmlElement& transform) {
+Matrix4 readTransform(LoadContext& context, const XmlElement& transform) {
   checkAttributes(transform, {"name"});
   Matrix4 m = identityMatrix();
-  for (const XmlElement& operation : transform.children) m = multiply(readOperation(operation), m);
+  for (const XmlElement& operation : transform.children) m = multiply(readOperation(context, operation), m);
   if (!isFinite(m)) throw LoadError(transform.location(), "transform overflows; expected finite entries");
   return m;
 }

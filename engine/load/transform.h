@@ -7,12 +7,13 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "engine/load/context.h"
 #include "engine/load/matrix.h"
 #include "engine/load/xml_document.h"
 
 namespace wavecrest {
 
-Matrix4 readTransform(const XmlElement& transform);
+Matrix4 readTransform(LoadContext& context, const XmlElement& transform);
 // Attributes x, y, z (absent: fallback) or value="s" / "x, y, z".
 Double3 readVectorAttributes(const XmlElement& element, double fallback);
 // Throws unless every attribute of the element is in `known`.

@@ -137,6 +137,7 @@ XmlElement XmlReader::readElement(const OpenFile& file, const pugi::xml_node& no
     }
     element.attributes.emplace_back(attribute.name(), variables_.substitute(attribute.value(), element.location()));
   }
+  element.legacy = file.legacy;
   if (file.legacy) upgradeElement(element);
   readChildren(file, node, depth, element);
   if (file.legacy) upgradeChildren(element);

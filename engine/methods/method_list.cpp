@@ -8,9 +8,10 @@ std::string methodChoices() {
   return choices;
 }
 
-MethodPage pageOf(Method method, MetropolisVariant variant) {
+MethodPage pageOf(Method method, MetropolisVariant variant, bool directPass) {
   if (method == Method::mlt && variant == MetropolisVariant::pssmlt) return primarySampleSpace();
   if (method == Method::mlt && variant == MetropolisVariant::pathspace) return pathSpaceMetropolis();
+  if (method == Method::ppm && directPass) return photonMappingWithDirectPass();
   return entryOf(method).page();
 }
 

@@ -25,6 +25,7 @@ MethodPage primarySampleSpace();
 MethodPage multiplexedMetropolis();
 MethodPage pathSpaceMetropolis();
 MethodPage progressivePhotonMapping();
+MethodPage photonMappingWithDirectPass();
 MethodPage bidirectionalPhotonMapping();
 MethodPage vertexConnectionAndMerging();
 
@@ -66,8 +67,8 @@ constexpr std::string_view toString(Method method) { return entryOf(method).name
 // "pt, lt, ...": what --method may be.
 std::string methodChoices();
 
-// variant: of mlt.
-MethodPage pageOf(Method method, MetropolisVariant variant);
+// variant: of mlt. directPass: of ppm.
+MethodPage pageOf(Method method, MetropolisVariant variant, bool directPass = false);
 inline PathStrategies strategiesOf(Method method) { return strategiesOf(entryOf(method).page()); }
 
 }  // namespace wavecrest

@@ -65,10 +65,11 @@ MisSettings weightsOf(const MethodPage& page, Walk walk) {
   const bool ofCamera = !alone || walk == Walk::camera, ofLight = !alone || walk == Walk::light;
   // Chains in path space weigh whole paths: their walks know no strategies.
   const bool recorded = page.has(StageId::recordPathVertices);
+  // A camera path that goes on by delta lobes alone meets no light that next event estimation could have sampled.
   // Merging without next event estimation makes every path that has a vertex to merge at; emission makes the others.
   const bool mergingAlone = all.merge && !all.nextEvent;
   MisSettings weights;
-  weights.emission = ofCamera && all.emission && !mergingAlone && !recorded;
+  weights.emission = ofCamera && all.emission && !mergingAlone && !all.mergeAtFirstVertex && !recorded;
   weights.nextEvent = ofCamera && all.nextEvent;
   weights.connect = all.connect;
   weights.camera = ofLight && all.camera;

@@ -19,6 +19,16 @@ MethodPage progressivePhotonMapping() {
       {photons(), buildPhotonMap(), walk(Walk::camera, generateCameraPaths, {extend, arrive, merge, scatterSpecular})}};
 }
 
+// The same with direct light by next event estimation: photons are kept from their second vertex on, so that those
+// which come straight from a light are not counted again.
+MethodPage photonMappingWithDirectPass() {
+  using enum StageId;
+  return {
+      {walk(Walk::light, generateLightPaths, {extend, arrive, scatter}, {extend, arrive, storeLightVertices, scatter}),
+       buildPhotonMap(),
+       walk(Walk::camera, generateCameraPaths, {extend, arrive, nextEvent, occlude, merge, scatterSpecular})}};
+}
+
 // bpm: a camera path merges at every such vertex and goes on by all lobes; weights share each path among the vertices
 // where it could have been merged (Vorba 2011).
 MethodPage bidirectionalPhotonMapping() {

@@ -22,6 +22,26 @@ class EmitterWriter {
     addRgb(node, "intensity", e.intensity);
     addFloat(node, "cutoff_angle", e.cutoffAngle);
     addFloat(node, "beam_width", e.beamWidth);
+    if (e.texture != kNone) addRef(node, context_.textureIds[e.texture], "texture");
+  }
+  void operator()(const SunskyEmitter& e) const {
+    const auto unit = [](const Double3& v) { return (1 / length(v)) * v; };
+    const pugi::xml_node node = start("sunsky");
+    addTransform(node, "to_world", e.toWorld);
+    addFloat(node, "turbidity", e.turbidity);
+    addRgb(node, "albedo", e.albedo);
+    addVector(node, "sun_direction", unitPreimage(e.sunDirection, 1.0 / 2048, unit));
+    addFloat(node, "sun_scale", e.sunScale);
+    addFloat(node, "sky_scale", e.skyScale);
+    addFloat(node, "sun_aperture", e.sunAperture);
+  }
+  void operator()(const ProjectorEmitter& e) const {
+    const pugi::xml_node node = start("projector");
+    addTransform(node, "to_world", e.toWorld);
+    addString(node, "fov_axis", "x");
+    addFloat(node, "fov", e.fovX);
+    addFloat(node, "scale", e.scale);
+    addTexturedRgb(context_, node, "irradiance", e.irradiance);
   }
   void operator()(const DirectionalEmitter& e) const {
     // The loader makes a unit vector of it.

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "engine/save/sections.h"
 
 namespace wavecrest {
@@ -37,23 +39,51 @@ class BsdfWriter {
       addRgb(node_, "eta", m.eta);
       addRgb(node_, "k", m.k);
     }
-    roughness(m.alpha, m.distribution);
+    roughness(m.alpha, m.alphaV, m.distribution);
     factor("specular_reflectance", m.specularReflectance);
   }
   void operator()(const Dielectric& m) {
     start(m.thin ? "thindielectric" : isRough(m.alpha) ? "roughdielectric" : "dielectric");
     indices(m.intIor, m.extIor);
-    roughness(m.alpha, m.distribution);
+    roughness(m.alpha, m.alphaV, m.distribution);
     factor("specular_reflectance", m.specularReflectance);
     factor("specular_transmittance", m.specularTransmittance);
   }
   void operator()(const Plastic& m) {
     start(isRough(m.alpha) ? "roughplastic" : "plastic");
     indices(m.intIor, m.extIor);
-    roughness(m.alpha, m.distribution);
+    roughness(m.alpha, {}, m.distribution);
     reflectance("diffuse_reflectance", m.diffuseReflectance);
     factor("specular_reflectance", m.specularReflectance);
     if (m.nonlinear) addBoolean(node_, "nonlinear", true);
+  }
+  void operator()(const Principled& m) {
+    start(m.thin ? "principledthin" : "principled");
+    reflectance("base_color", m.baseColor);
+    addFloat(node_, "eta", m.eta);
+    addTexturedFloat(context_, node_, "roughness", m.roughness);
+    number("anisotropic", m.anisotropic);
+    number("spec_trans", m.specTrans);
+    number("spec_tint", m.specTint);
+    number("sheen", m.sheen);
+    number("sheen_tint", m.sheenTint);
+    number("flatness", m.flatness);
+    number("metallic", m.metallic);
+    number("clearcoat", m.clearcoat);
+    number("clearcoat_gloss", m.clearcoatGloss);
+    number("diff_trans", m.diffTrans);
+  }
+  void operator()(const Blend& m) {
+    start("blendbsdf");
+    if (m.weightTexture != kNone) {
+      addTexturedFloat(context_, node_, "weight", {.value = 0, .texture = m.weightTexture});
+      for (const uint32_t part : m.materials) addRef(node_, context_.materialIds[part]);
+      return;
+    }
+    addFloat(node_, "weight", 1 - m.weights[0]);
+    addRef(node_, context_.materialIds[m.materials[0]]);
+    if (m.materials.size() > 1) return parts(m, 1, 1 - m.weights[0]);
+    addRgb(addObject(node_, "bsdf", "diffuse", ""), "reflectance", {0, 0, 0});
   }
   void operator()(const Phong& m) {
     start("phong");
@@ -77,10 +107,26 @@ class BsdfWriter {
     addFloat(node_, "int_ior", interior);
     addFloat(node_, "ext_ior", exterior);
   }
-  void roughness(const TexturedFloat& alpha, Distribution distribution) {
-    if (!isRough(alpha)) return;
+  void roughness(const TexturedFloat& alpha, const std::optional<TexturedFloat>& alphaV, Distribution distribution) {
+    if (!isRough(alpha) && !alphaV) return;
     addString(node_, "distribution", distribution == Distribution::ggx ? "ggx" : "beckmann");
-    addTexturedFloat(context_, node_, "alpha", alpha);
+    addTexturedFloat(context_, node_, alphaV ? "alpha_u" : "alpha", alpha);
+    if (alphaV) addTexturedFloat(context_, node_, "alpha_v", *alphaV);
+  }
+  // A number that is 0 unless a file says otherwise.
+  void number(const char* name, const TexturedFloat& value) {
+    if (value.texture != kNone || value.value != 0) addTexturedFloat(context_, node_, name, value);
+  }
+  // The parts [first, ...) of a blend, of which `rest` of the whole weight is left, as blends of two below a node.
+  void parts(const Blend& blend, size_t first, double rest) {
+    const double weight = rest > 0 ? std::min(blend.weights[first] / rest, 1.0) : 1;
+    const bool last = first + 1 == blend.materials.size();
+    if (last && weight > 1 - 1e-9) return addRef(node_, context_.materialIds[blend.materials[first]]);
+    node_ = addObject(node_, "bsdf", "blendbsdf", "");
+    addFloat(node_, "weight", 1 - weight);
+    addRef(node_, context_.materialIds[blend.materials[first]]);
+    if (!last) return parts(blend, first + 1, rest - blend.weights[first]);
+    addRgb(addObject(node_, "bsdf", "diffuse", ""), "reflectance", {0, 0, 0});  // weights that are less than 1 together
   }
 
   SaveContext& context_;

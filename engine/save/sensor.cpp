@@ -33,6 +33,7 @@ void saveIntegrator(SaveContext& context) {
   const pugi::xml_node node = addObject(context.root, "integrator", "path");
   addInteger(node, "max_depth", context.scene.defaults.maxDepth);
   addInteger(node, "rr_depth", context.scene.defaults.rrDepth);
+  if (context.scene.defaults.hideEmitters) addBoolean(node, "hide_emitters", true);
 }
 
 void saveSensor(SaveContext& context) {

@@ -32,8 +32,8 @@ bool hasSmoothNormals(const Mesh& mesh) {
 // Writes the shape's own parameters; each call returns the shape's element.
 class ShapeWriter {
  public:
-  ShapeWriter(SaveContext& context, std::string id, const Bitmap* attribute)
-      : context_(context), id_(std::move(id)), attribute_(attribute) {}
+  ShapeWriter(SaveContext& context, pugi::xml_node parent, std::string id, const Bitmap* attribute)
+      : context_(context), parent_(parent), id_(std::move(id)), attribute_(attribute) {}
 
   pugi::xml_node operator()(const Mesh& mesh) const {
     const pugi::xml_node node = start("ply");
@@ -105,7 +105,7 @@ class ShapeWriter {
   }
 
  private:
-  pugi::xml_node start(const char* type) const { return addObject(context_.root, "shape", type, id_); }
+  pugi::xml_node start(const char* type) const { return addObject(parent_, "shape", type, id_); }
   pugi::xml_node placed(const char* type, const Matrix4& toWorld, bool flipNormals) const {
     const pugi::xml_node node = start(type);
     addTransform(node, "to_world", toWorld);
@@ -117,22 +117,72 @@ class ShapeWriter {
   }
 
   SaveContext& context_;
+  pugi::xml_node parent_;  // the scene or a group
   std::string id_;
   const Bitmap* attribute_;  // of the mesh, or null
+};
+
+void saveShape(SaveContext& context, pugi::xml_node parent, size_t index) {
+  const Shape& shape = context.scene.shapes[index];
+  const std::string id = context.names.unique(shape.id, "shape-" + std::to_string(index + 1));
+  const pugi::xml_node node = std::visit(ShapeWriter(context, parent, id, context.meshAttributes[index]), shape.kind);
+  if (shape.material != kNone) addRef(node, context.materialIds[shape.material], "bsdf");
+  if (shape.emitter == kNone) return;
+  const auto& light = std::get<AreaEmitter>(context.scene.emitters[shape.emitter].kind);
+  addTexturedRgb(context, addObject(node, "emitter", "area"), "radiance", light.radiance);
+}
+
+// Groups and their instances, in an order that the loader finds again: it reads a group's shapes at the first instance.
+class InstanceWriter {
+ public:
+  explicit InstanceWriter(SaveContext& context) : context_(context), groups_(context.scene.groups.size()) {
+    for (size_t i = 0; i < groups_.size(); ++i) {
+      ids_.push_back(context.names.unique(context.scene.groups[i].id, "group-" + std::to_string(i + 1)));
+    }
+  }
+  // Writes all instances up to the first one of the group.
+  void writeUpTo(uint32_t group) {
+    while (!groups_[group]) writeNext();
+  }
+  void writeRest() {
+    while (next_ < context_.scene.instances.size()) writeNext();
+  }
+
+ private:
+  void writeNext() {
+    const Instance& instance = context_.scene.instances[next_++];
+    if (!groups_[instance.group]) writeGroup(instance.group);
+    const std::string id = context_.names.unique(instance.id, "instance-" + std::to_string(next_));
+    const pugi::xml_node node = addObject(context_.root, "shape", "instance", id);
+    addRef(node, ids_[instance.group]);
+    addTransform(node, "to_world", instance.toWorld);
+  }
+  void writeGroup(uint32_t group) {
+    groups_[group] = addObject(context_.root, "shape", "shapegroup", ids_[group]);
+    for (size_t i = 0; i < context_.scene.shapes.size(); ++i) {
+      if (context_.scene.shapes[i].group == group) saveShape(context_, groups_[group], i);
+    }
+  }
+
+  SaveContext& context_;
+  std::vector<pugi::xml_node> groups_;
+  std::vector<std::string> ids_;
+  size_t next_ = 0;
 };
 
 }  // namespace
 
 void saveShapes(SaveContext& context) {
+  InstanceWriter instances(context);
   for (size_t i = 0; i < context.scene.shapes.size(); ++i) {
-    const Shape& shape = context.scene.shapes[i];
-    const std::string id = context.names.unique(shape.id, "shape-" + std::to_string(i + 1));
-    const pugi::xml_node node = std::visit(ShapeWriter(context, id, context.meshAttributes[i]), shape.kind);
-    if (shape.material != kNone) addRef(node, context.materialIds[shape.material], "bsdf");
-    if (shape.emitter == kNone) continue;
-    const auto& light = std::get<AreaEmitter>(context.scene.emitters[shape.emitter].kind);
-    addTexturedRgb(context, addObject(node, "emitter", "area"), "radiance", light.radiance);
+    const uint32_t group = context.scene.shapes[i].group;
+    if (group == kNone) {
+      saveShape(context, context.root, i);
+    } else {
+      instances.writeUpTo(group);
+    }
   }
+  instances.writeRest();
 }
 
 }  // namespace wavecrest

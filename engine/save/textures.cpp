@@ -18,11 +18,13 @@ struct TextureUses {
   void operator()(const Conductor& m) {
     (*this)(m.specularReflectance);
     (*this)(m.alpha);
+    if (m.alphaV) (*this)(*m.alphaV);
   }
   void operator()(const Dielectric& m) {
     (*this)(m.specularReflectance);
     (*this)(m.specularTransmittance);
     (*this)(m.alpha);
+    if (m.alphaV) (*this)(*m.alphaV);
   }
   void operator()(const Plastic& m) {
     (*this)(m.diffuseReflectance);
@@ -33,6 +35,15 @@ struct TextureUses {
     (*this)(m.diffuseReflectance);
     (*this)(m.specularReflectance);
   }
+  void operator()(const Principled& m) {
+    (*this)(m.baseColor);
+    for (const TexturedFloat* value : {&m.roughness, &m.anisotropic, &m.specTrans, &m.specTint, &m.sheen, &m.sheenTint,
+                                       &m.flatness, &m.metallic, &m.clearcoat, &m.clearcoatGloss, &m.diffTrans}) {
+      (*this)(*value);
+    }
+  }
+  // Its parts are materials of the scene as well.
+  void operator()(const Blend& m) { add(numbers, m.weightTexture); }
   void operator()(const Material& m) {
     std::visit(*this, m.kind);
     if (m.opacity) (*this)(*m.opacity);
@@ -51,6 +62,7 @@ TextureUses usesOf(const Scene& scene) {
   for (const Emitter& emitter : scene.emitters) {
     if (const auto* area = std::get_if<AreaEmitter>(&emitter.kind)) uses(area->radiance);
     if (const auto* spot = std::get_if<SpotEmitter>(&emitter.kind)) TextureUses::add(uses.colors, spot->texture);
+    if (const auto* projector = std::get_if<ProjectorEmitter>(&emitter.kind)) uses(projector->irradiance);
   }
   return uses;
 }
@@ -92,7 +104,13 @@ std::vector<uint32_t> findScalarSources(const Scene& scene, const std::set<uint3
 // The bitmap of all textures of a shape, if the loader made it of an attribute of the shape's mesh.
 const Bitmap* attributeOf(const SaveContext& context, const Shape& shape) {
   TextureUses uses;
-  if (shape.material != kNone) uses(context.scene.materials[shape.material]);
+  if (shape.material != kNone) {
+    const Material& material = context.scene.materials[shape.material];
+    uses(material);
+    if (const auto* blend = std::get_if<Blend>(&material.kind)) {
+      for (const uint32_t part : blend->materials) uses(context.scene.materials[part]);
+    }
+  }
   if (shape.emitter != kNone) uses(std::get<AreaEmitter>(context.scene.emitters[shape.emitter].kind).radiance);
   std::set<uint32_t> all = std::move(uses.colors);
   all.merge(uses.normals);
@@ -119,6 +137,12 @@ void saveBitmap(SaveContext& context, const BitmapTexture& texture, bool isData,
   if (texture.wrap == Wrap::clamp) addString(node, "wrap_mode", "clamp");
 }
 
+// Numbers above 1 are no <rgb> in Mitsuba.
+void addSquare(pugi::xml_node node, const char* name, const Rgb& color) {
+  if (color[0] > 1 && color[0] == color[1] && color[0] == color[2]) return addFloat(node, name, color[0]);
+  addRgb(node, name, color);
+}
+
 void saveTexture(SaveContext& context, const Texture& texture, bool isNumber, bool isData, const std::string& id) {
   const auto* bitmap = std::get_if<BitmapTexture>(&texture.kind);
   const auto& attributes = context.meshAttributes;
@@ -132,8 +156,8 @@ void saveTexture(SaveContext& context, const Texture& texture, bool isNumber, bo
   } else {
     // The loader exchanges the colours of a checkerboard that is asked for a number (scalarTexture).
     const auto& board = std::get<CheckerboardTexture>(texture.kind);
-    addRgb(node, "color0", isNumber ? board.color1 : board.color0);
-    addRgb(node, "color1", isNumber ? board.color0 : board.color1);
+    addSquare(node, "color0", isNumber ? board.color1 : board.color0);
+    addSquare(node, "color1", isNumber ? board.color0 : board.color1);
   }
   addTransform(node, "to_uv", texture.toUv);
 }

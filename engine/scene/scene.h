@@ -1,8 +1,8 @@
 // The scene as plain data: what the loader produces and what the engine compiles for its kernels.
 //
-// Everything is already in world space and in linear Rec.709 RGB; lengths are in scene units, angles in degrees where a
-// name says so, IORs are absolute. Indices replace pointers, so a Scene can be copied, hashed and compared.
-// The meaning of each field follows Mitsuba 3's plugin of the same name.
+// Everything but shapes of groups is already in world space, and all is in linear Rec.709 RGB; lengths are in scene
+// units, angles in degrees where a name says so, IORs are absolute. Indices replace pointers, so a Scene can be copied,
+// hashed and compared. The meaning of each field follows Mitsuba 3's plugin of the same name.
 #pragma once
 
 #include <array>
@@ -81,6 +81,7 @@ struct Conductor {  // alpha == 0: smooth
   TexturedRgb specularReflectance{{1, 1, 1}};
   TexturedFloat alpha{0};
   Distribution distribution = Distribution::ggx;
+  std::optional<TexturedFloat> alphaV{};  // `alpha_v` where it differs from alpha, which is then `alpha_u`
 };
 struct Dielectric {  // alpha == 0: smooth
   double intIor = 1.5046, extIor = 1.000277;
@@ -88,6 +89,7 @@ struct Dielectric {  // alpha == 0: smooth
   TexturedFloat alpha{0};
   bool thin = false;
   Distribution distribution = Distribution::ggx;
+  std::optional<TexturedFloat> alphaV{};  // as in Conductor
 };
 struct Plastic {  // alpha == 0: smooth
   double intIor = 1.49, extIor = 1.000277;
@@ -101,6 +103,22 @@ struct Phong {  // Mitsuba 0.6 `phong`
   double exponent = 30;
 };
 
+struct Principled {  // `principled`, or `principledthin`
+  bool thin = false;
+  TexturedRgb baseColor{{0.5, 0.5, 0.5}};
+  double eta = 1.5;  // of `principled` also from `specular`
+  TexturedFloat roughness{0.5}, anisotropic{0}, specTrans{0}, specTint{0}, sheen{0}, sheenTint{0}, flatness{0};
+  TexturedFloat metallic{0}, clearcoat{0}, clearcoatGloss{0};  // not where it is thin
+  TexturedFloat diffTrans{0};                                  // only there
+};
+// `blendbsdf`, or `mixturebsdf` of Mitsuba 0.6: the sum of other materials, which have no bump or normal maps and are
+// no blends themselves, times their weights. With a texture t there are two, with weights 1 - t and t.
+struct Blend {
+  std::vector<uint32_t> materials{};  // indices into scene.materials, below the blend's own
+  std::vector<double> weights{};      // empty with a texture; at most 1 together
+  uint32_t weightTexture = kNone;
+};
+
 // How a bump or normal map is applied (Mitsuba 3's parameters).
 struct NormalMapping {
   bool flipInvalidNormals = true;  // mirror a normal that faces away from the eye where the surface does not
@@ -110,7 +128,7 @@ struct NormalMapping {
 
 struct Material {
   std::string id;
-  std::variant<Diffuse, Conductor, Dielectric, Plastic, Phong> kind;
+  std::variant<Diffuse, Conductor, Dielectric, Plastic, Phong, Principled, Blend> kind;
   bool twoSided = false;
   std::optional<TexturedFloat> opacity;  // `mask`
   uint32_t bumpTexture = kNone;          // `bumpmap`
@@ -155,7 +173,19 @@ struct Shape {
   std::string id;
   std::variant<Mesh, Rectangle, Disk, Sphere, Cylinder> kind;
   uint32_t material = kNone;  // index into scene.materials
-  uint32_t emitter = kNone;   // index into scene.emitters, an AreaEmitter
+  uint32_t emitter = kNone;   // index into scene.emitters, an AreaEmitter; shapes of groups have none
+  uint32_t group = kNone;     // index into scene.groups, whose space it is in: seen as often as that has instances
+  SourceLocation source;
+};
+
+struct ShapeGroup {
+  std::string id;
+  SourceLocation source;
+};
+struct Instance {
+  std::string id;
+  uint32_t group = kNone;  // index into scene.groups
+  Matrix4 toWorld{};       // affine, with an inverse
   SourceLocation source;
 };
 
@@ -173,8 +203,15 @@ struct SpotEmitter {
   Double3 position{}, direction{};  // unit direction of travel along the axis
   Rgb intensity{};
   double cutoffAngle = 20, beamWidth = 15;  // degrees, half angles
-  uint32_t texture = kNone;
+  uint32_t texture = kNone;                 // factor of the intensity, over the square around the circle of the cutoff
   Matrix4 toWorld{};
+};
+struct ProjectorEmitter {
+  TexturedRgb irradiance;  // the picture
+  double scale = 1;        // pi times both is the irradiance at distance 1 on the axis
+  double fovX = 39.3077;   // horizontal, degrees
+  double aspect = 1;       // width over height of the picture
+  Matrix4 toWorld{};       // as that of a camera
 };
 struct DirectionalEmitter {
   Double3 direction{};  // unit direction of travel
@@ -188,9 +225,20 @@ struct EnvmapEmitter {
   double scale = 1;
   Matrix4 toWorld{};
 };
+// The clear sky of Hosek and Wilkie with the sun's disc (Mitsuba 3's sunsky); z of toWorld leads to the zenith.
+struct SunskyEmitter {
+  double turbidity = 3;
+  Rgb albedo{0.3, 0.3, 0.3};  // of the ground
+  Double3 sunDirection{};     // unit, towards the sun, in the world
+  double sunScale = 1, skyScale = 1;
+  double sunAperture = 0.5358;  // degrees from rim to rim
+  Matrix4 toWorld{};
+};
 
 struct Emitter {
-  std::variant<AreaEmitter, PointEmitter, SpotEmitter, DirectionalEmitter, ConstantEmitter, EnvmapEmitter> kind;
+  std::variant<AreaEmitter, PointEmitter, SpotEmitter, DirectionalEmitter, ConstantEmitter, EnvmapEmitter,
+               ProjectorEmitter, SunskyEmitter>
+      kind;
   SourceLocation source;
 };
 
@@ -222,6 +270,7 @@ struct FilmSettings {
 struct RenderDefaults {
   int maxDepth = -1, rrDepth = 5;
   uint32_t sampleCount = 16;
+  bool hideEmitters = false;  // rays from the camera do not see the sky
 };
 
 // Something in a scene file that is approximated or left out, without which the picture is about the same.
@@ -237,6 +286,8 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Shape> shapes;
+  std::vector<ShapeGroup> groups;  // each with an instance
+  std::vector<Instance> instances;
   std::vector<Emitter> emitters;
   Sensor sensor;
   FilmSettings film;

@@ -8,11 +8,16 @@
 
 namespace wavecrest {
 
+// "FILE:LINE", or of the whole file, as which line 0 counts, "FILE".
+inline std::string toString(const SourceLocation& where) {
+  return where.line == 0 ? where.file : where.file + ":" + std::to_string(where.line);
+}
+
 // what() reads "FILE:LINE: what is wrong; what was expected".
 class SceneError : public std::runtime_error {
  public:
   SceneError(const SourceLocation& where, const std::string& message)
-      : std::runtime_error(where.file + ":" + std::to_string(where.line) + ": " + message), location(where) {}
+      : std::runtime_error(toString(where) + ": " + message), location(where) {}
 
   SourceLocation location;
 };

@@ -12,7 +12,8 @@ struct RenderOptions {
   uint64_t spp = 0;  // iterations: paths, of mlt mutations, per pixel. Neither time nor spp: what the scene says
   uint64_t seed = 0;
   uint32_t threads = 0;  // 0: all cores
-  std::string sampler = "independent", precision = "float", isa = "auto", accel = "auto";
+  std::string sampler = "independent", filterMode = "spread", precision = "float", isa = "auto", accel = "auto";
+  std::string instances = "auto";
   int maxDepth = 0;      // edges of the longest path; -1: unlimited, 0: what the scene says
   int rrDepth = 0;       // first vertex where roulette may end a path; 0: what the scene says
   uint32_t wave = 2048;  // paths per wave
@@ -20,6 +21,8 @@ struct RenderOptions {
 
   // ppm, bpm, vcm: the first radius of merges, relative to the bounding sphere's, and how slowly it shrinks.
   double radius = 0.001, radiusAlpha = 0.75;
+  uint64_t lightPaths = 0;  // of an iteration of ppm, bpm or vcm; 0: as many as pixels
+  bool directPass = false;  // ppm: direct light by next event estimation
 
   // mlt: pssmlt, mmlt or pathspace (empty: mmlt); Markov chains; independent samples from which they start; steps
   // before they start anew (0: by the number of samples); whether chains render direct light, too.

@@ -31,14 +31,15 @@ struct PathVertices : Columns<PathVertices<S>> {
   Column<S> shadingX, shadingY, shadingZ;  // dropped where the scene has no shading normals
   Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
   Column<float> uvU, uvV;                  // dropped where the scene has no textures
+  Column<float> tangent;                   // dropped where no BSDF depends on dp/du
   Column<uint32_t> primitive;              // of x_0: the light
   Column<uint32_t> event;                  // PathEvent
   Column<S> stepR, stepG, stepB;
   Column<S> eye, light, eyeChoice, lightChoice;
   auto all() {
     return std::tie(positionX, positionY, positionZ, normalX, normalY, normalZ, offset, shadingX, shadingY, shadingZ,
-                    baseX, baseY, baseZ, uvU, uvV, primitive, event, stepR, stepG, stepB, eye, light, eyeChoice,
-                    lightChoice);
+                    baseX, baseY, baseZ, uvU, uvV, tangent, primitive, event, stepR, stepG, stepB, eye, light,
+                    eyeChoice, lightChoice);
   }
 };
 
@@ -47,7 +48,7 @@ template <class S>
 struct PathHeaders : Columns<PathHeaders<S>> {
   Column<uint32_t> edges;            // k; 0: no path yet
   Column<float> rasterX, rasterY;    // where x_{k-1} is seen
-  Column<S> lightR, lightG, lightB;  // radiance of x_0, of a spot without its falloff
+  Column<S> lightR, lightG, lightB;  // radiance of x_0, of a spot or projector without its beamFactor
   // Which perturbations suit: see kernels/mutate/path_pattern.h.
   Column<uint32_t> eyeEnd, multiChain, causticStart;
   auto all() { return std::tie(edges, rasterX, rasterY, lightR, lightG, lightB, eyeEnd, multiChain, causticStart); }
@@ -84,6 +85,7 @@ struct PathStore {
       vertices.uvU.drop();
       vertices.uvV.drop();
     }
+    if (!needs.tangents) vertices.tangent.drop();
   }
   size_t stride_;
   Arena arena_;

@@ -39,6 +39,7 @@ class Arena {
 
   template <class T>
   T* take(size_t items) {
+    static_assert(alignof(T) <= kColumnAlignment);
     const size_t bytes = (items * sizeof(T) + kColumnAlignment - 1) / kColumnAlignment * kColumnAlignment;
     if (bytes > size_ - used_) throw std::length_error("Arena: columns need more memory than was planned");
     T* const begin = reinterpret_cast<T*>(block_.get() + used_);

@@ -21,10 +21,11 @@ struct LightVertices : Columns<LightVertices<S>> {
   Column<S> shadingX, shadingY, shadingZ;  // dropped where the scene has no shading normals
   Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
   Column<float> uvU, uvV;                  // dropped where the scene has no textures
+  Column<float> tangent;                   // dropped where no BSDF depends on dp/du
   Column<uint32_t> lane;                   // of the path, in its wave
   Column<uint32_t> next;                   // link to the vertex after it that the path has here
   auto all() {
-    return std::tie(row, cell, place, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV, lane, next);
+    return std::tie(row, cell, place, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV, tangent, lane, next);
   }
 };
 
@@ -55,6 +56,7 @@ class LightStore {
       vertices.uvU.drop();
       vertices.uvV.drop();
     }
+    if (!needs.tangents) vertices.tangent.drop();
     if (!use.connected) dropConnectedColumns();
     if (!use.merged) {
       vertices.cell.drop();
@@ -156,6 +158,7 @@ class LightStore {
     }
     vertices.uvU.drop();
     vertices.uvV.drop();
+    vertices.tangent.drop();
     vertices.lane.drop();
     vertices.next.drop();
   }

@@ -26,7 +26,9 @@ struct Rays : Columns<Rays<S>> {
 struct Hits : Columns<Hits> {
   Column<float> u, v;
   Column<uint32_t> primitive;  // kMiss, or an index into SceneView::primitives
-  auto all() { return std::tie(u, v, primitive); }
+  // Index into SceneView::instances, or kNoIndex: the primitive is in the world; dropped where a scene has none.
+  Column<uint32_t> instance;
+  auto all() { return std::tie(u, v, primitive, instance); }
 };
 
 // The vertex under each live path, written by arrive: what its position (in Rays) and primitive (in Hits) do not say.
@@ -37,8 +39,11 @@ struct Surfaces : Columns<Surfaces<S>> {
   Column<S> shadingX, shadingY, shadingZ;  // shading normal; dropped where the scene has none
   Column<S> baseX, baseY, baseZ;           // the same without bump and normal maps; dropped without those
   Column<float> uvU, uvV;                  // texture coordinates; dropped where the scene has no textures
+  // Angle of dp/du about the base normal in Frame::fromNormal of it; dropped where no BSDF depends on it.
+  Column<float> tangent;
   auto all() {
-    return std::tie(normalX, normalY, normalZ, offset, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV);
+    return std::tie(normalX, normalY, normalZ, offset, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV,
+                    tangent);
   }
 };
 
@@ -83,7 +88,7 @@ struct VertexPairs : Columns<VertexPairs> {
 //   dVCM, throughput: as in PathStates
 //   behind: dVC where light vertices are connected, else dVM; where they are merged as well, dVM is kVC dVC
 template <class S>
-struct alignas(16 * sizeof(S)) VertexRow {
+struct alignas(kColumnAlignment) VertexRow {
   S position[3], offset;
   S fix[3], tag;
   S normal[3], dVCM;

@@ -10,6 +10,8 @@ struct ColumnNeeds {
   bool shadingNormals = true;
   bool textures = true;
   bool normalMaps = true;
+  bool tangents = true;
+  bool instances = true;
   bool rouletteScale = true;
   bool connections = true;
   bool bsdfOrder = true;
@@ -35,6 +37,8 @@ struct Vertices {
       surfaces.uvU.drop();
       surfaces.uvV.drop();
     }
+    if (!needs.tangents) surfaces.tangent.drop();
+    if (!needs.instances) hits.instance.drop();
     if (!needs.rouletteScale) paths.rouletteScale.drop();
     if (!needs.connections) {
       paths.dVC.drop();
@@ -75,6 +79,7 @@ struct Wave : Vertices<S> {
   Wave(size_t capacity, const ColumnNeeds& needs) : Vertices<S>(needs), aside(needs) {
     aside.hits.u.drop();
     aside.hits.v.drop();
+    aside.hits.instance.drop();
     aside.paths.light.drop();
     if (!needs.connections || !needs.bsdfOrder) sortedPairs.drop();
     if (!needs.bsdfOrder) aside.forEachQueue([](auto& queue) { queue.drop(); });

@@ -63,7 +63,7 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
                         behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
     // f c(omega_l) / n(omega_l): omega_l is fix, the light's side.
     const Real scale = pdfA * bsdf.lightCosine *
-                       reciprocal<P>(max(fixCosine, Real(kSmallestCosine)) * (Real(1) + wLight)) *
+                       reciprocal(max(fixCosine, Real(kSmallestCosine)) * (Real(1) + wLight)) *
                        (column.weight * row.weight);
     const Vec3<Real> contribution =
         loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * bsdf.f * scale;

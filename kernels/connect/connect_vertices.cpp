@@ -117,7 +117,7 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
 
   const Vec3<Real> segment = y.position - z.position;
   const Real dist2 = length2(segment);
-  const Real inverseDistance = reciprocalSqrt<P>(max(dist2, Real(1e-37f)));
+  const Real inverseDistance = reciprocalSqrt(max(dist2, Real(1e-37f)));
   const Vec3<Real> towards = segment * inverseDistance;  // from the camera vertex to the light vertex
   const auto zBsdf = z.scattering(active, towards);
   const auto yBsdf = y.scattering(active, -towards);
@@ -133,8 +133,8 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
 
   // c_z(omega_l) at the camera's end; c_y(omega_l) / n_y(omega_l) n_y(to z) at the light's (METHODS 3.9).
   const Real yFix = max(abs(y.fixCosine), Real(kSmallestCosine));
-  const Real scale = zBsdf.lightCosine * yBsdf.lightCosine * yCosine * inverseDist2 *
-                     reciprocal<P>(yFix * (Real(1) + wLight + wCamera));
+  const Real scale =
+      zBsdf.lightCosine * yBsdf.lightCosine * yCosine * inverseDist2 * reciprocal(yFix * (Real(1) + wLight + wCamera));
   const Vec3<Real> contribution = zRow.throughput * zBsdf.f * yRow.throughput * yBsdf.f * scale;
 
   // Points closer than the offsets that keep their segment off the surfaces cannot be told apart.

@@ -3,6 +3,7 @@
 
 #include "kernels/sampling/warp_lanes.h"
 #include "kernels/shade/light_lanes.h"
+#include "kernels/shade/scene_box_lanes.h"
 #include "kernels/shade/texture_lanes.h"
 
 WAVECREST_SIMD_BEGIN
@@ -60,35 +61,36 @@ WAVECREST_INLINE void sampleSphere(const LightLanes<typename P::Real>& light, Ve
 
 }  // namespace
 
-// Spot, directional and environment lights, in the lanes that have them.
-template <class P>
+// Spot lights, projectors, directional and environment lights, in the lanes that have them.
+template <class P, uint32_t kFeatures>
 WAVECREST_INLINE void addRareLights(const SceneView<typename P::Storage>& scene,
                                     const LightLanes<typename P::Real>& light, Vec3<typename P::Real> receiver,
-                                    typename P::Real dist2, const Uniform4& more,
-                                    LightSample<typename P::Real>& sample) {
+                                    const Uniform4& more, LightSample<typename P::Real>& sample) {
   using Real = typename P::Real;
-  const Real discPdf(kInvPi / (scene.radius * scene.radius));
   const auto far = [&](Vec3<Real> direction)
                        WAVECREST_LAMBDA { return mulAdd(direction, Real(3 * scene.radius), receiver); };
 
-  const Mask spot = light.kind == lightKind(LightKind::spot);
-  if (any(spot)) {
-    const Real cosTotal = light.cosTotal;
-    const Real falloff = spotFalloff(-dot(sample.direction, light.normal), cosTotal, light.cosFalloff);
-    sample.radiance = select(spot, sample.radiance * falloff, sample.radiance);
-    sample.pdf = select(spot, dist2, sample.pdf);
-    const Real conePdf = Real(kInvPi / 2) / max(Real(1) - cosTotal, Real(1e-9f));
-    sample.emissionPdf = select(spot, conePdf, sample.emissionPdf);
-    sample.end = select(spot, light.p0, sample.end);
-    sample.delta = sample.delta | spot;
-    sample.valid = select(spot, falloff > Real(0), sample.valid);
+  const Mask beam = isBeam(light.kind);
+  if (any(beam)) {
+    // Its edges are the picture's, none that a point was to be sampled on.
+    const Vec3<Real> segment = light.p0 - receiver;
+    const Real beamDist2 = length2(segment);
+    const Real inverseDistance = reciprocalSqrt(max(beamDist2, Real(1e-37f)));
+    sample.direction = select(beam, segment * inverseDistance, sample.direction);
+    const Vec3<Real> factor = beamFactor<P, kFeatures>(scene, light, -sample.direction);
+    sample.radiance = select(beam, light.radiance * factor, sample.radiance);
+    sample.pdf = select(beam, beamDist2, sample.pdf);
+    sample.emissionPdf = select(beam, beamPdfW(light, -dot(sample.direction, light.normal)), sample.emissionPdf);
+    sample.end = select(beam, light.p0, sample.end);
+    sample.delta = sample.delta | beam;
+    sample.valid = select(beam, maxComponent(factor) > Real(0), sample.valid);
   }
   const Mask directional = light.kind == lightKind(LightKind::directional);
   if (any(directional)) {
     const Vec3<Real> direction = -light.normal;
     sample.direction = select(directional, direction, sample.direction);
     sample.pdf = select(directional, Real(1), sample.pdf);
-    sample.emissionPdf = select(directional, discPdf, sample.emissionPdf);
+    sample.emissionPdf = select(directional, reciprocal(projectedArea<Real>(scene, direction)), sample.emissionPdf);
     sample.end = select(directional, far(direction), sample.end);
     sample.delta = sample.delta | directional;
     sample.valid = sample.valid | directional;
@@ -101,7 +103,7 @@ WAVECREST_INLINE void addRareLights(const SceneView<typename P::Storage>& scene,
     sample.direction = select(map, direction, sample.direction);
     sample.radiance = select(map, mapRadiance(scene.environment, point), sample.radiance);
     sample.pdf = select(map, pdf, sample.pdf);
-    sample.emissionPdf = select(map, pdf * discPdf, sample.emissionPdf);
+    sample.emissionPdf = select(map, pdf * reciprocal(projectedArea<Real>(scene, direction)), sample.emissionPdf);
     sample.end = select(map, far(direction), sample.end);
     sample.valid = select(map, pdf > Real(0), sample.valid);
   }
@@ -143,16 +145,16 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
 
   const Vec3<Real> segment = point - receiver;
   const Real dist2 = length2(segment);
-  const Real inverseDistance = reciprocalSqrt<P>(max(dist2, Real(1e-37f)));
+  const Real inverseDistance = reciprocalSqrt(max(dist2, Real(1e-37f)));
   sample.direction = segment * inverseDistance;
   const Real n0 = -dot(sample.direction, normal);
-  sample.pdf = pdfA * dist2 * reciprocal<P>(max(n0, Real(1e-12f)));
+  sample.pdf = pdfA * dist2 * reciprocal(max(n0, Real(1e-12f)));
   sample.valid = n0 > Real(0);
   sample.emissionPdf = pdfA * Real(kInvPi);  // cosine-distributed around a uniform point
   sample.delta = noLanes();
   sample.end = mulAdd(normal, light.offset, point);
   if constexpr (has(kFeatures, kCurvedShapes)) {
-    sample.pdf = select(cone, Real(kInvPi / 2) * reciprocal<P>(coneHeight), sample.pdf);
+    sample.pdf = select(cone, Real(kInvPi / 2) * reciprocal(coneHeight), sample.pdf);
   }
 
   const Mask pointLike = light.kind == lightKind(LightKind::point);
@@ -170,14 +172,14 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
     sample.pdf = select(constant, Real(kInvPi / 4), sample.pdf);
     sample.end = select(constant, mulAdd(direction, Real(3 * scene.radius), receiver), sample.end);
     sample.valid = sample.valid | constant;
-    const double emission = kInvPi / 4 * kInvPi / (scene.radius * scene.radius);
-    sample.emissionPdf = select(constant, Real(emission), sample.emissionPdf);
+    const Real emission = Real(kInvPi / 4) * reciprocal(projectedArea<Real>(scene, direction));
+    sample.emissionPdf = select(constant, emission, sample.emissionPdf);
   }
   if constexpr (has(kFeatures, kTextures)) {
     sample.radiance = sample.radiance *
                       to<Real>(textureFactor(scene.textures, scene.texels, light.texture, to<Float>(u), to<Float>(v)));
   }
-  if constexpr (has(kFeatures, kRareLights)) addRareLights<P>(scene, light, receiver, dist2, more, sample);
+  if constexpr (has(kFeatures, kRareLights)) addRareLights<P, kFeatures>(scene, light, receiver, more, sample);
   sample.pdf = sample.pdf * pick;
   sample.emissionPdf = sample.emissionPdf * pick;
   return sample;

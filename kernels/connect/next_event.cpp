@@ -35,7 +35,7 @@ WAVECREST_NOINLINE size_t sampleLights(const StageContext<typename P::Storage>& 
 
     const auto bsdf = shading.scattering(active, sample.direction);
     // wLight: the BSDF's choice could also have met the light, unless it is a delta light.
-    const Real inversePdf = reciprocal<P>(sample.pdf);
+    const Real inversePdf = reciprocal(sample.pdf);
     Real wLight(0), wCamera(0);
     if (context.mis.emission) wLight = select(sample.delta, Real(0), bsdf.pdf * inversePdf);
     if constexpr (has(kFeatures, kBidirectional)) {
@@ -43,7 +43,7 @@ WAVECREST_NOINLINE size_t sampleLights(const StageContext<typename P::Storage>& 
       wCamera = sample.emissionPdf * abs(dot(sample.direction, shading.normal)) * inversePdf *
                 behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
     }
-    const Real scale = bsdf.lightCosine * inversePdf * reciprocal<P>(Real(1) + others(context.mis, wLight + wCamera));
+    const Real scale = bsdf.lightCosine * inversePdf * reciprocal(Real(1) + others(context.mis, wLight + wCamera));
     const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     const Vec3<Real> contribution = throughput * bsdf.f * sample.radiance * scale;
 

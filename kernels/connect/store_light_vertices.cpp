@@ -65,6 +65,9 @@ WAVECREST_INLINE void storeColumns(const SceneView<S>& scene, const Wave<S>& wav
     copy(surfaces.uvU, vertices.uvU);
     copy(surfaces.uvV, vertices.uvV);
   }
+  if constexpr (has(kFeatures, kCompoundBsdfs)) {
+    if (scene.tangents) copy(surfaces.tangent, vertices.tangent);
+  }
   prefetchColumns(out, vertices.lane, vertices.next);
   copy(wave.paths.lane, vertices.lane);
 }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -13,7 +13,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr double kGrid = 255;
+constexpr double kGrid = kBvhGrid;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // How far boxes are widened. A ray's distances to the planes of a box are (corner - origin) / direction + step * (scale
@@ -23,20 +23,13 @@ float marginFor(const Box& all, const double (&eye)[3]) {
   return static_cast<float>(16 * kUnitRoundoff * rayReach(all, eye));
 }
 
-struct Counts {
-  size_t nodes = 0, leaves = 0;
-};
-void countBranches(const Branch& branch, Counts& counts) {
-  ++(branch.leaf ? counts.leaves : counts.nodes);
-  if (branch.leaf) return;
-  for (uint32_t i = 0; i < branch.count; ++i) countBranches(*asNode(branch).child[i], counts);
-}
-// The most references that a walk from the branch leaves on its stack.
-size_t stackNeed(const Branch& branch) {
-  if (branch.leaf) return 1;
+// The most references that a walk leaves on its stack.
+size_t stackNeed(const BranchTree& tree, const Branch& branch) {
+  if (branch.isLeaf()) return 1;
+  const BranchNode& node = tree.nodes[branch.at];
   size_t deepest = 0;
-  for (uint32_t i = 0; i < branch.count; ++i) deepest = std::max(deepest, stackNeed(*asNode(branch).child[i]));
-  return branch.count - 1 + deepest;
+  for (uint32_t i = 0; i < node.count; ++i) deepest = std::max(deepest, stackNeed(tree, node.child[i]));
+  return node.count - 1 + deepest;
 }
 
 // Writes the boxes of a node's children, each widened by the margin on every side.
@@ -58,102 +51,251 @@ void layBoxes(const Box* boxes, size_t count, double margin, BvhNode& node) {
   }
 }
 
-// Where nodes and leaves go: all nodes before all leaves, and the children of a node side by side.
+// A hierarchy of one kind of leaf on its way into the arena.
+struct Part {
+  BranchTree tree;
+  BvhEntry leaf;
+  std::vector<uint32_t> ids;  // of the pieces in the order of the tree's leaves
+
+  Part(Pieces& pieces, BvhEntry kind, const ParallelFor& parallelFor)
+      : tree(pieces, parallelFor, kind == BvhEntry::end ? 1 : kLeafSize), leaf(kind) {
+    ids.resize(pieces.size());
+    forEachRange(parallelFor, ids.size(), [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) ids[i] = pieces.begin()[i].id;
+    });
+    pieces = {};  // the largest thing that building needs
+  }
+  size_t leafBytes() const {
+    if (leaf == BvhEntry::end) return 0;  // instances have places of their own
+    return leaf == BvhEntry::faces ? sizeof(FaceLeaf) : sizeof(SphereLeaf);
+  }
+  size_t leaves() const {
+    size_t count = tree.root.isLeaf() ? 1 : 0;
+    for (const BranchNode& node : tree.nodes) {
+      count += static_cast<size_t>(
+          std::count_if(node.child, node.child + node.count, [](const Branch& child) { return child.isLeaf(); }));
+    }
+    return count;
+  }
+};
+
+// The hierarchies over one level's primitives, or those of a group, before they are laid out.
+struct Level {
+  LeafMaker leaves;
+  std::vector<Part> parts;
+
+  Level(const PrimitiveSource& primitives, const ParallelFor& parallelFor) : leaves(primitives, parallelFor) {
+    if (!leaves.faces().empty()) parts.emplace_back(leaves.faces(), BvhEntry::faces, parallelFor);
+    if (!leaves.spheres().empty()) parts.emplace_back(leaves.spheres(), BvhEntry::spheres, parallelFor);
+  }
+  Box bounds() const {
+    std::vector<Box> boxes;
+    for (const Part& part : parts) boxes.push_back(part.tree.bounds);
+    return unionOf(boxes.data(), boxes.size());
+  }
+  // With one that joins the parts.
+  size_t nodes() const {
+    size_t count = 1;
+    for (const Part& part : parts) count += part.tree.nodes.size();
+    return count;
+  }
+  size_t leafBytes() const {
+    size_t bytes = 0;
+    for (const Part& part : parts) bytes += part.leaves() * part.leafBytes();
+    return bytes;
+  }
+  // The most references that a walk leaves on its stack, those of the other parts among them.
+  size_t stack() const {
+    size_t most = 0;
+    for (const Part& part : parts) most = std::max(most, stackNeed(part.tree, part.tree.root));
+    return most + parts.size() - 1;
+  }
+};
+
+// Where nodes and leaves go: all nodes before all instances before all leaves, and the children of a node side by side.
 class Layout {
  public:
-  Layout(std::byte* arena, size_t nodes, double margin)
-      : arena_(arena), nextLeaf_(nodes * sizeof(BvhNode)), margin_(margin) {}
+  Layout(std::byte* arena, size_t nodes, size_t instances, const ParallelFor& parallelFor)
+      : arena_(arena),
+        firstInstance_(nodes * sizeof(BvhNode)),
+        nextLeaf_(firstInstance_ + instances * sizeof(InstanceLeaf)),
+        parallelFor_(parallelFor) {}
 
-  // The reference of a hierarchy. makeLeaf(branch): its leaf.
-  template <class MakeLeaf>
-  uint32_t add(const Branch& root, BvhEntry leaf, const MakeLeaf& makeLeaf) {
-    using Leaf = decltype(makeLeaf(asLeaf(root)));
-    const uint32_t reference = reserve<Leaf>(root, leaf);
-    lay<Leaf>(root, reference, leaf, makeLeaf);
-    return reference;
+  // The reference of all hierarchies of a level.
+  uint32_t add(const Level& level, double margin) {
+    margin_ = margin;
+    leaves_ = &level.leaves;
+    if (level.parts.size() == 1) return add(level.parts.front());
+    uint32_t references[kBvhWidth];
+    Box boxes[kBvhWidth];
+    for (size_t i = 0; i < level.parts.size(); ++i) {
+      references[i] = add(level.parts[i]);
+      boxes[i] = level.parts[i].tree.bounds;
+    }
+    return join(references, boxes, level.parts.size());
   }
-  // A node over two hierarchies.
-  uint32_t join(uint32_t first, const Box& firstBox, uint32_t second, const Box& secondBox) {
-    const uint32_t reference = takeNode();
-    auto& node = *new (place(reference)) BvhNode;
-    const Box boxes[] = {firstBox, secondBox};
-    layBoxes(boxes, 2, margin_, node);
-    std::fill_n(node.children, kBvhWidth, kBvhEnd);
-    node.children[0] = first;
-    node.children[1] = second;
-    return reference;
-  }
+  void write(size_t index, const InstanceLeaf& leaf) const { new (place(referenceOf(index))) InstanceLeaf(leaf); }
 
  private:
+  // The reference of a hierarchy.
+  uint32_t add(const Part& part) {
+    nodes_.clear();
+    ends_.clear();
+    const uint32_t root = reserve(part, part.tree.root);
+    if (!part.tree.root.isLeaf()) lay(part, part.tree.root, root);
+    forEachRange(parallelFor_, nodes_.size(), [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) writeNode(part, nodes_[i]);
+    });
+    forEachRange(parallelFor_, ends_.size(), [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) writeLeaf(part, ends_[i]);
+    });
+    return root;
+  }
+  // A node over several hierarchies.
+  uint32_t join(const uint32_t* references, const Box* boxes, size_t count) {
+    const uint32_t reference = takeNode();
+    auto& node = *new (place(reference)) BvhNode;
+    layBoxes(boxes, count, margin_, node);
+    std::fill_n(node.children, kBvhWidth, kBvhEnd);
+    std::copy_n(references, count, node.children);
+    return reference;
+  }
+
+  struct PlacedNode {
+    uint32_t from, reference;      // index among the tree's nodes
+    uint32_t children[kBvhWidth];  // references
+  };
+  struct PlacedLeaf {
+    Branch from;
+    uint32_t reference;
+  };
+
   uint32_t takeNode() {
     const size_t at = nextNode_;
     nextNode_ += sizeof(BvhNode);
     return makeReference(BvhEntry::node, at);
   }
-  template <class Leaf>
-  uint32_t reserve(const Branch& branch, BvhEntry leaf) {
-    if (!branch.leaf) return takeNode();
+  uint32_t reserve(const Part& part, const Branch& branch) {
+    if (!branch.isLeaf()) return takeNode();
+    if (part.leaf == BvhEntry::end) return referenceOf(part.ids[branch.at]);
     const size_t at = nextLeaf_;
-    nextLeaf_ += sizeof(Leaf);
-    return makeReference(leaf, at);
+    nextLeaf_ += part.leafBytes();
+    const uint32_t reference = makeReference(part.leaf, at);
+    ends_.push_back({branch, reference});
+    return reference;
   }
-  template <class Leaf, class MakeLeaf>
-  void lay(const Branch& branch, uint32_t reference, BvhEntry leaf, const MakeLeaf& makeLeaf) {
-    if (branch.leaf) {
-      new (place(reference)) Leaf(makeLeaf(asLeaf(branch)));
-      return;
-    }
-    const BranchNode& from = asNode(branch);
-    auto& node = *new (place(reference)) BvhNode;
-    layBoxes(from.box, from.count, margin_, node);
+  void lay(const Part& part, const Branch& branch, uint32_t reference) {
+    const BranchNode& from = part.tree.nodes[branch.at];
+    PlacedNode placed{.from = branch.at, .reference = reference, .children = {}};
     for (size_t i = 0; i < kBvhWidth; ++i) {
-      node.children[i] = i < from.count ? reserve<Leaf>(*from.child[i], leaf) : kBvhEnd;
+      placed.children[i] = i < from.count ? reserve(part, from.child[i]) : kBvhEnd;
     }
-    for (size_t i = 0; i < from.count; ++i) lay<Leaf>(*from.child[i], node.children[i], leaf, makeLeaf);
+    nodes_.push_back(placed);
+    for (size_t i = 0; i < from.count; ++i) {
+      if (!from.child[i].isLeaf()) lay(part, from.child[i], placed.children[i]);
+    }
+  }
+  void writeNode(const Part& part, const PlacedNode& placed) const {
+    const BranchNode& from = part.tree.nodes[placed.from];
+    auto& node = *new (place(placed.reference)) BvhNode;
+    layBoxes(from.box, from.count, margin_, node);
+    std::copy_n(placed.children, kBvhWidth, node.children);
+  }
+  void writeLeaf(const Part& part, const PlacedLeaf& placed) const {
+    const uint32_t* const ids = part.ids.data() + placed.from.at;
+    if (part.leaf == BvhEntry::faces) {
+      new (place(placed.reference)) FaceLeaf(leaves_->faceLeaf(ids, placed.from.pieces));
+    } else {
+      new (place(placed.reference)) SphereLeaf(leaves_->sphereLeaf(ids, placed.from.pieces));
+    }
+  }
+  uint32_t referenceOf(size_t instance) const {
+    return makeReference(BvhEntry::end, firstInstance_ + instance * sizeof(InstanceLeaf));
   }
   void* place(uint32_t reference) const { return arena_ + size_t{reference & kBvhOffsetMask} * kBvhUnit; }
 
   std::byte* arena_;
-  size_t nextNode_ = 0, nextLeaf_;
-  double margin_;
+  size_t nextNode_ = 0, firstInstance_, nextLeaf_;
+  double margin_ = 0;                  // of the level that is being added, and
+  const LeafMaker* leaves_ = nullptr;  // its leaves
+  const ParallelFor& parallelFor_;
+  std::vector<PlacedNode> nodes_;
+  std::vector<PlacedLeaf> ends_;
 };
+
+// The boxes of instances, with room for the rounding of rays on their way into the group's space: a few units of the
+// distance to the ray's origin, as the transform and its inverse stretch it.
+Pieces piecesOf(std::span<const BvhInstance> instances, const double (&eye)[3]) {
+  std::vector<Box> boxes;
+  for (const BvhInstance& instance : instances) boxes.push_back(instance.box);
+  Pieces pieces(boxes.size());
+  if (boxes.empty()) return pieces;
+  const double rounding = 8 * kUnitRoundoff * rayReach(unionOf(boxes.data(), boxes.size()), eye);
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    Piece& piece = pieces.begin()[i];
+    piece = {.low = {}, .id = static_cast<uint32_t>(i), .high = {}, .unused = 0};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      double stretch = 0;
+      for (size_t k = 0; k < 3; ++k) {
+        for (size_t j = 0; j < 3; ++j) {
+          stretch += std::abs(instances[i].toWorld[axis][k] * instances[i].toObject[k][j]);
+        }
+      }
+      piece.low[axis] = std::nextafter(static_cast<float>(boxes[i].low[axis] - stretch * rounding), -kInfinity);
+      piece.high[axis] = std::nextafter(static_cast<float>(boxes[i].high[axis] + stretch * rounding), kInfinity);
+    }
+  }
+  return pieces;
+}
+
+InstanceLeaf leafOf(const BvhInstance& instance, size_t index, double radius, uint32_t root) {
+  InstanceLeaf leaf{.place = {},
+                    .toObject = {},
+                    .radius = static_cast<float>(radius),
+                    .root = root,
+                    .index = static_cast<uint32_t>(index)};
+  for (size_t i = 0; i < 3; ++i) {
+    leaf.place[i] = static_cast<float>(instance.place[i]);
+    for (size_t j = 0; j < 3; ++j) leaf.toObject[i][j] = static_cast<float>(instance.toObject[i][j]);
+  }
+  return leaf;
+}
 
 }  // namespace
 
-Bvh::Bvh(const PrimitiveRecord<double>* primitives, size_t count, const double (&eye)[3]) {
-  const LeafMaker leaves(primitives, count);
-  std::optional<BranchTree> faceTree, sphereTree;
-  std::vector<Box> bounds;
-  Counts faceCounts, sphereCounts;
-  size_t stack = 0;
-  const auto grow = [&](const Pieces& pieces, std::optional<BranchTree>& tree, Counts& counts) {
-    if (pieces.empty()) return;
-    tree.emplace(pieces.boxes);
-    countBranches(tree->root(), counts);
-    stack = std::max(stack, stackNeed(tree->root()));
-    bounds.push_back(pieces.bounds());
-  };
-  grow(leaves.faces(), faceTree, faceCounts);
-  grow(leaves.spheres(), sphereTree, sphereCounts);
-  // One reference for the other hierarchy, one for the end, and a whole node written at once.
-  if (stack + 2 + kBvhWidth > kBvhStack) throw std::runtime_error("the hierarchy is too deep");
+Bvh::Bvh(const PrimitiveSource& primitives, std::span<const BvhGroup> groups, std::span<const BvhInstance> instances,
+         const double (&eye)[3], const ParallelFor& parallelFor) {
+  Level top(primitives, parallelFor);
+  Pieces placed = piecesOf(instances, eye);
+  if (!placed.empty()) top.parts.emplace_back(placed, BvhEntry::end, parallelFor);
+  std::deque<Level> inGroups;
+  size_t nodes = top.nodes(), leafBytes = top.leafBytes(), stackInGroups = 0;
+  for (const BvhGroup& group : groups) {
+    const Level& level = inGroups.emplace_back(group.primitives, parallelFor);
+    nodes += level.nodes();
+    leafBytes += level.leafBytes();
+    stackInGroups = std::max(stackInGroups, 1 + level.stack());
+  }
 
-  const size_t nodes = faceCounts.nodes + sphereCounts.nodes + 1;
-  const size_t used =
-      nodes * sizeof(BvhNode) + faceCounts.leaves * sizeof(FaceLeaf) + sphereCounts.leaves * sizeof(SphereLeaf);
+  // One reference for the end, a whole node written at once, and what comes from a packet.
+  if (top.stack() + stackInGroups + 1 + kBvhWidth + kMostLoneEntries > kBvhStack) {
+    throw std::runtime_error("the hierarchy is too deep");
+  }
+  const size_t used = nodes * sizeof(BvhNode) + instances.size() * sizeof(InstanceLeaf) + leafBytes;
   if (used / kBvhUnit > kBvhOffsetMask) throw std::runtime_error("the hierarchy is too large");
   arena_ = MemoryBlock(used, sizeof(BvhNode));
+  nodes_ = nodes;
 
-  Layout layout(arena_.get(), nodes, marginFor(unionOf(bounds.data(), bounds.size()), eye));
+  Layout layout(arena_.get(), nodes, instances.size(), parallelFor);
   view_.arena = arena_.get();
-  if (faceTree) {
-    view_.root = layout.add(faceTree->root(), BvhEntry::faces,
-                            [&](const BranchLeaf& leaf) { return leaves.faceLeaf(leaf.item, leaf.count); });
-  }
-  if (sphereTree) {
-    const uint32_t root = layout.add(sphereTree->root(), BvhEntry::spheres,
-                                     [&](const BranchLeaf& leaf) { return leaves.sphereLeaf(leaf.item, leaf.count); });
-    view_.root = faceTree ? layout.join(view_.root, bounds.front(), root, bounds.back()) : root;
+  view_.root = layout.add(top, marginFor(top.bounds(), eye));
+  // Rays in a group start near its origin (PlacedRay::enter).
+  std::vector<uint32_t> roots;
+  roots.reserve(inGroups.size());
+  for (const Level& level : inGroups) roots.push_back(layout.add(level, marginFor(level.bounds(), {0, 0, 0})));
+  for (size_t i = 0; i < instances.size(); ++i) {
+    const uint32_t group = instances[i].group;
+    layout.write(i, leafOf(instances[i], i, groups[group].radius, roots[group]));
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "kernels/columns/memory_block.h"
 #include "kernels/extend/leaves.h"
@@ -19,6 +20,7 @@
 namespace wavecrest {
 
 constexpr size_t kBvhWidth = 8;  // children of a node
+constexpr float kBvhGrid = 255;  // steps of its grid
 
 // A reference: what it leads to in the upper two bits, and the distance from the arena's begin in units of 32 bytes.
 enum class BvhEntry : uint32_t { node, faces, spheres, end };
@@ -28,6 +30,9 @@ constexpr uint32_t makeReference(BvhEntry entry, size_t bytes) {
   return static_cast<uint32_t>(entry) << kBvhEntryShift | static_cast<uint32_t>(bytes / kBvhUnit);
 }
 constexpr uint32_t kBvhEnd = makeReference(BvhEntry::end, 0);
+// The end of an instance: ray and hit go back to the world. References that end somewhere else are those of
+// InstanceLeaf; they are behind all nodes.
+constexpr uint32_t kBvhLeave = makeReference(BvhEntry::end, kBvhUnit);
 
 // Planes of child i along an axis: corner + scale * bounds[axis or 3 + axis][i], low ones before high ones. Scales are
 // powers of two. Absent children have low above high.
@@ -38,8 +43,17 @@ struct alignas(128) BvhNode {
 };
 static_assert(sizeof(BvhNode) == 128);
 
-// Room for the references that a ray has still to visit.
-constexpr size_t kBvhStack = 256;
+// An instance of a group, as rays pass into it: the point p of the world is at toObject (p - place) in the group.
+struct alignas(64) InstanceLeaf {
+  float place[3], toObject[3][3];
+  float radius;          // of a sphere about the group's origin with all of the group in it
+  uint32_t root, index;  // of the group; of the instance in SceneView::instances
+};
+static_assert(sizeof(InstanceLeaf) == 64);
+
+// Room for the references that a ray has still to visit, and how many it may bring along from a packet.
+constexpr size_t kMostLoneEntries = 16;
+constexpr size_t kBvhStack = 288;
 
 struct BvhView {
   const std::byte* arena = nullptr;
@@ -52,17 +66,37 @@ struct BvhView {
   }
 };
 
+// A group of primitives in its own space, all of them within a sphere about the origin.
+struct BvhGroup {
+  PrimitiveSource primitives;
+  double radius;
+};
+// A group in its place: see InstanceRecord. box: of all of it, in the world.
+struct BvhInstance {
+  uint32_t group;
+  double place[3], toWorld[3][3], toObject[3][3];
+  Box box;
+};
+
 class Bvh {
  public:
-  // primitives: in SceneView order, in double so that triangles which share a corner agree on its float. eye: another
-  // point that rays start from. Built by as many threads as the calling TBB arena has. Throws std::runtime_error where
-  // that fails.
-  Bvh(const PrimitiveRecord<double>* primitives, size_t count, const double (&eye)[3]);
+  // primitives: at least one. eye: another point that rays start from. Throws std::runtime_error where the hierarchy
+  // would be too large for its references or for a ray's stack.
+  Bvh(const PrimitiveSource& primitives, const double (&eye)[3], const ParallelFor& parallelFor)
+      : Bvh(primitives, {}, {}, eye, parallelFor) {}
+  // Of two levels: over primitives, of which there may be none, and over instances of groups, each of which has some.
+  Bvh(const PrimitiveSource& primitives, std::span<const BvhGroup> groups, std::span<const BvhInstance> instances,
+      const double (&eye)[3], const ParallelFor& parallelFor);
+  // records: in SceneView order.
+  Bvh(const PrimitiveRecord<double>* records, size_t count, const double (&eye)[3])
+      : Bvh(PrimitiveSource::of(records, count), eye, inTurn) {}
   const BvhView& view() const { return view_; }
   size_t bytes() const { return arena_.size(); }
+  size_t nodes() const { return nodes_; }
 
  private:
   MemoryBlock arena_;
+  size_t nodes_ = 0;
   BvhView view_;
 };
 

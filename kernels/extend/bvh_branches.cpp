@@ -1,82 +1,283 @@
 #include "kernels/extend/bvh_branches.h"
 
-#include <new>
-#include <stdexcept>
-#include <string>
-
-#include "kernels/extend/embree_packets.h"
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
 
 namespace wavecrest {
 namespace {
 
-constexpr unsigned kMostDepth = 28;  // below it Embree halves what is left: some five levels more
+constexpr size_t kBins = 32;
+constexpr size_t kLargeRange = size_t{1} << 16;  // ranges above are split by several threads
+constexpr size_t kSampleStride = 8;              // every which piece of a large range stands for all
+// Nodes this deep have so few bins left to choose from that their pieces are halved: a ray's stack has a limit.
+constexpr size_t kMostDepth = 24;
 
-// The builder keeps untyped pointers: always to a Branch.
-template <class Kind>
-Kind* newBranch(RTCThreadLocalAllocator allocator, bool leaf, size_t count) {
-  auto* const branch = new (rtcThreadLocalAlloc(allocator, sizeof(Kind), 16)) Kind;
-  branch->leaf = leaf;
-  branch->count = static_cast<uint32_t>(count);
-  return branch;
+// Four numbers at once, of which three count. A type of the compiler's, which every instruction set has.
+using Four = float __attribute__((vector_size(16)));
+Four loadFour(const float* from) {
+  Four value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
 }
-BranchNode& nodeAt(void* node) { return static_cast<BranchNode&>(*static_cast<Branch*>(node)); }
+Four least(Four a, Four b) { return a < b ? a : b; }
+Four most(Four a, Four b) { return a > b ? a : b; }
 
-void* createNode(RTCThreadLocalAllocator allocator, unsigned children, void*) {
-  return static_cast<Branch*>(newBranch<BranchNode>(allocator, false, children));
-}
-void setChildren(void* node, void** children, unsigned count, void*) {
-  for (unsigned i = 0; i < count; ++i) nodeAt(node).child[i] = static_cast<const Branch*>(children[i]);
-}
-void setBounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
-  for (unsigned i = 0; i < count; ++i) {
-    const RTCBounds& b = *bounds[i];
-    nodeAt(node).box[i] = {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+struct Bounds {
+  static constexpr float kFar = std::numeric_limits<float>::infinity();
+  Four low{kFar, kFar, kFar, kFar}, high{-kFar, -kFar, -kFar, -kFar};
+
+  void add(Four otherLow, Four otherHigh) {
+    low = least(low, otherLow);
+    high = most(high, otherHigh);
   }
+  void add(const Bounds& other) { add(other.low, other.high); }
+  // Half of the surface; 0 of nothing.
+  float area() const {
+    const Four size = high - low;
+    return size[0] >= 0 ? size[0] * size[1] + size[1] * size[2] + size[2] * size[0] : 0;
+  }
+  Box box() const { return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}; }
+};
+
+// Pieces [begin, end), the box of them and that of their centres, the latter times two.
+struct Range {
+  uint32_t begin = 0, end = 0;
+  Bounds all, centers;
+
+  uint32_t size() const { return end - begin; }
+  void add(const Piece& piece) {
+    const Four low = loadFour(piece.low), high = loadFour(piece.high);
+    all.add(low, high);
+    const Four center = low + high;
+    centers.add(center, center);
+  }
+  void add(const Range& other) {
+    all.add(other.all);
+    centers.add(other.centers);
+  }
+};
+
+// Which bin a centre falls into along each axis.
+class BinScale {
+ public:
+  BinScale(const Range& range, size_t bins) : low_(range.centers.low), last_(static_cast<int>(bins) - 1) {
+    const Four extent = range.centers.high - range.centers.low;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      // 0 where the centres do not differ, so that nothing is split there.
+      const float scale = static_cast<float>(bins) * 0.9999f / extent[axis];
+      scale_[axis] = extent[axis] > 0 && scale < std::numeric_limits<float>::max() ? scale : 0;
+    }
+  }
+  bool splits(size_t axis) const { return scale_[axis] > 0; }
+  size_t operator()(const Piece& piece, size_t axis) const {
+    return static_cast<size_t>(
+        std::clamp(static_cast<int>((piece.low[axis] + piece.high[axis] - low_[axis]) * scale_[axis]), 0, last_));
+  }
+
+ private:
+  Four low_, scale_{0, 0, 0, 0};
+  int last_;
+};
+
+struct Bins {
+  Bounds bounds[3][kBins];
+  uint32_t counts[3][kBins]{};
+
+  void add(const Piece* begin, const Piece* end, size_t stride, const BinScale& scale) {
+    const auto count = static_cast<size_t>(end - begin);
+    for (size_t i = 0; i < count; i += stride) {
+      const Piece& piece = begin[i];
+      const Four low = loadFour(piece.low), high = loadFour(piece.high);
+      for (size_t axis = 0; axis < 3; ++axis) {
+        const size_t bin = scale(piece, axis);
+        bounds[axis][bin].add(low, high);
+        ++counts[axis][bin];
+      }
+    }
+  }
+  void add(const Bins& other, size_t bins) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      for (size_t i = 0; i < bins; ++i) {
+        bounds[axis][i].add(other.bounds[axis][i]);
+        counts[axis][i] += other.counts[axis][i];
+      }
+    }
+  }
+};
+
+struct Split {
+  size_t axis = 0, bin = 0;  // bins below go to one side
+  float cost = std::numeric_limits<float>::infinity();
+  bool found() const { return cost < std::numeric_limits<float>::infinity(); }
+};
+
+// The split of the least sum of areas times leaves.
+Split bestSplit(const Bins& bins, size_t count, const BinScale& scale, size_t leafSize) {
+  const auto leavesFor = [=](size_t pieces) { return (pieces + leafSize - 1) / leafSize; };
+  Split best;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if (!scale.splits(axis)) continue;
+    float costAbove[kBins];
+    Bounds above;
+    uint32_t piecesAbove = 0;
+    for (size_t i = count; i-- > 1;) {
+      above.add(bins.bounds[axis][i]);
+      piecesAbove += bins.counts[axis][i];
+      costAbove[i] = above.area() * static_cast<float>(leavesFor(piecesAbove));
+    }
+    const uint32_t all = piecesAbove + bins.counts[axis][0];
+    Bounds below;
+    uint32_t pieces = 0;
+    for (size_t i = 1; i < count; ++i) {
+      below.add(bins.bounds[axis][i - 1]);
+      pieces += bins.counts[axis][i - 1];
+      if (pieces == 0 || pieces == all) continue;
+      const float cost = below.area() * static_cast<float>(leavesFor(pieces)) + costAbove[i];
+      if (cost < best.cost) best = {axis, i, cost};
+    }
+  }
+  return best;
 }
-void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* items, size_t count, void*) {
-  auto* const leaf = newBranch<BranchLeaf>(allocator, true, count);
-  for (size_t i = 0; i < count; ++i) leaf->item[i] = items[i].primID;
-  return static_cast<Branch*>(leaf);
-}
+
+class Builder {
+ public:
+  Builder(Piece* pieces, const ParallelFor& parallelFor, size_t leafSize)
+      : pieces_(pieces), parallelFor_(parallelFor), leafSize_(leafSize) {}
+
+  Range whole(size_t count) const {
+    Range range{.begin = 0, .end = static_cast<uint32_t>(count), .all = {}, .centers = {}};
+    measure(range);
+    return range;
+  }
+  // Appends the node of a range, which is no leaf, and all below it. Returns the node's index.
+  uint32_t build(const Range& range, size_t depth, std::vector<BranchNode>& out) const {
+    Range children[kBvhWidth] = {range};
+    size_t count = 1;
+    while (count < kBvhWidth) {
+      size_t widest = kBvhWidth;
+      for (size_t i = 0; i < count; ++i) {
+        if (children[i].size() <= leafSize_) continue;
+        if (widest == kBvhWidth || children[i].all.area() > children[widest].all.area()) widest = i;
+      }
+      if (widest == kBvhWidth) break;
+      const auto [first, second] = split(children[widest], depth);
+      children[widest] = first;
+      children[count++] = second;
+    }
+
+    const auto index = static_cast<uint32_t>(out.size());
+    BranchNode node;
+    node.count = static_cast<uint32_t>(count);
+    for (size_t i = 0; i < count; ++i) {
+      node.box[i] = children[i].all.box();
+      node.child[i] = {children[i].begin, children[i].size() <= leafSize_ ? children[i].size() : 0};
+    }
+    out.push_back(node);
+    if (range.size() > kLargeRange) {
+      buildApart(index, children, count, depth + 1, out);
+    } else {
+      for (size_t i = 0; i < count; ++i) {
+        if (!node.child[i].isLeaf()) out[index].child[i].at = build(children[i], depth + 1, out);
+      }
+    }
+    return index;
+  }
+
+ private:
+  // The children, each into nodes of its own, by as many threads as there are.
+  void buildApart(uint32_t node, const Range* children, size_t count, size_t depth,
+                  std::vector<BranchNode>& out) const {
+    std::vector<BranchNode> parts[kBvhWidth];
+    parallelFor_(count, [&](size_t i) {
+      if (!out[node].child[i].isLeaf()) build(children[i], depth, parts[i]);
+    });
+    for (size_t i = 0; i < count; ++i) {
+      if (parts[i].empty()) continue;
+      const auto first = static_cast<uint32_t>(out.size());
+      out[node].child[i].at = first;
+      for (BranchNode& moved : parts[i]) {
+        for (Branch& child : moved.child) child.at += child.isLeaf() ? 0 : first;
+        out.push_back(moved);
+      }
+      parts[i] = {};
+    }
+  }
+
+  void measure(Range& range) const {
+    std::vector<Range> parts(range.size() / kLargeRange + 1);
+    parallelFor_(parts.size(), [&](size_t i) {
+      const size_t first = range.begin + i * kLargeRange;
+      for (size_t k = first; k < std::min<size_t>(range.end, first + kLargeRange); ++k) parts[i].add(pieces_[k]);
+    });
+    for (const Range& part : parts) range.add(part);
+  }
+
+  std::pair<Range, Range> split(const Range& range, size_t depth) const {
+    const size_t bins = std::min<size_t>(kBins, 4 + range.size() / 8);
+    const BinScale scale(range, bins);
+    const Split best = depth < kMostDepth ? findSplit(range, scale, bins) : Split{};
+    if (!best.found()) return halve(range);
+    return partition(range, [&](const Piece& piece) { return scale(piece, best.axis) < best.bin; });
+  }
+
+  // Large ranges are read from memory as often as they are split: most of the time that a builder takes beyond a linear
+  // one. A sample of ten thousand pieces finds a split as good.
+  Split findSplit(const Range& range, const BinScale& scale, size_t bins) const {
+    Bins all;
+    if (range.size() <= kLargeRange) {
+      all.add(pieces_ + range.begin, pieces_ + range.end, 1, scale);
+      return bestSplit(all, bins, scale, leafSize_);
+    }
+    constexpr size_t kPart = kSampleStride * kLargeRange;
+    std::vector<Bins> parts((range.size() + kPart - 1) / kPart);
+    parallelFor_(parts.size(), [&](size_t i) {
+      const size_t first = range.begin + i * kPart;
+      parts[i].add(pieces_ + first, pieces_ + std::min<size_t>(range.end, first + kPart), kSampleStride, scale);
+    });
+    for (const Bins& part : parts) all.add(part, bins);
+    return bestSplit(all, bins, scale, leafSize_);
+  }
+
+  // Puts the pieces for which isBelow holds before the others.
+  template <class IsBelow>
+  std::pair<Range, Range> partition(const Range& range, const IsBelow& isBelow) const {
+    Range below{.begin = range.begin, .end = 0, .all = {}, .centers = {}},
+        above{.begin = 0, .end = range.end, .all = {}, .centers = {}};
+    Piece *left = pieces_ + range.begin, *right = pieces_ + range.end;
+    while (true) {
+      while (left != right && isBelow(*left)) below.add(*left++);
+      while (left != right && !isBelow(right[-1])) above.add(*--right);
+      if (left == right) break;
+      std::swap(*left, right[-1]);
+    }
+    below.end = above.begin = static_cast<uint32_t>(left - pieces_);
+    return {below, above};
+  }
+  // Where no plane parts the centres: any half is as good as another.
+  std::pair<Range, Range> halve(const Range& range) const {
+    const uint32_t middle = range.begin + range.size() / 2;
+    Range first{.begin = range.begin, .end = middle, .all = {}, .centers = {}},
+        second{.begin = middle, .end = range.end, .all = {}, .centers = {}};
+    measure(first);
+    measure(second);
+    return {first, second};
+  }
+
+  Piece* pieces_;
+  const ParallelFor& parallelFor_;
+  size_t leafSize_;
+};
 
 }  // namespace
 
-BranchTree::BranchTree(const std::vector<Box>& boxes) {
-  std::vector<RTCBuildPrimitive> items(boxes.size());
-  for (size_t i = 0; i < boxes.size(); ++i) {
-    const auto& [low, high] = boxes[i];
-    items[i] = {low[0], low[1], low[2], 0, high[0], high[1], high[2], static_cast<unsigned>(i)};
-  }
-  RTCDevice device = rtcNewDevice(nullptr);
-  RTCBVH memory = device == nullptr ? nullptr : rtcNewBVH(device);
-  if (memory != nullptr) {
-    RTCBuildArguments arguments = rtcDefaultBuildArguments();
-    arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
-    arguments.maxBranchingFactor = kBvhWidth;
-    arguments.maxDepth = kMostDepth;
-    arguments.sahBlockSize = arguments.minLeafSize = arguments.maxLeafSize = kLeafSize;
-    arguments.bvh = memory;
-    arguments.primitives = items.data();
-    arguments.primitiveCount = arguments.primitiveArrayCapacity = items.size();
-    arguments.createNode = createNode;
-    arguments.setNodeChildren = setChildren;
-    arguments.setNodeBounds = setBounds;
-    arguments.createLeaf = createLeaf;
-    root_ = static_cast<const Branch*>(rtcBuildBVH(&arguments));
-  }
-  if (root_ == nullptr) {
-    const std::string error = std::to_string(rtcGetDeviceError(device));
-    if (memory != nullptr) rtcReleaseBVH(memory);
-    if (device != nullptr) rtcReleaseDevice(device);
-    throw std::runtime_error("Embree: the hierarchy could not be built (error " + error + ")");
-  }
-  device_ = device;
-  memory_ = memory;
-}
-
-BranchTree::~BranchTree() {
-  rtcReleaseBVH(static_cast<RTCBVH>(memory_));
-  rtcReleaseDevice(static_cast<RTCDevice>(device_));
+BranchTree::BranchTree(Pieces& pieces, const ParallelFor& parallelFor, size_t leafSize) {
+  const Builder builder(pieces.begin(), parallelFor, leafSize);
+  const Range whole = builder.whole(pieces.size());
+  bounds = whole.all.box();
+  root = {0, static_cast<uint32_t>(pieces.size())};
+  if (pieces.size() > leafSize) root = {builder.build(whole, 0, nodes), 0};
 }
 
 }  // namespace wavecrest

@@ -1,5 +1,9 @@
-// The shape of a hierarchy before it is laid out: nodes of up to eight children over boxes, by Embree's builder (binned
-// surface area heuristic, in parallel).
+// The shape of a hierarchy before it is laid out: nodes of up to eight children over pieces.
+//
+// Built from above by the binned surface area heuristic (Wald, "On fast Construction of SAH-based Bounding Volume
+// Hierarchies", RT 2007): of the children that a node has so far, the one of the largest surface is split until there
+// are eight. Pieces are put into the order of the leaves in place, so a leaf is a range of them. The result depends on
+// the pieces alone and not on how many threads build.
 #pragma once
 
 #include <cstddef>
@@ -10,35 +14,24 @@
 
 namespace wavecrest {
 
-// A leaf of up to kLeafSize boxes of the input, or a node with the boxes of its children.
+// A leaf of `pieces` pieces from index `at` on; or if that is 0, the node of index `at`.
 struct Branch {
-  bool leaf;
-  uint32_t count;
+  uint32_t at, pieces;
+  bool isLeaf() const { return pieces != 0; }
 };
-struct BranchLeaf : Branch {
-  uint32_t item[kLeafSize];
-};
-struct BranchNode : Branch {
-  const Branch* child[kBvhWidth];
+struct BranchNode {
+  uint32_t count = 0;
+  Branch child[kBvhWidth];
   Box box[kBvhWidth];
 };
-inline const BranchLeaf& asLeaf(const Branch& branch) { return static_cast<const BranchLeaf&>(branch); }
-inline const BranchNode& asNode(const Branch& branch) { return static_cast<const BranchNode&>(branch); }
 
-class BranchTree {
- public:
-  // Throws std::runtime_error with Embree's error number if there is no memory.
-  explicit BranchTree(const std::vector<Box>& boxes);
-  ~BranchTree();
-  BranchTree(const BranchTree&) = delete;
-  BranchTree& operator=(const BranchTree&) = delete;
+struct BranchTree {
+  Branch root{};
+  Box bounds{};
+  std::vector<BranchNode> nodes;
 
-  const Branch& root() const { return *root_; }
-
- private:
-  void* device_ = nullptr;  // RTCDevice
-  void* memory_ = nullptr;  // RTCBVH, of which all branches are part
-  const Branch* root_ = nullptr;
+  // pieces: at least one. leafSize: how many a leaf may have.
+  BranchTree(Pieces& pieces, const ParallelFor& parallelFor, size_t leafSize = kLeafSize);
 };
 
 }  // namespace wavecrest

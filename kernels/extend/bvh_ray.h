@@ -40,6 +40,7 @@ struct alignas(64) BvhRay {
   float t;              // nothing beyond counts: of the nearest hit so far, or the ray's end
   float second, third;  // of that hit: weights of the corners, or t and 0 of a sphere
   uint32_t id;          // of the face, or kMiss
+  uint32_t blocker;     // any hit: the leaf
   uint32_t index, at, waiting;
   uint32_t stack[kBvhStack];
 
@@ -49,6 +50,9 @@ struct alignas(64) BvhRay {
     t = end;
     second = third = 0;
     const float o[3] = {ox, oy, oz}, d[3] = {dx, dy, dz};
+    aim(o, d);
+  }
+  WAVECREST_INLINE void aim(const float (&o)[3], const float (&d)[3]) {
     for (size_t axis = 0; axis < 3; ++axis) {
       const float size = std::abs(d[axis]);
       origin[axis] = o[axis];
@@ -56,7 +60,7 @@ struct alignas(64) BvhRay {
       inverse[axis] = std::copysign(1 / (size > kLeastDirection ? size : kLeastDirection), d[axis]);
       nearPlane[axis] = nearPlanes(d[axis]);
     }
-    axes = kAxesAlong[greatestAxis(dx, dy, dz)];
+    axes = kAxesAlong[greatestAxis(d[0], d[1], d[2])];
     shear[2] = inverse[axes.axis[2]];
     for (size_t i = 0; i < 2; ++i) shear[i] = -d[axes.axis[i]] * shear[2];
   }
@@ -121,6 +125,7 @@ struct alignas(64) BvhRay {
     if (!any(met)) return;
     if constexpr (kAnyHit) {
       id = ids[0];
+      blocker = at;
       waiting = 1;
       return;
     }
@@ -133,7 +138,7 @@ struct alignas(64) BvhRay {
 };
 
 // As many rays as there are lanes. Nodes are tested once for all of them, by the intervals that their origins and
-// directions span; leaves ray by ray.
+// directions span; leaves ray by ray. visit finds the closest hits; shadow_packet.h has another for any hit.
 struct BvhPacket {
   static constexpr size_t kUnderWay = 8;
   Vec3<Float> origin, direction, inverse;
@@ -153,12 +158,15 @@ struct BvhPacket {
 
   WAVECREST_INLINE void begin(size_t first, Vec3<Float> o, Vec3<Float> d) {
     index = static_cast<uint32_t>(first);
-    origin = o;
-    direction = d;
     end = kFarthest;
     t = Float(end);
     second = third = Float(0);
     id = UInt(kMiss);
+    aim(o, d);
+  }
+  WAVECREST_INLINE void aim(Vec3<Float> o, Vec3<Float> d) {
+    origin = o;
+    direction = d;
     inverse = {bound(0, o.x, d.x), bound(1, o.y, d.y), bound(2, o.z, d.z)};
     const Float x = abs(d.x), y = abs(d.y), z = abs(d.z);
     alongX = (x >= y) & (x >= z);
@@ -173,34 +181,60 @@ struct BvhPacket {
   }
 
   WAVECREST_INLINE void visit(const BvhNode& node) {
+    forEachChild<true>(node, [&](uint32_t child, Mask rays) HWY_ATTR {
+      stack[waiting] = child;
+      waiting += any(rays) ? 1 : 0;
+    });
+  }
+  WAVECREST_INLINE void visit(const FaceLeaf& faces) {
+    forEachFace(faces, [&](Mask met, const FaceHit<Float>& hit, UInt face)
+                           HWY_ATTR { keep(met, hit.t, hit.second / hit.sum, hit.third / hit.sum, face); });
+    end = greatestLane(t);
+  }
+  WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
+    forEachSphere(spheres, [&](Float distance, UInt sphere)
+                               HWY_ATTR { keep(distance > Float(0), distance, distance, Float(0), sphere); });
+    end = greatestLane(t);
+  }
+
+ protected:
+  // Calls take(child, rays that meet it) for each child that the packet may meet; the nearest last, or in any order.
+  template <bool kInOrder, class Take>
+  WAVECREST_INLINE void forEachChild(const BvhNode& node, const Take& take) const {
     using Group = FloatGroup<kBvhWidth>;
+    HWY_ALIGN float planes[6 * kBvhWidth];
+    for (size_t row = 0; row < 6; ++row) {
+      store(loadBytes<kBvhWidth>(node.bounds[row]), planes + row * kBvhWidth);
+    }
     Group enter(0.0f), leave(end);
     for (size_t axis = 0; axis < 3; ++axis) {
       const float scale = node.scale[axis], corner = node.corner[axis];
       const Group step0(scale * inverses[0][axis]), step1(scale * inverses[1][axis]);
       const float near = corner - nearOrigin[axis], far = corner - farOrigin[axis];
-      const auto along = [&](Group planes, float from) HWY_ATTR {
-        return std::pair{mulAdd(planes, step0, Group(from * inverses[0][axis])),
-                         mulAdd(planes, step1, Group(from * inverses[1][axis]))};
+      const auto along = [&](Group steps, float from) HWY_ATTR {
+        return std::pair{mulAdd(steps, step0, Group(from * inverses[0][axis])),
+                         mulAdd(steps, step1, Group(from * inverses[1][axis]))};
       };
-      const uint8_t* const low = node.bounds[axis];
-      const auto [enter0, enter1] = along(loadBytes<kBvhWidth>(low + nearPlane[axis]), near);
-      const auto [leave0, leave1] = along(loadBytes<kBvhWidth>(low + 3 * kBvhWidth - nearPlane[axis]), far);
+      const float* const low = planes + axis * kBvhWidth;
+      const auto [enter0, enter1] = along(loadGroup<kBvhWidth>(low + nearPlane[axis]), near);
+      const auto [leave0, leave1] = along(loadGroup<kBvhWidth>(low + 3 * kBvhWidth - nearPlane[axis]), far);
       enter = max(min(enter0, enter1) - Group(slack[axis]), enter);
       leave = min(max(leave0, leave1) + Group(slack[axis]), leave);
     }
     const auto met = (enter <= leave) & (loadGroup<kBvhWidth>(node.children) != kBvhEnd);
     uint32_t slots[kBvhWidth];
-    const size_t count = appendByFallingKey(met, enter, loadGroup<kBvhWidth>(kLaneNumbers), slots);
+    const auto all = loadGroup<kBvhWidth>(kLaneNumbers);
+    const size_t count = kInOrder ? appendByFallingKey(met, enter, all, slots) : appendWhere(met, all, slots);
     const Vec3<Float> scale{node.scale[0], node.scale[1], node.scale[2]};
     const Vec3<Float> corner{node.corner[0], node.corner[1], node.corner[2]};
     const Vec3<Float> step = scale * inverse, first = (corner - origin) * inverse;
     for (size_t i = 0; i < count; ++i) {
-      stack[waiting] = node.children[slots[i]];
-      waiting += meets(node, slots[i], step, first) ? 1 : 0;
+      take(node.children[slots[i]], raysThrough(planes + slots[i], step, first));
     }
   }
-  WAVECREST_INLINE void visit(const FaceLeaf& faces) {
+  // Calls take(the rays that meet it, hits, id) for each face that any ray meets ahead.
+  template <class Take>
+  WAVECREST_INLINE void forEachFace(const FaceLeaf& faces, const Take& take) const {
     forEachSlot(faces.id, [&](size_t slot, UInt face) HWY_ATTR {
       const auto corner = [&](size_t k) HWY_ATTR {
         const auto& c = faces.corner[k];
@@ -211,14 +245,15 @@ struct BvhPacket {
       Mask met;
       const FaceHit<Float> hit = intersectFaces(corner(0), corner(1), corner(2), turned, shear, met);
       met = met & (hit.t > Float(0));
-      if (any(met)) keep(met, hit.t, hit.second / hit.sum, hit.third / hit.sum, face);
+      if (any(met)) take(met, hit, face);
     });
   }
-  WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
+  // Calls take(distances, id) for each sphere; they are negative where a ray misses it.
+  template <class Take>
+  WAVECREST_INLINE void forEachSphere(const SphereLeaf& spheres, const Take& take) const {
     forEachSlot(spheres.id, [&](size_t slot, UInt sphere) HWY_ATTR {
       const Vec3<Float> center{spheres.center[0][slot], spheres.center[1][slot], spheres.center[2][slot]};
-      const Float distance = intersectSpheres(center, Float(spheres.radius[slot]), origin, direction);
-      keep(distance > Float(0), distance, distance, Float(0), sphere);
+      take(intersectSpheres(center, Float(spheres.radius[slot]), origin, direction), sphere);
     });
   }
 
@@ -241,26 +276,28 @@ struct BvhPacket {
     farOrigin[axis] = backward ? high : low;
     return inverted;
   }
-  // Whether any of the rays themselves meets a child. step, first: distances along them are plane * step + first.
-  WAVECREST_INLINE bool meets(const BvhNode& node, size_t child, Vec3<Float> step, Vec3<Float> first) const {
+  // The rays that themselves meet a child. planes: as BvhNode::bounds, from the child's own on. step, first: distances
+  // along the rays are plane * step + first.
+  WAVECREST_INLINE Mask raysThrough(const float* planes, Vec3<Float> step, Vec3<Float> first) const {
     Float enter(0), leave = t;
     const auto clip = [&](size_t axis, Float s, Float f) HWY_ATTR {
-      const Float low = mulAdd(Float(static_cast<float>(node.bounds[axis][child])), s, f);
-      const Float high = mulAdd(Float(static_cast<float>(node.bounds[3 + axis][child])), s, f);
-      enter = max(enter, min(low, high));
-      leave = min(leave, max(low, high));
+      const float* const low = planes + axis * kBvhWidth;
+      const Float near = mulAdd(Float(low[nearPlane[axis]]), s, f);
+      const Float far = mulAdd(Float(low[3 * kBvhWidth - nearPlane[axis]]), s, f);
+      const bool oneWay = slack[axis] == 0;
+      enter = max(enter, oneWay ? near : min(near, far));
+      leave = min(leave, oneWay ? far : max(near, far));
     };
     clip(0, step.x, first.x);
     clip(1, step.y, first.y);
     clip(2, step.z, first.z);
-    return any(enter <= leave);
+    return enter <= leave;
   }
   template <class Test>
-  WAVECREST_INLINE void forEachSlot(const uint32_t* ids, const Test& test) {
+  static WAVECREST_INLINE void forEachSlot(const uint32_t* ids, const Test& test) {
     for (size_t slot = 0; slot < kLeafSize && (slot == 0 || ids[slot] != ids[slot - 1]); ++slot) {
       test(slot, UInt(ids[slot]));
     }
-    end = greatestLane(t);
   }
   WAVECREST_INLINE void keep(Mask met, Float distance, Float a, Float b, UInt face) {
     const Mask closer = met & ((distance < t) | ((distance == t) & (face < id)));

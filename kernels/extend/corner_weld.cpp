@@ -30,13 +30,13 @@ Corner cornerAt(const PrimitiveRecord<double>& record, double u, double v) {
   return corner;
 }
 
-CornerWeld::CornerWeld(const PrimitiveRecord<double>* quads, size_t count) {
+CornerWeld::CornerWeld(const std::vector<PrimitiveRecord<double>>& quads) {
   std::vector<Point> all;
-  for (size_t i = 0; i < count; ++i) {
-    const double tolerance = toleranceOf(quads[i]);
-    if (std::min(length(vec(quads[i].e1)), length(vec(quads[i].e2))) < kLeastEdge * tolerance) continue;
+  for (const PrimitiveRecord<double>& quad : quads) {
+    const double tolerance = toleranceOf(quad);
+    if (std::min(length(vec(quad.e1)), length(vec(quad.e2))) < kLeastEdge * tolerance) continue;
     for (const double u : {0.0, 1.0}) {
-      for (const double v : {0.0, 1.0}) all.push_back({cornerAt(quads[i], u, v), static_cast<float>(tolerance)});
+      for (const double v : {0.0, 1.0}) all.push_back({cornerAt(quad, u, v), static_cast<float>(tolerance)});
     }
     widest_ = std::max(widest_, static_cast<float>(tolerance));
   }

@@ -18,7 +18,7 @@ using Corner = std::array<float, 3>;
 class CornerWeld {
  public:
   // quads: those of the scene. Quads that are hardly larger than what is welded are left out.
-  CornerWeld(const PrimitiveRecord<double>* quads, size_t count);
+  explicit CornerWeld(const std::vector<PrimitiveRecord<double>>& quads);
   // The point that takes the place of a corner of any face.
   Corner operator()(const Corner& corner) const;
 

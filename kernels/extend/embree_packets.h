@@ -70,9 +70,10 @@ class Query {
 template <class S, class Record, class Ray>
 void copyRays(const Record& rays, size_t first, Ray& out) {
   const auto copy = [&](const S* column, auto& values) {
-    for (size_t i = 0; i < std::extent_v<std::remove_reference_t<decltype(values)>>; ++i) {
-      values[i] = static_cast<float>(column[first + i]);
-    }
+    constexpr size_t kWidth = std::extent_v<std::remove_reference_t<decltype(values)>>;
+    for (size_t i = 0; i < kWidth; ++i) values[i] = static_cast<float>(column[first + i]);
+    // Lanes beyond the last ray: Embree looks at them too where it splits a packet, and stops at a NaN.
+    for (size_t i = rays.size - first; i < kWidth; ++i) values[i] = values[0];
   };
   copy(rays.originX, out.org_x);
   copy(rays.originY, out.org_y);

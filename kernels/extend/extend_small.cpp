@@ -48,7 +48,7 @@ WAVECREST_INLINE Found coordinatesOf(const SmallSceneView& scene, const Closest&
   // PlaneHit's edge once more: twice the distance from the middle, or 1 less the least weight of a corner.
   Float edge = max(abs(u + u - Float(1)), abs(v + v - Float(1)));
   auto at = insideQuad(u, v);
-  if (scene.triangleCount != 0) {
+  if (scene.firstTriangle != scene.firstSphere) {
     const Mask triangle = !(best.primitive < UInt(scene.firstTriangle));
     edge = select(triangle, max(Float(1) - min(u, v), u + v), edge);
     at = insideEdges(u, v, triangle);

@@ -4,18 +4,10 @@
 #include <optional>
 #include <utility>
 
-#include "kernels/extend/offset.h"
+#include "kernels/extend/face_edges.h"
 
 namespace wavecrest {
 namespace {
-
-// Edges and centres that differ by this many roundings of the largest coordinate count as one: four corners, each
-// rounded to float, stand behind the last of a box's eight.
-constexpr double kSameCorner = 4 * kUnitRoundoff;
-// How far a corner may lie off the plane of its face, relative to |normal| . |corner|. Rays start from the quad and are
-// tested against the box, so this counts against kOffsetGamma, to which other roundings contribute 12 units.
-constexpr double kFlatness = 2 * kUnitRoundoff;
-constexpr double kDoubleError = 0x1p-48;  // of this computation
 
 struct Quad {
   D3 center, e1, e2;
@@ -24,8 +16,6 @@ Quad quadOf(const PrimitiveRecord<double>& record) {
   const D3 e1 = vec(record.e1), e2 = vec(record.e2);
   return {vec(record.p0) + (e1 + e2) * 0.5, e1, e2};
 }
-
-double largest(const D3& a) { return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}); }
 
 bool parallel(const D3& a, const D3& b, double tolerance) {
   return largest(a - b) <= tolerance || largest(a + b) <= tolerance;
@@ -48,23 +38,6 @@ struct Parallelepiped {
   }
 };
 
-struct Edge {
-  D3 from, along;
-};
-double distanceTo(const Edge& edge, const D3& point) {
-  const double share = dot(point - edge.from, edge.along) / dot(edge.along, edge.along);
-  return length(point - edge.from - edge.along * std::clamp(share, 0.0, 1.0));
-}
-// Whether a part of one lies on the other; crossing it is not enough.
-bool overlap(const Edge& a, const Edge& b, double tolerance) {
-  return distanceTo(a, b.from) <= tolerance || distanceTo(a, b.from + b.along) <= tolerance ||
-         distanceTo(b, a.from) <= tolerance || distanceTo(b, a.from + a.along) <= tolerance;
-}
-std::vector<Edge> edgesOf(const PrimitiveRecord<double>& face) {
-  const D3 p0 = vec(face.p0), e1 = vec(face.e1), e2 = vec(face.e2);
-  if (static_cast<PrimitiveKind>(face.kind) == PrimitiveKind::triangle) return {{p0, e1}, {p0, e2}, {p0 + e1, e2 - e1}};
-  return {{p0, e1}, {p0, e2}, {p0 + e1, e2}, {p0 + e2, e1}};
-}
 std::vector<Edge> edgesOf(const Quad& quad) {
   const D3 corner = quad.center - (quad.e1 + quad.e2) * 0.5;
   return {{corner, quad.e1}, {corner, quad.e2}, {corner + quad.e1, quad.e2}, {corner + quad.e2, quad.e1}};
@@ -130,21 +103,16 @@ class BoxFinder {
     }
     if (missing == 0) return box;
     turnOpenSide(box);
-    if (somethingMeets(openSide, box, 2 * shape.tolerance())) return std::nullopt;
+    if (somethingMeets(edgesOf(openSide), box, 2 * shape.tolerance())) return std::nullopt;
     return box;
   }
 
   // Whether an edge of any face but the box's own lies along the rim of its open side.
-  bool somethingMeets(const Quad& openSide, const FoundBox& box, double tolerance) const {
+  bool somethingMeets(const std::vector<Edge>& rim, const FoundBox& box, double tolerance) const {
     for (size_t i = 0; i < edges_.size(); ++i) {
       bool own = false;
       box.forEachQuad([&own, i](uint32_t quad) { own = own || quad == i; });
-      if (own) continue;
-      for (const Edge& edge : edges_[i]) {
-        for (const Edge& rim : edgesOf(openSide)) {
-          if (overlap(edge, rim, tolerance)) return true;
-        }
-      }
+      if (!own && anyOverlap(edges_[i], rim, tolerance)) return true;
     }
     return false;
   }
@@ -160,8 +128,7 @@ class BoxFinder {
     for (const double u : {-0.5, 0.5}) {
       for (const double v : {-0.5, 0.5}) {
         const D3 corner = quad.center + quad.e1 * u + quad.e2 * v;
-        const double allowed = kFlatness * absDot(normal, corner) + kDoubleError * largest(corner);
-        if (std::abs(dot(normal, corner) - bound) > allowed) return false;
+        if (std::abs(dot(normal, corner) - bound) > flatnessAt(normal, corner)) return false;
       }
     }
     return true;

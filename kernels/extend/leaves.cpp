@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace wavecrest {
 namespace {
 
 constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
-size_t quadsAmong(const PrimitiveRecord<double>* primitives, size_t count) {
-  size_t quads = 0;
-  while (quads < count && static_cast<PrimitiveKind>(primitives[quads].kind) == PrimitiveKind::quad) ++quads;
+std::vector<PrimitiveRecord<double>> quadsOf(const PrimitiveSource& primitives) {
+  std::vector<PrimitiveRecord<double>> quads(primitives.quads.count);
+  for (size_t i = 0; i < quads.size(); ++i) quads[i] = primitives.at(primitives.quads.first + i);
   return quads;
 }
 
@@ -21,21 +22,21 @@ uint32_t makeId(size_t primitive, FaceKind kind) {
   return static_cast<uint32_t>(primitive) | static_cast<uint32_t>(kind) << kFaceKindShift;
 }
 
-Box boxOfCorners(const std::array<Corner, 3>& corners) {
-  Box box;
+Piece pieceOf(uint32_t id, const std::array<Corner, 3>& corners) {
+  Piece piece{.low = {}, .id = id, .high = {}, .unused = 0};
   for (size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = std::min({corners[0][axis], corners[1][axis], corners[2][axis]});
-    box.high[axis] = std::max({corners[0][axis], corners[1][axis], corners[2][axis]});
+    piece.low[axis] = std::min({corners[0][axis], corners[1][axis], corners[2][axis]});
+    piece.high[axis] = std::max({corners[0][axis], corners[1][axis], corners[2][axis]});
   }
-  return box;
+  return piece;
 }
-Box boxOfSphere(const PrimitiveRecord<double>& record) {
-  Box box;
+Piece pieceOf(uint32_t id, const PrimitiveRecord<double>& sphere) {
+  Piece piece{.low = {}, .id = id, .high = {}, .unused = 0};
   for (size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = std::nextafter(static_cast<float>(record.p0[axis] - record.e1[0]), -kUnbounded);
-    box.high[axis] = std::nextafter(static_cast<float>(record.p0[axis] + record.e1[0]), kUnbounded);
+    piece.low[axis] = std::nextafter(static_cast<float>(sphere.p0[axis] - sphere.e1[0]), -kUnbounded);
+    piece.high[axis] = std::nextafter(static_cast<float>(sphere.p0[axis] + sphere.e1[0]), kUnbounded);
   }
-  return box;
+  return piece;
 }
 
 }  // namespace
@@ -51,45 +52,55 @@ Box unionOf(const Box* boxes, size_t count) {
   return all;
 }
 
-LeafMaker::LeafMaker(const PrimitiveRecord<double>* primitives, size_t count)
-    : primitives_(primitives), weld_(primitives, quadsAmong(primitives, count)) {
-  faces_.ids.reserve(count);
-  faces_.boxes.reserve(count);
-  for (size_t i = 0; i < count; ++i) {
-    switch (static_cast<PrimitiveKind>(primitives[i].kind)) {
-      case PrimitiveKind::triangle:
-        addFace(i, FaceKind::triangle);
-        break;
-      case PrimitiveKind::quad:
-        addFace(i, FaceKind::lowerHalf);
-        addFace(i, FaceKind::upperHalf);
-        break;
-      case PrimitiveKind::sphere:
-        spheres_.ids.push_back(makeId(i, FaceKind::sphere));
-        spheres_.boxes.push_back(boxOfSphere(primitives[i]));
-        break;
+LeafMaker::LeafMaker(PrimitiveSource primitives, const ParallelFor& parallelFor)
+    : primitives_(std::move(primitives)),
+      weld_(quadsOf(primitives_)),
+      faces_(2 * primitives_.quads.count + primitives_.triangles.count),
+      spheres_(primitives_.spheres.count) {
+  const auto [firstQuad, quads] = primitives_.quads;
+  const auto [firstTriangle, triangles] = primitives_.triangles;
+  const auto [firstSphere, spheres] = primitives_.spheres;
+  const auto piece = [this](size_t primitive, FaceKind kind) {
+    const uint32_t id = makeId(primitive, kind);
+    return pieceOf(id, cornersOf(id));
+  };
+  forEachRange(parallelFor, quads, [&, first = firstQuad](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      faces_.begin()[2 * i] = piece(first + i, FaceKind::lowerHalf);
+      faces_.begin()[2 * i + 1] = piece(first + i, FaceKind::upperHalf);
     }
-  }
-}
-
-void LeafMaker::addFace(size_t primitive, FaceKind kind) {
-  faces_.ids.push_back(makeId(primitive, kind));
-  faces_.boxes.push_back(boxOfCorners(cornersOf(faces_.ids.back())));
+  });
+  Piece* const ofTriangles = faces_.begin() + 2 * quads;
+  forEachRange(parallelFor, triangles, [&, first = firstTriangle](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) ofTriangles[i] = piece(first + i, FaceKind::triangle);
+  });
+  forEachRange(parallelFor, spheres, [&, first = firstSphere](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      spheres_.begin()[i] = pieceOf(makeId(first + i, FaceKind::sphere), primitives_.at(first + i));
+    }
+  });
 }
 
 LeafMaker::Triangle LeafMaker::cornersOf(uint32_t id) const {
-  const auto& record = primitives_[id & kFacePrimitiveMask];
+  const PrimitiveRecord<double> record = primitives_.at(id & kFacePrimitiveMask);
   const auto at = [&](double u, double v) { return weld_(cornerAt(record, u, v)); };
   if (faceKindOf(id) == FaceKind::lowerHalf) return {at(0, 0), at(1, 0), at(1, 1)};
   if (faceKindOf(id) == FaceKind::upperHalf) return {at(0, 0), at(1, 1), at(0, 1)};
   return {at(0, 0), at(1, 0), at(0, 1)};
 }
 
-FaceLeaf LeafMaker::faceLeaf(const uint32_t* items, size_t count) const {
+FaceLeaf LeafMaker::faceLeaf(const uint32_t* ids, size_t count) const {
   FaceLeaf leaf;
   for (size_t slot = 0; slot < kLeafSize; ++slot) {
-    const uint32_t id = leaf.id[slot] = faces_.ids[items[std::min(slot, count - 1)]];
-    const Triangle corners = cornersOf(id);
+    const size_t from = std::min(slot, count - 1);
+    leaf.id[slot] = ids[from];
+    if (from < slot) {
+      for (auto& corner : leaf.corner) {
+        for (auto& axis : corner) axis[slot] = axis[from];
+      }
+      continue;
+    }
+    const Triangle corners = cornersOf(ids[slot]);
     for (size_t k = 0; k < 3; ++k) {
       for (size_t axis = 0; axis < 3; ++axis) leaf.corner[k][axis][slot] = corners[k][axis];
     }
@@ -97,11 +108,11 @@ FaceLeaf LeafMaker::faceLeaf(const uint32_t* items, size_t count) const {
   return leaf;
 }
 
-SphereLeaf LeafMaker::sphereLeaf(const uint32_t* items, size_t count) const {
+SphereLeaf LeafMaker::sphereLeaf(const uint32_t* ids, size_t count) const {
   SphereLeaf leaf;
   for (size_t slot = 0; slot < kLeafSize; ++slot) {
-    const uint32_t id = leaf.id[slot] = spheres_.ids[items[std::min(slot, count - 1)]];
-    const auto& record = primitives_[id & kFacePrimitiveMask];
+    const uint32_t id = leaf.id[slot] = ids[std::min(slot, count - 1)];
+    const PrimitiveRecord<double> record = primitives_.at(id & kFacePrimitiveMask);
     for (size_t axis = 0; axis < 3; ++axis) leaf.center[axis][slot] = static_cast<float>(record.p0[axis]);
     leaf.radius[slot] = static_cast<float>(record.e1[0]);
   }

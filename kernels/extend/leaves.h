@@ -6,8 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/columns/memory_block.h"
 #include "kernels/extend/corner_weld.h"
-#include "kernels/scene_view.h"
+#include "kernels/extend/primitive_source.h"
 
 namespace wavecrest {
 
@@ -32,40 +33,57 @@ struct Box {
 };
 Box unionOf(const Box* boxes, size_t count);
 
-// Pieces of one kind of leaf: their ids and the box of each.
-struct Pieces {
-  std::vector<uint32_t> ids;
-  std::vector<Box> boxes;
+// What a leaf holds in a slot, and its box. Four floats may be read from `low` and from `high`.
+struct alignas(16) Piece {
+  float low[3];
+  uint32_t id;
+  float high[3];
+  uint32_t unused;
 
-  bool empty() const { return ids.empty(); }
-  Box bounds() const { return unionOf(boxes.data(), boxes.size()); }
+  Box box() const { return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}; }
+};
+
+// Pieces of one kind of leaf.
+class Pieces {
+ public:
+  Pieces() = default;
+  explicit Pieces(size_t count) : memory_(count * sizeof(Piece), alignof(Piece)), count_(count) {}
+
+  Piece* begin() { return reinterpret_cast<Piece*>(memory_.get()); }
+  Piece* end() { return begin() + count_; }
+  const Piece* begin() const { return reinterpret_cast<const Piece*>(memory_.get()); }
+  const Piece* end() const { return begin() + count_; }
+  size_t size() const { return count_; }
+  bool empty() const { return count_ == 0; }
+
+ private:
+  MemoryBlock memory_;
+  size_t count_ = 0;
 };
 
 // Cuts a scene into pieces and packs them.
 class LeafMaker {
  public:
-  // primitives: in SceneView order, and in double so that faces which share a corner agree on its float. They must
-  // outlive this.
-  LeafMaker(const PrimitiveRecord<double>* primitives, size_t count);
+  // primitives: in SceneView order. What they refer to must outlive this.
+  LeafMaker(PrimitiveSource primitives, const ParallelFor& parallelFor);
 
-  const Pieces& faces() const { return faces_; }
-  const Pieces& spheres() const { return spheres_; }
-  // The leaf of up to four pieces, given by their places among the pieces.
-  FaceLeaf faceLeaf(const uint32_t* items, size_t count) const;
-  SphereLeaf sphereLeaf(const uint32_t* items, size_t count) const;
+  Pieces& faces() { return faces_; }
+  Pieces& spheres() { return spheres_; }
+  // The leaf of up to four pieces, given by their ids.
+  FaceLeaf faceLeaf(const uint32_t* ids, size_t count) const;
+  SphereLeaf sphereLeaf(const uint32_t* ids, size_t count) const;
 
  private:
   using Triangle = std::array<Corner, 3>;
   Triangle cornersOf(uint32_t id) const;
-  void addFace(size_t primitive, FaceKind kind);
 
-  const PrimitiveRecord<double>* primitives_;
+  PrimitiveSource primitives_;
   CornerWeld weld_;
   Pieces faces_, spheres_;
 };
 
 // Upper bound of the coordinates of all points that rays start from, relative to which intersectors bound their
-// rounding: within the scene, at the eye, or on the disc that distant light starts from, two diameters away.
+// rounding: within the scene, at the eye, or on the box that distant light starts from, with room to spare.
 double rayReach(const Box& scene, const double (&eye)[3]);
 
 }  // namespace wavecrest

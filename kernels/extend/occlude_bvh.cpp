@@ -1,34 +1,108 @@
 // occlude, large scenes: adds the contribution of each shadow ray that nothing in the hierarchy of bvh.h blocks.
 //
 // in: ShadowRays [n]. out: Radiance grows, or on light walks that splat, Splats; ShadowRays empty.
-#include "kernels/extend/bvh_ray.h"
-#include "kernels/extend/visible_lanes.h"
+//
+// Rays go in packets while they stay together and alone after that (shadow_packet.h), and begin where others to the
+// same end were blocked (last_blockers.h). None of this changes what they find, and contributions are added in their
+// order.
+#include <algorithm>
+
+#include "kernels/extend/last_blockers.h"
+#include "kernels/extend/occlude_lanes.h"
+#include "kernels/extend/shadow_packet.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
 
-template <class P>
-void occludeBvh(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  auto& shadow = wave.shadowRays;
-  const size_t count = shadow.size;
-  context.counters->raysShadow += count;
-  // Rays end in any order, but contributions are added in theirs: what a ray sees takes the place of its origin.
-  float* const visible = shadow.originX;
+namespace {
+
+constexpr bool kPackets = kLanes >= 8;  // blocks of fewer lanes gain nothing by them
+
+// Some rays of a wave that are walked in packets, and whether nothing blocks them, as 1 or 0.
+struct Batch {
+  size_t first, count;
+  LoneEntries alone;
+  HWY_ALIGN float visible[LoneEntries::kRays];
+};
+
+// What rays have left to visit goes to batch.alone.
+template <class S>
+WAVECREST_INLINE void walkTogether(const BvhView& bvh, const ShadowRays<S>& rays, LastBlockers& blockers,
+                                   Batch& batch) {
+  const auto blockerOf = [&](size_t i) HWY_ATTR -> uint32_t& {
+    return blockers.towards(rays.originX[i] + rays.directionX[i], rays.originY[i] + rays.directionY[i],
+                            rays.originZ[i] + rays.directionZ[i]);
+  };
+  size_t next = 0;
+  batch.alone.clear(batch.count);
+  walkBvh<ShadowPacket>(
+      bvh,
+      [&](ShadowPacket& packet) HWY_ATTR {
+        if (next >= batch.count) return false;
+        // Those behind the last ray repeat the first of their packet.
+        const Mask present = firstLanes(batch.count - next);
+        const size_t i = batch.first + next;
+        const auto lanes = [&](const Column<float>& column)
+                               HWY_ATTR { return select(present, load(column, i), Float(column[i])); };
+        packet.begin(next, present, {lanes(rays.originX), lanes(rays.originY), lanes(rays.originZ)},
+                     {lanes(rays.directionX), lanes(rays.directionY), lanes(rays.directionZ)}, batch.alone,
+                     blockerOf(i));
+        next += kLanes;
+        return true;
+      },
+      [&](const ShadowPacket& packet) HWY_ATTR {
+        store(select(packet.open, Float(1), Float(0)), batch.visible + packet.index);
+        if (packet.blocker != kBvhEnd) blockerOf(batch.first + packet.index) = packet.blocker;
+      });
+}
+
+// The rays that packets have left, from where they left them.
+template <class S>
+WAVECREST_INLINE void finishAlone(const BvhView& bvh, const ShadowRays<S>& rays, Batch& batch) {
   size_t next = 0;
   walkBvh<BvhRay<true>>(
-      *context.scene->bvh,
+      bvh,
       [&](BvhRay<true>& ray) HWY_ATTR {
-        if (next >= count) return false;
-        ray.begin(next, shadow.originX[next], shadow.originY[next], shadow.originZ[next], shadow.directionX[next],
-                  shadow.directionY[next], shadow.directionZ[next], kShadowEnd);
+        while (next < batch.count && (batch.visible[next] == 0 || batch.alone.count[next] == 0)) ++next;
+        if (next >= batch.count) return false;
+        beginShadowRay(ray, next, rays, batch.first + next);
+        const uint32_t* const entries = batch.alone.entry[next];
+        const uint32_t last = batch.alone.count[next] - 1;
+        std::copy_n(entries, last, ray.stack + 1);
+        ray.waiting = 1 + last;
+        ray.at = entries[last];
+        prefetchEntry(bvh, ray.at);
         ++next;
         return true;
       },
-      [&](const BvhRay<true>& ray) HWY_ATTR { visible[ray.index] = ray.id == kMiss ? 1.0f : 0.0f; });
-  for (size_t i = 0; i < count; i += kLanes) {
-    addVisible(context, wave, (load(visible + i) > Float(0)) & firstLanes(count - i), i);
+      [&](const BvhRay<true>& ray) HWY_ATTR {
+        if (ray.id != kMiss) batch.visible[ray.index] = 0;
+      });
+}
+
+// Writes whether nothing blocks each ray, as 1 or 0, in the place of its origin's x.
+template <class S>
+WAVECREST_INLINE void walkAll(const BvhView& bvh, ShadowRays<S>& rays) {
+  if constexpr (kPackets) {
+    LastBlockers blockers(bvh);
+    Batch batch;
+    for (batch.first = 0; batch.first < rays.size; batch.first += batch.count) {
+      batch.count = std::min(rays.size - batch.first, LoneEntries::kRays);
+      walkTogether(bvh, rays, blockers, batch);
+      finishAlone(bvh, rays, batch);
+      std::copy_n(batch.visible, batch.count, rays.originX + batch.first);
+    }
+  } else {
+    walkShadowRaysAlone<BvhRay<true>>(bvh, rays);
   }
-  shadow.size = 0;
+}
+
+}  // namespace
+
+template <class P>
+void occludeBvh(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
+  using S = typename P::Storage;
+  occludeThrough(context, wave, [](const BvhView& bvh, ShadowRays<S>& rays) HWY_ATTR { walkAll(bvh, rays); });
 }
 
 WAVECREST_SIMD_END

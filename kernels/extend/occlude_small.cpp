@@ -3,8 +3,8 @@
 // in: ShadowRays [n]. out: Radiance grows, or on light walks that splat, Splats; ShadowRays empty.
 #include <limits>
 
+#include "kernels/extend/occlude_lanes.h"
 #include "kernels/extend/small_lanes.h"
-#include "kernels/extend/visible_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -46,8 +46,7 @@ WAVECREST_NOINLINE Mask blockedByLeaves(const SmallSceneView& scene, const Shado
   for (size_t k = 0, count = countTrue(doubtful); k < count; ++k) {
     const size_t at = i + places[k];
     BvhRay<true> ray;
-    ray.begin(at, shadow.originX[at], shadow.originY[at], shadow.originZ[at], shadow.directionX[at],
-              shadow.directionY[at], shadow.directionZ[at], kShadowEnd);
+    beginShadowRay(ray, at, shadow, at);
     visitLeaves(scene, ray);
     blocked[places[k]] = ray.id != kMiss ? 1 : 0;
   }

@@ -88,6 +88,54 @@ WAVECREST_INLINE BoxHit intersectBox(const BoxForm& box, Vec3<Float> origin, Vec
   return {hit, t, primitive};
 }
 
+// ---- solids ---------------------------------------------------------------------------------------------------------
+
+constexpr float kUnbounded = 3.0e38f;
+
+// Where rays are inside of all planes that were taken so far: from the last that they enter by to the first that they
+// leave by.
+struct Inside {
+  Float enter, leave;
+  UInt enterFace, leaveFace;
+
+  WAVECREST_INLINE Inside() : enter(-kUnbounded), leave(kUnbounded), enterFace(kMiss), leaveFace(kMiss) {}
+
+  // A ray along the plane leaves it far ahead, or where it lies outside, far behind.
+  template <bool kShared>
+  WAVECREST_INLINE void take(const SidePlane& side, Vec3<Float> origin, Vec3<Float> direction) {
+    const Float speed = dotForm(side.normal, direction, kParallelSpeed);
+    const Float gap = negMulAdd(
+        Float(side.normal[0]), origin.x,
+        negMulAdd(Float(side.normal[1]), origin.y, negMulAdd(Float(side.normal[2]), origin.z, Float(side.distance))));
+    const Float t = gap * approximateReciprocal(speed);
+    UInt face(side.face);
+    if constexpr (kShared) {
+      const Float along = dotForm(side.separator, mulAdd(direction, t, origin), side.separatorOffset);
+      face = select(along > Float(0), UInt(side.other), face);
+    }
+    const Mask entering = speed < Float(0);
+    const Mask later = entering & (t > enter), sooner = andNot(t < leave, entering);
+    enter = select(later, t, enter);
+    leave = select(sooner, t, leave);
+    enterFace = select(later, face, enterFace);
+    leaveFace = select(sooner, face, leaveFace);
+  }
+};
+
+// The first face of a solid that the rays meet: where they enter, or if that is behind them or open, where they leave.
+// side: the first of its planes; afterwards of the next solid's.
+WAVECREST_INLINE BoxHit intersectSolid(const SolidForm& solid, const SidePlane*& side, Vec3<Float> origin,
+                                       Vec3<Float> direction) {
+  Inside faces, openings;
+  for (uint32_t i = 0; i < solid.single; ++i) faces.take<false>(*side++, origin, direction);
+  for (uint32_t i = 0; i < solid.shared; ++i) faces.take<true>(*side++, origin, direction);
+  for (uint32_t i = 0; i < solid.open; ++i) openings.take<false>(*side++, origin, direction);
+  const Mask entering = (faces.enter > Float(0)) & (faces.enter >= openings.enter);
+  const Mask inside = max(faces.enter, openings.enter) <= min(faces.leave, openings.leave);
+  const Mask hit = inside & (entering | (faces.leave <= openings.leave));
+  return {hit, select(entering, faces.enter, faces.leave), select(entering, faces.enterFace, faces.leaveFace)};
+}
+
 WAVECREST_INLINE Float intersectSphere(const SphereForm& sphere, Vec3<Float> origin, Vec3<Float> direction) {
   const Vec3<Float> center{sphere.center[0], sphere.center[1], sphere.center[2]};
   return intersectSpheres(center, Float(sphere.radius), origin, direction);
@@ -95,8 +143,8 @@ WAVECREST_INLINE Float intersectSphere(const SphereForm& sphere, Vec3<Float> ori
 
 // ---- all of a scene ------------------------------------------------------------------------------------------------
 
-// Calls taker.take(met, t, primitive) for each box and each sphere, and taker.take(hit, primitive) with the PlaneHit of
-// each plane: where met, the rays' lines meet it at t. |direction| <= 1.
+// Calls taker.take(met, t, primitive) for each box, solid and sphere, and taker.take(hit, primitive) with the PlaneHit
+// of each plane: where met, the rays' lines meet it at t. |direction| <= 1.
 template <class Taker>
 WAVECREST_INLINE void intersectAll(const SmallSceneView& scene, Vec3<Float> origin, Vec3<Float> direction,
                                    Taker& taker) {
@@ -107,6 +155,11 @@ WAVECREST_INLINE void intersectAll(const SmallSceneView& scene, Vec3<Float> orig
   }
   for (const uint32_t end = box + scene.openBoxCount; box < end; ++box) {
     const BoxHit hit = intersectBox<true>(scene.boxes[box], origin, direction);
+    taker.take(hit.hit, hit.t, hit.primitive);
+  }
+  const SidePlane* side = scene.sides;
+  for (uint32_t i = 0; i < scene.solidCount; ++i) {
+    const BoxHit hit = intersectSolid(scene.solids[i], side, origin, direction);
     taker.take(hit.hit, hit.t, hit.primitive);
   }
   uint32_t plane = 0;

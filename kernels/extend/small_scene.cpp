@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "kernels/extend/find_boxes.h"
+#include "kernels/extend/find_solids.h"
 #include "kernels/extend/offset.h"
 
 namespace wavecrest {
@@ -57,58 +58,65 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, 
         std::count_if(primitives, primitives + count, [kind](const auto& p) { return kindOf(p) == kind; }));
   };
   view_.firstTriangle = ofKind(PrimitiveKind::quad);
-  view_.triangleCount = ofKind(PrimitiveKind::triangle);
-  view_.firstSphere = view_.firstTriangle + view_.triangleCount;
+  const uint32_t triangles = ofKind(PrimitiveKind::triangle);
+  view_.firstSphere = view_.firstTriangle + triangles;
   view_.sphereCount = ofKind(PrimitiveKind::sphere);
   if (count == 0) return;
 
-  const LeafMaker leaves(primitives, count);
+  LeafMaker leaves(PrimitiveSource::of(primitives, count), inTurn);
   addLeaves(leaves);
   std::vector<Box> bounds;
   for (const Pieces* pieces : {&leaves.faces(), &leaves.spheres()}) {
-    if (!pieces->empty()) bounds.push_back(pieces->bounds());
+    for (const Piece& piece : *pieces) bounds.push_back(piece.box());
   }
   const double reach = rayReach(unionOf(bounds.data(), bounds.size()), eye);
 
-  std::vector<bool> inBox(count, false);
-  const std::vector<FoundBox> boxes = findBoxes(primitives, view_.firstTriangle, view_.triangleCount);
+  std::vector<bool> taken(count, false);
+  const auto take = [&taken](uint32_t face) { taken[face] = true; };
+  const std::vector<FoundBox> boxes = findBoxes(primitives, view_.firstTriangle, triangles);
   for (const bool open : {false, true}) {
     for (const FoundBox& box : boxes) {
       if (box.open() != open || !isThickEnough(box, reach)) continue;
       ++(open ? view_.openBoxCount : view_.closedBoxCount);
       addBox(box);
-      box.forEachQuad([&inBox](uint32_t quad) { inBox[quad] = true; });
+      box.forEachQuad(take);
     }
+  }
+  for (const FoundSolid& solid : findSolids(primitives, view_.firstTriangle, triangles, taken)) {
+    if (solid.thickness * kMostThicknesses < reach) continue;
+    addSolid(solid);
+    solid.forEachFace(take);
   }
   for (uint32_t i = 0; i < view_.firstSphere; ++i) {
     coordinates_.push_back(inFloat(dualBasis(primitives[i])));
-    if (!inBox[i]) addPlane(primitives[i], i, reach);
+    if (taken[i]) continue;
+    addPlane(primitives[i], i, reach);
+    ++(i < view_.firstTriangle ? view_.quadCount : view_.triangleCount);
   }
-  view_.quadCount = static_cast<uint32_t>(planes_.size()) - view_.triangleCount;
   for (size_t i = view_.firstSphere; i < count; ++i) {
     SphereForm& sphere = spheres_.emplace_back();
     assign(sphere.center, vec(primitives[i].p0));
     sphere.radius = static_cast<float>(primitives[i].e1[0]);
   }
   view_.boxes = boxes_.data();
+  view_.solids = solids_.data();
+  view_.sides = sides_.data();
+  view_.solidCount = static_cast<uint32_t>(solids_.size());
   view_.planes = planes_.data();
   view_.limits = limits_.data();
   view_.coordinates = coordinates_.data();
   view_.spheres = spheres_.data();
 }
 
-void SmallScene::addLeaves(const LeafMaker& leaves) {
+void SmallScene::addLeaves(LeafMaker& leaves) {
   const auto pack = [](const Pieces& pieces, const auto& addLeaf) {
-    std::vector<uint32_t> items(pieces.ids.size());
-    std::iota(items.begin(), items.end(), 0u);
-    for (size_t i = 0; i < items.size(); i += kLeafSize) {
-      addLeaf(items.data() + i, std::min(kLeafSize, items.size() - i));
-    }
+    std::vector<uint32_t> ids;
+    for (const Piece& piece : pieces) ids.push_back(piece.id);
+    for (size_t i = 0; i < ids.size(); i += kLeafSize) addLeaf(ids.data() + i, std::min(kLeafSize, ids.size() - i));
   };
-  pack(leaves.faces(),
-       [&](const uint32_t* items, size_t count) { faceLeaves_.push_back(leaves.faceLeaf(items, count)); });
+  pack(leaves.faces(), [&](const uint32_t* ids, size_t count) { faceLeaves_.push_back(leaves.faceLeaf(ids, count)); });
   pack(leaves.spheres(),
-       [&](const uint32_t* items, size_t count) { sphereLeaves_.push_back(leaves.sphereLeaf(items, count)); });
+       [&](const uint32_t* ids, size_t count) { sphereLeaves_.push_back(leaves.sphereLeaf(ids, count)); });
   view_.faceLeaves = faceLeaves_.data();
   view_.faceLeafCount = static_cast<uint32_t>(faceLeaves_.size());
   view_.sphereLeaves = sphereLeaves_.data();
@@ -124,6 +132,26 @@ void SmallScene::addBox(const FoundBox& box) {
     slab.high = static_cast<float>(box.high[axis]);
     std::copy_n(box.quad[axis], 2, form.primitives[axis]);
   }
+}
+
+void SmallScene::addSolid(const FoundSolid& solid) {
+  SolidForm& form = solids_.emplace_back(SolidForm{});
+  const auto add = [&](uint32_t& counter, auto belongs) {
+    for (const SolidPlane& plane : solid.planes) {
+      if (!belongs(plane)) continue;
+      ++counter;
+      SidePlane& side = sides_.emplace_back();
+      assign(side.normal, plane.normal);
+      side.distance = static_cast<float>(plane.distance);
+      assign(side.separator, plane.separator);
+      side.separatorOffset = static_cast<float>(plane.separatorOffset);
+      side.face = plane.face;
+      side.other = plane.other;
+    }
+  };
+  add(form.single, [](const SolidPlane& plane) { return !plane.open() && !plane.shared(); });
+  add(form.shared, [](const SolidPlane& plane) { return plane.shared(); });
+  add(form.open, [](const SolidPlane& plane) { return plane.open(); });
 }
 
 void SmallScene::addPlane(const PrimitiveRecord<double>& primitive, uint32_t index, double reach) {

@@ -3,15 +3,17 @@
 // Up to some hundred primitives a loop over all of them beats a hierarchy, because it has no branches and its data is
 // broadcast from L1. A parallelogram is its plane n.p = d and two affine maps of space onto its own coordinates; both
 // maps are centred and scaled so that the inside is max(|u|, |v|) <= 1. Five or six quads that bound a parallelepiped
-// are one box, three slabs between parallel planes, at less than half the cost (kernels/extend/find_boxes.h).
+// are one box, three slabs between parallel planes, at less than half the cost (kernels/extend/find_boxes.h). Other
+// faces that bound a convex solid are one solid (kernels/extend/find_solids.h): a ray is inside between the last of the
+// planes that it enters by and the first that it leaves by, so that no plane asks where in it a face lies.
 //
 // Neither wider than its primitives nor leaky: a plane takes what hits it within a bound on the rounding of u and v,
 // and says how near the edge that was. Where the nearest hit was within the bound, rounding might have decided, and the
 // ray is decided anew against leaves, whose neighbours agree on every edge (bvh_lanes.h). One ray in thousands is. A
-// box has no edges to slip through: a ray that starts inside leaves it where it leaves the first of its slabs,
-// whichever that is. The gaps between the origin and the two planes of a slab are rounded apart, as that of a plane is:
-// a box far thicker than it is far from the origin would lose in a shared centre and half width what kOffsetGamma
-// allows for.
+// box or solid has no edges to slip through: a ray that starts inside leaves it where it leaves the first of its
+// planes, whichever that is. The gaps between the origin and the two planes of a slab are rounded apart, as that of a
+// plane is: a box far thicker than it is far from the origin would lose in a shared centre and half width what
+// kOffsetGamma allows for.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +26,7 @@
 namespace wavecrest {
 
 struct FoundBox;
+struct FoundSolid;
 
 // Two affine maps: u = uAxis . p + uOffset, and v likewise.
 struct FaceCoordinates {
@@ -50,23 +53,36 @@ struct BoxForm {
   SlabForm slabs[3];
   uint32_t primitives[3][2];  // of the faces at low and at high
 };
+// The points normal . p <= distance, which a solid lies among; of two faces `other` is where separator . p +
+// separatorOffset > 0.
+struct SidePlane {
+  float normal[3], distance;
+  float separator[3], separatorOffset;
+  uint32_t face, other;
+};
+// So many of `sides`, in this order: those of one face, of two faces, and those without any.
+struct SolidForm {
+  uint32_t single, shared, open;
+};
 struct SphereForm {
   float center[3], radius;
 };
 
-// Boxes: those of six faces, then those whose face at slabs[2].high is missing. Planes: the quads that are no face of a
-// box, then the triangles. Coordinates: of all quads and triangles, in SceneView order, from 0 to 1 on each. Spheres
-// follow in that order.
+// Boxes: those of six faces, then those whose face at slabs[2].high is missing. Sides: of all solids, one after the
+// other. Planes: the quads that are no face of a box or solid, then such triangles. Coordinates: of all quads and
+// triangles, in SceneView order, from 0 to 1 on each. Spheres follow in that order.
 struct SmallSceneView {
   const BoxForm* boxes;
+  const SolidForm* solids;
+  const SidePlane* sides;
   const PlaneForm* planes;
   const PlaneLimits* limits;
   const FaceCoordinates* coordinates;
   const SphereForm* spheres;
   const FaceLeaf* faceLeaves;  // all quads and triangles once more
   const SphereLeaf* sphereLeaves;
-  uint32_t closedBoxCount, openBoxCount;
-  uint32_t quadCount, triangleCount, sphereCount;
+  uint32_t closedBoxCount, openBoxCount, solidCount;
+  uint32_t quadCount, triangleCount, sphereCount;  // of planes that are quads, and triangles; of all spheres
   uint32_t faceLeafCount, sphereLeafCount;
   uint32_t firstTriangle, firstSphere;  // in SceneView order
 };
@@ -81,10 +97,13 @@ class SmallScene {
 
  private:
   void addBox(const FoundBox& box);
+  void addSolid(const FoundSolid& solid);
   void addPlane(const PrimitiveRecord<double>& primitive, uint32_t index, double reach);
-  void addLeaves(const LeafMaker& leaves);
+  void addLeaves(LeafMaker& leaves);
 
   std::vector<BoxForm> boxes_;
+  std::vector<SolidForm> solids_;
+  std::vector<SidePlane> sides_;
   std::vector<PlaneForm> planes_;
   std::vector<PlaneLimits> limits_;
   std::vector<FaceCoordinates> coordinates_;

@@ -1,4 +1,4 @@
-// What both occlude stages do with the shadow rays that nothing blocks.
+// What the occlude stages do with the shadow rays that nothing blocks.
 #pragma once
 
 #include "kernels/lane_support.h"

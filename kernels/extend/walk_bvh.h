@@ -6,7 +6,9 @@
 // kind of entry that they stand at, and a node's children go to the walker's stack sorted in a register.
 //
 // A walker has `at`, the entry that it stands at; `stack`, the entries that it has still to visit, of which `waiting`
-// are in use; `index`; and visit(BvhNode), visit(FaceLeaf) and visit(SphereLeaf).
+// are in use; `index`; and visit(BvhNode), visit(FaceLeaf) and visit(SphereLeaf). It begins at the root, unless
+// begin(walker) puts it elsewhere. A walker that knows instances (placed_rays.h) has enter(InstanceLeaf), which says
+// whether it goes on at the root of the group, and leave().
 #pragma once
 
 #include <cstring>
@@ -25,6 +27,12 @@ WAVECREST_INLINE void prefetchEntry(const BvhView& bvh, uint32_t reference) {
   __builtin_prefetch(there + 64);
   __builtin_prefetch(there + 128);
 }
+
+template <class Walker>
+concept EntersInstances = requires(Walker& walker, const InstanceLeaf& leaf) {
+  walker.enter(leaf);
+  walker.leave();
+};
 
 // Walks for as long as begin(walker) finds something to do. end(walker): takes what was found. Walker::kUnderWay: at
 // most 255.
@@ -50,8 +58,22 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
     Walker& walker = walkers[i];
     walker.stack[0] = kBvhEnd;
     walker.waiting = 1;
+    walker.at = bvh.root;
     if (!begin(walker)) return;
-    stand(i, bvh.root);
+    stand(i, walker.at);
+  };
+  // In or out of an instance.
+  [[maybe_unused]] const auto pass = [&](uint8_t i) HWY_ATTR {
+    if constexpr (EntersInstances<Walker>) {
+      Walker& walker = walkers[i];
+      if (walker.at == kBvhLeave) {
+        walker.leave();
+      } else if (const InstanceLeaf& leaf = bvh.at<InstanceLeaf>(walker.at); walker.enter(leaf)) {
+        walker.stack[walker.waiting++] = kBvhLeave;
+        return stand(i, leaf.root);
+      }
+      goOn(i);
+    }
   };
   // Moves the list aside, so that walkers may join it again.
   const auto take = [&](BvhEntry entry) HWY_ATTR {
@@ -75,6 +97,13 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
     visitAll(BvhEntry::faces, std::type_identity<FaceLeaf>());
     visitAll(BvhEntry::spheres, std::type_identity<SphereLeaf>());
     for (size_t k = 0, size = take(BvhEntry::end); k < size; ++k) {
+      if constexpr (EntersInstances<Walker>) {
+        Walker& walker = walkers[current[k]];
+        if (walker.at != kBvhEnd) {
+          pass(current[k]);
+          continue;
+        }
+      }
       end(walkers[current[k]]);
       enter(current[k]);
     }

@@ -33,6 +33,26 @@ WAVECREST_INLINE void filterOffset(const CameraView& camera, Real& x, Real& y) {
   }
 }
 
+// The place in the filter, from the pixel's corner, that all camera paths of an iteration share. ahead: iterations
+// beyond the sampler's.
+//
+// Places are Sobol points whatever the sampler: one place for the whole image would otherwise shift its edges by the
+// noise of a mean of independent numbers. An odd iteration has the place of the one before, mirrored at the pixel's
+// centre: at the film's edge, where the one leaves pixels with few samples, the other has many.
+template <class Real>
+WAVECREST_INLINE Vec2<Real> sharedPlace(const CameraView& camera, const SamplerSettings& sampler, UInt ahead) {
+  SamplerSettings pairs = sampler;
+  pairs.kind = SamplerKind::sobol;
+  pairs.iteration /= 2;
+  const UInt number = ahead + UInt(static_cast<uint32_t>(sampler.iteration & 1));
+  const UInt pair = shiftLeft<kPathBits>(shiftRight<1>(number));
+  const Uniform4 u = uniform4(pairs, pair, static_cast<uint32_t>(Block::scatter), Stream::filter);
+  Vec2<Real> place{to<Real>(u.a), to<Real>(u.b)};
+  filterOffset(camera, place.x, place.y);
+  const Mask mirrored = hasBit(number, 0);
+  return {select(mirrored, Real(1) - place.x, place.x), select(mirrored, Real(1) - place.y, place.y)};
+}
+
 // Uniform on the lens, relative to its centre.
 template <class Real>
 WAVECREST_INLINE Vec3<Real> lensOffset(const CameraView& camera, Real u, Real v) {
@@ -76,19 +96,18 @@ WAVECREST_INLINE RayLanes<typename P::Real> cameraRayAt(const CameraView& camera
     // Through the point of the plane in focus that the ray by the lens's centre would meet.
     const Vec3<Real> onLens = lensOffset(camera, to<Real>(lensU), to<Real>(lensV));
     const Vec3<Real> inFocus = onPlane * Real(camera.focusDistance / camera.planeDepth);
-    return fromNearClip<Real>(camera, {origin + onLens, normalizeFast<P>(inFocus - onLens)});
+    return fromNearClip<Real>(camera, {origin + onLens, normalize(inFocus - onLens)});
   }
-  return fromNearClip<Real>(camera, {origin, normalizeFast<P>(onPlane)});
+  return fromNearClip<Real>(camera, {origin, normalize(onPlane)});
 }
 
-// A ray of a pixel. u.a, u.b: place in the pixel; u.c, u.d: place on the lens.
+// A ray of a pixel through a place, from the pixel's corner.
 template <class P>
 WAVECREST_INLINE RayLanes<typename P::Real> cameraRay(const CameraView& camera, const PixelLanes& pixel,
-                                                      const Uniform4& u) {
+                                                      Vec2<typename P::Real> place, Float lensU, Float lensV) {
   using Real = typename P::Real;
-  Real dx = to<Real>(u.a), dy = to<Real>(u.b);
-  filterOffset(camera, dx, dy);
-  return cameraRayAt<P>(camera, to<Real>(toFloat(pixel.x)) + dx, to<Real>(toFloat(pixel.y)) + dy, u.c, u.d);
+  return cameraRayAt<P>(camera, to<Real>(toFloat(pixel.x)) + place.x, to<Real>(toFloat(pixel.y)) + place.y, lensU,
+                        lensV);
 }
 
 // Parallel rays of one pixel per area across them: each of its points sends one ray. METHODS 4.4.
@@ -143,7 +162,7 @@ WAVECREST_INLINE Projection<typename P::Real> project(const CameraView& camera, 
   }
   const Vec3<Real> fromLens = point - lens;
   const Real dist2 = length2(fromLens);
-  const Real inverseDistance = reciprocalSqrt<P>(max(dist2, Real(1e-37f)));
+  const Real inverseDistance = reciprocalSqrt(max(dist2, Real(1e-37f)));
   out.direction = fromLens * -inverseDistance;
   const Real along = dot(fromLens, broadcast<Real>(camera.axis));
   out.inFront = (along > Real(camera.nearClip)) & (along <= Real(camera.farClip));
@@ -153,7 +172,7 @@ WAVECREST_INLINE Projection<typename P::Real> project(const CameraView& camera, 
   const Vec3<Real> onPlane = inFocus * Real(camera.planeDepth / focus) - broadcast<Real>(camera.corner);
   out.rasterX = dot(onPlane, broadcast<Real>(camera.du)) * Real(camera.inverseDu2);
   out.rasterY = dot(onPlane, broadcast<Real>(camera.dv)) * Real(camera.inverseDv2);
-  const Real inverseCosine = reciprocal<P>(along * inverseDistance);
+  const Real inverseCosine = reciprocal(along * inverseDistance);
   out.pdf = Real(camera.pixelDistance * camera.pixelDistance) * inverseCosine * inverseCosine * inverseCosine *
             inverseDistance * inverseDistance;
   return out;

@@ -54,13 +54,20 @@ void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<
   wave.paths.claim(count);
   wave.radiance.claim(count);
 
+  const UInt aheadMask((1u << wave.iterationBits) - 1);
   for (size_t i = 0; i < count; i += kLanes) {
     const UInt lane = min(laneIndex(static_cast<uint32_t>(i)), UInt(static_cast<uint32_t>(count - 1)));
     const CameraSample sample = cameraSample(context, wave, lane);
     if (context.chains != nullptr) recordPixel(context, sample.pixel, i);
     const PixelLanes& pixel = sample.pixel;
     const Uniform4& u = sample.u;
-    const auto ray = cameraRay<P>(context.scene->camera, pixel, u);
+    Vec2<Real> place{to<Real>(u.a), to<Real>(u.b)};
+    if (context.sharedPlace) {
+      place = sharedPlace<Real>(context.scene->camera, context.sampler, lane & aheadMask);
+    } else {
+      filterOffset(context.scene->camera, place.x, place.y);
+    }
+    const auto ray = cameraRay<P>(context.scene->camera, pixel, place, u.c, u.d);
 
     storeVec3(ray.origin, wave.rays.originX, wave.rays.originY, wave.rays.originZ, i);
     storeVec3(ray.direction, wave.rays.directionX, wave.rays.directionY, wave.rays.directionZ, i);

@@ -2,12 +2,13 @@
 //
 // in: path indices [firstPath, firstPath + pathCount), or the context's lanes [pathCount]. out: Rays, PathStates
 // [pathCount], in lane order. Sampling of emission after METHODS 2.2: a point on the light by area and a direction by
-// cosine; for infinite lights a direction and a point on the disc that faces it and covers the scene. MIS sums of the
-// origin: METHODS 5.3.
+// cosine; for infinite lights a direction and a point on the faces of the scene's box that it enters by. MIS sums of
+// the origin: METHODS 5.3.
 #include "kernels/connect/light_sample_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/sampling/warp_lanes.h"
 #include "kernels/shade/light_lanes.h"
+#include "kernels/shade/scene_box_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -27,35 +28,32 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromPoint(const LightLanes<typ
                                                             const Uniform4& u) {
   using Real = typename P::Real;
   const Vec3<Real> direction = uniformSphere<Real>(to<Real>(u.b), to<Real>(u.c));
-  const Real inverse = reciprocal<P>(light.pick) * Real(4 * kPi);
+  const Real inverse = reciprocal(light.pick) * Real(4 * kPi);
   return {light.p0, direction, light.radiance * inverse, {Real(4 * kPi), Real(0), Real(0)}};
 }
 
-// Origin of a ray that comes from outside the scene: on the disc of the bounding sphere that faces the direction.
+// Origin of a ray that comes from outside the scene.
 template <class P>
-WAVECREST_INLINE Vec3<typename P::Real> pointOnDisc(const SceneView<typename P::Storage>& scene,
-                                                    Vec3<typename P::Real> direction, const Uniform4& v) {
+WAVECREST_INLINE Vec3<typename P::Real> pointOfEntry(const SceneView<typename P::Storage>& scene,
+                                                     Vec3<typename P::Real> direction, const Uniform4& v) {
   using Real = typename P::Real;
-  const Vec2<Real> disc = concentricDisc<Real>(to<Real>(v.a), to<Real>(v.b));
-  const Real radius(scene.radius);
-  return broadcast<Real>(scene.center) +
-         Frame<Real>::fromNormal(direction).toWorld({disc.x * radius, disc.y * radius, -radius});
+  return pointOnBox<Real>(scene, direction, to<Real>(v.a), to<Real>(v.b), to<Real>(v.c));
 }
 
-// The constant environment: from the disc of the bounding sphere, against the direction to the light.
+// The constant environment: any direction is as likely.
 template <class P>
 WAVECREST_INLINE EmittedRay<typename P::Real> emitFromConstant(const SceneView<typename P::Storage>& scene,
                                                                const LightLanes<typename P::Real>& light,
                                                                const Uniform4& u, const Uniform4& v) {
   using Real = typename P::Real;
   const Vec3<Real> direction = uniformSphere<Real>(to<Real>(u.b), to<Real>(u.c));
-  const Real inversePick = reciprocal<P>(light.pick);
-  const Real discArea(kPi * scene.radius * scene.radius);
-  const Real inverseEmission = inversePick * discArea * Real(4 * kPi);
-  return {pointOnDisc<P>(scene, direction, v),
+  const Real inversePick = reciprocal(light.pick);
+  const Real area = projectedArea<Real>(scene, direction);
+  const Real inverseEmission = inversePick * area * Real(4 * kPi);
+  return {pointOfEntry<P>(scene, direction, v),
           direction,
           light.radiance * inverseEmission,
-          {discArea, inverseEmission, Real(0)}};
+          {area, inverseEmission, Real(0)}};
 }
 
 template <class P, uint32_t kFeatures>
@@ -80,12 +78,12 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromArea(const SceneView<typen
   }
   const Vec3<Real> local = cosineHemisphere<Real>(to<Real>(u.b), to<Real>(u.c));
   const Vec3<Real> direction = Frame<Real>::fromNormal(normal).toWorld(local);
-  const Real area = reciprocal<P>(light.inverseArea);
-  const Real inversePick = reciprocal<P>(light.pick);
+  const Real area = reciprocal(light.inverseArea);
+  const Real inversePick = reciprocal(light.pick);
   const Real flux = Real(kPi) * area * inversePick;
   // directPdf / emissionPdf = (1 / area) / (n_0 / (pi area)). A sphere's direct density depends on the receiver: arrive
   // supplies it, and here stands pick n_0 / emissionPdf = pi area.
-  const Real dVCM = select(sphere, Real(kPi) * area, Real(kPi) * reciprocal<P>(local.z));
+  const Real dVCM = select(sphere, Real(kPi) * area, Real(kPi) * reciprocal(local.z));
   Vec3<Real> radiance = light.radiance;
   if constexpr (has(kFeatures, kTextures)) {
     radiance =
@@ -94,19 +92,27 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromArea(const SceneView<typen
   return {mulAdd(normal, light.offset, point), direction, radiance * flux, {dVCM, flux, Real(0)}};
 }
 
-template <class P>
-WAVECREST_INLINE EmittedRay<typename P::Real> emitFromSpot(const LightLanes<typename P::Real>& light,
+// Spot lights: uniform in the cone. Projectors: uniform on the picture.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE EmittedRay<typename P::Real> emitFromBeam(const SceneView<typename P::Storage>& scene,
+                                                           const LightLanes<typename P::Real>& light,
                                                            const Uniform4& u) {
   using Real = typename P::Real;
-  const Real cosTotal = light.cosTotal;
-  const Real height = max(Real(1) - cosTotal, Real(1e-9f));
-  const Vec3<Real> local = uniformCone<Real>(to<Real>(u.b), to<Real>(u.c), height);
-  const Real inverseCone = Real(2 * kPi) * height;
-  const Real falloff = spotFalloff(local.z, cosTotal, light.cosFalloff);
+  const Real height = max(Real(1) - light.cosTotal, Real(1e-9f));
+  const Real one(1), two(2), b = to<Real>(u.b), c = to<Real>(u.c);
+  Vec3<Real> direction = Frame<Real>::fromNormal(light.normal).toWorld(uniformCone<Real>(b, c, height));
+  const Mask projector = light.kind == lightKind(LightKind::projector);
+  if (any(projector)) {
+    const auto edge = [&](Vec3<Real> axis, Real place) WAVECREST_LAMBDA {
+      return axis * (mulAdd(place, two, -one) / max(length2(axis), Real(1e-30f)));
+    };
+    direction = select(projector, normalize(light.normal + edge(light.e1, b) + edge(light.e2, c)), direction);
+  }
+  const Real inversePdf = one / beamPdfW(light, dot(direction, light.normal));
   return {light.p0,
-          Frame<Real>::fromNormal(light.normal).toWorld(local),
-          light.radiance * (falloff * inverseCone * reciprocal<P>(light.pick)),
-          {inverseCone, Real(0), Real(0)}};
+          direction,
+          light.radiance * beamFactor<P, kFeatures>(scene, light, direction) * (inversePdf * reciprocal(light.pick)),
+          {inversePdf, Real(0), Real(0)}};
 }
 
 template <class P>
@@ -115,11 +121,11 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitDirectional(const SceneView<ty
                                                               const Uniform4& v) {
   using Real = typename P::Real;
   const Vec3<Real> direction = light.normal;
-  const Real discArea(kPi * scene.radius * scene.radius);
-  return {pointOnDisc<P>(scene, direction, v),
+  const Real area = projectedArea<Real>(scene, direction);
+  return {pointOfEntry<P>(scene, direction, v),
           direction,
-          light.radiance * (discArea * reciprocal<P>(light.pick)),
-          {discArea, Real(0), Real(0)}};
+          light.radiance * (area * reciprocal(light.pick)),
+          {area, Real(0), Real(0)}};
 }
 
 template <class P>
@@ -129,12 +135,12 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromMap(const SceneView<typena
   using Real = typename P::Real;
   const Vec3<Real> toLight = sampleMap<Real>(scene.environment, more);
   const MapPoint<Real> point = mapPoint(scene.environment, toLight);
-  const Real discArea(kPi * scene.radius * scene.radius);
-  const Real inverseEmission = discArea / (max(mapPdfW(scene.environment, point), Real(1e-30f)) * light.pick);
-  return {pointOnDisc<P>(scene, -toLight, v),
+  const Real area = projectedArea<Real>(scene, toLight);
+  const Real inverseEmission = area / (max(mapPdfW(scene.environment, point), Real(1e-30f)) * light.pick);
+  return {pointOfEntry<P>(scene, -toLight, v),
           -toLight,
           mapRadiance(scene.environment, point) * inverseEmission,
-          {discArea, inverseEmission, Real(0)}};
+          {area, inverseEmission, Real(0)}};
 }
 
 template <class Real>
@@ -173,8 +179,8 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
     if (any(constant)) ray = select(constant, emitFromConstant<P>(scene, light, u, v), ray);
 
     if constexpr (has(kFeatures, kRareLights)) {
-      const Mask spot = light.kind == lightKind(LightKind::spot);
-      if (any(spot)) ray = select(spot, emitFromSpot<P>(light, u), ray);
+      const Mask beam = isBeam(light.kind);
+      if (any(beam)) ray = select(beam, emitFromBeam<P, kFeatures>(scene, light, u), ray);
       const Mask directional = light.kind == lightKind(LightKind::directional);
       if (any(directional)) ray = select(directional, emitDirectional<P>(scene, light, v), ray);
       const Mask map = light.kind == lightKind(LightKind::envmap);

@@ -291,7 +291,7 @@ class Merger {
     const auto bsdf = shading.scattering(active, direction);
     // METHODS 3.9; directions within the surface carry nothing that a merge could use.
     const Real cosine = abs(dot(direction, normal));
-    const Real perCosine = zeroUnless(cosine > Real(0), reciprocal<P>(max(cosine, Real(kSmallestCosine))));
+    const Real perCosine = zeroUnless(cosine > Real(0), reciprocal(max(cosine, Real(kSmallestCosine))));
     Real weight(1);
     if (context_.mis.mergeWeights) {
       const MisSums<Real> light{facing.d, Real(0), mergeSum(context_.mis, carried.d)};
@@ -299,7 +299,7 @@ class Merger {
       // Where connections compete (kVC > 0) every edge may be one; else kVC is 0 and the switch does not matter.
       const Real wLight = behindMerge(context_.mis, 1, light, bsdf.pdf);
       const Real wCamera = behindMerge(context_.mis, 1, camera, bsdf.pdfReverse);
-      weight = reciprocal<P>(Real(1) + wLight + wCamera);
+      weight = reciprocal(Real(1) + wLight + wCamera);
     }
     const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine;
     const Vec3<Real> contribution = row.throughput * bsdf.f * (vec3(carried) * perCosine) * scale;

@@ -69,7 +69,7 @@ class Rows {
     const Vec3<Real> x = positionAt(v_, at), towardsEye = positionAt(v_, ahead) - x;
     Vec3<Real> towardsLight = positionAt(v_, behind) - x;
     Real dist2 = max(length2(towardsLight), Real(1e-37f));
-    towardsLight = towardsLight * reciprocalSqrt<P>(dist2);
+    towardsLight = towardsLight * reciprocalSqrt(dist2);
     Real lightCosine = abs(dot(towardsLight, normalAt(v_, behind)));
     const Mask first = m & (r == one);
     LightEdge<Real> edge{};
@@ -81,7 +81,7 @@ class Rows {
       lightCosine = select(first, edge.n0, lightCosine);
     }
     const Real eyeDist2 = max(length2(towardsEye), Real(1e-37f));
-    const Vec3<Real> back = towardsEye * reciprocalSqrt<P>(eyeDist2);
+    const Vec3<Real> back = towardsEye * reciprocalSqrt(eyeDist2);
     const auto shading = pathShading<P, kFeatures>(*context_.scene, v_, at, back, Walk::camera);
     auto scattering = scatteringOf<P, kFeatures>(shading, m, towardsLight, gather(v_.event, at));
 
@@ -89,7 +89,7 @@ class Rows {
     Real eye = scattering.eyePdf * toArea;
     if (any(first)) {
       const Vec3<Real> radiance = gatherVec3(headers_.lightR, headers_.lightG, headers_.lightB, lane_);
-      const Vec3<Real> emitted = radiance * (edge.falloff * eye / max(edge.position, Real(1e-37f)));
+      const Vec3<Real> emitted = radiance * edge.beam * (eye / max(edge.position, Real(1e-37f)));
       scattering.step = select(first, scattering.step * emitted, scattering.step);
       eye = select(first & edge.delta, Real(0), eye);
       storeWhere(edge.position, first, v_.light, lane_);
@@ -109,7 +109,7 @@ class Rows {
     const Vec3<Real> lens = positionAt(v_, at + stride_), x = positionAt(v_, at);
     Vec3<Real> direction = x - lens;
     Real dist2 = max(length2(direction), Real(1e-37f));
-    direction = direction * reciprocalSqrt<P>(dist2);
+    direction = direction * reciprocalSqrt(dist2);
     Real cosine = abs(dot(direction, normalAt(v_, at)));
     const Mask seen = m & (edges_ == one);
     if (any(seen)) {

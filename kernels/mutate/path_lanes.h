@@ -9,6 +9,7 @@
 #include "kernels/generate/camera_lanes.h"
 #include "kernels/mutate/path_law.h"
 #include "kernels/shade/light_lanes.h"
+#include "kernels/shade/scene_box_lanes.h"
 #include "kernels/shade/shading_lanes.h"
 
 WAVECREST_SIMD_BEGIN
@@ -77,6 +78,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
                            .offset = gather(v.offset, at),
                            .u = Float(0),
                            .v = Float(0),
+                           .tangent = Float(0),
                            .material = materialOf(scene, gather(v.primitive, at))};
   readDetails<kFeatures>(
       scene, v, [&](const auto& column) WAVECREST_LAMBDA { return gather(column, at); }, vertex);
@@ -149,13 +151,13 @@ WAVECREST_INLINE Real logarithmic(Real smallest, double logRatio, Real u) {
 // ---- the ends of a path ---------------------------------------------------------------------------------------------
 
 // Emission at x_0 towards x_1, and the densities of METHODS 2.2; `position` in the measure of x_0, `firstEdge` per
-// solid angle there, or of infinite lights per area of the disc that faces the scene.
+// solid angle there, or of infinite lights per area across the ray.
 template <class Real>
 struct LightEdge {
   Vec3<Real> direction;  // unit, from x_1 to x_0
   Real dist2, n0;        // 1 where the light has no place, or no surface
   Real position, firstEdge;
-  Real falloff;  // of a spot
+  Vec3<Real> beam;  // factor of a spot's or projector's radiance
   Mask delta, infinite;
 };
 template <class P, uint32_t kFeatures>
@@ -168,21 +170,19 @@ WAVECREST_INLINE LightEdge<typename P::Real> lightEdge(const SceneView<typename 
   const Vec3<Real> segment = x0 - x1;
   const Real length = max(length2(segment), Real(1e-37f));
   LightEdge<Real> edge{
-      segment * reciprocalSqrt<P>(length), length, zero, zero, zero, one, noLanes(), isInfinite(light.kind)};
+      segment * reciprocalSqrt(length), length, zero, zero, zero, {one, one, one}, noLanes(), isInfinite(light.kind)};
   edge.n0 = max(-dot(edge.direction, normal), zero);
   edge.position = light.pick * light.inverseArea;
   edge.firstEdge = edge.n0 * Real(kInvPi);
   const Mask point = light.kind == lightKind(LightKind::point);
   Mask noPlace = point;
   if constexpr (has(kFeatures, kRareLights)) {
-    const Mask spot = light.kind == lightKind(LightKind::spot);
-    if (any(spot)) {
-      noPlace = noPlace | spot;
-      edge.falloff =
-          select(spot, spotFalloff(-dot(edge.direction, light.normal), light.cosTotal, light.cosFalloff), one);
+    const Mask beam = isBeam(light.kind);
+    if (any(beam)) {
+      noPlace = noPlace | beam;
+      edge.beam = select(beam, beamFactor<P, kFeatures>(scene, light, -edge.direction), edge.beam);
+      edge.firstEdge = select(beam, beamPdfW(light, -dot(edge.direction, light.normal)), edge.firstEdge);
     }
-    const Real cone = Real(kInvPi / 2) / max(one - light.cosTotal, Real(1e-9f));
-    edge.firstEdge = select(spot, cone, edge.firstEdge);
     edge.delta = light.kind == lightKind(LightKind::directional);
   }
   edge.firstEdge = select(point, Real(kInvPi / 4), edge.firstEdge);
@@ -197,7 +197,7 @@ WAVECREST_INLINE LightEdge<typename P::Real> lightEdge(const SceneView<typename 
     edge.direction = select(edge.infinite, x0, edge.direction);
     edge.dist2 = select(edge.infinite, one, edge.dist2);
     edge.position = select(andNot(edge.infinite, edge.delta), light.pick * pdfW, edge.position);
-    edge.firstEdge = select(edge.infinite, Real(kInvPi / (scene.radius * scene.radius)), edge.firstEdge);
+    edge.firstEdge = select(edge.infinite, reciprocal(projectedArea<Real>(scene, x0)), edge.firstEdge);
   }
   return edge;
 }

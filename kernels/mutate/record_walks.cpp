@@ -14,6 +14,7 @@ template <class P, uint32_t kFeatures>
 void recordMisses(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   const auto& scene = *context.scene;
   if (scene.infiniteLight == kNoIndex || context.walk != Walk::camera) return;
+  if (scene.hidesInfinite && context.depth == 1) return;
   const auto& v = context.paths->proposed.vertices;
   for (size_t i = 0; i < wave.rays.size; ++i) {
     const uint32_t lane = wave.paths.lane[i];
@@ -59,6 +60,9 @@ void recordPathVertices(const StageContext<typename P::Storage>& context, Wave<t
     if constexpr (has(kFeatures, kTextures)) {
       storeWhere(load(surfaces.uvU, i), active, v.uvU, at);
       storeWhere(load(surfaces.uvV, i), active, v.uvV, at);
+    }
+    if constexpr (has(kFeatures, kCompoundBsdfs)) {
+      if (context.scene->tangents) storeWhere(load(surfaces.tangent, i), active, v.tangent, at);
     }
     UInt primitive = select(active, load(wave.hits.primitive, i), UInt(0u));
     if (camera) {  // x_0 is a point of a light, if it is one

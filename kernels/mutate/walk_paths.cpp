@@ -120,8 +120,7 @@ WAVECREST_NOINLINE size_t leaveKept(const StageContext<typename P::Storage>& con
     direction = (behind == zero) & isInfinite(light(context.scene->lights->kind));
   }
   fix = select(direction, fix, fix - position);
-  const auto shading =
-      pathShading<P, kFeatures>(*context.scene, v, at * stride + lane, normalizeFast<P>(fix), context.walk);
+  const auto shading = pathShading<P, kFeatures>(*context.scene, v, at * stride + lane, normalize(fix), context.walk);
   WalkStep<Real> step = leave<P, kFeatures>(context, shading, surface, lane, at);
   Vec3<Real> from = shading.position, normal = shading.normal;
   Real offset = shading.offset;
@@ -184,7 +183,7 @@ WAVECREST_NOINLINE void recordLights(const StageContext<typename P::Storage>& co
     const Vec3<Real> throughput = loadVec3(wave.paths.throughputR, wave.paths.throughputG, wave.paths.throughputB, i);
     Vec3<Real> radiance = throughput * (edge.position * edge.firstEdge / max(edge.n0, Real(1e-20f)));
     if constexpr (has(kFeatures, kRareLights)) {
-      radiance = select(light.kind == lightKind(LightKind::spot), light.radiance, radiance);
+      radiance = select(isBeam(light.kind), light.radiance, radiance);
     }
     const Real zero(0);
     storeWhere(x0, active, v.positionX, v.positionY, v.positionZ, lane);

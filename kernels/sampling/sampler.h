@@ -46,13 +46,15 @@ constexpr std::optional<SamplerKind> parseSamplerKind(std::string_view word) {
 }
 
 // What the numbers are for; paths of different streams share path indices but no numbers.
-enum class Stream : uint32_t { camera, light, bootstrap, chain, scene };
+// filter: the place in the pixel that all samples of an iteration share (StageContext::sharedPlace).
+enum class Stream : uint32_t { camera, light, bootstrap, chain, scene, filter };
 
 // Each vertex has four blocks of four numbers; this is the one table of their uses.
 enum class Block : uint32_t {
   scatter = 0,  // lobe, direction (2), roulette; of a camera path's origin: raster (2), lens (2); of a light's: light,
                 // direction (2), choice within the light
-  light = 1,    // next event: light, choice within the light, position (2); of a light path's origin: position (2)
+  light = 1,    // next event: light, choice within the light, position (2); of a light path's origin: position (2),
+                // face of the scene's box
   opacity = 2,  // second lobe choice; of a camera path's origin in multiplexed chains: the strategy
   environment = 3  // texel of the environment map (2), place within (2)
 };

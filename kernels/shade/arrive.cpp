@@ -13,6 +13,7 @@
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/interpolation_lanes.h"
 #include "kernels/shade/light_lanes.h"
+#include "kernels/shade/scene_box_lanes.h"
 #include "kernels/shade/surface_lanes.h"
 #include "kernels/shade/vertex_order_lanes.h"
 #include "kernels/stage_declarations.h"
@@ -44,9 +45,9 @@ WAVECREST_INLINE Vec3<typename P::Real> missedRadiance(const StageContext<typena
   Real wCamera(0);
   if (context.mis.nextEvent) wCamera = pick * pdfW * mis.dVCM;
   if constexpr (has(kFeatures, kBidirectional)) {
-    wCamera = mulAdd(pick * pdfW * Real(kInvPi / (scene.radius * scene.radius)), mis.dVC, wCamera);
+    wCamera = mulAdd(pick * pdfW * reciprocal(projectedArea<Real>(scene, direction)), mis.dVC, wCamera);
   }
-  return radiance * reciprocal<P>(Real(1) + others(context.mis, wCamera));
+  return radiance * reciprocal(Real(1) + others(context.mis, wCamera));
 }
 
 // Radiance of area lights that lanes arrived at, weighted likewise with the sums after arrival (METHODS 5.6, s = 0).
@@ -69,7 +70,7 @@ WAVECREST_INLINE Vec3<typename P::Real> metRadiance(const StageContext<typename 
     const Real emissionPdf = light.pick * light.inverseArea * n0 * Real(kInvPi);
     wCamera = mulAdd(emissionPdf, mis.dVC, wCamera);
   }
-  return radiance * reciprocal<P>(Real(1) + others(context.mis, wCamera));
+  return radiance * reciprocal(Real(1) + others(context.mis, wCamera));
 }
 
 // What turns dVCM of a light path's first edge into area measure at y_1: d^2 for a light that has a place. For spheres
@@ -89,11 +90,11 @@ WAVECREST_INLINE typename P::Real firstLightEdge(const SceneView<typename P::Sto
       const Real r2 = light.radius * light.radius;
       const Real d2 = length2(light.p0 - receiver);
       const Mask outside = d2 > r2 * Real(kInsideSphere);
-      const Real conePdf = Real(kInvPi / 2) * reciprocal<P>(sphereConeHeight(r2, d2));
+      const Real conePdf = Real(kInvPi / 2) * reciprocal(sphereConeHeight(r2, d2));
       // generateLightPaths put n_0 / emissionPdf into dVCM: times the direct density per solid angle this is directPdfA
       // d^2 over emissionPdf. That density is the cone's, or from inside the sphere d^2 / (area n_0).
-      const Real n0 = abs(dot(origin - light.p0, direction)) * reciprocal<P>(light.radius);
-      const Real areaPdf = light.inverseArea * dist2 * reciprocal<P>(max(n0, Real(1e-12f)));
+      const Real n0 = abs(dot(origin - light.p0, direction)) * reciprocal(light.radius);
+      const Real areaPdf = light.inverseArea * dist2 * reciprocal(max(n0, Real(1e-12f)));
       factor = select(sphere, select(outside, conePdf, areaPdf), factor);
     }
   }
@@ -102,12 +103,14 @@ WAVECREST_INLINE typename P::Real firstLightEdge(const SceneView<typename P::Sto
 
 // Lanes whose ray from the near clip meets its primitive before the far one. Not inlined: few scenes have a far clip.
 template <class P, uint32_t kFeatures>
-WAVECREST_NOINLINE Mask beforeFarClip(const SceneView<typename P::Storage>& scene, UInt primitive,
+WAVECREST_NOINLINE Mask beforeFarClip(const SceneView<typename P::Storage>& scene, Mask hit, UInt primitive,
                                       Vec3<typename P::Real> origin, Vec3<typename P::Real> direction, const Hits& hits,
                                       size_t i) {
   using Real = typename P::Real;
-  const auto surface = surfacePoint<P, kFeatures>(scene, primitivesOf(scene, primitive), origin, direction,
-                                                  load(hits.u, i), load(hits.v, i));
+  const InstanceLanes<P, kFeatures> instance(scene, hits, i, hit);
+  const auto surface =
+      instance.toWorld(surfacePoint<P, kFeatures>(scene, primitivesOf(scene, primitive), instance.pointToGroup(origin),
+                                                  instance.vectorToGroup(direction), load(hits.u, i), load(hits.v, i)));
   return dot(surface.position - origin, broadcast<Real>(scene.camera.axis)) <=
          Real(scene.camera.farClip - scene.camera.nearClip);
 }
@@ -152,7 +155,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     const UInt primitive = select(hit, hitPrimitive, UInt(0u));
     const Vec3<Real> direction = loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
     const Vec3<Real> origin = loadVec3(rays.originX, rays.originY, rays.originZ, i);
-    if (clipped) hit = hit & beforeFarClip<P, kFeatures>(scene, primitive, origin, direction, wave.hits, i);
+    if (clipped) hit = hit & beforeFarClip<P, kFeatures>(scene, hit, primitive, origin, direction, wave.hits, i);
     const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     const UInt lane = load(paths.lane, i);
     MisSums<Real> mis = loadMis<kFeatures>(paths, i);
@@ -166,7 +169,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     const Mask missed = andNot(active, hit);
     if (any(missed)) {
       misses += countTrue(missed);
-      if (camera && scene.infiniteLight != kNoIndex) {
+      if (camera && scene.infiniteLight != kNoIndex && !(scene.hidesInfinite && context.depth == 1)) {
         const Vec3<Real> radiance = throughput * missedRadiance<P, kFeatures>(context, direction, mis, alone);
         addRadiance(wave.radiance, lane, missed & counted, radiance);
       }
@@ -174,11 +177,14 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     }
 
     const auto at = primitivesOf(scene, primitive);
-    const SurfacePoint<Real> surface =
-        surfacePoint<P, kFeatures>(scene, at, origin, direction, load(wave.hits.u, i), load(wave.hits.v, i));
+    const InstanceLanes<P, kFeatures> instance(scene, wave.hits, i, hit);
+    const SurfacePoint<Real> inGroup =
+        surfacePoint<P, kFeatures>(scene, at, instance.pointToGroup(origin), instance.vectorToGroup(direction),
+                                   load(wave.hits.u, i), load(wave.hits.v, i));
+    const SurfacePoint<Real> surface = instance.toWorld(inGroup);
     const Real dist2 = length2(surface.position - origin);
     const Real cosine = -dot(surface.normal, direction);
-    const Real inverseCosine = reciprocal<P>(max(abs(cosine), Real(1e-12f)));
+    const Real inverseCosine = reciprocal(max(abs(cosine), Real(1e-12f)));
     Real toArea = dist2;
     if constexpr (has(kFeatures, kBidirectional)) {
       if (firstLightVertex) {
@@ -193,9 +199,9 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     }
     mis.dVCM = mis.dVCM * toArea * inverseCosine;
 
-    Interpolated<Real> shading{surface.normal, surface.normal, Float(0), Float(0)};
+    Interpolated<Real> shading{surface.normal, surface.normal, Float(0), Float(0), Float(0)};
     if constexpr (has(kFeatures, kShadingNormals | kTextures)) {
-      shading = interpolate<P, kFeatures>(scene, at, hit, surface);
+      shading = interpolate<P, kFeatures>(scene, at, hit, inGroup, surface.normal, instance);
     }
 
     if (camera) {

@@ -65,41 +65,44 @@ struct BeckmannNormals {
     const Real a = max(alpha, Real(kSmallestAlpha));
     return {a, a * a};
   }
+  template <bool kTextured>
+  static WAVECREST_INLINE BeckmannNormals of(const BsdfInput<P, kTextured>& input) {
+    return fromAlpha(input.alpha());
+  }
 
   // With a = cot(theta) / alpha: G1 = (3.535 a + 2.181 a^2) / (1 + 2.276 a + 2.577 a^2) below a = 1.6, else 1.
   WAVECREST_INLINE Real masking(Vec3<Real> v) const {
     const Real z = abs(v.z), width = widthOf(v);
-    const Real a = z * reciprocal<P>(max(width, Real(1e-20f)));
-    const Real below = mulAdd(mulAdd(Real(2.577f), a, Real(2.276f)), a, Real(1)) *
-                       reciprocal<P>(mulAdd(Real(2.181f), a, Real(3.535f)));
+    const Real a = z * reciprocal(max(width, Real(1e-20f)));
+    const Real below =
+        mulAdd(mulAdd(Real(2.577f), a, Real(2.276f)), a, Real(1)) * reciprocal(mulAdd(Real(2.181f), a, Real(3.535f)));
     return Real(2) * select(a < Real(1.6f), width * below, z);
   }
 
-  WAVECREST_INLINE Real densityFactor(Vec3<Real> v) const { return masking(v) * reciprocal<P>(exactMasking(v)); }
-  WAVECREST_INLINE Real weightFactor(Vec3<Real> v) const { return exactMasking(v) * reciprocal<P>(masking(v)); }
+  WAVECREST_INLINE Real densityFactor(Vec3<Real> v) const { return masking(v) * reciprocal(exactMasking(v)); }
+  WAVECREST_INLINE Real weightFactor(Vec3<Real> v) const { return exactMasking(v) * reciprocal(masking(v)); }
 
   WAVECREST_INLINE Real density(Vec3<Real> h, Real h2) const {
     const Real tangential2 = mulAdd(h.x, h.x, h.y * h.y);
-    const Real inverseZ2 = reciprocal<P>(max(h.z * h.z, h2 * Real(1e-9f)));
+    const Real inverseZ2 = reciprocal(max(h.z * h.z, h2 * Real(1e-9f)));
     const Real ratio = h2 * inverseZ2;
-    return exp(-(tangential2 * inverseZ2) * reciprocal<P>(alpha2)) * ratio * ratio * Real(kInvPi) *
-           reciprocal<P>(alpha2);
+    return exp(-(tangential2 * inverseZ2) * reciprocal(alpha2)) * ratio * ratio * Real(kInvPi) * reciprocal(alpha2);
   }
 
   // Slopes are drawn in Float: their numbers have 24 bits.
   WAVECREST_INLINE Vec3<Real> sampleVisible(Vec3<Real> v, Real u1, Real u2) const {
     const Real x = alpha * v.x, y = alpha * v.y;
     const Real across2 = mulAdd(x, x, y * y);
-    const Real inverseLength = reciprocalSqrt<P>(max(mulAdd(v.z, v.z, across2), Real(1e-30f)));
+    const Real inverseLength = reciprocalSqrt(max(mulAdd(v.z, v.z, across2), Real(1e-30f)));
     const Real along = to<Real>(sampleVisibleSlope(toFloat(abs(v.z) * inverseLength), toFloat(u1)));
     const Real across =
         to<Real>(erfInverse(min(max(mulSub(Float(2), toFloat(u2), Float(1)), Float(-0.9999999f)), Float(0.9999999f))));
     // Back from the frame in which v lies in the xz plane; the pole has none of its own.
     const Mask pole = !(across2 > Real(1e-30f));
-    const Real inverseAcross = reciprocalSqrt<P>(max(across2, Real(1e-30f)));
+    const Real inverseAcross = reciprocalSqrt(max(across2, Real(1e-30f)));
     const Real cosine = select(pole, Real(1), x * inverseAcross), sine = select(pole, Real(0), y * inverseAcross);
-    return normalizeFast<P>(Vec3<Real>{-alpha * mulSub(cosine, along, sine * across),
-                                       -alpha * mulAdd(sine, along, cosine * across), Real(1)});
+    return normalize(Vec3<Real>{-alpha * mulSub(cosine, along, sine * across),
+                                -alpha * mulAdd(sine, along, cosine * across), Real(1)});
   }
 
  private:
@@ -109,7 +112,7 @@ struct BeckmannNormals {
   // S of G1 = 2 / (1 + erf(a) + exp(-a^2) / (a sqrt(pi))).
   WAVECREST_INLINE Real exactMasking(Vec3<Real> v) const {
     const Real z = abs(v.z), width = widthOf(v);
-    const Real a = min(z * reciprocal<P>(max(width, Real(1e-20f))), Real(8));
+    const Real a = min(z * reciprocal(max(width, Real(1e-20f))), Real(8));
     return mulAdd(z, Real(1) + to<Real>(erf(toFloat(a))), width * Real(0.56418958354775629) * exp(-(a * a)));
   }
 };

@@ -26,7 +26,7 @@ struct DielectricBsdf {
                                                               Vec3<typename P::Real> fix, const Uniform4& u) {
     using Real = typename P::Real;
     const Real one(1);
-    const Real eta = input.eta(), inverseEta = reciprocal<P>(eta);
+    const Real eta = input.eta(), inverseEta = reciprocal(eta);
     const Mask outside = fix.z > Real(0);
     const Real etaFixOverGen = select(outside, inverseEta, eta);
     const auto fresnel = fresnelDielectric<P>(abs(fix.z), select(outside, eta, inverseEta));

@@ -114,7 +114,8 @@ struct BsdfInput {
 // Vertices whose BSDF has more than delta lobes: only those can be joined by next event, connections and merges.
 WAVECREST_INLINE Mask hasNonDeltaLobes(UInt kind) {
   const auto is = [kind](BsdfKind k) WAVECREST_LAMBDA { return kind == UInt(static_cast<uint32_t>(k)); };
-  return !(is(BsdfKind::conductor) | is(BsdfKind::dielectric) | is(BsdfKind::thinDielectric));
+  return !(is(BsdfKind::conductor) | is(BsdfKind::dielectric) | is(BsdfKind::thinDielectric) |
+           is(BsdfKind::deltaBlend));
 }
 
 // Real zero in all fields.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/shade/bsdf_list.h"
+#include "kernels/shade/compound_input.h"
 
 WAVECREST_SIMD_BEGIN
 
@@ -21,7 +22,8 @@ WAVECREST_INLINE BsdfSample<Real> select(Mask m, const BsdfSample<Real>& yes, co
 
 // What BSDFs of a feature set see of a surface.
 template <class P, uint32_t kFeatures>
-using BsdfInputOf = BsdfInput<P, has(kFeatures, kTextures)>;
+using BsdfInputOf =
+    std::conditional_t<has(kFeatures, kCompoundBsdfs), CompoundInput<P>, BsdfInput<P, has(kFeatures, kTextures)>>;
 
 // Calls function(Bsdf{}, mask of its lanes) for each kind of the feature set that some active lane has. Most kinds are
 // absent from the whole scene, which a bit says sooner than a comparison of lanes.
@@ -40,7 +42,8 @@ WAVECREST_INLINE void forEachBsdf(const BsdfInput<P, kTextured>& input, Mask act
 }
 
 // A feature set with nothing but diffuse surfaces needs no dispatch.
-constexpr bool onlyDiffuse(uint32_t features) { return (features & (kSpecularBsdfs | kLayeredBsdfs)) == 0; }
+constexpr uint32_t kOtherBsdfs = kSpecularBsdfs | kLayeredBsdfs | kCompoundBsdfs;
+constexpr bool onlyDiffuse(uint32_t features) { return (features & kOtherBsdfs) == 0; }
 
 // ---- the BSDF without its opacity -----------------------------------------------------------------------------------
 
@@ -99,6 +102,14 @@ template <class P, bool kTextured>
 BsdfSample<typename P::Real> sampleGeneral(const BsdfInput<P, kTextured>& input, Mask active,
                                            const Vec3<typename P::Real>& fix, const Uniform4& u);
 
+// The same of compound BSDFs as well, in bsdf_complete.cpp, for the complete set.
+template <class P>
+BsdfValue<typename P::Real> evalComplete(const CompoundInput<P>& input, Mask active, const Vec3<typename P::Real>& fix,
+                                         const Vec3<typename P::Real>& gen);
+template <class P>
+BsdfSample<typename P::Real> sampleComplete(const CompoundInput<P>& input, Mask active,
+                                            const Vec3<typename P::Real>& fix, const Uniform4& u);
+
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE BsdfValue<typename P::Real> evalBsdf(const BsdfInputOf<P, kFeatures>& input, Mask active,
                                                       Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
@@ -106,6 +117,8 @@ WAVECREST_INLINE BsdfValue<typename P::Real> evalBsdf(const BsdfInputOf<P, kFeat
     return DiffuseBsdf::eval<P>(input, fix, gen);
   } else if constexpr (!has(kFeatures, kLayeredBsdfs)) {
     return evalOpaque<P, kFeatures>(input, active, fix, gen);
+  } else if constexpr (has(kFeatures, kCompoundBsdfs)) {
+    return evalComplete<P>(input, active, fix, gen);
   } else {
     return evalGeneral<P>(input, active, fix, gen);
   }
@@ -118,6 +131,8 @@ WAVECREST_INLINE BsdfSample<typename P::Real> sampleBsdf(const BsdfInputOf<P, kF
     return DiffuseBsdf::sample<P>(input, fix, u);
   } else if constexpr (!has(kFeatures, kLayeredBsdfs)) {
     return sampleOpaque<P, kFeatures>(input, active, fix, u);
+  } else if constexpr (has(kFeatures, kCompoundBsdfs)) {
+    return sampleComplete<P>(input, active, fix, u);
   } else {
     return sampleGeneral<P>(input, active, fix, u);
   }

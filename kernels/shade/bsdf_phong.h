@@ -41,14 +41,14 @@ struct PhongBsdf {
     const Real one(1);
     const Real u1 = to<Real>(u.b), u2 = to<Real>(u.c);
     // cos a = u^(1 / (n+1))
-    const Real oneMinusCos = -expm1(log(one - u1) * reciprocal<P>(input.alpha() + one));
+    const Real oneMinusCos = -expm1(log(one - u1) * reciprocal(input.alpha() + one));
     const Frame<Real> around = Frame<Real>::fromNormal({-fix.x, -fix.y, fix.z});
     const Vec3<Real> inLobe = around.toWorld(uniformCone(one, u2, oneMinusCos));
     const Mask specular = to<Real>(u.a) < to<Real>(input.at(input.materials->specularPick));
     const Vec3<Real> gen = select(specular, inLobe, cosineHemisphere<Real>(u1, u2));
     const auto value = eval(input, fix, gen);
     return {.gen = gen,
-            .weight = value.f * (abs(gen.z) * reciprocal<P>(max(value.pdf, Real(1e-30f)))),
+            .weight = value.f * (abs(gen.z) * reciprocal(max(value.pdf, Real(1e-30f)))),
             .pdf = value.pdf,
             .pdfReverse = value.pdfReverse,
             .etaRatio = one,

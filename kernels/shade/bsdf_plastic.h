@@ -21,10 +21,10 @@ WAVECREST_INLINE Vec3<typename P::Real> baseAlbedo(const BsdfInput<P, kTextured>
   const Real inside = to<Real>(input.at(input.materials->internalDiffuse));
   const Mask nonlinear = (input.flags & UInt(kNonlinear)) == UInt(kNonlinear);
   const Vec3<Real> again = select(nonlinear, rho, {one, one, one}) * inside;
-  const Real inverseEta = reciprocal<P>(input.eta());
+  const Real inverseEta = reciprocal(input.eta());
   const Real inverseEta2 = inverseEta * inverseEta;
-  return {rho.x * inverseEta2 * reciprocal<P>(one - again.x), rho.y * inverseEta2 * reciprocal<P>(one - again.y),
-          rho.z * inverseEta2 * reciprocal<P>(one - again.z)};
+  return {rho.x * inverseEta2 * reciprocal(one - again.x), rho.y * inverseEta2 * reciprocal(one - again.y),
+          rho.z * inverseEta2 * reciprocal(one - again.z)};
 }
 
 // Probability of the specular lobe where the boundary reflects the given share of the light.
@@ -35,7 +35,7 @@ WAVECREST_INLINE typename P::Real specularProbability(const BsdfInput<P, kTextur
   const Real one(1);
   const Real weight = to<Real>(input.at(input.materials->specularPick));
   const Real specular = reflectance * weight, diffuse = (one - reflectance) * (one - weight);
-  return specular * reciprocal<P>(max(specular + diffuse, Real(1e-30f)));
+  return specular * reciprocal(max(specular + diffuse, Real(1e-30f)));
 }
 
 struct PlasticBsdf {
@@ -71,8 +71,8 @@ struct PlasticBsdf {
     const Real genFresnel = fresnelDielectric<P>(diffuse.z, input.eta()).reflectance;
     const Real notPicked = max(one - pick, tiny);
     const Vec3<Real> diffuseWeight =
-        baseAlbedo(input) * ((one - fixFresnel) * (one - genFresnel) * reciprocal<P>(notPicked));
-    const Vec3<Real> specularWeight = input.specular() * (fixFresnel * reciprocal<P>(max(pick, tiny)));
+        baseAlbedo(input) * ((one - fixFresnel) * (one - genFresnel) * reciprocal(notPicked));
+    const Vec3<Real> specularWeight = input.specular() * (fixFresnel * reciprocal(max(pick, tiny)));
     const Real reversePick = specularProbability(input, genFresnel);
     return {.gen = select(specular, {-fix.x, -fix.y, fix.z}, diffuse),
             .weight = zeroUnless(fix.z > Real(0), select(specular, specularWeight, diffuseWeight)),

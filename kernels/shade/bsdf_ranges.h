@@ -13,7 +13,7 @@ WAVECREST_SIMD_BEGIN
 template <uint32_t kFeatures, class Shade>
 WAVECREST_INLINE auto withBsdfs(bool diffuse, const Shade& shade) {
   if constexpr (!onlyDiffuse(kFeatures)) {
-    if (diffuse) return shade(std::integral_constant<uint32_t, kFeatures & ~(kSpecularBsdfs | kLayeredBsdfs)>());
+    if (diffuse) return shade(std::integral_constant<uint32_t, kFeatures & ~kOtherBsdfs>());
   }
   return shade(std::integral_constant<uint32_t, kFeatures>());
 }

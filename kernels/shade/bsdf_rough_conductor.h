@@ -19,12 +19,12 @@ struct RoughConductor {
   static WAVECREST_INLINE BsdfValue<typename P::Real> eval(const BsdfInput<P, kTextured>& input,
                                                            Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
-    const auto normals = Normals<P>::fromAlpha(input.alpha());
+    const auto normals = Normals<P>::of(input);
     const Vec3<Real> h = fix + gen;
     const Real h2 = length2(h);
     const Mask front = (fix.z > Real(0)) & (gen.z > Real(0)) & (h2 > Real(kSmallestHalfVector2));
     const Real density = normals.density(h, h2);
-    const Real byFix = reciprocal<P>(normals.masking(fix)), byGen = reciprocal<P>(normals.masking(gen));
+    const Real byFix = reciprocal(normals.masking(fix)), byGen = reciprocal(normals.masking(gen));
     // fix . m = |h| / 2 for unit fix and gen.
     const Vec3<Real> reflectance = conductorReflectance(input, Real(0.5) * sqrt(h2));
     return {zeroUnless(front, reflectance * (density * byFix * byGen)),
@@ -36,13 +36,13 @@ struct RoughConductor {
   static WAVECREST_INLINE BsdfSample<typename P::Real> sample(const BsdfInput<P, kTextured>& input,
                                                               Vec3<typename P::Real> fix, const Uniform4& u) {
     using Real = typename P::Real;
-    const auto normals = Normals<P>::fromAlpha(input.alpha());
+    const auto normals = Normals<P>::of(input);
     const Vec3<Real> m = normals.sampleVisible(fix, to<Real>(u.b), to<Real>(u.c));
     const Real cosine = dot(fix, m);
     const Vec3<Real> gen = mirror(fix, m, cosine);
     const Mask front = (fix.z > Real(0)) & (gen.z > Real(0));
     const Real density = Real(0.5) * normals.density(m, Real(1));
-    const Real byFix = reciprocal<P>(normals.masking(fix)), byGen = reciprocal<P>(normals.masking(gen));
+    const Real byFix = reciprocal(normals.masking(fix)), byGen = reciprocal(normals.masking(gen));
     const Real shadowing = Real(2) * gen.z * byGen * normals.weightFactor(fix);
     return {.gen = gen,
             .weight = zeroUnless(front, conductorReflectance(input, cosine) * shadowing),

@@ -26,14 +26,14 @@ struct RoughDielectric {
                                                            Vec3<typename P::Real> fix, Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
     const Real zero(0), one(1);
-    const auto normals = Normals<P>::fromAlpha(input.alpha());
+    const auto normals = Normals<P>::of(input);
     const Real eta = etaBeyond(input, fix);
     const Mask reflect = (fix.z * gen.z) > zero;
     const Real stretch = select(reflect, one, eta);
 
     const Vec3<Real> h = mulAdd(gen, stretch, fix);
     const Real h2 = length2(h);
-    const Real inverseLength = reciprocalSqrt<P>(max(h2, Real(kSmallestHalfVector2)));
+    const Real inverseLength = reciprocalSqrt(max(h2, Real(kSmallestHalfVector2)));
     // Cosines to the normal on fix's side of the surface: positive for fix, and for gen where it reflects.
     const Real orient = copySign(inverseLength, h.z * fix.z);
     const Real fixCosine = dot(fix, h) * orient, genCosine = dot(gen, h) * orient;
@@ -44,7 +44,7 @@ struct RoughDielectric {
     const Real share = select(reflect, reflectance, one - reflectance);
     const Real inverseLength2 = inverseLength * inverseLength;
     const Real k = share * normals.density(h, h2) * abs(fixCosine * genCosine) * inverseLength2;
-    const Real byFix = reciprocal<P>(normals.masking(fix)), byGen = reciprocal<P>(normals.masking(gen));
+    const Real byFix = reciprocal(normals.masking(fix)), byGen = reciprocal(normals.masking(gen));
     const Real scale = input.walk == Walk::camera ? one : stretch * stretch;
     const Vec3<Real> tint = select(reflect, input.specular(), input.transmittance());
     return {zeroUnless(possible, tint * (Real(4) * k * byFix * byGen * scale)),
@@ -57,9 +57,9 @@ struct RoughDielectric {
                                                               Vec3<typename P::Real> fix, const Uniform4& u) {
     using Real = typename P::Real;
     const Real zero(0), one(1);
-    const auto normals = Normals<P>::fromAlpha(input.alpha());
+    const auto normals = Normals<P>::of(input);
     const Real eta = etaBeyond(input, fix);
-    const Real inverseEta = reciprocal<P>(eta);
+    const Real inverseEta = reciprocal(eta);
     const Vec3<Real> near{fix.x, fix.y, abs(fix.z)};  // fix as seen from its own side
     const Vec3<Real> m = normals.sampleVisible(fix, to<Real>(u.b), to<Real>(u.c));
     const Real cosine = dot(near, m);
@@ -74,11 +74,11 @@ struct RoughDielectric {
 
     // |gen.m| = cos theta_t, and q = cosine - g = (1 - eta^2) / (cosine + g) without cancellation.
     const Real genCosine = select(reflect, cosine, fresnel.g * inverseEta);
-    const Real q = select(reflect, Real(2) * cosine, (one - eta) * (one + eta) * reciprocal<P>(cosine + fresnel.g));
+    const Real q = select(reflect, Real(2) * cosine, (one - eta) * (one + eta) * reciprocal(cosine + fresnel.g));
     const Real share = select(reflect, fresnel.reflectance, one - fresnel.reflectance);
     const Real twoK = Real(2) * share * normals.density(m, one) * cosine * genCosine *
-                      reciprocal<P>(max(q * q, Real(kSmallestHalfVector2)));
-    const Real byFix = reciprocal<P>(normals.masking(near)), byGen = reciprocal<P>(normals.masking(gen));
+                      reciprocal(max(q * q, Real(kSmallestHalfVector2)));
+    const Real byFix = reciprocal(normals.masking(near)), byGen = reciprocal(normals.masking(gen));
     const Real shadowing = Real(2) * abs(gen.z) * byGen * normals.weightFactor(fix);
     const Vec3<Real> tint = select(reflect, input.specular(), input.transmittance());
     gen.z = gen.z * copySign(one, fix.z);
@@ -95,7 +95,7 @@ struct RoughDielectric {
   template <class P, bool kTextured>
   static WAVECREST_INLINE typename P::Real etaBeyond(const BsdfInput<P, kTextured>& input, Vec3<typename P::Real> fix) {
     using Real = typename P::Real;
-    return select(fix.z > Real(0), input.eta(), reciprocal<P>(input.eta()));
+    return select(fix.z > Real(0), input.eta(), reciprocal(input.eta()));
   }
 };
 

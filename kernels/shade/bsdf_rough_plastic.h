@@ -28,12 +28,12 @@ struct RoughPlastic {
     using Real = typename P::Real;
     const auto fixSide = Side<P>::from(input, fix);
     const Real u1 = to<Real>(u.b), u2 = to<Real>(u.c);
-    const Vec3<Real> m = Normals<P>::fromAlpha(input.alpha()).sampleVisible(fix, u1, u2);
+    const Vec3<Real> m = Normals<P>::of(input).sampleVisible(fix, u1, u2);
     const Mask specular = to<Real>(u.a) < fixSide.pick;
     const Vec3<Real> gen = select(specular, mirror(fix, m, dot(fix, m)), cosineHemisphere<Real>(u1, u2));
     const auto value = evalFrom(input, fixSide, fix, gen);
     return {.gen = gen,
-            .weight = value.f * (abs(gen.z) * reciprocal<P>(max(value.pdf, Real(1e-30f)))),
+            .weight = value.f * (abs(gen.z) * reciprocal(max(value.pdf, Real(1e-30f)))),
             .pdf = value.pdf,
             .pdfReverse = value.pdfReverse,
             .etaRatio = Real(1),
@@ -72,13 +72,13 @@ struct RoughPlastic {
                                                                Vec3<typename P::Real> gen) {
     using Real = typename P::Real;
     const Real one(1), half(0.5);
-    const auto normals = Normals<P>::fromAlpha(input.alpha());
+    const auto normals = Normals<P>::of(input);
     const auto genSide = Side<P>::from(input, gen);
     const Vec3<Real> h = fix + gen;
     const Real h2 = length2(h);
     const Mask front = (fix.z > Real(0)) & (gen.z > Real(0)) & (h2 > Real(kSmallestHalfVector2));
     const Real density = normals.density(h, h2);
-    const Real byFix = reciprocal<P>(normals.masking(fix)), byGen = reciprocal<P>(normals.masking(gen));
+    const Real byFix = reciprocal(normals.masking(fix)), byGen = reciprocal(normals.masking(gen));
     const Real fresnel = fresnelDielectric<P>(half * sqrt(h2), input.eta()).reflectance;
     const Vec3<Real> f = mulAdd(baseAlbedo(input), fixSide.transmittance * genSide.transmittance * Real(kInvPi),
                                 input.specular() * (fresnel * density * byFix * byGen));

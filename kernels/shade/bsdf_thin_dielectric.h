@@ -26,7 +26,7 @@ struct ThinDielectricBsdf {
     using Real = typename P::Real;
     const Real one(1);
     const Real single = fresnelDielectric<P>(abs(fix.z), input.eta()).reflectance;
-    const Real reflectance = Real(2) * single * reciprocal<P>(one + single);
+    const Real reflectance = Real(2) * single * reciprocal(one + single);
     const Mask reflect = to<Real>(u.a) < reflectance;
     const Real pick = select(reflect, reflectance, one - reflectance);
     return {.gen = {-fix.x, -fix.y, select(reflect, fix.z, -fix.z)},

@@ -25,8 +25,8 @@ WAVECREST_INLINE DielectricFresnel<typename P::Real> fresnelDielectric(typename 
   const Real sin2 = (one - c) * (one + c);
   const Real sum = c + g;
   // The floor only matters at grazing incidence with eta = 1, where c = g = 0.
-  const Real rs = -change * reciprocal<P>(max(sum * sum, Real(1e-30f)));
-  const Real rp = rs * (mulSub(c, g, sin2) * reciprocal<P>(mulAdd(c, g, sin2)));
+  const Real rs = -change * reciprocal(max(sum * sum, Real(1e-30f)));
+  const Real rp = rs * (mulSub(c, g, sin2) * reciprocal(mulAdd(c, g, sin2)));
   const Real mean = Real(0.5) * mulAdd(rs, rs, rp * rp);
   // At critical incidence g2 is 0 from either side, where the mean is 1.
   return {select(g2 < zero, one, min(mean, one)), g};
@@ -48,13 +48,13 @@ WAVECREST_INLINE typename P::Real fresnelConductor(typename P::Real cosine, type
   const Real modulus = sqrt(mulAdd(difference, difference, Real(4) * etaK * etaK));
   // The larger of a and b is a sum of positives; the other follows from the product, not from a difference.
   const Real larger = sqrt(max(Real(0.5) * (modulus + abs(difference)), tiny));
-  const Real a = select(difference > zero, larger, etaK * reciprocal<P>(larger));
+  const Real a = select(difference > zero, larger, etaK * reciprocal(larger));
   const Real twoAc = Real(2) * a * c;
   const Real s = modulus + c2;
-  const Real rs = (s - twoAc) * reciprocal<P>(s + twoAc);
+  const Real rs = (s - twoAc) * reciprocal(s + twoAc);
   const Real p = mulAdd(modulus, c2, sin2 * sin2);
   const Real twoAcSin2 = twoAc * sin2;
-  const Real rp = rs * ((p - twoAcSin2) * reciprocal<P>(p + twoAcSin2));
+  const Real rp = rs * ((p - twoAcSin2) * reciprocal(p + twoAcSin2));
   return min(Real(0.5) * (rs + rp), one);
 }
 

@@ -1,7 +1,7 @@
 // Vertex attributes at a surface point: texture coordinates, and the shading normal with bump and normal maps applied.
 #pragma once
 
-#include "kernels/shade/surface_lanes.h"
+#include "kernels/shade/instance_lanes.h"
 #include "kernels/shade/texture_lanes.h"
 #include "kernels/simd/math.h"
 
@@ -12,6 +12,7 @@ struct Interpolated {
   Vec3<Real> normal;  // shading normal, unit
   Vec3<Real> base;    // the same without bump and normal maps
   Float u, v;         // texture coordinates
+  Float tangent;      // angle of dp/du about `base` in Frame::fromNormal of it, where a feature set has compound BSDFs
 };
 
 namespace {
@@ -77,12 +78,15 @@ WAVECREST_INLINE void mapSphere(const PrimitiveRecord<typename P::Storage>& fiel
 
 }  // namespace
 
+// surface: in the space of the primitive's group. geometric: its normal in the world, where all results are.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<typename P::Storage>& scene,
                                                             const PrimitiveLanes<typename P::Storage>& at, Mask hit,
-                                                            const SurfacePoint<typename P::Real>& surface) {
+                                                            const SurfacePoint<typename P::Real>& surface,
+                                                            Vec3<typename P::Real> geometric,
+                                                            const InstanceLanes<P, kFeatures>& instance) {
   using Real = typename P::Real;
-  Interpolated<Real> out{surface.normal, surface.normal, to<Float>(surface.u), to<Float>(surface.v)};
+  Interpolated<Real> out{surface.normal, surface.normal, to<Float>(surface.u), to<Float>(surface.v), Float(0)};
   const UInt index = at(scene.primitives->attributes);
   const Mask attributed = andNot(hit, index == UInt(kNoIndex));
   const Real b1 = surface.u, b2 = surface.v, b0 = Real(1) - b1 - b2;
@@ -119,7 +123,17 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
     }
   }
 
+  if constexpr (has(kFeatures, kInstances)) {
+    out.normal = instance.normalToWorld(out.normal);
+    tangents = {instance.vectorToWorld(tangents.dpDu), instance.vectorToWorld(tangents.dpDv)};
+  }
   out.base = out.normal;
+  if constexpr (has(kFeatures, kCompoundBsdfs)) {
+    if (scene.tangents) {
+      const auto frame = Frame<Real>::fromNormal(out.base);
+      out.tangent = to<Float>(atan2(dot(tangents.dpDu, frame.t), dot(tangents.dpDu, frame.s)));
+    }
+  }
   if (has(kFeatures, kNormalMaps) && scene.normalMaps) {
     const MaterialLanes material(scene, at(scene.primitives->material));
     const UInt bumpMap = material(scene.materials->bumpTexture), normalMap = material(scene.materials->normalTexture);
@@ -128,7 +142,7 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
       const Real scale = to<Real>(material(scene.materials->bumpScale));
       out.normal = select(bump,
                           bumped(scene.textures, scene.texels, select(bump, bumpMap, UInt(0u)), scale, out.u, out.v,
-                                 out.normal, surface.normal, tangents),
+                                 out.normal, geometric, tangents),
                           out.normal);
     }
     if (any(map)) {

@@ -4,6 +4,7 @@
 #include "kernels/lane_support.h"
 #include "kernels/sampling/warp_lanes.h"
 #include "kernels/shade/surface_lanes.h"
+#include "kernels/shade/texture_lanes.h"
 #include "kernels/simd/math.h"
 
 WAVECREST_SIMD_BEGIN
@@ -46,6 +47,7 @@ template <class Real>
 struct MapPoint {
   Float u, v;
   Real sinTheta;
+  Real sun;  // 1 within the sun, else 0
 };
 template <class Real>
 WAVECREST_INLINE MapPoint<Real> mapPoint(const EnvironmentView& map, Vec3<Real> direction) {
@@ -53,9 +55,14 @@ WAVECREST_INLINE MapPoint<Real> mapPoint(const EnvironmentView& map, Vec3<Real> 
     return dot(direction, Vec3<Real>{Real(map.toLocal[i][0]), Real(map.toLocal[i][1]), Real(map.toLocal[i][2])});
   };
   const Real x = row(0), y = row(1), z = row(2);
+  Real sun(0);
+  if (map.sunShare > 0) {
+    // By the chord: the cosine of half a degree is 1 to five digits.
+    sun = zeroUnless(length2(direction - broadcast<Real>(map.sunDirection)) <= Real(map.sunChord2), Real(1));
+  }
   const Float turn = to<Float>(atan2(x, -z)) * Float(0.5f * static_cast<float>(kInvPi));
   return {turn - floor(turn), to<Float>(acos(min(max(y, Real(-1)), Real(1)))) * Float(static_cast<float>(kInvPi)),
-          sqrt(max(Real(1) - y * y, Real(0)))};
+          sqrt(max(Real(1) - y * y, Real(0))), sun};
 }
 
 // Radiance of the map: bilinear, columns by their centres and around, rows from pole to pole.
@@ -75,7 +82,10 @@ WAVECREST_INLINE Vec3<Real> mapRadiance(const EnvironmentView& map, const MapPoi
   };
   const Vec3<Float> upper = texel(column0, row0) * (Float(1) - fx) + texel(column1, row0) * fx;
   const Vec3<Float> lower = texel(column0, row1) * (Float(1) - fx) + texel(column1, row1) * fx;
-  return to<Real>(upper * (Float(1) - fy) + lower * fy);
+  Vec3<Real> radiance = to<Real>(upper * (Float(1) - fy) + lower * fy);
+  if (map.sunShare > 0) radiance = radiance + broadcast<Real>(map.sunRadiance) * point.sun;
+  if (map.isSky) radiance = select(point.v > Float(0.5f), Vec3<Real>{Real(0), Real(0), Real(0)}, radiance);
+  return radiance;
 }
 
 WAVECREST_INLINE UInt packTexel(UInt column, UInt row) { return column | shiftLeft<kTexelBits>(row); }
@@ -88,7 +98,10 @@ WAVECREST_INLINE Real mapPdfW(const EnvironmentView& map, const MapPoint<Real>& 
   const UInt row = min(toUInt(point.v * toFloat(height)), height - UInt(1u));
   const Real probability = to<Real>(gather(map.probability, row * width + column));
   const double perTexel = static_cast<double>(map.width) * map.height * kInvPi * kInvPi / 2;
-  return probability * Real(perTexel) / max(point.sinTheta, Real(1e-9f));
+  const Real pdf = probability * Real(perTexel) / max(point.sinTheta, Real(1e-9f));
+  if (!(map.sunShare > 0)) return pdf;
+  const double share = static_cast<double>(map.sunShare);
+  return mulAdd(point.sun, Real(share * kInvPi / map.sunChord2), pdf * Real(1 - share));
 }
 
 // A direction towards the environment: alias table over texels, then uniform within the texel.
@@ -98,7 +111,7 @@ WAVECREST_INLINE Real mapPdfW(const EnvironmentView& map, const MapPoint<Real>& 
 // texel. Rows are drawn with an error of 2^-24 at most, together as alone, and none where their number is a power of
 // two.
 template <class Real>
-WAVECREST_INLINE Vec3<Real> sampleMap(const EnvironmentView& map, const Uniform4& u) {
+WAVECREST_INLINE Vec3<Real> sampleTexels(const EnvironmentView& map, const Uniform4& u) {
   const auto width = static_cast<float>(map.width);
   const Float rows = u.a * Float(static_cast<float>(map.height)), columns = u.c * Float(width);
   const UInt entryRow = min(toUInt(rows), UInt(map.height - 1)),
@@ -117,7 +130,23 @@ WAVECREST_INLINE Vec3<Real> sampleMap(const EnvironmentView& map, const Uniform4
   return {column3(0), column3(1), column3(2)};
 }
 
-// ---- spot light -----------------------------------------------------------------------------------------------------
+// The same, or towards the sun. What the choice leaves of its number is used again.
+template <class Real>
+WAVECREST_INLINE Vec3<Real> sampleMap(const EnvironmentView& map, const Uniform4& u) {
+  if (!(map.sunShare > 0)) return sampleTexels<Real>(map, u);
+  const Float share(map.sunShare);
+  const Mask toSun = u.a < share;
+  const Float rest = select(toSun, u.a / share, min((u.a - share) / (Float(1) - share), Float(0x1.fffffep-1f)));
+  const Vec3<Real> local = uniformCone(to<Real>(rest), to<Real>(u.b), Real(map.sunChord2 / 2));
+  const Vec3<Real> sun = Frame<Real>::fromNormal(broadcast<Real>(map.sunDirection)).toWorld(local);
+  return select(toSun, sun, sampleTexels<Real>(map, {rest, u.b, u.c, u.d}));
+}
+
+// ---- beams: spot lights and projectors ------------------------------------------------------------------------------
+
+WAVECREST_INLINE Mask isBeam(UInt kind) {
+  return (kind == lightKind(LightKind::spot)) | (kind == lightKind(LightKind::projector));
+}
 
 // Share of the intensity in directions at this cosine from the axis: 1 within the beam, 0 outside the cutoff, linear in
 // the angle between, as Mitsuba's spot.
@@ -127,6 +156,52 @@ WAVECREST_INLINE Real spotFalloff(Real cosine, Real cosTotal, Real cosFalloff) {
   const Real total = acos(cosTotal), beam = acos(cosFalloff);
   const Real ramp = (total - angle) / max(total - beam, Real(1e-6f));
   return zeroUnless(cosine > cosTotal, select(cosine >= cosFalloff, Real(1), ramp));
+}
+
+// 1 / cos^3 of the angle from the axis, in front of the light: area on the plane at distance 1 per solid angle.
+template <class Real>
+WAVECREST_INLINE Real areaPerSolidAngle(Real cosine) {
+  const Real inverse = Real(1) / max(cosine, Real(1e-6f));
+  return inverse * inverse * inverse;
+}
+
+// Intensity in a unit direction of travel over the light's `radiance`, in lanes that have a beam. A spot falls off
+// around its axis; a projector lights its picture on the plane at distance 1 evenly; both may have a texture.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE Vec3<typename P::Real> beamFactor(const SceneView<typename P::Storage>& scene,
+                                                   const LightLanes<typename P::Real>& light,
+                                                   Vec3<typename P::Real> direction) {
+  using Real = typename P::Real;
+  const Real one(1), cosine = dot(direction, light.normal);
+  Real factor = spotFalloff(cosine, light.cosTotal, light.cosFalloff);
+  const Mask projector = light.kind == lightKind(LightKind::projector);
+  const bool textures = has(kFeatures, kTextures) && scene.textures != nullptr;
+  if (none(projector) && !textures) return {factor, factor, factor};
+
+  // Place on the picture: e1 and e2 lead from its middle to where x or y is 1, divided by their squared lengths.
+  const Real inverse = one / max(cosine, Real(1e-6f));
+  const Real x = dot(direction, light.e1) * inverse, y = dot(direction, light.e2) * inverse;
+  const Mask inside = (cosine > Real(0)) & (abs(x) <= one) & (abs(y) <= one);
+  factor = select(projector, zeroUnless(inside, areaPerSolidAngle(cosine)), factor);
+  Vec3<Real> color{factor, factor, factor};
+  if constexpr (has(kFeatures, kTextures)) {
+    const Mask lit = isBeam(light.kind) & (factor > Real(0));
+    const UInt texture = select(lit, light.texture, UInt(kNoIndex));
+    const Real half(0.5f);
+    color = color * to<Real>(textureFactor(scene.textures, scene.texels, texture, to<Float>(mulAdd(x, half, half)),
+                                           to<Float>(mulAdd(y, half, half))));
+  }
+  return color;
+}
+
+// Density per solid angle with which a beam emits in a direction at this cosine from its axis: uniform in the cone of a
+// spot, uniform on the picture of a projector.
+template <class Real>
+WAVECREST_INLINE Real beamPdfW(const LightLanes<Real>& light, Real cosine) {
+  const Real cone = Real(kInvPi / 2) / max(Real(1) - light.cosTotal, Real(1e-9f));
+  const Mask projector = light.kind == lightKind(LightKind::projector);
+  if (none(projector)) return cone;
+  return select(projector, light.inverseArea * areaPerSolidAngle(cosine), cone);
 }
 
 // ---- area lights ----------------------------------------------------------------------------------------------------

@@ -10,12 +10,13 @@
 //   D G / (4 |fix_z| |gen_z|)                                   =  D / (S(fix) S(gen))
 //
 // A distribution is a template over the precision policy with
-//   static fromAlpha(alpha), masking(v) = S(v), density(h, h2) = D, sampleVisible(v, u1, u2),
+//   static of(input) of a BsdfInput, masking(v) = S(v), density(h, h2) = D, sampleVisible(v, u1, u2),
 // and, where G1 of f is an approximation, densityFactor(v) = exact G1 / G1 and weightFactor(v), its inverse.
 #pragma once
 
 #include "kernels/lane_support.h"
 #include "kernels/sampling/warp_lanes.h"
+#include "kernels/shade/bsdf_interface.h"
 
 WAVECREST_SIMD_BEGIN
 
@@ -32,6 +33,10 @@ struct GgxNormals {
     const Real a = max(alpha, Real(kSmallestAlpha));  // a texture may go below
     return {a, a * a};
   }
+  template <bool kTextured>
+  static WAVECREST_INLINE GgxNormals of(const BsdfInput<P, kTextured>& input) {
+    return fromAlpha(input.alpha());
+  }
 
   // |v_z| + sqrt(v_z^2 + alpha^2 (v_x^2 + v_y^2)); v is a unit vector on either side.
   WAVECREST_INLINE Real masking(Vec3<Real> v) const {
@@ -45,7 +50,7 @@ struct GgxNormals {
   // D of the normal along h, which need not be a unit vector; h2 = |h|^2.
   WAVECREST_INLINE Real density(Vec3<Real> h, Real h2) const {
     const Real tangential2 = mulAdd(h.x, h.x, h.y * h.y);
-    const Real ratio = h2 * reciprocal<P>(mulAdd(alpha2, h.z * h.z, tangential2));
+    const Real ratio = h2 * reciprocal(mulAdd(alpha2, h.z * h.z, tangential2));
     return alpha2 * Real(kInvPi) * ratio * ratio;
   }
 
@@ -53,14 +58,14 @@ struct GgxNormals {
   // Spherical Caps", 2023: the half vector of v and a uniform direction of the cap z > -v_z, after stretching v to
   // alpha = 1.
   WAVECREST_INLINE Vec3<Real> sampleVisible(Vec3<Real> v, Real u1, Real u2) const {
-    const Vec3<Real> stretched = normalizeFast<P>(Vec3<Real>{v.x * alpha, v.y * alpha, abs(v.z)});
+    const Vec3<Real> stretched = normalize(Vec3<Real>{v.x * alpha, v.y * alpha, abs(v.z)});
     const SinCos<Real> azimuth = sinCos2Pi(u2);
     const Real depth = u1 * (Real(1) + stretched.z);  // 1 - z of the direction in the cap
     const Real radius = sqrt(max(depth * (Real(2) - depth), Real(0)));
     const Real x = mulAdd(radius, azimuth.cos, stretched.x);
     const Real y = mulAdd(radius, azimuth.sin, stretched.y);
     const Real z = (Real(1) - u1) * (Real(1) + stretched.z);
-    return normalizeFast<P>(Vec3<Real>{x * alpha, y * alpha, z});
+    return normalize(Vec3<Real>{x * alpha, y * alpha, z});
   }
 };
 

@@ -37,6 +37,9 @@ struct PathVertexLanes {
       function(shading.u, surfaces.uvU);
       function(shading.v, surfaces.uvV);
     }
+    if constexpr (has(kFeatures, kCompoundBsdfs)) {
+      if (surfaces.tangent.needed()) function(shading.tangent, surfaces.tangent);
+    }
     if constexpr (has(kFeatures, kNormalMaps)) {
       if (surfaces.baseX.needed()) three(shading.base, surfaces.baseX, surfaces.baseY, surfaces.baseZ);
     }

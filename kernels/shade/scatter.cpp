@@ -25,7 +25,7 @@ WAVECREST_INLINE typename P::Real survival(Vec3<typename P::Real> throughput, ty
   const Real carried = maxComponent(throughput) * scale;
   Real q = min(max(carried, Real(0.05f)), Real(kMost));
   const Mask bright = carried > Real(kBrightest);
-  if (any(bright)) q = select(bright, Real(1) - Real((1 - kMost) * kBrightest) * reciprocal<P>(carried), q);
+  if (any(bright)) q = select(bright, Real(1) - Real((1 - kMost) * kBrightest) * reciprocal(carried), q);
   return q;
 }
 
@@ -35,8 +35,8 @@ WAVECREST_INLINE typename P::Real specularJacobian(const ShadingLanes<P, kBsdfs>
                                                    const BsdfSample<typename P::Real>& sample,
                                                    typename P::Real genCosine) {
   using Real = typename P::Real;
-  const Real cosines = abs(shading.fix.z) * reciprocal<P>(max(abs(sample.gen.z), Real(1e-12f)));
-  return sample.pdfReverse * reciprocal<P>(sample.pdf) * genCosine * cosines * sample.etaRatio * sample.etaRatio;
+  const Real cosines = abs(shading.fix.z) * reciprocal(max(abs(sample.gen.z), Real(1e-12f)));
+  return sample.pdfReverse * reciprocal(sample.pdf) * genCosine * cosines * sample.etaRatio * sample.etaRatio;
 }
 
 // Scatters vertices [begin, end), whose BSDFs are of kBsdfs, to `out`; where they end. Both stages share its code.
@@ -67,7 +67,7 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
       if (context.walk == Walk::light) {  // METHODS 3.9: the non-symmetry of interpolated normals (Veach 1997, 5.3)
         const Real fixCosine = max(abs(shading.fixCosine), Real(kSmallestCosine));
         throughput = throughput *
-                     (abs(shading.fix.z) * genCosine * reciprocal<P>(fixCosine * max(abs(sample.gen.z), Real(1e-12f))));
+                     (abs(shading.fix.z) * genCosine * reciprocal(fixCosine * max(abs(sample.gen.z), Real(1e-12f))));
       }
     }
     Real rouletteScale(1);
@@ -78,7 +78,7 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     if (roulette) {
       const Real q = survival<P>(throughput, rouletteScale);
       alive = alive & (to<Real>(u.d) < q);
-      throughput = throughput * reciprocal<P>(q);
+      throughput = throughput * reciprocal(q);
     }
 
     const MisSums<Real> before = loadMis<kFeatures>(paths, i);

@@ -4,7 +4,7 @@
 #include "kernels/shade/bsdf_lanes.h"
 #include "kernels/shade/normal_map_lanes.h"
 #include "kernels/shade/surface_lanes.h"
-#include "kernels/shade/texture_lanes.h"
+#include "kernels/simd/math.h"
 
 WAVECREST_SIMD_BEGIN
 
@@ -22,9 +22,12 @@ struct VertexLanes {
   Vec3<Real> position, fix, normal, shadingNormal;
   Vec3<Real> baseNormal;  // the shading normal without its map, in feature sets with normal maps
   Real offset;
-  Float u, v;  // texture coordinates
+  Float u, v;     // texture coordinates
+  Float tangent;  // as in Surfaces
   UInt material;
 };
+
+struct NoTangents {};
 
 template <class P, uint32_t kFeatures>
 struct ShadingLanes {
@@ -37,6 +40,8 @@ struct ShadingLanes {
   Real fixCosine;  // fix . geometric normal, signed
   BsdfInputOf<P, kFeatures> bsdf;
   std::conditional_t<has(kFeatures, kNormalMaps), NormalMapLanes<Real>, NoNormalMaps> map;
+  std::conditional_t<has(kFeatures, kCompoundBsdfs), Vec3<Real>, NoTangents>
+      tangent;  // dp/du, if the scene asks for it
 
   // Without maps, textures and other sides yet. A constructor, because g++ first clears all of an aggregate in memory.
   WAVECREST_INLINE ShadingLanes(const VertexLanes<Real>& vertex, const BsdfInputOf<P, kFeatures>& input)
@@ -96,6 +101,20 @@ struct ShadingLanes {
     view.fix.z = view.fix.z * view.side;
     return view;
   }
+  // The BSDF for lanes that are seen from another frame.
+  WAVECREST_INLINE decltype(auto) bsdfIn([[maybe_unused]] Mask other, [[maybe_unused]] const View& view) const {
+    if constexpr (has(kFeatures, kCompoundBsdfs)) {
+      BsdfInputOf<P, kFeatures> input = bsdf;
+      if (bsdf.scene->tangents) {
+        input.setTangent(tangent, view.frame);
+        input.tangentX = select(other, input.tangentX, bsdf.tangentX);
+        input.tangentY = select(other, input.tangentY, bsdf.tangentY);
+      }
+      return input;
+    } else {
+      return (bsdf);
+    }
+  }
   // seesThis: the eye faces the normal of this frame.
   WAVECREST_INLINE Real lightFactor(Mask seesThis, Vec3<Real> direction) const {
     const Vec3<Real> seen = select(seesThis, frame.n, map.otherOf(frame.n));
@@ -112,7 +131,8 @@ struct ShadingLanes {
     const Mask both = andNot(mapped, seesThis & (share >= one));
     if (any(both)) {
       const View other = otherView();
-      const BsdfValue<Real> value = evalBsdf<P, kFeatures>(bsdf, both, other.fix, other.toLocal(direction));
+      const BsdfValue<Real> value =
+          evalBsdf<P, kFeatures>(bsdfIn(both, other), both, other.fix, other.toLocal(direction));
       const auto mixed = [&](Real a, Real b)
                              WAVECREST_LAMBDA { return select(both, a * share + b * (one - share), a); };
       if (camera) {
@@ -156,7 +176,7 @@ struct ShadingLanes {
     const Float rest = toFloat(select(drawsOther, to<Real>(u.b) - share, to<Real>(u.b)) / drawn);
     const Uniform4 numbers{u.a, min(max(rest, Float(0)), Float(0x1.fffffep-1f)), u.c, u.d};
     const Vec3<Real> from = select(drawsOther, other.fix, fix);
-    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, from, numbers);
+    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdfIn(drawsOther, other), active, from, numbers);
     const Mask mapped = andNot(active & map.lanes, passes(sample, from));
     const Vec3<Real> direction = select(drawsOther, other.toWorld(sample.gen), toWorld(sample.gen));
     const Vec3<Real> gen = select(drawsOther, toLocal(direction), sample.gen);
@@ -209,15 +229,17 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
     }
   }
   if constexpr (has(kFeatures, kTextures)) {
-    const MaterialRecord& slots = *scene.materials;
-    const auto factor = [&](const uint32_t& slot) WAVECREST_LAMBDA {
-      return to<Real>(textureFactor(scene.textures, scene.texels, s.bsdf.at(slot), vertex.u, vertex.v));
-    };
-    s.bsdf.textures.reflectance = factor(slots.reflectanceTexture);
-    s.bsdf.textures.specular = factor(slots.specularTexture);
-    s.bsdf.textures.transmittance = factor(slots.transmittanceTexture);
-    s.bsdf.textures.alpha = factor(slots.alphaTexture).x;
-    s.bsdf.textures.opacity = factor(slots.opacityTexture).x;
+    readTextureFactors<P>(scene, s.bsdf, vertex.u, vertex.v);
+  }
+  if constexpr (has(kFeatures, kCompoundBsdfs)) {
+    s.bsdf.u = vertex.u;
+    s.bsdf.v = vertex.v;
+    if (scene.tangents) {
+      const auto base = Frame<Real>::fromNormal(scene.normalMaps ? vertex.baseNormal : vertex.shadingNormal);
+      const auto angle = sinCos(to<Real>(vertex.tangent));
+      s.tangent = mulAdd(base.s, angle.cos, base.t * angle.sin);
+      s.bsdf.setTangent(s.tangent, s.frame);
+    }
   }
   s.side = select(flagged(kTwoSided) & (s.fix.z < Real(0)), Real(-1), Real(1));
   s.fix.z = s.fix.z * s.side;
@@ -239,6 +261,9 @@ WAVECREST_INLINE void readDetails(const SceneView<S>& scene, const Columns& colu
     vertex.u = read(columns.uvU);
     vertex.v = read(columns.uvV);
   }
+  if constexpr (has(kFeatures, kCompoundBsdfs)) {
+    if (scene.tangents) vertex.tangent = read(columns.tangent);
+  }
 }
 
 // Block i of the live paths' vertices.
@@ -257,6 +282,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename
                            .offset = load(surfaces.offset, i),
                            .u = Float(0),
                            .v = Float(0),
+                           .tangent = Float(0),
                            .material = materialOf(scene, select(active, load(wave.hits.primitive, i), UInt(0u)))};
   readDetails<kFeatures>(
       scene, surfaces, [&](const auto& column) WAVECREST_LAMBDA { return load(column, i); }, vertex);

@@ -68,6 +68,7 @@ WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::S
                            .offset = place.d,
                            .u = Float(0),
                            .v = Float(0),
+                           .tangent = Float(0),
                            .material = materialOfTag(back.d)};
   const UInt at = loadUnaligned(index);
   readDetails<kFeatures>(

@@ -2,6 +2,8 @@
 
 #include <hwy/targets.h>
 
+#include <stdexcept>
+
 #include "compiled_isas.h"  // generated: kCompiledIsas, from WAVECREST_ISAS
 
 namespace wavecrest {
@@ -31,6 +33,7 @@ std::vector<Isa> findAvailable() {
       if (compiled == toString(isa) && cpuSupports(isa)) available.push_back(isa);
     }
   }
+  if (available.empty()) throw std::runtime_error("this machine has none of the instruction sets of this build");
   return available;
 }
 

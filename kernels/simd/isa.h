@@ -20,7 +20,7 @@ std::string_view toString(Isa isa);
 std::optional<Isa> parseIsa(std::string_view word);
 
 // The instruction sets that are both compiled into this binary and supported by this CPU and operating system, worst
-// first. Never empty in a correctly built binary.
+// first. Throws std::runtime_error where there is none: a build for few instruction sets on another machine.
 const std::vector<Isa>& availableIsas();
 
 // The last of availableIsas().

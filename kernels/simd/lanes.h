@@ -182,20 +182,10 @@ WAVECREST_INLINE Float round(Float a) { return {hn::Round(a.v)}; }
 WAVECREST_INLINE Float copySign(Float magnitude, Float sign) { return {hn::CopySign(magnitude.v, sign.v)}; }
 WAVECREST_INLINE Float select(Mask m, Float yes, Float no) { return {hn::IfThenElse(m.m, yes.v, no.v)}; }
 WAVECREST_INLINE Float zeroUnless(Mask m, Float a) { return {hn::IfThenElseZero(m.m, a.v)}; }
-// About 11 to 14 bits, then one Newton step: 1 to 2 ulp. For the `fast` precision policy.
+// About 11 to 14 bits, then one Newton step: 1 to 2 ulp.
 WAVECREST_INLINE Float approximateReciprocal(Float a) {
   const auto guess = hn::ApproximateReciprocal(a.v);
   return {hn::Mul(guess, hn::NegMulAdd(a.v, guess, hn::Set(FloatTag(), 2.0f)))};
-}
-WAVECREST_INLINE Float approximateReciprocalSqrt(Float a) {
-#if HWY_TARGET == HWY_SCALAR
-  // There is no estimate instruction to stand in for, and Highway's bit trick is still 4e-6 off after a Newton step.
-  return {hn::Div(hn::Set(FloatTag(), 1.0f), hn::Sqrt(a.v))};
-#else
-  const auto guess = hn::ApproximateReciprocalSqrt(a.v);
-  const auto half = hn::Mul(hn::Set(FloatTag(), 0.5f), a.v);
-  return {hn::Mul(guess, hn::NegMulAdd(hn::Mul(half, guess), guess, hn::Set(FloatTag(), 1.5f)))};
-#endif
 }
 
 WAVECREST_INLINE UInt bits(Float a) { return {hn::BitCast(UIntTag(), a.v)}; }

@@ -2,7 +2,7 @@
 //
 // Errors are the largest found by tests/kernels/math_test.cpp against long double, over the stated range, on every
 // instruction set (those without fused multiply-add decide). Highway's functions where they are good; own ones where
-// the renderer needs less than they do (angles in turns) or both results at once. math_fast.h has cheaper ones.
+// the renderer needs less than they do (angles in turns) or both results at once.
 #pragma once
 
 #include <hwy/contrib/math/math-inl.h>

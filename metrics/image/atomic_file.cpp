@@ -15,6 +15,8 @@
 namespace wavecrest {
 namespace {
 
+namespace fs = std::filesystem;
+
 // A POSIX file descriptor that closes itself.
 class Descriptor {
  public:
@@ -49,8 +51,8 @@ std::string temporaryName(const std::string& path) {
 // What a chain of symbolic links ends at, or the path itself.
 std::string targetOf(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::is_symlink(path, error)) return path;
-  const std::filesystem::path target = std::filesystem::canonical(path, error);
+  if (!fs::is_symlink(path, error)) return path;
+  const fs::path target = fs::canonical(path, error);
   return error ? path : target.string();
 }
 
@@ -77,6 +79,15 @@ bool writeAll(int file, std::span<const unsigned char> bytes) {
   return true;
 }
 
+template <class Chooses>
+void removeFiles(const fs::path& folder, Chooses chooses) {
+  std::error_code ignored;
+  for (fs::directory_iterator file(folder, ignored), end; file != end; file.increment(ignored)) {
+    if (ignored) return;
+    if (chooses(file->path().filename().string())) ::unlink(file->path().c_str());
+  }
+}
+
 }  // namespace
 
 std::vector<unsigned char> readFileBytes(const std::string& path) {
@@ -100,12 +111,12 @@ std::vector<unsigned char> readFileBytes(const std::string& path) {
 
 void checkWritable(const std::string& path) {
   const std::string target = targetOf(path);
-  const std::filesystem::path folder = std::filesystem::path(target).parent_path();
+  const fs::path folder = fs::path(target).parent_path();
   std::error_code ignored;
-  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
+  if (!folder.empty() && !fs::is_directory(folder, ignored)) {
     throw ImageError(path, "there is no folder '" + folder.string() + "'", "expected one that exists");
   }
-  if (std::filesystem::is_directory(target, ignored)) throw ImageError(path, "is a folder", "expected a file name");
+  if (fs::is_directory(target, ignored)) throw ImageError(path, "is a folder", "expected a file name");
   if (isSpecial(target)) {
     if (::access(target.c_str(), W_OK) != 0) failWriting(path, "opening", errno);
     return;
@@ -135,6 +146,10 @@ void AtomicFile::write(std::span<const unsigned char> bytes) {
   if (!writeAll(descriptor_, bytes)) failWriting(path_, "writing", errno);
 }
 
+void AtomicFile::seek(uint64_t position) {
+  if (::lseek(descriptor_, static_cast<off_t>(position), SEEK_SET) < 0) failWriting(path_, "seeking", errno);
+}
+
 void AtomicFile::commit() {
   if (temporary_.empty()) return;
   if (::fsync(descriptor_) != 0) failWriting(path_, "flushing", errno);
@@ -153,14 +168,13 @@ void writeFileAtomically(const std::string& path, std::string_view text) {
 }
 
 void removeTemporaries(const std::string& path) {
-  namespace fs = std::filesystem;
   const fs::path target = fs::absolute(targetOf(path));
   const std::string begin = target.filename().string() + kTemporary;
-  std::error_code ignored;
-  for (fs::directory_iterator file(target.parent_path(), ignored), end; file != end; file.increment(ignored)) {
-    if (ignored) return;
-    if (file->path().filename().string().starts_with(begin)) ::unlink(file->path().c_str());
-  }
+  removeFiles(target.parent_path(), [&](const std::string& name) { return name.starts_with(begin); });
+}
+
+void removeTemporariesIn(const std::string& folder) {
+  removeFiles(folder, [](const std::string& name) { return name.find(kTemporary) != std::string::npos; });
 }
 
 }  // namespace wavecrest

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,10 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
   void write(std::span<const unsigned char> bytes);
+  // False for devices and pipes, which take bytes in order only.
+  bool isSeekable() const { return !temporary_.empty(); }
+  // Where the next write goes, from the beginning.
+  void seek(uint64_t position);
   void commit();
 
  private:
@@ -42,5 +47,7 @@ void checkWritable(const std::string& path);
 
 // Removes the temporary files that writers of this path have left because they were killed. Nobody may be writing it.
 void removeTemporaries(const std::string& path);
+// The same for all files of a folder; what is in folders within it stays.
+void removeTemporariesIn(const std::string& folder);
 
 }  // namespace wavecrest

@@ -1,5 +1,5 @@
-// OpenEXR, single part, scan lines or tiles. Files are decoded from and encoded to memory: reading gets one place that
-// checks lengths, writing goes through the same atomic rename as every other format.
+// OpenEXR, single part, scan lines or tiles. Files are decoded from memory, so that one place checks lengths. They are
+// written as they are compressed, and renamed at the end as those of every other format.
 #include <ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <exception>
 #include <mutex>
 #include <thread>
 
@@ -44,22 +45,51 @@ class MemoryInput : public Imf::IStream {
   uint64_t position_ = 0;
 };
 
-class MemoryOutput : public Imf::OStream {
+// A file that OpenEXR writes from the front to the back, but for the table of its blocks, which it fills in last. What
+// takes bytes in order only gets them all at the end.
+class FileOutput : public Imf::OStream {
  public:
-  explicit MemoryOutput(const std::string& path) : Imf::OStream(path.c_str()) {}
+  static constexpr size_t kBuffer = size_t{1} << 22;
+
+  explicit FileOutput(const std::string& path) : Imf::OStream(path.c_str()), file_(path) {}
   void write(const char data[], int count) override {
-    const auto size = static_cast<uint64_t>(count);
-    if (position_ + size > bytes.size()) bytes.resize(position_ + size);
-    std::memcpy(bytes.data() + position_, data, size);
+    const auto size = static_cast<size_t>(count);
+    if (waiting_.size() < position_ - begin_ + size) waiting_.resize(position_ - begin_ + size);
+    std::memcpy(waiting_.data() + (position_ - begin_), data, size);
     position_ += size;
+    if (file_.isSeekable() && waiting_.size() >= kBuffer) flush();
   }
   uint64_t tellp() override { return position_; }
-  void seekp(uint64_t position) override { position_ = position; }
-
-  std::vector<unsigned char> bytes;
+  void seekp(uint64_t position) override {
+    if (file_.isSeekable()) {
+      flush();
+      file_.seek(position);
+      begin_ = position;
+    }
+    position_ = position;
+  }
+  void commit() {
+    if (failure_) std::rethrow_exception(failure_);
+    flush();
+    file_.commit();
+  }
 
  private:
-  uint64_t position_ = 0;
+  void flush() {
+    try {
+      file_.write(waiting_);
+    } catch (...) {
+      failure_ = std::current_exception();
+      throw;
+    }
+    begin_ += waiting_.size();
+    waiting_.clear();
+  }
+
+  AtomicFile file_;
+  std::vector<unsigned char> waiting_;  // from begin_ on
+  uint64_t begin_ = 0, position_ = 0;
+  std::exception_ptr failure_;  // OpenEXR keeps what is thrown while it closes a file to itself
 };
 
 // Compression dominates the time of a write; blocks are compressed by OpenEXR's own threads. The bytes do not depend
@@ -173,6 +203,11 @@ ImageFile readLayerAndMetadata(const std::string& path, codecs::Bytes bytes, con
 
 // ---- writing --------------------------------------------------------------------------------------------------------
 
+constexpr int kBlockRows = 16;  // of ZIP_COMPRESSION
+
+// Of each thread between two reports of progress: threads wait for each other at the end.
+constexpr int kRowsAtOnce = 16 * kBlockRows;
+
 void addChannels(Imf::Header& header, Imf::FrameBuffer& frame, const Image& image, const std::string& prefix) {
   const std::vector<std::string> names =
       image.channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
@@ -193,7 +228,15 @@ Image codecs::decodeExrLayer(const std::string& path, Bytes bytes, const std::st
   return readLayerAndMetadata(path, bytes, layer).image;
 }
 
-void writeExr(const std::string& path, const Image& image, const Metadata& metadata, std::span<const ExrLayer> layers) {
+size_t exrWritingBytes(uint32_t width, uint32_t height) {
+  // OpenEXR has two blocks for each thread, and of each block the rows, their reordered bytes and what these become.
+  const size_t rowBytes = size_t{3} * sizeof(float) * width, threads = static_cast<size_t>(compressionThreads());
+  const size_t blocks = std::min((size_t{height} + kBlockRows - 1) / kBlockRows, 2 * threads);
+  return 3 * blocks * kBlockRows * rowBytes + 2 * std::min(FileOutput::kBuffer, rowBytes * height);
+}
+
+void writeExr(const std::string& path, const Image& image, const Metadata& metadata, std::span<const ExrLayer> layers,
+              const WriteProgress& progress) {
   try {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
@@ -205,13 +248,19 @@ void writeExr(const std::string& path, const Image& image, const Metadata& metad
         throw ImageError(path, "EXR layer '" + layer.name + "' differs in size", "expected the main image's size");
       addChannels(header, frame, layer.image, layer.name + ".");
     }
-    MemoryOutput stream(path);
+    FileOutput stream(path);
     {
-      Imf::OutputFile output(stream, header, compressionThreads());
+      const int threads = compressionThreads(), height = static_cast<int>(image.height);
+      Imf::OutputFile output(stream, header, threads);
       output.setFrameBuffer(frame);
-      output.writePixels(static_cast<int>(image.height));
+      for (int done = 0; done < height;) {
+        const int rows = std::min(kRowsAtOnce * threads, height - done);
+        output.writePixels(rows);
+        done += rows;
+        if (progress) progress(static_cast<double>(done) / height);
+      }
     }
-    writeFileAtomically(path, stream.bytes);
+    stream.commit();
   } catch (const ImageError&) {
     throw;
   } catch (const std::exception& error) {

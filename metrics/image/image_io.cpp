@@ -42,13 +42,15 @@ std::string extensionOf(const std::string& path) {
 // The list of formats that can be written.
 struct Writer {
   std::string_view extension;
-  void (*write)(const std::string& path, const Image& linear, const Metadata& metadata);
+  void (*write)(const std::string& path, const Image& linear, const Metadata& metadata, const WriteProgress& progress);
 };
 constexpr std::array kWriters{
-    Writer{".exr", [](const std::string& path, const Image& image,
-                      const Metadata& metadata) { writeExr(path, image, metadata); }},
-    Writer{".pfm", [](const std::string& path, const Image& image, const Metadata&) { writePfm(path, image); }},
-    Writer{".png", [](const std::string& path, const Image& image, const Metadata&) { writePng(path, image); }},
+    Writer{".exr", [](const std::string& path, const Image& image, const Metadata& metadata,
+                      const WriteProgress& progress) { writeExr(path, image, metadata, {}, progress); }},
+    Writer{".pfm", [](const std::string& path, const Image& image, const Metadata&,
+                      const WriteProgress&) { writePfm(path, image); }},
+    Writer{".png", [](const std::string& path, const Image& image, const Metadata&,
+                      const WriteProgress&) { writePng(path, image); }},
 };
 
 const Writer& writerOf(const std::string& path) {
@@ -79,8 +81,8 @@ void checkImageTarget(const std::string& path) {
   checkWritable(path);
 }
 
-void writeImage(const std::string& path, const Image& linear, const Metadata& metadata) {
-  writerOf(path).write(path, linear, metadata);
+void writeImage(const std::string& path, const Image& linear, const Metadata& metadata, const WriteProgress& progress) {
+  writerOf(path).write(path, linear, metadata, progress);
 }
 
 namespace codecs {

@@ -5,6 +5,7 @@
 // write a temporary name beside the target, flush it to the device and rename it.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -25,9 +26,16 @@ struct ExrLayer {
   Image image;  // same size as the main image
 };
 
+// Told the part that is written so far, 0 to 1, every now and then.
+using WriteProgress = std::function<void(double fraction)>;
+
 // Single part, 32-bit float, ZIP-compressed scan lines. Channels R G B, or Y for one channel.
 void writeExr(const std::string& path, const Image& image, const Metadata& metadata = {},
-              std::span<const ExrLayer> layers = {});
+              std::span<const ExrLayer> layers = {}, const WriteProgress& progress = {});
+
+// What writeExr takes besides an image of three channels: the blocks that OpenEXR's threads compress, and the file's
+// buffer.
+size_t exrWritingBytes(uint32_t width, uint32_t height);
 
 // One named layer of an EXR (an empty name: the main image). Throws ImageError when it is absent.
 Image readExrLayer(const std::string& path, const std::string& layer);
@@ -42,7 +50,8 @@ void writePng(const std::string& path, const Image& linear);
 // Throws ImageError where no image can be written: an unknown extension, or as checkWritable.
 void checkImageTarget(const std::string& path);
 
-// By extension: .exr, .pfm or .png (metadata is kept by EXR only).
-void writeImage(const std::string& path, const Image& linear, const Metadata& metadata = {});
+// By extension: .exr, .pfm or .png (metadata is kept by EXR only, which is also the only one to tell of its progress).
+void writeImage(const std::string& path, const Image& linear, const Metadata& metadata = {},
+                const WriteProgress& progress = {});
 
 }  // namespace wavecrest

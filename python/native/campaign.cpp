@@ -4,6 +4,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <exception>
+
 #include "interrupt.h"
 #include "native.h"
 
@@ -12,7 +14,8 @@ namespace {
 
 using Words = std::map<std::string, std::vector<std::string>>;
 
-// say: called with a line now and then, from this thread. False: Ctrl-C ended it.
+// say: called with a line now and then, from this thread; an exception of it ends the campaign after the run under way
+// and is thrown then. False: Ctrl-C ended it.
 bool converge(const Words& defining, const std::string& out, const std::string& reference, const std::string& shard,
               const std::string& isa, uint32_t threads, bool resume, bool check,
               const std::function<void(const std::string&)>& say) {
@@ -24,9 +27,17 @@ bool converge(const Words& defining, const std::string& out, const std::string& 
                                      .threads = threads,
                                      .resume = resume,
                                      .check = check};
+  api::StopRequest stop;
+  std::exception_ptr thrown;  // by say
   const auto tell = [&](const std::string& line) {
+    if (thrown) return;
     const nb::gil_scoped_acquire acquire;
-    say(line);
+    try {
+      say(line);
+    } catch (const nb::python_error&) {
+      thrown = std::current_exception();
+      stop.request();
+    }
   };
   const api::CampaignCallbacks callbacks{
       .finished =
@@ -35,14 +46,20 @@ bool converge(const Words& defining, const std::string& out, const std::string& 
                  run.method + " seed " + std::to_string(run.seed) + (run.reason.empty() ? "" : ": " + run.reason));
           },
       .say = tell};
-  api::StopRequest stop;
   InterruptScope interrupt([](void* what) { static_cast<api::StopRequest*>(what)->request(); }, &stop);
   bool done = false;
   {
     const nb::gil_scoped_release release;
     done = api::converge(options, callbacks, &stop);
   }
-  return !interrupt.interrupted() && done;
+  const bool interrupted = interrupt.interrupted();
+  if (!thrown) return done && !interrupted;
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const nb::python_error& error) {
+    if (!error.matches(PyExc_KeyboardInterrupt)) throw;
+  }
+  return false;
 }
 
 template <class Map>
@@ -91,6 +108,7 @@ nb::dict toDict(const api::ClaimRecord& claim) {
   dict["scene"] = claim.scene;
   dict["statement"] = claim.statement;
   dict["verdict"] = claim.verdict;
+  dict["figure"] = claim.figure;
   dict["evidence"] = claim.evidence;
   return dict;
 }

@@ -97,7 +97,8 @@ def converge(
     """Renders every scene by every method for the same time and measures all snapshots: `wavecrest converge`.
 
     What is not given is as there; further options (precision, sampler, images, ...) are its own, with underscores for
-    dashes. The campaign can go on with resume=True, here or on the command line. say: takes a line of progress now and
+    dashes. The campaign can go on with resume=True, here or on the command line, and may then become larger: more scenes, methods,
+    seeds or time. say: takes a line of progress now and
     then, default: stderr. Ctrl-C raises Interrupted; whole runs are kept.
     """
     given: dict[str, object] = {

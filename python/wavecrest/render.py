@@ -6,7 +6,6 @@ import json
 import os
 import pathlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -36,15 +35,15 @@ def _options(method: str, settings: Mapping[str, Any]) -> _native.RenderOptions:
     return options
 
 
-@dataclass(frozen=True, eq=False, repr=False)
 class Result:
     """The image of a render so far, and how it came about.
 
     `image` is float32, height x width x 3, linear radiance; `stats` has the keys of `wavecrest render --stats`.
     """
 
-    image: FloatArray
-    stats: dict[str, Any]
+    def __init__(self, image: FloatArray, stats: dict[str, Any]) -> None:
+        self.image = image
+        self.stats = stats
 
     @property
     def seconds(self) -> float:
@@ -112,9 +111,10 @@ class Scene:
     ) -> Result:
         """Renders for so much time ("30s", or seconds) or so many iterations, whichever ends first.
 
-        Further options are those of `wavecrest render`: sampler, precision, isa, accel, max_depth, rr_depth, wave, memory,
-        radius, radius_alpha, mlt, chains, bootstrap, restart, no_direct_pass. Other Python threads run meanwhile. Ctrl-C
-        raises Interrupted, a KeyboardInterrupt whose `result` is the image so far.
+        Further options are those of `wavecrest render`: sampler, filter_mode, precision, isa, accel, max_depth, rr_depth,
+        wave, memory, radius, radius_alpha, light_paths, direct_pass, mlt, chains, bootstrap, restart, no_direct_pass.
+        Other Python threads run meanwhile. Ctrl-C raises Interrupted, a KeyboardInterrupt whose `result` is the image so
+        far.
         """
         native = self._begin(method, {"time": time, "spp": spp, "seed": seed, "threads": threads, **options})
         interrupted = native.run()

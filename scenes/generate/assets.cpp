@@ -45,6 +45,7 @@ constexpr Asset kAssets[] = {
     {"teapot_glass.ply", [](const Path& file) { writePly(makeGlassTeapot(), "teapot with a wall of glass", file); }},
     {"pool_water.ply", writeWater},
     {"sky.exr", [](const Path& file) { writeExr(makeSky(), file); }},
+    {"small_sun.exr", [](const Path& file) { writeExr(makeSky(kSmallSun), file); }},
     {"tiles.png", [](const Path& file) { writePng(makeTiles(), file); }},
     {"wood.png", [](const Path& file) { writePng(makeWood(), file); }},
     {"landscape.png", [](const Path& file) { writePng(makeLandscape(), file); }},

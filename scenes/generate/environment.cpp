@@ -11,31 +11,37 @@ constexpr Vec3 kZenith{0.10, 0.17, 0.34}, kHorizon{0.34, 0.36, 0.40}, kBelow{0.1
 
 // A Gaussian lobe of sigma s (radians) and peak P gives an irradiance of about 2 pi P s^2. Its width sets the blur of
 // the caustics; the sun stands behind the dragon and to its left, so that they fall in front of it.
-constexpr double kSunElevation = 40 * kDegree, kSunAzimuth = -142 * kDegree, kSunSigma = 4 * kDegree;
-constexpr Vec3 kSunPeak{120, 111.6, 96};
+constexpr double kSunElevation = 40 * kDegree, kSunAzimuth = -142 * kDegree;
+constexpr Vec3 kSunPeak{120, 111.6, 96};  // of the wide one
 
-Vec3 skyRadiance(const Vec3& direction, const Vec3& sun) {
+Vec3 skyRadiance(const Vec3& direction, const Vec3& sun, double sigma) {
   Vec3 radiance = kBelow;
   if (direction[1] > 0) {
     const double t = std::sqrt(direction[1]);
     radiance = (1 - t) * kHorizon + t * kZenith;
   }
   const double angle = std::acos(std::clamp(dot(direction, sun), -1.0, 1.0));
-  return radiance + std::exp(-0.5 * (angle / kSunSigma) * (angle / kSunSigma)) * kSunPeak;
+  const double narrower = kWideSun.degrees * kDegree / sigma;
+  return radiance + narrower * narrower * std::exp(-0.5 * (angle / sigma) * (angle / sigma)) * kSunPeak;
 }
 
 }  // namespace
 
-Image makeSky() {
+Image makeSky(const SunWidth& width) {
   const Vec3 sun{std::sin(kSunAzimuth) * std::cos(kSunElevation), std::sin(kSunElevation),
                  std::cos(kSunAzimuth) * std::cos(kSunElevation)};
-  Image image(512, 256);
+  Image image(2 * width.rows, width.rows);
+  const double step = 1.0 / width.samples;
   for (uint32_t j = 0; j < image.height; ++j) {
-    const double theta = std::numbers::pi * (j + 0.5) / image.height;
     for (uint32_t i = 0; i < image.width; ++i) {
-      const double phi = 2 * std::numbers::pi * (i + 0.5) / image.width;
-      const Vec3 direction{std::sin(phi) * std::sin(theta), std::cos(theta), -std::cos(phi) * std::sin(theta)};
-      image.at(i, j) = skyRadiance(direction, sun);
+      Vec3 sum{};
+      for (uint32_t k = 0; k < width.samples * width.samples; ++k) {
+        const double x = i + (k % width.samples + 0.5) * step, y = j + (k / width.samples + 0.5) * step;
+        const double theta = std::numbers::pi * y / image.height, phi = 2 * std::numbers::pi * x / image.width;
+        const Vec3 direction{std::sin(phi) * std::sin(theta), std::cos(theta), -std::cos(phi) * std::sin(theta)};
+        sum = sum + skyRadiance(direction, sun, width.degrees * kDegree);
+      }
+      image.at(i, j) = (step * step) * sum;
     }
   }
   return image;

@@ -44,26 +44,31 @@ TEST(Csv, summaryHasEachSeriesAtItsEnd) {
   for (size_t i = 0; i < 2; ++i) scene.series[1].runs[i].points.back().values[0] = 0.25 + 0.5 * static_cast<double>(i);
   const std::string csv = summaryAsCsv(report);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4 * 3 + 1);
-  EXPECT_NE(csv.find("cornell-spheres,bpt,bpt,2,rmse,0.5,0.25,0.75,0.01,,\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("cornell-spheres,bpt,bpt,2,rmse,0.5,0.25,0.75,0.01,,,,,\n"), std::string::npos) << csv;
   EXPECT_NE(csv.find("ssim,"), std::string::npos);
 }
 
 TEST(Csv, findingsComeWithTheirExplanations) {
   ConvergenceReport report = sampleReport();
   report.claims.resize(1);
-  report.claims[0] = {
-      .scene = "box", .statement = "a, b", .verdict = "undecided", .evidence = "c", .explanation = "d", .id = "e"};
-  EXPECT_EQ(claimsAsCsv(report).substr(claimsAsCsv(report).find('\n')), "\ne,box,\"a, b\",,undecided,d,c\n");
+  report.claims[0] = {.scene = "box",
+                      .statement = "a, b",
+                      .verdict = "undecided",
+                      .figure = "f",
+                      .evidence = "c",
+                      .explanation = "d",
+                      .id = "e"};
+  EXPECT_EQ(claimsAsCsv(report).substr(claimsAsCsv(report).find('\n')), "\ne,box,\"a, b\",,undecided,f,d,c\n");
 }
 
 TEST(Csv, summaryHasTheTimeToATarget) {
   ConvergenceReport report = sampleReport();
   report.metrics[0].target = 1e9;  // of a metric where less is better: reached by the first snapshot
   const double first = meanCurve(report.scenes[0].series[0], 0).front().seconds;
-  EXPECT_NE(summaryAsCsv(report).find(fmt::format(",1000000000,{}\n", first)), std::string::npos)
+  EXPECT_NE(summaryAsCsv(report).find(fmt::format(",1000000000,{},yes,\n", first)), std::string::npos)
       << summaryAsCsv(report);
   report.metrics[0].target = -1;
-  EXPECT_NE(summaryAsCsv(report).find(",-1,\n"), std::string::npos) << "never";
+  EXPECT_NE(summaryAsCsv(report).find(",-1,,,\n"), std::string::npos) << "never";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/report/answer_section.h"
 #include "bench/report/embedded_images.h"
 #include "bench/report/html_text.h"
 #include "bench/report/scene_section.h"
@@ -111,9 +112,46 @@ TEST(Summary, claimsCarryTheirVerdicts) {
   report.claims[0].explanation = "a < b";
   const std::string explained = renderClaims(report);
   EXPECT_TRUE(contains(explained, "<td>pt &lt; bpt<small class=\"source\">BPT &amp; PT</small><td>"));
-  EXPECT_TRUE(contains(explained, "<td><p>a &lt; b</p>0.1"));
+  EXPECT_TRUE(contains(explained, "<summary>evidence</summary><p>a &lt; b</p>0.1</details>")) << "behind a click";
+  report.claims[0].figure = "SSIM 0.9 < 0.95";
+  report.claims[1].verdict = "not judged";
+  const std::string unjudged = renderClaims(report);
+  EXPECT_TRUE(
+      contains(unjudged, "0 hold, 1 do not, 0 are undecided within noise. 1 cannot be judged by this campaign"));
+  EXPECT_TRUE(contains(unjudged, "<td>SSIM 0.9 &lt; 0.95<details>")) << "the figure that decides is in view";
+  report.claims[0].verdict = "not judged";
+  EXPECT_TRUE(contains(renderClaims(report), "<p class=\"facts\">All 2 cannot be judged")) << "no count of verdicts";
   report.claims.clear();
   EXPECT_EQ(renderClaims(report), "");
+}
+
+TEST(Answer, namesTheMethodsThatAreFirstToTheTarget) {
+  ConvergenceReport report = sampleReport();
+  ReportScene& scene = report.scenes[0];
+  // SSIM over seconds: bpt is at 0.9 after 10 s, vcm after 11, level with it; pt never.
+  const auto set = [&](size_t series, double at10) {
+    for (ReportRun& run : scene.series[series].runs) {
+      run.points.resize(2);
+      run.points[0].seconds = 1;
+      run.points[1].seconds = 10;
+      run.points[0].values[2] = 0.5;
+      run.points[1].values[2] = at10;
+    }
+  };
+  set(0, 0.7);
+  set(1, 0.9);
+  set(2, 0.91);
+  EXPECT_EQ(answerFor(scene, report.metrics[2], 2).figure, "9.45 s");
+  EXPECT_EQ(answerFor(scene, report.metrics[2], 2).methods, (std::vector<std::string>{"vcm"}));
+  scene.series[1].runs.resize(1);  // without a band
+  EXPECT_EQ(answerFor(scene, report.metrics[2], 2).methods, (std::vector<std::string>{"vcm", "bpt"}));
+  set(1, 0.8);
+  set(2, 0.85);
+  EXPECT_TRUE(
+      contains(renderAnswer(report),
+               "First to SSIM 0.9: none in <a href=\"#scene-0\">cornell-spheres</a> (0.85), where <b>vcm</b> came "
+               "closest"));
+  EXPECT_LT(renderReport(report).find("class=\"answer\""), renderReport(report).find("<h2>Summary</h2>"));
 }
 
 TEST(SceneSection, showsWhatIsKnownAndNothingElse) {

@@ -67,14 +67,45 @@ TEST(BestFinalValue, followsTheMetricsDirectionAndPassesOverNothing) {
 TEST(TimeToReach, isBetweenSnapshotsByTheLogarithmOfTime) {
   const auto time = timeToReach(seriesOf({{{1, 0.5}, {100, 0.9}}}), rising(), 0, 0.7);
   ASSERT_TRUE(time.has_value());
-  EXPECT_NEAR(*time, 10, 1e-9);
-  EXPECT_EQ(timeToReach(seriesOf({{{1, 0.5}, {100, 0.7}}}), rising(), 0, 0.7), 100);
+  EXPECT_NEAR(time->seconds, 10, 1e-9);
+  EXPECT_FALSE(time->atMost);
+  EXPECT_EQ(timeToReach(seriesOf({{{1, 0.5}, {100, 0.7}}}), rising(), 0, 0.7)->seconds, 100);
 }
 
 TEST(TimeToReach, isTheFirstSnapshotAtLatestOrNever) {
-  EXPECT_EQ(timeToReach(seriesOf({{{3, 0.95}, {4, 0.96}}}), rising(), 0, 0.9), 3);
+  const TargetTime first = *timeToReach(seriesOf({{{3, 0.95}, {4, 0.96}}}), rising(), 0, 0.9);
+  EXPECT_EQ(first.seconds, 3);
+  EXPECT_TRUE(first.atMost) << "it may have been there sooner";
+  EXPECT_EQ(formatTime(first), "≤ 3 s");
   EXPECT_FALSE(timeToReach(seriesOf({{{3, 0.5}, {4, 0.8}}}), rising(), 0, 0.9).has_value());
-  EXPECT_NEAR(*timeToReach(seriesOf({{{1, 0.4}, {4, 0.1}}}), ReportMetric{}, 0, 0.25), 2, 1e-9) << "errors fall";
+  EXPECT_NEAR(timeToReach(seriesOf({{{1, 0.4}, {4, 0.1}}}), ReportMetric{}, 0, 0.25)->seconds, 2, 1e-9)
+      << "errors fall";
+}
+
+// Two seeds each, whose ends differ by 0.02 or by 0.4.
+TEST(IsClearlyBest, takesSeedsThatDoNotOverlap) {
+  const auto seeds = [](double a, double b) { return seriesOf({{{1, 0.1}, {100, a}}, {{1, 0.1}, {100, b}}}); };
+  ReportScene scene;
+  scene.series = {seeds(0.5, 0.52), seeds(0.8, 0.82)};
+  EXPECT_TRUE(isClearlyBest(scene, scene.series[1], rising(), 0));
+  EXPECT_FALSE(isClearlyBest(scene, scene.series[0], rising(), 0));
+  EXPECT_TRUE(isClearlyBest(scene, scene.series[0], ReportMetric{}, 0)) << "errors fall";
+  EXPECT_TRUE(isClearlyFastest(scene, scene.series[1], rising(), 0, 0.7)) << "the other never gets there";
+  EXPECT_FALSE(isClearlyFastest(scene, scene.series[1], rising(), 0, 0.9)) << "nor does this one";
+  scene.series.push_back(seeds(0.4, 0.8));
+  EXPECT_FALSE(isClearlyBest(scene, scene.series[1], rising(), 0)) << "0.6 give or take 2.5";
+  scene.series.resize(2);
+  scene.series[1].runs.resize(1);
+  EXPECT_FALSE(isClearlyBest(scene, scene.series[1], rising(), 0)) << "one seed has no band";
+}
+
+TEST(IsClearlyFastest, isNotDecidedByTheFirstSnapshot) {
+  const auto seeds = [](double first) { return seriesOf({{{1, first}, {100, 0.99}}, {{1, first}, {100, 0.99}}}); };
+  ReportScene scene;
+  scene.series = {seeds(0.95), seeds(0.96)};
+  EXPECT_FALSE(isClearlyFastest(scene, scene.series[1], rising(), 0, 0.9)) << "both have it at the first";
+  scene.series[0] = seeds(0.5);
+  EXPECT_TRUE(isClearlyFastest(scene, scene.series[1], rising(), 0, 0.9));
 }
 
 TEST(MethodsOf, areInTheOrderOfTheStyleListThenOthers) {

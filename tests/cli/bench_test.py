@@ -137,9 +137,133 @@ class Tradeoff(CommandTest):
             self.assertIn(f"{entry['scene']}, {entry['method']}", page)
             self.assertGreater(len(entry["rows"]), 15)
 
+    def test_settings_can_be_chosen(self):
+        self.run_wavecrest("bench", "cornell-diffuse", "--tradeoff", "--methods", "pt", "--size", "32x24", "--seeds", "4",
+                           "--duration", "1s", "--knobs", "precision,--accel", "--json", self.path("trade.json"))
+        result = read_json(self.path("trade.json"))
+        validate(result)
+        entry, = result["results"]
+        self.assertEqual(entry["seeds"], 4)
+        self.assertEqual({row["knob"] for row in entry["rows"]}, {"baseline", "--precision", "--accel"})
+        refused = self.run_wavecrest("bench", "cornell-diffuse", "--tradeoff", "--methods", "pt", "--knobs", "radius",
+                                     "--size", "32x24", expect=USAGE)
+        self.assert_one_error_line(refused, "--knobs: 'radius' is no setting that is varied here")
+        alone = self.run_wavecrest("bench", "cornell-diffuse", "--seeds", "4", expect=USAGE)
+        self.assert_one_error_line(alone, "--knobs and --seeds go with --tradeoff")
+
     def test_a_page_of_nothing_is_refused(self):
         result = self.run_wavecrest("bench", "cornell-diffuse", "--html", self.path("t.html"), expect=USAGE)
         self.assert_one_error_line(result, "--html goes with")
+
+
+class Score(CommandTest):
+    """A part of the small workload, validated by hashes that this build has just written."""
+
+    PART = ("bench", "cornell-diffuse", "--score", "small", "--methods", "lt,vcm")
+
+    def hashes(self):
+        if not pathlib.Path(self.path("hashes.json")).exists():
+            self.run_wavecrest(*self.PART, "--write-hashes", self.path("hashes.json"))
+        return read_json(self.path("hashes.json"))
+
+    def test_a_right_image_has_a_score_with_all_figures(self):
+        self.hashes()
+        told = self.run_wavecrest(*self.PART, "--hashes", self.path("hashes.json"), "--json", self.path("score.json"),
+                                  expect=DONE)
+        self.assertNotIn("NOT VALID", told.stdout)
+        self.assertNotRegex(told.stdout, r"\b(inf|nan)\b")
+        result = read_json(self.path("score.json"))
+        validate(result)
+        self.assertTrue(result["valid"])
+        self.assertEqual([entry["method"] for entry in result["entries"]], ["lt", "vcm"])
+        for entry in result["entries"]:
+            self.assertEqual(entry["image"], "right")
+            self.assertEqual([round(at["samples_per_pixel"] * 8 / entry["iterations"]) for at in entry["quality"]],
+                             [1, 2, 4, 8])
+            self.assertLess(entry["quality"][-1]["relmse"], entry["quality"][0]["relmse"])
+            used = [stage for stage in entry["stages"] if stage["items_per_path"] > 0]
+            for name in STAGES[entry["method"]]:
+                self.assertIn(name, [stage["name"] for stage in used])
+            self.assertTrue(all(stage["seconds_per_item"] > 0 for stage in used))
+            self.assertTrue(any(stage["bytes_per_item"] for stage in used))
+            if result["events_refusal"] is None:
+                self.assertTrue(any(stage["events_per_item"]["cycles"] > 0 for stage in used))
+            else:
+                self.assertIn("are not counted here", told.stdout)
+        product = result["entries"][0]["score"] * result["entries"][1]["score"]
+        self.assertAlmostEqual(result["score"] / product**0.5, 1)
+
+    def test_a_wrong_image_fails_validation(self):
+        hashes = self.hashes()
+        for group in hashes["images"]["small"].values():
+            group["cornell-diffuse"]["vcm"] = "0123456789abcdef"
+        wrong = self.write("wrong.json", json.dumps(hashes))
+        told = self.run_wavecrest(*self.PART, "--hashes", wrong, "--json", self.path("score.json"), expect=CHECK)
+        self.assertRegex(told.stdout, r"(?m)^cornell-diffuse +vcm +wrong")
+        self.assertIn("NOT VALID", told.stdout)
+        result = read_json(self.path("score.json"))
+        validate(result)
+        self.assertEqual([entry["image"] for entry in result["entries"]], ["right", "wrong"])
+
+    def test_without_a_hash_there_is_no_valid_score(self):
+        none = self.write("none.json", json.dumps({"score_version": 1, "images": {}}))
+        told = self.run_wavecrest("bench", "cornell-diffuse", "--score", "small", "--methods", "lt", "--hashes", none,
+                                  expect=CHECK)
+        self.assertIn("could not be validated", told.stdout)
+
+    def test_hashes_of_other_sizes_and_instruction_sets_stay(self):
+        kept = {"large": {"avx9": {"a-scene": {"pt": "00000000000000ff"}}}}
+        self.write("hashes.json", json.dumps({"score_version": 1, "images": kept}))
+        self.run_wavecrest(*self.PART, "--write-hashes", self.path("hashes.json"))
+        images = self.hashes()["images"]
+        self.assertEqual(images["large"], kept["large"])
+        self.assertIn("small", images)
+
+    def test_what_no_score_is_made_of_is_refused(self):
+        result = self.run_wavecrest("bench", "veach-door", "--score", "small", expect=USAGE)
+        self.assert_one_error_line(result, "--score small: has no scene veach-door")
+        result = self.run_wavecrest("bench", "--score", "tiny", expect=USAGE)
+        self.assert_one_error_line(result, "--score")
+        result = self.run_wavecrest("bench", "--score", "small", "--size", "8x8", expect=USAGE)
+        self.assert_one_error_line(result, "--score has sizes")
+        result = self.run_wavecrest("bench", "--hashes", "x.json", expect=USAGE)
+        self.assert_one_error_line(result, "--hashes")
+        result = self.run_wavecrest("bench", "--score", "small", "--hashes", self.write("bad.json", "[]"), expect=INPUT)
+        self.assert_one_error_line(result, ".*bad.json: has no hashes")
+
+    def test_the_score_is_exported_for_other_tools(self):
+        self.run_wavecrest(*self.PART, "--hashes", self.write("n.json", json.dumps({"score_version": 1, "images": {}})),
+                           "--json", self.path("score.json"), expect=CHECK)
+        result = read_json(self.path("score.json"))
+
+        def exported(kind):
+            return subprocess.run([sys.executable, EXPORT, kind, self.path("score.json")], capture_output=True,
+                                  text=True)
+
+        self.assertIn("not valid", exported("bencher").stderr)
+        result["valid"] = True
+        self.write("score.json", json.dumps(result))
+        measures = json.loads(exported("bencher").stdout)
+        self.assertEqual(measures["score/small"]["score"]["value"], result["score"])
+        self.assertEqual(measures["score/small/vcm"]["score"]["value"], result["method_scores"]["vcm"])
+        entry = result["entries"][1]
+        self.assertEqual(measures["cornell-diffuse/vcm"]["paths-per-cpu-second"]["value"],
+                         entry["paths_per_cpu_second"])
+        benchmarks = {one["name"]: one for one in json.loads(exported("google-benchmark").stdout)["benchmarks"]}
+        self.assertEqual(benchmarks["cornell-diffuse/vcm"]["items_per_second"], entry["paths_per_cpu_second"])
+
+
+class Specialization(CommandTest):
+    def test_says_what_a_scene_pays_for(self):
+        told = self.run_wavecrest("bench", "cornell-diffuse", "cornell-mirror", "--specialization", "--methods", "pt",
+                                  "--size", "32x24", "--duration", "1s", "--json", self.path("sets.json"), expect=DONE)
+        self.assertRegex(told.stdout, r"cornell-mirror pt 32x24: needs specular BSDFs")
+        result = read_json(self.path("sets.json"))
+        validate(result)
+        for entry in result["results"]:
+            self.assertEqual(len([row for row in entry["rows"] if row["chosen"]]), 1)
+            self.assertEqual(entry["rows"][-1]["kernels"], "complete")
+            self.assertFalse(any(row["differs"] for row in entry["rows"]))
 
 
 class Against(CommandTest):

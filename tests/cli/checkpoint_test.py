@@ -149,6 +149,12 @@ class GoingOn(Checkpoints):
         self.render("--spp", "1", "--checkpoint", "c")
         self.assertEqual(os.listdir(self.folder), ["c"])
 
+    def test_what_writers_of_the_image_left_is_removed_by_going_on(self):
+        self.render("--spp", "1", "--checkpoint", "c", "-o", "a.pfm")
+        self.write("a.pfm.tmp.1.0", "part of an image")
+        self.render("--spp", "2", "--checkpoint", "c", "--resume", "-o", "a.pfm")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["a.pfm", "c"])
+
 
 class Refused(Checkpoints):
     def setUp(self):

@@ -1,9 +1,10 @@
 """Campaigns that are killed, resumed, extended, locked or split have the rows of whole ones.
 
-KILLS says how often the campaign of the kill test is killed before it may finish.
+KILLS says how often the kill test kills campaigns, each a few times before it may finish.
 """
 
 import os
+import pathlib
 import random
 import shutil
 import signal
@@ -16,9 +17,22 @@ from campaign_harness import ROOM, RUNS, TINY, Converge, kind, rows
 from harness import INPUT, INTERRUPTED, TIMEOUT_SECONDS, USAGE, WAVECREST
 
 KILLS = int(os.environ.get("KILLS", "3"))
+KILLS_OF_ONE = 4  # campaign, spread over its length
 
 
 class Resuming(Converge):
+    def assert_same_but_for_rounding(self, found, expected):
+        """Rows of a campaign whose reference may have been rendered in parts, which rounds each part's mean.
+
+        A reference of other samples would differ by the noise of four times as many as a run has: a tenth and more.
+        """
+        names = [[value for value in row if not isinstance(value, float)] for row in found]
+        self.assertEqual(names, [[value for value in row if not isinstance(value, float)] for row in expected])
+        for mine, other in zip(found, expected):
+            for value, wanted in zip(mine, other):
+                if isinstance(value, float) and value != wanted:
+                    self.assertLess(abs(value - wanted), 1e-5 + 1e-3 * abs(wanted), mine)
+
     def test_a_killed_campaign_has_the_rows_of_an_unbroken_one(self):
         began = time.monotonic()
         self.tiny("whole")
@@ -26,23 +40,18 @@ class Resuming(Converge):
         chance = random.Random(5)
         resume = [WAVECREST, "converge", *TINY, "--out", "killed", "--resume"]
         killed = 0
-        for attempt in range(50 * KILLS):
-            process = subprocess.Popen(
-                resume, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-            )
-            time.sleep(chance.uniform(0, 1.5 * length / max(KILLS, 4)))
-            process.send_signal(chance.choice((signal.SIGKILL, signal.SIGTERM)))
-            if process.wait(timeout=TIMEOUT_SECONDS) == 0:
-                # It was faster than the kill: from the beginning, for the rest of the kills.
-                shutil.rmtree(self.path("killed"))
-            else:
-                killed += 1
-            if killed == KILLS:
-                break
-        self.assertEqual(killed, KILLS)
-        self.tiny("killed", "--resume")
-        self.assertEqual(rows(self.results("killed")), rows(self.results("whole")))
-        self.assertEqual(self.image_names("killed"), self.image_names("whole"))
+        while killed < KILLS:
+            for _ in range(min(KILLS_OF_ONE, KILLS - killed)):
+                process = subprocess.Popen(
+                    resume, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+                )
+                time.sleep(chance.uniform(0, 1.5 * length / KILLS_OF_ONE))
+                process.send_signal(chance.choice((signal.SIGKILL, signal.SIGTERM)))
+                killed += process.wait(timeout=TIMEOUT_SECONDS) != 0
+            self.tiny("killed", "--resume")
+            self.assert_same_but_for_rounding(rows(self.results("killed")), rows(self.results("whole")))
+            self.assertEqual(self.image_names("killed"), self.image_names("whole"))
+            shutil.rmtree(self.path("killed"))
 
     def test_a_process_that_died_at_once_leaves_nothing_in_the_way(self):
         os.mkdir(self.path("a"))
@@ -52,9 +61,12 @@ class Resuming(Converge):
 
     def test_what_is_done_is_not_rendered_again(self):
         self.tiny("a")
+        self.write("a/images/cornell-diffuse.pt.1.0000.exr.tmp.1.0", "part of an image")
+        self.write("a/references/cornell-diffuse.exr.tmp.1.0", "part of a reference")
         stamp = os.stat(self.path("a/images/cornell-diffuse.pt.1.0000.exr")).st_mtime_ns
         result = self.converge("--out", "a", "--resume")
         self.assertNotIn("seed", result.stderr)
+        self.assertEqual(list(pathlib.Path(self.path("a")).rglob("*.tmp.*")), [])
         self.assertEqual(os.stat(self.path("a/images/cornell-diffuse.pt.1.0000.exr")).st_mtime_ns, stamp)
 
     def test_resuming_needs_no_option_again_and_takes_no_other(self):

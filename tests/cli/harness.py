@@ -15,7 +15,7 @@ import time
 import unittest
 
 WAVECREST = os.environ["WAVECREST"]
-TIMEOUT_SECONDS = 120
+TIMEOUT_SECONDS = 300
 
 DONE, FAILURE, USAGE, INPUT, CHECK, INTERRUPTED = 0, 1, 2, 3, 4, 130
 

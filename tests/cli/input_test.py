@@ -40,11 +40,11 @@ class BadInput(CommandTest):
 
     def test_a_scene_file_that_does_not_exist(self):
         result = self.run_wavecrest("render", self.path("absent.xml"), expect=INPUT)
-        self.assert_one_error_line(result, r"\S*absent\.xml:")
+        self.assert_one_error_line(result, r"\S*absent\.xml: no such file; expected a Mitsuba scene file$")
 
     def test_a_folder_instead_of_a_file(self):
         result = self.run_wavecrest("render", str(self.folder), expect=INPUT)
-        self.assert_one_error_line(result, "")
+        self.assert_one_error_line(result, rf"{self.folder}: .*is not a regular file")
 
     def test_unknown_plugins_and_parameters(self):
         self.assert_refused(scene(SENSOR, '<shape type="torus"/>', CONSTANT), 3, "torus")

@@ -22,6 +22,15 @@ class Inspect(CommandTest):
         self.assertEqual(facts["features"]["lights"], {"area": 1})
         self.assertAlmostEqual(facts["bounds"]["max"][1], 548.8, places=2)
 
+    def test_the_size_of_the_hierarchy_is_told(self):
+        small, large = self.inspect("cornell-mirror")["primitives"], self.inspect("lafortune-room")["primitives"]
+        self.assertEqual((small["hierarchy_nodes"], small["bytes_each"]), (0, 64))
+        self.assertGreater(large["hierarchy_nodes"], large["total"] / 40)
+        self.assertLess(large["hierarchy_nodes"], large["total"])
+        self.assertGreater(large["bytes_each"], 64 + 40)
+        text = self.run_wavecrest("inspect", "lafortune-room", "--size", "32x24").stdout
+        self.assertRegex(text, rf"intersector bvh, {large['hierarchy_nodes']} nodes; \d+ bytes a primitive")
+
     def test_notes_say_what_is_left_out(self):
         scene = self.write(
             "scene.xml",

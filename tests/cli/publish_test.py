@@ -1,6 +1,7 @@
 """bench/campaign/publish: what it writes is what the campaign measured, and nothing is published half."""
 
 import csv
+import json
 import pathlib
 import sqlite3
 import subprocess
@@ -9,18 +10,19 @@ import unittest
 
 from harness import TIMEOUT_SECONDS, WAVECREST, CommandTest
 
-PUBLISH = pathlib.Path(__file__).resolve().parents[2] / "bench" / "campaign" / "publish"
+CAMPAIGN = pathlib.Path(__file__).resolve().parents[2] / "bench" / "campaign"
+PUBLISH, RESTORE = CAMPAIGN / "publish", CAMPAIGN / "restore"
 README = "# A title\n\n<!-- results -->\nold\n<!-- /results -->\n\nThe end.\n"
 
 
 class Publishing(CommandTest):
-    def campaign(self, scene="cornell-diffuse"):
-        arguments = ["--methods", "pt,lt", "--size", "32x24", "--time", "0.05s", "--seeds", "2", "--out", "a"]
+    def campaign(self, scene="cornell-diffuse", methods="pt,lt"):
+        arguments = ["--methods", methods, "--size", "32x24", "--time", "0.05s", "--seeds", "2", "--out", "a"]
         self.run_wavecrest("converge", scene, *arguments)
 
-    def publish(self, readme=README, plot="cornell-diffuse.ssim"):
+    def publish(self, readme=README, plot="cornell-diffuse.ssim", program=WAVECREST):
         self.write("README.md", readme)
-        command = [sys.executable, PUBLISH, "a", "--wavecrest", WAVECREST, "--to", "standard", "--readme", "README.md"]
+        command = [sys.executable, PUBLISH, "a", "--wavecrest", program, "--to", "standard", "--readme", "README.md"]
         return subprocess.run(
             [*map(str, command), "--plot", plot],
             cwd=self.folder,
@@ -54,9 +56,13 @@ class Publishing(CommandTest):
             mean, spread = sum(scores) / 2, abs(scores[0] - scores[1]) / 2
             cell = f"{mean:.3f} <sub>±{spread:.3f}</sub>"
             self.assertIn(cell, page)
-            self.assertIn(cell, readme)
         self.assertIn("](standard/README.md)", readme)
-        self.assertIn('src="standard/cornell-diffuse.ssim.svg"', readme)
+        self.assertIn('src="standard/overview.relmse.svg"', readme)
+        self.assertIn("| scene | first to SSIM 0.95 | first to Q_MOS 90 |", readme)
+        self.assertRegex(readme, r"\| cornell-diffuse \| (pt|lt|–)[^|]* \|")
+        overview = self.read("standard/overview.relmse.svg")
+        self.assertEqual(overview.count("<polyline"), 2)
+        self.assertIn(">cornell-diffuse</text>", overview)
         self.assertTrue(readme.startswith("# A title\n\n<!-- results -->\n### "))
         self.assertTrue(readme.endswith("\n<!-- /results -->\n\nThe end.\n"))
         self.assertNotIn("\nold\n", readme)
@@ -70,16 +76,60 @@ class Publishing(CommandTest):
         last = [float(row["ssim"]) for row in rows if row["method"] == "pt"]
         self.assertAlmostEqual(max(last), max(last + self.last_scores("pt", "ssim")), places=4)
 
-    def test_findings_without_an_explanation_are_named(self):
-        # One that held when explanations were written, so it has none. ppm is not measured here, so it is undecided
-        # whatever the machine.
-        finding = "cornell-glossy.density-estimation-poor"
-        self.campaign("cornell-glossy")
-        result = self.publish(plot="cornell-glossy.ssim")
-        self.assertIn(finding, result.stdout)
-        page = self.read("standard/README.md")
-        self.assertIn(f"**undecided** | (not explained yet: `explanation` of {finding})", page)
-        self.assertIn("ppm was not measured", page)
+    def test_what_cannot_be_judged_is_not_counted(self):
+        self.campaign(methods="bpm")  # of which the study says nothing
+        result = self.publish()
+        page, readme = self.read("standard/README.md"), self.read("README.md")
+        self.assertIn("none of the study's", result.stdout)
+        self.assertIn("without an explanation: none", result.stdout)
+        self.assertRegex(page, r"\*\*not judged\*\* \| [^|]*(was not measured|paths per pixel)[^|]*<details>")
+        self.assertRegex(readme, r"Not judged, and counted neither way, as .*too few scenes can be judged \(2\)")
+        self.assertNotIn("Do not hold", readme)
+
+    def test_open_findings_without_an_explanation_are_named(self):
+        self.campaign()
+        # As another program judges: publish judges by its own conditions, so these are put in its place.
+        stub = self.write(
+            "judge",
+            f"""#!/bin/sh
+{WAVECREST} "$@" && {sys.executable} - <<'END'
+import csv
+rows = list(csv.DictReader(open("a/claims.csv")))
+rows[0].update(verdict="does not hold", figure="SSIM of pt is 0.5, limit 0.9", explanation="")
+rows[1].update(verdict="holds", figure="RMSE lt 2, pt 1")
+with open("a/claims.csv", "w") as file:
+    writer = csv.DictWriter(file, rows[0].keys())
+    writer.writeheader()
+    writer.writerows(rows)
+END
+""",
+        )
+        pathlib.Path(stub).chmod(0o755)
+        result = self.publish(program=stub)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1 hold, 1 do not, 0 are undecided", result.stdout)
+        self.assertIn("without an explanation: cornell-diffuse.all-converge", result.stdout)
+        readme = self.read("README.md")
+        self.assertRegex(readme, r"Judged here: 2 of its \d+ findings. Hold: cornell-diffuse: ")
+        self.assertIn("Do not hold: cornell-diffuse: All methods converge (SSIM of pt is 0.5, limit 0.9).", readme)
+        self.assertIn("(not explained yet: `explanation` of cornell-diffuse.all-converge)", self.read("standard/README.md"))
+
+    def test_a_campaign_is_restored_from_what_was_published(self):
+        self.campaign()
+        self.publish()
+        subprocess.run([sys.executable, RESTORE, "standard", "b"], cwd=self.folder, check=True, capture_output=True)
+        self.run_wavecrest("report", "b", "--judge", "--csv")
+
+        def claims(folder):
+            with open(self.path(f"{folder}/claims.csv"), newline="", encoding="utf-8") as file:
+                return [(row["id"], row["verdict"], row["figure"]) for row in csv.DictReader(file)]
+
+        self.assertEqual(claims("b"), claims("a"))
+        self.assertGreater(len(claims("a")), 1)
+        database = sqlite3.connect(self.path("b/results.sqlite"))
+        (stats,) = database.execute("SELECT stats FROM run WHERE method = 'lt'").fetchone()
+        database.close()
+        self.assertGreater(json.loads(stats)["light_paths"], 0)
 
     def test_a_readme_without_a_place_for_it_is_left_alone(self):
         self.campaign()

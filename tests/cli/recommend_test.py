@@ -26,6 +26,12 @@ class Recommend(CommandTest):
         told = self.recommend("--budget", "1s", "--target-ssim", "0.5", "--methods", "pt")
         self.assertRegex(told.stdout, r"cornell-diffuse: use pt\. It gets to an SSIM of 0\.5 in about")
 
+    def test_a_second_can_be_one_of_cpu_time(self):
+        told = self.recommend("--budget", "1s", "--target-ssim", "0.5", "--methods", "pt,vcm", "--clock", "cpu", "--json")
+        for row in json.loads(told.stdout)["table"]:
+            self.assertAlmostEqual(row["pilot_seconds"], 0.25, delta=0.15)
+        self.assert_one_error_line(self.recommend("--clock", "moon", expect=USAGE), "--clock")
+
     def test_what_cannot_be_is_a_usage_error(self):
         self.recommend("--target-ssim", "1.5", expect=USAGE)
         self.assert_one_error_line(self.recommend("--methods", "xx", expect=USAGE), "--methods xx: unknown")

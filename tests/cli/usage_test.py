@@ -85,17 +85,61 @@ class Usage(CommandTest):
         self.assertIn("float, double, fast", self.render("--precision", "half", expect=USAGE).stderr)
         self.assertIn("auto, embree, small", self.render("--accel", "kd", expect=USAGE).stderr)
 
+    def test_numbers_that_an_option_does_not_take_are_answered_with_those_that_it_takes(self):
+        for option, value, answer in [
+            ("--spp", "x", "'x' is no whole number; expected 1 or more"),
+            ("--spp", "0", "'0' is out of range; expected 1 or more"),
+            ("--spp", "1.5", "'1.5' is no whole number; expected 1 or more"),
+            ("--spp", "0x10", "'0x10' is no whole number; expected 1 or more"),
+            ("--seed", "x", "'x' is no whole number; expected 0 to 18446744073709551615"),
+            ("--seed", "-1", "'-1' is out of range; expected 0 to 18446744073709551615"),
+            ("--seed", "18446744073709551616", "out of range; expected 0 to 18446744073709551615"),
+            ("--threads", "4097", "'4097' is out of range; expected 1 to 4096"),
+            ("--max-depth", "-2", "'-2' is out of range; expected 1 to 4095, or -1"),
+            ("--rr-depth", "3000000000", "'3000000000' is out of range; expected 1 to 2147483647"),
+            ("--radius", "nan", "'nan' is no number; expected 1e-09 to 10"),
+            ("--radius", "1e999", "'1e999' is out of range; expected 1e-09 to 10"),
+            ("--radius-alpha", "1.5", "'1.5' is out of range; expected 0 to 1"),
+        ]:
+            with self.subTest(option=option, value=value):
+                result = self.render(f"{option}={value}", "--spp=1", expect=USAGE)
+                self.assert_one_error_line(result, f"{option}: .*{answer}; see `wavecrest render --help`$")
+        # A reference's halves differ in the high word of their seeds.
+        result = self.run_wavecrest("reference", "cornell-diffuse", "--seed", "4294967296", expect=USAGE)
+        self.assert_one_error_line(result, "--seed: .*expected 0 to 4294967295;")
+
+    def test_numbers_are_decimal_and_may_be_the_largest(self):
+        for word, seed in (("010", 10), ("000", 0), ("+7", 7), ("18446744073709551615", 2**64 - 1)):
+            result = self.render("--spp=1", "--seed", word, "--stats=-")
+            self.assertEqual(json.loads(result.stdout)["seed"], seed)
+        self.render("--spp=1", "--max-depth=-1")
+
     def test_ten_mistakes_are_each_answered_with_a_useful_line(self):
         for arguments, code, answer in [
-            (["rendr", "cornell-diffuse"], USAGE, r"unknown command 'rendr'; did you mean 'render'\?"),
-            (["render", "cornell-difuse"], INPUT, r"cornell-difuse.*did you mean 'cornell-diffuse'\?"),
+            (["rendr", "cornell-diffuse"], USAGE, r"unknown command 'rendr'; expected .*; did you mean 'render'\?"),
+            (["help", "rendr"], USAGE, r"unknown command 'rendr'; expected .*; did you mean 'render'\?"),
+            (["help", "nothing"], USAGE, r"unknown command 'nothing'; expected one of help, compare, converge,"),
+            (["help", "render", "scenes"], USAGE, r"help render scenes: expected one command"),
+            (["render", "cornell-difuse"], INPUT, r"cornell-difuse: no such file.*; did you mean 'cornell-diffuse'\?"),
+            (["inspect", "nothing"], INPUT, r"nothing: no such file; expected .* that `wavecrest scenes` lists"),
+            (["render", "absent.xml"], INPUT, r"absent\.xml: no such file; expected a Mitsuba scene file$"),
             (["render", "cornell-diffuse", "--smaples", "4"], USAGE, r"unknown argument '--smaples'"),
             (["render", "cornell-diffuse", "--thread=4"], USAGE, r"'--thread=4'; did you mean '--threads'\?"),
             (["render", "cornell-diffuse", "-m", "bdt"], USAGE, r"--method bdt: .*did you mean 'bpt'\?"),
-            (["render", "cornell-diffuse", "--sampler", "soblo"], USAGE, r"--sampler soblo: expected independent or sobol"),
+            (["render", "cornell-diffuse", "--sampler", "soblo"], USAGE, r"independent, sobol; did you mean 'sobol'\?"),
+            (["reference", "cornell-diffuse", "--sampler", "soblo"], USAGE, r"did you mean 'sobol'\?"),
+            (["converge", "--sampler", "soblo", "--out", "a"], USAGE, r"did you mean 'sobol'\?"),
+            (["render", "cornell-diffuse", "--isa", "axv2"], USAGE, r"--isa axv2: .*did you mean 'avx2'\?"),
+            (["converge", "--profile", "quikc", "--out", "a"], USAGE, r"--profile quikc: .*did you mean 'quick'\?"),
+            (["compare", "a.exr", "b.exr", "--metrics", "sism"], USAGE, r"--metrics sism: .*did you mean 'ssim'\?"),
+            (["bench", "--methods", "vmc"], USAGE, r"--methods vmc: .*did you mean 'vcm'\?"),
+            (["recommend", "cornell-diffuse", "--methods", "vmc"], USAGE, r"did you mean 'vcm'\?"),
             (["render", "cornell-diffuse", "--precision", "flaot"], USAGE, r"did you mean 'float'\?"),
             (["render"], USAGE, r"scene is required; see `wavecrest render --help`"),
-            (["render", "cornell-diffuse", "--spp"], USAGE, r"--spp.*see `wavecrest render --help`"),
+            (["render", "cornell-diffuse", "--spp"], USAGE, r"--spp: expected a value; see `wavecrest render --help`"),
+            (["render", "cornell-diffuse", "--time", "soon"], USAGE, r"--time 'soon': no duration; expected one like 6s"),
+            (["render", "cornell-diffuse", "--size", "32"], USAGE, r"--size '32': no size; expected WIDTHxHEIGHT"),
+            (["render", "cornell-diffuse", "--memory", "12"], USAGE, r"--memory '12': no memory size; expected one like"),
             (["converge", "--methods", "pt,vmc", "--out", "a"], USAGE, r"did you mean 'vcm'\?"),
             ([], USAGE, r".*subcommand.*; see `wavecrest --help`"),
         ]:

@@ -66,7 +66,7 @@ TEST_P(LightAgreementTest, onRoughSurfacesWithLeaningNormals) {
 INSTANTIATE_TEST_SUITE_P(Engine, LightAgreementTest,
                          testing::Values(RoomLight::quad, RoomLight::mesh, RoomLight::sphere, RoomLight::shell,
                                          RoomLight::point, RoomLight::spot, RoomLight::directional, RoomLight::constant,
-                                         RoomLight::envmap),
+                                         RoomLight::envmap, RoomLight::slide, RoomLight::projector),
                          [](const auto& instance) {
                            return std::string(kRoomLightNames[static_cast<size_t>(instance.param)]);
                          });
@@ -197,6 +197,27 @@ TEST(Agreement, ofPhotonMappingInTheMean) {
       expectSameMean(reference, imagesBy(scene, method, 3 * iterations()), 0.02,
                      std::string(toString(method)) + ", " + kRoomLightNames[static_cast<size_t>(light)]);
     }
+  }
+}
+
+// With direct light by next event estimation photons make the rest: no path twice, none not at all. Of paths of up to
+// two edges, which merging then has no part in, the image is that of path tracing.
+TEST(SlowAgreement, photonMappingWithADirectPass) {
+  for (const RoomLight light : {RoomLight::quad, RoomLight::sphere, RoomLight::point, RoomLight::constant}) {
+    const std::string where = std::string("ppm, direct pass, ") + kRoomLightNames[static_cast<size_t>(light)];
+    const Scene scene =
+        roomScene({.light = light, .materials = RoomMaterials::mixed, .width = kWidth, .height = kHeight});
+    RenderSettings direct = settingsOf(Method::ppm);
+    direct.directPass = true;
+    const uint64_t count = 3 * iterations();
+    // Mirrors and glass under a point: path tracing lacks caustics, photons alone have them.
+    const SeedMeans plain = renderSeeds(scene, settingsOf(Method::ppm), count, 7000);
+    expectSameMean(plain, renderSeeds(scene, direct, count, 8000), 0.01, where);
+    direct.limits.maxDepth = 2;
+    RenderSettings paths = settingsOf(Method::pt);
+    paths.limits.maxDepth = 2;
+    expectSameTruth(renderSeeds(scene, paths, count), renderSeeds(scene, direct, iterations(), 9000),
+                    where + ", 2 edges");
   }
 }
 

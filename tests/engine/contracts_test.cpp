@@ -60,7 +60,7 @@ void renderByAll(const Scene& scene, Precision precision, Isa isa) {
 class ContractsTest : public testing::TestWithParam<Isa> {};
 TEST_P(ContractsTest, areKeptByEveryKernel) {
   for (const Scene& scene : scenes()) {
-    for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
+    for (const Precision precision : {Precision::floating, Precision::doubled}) {
       renderByAll(scene, precision, GetParam());
     }
   }

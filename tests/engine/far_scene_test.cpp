@@ -31,10 +31,14 @@ Scene moved(Scene scene, const Double3& by) {
     }
     void operator()(PointEmitter& point) const { point.position = point.position + by; }
     void operator()(SpotEmitter& spot) const { spot.position = spot.position + by; }
+    void operator()(ProjectorEmitter& projector) const {
+      for (size_t i = 0; i < 3; ++i) projector.toWorld[i][3] += by[i];
+    }
     void operator()(AreaEmitter&) const {}
     void operator()(DirectionalEmitter&) const {}
     void operator()(ConstantEmitter&) const {}
     void operator()(EnvmapEmitter&) const {}
+    void operator()(SunskyEmitter&) const {}
   };
   for (Shape& shape : scene.shapes) std::visit(Mover{by}, shape.kind);
   for (Emitter& emitter : scene.emitters) std::visit(Mover{by}, emitter.kind);

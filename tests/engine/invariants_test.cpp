@@ -176,8 +176,7 @@ INSTANTIATE_TEST_SUITE_P(PathTracing, PathLeakTest,
                                          LeakCase{"bvh_float", Accel::bvh, Precision::floating},
                                          LeakCase{"bvh_double", Accel::bvh, Precision::doubled},
                                          LeakCase{"small_float", Accel::small, Precision::floating},
-                                         LeakCase{"small_double", Accel::small, Precision::doubled},
-                                         LeakCase{"small_fast", Accel::small, Precision::fast}),
+                                         LeakCase{"small_double", Accel::small, Precision::doubled}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

@@ -8,14 +8,20 @@
 #include <memory>
 #include <string>
 
+#include "engine/scene/vector_math.h"
 #include "tests/engine/test_scenes.h"
 
 namespace wavecrest {
 
-// shell: a sphere around everything that shines inwards.
-enum class RoomLight { quad, mesh, sphere, shell, point, spot, directional, constant, envmap };
-constexpr std::array<const char*, 9> kRoomLightNames{"quad", "mesh",        "sphere",   "shell", "point",
-                                                     "spot", "directional", "constant", "envmap"};
+// shell: a sphere around everything that shines inwards. slide: a spot with a texture. projector: with one, too.
+enum class RoomLight { quad, mesh, sphere, shell, point, spot, directional, constant, envmap, slide, projector };
+constexpr std::array<const char*, 11> kRoomLightNames{"quad",        "mesh",     "sphere", "shell", "point",    "spot",
+                                                      "directional", "constant", "envmap", "slide", "projector"};
+
+constexpr bool isDelta(RoomLight light) {
+  return light == RoomLight::point || light == RoomLight::spot || light == RoomLight::directional ||
+         light == RoomLight::slide || light == RoomLight::projector;
+}
 
 // diffuse: all walls. mixed: a mirror, a glass and a plastic ball, a glossy and a Phong wall. rough: the same room
 // without delta lobes, so that every method makes all of its paths whatever the light.
@@ -43,6 +49,23 @@ void addEmitter(Scene& scene, const Kind& kind) {
   emitter.kind = kind;
   scene.emitters.push_back(emitter);
 }
+
+// A picture of 4 x 3 pixels in several colours, none of them black.
+inline uint32_t addPicture(Scene& scene) {
+  auto bitmap = std::make_shared<Bitmap>();
+  bitmap->width = 4;
+  bitmap->height = 3;
+  for (uint32_t i = 0; i < 4 * 3; ++i) {
+    for (const uint32_t step : {3u, 5u, 7u}) bitmap->pixels.push_back(0.2f + static_cast<float>(i * step % 8) / 8);
+  }
+  scene.textures.push_back({.kind = BitmapTexture{.bitmap = bitmap, .wrap = Wrap::clamp},
+                            .toUv = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}});
+  return static_cast<uint32_t>(scene.textures.size() - 1);
+}
+
+// Of a light in the right front corner at half height that looks at the left back corner, a little downwards.
+constexpr Matrix4 kFromTheCorner{
+    {{-0.79027, -0.12445, -0.6, 0.6}, {0, 0.97917, -0.2031, 0.3}, {0.61277, -0.1605, -0.7738, 0.8}, {0, 0, 0, 1}}};
 
 inline void addRoomLight(Scene& scene, RoomLight light) {
   const uint32_t black = addDiffuse(scene, 0, 0, 0);
@@ -76,6 +99,22 @@ inline void addRoomLight(Scene& scene, RoomLight light) {
                                     .intensity = {3, 3, 2},
                                     .cutoffAngle = 50,
                                     .beamWidth = 30});
+      break;
+    case RoomLight::slide:
+      addEmitter(scene, SpotEmitter{.position = {0.6, 0.3, 0.8},
+                                    .direction = normalized({-0.6, -0.2031, -0.7738}),
+                                    .intensity = {4, 4, 3},
+                                    .cutoffAngle = 40,
+                                    .beamWidth = 30,
+                                    .texture = addPicture(scene),
+                                    .toWorld = kFromTheCorner});
+      break;
+    case RoomLight::projector:
+      addEmitter(scene, ProjectorEmitter{.irradiance = {.texture = addPicture(scene)},
+                                         .scale = 2,
+                                         .fovX = 70,
+                                         .aspect = 4.0 / 3,
+                                         .toWorld = kFromTheCorner});
       break;
     case RoomLight::directional:
       addEmitter(scene, DirectionalEmitter{{-0.36, -0.48, -0.8}, {3, 2, 2}});

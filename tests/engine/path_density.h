@@ -125,12 +125,18 @@ class PathDensity {
     return pdfW * cosineToCamera(path, k - 1) / toCamera2(path, k - 1);
   }
 
+  // Of the scene's box (METHODS 2.2).
+  double projectedArea(const Double3& w) const {
+    const double a = 2 * scene_.halfExtent[0], b = 2 * scene_.halfExtent[1], c = 2 * scene_.halfExtent[2];
+    return std::abs(w[0]) * b * c + std::abs(w[1]) * a * c + std::abs(w[2]) * a * b;
+  }
+
   LightDensity lightDensity(const FullPath& path) const {
     const auto& light = scene_.lights[path.light];
     const PathVertex &y0 = path.x[0], &y1 = path.x[1];
     const double pick = light.pick, n0 = cosineToCamera(path, 0);
     const double toArea = cosine(y1.toLight, y1.normal) / toCamera2(path, 0);
-    const double disc = cosine(y1.toLight, y1.normal) / (std::numbers::pi * scene_.radius * scene_.radius);
+    const double fromAfar = cosine(y1.toLight, y1.normal) / projectedArea(y1.toLight);
     LightDensity out;
     switch (static_cast<LightKind>(light.kind)) {
       case LightKind::quad:
@@ -153,15 +159,21 @@ class PathDensity {
       case LightKind::spot:
         out = {pick, toArea / (2 * std::numbers::pi * (1 - light.cosTotal)), pick, true};
         break;
+      case LightKind::projector: {  // uniform on its picture, at distance 1 along the axis
+        const Double3 axis{light.normal[0], light.normal[1], light.normal[2]};
+        const double cos = dot(y0.toCamera, axis);
+        out = {pick, toArea * light.inverseArea / (cos * cos * cos), pick, true};
+        break;
+      }
       case LightKind::directional:
-        out = {pick, disc, pick, true, true};
+        out = {pick, fromAfar, pick, true, true};
         break;
       case LightKind::constant:
-        out = {pick / (4 * std::numbers::pi), disc, pick / (4 * std::numbers::pi), false, true};
+        out = {pick / (4 * std::numbers::pi), fromAfar, pick / (4 * std::numbers::pi), false, true};
         break;
       case LightKind::envmap: {
         const double pdf = pick * mapDensity(y0.toCamera * -1.0);
-        out = {pdf, disc, pdf, false, true};
+        out = {pdf, fromAfar, pdf, false, true};
         break;
       }
     }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "tests/engine/test_scenes.h"
@@ -19,6 +20,24 @@ TEST(SnapshotSchedule, isRegularLogarithmicDoublingOrNone) {
   EXPECT_EQ(*SnapshotSchedule::doubling().due(5).iterations, 32u);
   EXPECT_FALSE(SnapshotSchedule::doubling().due(5).seconds);
   EXPECT_FALSE(SnapshotSchedule::none().due(0).seconds || SnapshotSchedule::none().due(0).iterations);
+}
+
+TEST(SnapshotSchedule, logarithmicGoesOverIntoRegularOnes) {
+  const SnapshotSchedule both = SnapshotSchedule::logarithmicThenEvery(10);
+  double before = 0;
+  unsigned number = 0;
+  for (; *both.due(number).seconds < 300; ++number) {
+    const double seconds = *both.due(number).seconds;
+    EXPECT_GT(seconds, before);
+    EXPECT_LE(seconds - before, 10 + 1e-9) << number;
+    if (seconds > 40) {
+      EXPECT_NEAR(seconds, 10 * std::round(seconds / 10), 1e-9);
+    }
+    before = seconds;
+  }
+  EXPECT_DOUBLE_EQ(*both.due(0).seconds, 0.1);
+  EXPECT_NEAR(*both.due(12).seconds, 10, 1e-9) << "like the logarithmic one at first";
+  EXPECT_DOUBLE_EQ(*both.due(number).seconds, 300);
 }
 
 class SnapshotsTest : public testing::TestWithParam<MethodEntry> {
@@ -96,14 +115,17 @@ TEST_P(BootstrapTest, goesOnWhereItStopped) {
 }
 
 // A limit is not overrun because all chains move together, nor is a snapshot at its end lost where they stop before it.
+// However long a step takes: chains end where the time left is too short for another.
 TEST_P(SnapshotsTest, theLastSnapshotIsAtTheLimit) {
-  settings_.seconds = 0.05;
-  const auto own = session();
-  unsigned taken = 0;
-  const unsigned count =
-      renderWithSnapshots(*own, settings_, SnapshotSchedule::every(0.025), [&](unsigned) { ++taken; });
-  EXPECT_EQ(taken, 2u);
-  EXPECT_EQ(count, 2u);
+  for (const double seconds : {0.05, 0.002, 0.0001}) {
+    settings_.seconds = seconds;
+    const auto own = session();
+    unsigned taken = 0;
+    const unsigned count =
+        renderWithSnapshots(*own, settings_, SnapshotSchedule::every(seconds / 2), [&](unsigned) { ++taken; });
+    EXPECT_EQ(taken, 2u) << seconds;
+    EXPECT_EQ(count, 2u) << seconds;
+  }
 }
 
 // Iterations of a session that starts at k are those of one that rendered k before: sums agree, to rounding.

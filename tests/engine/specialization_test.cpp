@@ -40,11 +40,12 @@ class SpecializationTest : public testing::TestWithParam<Variant> {
 
 TEST_P(SpecializationTest, diffuseSceneByEveryKernel) {
   const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
-  expectSameImages(scene, {Specialization::diffuse, Specialization::smooth, Specialization::plain});
-  expectSameImages(
-      scene,
-      {Specialization::diffuseBidirectional, Specialization::smoothBidirectional, Specialization::plainBidirectional},
-      Method::bpt);
+  expectSameImages(scene,
+                   {Specialization::diffuse, Specialization::smooth, Specialization::plain, Specialization::complete});
+  expectSameImages(scene,
+                   {Specialization::diffuseBidirectional, Specialization::smoothBidirectional,
+                    Specialization::plainBidirectional, Specialization::complete},
+                   Method::bpt);
 }
 
 void addLensAndFilter(Scene& scene) {
@@ -73,8 +74,8 @@ TEST_P(SpecializationTest, plainSceneByTheKernelsThatCoverIt) {
       roomScene({.light = RoomLight::envmap, .materials = RoomMaterials::mixed, .width = kWidth, .height = kHeight});
   addRoomLight(scene, RoomLight::directional);
   addLensAndFilter(scene);
-  expectSameImages(scene, {Specialization::plain});
-  expectSameImages(scene, {Specialization::plainBidirectional}, Method::bpt);
+  expectSameImages(scene, {Specialization::plain, Specialization::complete});
+  expectSameImages(scene, {Specialization::plainBidirectional, Specialization::complete}, Method::bpt);
 }
 
 INSTANTIATE_TEST_SUITE_P(PathTracing, SpecializationTest, testing::ValuesIn(allVariants()),
@@ -94,11 +95,21 @@ TEST(Specialization, isTheFirstThatCoversTheScene) {
 TEST(Specialization, hasTexturesAndShadingNormalsOnlyWhereTheSceneDoes) {
   constexpr uint32_t kDear = kTextures | kShadingNormals | kNormalMaps;
   if (!isCompiled(Precision::floating, Specialization::plain)) GTEST_SKIP() << "only general kernels are compiled";
-  for (uint32_t features = 0; features <= kAllFeatures; ++features) {
+  for (uint32_t features = 0; features <= kGeneralFeatures; ++features) {
     const uint32_t chosen = featuresOf(chooseSpecialization(features, Precision::floating));
     EXPECT_EQ((chosen & kDear) != 0, (features & kDear) != 0) << features;
     EXPECT_EQ(features & ~chosen, 0u) << features;
   }
+}
+
+// What few scenes have is in no set but the last, which has everything.
+TEST(Specialization, isCompleteForCompoundBsdfsAndInstances) {
+  for (const Precision precision : {Precision::floating, Precision::doubled}) {
+    for (const uint32_t feature : {uint32_t{kCompoundBsdfs}, uint32_t{kInstances}}) {
+      EXPECT_EQ(chooseSpecialization(feature, precision), Specialization::complete);
+    }
+  }
+  EXPECT_EQ(featuresOf(Specialization::complete), kAllFeatures);
 }
 
 TEST(Specialization, thatDoesNotCoverTheSceneIsRefused) {

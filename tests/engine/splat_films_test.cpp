@@ -35,7 +35,7 @@ struct Queue {
 template <class S>
 AddSplats<S> addSplatsOf(Isa isa) {
   constexpr Precision kPrecision = sizeof(S) == 8 ? Precision::doubled : Precision::floating;
-  return findStages<S>(isa, kPrecision, Specialization::general).addSplats;
+  return findStages<S>(isa, kPrecision, chooseSpecialization(0, kPrecision)).addSplats;
 }
 
 using SplatSumsTest = IsaTest;

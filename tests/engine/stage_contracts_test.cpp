@@ -65,7 +65,7 @@ class StageContractsTest : public testing::Test {
     context_.depth = 0;
     generate(context_, wave_);
     context_.depth = 1;
-    chooseIntersector(stages_, plan_.accel()).extend(context_, wave_);
+    chooseIntersector(stages_, *plan_.scene).extend(context_, wave_);
     stages_.arrive(context_, wave_);
   }
 };
@@ -79,7 +79,7 @@ TEST_F(StageContractsTest, areKeptByTheStages) {
   stages_.nextEvent(context_, wave_);
   ASSERT_GT(wave_.shadowRays.size, 0u);
   expectBroken("next event", "");
-  chooseIntersector(stages_, plan_.accel()).extend(context_, wave_);
+  chooseIntersector(stages_, *plan_.scene).extend(context_, wave_);
   expectBroken("extend", "");
 }
 

@@ -177,8 +177,7 @@ TEST_P(StrategyTest, allMakeTheSameImageAndTheirWeightedSumIsIt) {
   const ImagesOfSeeds alone = walkSeeds(scene, kAlone);
   const ImagesOfSeeds weighted =
       walkSeeds(scene, {.emission = true, .nextEvent = true, .connect = true, .camera = true});
-  const bool delta = GetParam().light == RoomLight::point || GetParam().light == RoomLight::spot ||
-                     GetParam().light == RoomLight::directional;
+  const bool delta = isDelta(GetParam().light);
   for (uint32_t k = 1; k <= kLongest; ++k) {
     const std::string edges = ", k = " + std::to_string(k);
     const uint32_t reference = k == 1 ? 0 : 1;  // next event estimation where there is any
@@ -210,7 +209,8 @@ INSTANTIATE_TEST_SUITE_P(
                     StrategyCase{"shell", RoomLight::shell}, StrategyCase{"point", RoomLight::point},
                     StrategyCase{"spot", RoomLight::spot}, StrategyCase{"directional", RoomLight::directional},
                     StrategyCase{"constant", RoomLight::constant}, StrategyCase{"envmap", RoomLight::envmap},
-                    StrategyCase{"tilted", RoomLight::mesh, true}, StrategyCase{"lens", RoomLight::quad, false, true},
+                    StrategyCase{"projector", RoomLight::projector}, StrategyCase{"tilted", RoomLight::mesh, true},
+                    StrategyCase{"lens", RoomLight::quad, false, true},
                     StrategyCase{"tent", RoomLight::quad, false, false, ReconstructionFilter::tent},
                     StrategyCase{"gaussian", RoomLight::quad, false, true, ReconstructionFilter::gaussian}),
     [](const auto& instance) { return std::string(instance.param.name); });

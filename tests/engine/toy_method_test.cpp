@@ -24,7 +24,7 @@ double meanOf(const MethodPage& page, const Scene& scene, uint64_t seed, uint32_
   RenderSettings settings;
   settings.isa = bestIsa();
   RenderPlan<float> plan = planRender<float>(scene, settings);
-  plan.pipeline = makePipeline(page, *plan.stages, chooseIntersector(*plan.stages, plan.accel()));
+  plan.pipeline = makePipeline(page, *plan.stages, chooseIntersector(*plan.stages, *plan.scene));
   Film film(filmArea(scene.film));
   const size_t pixels = film.area().pixels.size();
   Wave<float> wave(pixels, plan.needs);

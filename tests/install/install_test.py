@@ -31,6 +31,7 @@ class Installed(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
         first = pathlib.Path(cls.folder.name) / "first"
         run("cmake", "--install", BUILD, "--prefix", first)
+        cls.folders = {path.name for path in first.iterdir()}
         cls.prefix = first.with_name("moved")
         first.rename(cls.prefix)  # nothing may depend on where it was installed
         cls.program = cls.prefix / "bin" / "wavecrest"
@@ -45,6 +46,9 @@ class Installed(unittest.TestCase):
         run(self.program, "render", "cornell-mirror", "-m", "vcm", "--spp", 4, "--seed", 7, "--size", "32x24",
             "--threads", 2, "-o", image)  # fmt: skip
         return image
+
+    def test_the_usual_folders_are_all_that_is_installed(self):
+        self.assertEqual(self.folders, {"bin", "include", "lib", "share"})  # nothing of the wheel's
 
     def test_the_program_uses_the_installed_scenes(self):
         mirror = self.one("share/wavecrest/scenes/cornell-mirror.xml")

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/compile/materials.h"
@@ -12,18 +14,52 @@
 
 namespace wavecrest {
 
+// The records of a material and of its parts, which follow it.
+struct BsdfTables {
+  std::vector<MaterialRecord> materials;
+  std::vector<CompoundRecord> compounds;
+};
+
 struct BsdfCase {
   std::string name;
-  MaterialRecord record;
+  std::shared_ptr<BsdfTables> tables;
   bool back = false;  // light may also come from below
+  const MaterialRecord& record = tables->materials.front();
+  // Null where the BSDF is no compound one.
+  const CompoundRecord* compounds =
+      (bitOf(static_cast<BsdfKind>(record.kind)) & kCompoundKinds) != 0 ? tables->compounds.data() : nullptr;
+
+  bool isAmong(uint32_t kinds) const { return (bitOf(static_cast<BsdfKind>(record.kind)) & kinds) != 0; }
 };
 
 inline BsdfCase bsdfCase(std::string name, decltype(Material::kind) kind, bool back = false,
-                         std::optional<double> opacity = {}) {
-  Material material;
-  material.kind = kind;
+                         std::optional<double> opacity = {}, const std::vector<Material>& parts = {}) {
+  Scene scene;
+  Material& material = scene.materials.emplace_back();
+  material.kind = std::move(kind);
   if (opacity) material.opacity = TexturedFloat{*opacity};
-  return {std::move(name), compileMaterial(material, Scene{}), back};
+  scene.materials.insert(scene.materials.end(), parts.begin(), parts.end());
+  auto tables = std::make_shared<BsdfTables>();
+  for (const Material& each : scene.materials) {
+    tables->materials.push_back(compileMaterial(each, scene));
+    tables->compounds.push_back(compileCompound(each));
+  }
+  return {std::move(name), std::move(tables), back};
+}
+
+inline Material partOf(decltype(Material::kind) kind, std::optional<double> opacity = {}, bool twoSided = false) {
+  Material part;
+  part.kind = std::move(kind);
+  part.twoSided = twoSided;
+  if (opacity) part.opacity = TexturedFloat{*opacity};
+  return part;
+}
+// A blend of these parts.
+inline BsdfCase blendCase(std::string name, std::vector<double> weights, const std::vector<Material>& parts, bool back,
+                          std::optional<double> opacity = {}) {
+  Blend blend{.materials = {}, .weights = std::move(weights)};
+  for (uint32_t i = 1; i <= parts.size(); ++i) blend.materials.push_back(i);
+  return bsdfCase(std::move(name), blend, back, opacity, parts);
 }
 
 inline TexturedRgb rgb(double r, double g, double b) { return {{r, g, b}}; }
@@ -44,6 +80,69 @@ inline Plastic plastic(double alpha, double eta = 1.5, Distribution distribution
 }
 inline Phong phong(double exponent) {
   return {.diffuseReflectance = rgb(0.5, 0.3, 0.1), .specularReflectance = rgb(0.2, 0.4, 0.3), .exponent = exponent};
+}
+
+inline Principled principledCoat() {
+  return {.baseColor = rgb(0.8, 0.5, 0.2),
+          .roughness = {0.4},
+          .anisotropic = {0.6},
+          .specTint = {0.5},
+          .sheen = {0.1},
+          .sheenTint = {0.5},
+          .flatness = {0.4},
+          .metallic = {0.3},
+          .clearcoat = {0.8},
+          .clearcoatGloss = {0.2}};
+}
+inline Principled principledGlass() {
+  return {.baseColor = rgb(0.9, 0.6, 0.3),
+          .eta = 1.4,
+          .roughness = {0.5},
+          .anisotropic = {0.3},
+          .specTrans = {0.7},
+          .specTint = {0.2},
+          .metallic = {0.2}};
+}
+inline Principled principledSheet() {
+  return {.thin = true,
+          .baseColor = rgb(0.7, 0.5, 0.3),
+          .eta = 1.5,
+          .roughness = {0.6},
+          .anisotropic = {0.4},
+          .specTrans = {0.5},
+          .specTint = {0.3},
+          .sheen = {0.2},
+          .flatness = {0.5},
+          .diffTrans = {0.8}};
+}
+
+// Compound kinds: two roughnesses, principled ones, and blends of all sorts of lobes.
+inline void appendCompound(std::vector<BsdfCase>& all) {
+  for (const Distribution distribution : {Distribution::ggx, Distribution::beckmann}) {
+    const std::string suffix = distribution == Distribution::ggx ? "" : "Beckmann";
+    Conductor metal = aluminium(0.1, distribution);
+    metal.alphaV = TexturedFloat{0.4};
+    Dielectric ice = glass(0.5, 1.5, distribution);
+    ice.alphaV = TexturedFloat{0.2};
+    all.push_back(bsdfCase("anisotropicConductor" + suffix, metal));
+    all.push_back(bsdfCase("anisotropicDielectric" + suffix, ice, true));
+  }
+  all.push_back(bsdfCase("principledCoat", principledCoat()));
+  all.push_back(bsdfCase("principledGlass", principledGlass(), true));
+  all.push_back(bsdfCase("principledOpacity", principledCoat(), false, 0.4));
+  all.push_back(bsdfCase("principledThin", principledSheet(), true));
+  const Material paint = partOf(Diffuse{rgb(0.8, 0.5, 0.2)}), black = partOf(Diffuse{rgb(0, 0, 0)});
+  all.push_back(blendCase("blendMetal", {0.3, 0.7}, {paint, partOf(aluminium(0.3))}, false));
+  all.push_back(blendCase("blendBlack", {0.5, 0.5}, {black, partOf(aluminium(0.2))}, false));
+  all.push_back(
+      blendCase("blendMirror", {0.6, 0.4}, {partOf(plastic(0)), partOf(Conductor{.perfectMirror = true})}, false));
+  all.push_back(
+      blendCase("blendDeltas", {0.6, 0.4}, {partOf(aluminium(0)), partOf(Conductor{.perfectMirror = true})}, false));
+  all.push_back(
+      blendCase("blendGlass", {0.5, 0.3, 0.2}, {partOf(glass(0.3, 1.5)), paint, partOf(glass(0, 1.5))}, true));
+  all.push_back(
+      blendCase("blendHoles", {0.4, 0.4}, {partOf(plastic(0.2), 0.5), partOf(principledCoat(), 0.7)}, false, 0.8));
+  all.push_back(blendCase("blendTwoSided", {0.5, 0.5}, {partOf(Diffuse{rgb(0.6, 0.6, 0.6)}, {}, true), paint}, true));
 }
 
 // Every kind, with parameters from the middle of their ranges; extremes have a test of their own.
@@ -85,6 +184,7 @@ inline const std::vector<BsdfCase>& bsdfCases() {
     all.push_back(bsdfCase("roughPlasticNonlinear", saturated));
     saturated.alpha = {0};
     all.push_back(bsdfCase("plasticNonlinear", saturated));
+    appendCompound(all);
     return all;
   }();
   return cases;

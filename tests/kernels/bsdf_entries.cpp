@@ -8,16 +8,12 @@
 WAVECREST_SIMD_BEGIN
 namespace {
 
-constexpr uint32_t kAllFeatures = kSpecializationFeatures[static_cast<size_t>(Specialization::general)];
-
 // Calls function(policy) with the policy of the given precision.
 template <class Function>
 auto withPolicy(Precision precision, Function&& function) {
   switch (precision) {
     case Precision::doubled:
       return function(DoublePrecision{});
-    case Precision::fast:
-      return function(FastPrecision{});
     default:
       return function(FloatPrecision{});
   }
@@ -52,13 +48,23 @@ void storeLanes(Vec3<Real> a, size_t first, size_t count, Assign&& assign) {
 }
 
 template <class P>
-BsdfInputOf<P, kAllFeatures> inputOf(const BsdfQuery& query) {
+SceneView<typename P::Storage> sceneOf(const BsdfQuery& query) {
   SceneView<typename P::Storage> scene;
   scene.materials = query.material;
+  scene.compounds = query.compounds;
   scene.materialCount = 1;
+  return scene;
+}
+template <class P>
+BsdfInputOf<P, kAllFeatures> inputOf(const SceneView<typename P::Storage>& scene, const BsdfQuery& query) {
+  using Real = typename P::Real;
   BsdfInputOf<P, kAllFeatures> input(scene, UInt(0u));
   input.walk = query.walk;
   input.lobes = query.specularOnly ? Lobes::specularOnly : Lobes::all;
+  if constexpr (has(kAllFeatures, kCompoundBsdfs)) {
+    input.tangentX = Real(kTangent[0]);
+    input.tangentY = Real(kTangent[1]);
+  }
   return input;
 }
 
@@ -66,7 +72,8 @@ template <class P>
 void evalBlocks(const BsdfQuery& query, std::span<const Direction> fix, std::span<const Direction> gen,
                 BsdfEvaluation* out) {
   using Real = typename P::Real;
-  const BsdfInputOf<P, kAllFeatures> input = inputOf<P>(query);
+  const SceneView<typename P::Storage> scene = sceneOf<P>(query);
+  const BsdfInputOf<P, kAllFeatures> input = inputOf<P>(scene, query);
   for (size_t i = 0; i < fix.size(); i += kLanes) {
     const auto value = evalBsdf<P, kAllFeatures>(input, firstLanes(fix.size() - i), loadDirections<Real>(fix, i),
                                                  loadDirections<Real>(gen, i));
@@ -80,7 +87,8 @@ template <class P>
 void sampleBlocks(const BsdfQuery& query, std::span<const Direction> fix, std::span<const std::array<float, 3>> u,
                   BsdfDraw* out) {
   using Real = typename P::Real;
-  const BsdfInputOf<P, kAllFeatures> input = inputOf<P>(query);
+  const SceneView<typename P::Storage> scene = sceneOf<P>(query);
+  const BsdfInputOf<P, kAllFeatures> input = inputOf<P>(scene, query);
   const size_t count = fix.size();
   for (size_t i = 0; i < count; i += kLanes) {
     const auto number = [&](size_t k) { return loadLanes<Float>(i, count, [&](size_t item) { return u[item][k]; }); };

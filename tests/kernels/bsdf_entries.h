@@ -1,4 +1,4 @@
-// Entry points of bsdf_entries.cpp: the BSDFs and Fresnel functions of the general feature set, under every precision.
+// Entry points of bsdf_entries.cpp: the BSDFs and Fresnel functions, in float and double.
 #pragma once
 
 #include <array>
@@ -12,6 +12,9 @@
 namespace wavecrest {
 
 using Direction = std::array<double, 3>;
+
+// dp/du in the shading frame.
+constexpr std::array<double, 2> kTangent{0.8, 0.6};
 
 struct BsdfEvaluation {
   std::array<double, 3> f;
@@ -28,6 +31,7 @@ struct BsdfDraw {
 // One material, seen by one walk.
 struct BsdfQuery {
   const MaterialRecord* material;
+  const CompoundRecord* compounds = nullptr;  // of a compound BSDF, and of its parts, which follow it
   Precision precision = Precision::floating;
   Walk walk = Walk::camera;
   bool specularOnly = false;

@@ -17,23 +17,31 @@ double tolerated(Precision precision, double value) {
   return precision == Precision::doubled ? 1e-9 * value + 1e-12 : 2e-3 * value + 1e-5;
 }
 
-// Index on the side of a direction over the exterior one, for a dielectric.
+// Index on the side of a direction over the exterior one, for a dielectric or a blend with one.
 double sideIndex(const BsdfCase& bsdf, const Direction& d) {
-  return bsdf.back && d[2] < 0 ? double{bsdf.record.eta[0]} : 1;
+  if (!bsdf.back || d[2] > 0 || bsdf.isAmong(bitOf(BsdfKind::principledThin))) return 1;
+  for (const MaterialRecord& part : bsdf.tables->materials) {
+    if (part.eta[0] != 0) return part.eta[0];
+  }
+  return 1;
 }
+
+bool isBeckmann(const BsdfCase& bsdf) { return bsdf.name.find("eckmann") != std::string::npos; }
 
 // f(l, e) / eta_e^2 = f(e, l) / eta_l^2 (Veach 1997, 5.2), and pdfReverse is pdf with the directions swapped.
 TEST_P(BsdfSymmetryTest, valuesAreReciprocalAndReverseDensitiesAreSwapped) {
   const auto a = randomDirections(kPairs, 1), b = randomDirections(kPairs, 2);
   for (const BsdfCase& bsdf : bsdfCases()) {
-    for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
+    for (const Precision precision : {Precision::floating, Precision::doubled}) {
       SCOPED_TRACE(bsdf.name);
-      const BsdfQuery query{.material = &bsdf.record, .precision = precision};
+      const BsdfQuery query{.material = &bsdf.record, .compounds = bsdf.compounds, .precision = precision};
       const auto forward = evaluate(entries<BsdfEntries>(), query, a, b);
       const auto backward = evaluate(entries<BsdfEntries>(), query, b, a);
       for (size_t i = 0; i < kPairs; ++i) {
         const double eyeA = std::pow(sideIndex(bsdf, a[i]), 2), eyeB = std::pow(sideIndex(bsdf, b[i]), 2);
-        for (size_t k = 0; k < 3; ++k) {
+        // Light goes through a sheet by a rule that tells the eye's side from the light's (bsdf_principled_thin.h).
+        const bool ordered = bsdf.isAmong(bitOf(BsdfKind::principledThin)) && a[i][2] * b[i][2] < 0;
+        for (size_t k = 0; k < 3 && !ordered; ++k) {
           const double left = forward[i].f[k] / eyeA, right = backward[i].f[k] / eyeB;
           ASSERT_NEAR(left, right, tolerated(precision, right));
         }
@@ -49,7 +57,7 @@ TEST_P(BsdfSymmetryTest, bothWalksSeeTheSameValue) {
   const auto eye = randomDirections(kPairs, 3), light = randomDirections(kPairs, 4);
   for (const BsdfCase& bsdf : bsdfCases()) {
     SCOPED_TRACE(bsdf.name);
-    BsdfQuery query{.material = &bsdf.record, .precision = Precision::doubled};
+    BsdfQuery query{.material = &bsdf.record, .compounds = bsdf.compounds, .precision = Precision::doubled};
     const auto fromCamera = evaluate(entries<BsdfEntries>(), query, eye, light);
     query.walk = Walk::light;
     const auto fromLight = evaluate(entries<BsdfEntries>(), query, light, eye);
@@ -66,7 +74,9 @@ TEST_P(BsdfSymmetryTest, bothWalksSeeTheSameValue) {
 TEST_P(BsdfSymmetryTest, deltaLobesLeadBack) {
   for (const BsdfCase& bsdf : bsdfCases()) {
     SCOPED_TRACE(bsdf.name);
-    const BsdfQuery query{.material = &bsdf.record, .precision = Precision::doubled};
+    // Several parts of these lead into the same direction, with probabilities of their own.
+    if (bsdf.isAmong(kBlendKinds) && bsdf.name != "blendGlass") continue;
+    const BsdfQuery query{.material = &bsdf.record, .compounds = bsdf.compounds, .precision = Precision::doubled};
     for (const Direction& fix : fixDirections(bsdf)) {
       for (const BsdfDraw& draw : drawSamples(entries<BsdfEntries>(), query, fix, effort(200, 20), 8)) {
         if (!draw.specular || draw.weight[0] == 0) continue;
@@ -92,11 +102,11 @@ TEST_P(BsdfSymmetryTest, deltaLobesLeadBack) {
 // an ulp of the directions, hence two bounds: one on the worst, one on the mean over all pairs.
 TEST_P(BsdfSymmetryTest, everyInstructionSetAgreesWithTheScalarTwin) {
   for (const BsdfCase& bsdf : bsdfCases()) {
-    for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
+    for (const Precision precision : {Precision::floating, Precision::doubled}) {
       SCOPED_TRACE(bsdf.name + std::to_string(static_cast<int>(precision)));
-      const BsdfQuery query{.material = &bsdf.record, .precision = precision};
+      const BsdfQuery query{.material = &bsdf.record, .compounds = bsdf.compounds, .precision = precision};
       // Beckmann's exact masking takes its error function in float, whatever the precision.
-      const bool inFloat = precision != Precision::doubled || bsdf.name.starts_with("beckmann");
+      const bool inFloat = precision != Precision::doubled || isBeckmann(bsdf);
       const Precision rounding = inFloat && precision == Precision::doubled ? Precision::floating : precision;
       const double ulp = inFloat ? 0x1p-23 : 0x1p-52;
       const auto fix = randomDirections(kPairs, 5), gen = randomDirections(kPairs, 6);
@@ -116,7 +126,7 @@ TEST_P(BsdfSymmetryTest, everyInstructionSetAgreesWithTheScalarTwin) {
       entries<BsdfEntries>().sample(query, fix, u, draws.data());
       twin<BsdfEntries>().sample(query, fix, u, twins.data());
       // Beckmann's slopes are drawn in float under every precision.
-      const double drawUlp = bsdf.name.starts_with("beckmann") ? 0x1p-23 : ulp;
+      const double drawUlp = isBeckmann(bsdf) ? 0x1p-23 : ulp;
       size_t otherLobe = 0;
       for (size_t i = 0; i < kPairs; ++i) {
         const bool drawn = draws[i].weight[0] > 0, drawnByTwin = twins[i].weight[0] > 0;

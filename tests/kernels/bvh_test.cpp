@@ -7,10 +7,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstring>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <random>
+#include <thread>
 
 #include "tests/effort.h"
 #include "tests/kernels/closed_bodies.h"
@@ -141,6 +145,52 @@ TEST(BvhTest, boxesHoldEverythingBelowThem) {
   }
 }
 
+// ---- what the hierarchy depends on ----------------------------------------------------------------------------------
+
+void expectSame(const BvhView& a, uint32_t atA, const BvhView& b, uint32_t atB) {
+  ASSERT_EQ(atA, atB);
+  switch (entryOf(atA)) {
+    case BvhEntry::node: {
+      const auto &x = a.at<BvhNode>(atA), &y = b.at<BvhNode>(atB);
+      ASSERT_EQ(std::memcmp(&x, &y, offsetof(BvhNode, bounds) + sizeof(x.bounds)), 0);
+      for (const uint32_t child : x.children) expectSame(a, child, b, child);
+      break;
+    }
+    case BvhEntry::faces:
+      ASSERT_EQ(std::memcmp(a.address(atA), b.address(atB), sizeof(FaceLeaf)), 0);
+      break;
+    case BvhEntry::spheres:
+      ASSERT_EQ(std::memcmp(a.address(atA), b.address(atB), sizeof(SphereLeaf)), 0);
+      break;
+    case BvhEntry::end:
+      break;
+  }
+}
+
+TEST(BvhTest, doesNotDependOnWhoBuildsIt) {
+  const auto list =
+      bumpySphere(160, 0.2).walls;  // enough triangles for several tasks on every level of the first three
+  const double eye[3] = {};
+  const ParallelFor backwards = [](size_t count, const std::function<void(size_t)>& body) {
+    for (size_t i = count; i-- > 0;) body(i);
+  };
+  const ParallelFor byThreads = [](size_t count, const std::function<void(size_t)>& body) {
+    std::atomic<size_t> next{0};
+    const auto work = [&] {
+      for (size_t i = next++; i < count; i = next++) body(i);
+    };
+    std::thread other(work);
+    work();
+    other.join();
+  };
+  const PrimitiveSource source = PrimitiveSource::of(list.data(), list.size());
+  const Bvh inOrder(source, eye, inTurn);
+  for (const ParallelFor& parallelFor : {backwards, byThreads}) {
+    const Bvh other(source, eye, parallelFor);
+    expectSame(inOrder.view(), inOrder.view().root, other.view(), other.view().root);
+  }
+}
+
 // ---- what a hit depends on ------------------------------------------------------------------------------------------
 
 class BvhRaysTest : public testing::TestWithParam<Isa> {
@@ -250,6 +300,64 @@ TEST_P(BvhRaysTest, raysThatAreNoRaysMissAndHarmNoOther) {
         ASSERT_EQ(got[i], want[i]) << name << " ray " << i;
       }
     }
+  }
+}
+
+// ---- shadow rays ----------------------------------------------------------------------------------------------------
+
+// Segments to a few lights, most of them behind something: from one place in packets, from anywhere, and along the
+// axes; among them some that are no rays. Neither packets nor what blocked the ray before changes what a ray sees.
+TEST_P(BvhRaysTest, shadowRaysSeeWhatTheyWouldSeeAlone) {
+  RandomPoints random(35);
+  auto list = crowd(300);
+  for (const double side : {-1.5, 1.5}) {  // a wall in front of a light
+    list.push_back(facePrimitive(PrimitiveKind::quad, {side, -0.8, -2}, {0, 1.6, 0}, {0, 0, 4}));
+  }
+  const StageScene<float> scene(list);
+  const Point lights[] = {{2, 0, 0}, {-2, 0.1, 0.2}, {0, 0, 3}};
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const size_t count : {size_t{1}, size_t{7}, size_t{255}, size_t{257}, RayBatch::kCapacity}) {
+    RayBatch batch;
+    for (size_t i = 0; i < count; ++i) {
+      const Point end = lights[i / 32 % 3] + random.inCube(0.02);
+      const Point start = i / 64 % 2 == 0 ? Point{0.1, 1.2, 0.3} + random.inCube(0.01) : random.inCube(1.2);
+      if (i % 50 == 17) {
+        batch.push({roundedToFloat(start), {nan, 1, 0}});
+      } else if (i % 50 == 18) {
+        batch.push({roundedToFloat(start), {i % 4 < 2 ? 3.0 : -3.0, 0, 0}});
+      } else {
+        batch.push(roundedRay(start, end - start));
+      }
+    }
+    std::vector<bool> want, sure;
+    batch.extend(named("bvh"), scene.view);
+    for (size_t i = 0; i < count; ++i) {
+      const Hits& hits = batch.wave.hits;
+      if (hits.primitive[i] == kMiss) {
+        want.push_back(false);
+        sure.push_back(true);
+        continue;
+      }
+      const auto& hit = scene.precise[hits.primitive[i]];
+      const Rays<float>& rays = batch.wave.rays;
+      const Point start{rays.originX[i], rays.originY[i], rays.originZ[i]};
+      const Point segment{rays.directionX[i], rays.directionY[i], rays.directionZ[i]};
+      const bool sphere = hit.kind == static_cast<uint32_t>(PrimitiveKind::sphere);
+      const double t =
+          sphere ? double{hits.u[i]} : dot(corner(hit, hits.u[i], hits.v[i]) - start, segment) / dot(segment, segment);
+      want.push_back(t < 1);
+      sure.push_back(std::abs(t - 1) > 1e-4);
+    }
+    const std::vector<bool> got = batch.occluded(named("bvh"), scene.view, 1);
+    for (size_t i = 0; i < count; ++i) {
+      if (sure[i]) {
+        ASSERT_EQ(got[i], want[i]) << "ray " << i << " of " << count;
+      }
+    }
+    const auto blocked = static_cast<size_t>(std::count(want.begin(), want.end(), true));
+    if (count < 200) continue;
+    EXPECT_GT(blocked, count / 3);
+    EXPECT_LT(blocked, count - count / 10);
   }
 }
 

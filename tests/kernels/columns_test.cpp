@@ -150,6 +150,7 @@ TEST(Columns, droppedColumnsCostNothing) {
 constexpr ColumnNeeds kPlainest{.shadingNormals = false,
                                 .textures = false,
                                 .normalMaps = false,
+                                .tangents = false,
                                 .rouletteScale = false,
                                 .connections = false,
                                 .bsdfOrder = false,
@@ -208,6 +209,7 @@ TYPED_TEST(WaveTest, eachNeedCostsItsColumns) {
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.shadingNormals = true; }), 3 * kReal);
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.textures = true; }), 2 * sizeof(float));
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.normalMaps = true; }), 3 * kReal);
+  EXPECT_EQ(extra([](ColumnNeeds& n) { n.tangents = true; }), sizeof(float));
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.rouletteScale = true; }), kReal);
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.connections = true; }),
             2 * kReal + 3 * sizeof(uint32_t) + sizeof(VertexRow<TypeParam>));

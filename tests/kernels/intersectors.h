@@ -22,7 +22,7 @@ inline std::vector<Intersector> allIntersectors() {
   for (const Isa isa : availableIsas()) {
     const auto& stages = findStages<float>(
         isa, Precision::floating, chooseSpecialization(featuresOf(Specialization::smooth), Precision::floating));
-    const auto& precise = findStages<double>(isa, Precision::doubled, Specialization::general);
+    const auto& precise = findStages<double>(isa, Precision::doubled, chooseSpecialization(0, Precision::doubled));
     const std::string suffix = "_" + std::string(toString(isa));
     list.push_back({"packets" + suffix, stages.extendBvh, stages.occludeBvh, precise.extendBvh, 1});
     list.push_back({"bvh" + suffix, stages.extendBvh, stages.occludeBvh, precise.extendBvh});

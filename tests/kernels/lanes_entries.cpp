@@ -72,7 +72,6 @@ WAVECREST_INLINE void storeRecords(const T* columns, bool stream, T* out) {
 const LaneOperation<float> kFloatOperations[] = {
     WAVECREST_REAL_OPERATIONS(Float, float),
     WAVECREST_OPERATION(float, "approximateReciprocal", approximateReciprocal(a)),
-    WAVECREST_OPERATION(float, "approximateReciprocalSqrt", approximateReciprocalSqrt(abs(a))),
     WAVECREST_OPERATION(float, "flipSignBit", fromBits(bits(a) ^ UInt(0x80000000u))),
 };
 

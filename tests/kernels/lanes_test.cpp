@@ -56,7 +56,6 @@ Reference<T> realReference() {
 Reference<float> floatReference() {
   Reference<float> reference = realReference<float>();
   reference["approximateReciprocal"] = [](float a, float, float) { return 1 / a; };
-  reference["approximateReciprocalSqrt"] = [](float a, float, float) { return 1 / std::sqrt(std::abs(a)); };
   reference["flipSignBit"] = [](float a, float, float) { return -a; };
   return reference;
 }

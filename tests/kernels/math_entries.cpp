@@ -2,7 +2,7 @@
 #include "tests/kernels/math_entries.h"
 
 #include "kernels/simd/isa_table.h"
-#include "kernels/simd/math_fast.h"
+#include "kernels/simd/math.h"
 
 WAVECREST_SIMD_BEGIN
 namespace {
@@ -28,12 +28,7 @@ namespace {
       WAVECREST_FUNCTION(T, "acos", acos(a)), WAVECREST_FUNCTION(T, "atan", atan(a)),                       \
       WAVECREST_FUNCTION(T, "atan2", atan2(a, b)), WAVECREST_FUNCTION(T, "pow", pow(a, b))
 
-const MathFunction<float> kFloats[] = {
-    WAVECREST_FUNCTIONS(float),
-    WAVECREST_FUNCTION(float, "fastLog2", fastLog2(a)),
-    WAVECREST_FUNCTION(float, "fastExp2", fastExp2(a)),
-    WAVECREST_FUNCTION(float, "fastPow", fastPow(a, b)),
-};
+const MathFunction<float> kFloats[] = {WAVECREST_FUNCTIONS(float)};
 const MathFunction<double> kDoubles[] = {WAVECREST_FUNCTIONS(double)};
 
 constexpr MathEntries kEntries = {.lanes = kLanes, .floats = kFloats, .doubles = kDoubles};

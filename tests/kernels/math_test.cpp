@@ -95,17 +95,6 @@ const Case kCases[] = {
      {0.99, 1.01},
      {0.99, 1.01},
      {0, 5000}},
-    {"fastLog2", [](Long a, Long) { return std::log2(a); }, Measure::ulp, 8e-6 * 0x1p24, 0, {1e-37, 1e38, true}, {}},
-    {"fastLog2", [](Long a, Long) { return std::log2(a); }, Measure::ulp, 8e-6 * 0x1p24, 0, {0.5, 2}, {}},
-    {"fastExp2", [](Long a, Long) { return std::exp2(a); }, Measure::ulp, 3e-6 * 0x1p24, 0, {-126, 127.4}, {}},
-    {"fastPow",
-     [](Long a, Long b) { return std::pow(a, b); },
-     Measure::scaled,
-     6e-6 * 0x1p24,
-     0,
-     {1e-4, 1, true},
-     {},
-     {0, 9}},
 };
 
 template <class T>

@@ -211,9 +211,8 @@ uint64_t runMerge(const MergeCase& param, const Cloud<S>& cloud, const Photons<S
   context.depth = 1;
   context.photons = &found.map;
   context.counters = &counters;
-  const auto specialization =
-      param.precision == Precision::doubled ? Specialization::general : Specialization::diffuseBidirectional;
-  findStages<S>(param.isa, param.precision, chooseSpecialization(featuresOf(specialization), param.precision))
+  findStages<S>(param.isa, param.precision,
+                chooseSpecialization(featuresOf(Specialization::diffuseBidirectional), param.precision))
       .merge(context, wave);
   return counters.merges;
 }

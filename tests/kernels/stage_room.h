@@ -156,6 +156,7 @@ inline ColumnNeeds columnNeedsOf(Specialization specialization) {
   return {.shadingNormals = (features & kShadingNormals) != 0,
           .textures = (features & kTextures) != 0,
           .normalMaps = (features & kNormalMaps) != 0,
+          .tangents = (features & kCompoundBsdfs) != 0,
           .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
           .connections = (features & kBidirectional) != 0,
           .bsdfOrder = (features & (kSpecularBsdfs | kLayeredBsdfs)) != 0};
@@ -170,7 +171,7 @@ struct Choice {
 inline std::vector<Choice> allChoices() {
   std::vector<Choice> choices;
   for (const Isa isa : availableIsas()) {
-    for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
+    for (const Precision precision : {Precision::floating, Precision::doubled}) {
       for (size_t i = 0; i < kSpecializationCount; ++i) {
         const auto specialization = static_cast<Specialization>(i);
         if (isCompiled(precision, specialization)) choices.push_back({isa, precision, specialization});

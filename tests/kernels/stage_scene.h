@@ -114,6 +114,7 @@ class StageScene {
     view.embree = embree->handle();
     view.bvh = &bvh->view();
     view.radius = 4;
+    std::fill_n(view.halfExtent, 3, 4.0);
   }
 
   // Makes all lights equally likely, by an alias table that uses its aliases.

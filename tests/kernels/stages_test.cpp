@@ -153,8 +153,9 @@ TEST_P(StageTest, equalsScalarTwin) {
 TEST(Roulette, scaleUndoesTheCompressionOfRadiance) {
   for (const Isa isa : availableIsas()) {
     const StageScene<float> scene = makeRoom<float>(true, true, false);
-    const Stages<float>& stages = findStages<float>(isa, Precision::floating, Specialization::general);
-    Wave<float> wave(kPaths, columnNeedsOf(Specialization::general));
+    const Specialization general = chooseSpecialization(kGeneralFeatures, Precision::floating);
+    const Stages<float>& stages = findStages<float>(isa, Precision::floating, general);
+    Wave<float> wave(kPaths, columnNeedsOf(general));
     StageCounters counters;
     StageContext<float> context;
     context.scene = &scene.view;

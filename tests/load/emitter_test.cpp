@@ -82,12 +82,44 @@ TEST(SpotLight, Defaults) {
   EXPECT_EQ(spot.texture, kNone);
 }
 
-TEST(SpotLight, TexturesAreRefusedOrLeftOut) {
-  const std::string body = R"(<emitter type="spot"><texture type="checkerboard" name="texture"/></emitter>)";
-  expectErrorOnLine2(body, "texture of a spot light is not supported");
-  const Scene scene = loadBody(body, {.lenient = true});
-  ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("spot"), std::string::npos) << scene.warnings[0];
+TEST(SpotLight, MayHaveATexture) {
+  const std::string texture = R"(<texture type="checkerboard" name="texture"/>)";
+  EXPECT_EQ(emitterOf<SpotEmitter>("spot", texture).texture, 0u);
+  expectEmitterError("spot",
+                     texture + R"(<transform name="to_world"><matrix value="1 1 0 0 0 1 0 0 0 0 1 0 0 0 0 1"/>)"
+                               R"(</transform>)",
+                     "of the spot light shears");
+}
+
+TEST(Projector, Defaults) {
+  const auto projector = emitterOf<ProjectorEmitter>("projector");
+  EXPECT_EQ(projector.irradiance.value, kOne);
+  EXPECT_EQ(projector.irradiance.texture, kNone);
+  EXPECT_EQ(projector.scale, 1);
+  EXPECT_EQ(projector.aspect, 1);
+  // 50 mm of focal length over the diagonal of a square.
+  EXPECT_NEAR(projector.fovX, 2 * std::atan(std::hypot(36, 24) / 100 / std::sqrt(2)) * 180 / 3.141592653589793, 1e-12);
+}
+
+TEST(Projector, PictureGivesTheAspect) {
+  const Folder folder;
+  writeExr((folder.path() / "picture.exr").string(),
+           {.width = 2, .height = 1, .channels = 3, .pixels = {1, 2, 3, 4, 5, 6}});
+  const Scene scene = loadBody(folder, R"(<emitter type="projector"><float name="fov" value="90"/>
+      <string name="fov_axis" value="y"/><float name="scale" value="3"/><texture type="bitmap" name="irradiance">
+      <string name="filename" value="picture.exr"/></texture></emitter>)");
+  const auto& projector = std::get<ProjectorEmitter>(scene.emitters.at(0).kind);
+  EXPECT_EQ(projector.irradiance.texture, 0u);
+  EXPECT_EQ(projector.scale, 3);
+  EXPECT_EQ(projector.aspect, 2);
+  EXPECT_NEAR(projector.fovX, 2 * std::atan(2.0) * 180 / 3.141592653589793, 1e-12);
+}
+
+TEST(Projector, MistakesAreErrors) {
+  expectEmitterError("projector", R"(<float name="scale" value="-1"/>)", "scale of the projector is negative");
+  expectEmitterError("projector", R"(<transform name="to_world"><scale value="2"/></transform>)",
+                     "of the projector scales");
+  expectEmitterError("projector", R"(<float name="fov" value="180"/>)", "field of view");
 }
 
 TEST(SpotLight, BeamIsThreeQuartersOfTheCutoff) {

@@ -1,12 +1,14 @@
-// Damaged scene, PLY, OBJ, serialized, BMP and TGA files for the tests that nothing in them may crash, hang or fill the
-// memory.
+// Damaged scene, PLY, OBJ, serialized, BMP, TGA and JPEG files for the tests that nothing in them may crash, hang or
+// fill the memory.
 //
 // Case i mutates one of the seeds below with a generator seeded by i, so a case is its number. How many of them a test
-// takes comes from WAVECREST_FUZZ_CASES; WAVECREST_FUZZ_CASE=i picks one alone.
+// takes comes from WAVECREST_FUZZ_CASES, the first from WAVECREST_FUZZ_FIRST; WAVECREST_FUZZ_CASE=i picks one alone.
 #pragma once
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <random>
 #include <string>
 #include <string_view>
@@ -57,9 +59,80 @@ inline constexpr std::string_view kSceneSeed = R"(<scene version="3.0.0">
   <shape type="shapegroup" id="group"><shape type="cube"><ref id="veil"/></shape><shape type="cylinder"><ref id="bumpy"/></shape></shape>
   <shape type="instance"><ref id="group"/><transform name="to_world"><scale value="2"/></transform></shape>
   <shape type="rectangle"><emitter type="area"><rgb name="radiance" value="17, 12, 4"/></emitter></shape>
-  <emitter type="spot"><spectrum name="intensity" value="400:1, 500:2, 600:3"/></emitter>
+  <emitter type="spot"><spectrum name="intensity" value="400:1, 500:2, 600:3"/>
+    <texture type="bitmap" name="texture"><string name="filename" value="wood.jpg"/></texture></emitter>
+  <emitter type="projector"><ref id="wood" name="irradiance"/><float name="scale" value="3"/>
+    <float name="fov" value="45"/><string name="fov_axis" value="diagonal"/>
+    <transform name="to_world"><lookat origin="0, 4, 0" target="0, 0, 0" up="0, 0, 1"/></transform></emitter>
   <emitter type="envmap"><string name="filename" value="wood.png"/><float name="scale" value="0.5"/></emitter>
   <include filename="part.xml"/>
+</scene>
+)";
+// What the first cannot have: a second kind of environment, in the names of 0.6.
+inline constexpr std::string_view kSkySeed = R"(<scene version="0.6.0">
+  <integrator type="path"><boolean name="hideEmitters" value="true"/></integrator>
+  <sensor type="perspective"><transform name="toWorld"><lookAt origin="0, 1, 5" target="0, 0, 0" up="0, 1, 0"/>
+    </transform><film type="ldrfilm"><integer name="width" value="32"/><integer name="height" value="24"/></film></sensor>
+  <shape type="sphere"><bsdf type="diffuse"><srgb name="reflectance" value="#a05030"/></bsdf></shape>
+  <emitter type="sun"><float name="turbidity" value="4.5"/><float name="scale" value="0.5"/>
+    <float name="sunRadiusScale" value="2"/><integer name="year" value="2012"/><integer name="month" value="4"/>
+    <integer name="day" value="9"/><float name="hour" value="11"/><float name="minute" value="30"/>
+    <float name="latitude" value="50"/><float name="longitude" value="14"/><float name="timezone" value="1"/></emitter>
+  <emitter type="sky"><float name="turbidity" value="4.5"/><spectrum name="albedo" value="0.3"/>
+    <integer name="year" value="2012"/><integer name="month" value="4"/><integer name="day" value="9"/>
+    <float name="hour" value="11"/><float name="minute" value="30"/><float name="latitude" value="50"/>
+    <float name="longitude" value="14"/><float name="timezone" value="1"/></emitter>
+</scene>
+)";
+// The same of version 3.
+inline constexpr std::string_view kSunskySeed = R"(<scene version="3.0.0">
+  <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="32"/></film></sensor>
+  <shape type="sphere"/>
+  <emitter type="sunsky"><float name="turbidity" value="4"/><vector name="sun_direction" x="0.3" y="0.2" z="0.8"/>
+    <rgb name="albedo" value="0.3, 0.2, 0.1"/><float name="sun_scale" value="0.8"/></emitter>
+</scene>
+)";
+// BSDFs and textures that are made of others, and those of many parameters.
+inline constexpr std::string_view kMaterialSeed = R"(<scene version="3.0.0">
+  <integrator type="path"><boolean name="hide_emitters" value="true"/></integrator>
+  <sensor type="orthographic"><film type="hdrfilm"><integer name="width" value="32"/><integer name="height" value="24"/>
+    <rfilter type="tent"/></film></sensor>
+  <texture type="checkerboard" id="squares"><float name="color0" value="0.3"/><float name="color1" value="1.2"/>
+    <transform name="to_uv"><rotate z="1" angle="20"/><scale x="6" y="4"/></transform></texture>
+  <texture type="bitmap" id="wood"><string name="filename" value="wood.png"/><boolean name="raw" value="true"/>
+    <string name="wrap_mode" value="mirror"/><string name="filter_type" value="nearest"/></texture>
+  <texture type="rawconstant" id="grey"><rgb name="value" value="0.5, 0.4, 0.3"/></texture>
+  <bsdf type="principled" id="paint"><ref id="grey" name="base_color"/><ref id="wood" name="roughness"/>
+    <float name="metallic" value="0.3"/><float name="anisotropic" value="0.5"/><float name="spec_trans" value="0.2"/>
+    <float name="spec_tint" value="0.4"/><float name="sheen" value="0.3"/><float name="sheen_tint" value="0.6"/>
+    <float name="flatness" value="0.2"/><float name="clearcoat" value="0.7"/><float name="clearcoat_gloss" value="0.9"/>
+    <float name="eta" value="1.6"/></bsdf>
+  <bsdf type="principledthin" id="leaf"><rgb name="base_color" value="0.2, 0.6, 0.1"/>
+    <ref id="squares" name="diff_trans"/><float name="eta" value="1.4"/></bsdf>
+  <bsdf type="mask" id="blend"><float name="opacity" value="0.8"/><bsdf type="blendbsdf"><float name="weight" value="0.3"/>
+    <bsdf type="blendbsdf"><float name="weight" value="0.5"/><bsdf type="diffuse"/><bsdf type="conductor"/></bsdf>
+    <bsdf type="roughdielectric"><string name="distribution" value="ggx"/><float name="alpha_u" value="0.3"/>
+      <float name="alpha_v" value="0.1"/></bsdf></bsdf></bsdf>
+  <bsdf type="blendbsdf" id="pattern"><ref id="squares" name="weight"/><bsdf type="thindielectric"/>
+    <bsdf type="roughconductor"><float name="alpha_u" value="0.2"/><ref id="wood" name="alpha_v"/>
+      <rgb name="eta" value="1.6, 0.9, 0.5"/><rgb name="k" value="9.2, 6.3, 4.8"/></bsdf></bsdf>
+  <bsdf type="mixturebsdf" id="mixture"><string name="weights" value="0.3, 0.5"/><bsdf type="plastic"/>
+    <bsdf type="roughplastic"><boolean name="nonlinear" value="true"/></bsdf></bsdf>
+  <bsdf type="normalmap" id="waves"><texture type="bitmap" name="normalmap"><boolean name="raw" value="true"/>
+    <string name="filename" value="wood.tga"/></texture><bsdf type="roughcoating"><float name="alpha" value="0.2"/>
+    <rgb name="sigma_a" value="0.1, 0.2, 0.3"/><bsdf type="diffuse"/></bsdf></bsdf>
+  <shape type="ply"><string name="filename" value="colors.ply"/><bsdf type="diffuse">
+    <texture type="mesh_attribute" name="reflectance"><string name="name" value="vertex_color"/></texture></bsdf></shape>
+  <shape type="shapegroup" id="group"><shape type="disk"><ref id="paint"/></shape>
+    <shape type="ply"><string name="filename" value="mesh.ply"/><ref id="leaf"/></shape></shape>
+  <shape type="instance"><ref id="group"/><transform name="to_world"><translate y="2"/></transform></shape>
+  <shape type="instance"><ref id="group"/><transform name="to_world"><scale x="-1"/><rotate y="1" angle="40"/></transform>
+  </shape>
+  <shape type="sphere"><ref id="blend"/></shape>
+  <shape type="cylinder"><ref id="pattern"/></shape>
+  <shape type="cube"><ref id="mixture"/></shape>
+  <shape type="rectangle"><ref id="waves"/></shape>
+  <emitter type="constant"/>
 </scene>
 )";
 inline constexpr std::string_view kPartSeed = R"(<scene version="0.6.0">
@@ -67,6 +140,10 @@ inline constexpr std::string_view kPartSeed = R"(<scene version="0.6.0">
     <bsdf type="phong"><float name="exponent" value="20"/></bsdf></shape>
 </scene>
 )";
+// A sky takes longer to bake than the rest to load.
+inline constexpr std::string_view kSceneSeeds[] = {kSceneSeed, kMaterialSeed, kSceneSeed, kMaterialSeed,
+                                                   kSkySeed,   kMaterialSeed, kSceneSeed, kMaterialSeed,
+                                                   kSceneSeed, kSunskySeed};
 inline constexpr std::string_view kObjSeed =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1 4/1/1\nf -4 -3 -1\n"
     "f 1//1 2//1 4//1\n";
@@ -75,6 +152,10 @@ inline constexpr std::string_view kUvPlySeed =
     "property float ny\nproperty float nz\nproperty float u\nproperty float v\nelement face 1\nproperty list uchar int "
     "vertex_indices\nproperty float quality\nend_header\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2 "
     ".5\n";
+inline constexpr std::string_view kColorPlySeed =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+    "color_0\nproperty float color_1\nproperty float color_2\nelement face 1\nproperty list uchar int "
+    "vertex_indices\nend_header\n0 0 0 .2 .3 .4\n1 0 0 .5 .6 .7\n0 1 0 .8 .9 1\n3 0 1 2\n";
 
 // Two pixels: red over blue with a palette, and a run of red.
 inline std::string bmpSeed() {
@@ -85,6 +166,10 @@ inline std::string bmpSeed() {
   return bytes + std::string("\0\0\xff\0\xff\0\0\0\1\0\0\0\0\0\0\0", 16);
 }
 inline std::string tgaSeed() { return std::string("\0\0\x0a\0\0\0\0\0\0\0\0\0\1\0\2\0\x18\0\x81\0\0\xff", 22); }
+inline std::string jpegSeed() {
+  std::ifstream file(WAVECREST_SCENES "/features/gradient.jpg", std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 inline std::string serializedSeed() { return serializedFile({serializedQuad(), serializedQuad({.colors = true})}); }
 
 // Fragments that sit at the edges of what parsers accept.
@@ -184,32 +269,39 @@ inline void writeSeeds(const Folder& folder) {
   writePng((folder.path() / "wood.png").string(), Image8{.width = 2, .height = 1, .pixels = {90, 60, 30, 120, 80, 40}});
   folder.write("wood.bmp", bmpSeed());
   folder.write("wood.tga", tgaSeed());
+  folder.write("wood.jpg", jpegSeed());
   folder.write("mesh.serialized", serializedSeed());
   folder.write("part.xml", kPartSeed);
   folder.write("mesh.ply", kQuadPly);
+  folder.write("colors.ply", kColorPlySeed);
   folder.write("mesh.obj", kObjSeed);
   folder.write("scene.xml", kSceneSeed);
 }
 
-inline bool isLenient(int index) { return index % 5 == 0; }
+inline bool isLenient(int index) { return index / 10 % 5 == 0; }
 
 // Writes all files of case `index` over those of the folder; returns the scene's.
 inline std::filesystem::path writeCase(const Folder& folder, int index) {
   Random random(static_cast<uint64_t>(index));
-  std::string scene(kSceneSeed), ply(kQuadPly), obj(kObjSeed), part(kPartSeed);
-  std::string serialized = serializedSeed(), bmp = bmpSeed(), tga = tgaSeed();
-  switch (index % 9) {
+  std::string scene(kSceneSeed), ply(kQuadPly), colors(kColorPlySeed), obj(kObjSeed), part(kPartSeed);
+  std::string serialized = serializedSeed(), bmp = bmpSeed(), tga = tgaSeed(), jpeg = jpegSeed();
+  switch (index % 10) {
     case 0:
-      scene = mutated(scene, random);
+      scene = mutated(std::string(kSceneSeeds[static_cast<size_t>(index / 10) % std::size(kSceneSeeds)]), random);
       break;
     case 1:
       part = mutated(part, random);
       break;
     case 2:
-      ply = mutated(std::string(index % 18 == 2 ? kQuadPly : kUvPlySeed), random);
+      if (index % 40 == 12) {
+        scene = kMaterialSeed;
+        colors = mutated(colors, random);
+        break;
+      }
+      ply = mutated(std::string(index % 20 == 2 ? kQuadPly : kUvPlySeed), random);
       break;
     case 3:
-      ply = mutated(binaryQuadPly(index % 18 == 3), random);
+      ply = mutated(binaryQuadPly(index % 20 == 3), random);
       break;
     case 4:
       obj = mutated(obj, random);
@@ -225,23 +317,30 @@ inline std::filesystem::path writeCase(const Folder& folder, int index) {
     case 7:
       tga = mutated(tga, random);
       break;
+    case 8:
+      jpeg = mutated(jpeg, random);
+      break;
     default:
       ply = mutated(gzip(kUvPlySeed), random);
   }
   folder.write("part.xml", part);
   folder.write("mesh.ply", ply);
+  folder.write("colors.ply", colors);
   folder.write("mesh.obj", obj);
   folder.write("mesh.serialized", serialized);
   folder.write("wood.bmp", bmp);
   folder.write("wood.tga", tga);
+  folder.write("wood.jpg", jpeg);
   return folder.write("scene.xml", scene);
 }
 
 // First and one past the last case to run.
 inline std::pair<int, int> casesToRun() {
   if (const char* chosen = std::getenv("WAVECREST_FUZZ_CASE")) return {std::atoi(chosen), std::atoi(chosen) + 1};
-  const char* count = std::getenv("WAVECREST_FUZZ_CASES");
-  return {0, count != nullptr ? std::atoi(count) : kFewCases};
+  const char* const first = std::getenv("WAVECREST_FUZZ_FIRST");
+  const char* const count = std::getenv("WAVECREST_FUZZ_CASES");
+  const int start = first != nullptr ? std::atoi(first) : 0;
+  return {start, start + (count != nullptr ? std::atoi(count) : kFewCases)};
 }
 
 }  // namespace wavecrest::testing

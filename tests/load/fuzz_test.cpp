@@ -78,6 +78,13 @@ TEST(Fuzz, TheUndamagedFilesLoad) {
     EXPECT_EQ(scene.shapes.size(), 9u);
     EXPECT_NO_THROW(compileScene<float>(scene, Accel::automatic));
   }
+  EXPECT_EQ(load(folder, kSkySeed).emitters.size(), 1u);
+  EXPECT_EQ(load(folder, kSunskySeed).emitters.size(), 1u);
+  folder.write("mesh.ply", kQuadPly);
+  const Scene materials = load(folder, kMaterialSeed);
+  EXPECT_EQ(materials.shapes.size(), 7u);
+  EXPECT_EQ(materials.instances.size(), 2u);
+  EXPECT_NO_THROW(compileScene<float>(materials, Accel::automatic));
 }
 
 }  // namespace

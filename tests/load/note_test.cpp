@@ -60,5 +60,15 @@ TEST(Notes, SamplersAndFiltersThatAreReplaced) {
   expectNote(loadBody(R"(<sensor type="perspective"><film type="ldrfilm"/></sensor>)"), "ldrfilm", "hdrfilm");
 }
 
+// Mitsuba 3 takes the axis as it is: its matrix is no rotation then.
+TEST(Notes, RotationsAboutAnAxisOfAnotherLength) {
+  const auto scene = [](const std::string& axis) {
+    return loadBody(R"(<shape type="cube"><transform name="to_world"><rotate angle="15" )" + axis +
+                    "/></transform></shape>");
+  };
+  expectNote(scene(R"(y="1" z="1")"), "another length than 1", "direction counts");
+  EXPECT_TRUE(scene(R"(y="0.7071" z="0.7071")").notes.empty());
+}
+
 }  // namespace
 }  // namespace wavecrest::testing

@@ -77,7 +77,7 @@ inline void expectError(const Folder& folder, std::string_view xml, int line, st
     EXPECT_EQ(error.location.file, (folder.path() / file).string()) << error.what();
     EXPECT_NE(error.text.find(text), std::string::npos) << error.what() << "\nexpected in it: " << text;
     EXPECT_NE(error.text.find("; expected"), std::string::npos) << error.what();
-    EXPECT_EQ(error.what(), error.location.file + ":" + std::to_string(line) + ": " + error.text);
+    EXPECT_EQ(error.what(), toString(error.location) + ": " + error.text);
     return;
   }
   ADD_FAILURE() << "loaded without an error; expected: " << text;

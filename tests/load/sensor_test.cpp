@@ -193,9 +193,11 @@ TEST(Integrator, AnyTypeIsAcceptedForItsDepths) {
   EXPECT_EQ(defaults.rrDepth, 9);
 }
 
-TEST(Integrator, HiddenEmittersAreRefused) {
-  expectErrorOnLine2(R"(<integrator type="path"><boolean name="hide_emitters" value="true"/></integrator>)",
-                     "hide_emitters is not supported");
+TEST(Integrator, HidesEmittersWithoutAShape) {
+  const std::string hiding = R"(<integrator type="path"><boolean name="hide_emitters" value="true"/></integrator>)";
+  EXPECT_TRUE(loadBody(hiding + R"(<emitter type="constant"/><emitter type="point"/>)").defaults.hideEmitters);
+  EXPECT_FALSE(loadBody(R"(<integrator type="path"/>)").defaults.hideEmitters);
+  expectErrorOnLine2(hiding + R"(<shape type="sphere"><emitter type="area"/></shape>)", "hide_emitters with an area");
 }
 
 TEST(Integrator, WrappersGiveTheDepthsOfTheOneWithin) {

@@ -53,6 +53,52 @@ uint32_t addBitmap(Scene& scene, uint32_t channels, std::vector<float> pixels) {
   return static_cast<uint32_t>(scene.textures.size() - 1);
 }
 
+// ---- compound BSDFs -------------------------------------------------------------------------------------------------
+
+Material materialOf(decltype(Material::kind) kind) {
+  Material material;
+  material.kind = std::move(kind);
+  return material;
+}
+
+TEST(SimplifyScene, twoEqualRoughnessesAreOne) {
+  Scene scene;
+  const uint32_t grey = addBitmap(scene, 1, {0.25f, 0.25f}), varied = addBitmap(scene, 1, {0.25f, 0.5f});
+  scene.materials = {materialOf(Conductor{.alpha = {0.25}, .alphaV = TexturedFloat{0, grey}}),
+                     materialOf(Dielectric{.alpha = {0.25}, .alphaV = TexturedFloat{0, varied}}),
+                     materialOf(Conductor{.alpha = {0.25}, .alphaV = TexturedFloat{0.5}})};
+  simplifyScene(scene);
+  EXPECT_FALSE(std::get<Conductor>(scene.materials[0].kind).alphaV.has_value());
+  EXPECT_TRUE(std::get<Dielectric>(scene.materials[1].kind).alphaV.has_value());
+  EXPECT_TRUE(std::get<Conductor>(scene.materials[2].kind).alphaV.has_value());
+}
+
+// Nothing of a blend is left where one BSDF has all the weight, but for adapters that both have.
+TEST(SimplifyScene, blendOfOneIsThatOne) {
+  Scene scene;
+  const uint32_t one = addBitmap(scene, 1, {1.0f, 1.0f});
+  scene.materials = {materialOf(Plastic{}), materialOf(Phong{}), materialOf(Diffuse{})};
+  scene.materials[1].twoSided = true;
+  scene.materials[2].opacity = TexturedFloat{0.25};
+  scene.materials.push_back(materialOf(Blend{.materials = {0, 1}, .weights = {0, 1}}));
+  scene.materials.push_back(materialOf(Blend{.materials = {1, 0}, .weights = {}, .weightTexture = one}));
+  scene.materials.push_back(materialOf(Blend{.materials = {0, 1}, .weights = {0.5, 0.5}}));
+  scene.materials.push_back(materialOf(Blend{.materials = {0, 1}, .weights = {0.5, 0}}));
+  scene.materials.push_back(materialOf(Blend{.materials = {2}, .weights = {1}}));
+  scene.materials.push_back(scene.materials.back());
+  scene.materials[3].opacity = scene.materials[8].opacity = TexturedFloat{0.5};
+  simplifyScene(scene);
+  EXPECT_TRUE(std::holds_alternative<Phong>(scene.materials[3].kind));
+  EXPECT_TRUE(scene.materials[3].twoSided);
+  EXPECT_EQ(scene.materials[3].opacity->value, 0.5);
+  EXPECT_TRUE(std::holds_alternative<Plastic>(scene.materials[4].kind));
+  EXPECT_EQ(std::get<Blend>(scene.materials[5].kind).materials.size(), 2u);
+  EXPECT_EQ(std::get<Blend>(scene.materials[6].kind).materials, std::vector<uint32_t>{0}) << "half of it";
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(scene.materials[7].kind));
+  EXPECT_EQ(scene.materials[7].opacity->value, 0.25);
+  EXPECT_TRUE(std::holds_alternative<Blend>(scene.materials[8].kind)) << "opacities around both";
+}
+
 TEST(SimplifyScene, replacesTexturesOfOneColour) {
   Scene scene;
   const uint32_t plain = addBitmap(scene, 3, {0.2f, 0.3f, 0.4f, 0.2f, 0.3f, 0.4f}),

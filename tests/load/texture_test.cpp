@@ -261,6 +261,25 @@ TEST(Checkerboard, Defaults) {
   EXPECT_EQ(board.color1, (Rgb{0.2, 0.2, 0.2}));
 }
 
+// diff_trans reaches 2, and a texture does not know what it is for.
+TEST(Checkerboard, NumbersMayBeAbove1AndColoursMayNot) {
+  const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"><float name="color1" value="1.4"/></texture>
+      <shape type="sphere"><bsdf type="principledthin"><ref id="t" name="diff_trans"/></bsdf></shape>)");
+  const uint32_t texture = std::get<Principled>(scene.materials.at(0).kind).diffTrans.texture;
+  EXPECT_EQ(std::get<CheckerboardTexture>(scene.textures.at(texture).kind).color0[0], 1.4);
+  expectErrorOnLine2(
+      R"(<texture type="checkerboard" id="t"><rgb name="color1" value="1.4"/></texture><shape type="sphere">
+      <bsdf type="principledthin"><ref id="t" name="diff_trans"/></bsdf></shape>)",
+      "expected values from 0 to 1");
+}
+
+TEST(Checkerboard, OfReflectancesAbove1IsAWarning) {
+  const Scene scene = loadBody(
+      material(R"(<texture name="reflectance" type="checkerboard"><float name="color1" value="1.4"/></texture>)"));
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("up to 1.4"), std::string::npos) << scene.warnings[0];
+}
+
 // What Mitsuba 3.9 renders, whatever its documentation says.
 TEST(Checkerboard, SwapsItsColoursWhereANumberIsAskedFor) {
   const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"/><shape type="sphere"><bsdf type="mask">

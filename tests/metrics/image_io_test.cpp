@@ -1,10 +1,16 @@
 #include "metrics/image/image_io.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <thread>
 
+#include "metrics/image/atomic_file.h"
 #include "metrics/image/srgb.h"
 #include "tests/metrics/golden.h"
 #include "tests/metrics/temporary_folder.h"
@@ -140,6 +146,45 @@ TEST_F(ImageFiles, WritingLeavesNoTemporaryFilesAndReportsUnwritablePlaces) {
   EXPECT_EQ(files, 2u);
   EXPECT_THROW(writeImage(path("missing/a.exr"), testImage()), ImageError);
   EXPECT_THROW(writeImage(path("a.tiff"), testImage()), ImageError);
+}
+
+// High enough for several reports, whatever the number of threads that compress.
+Image tallImage() {
+  Image image{3, 40000, 3, {}};
+  for (size_t i = 0; i < image.pixelCount() * 3; ++i) image.pixels.push_back(std::sin(static_cast<float>(i)));
+  return image;
+}
+
+TEST_F(ImageFiles, WritingAnExrTellsHowFarItIs) {
+  const Image image = tallImage();
+  std::vector<double> told;
+  writeImage(path("a.exr"), image, {{"key", "value"}}, [&](double fraction) { told.push_back(fraction); });
+  ASSERT_GT(told.size(), 2u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GT(told.front(), 0);
+  EXPECT_EQ(told.back(), 1);
+  const ImageFile read = readImage(path("a.exr"));
+  EXPECT_EQ(read.image.pixels, image.pixels);
+  EXPECT_EQ(read.metadata.at("key"), "value");
+}
+
+// A pipe takes bytes in order only, and an EXR is finished by what stands in its middle.
+TEST_F(ImageFiles, AnExrGoesThroughAPipe) {
+  ASSERT_EQ(mkfifo(path("pipe.exr").c_str(), 0600), 0);
+  const Image image = tallImage();
+  std::vector<unsigned char> received;
+  std::thread reader([&] {
+    std::ifstream pipe(path("pipe.exr"), std::ios::binary);
+    received.assign(std::istreambuf_iterator<char>(pipe), {});
+  });
+  writeExr(path("pipe.exr"), image);
+  reader.join();
+  writeFileAtomically(path("copy.exr"), received);
+  EXPECT_EQ(readImage(path("copy.exr")).image.pixels, image.pixels);
+}
+
+TEST_F(ImageFiles, AnExrForWhichThereIsNoRoomIsAnError) {
+  EXPECT_THROW(writeExr("/dev/full", tallImage()), ImageError);
 }
 
 TEST(Srgb, CodeIsTheRoundedCurveAtEveryThreshold) {

@@ -35,10 +35,13 @@ class Case:
     max_depth: int = -1
     options: tuple = ()  # further arguments for wavecrest
     filters: bool = False  # the scene is about a reconstruction filter other than the box
+    reference: pathlib.Path | None = None  # the same scene in other words, for what Mitsuba 3 cannot read
 
-    def samples(self, method):
-        """Samples per pixel of a render here: methods of many strategies take longer to a sample and leave less noise."""
-        return self.spp // 2 if method in ("bpt", "vcm") else self.spp
+    def run(self, method):
+        """What wavecrest renders. Methods of many strategies take longer to a sample and leave less noise."""
+        spp = self.spp // 2 if method in ("bpt", "vcm") else self.spp
+        depths = ("--max-depth", self.max_depth, "--rr-depth", renderers.RUSSIAN_ROULETTE_DEPTH)
+        return renderers.WavecrestRun(self.scene, method, spp, self.size, (*depths, *self.options))
 
 
 def read_cases(group=None, name=None, method=None):
@@ -53,6 +56,7 @@ def read_cases(group=None, name=None, method=None):
         for own in entry["cases"]:
             case = Case(**{**shared, "scene": f"{entry['folder']}/{own['name']}.xml", **own})
             case.scene = renderers.ROOT / case.scene
+            case.reference = case.scene.with_name(f"{case.reference}.xml") if case.reference else case.scene
             case.methods = [each for each in case.methods if method in (None, each)]
             if name in (None, case.name) and case.methods:
                 cases.append(case)
@@ -75,7 +79,7 @@ def same_picture(wavecrest, case, method, mitsuba, theirs, out):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
 
-    ours = renderers.render_wavecrest(wavecrest, case, method, SEEDS, folder, mitsuba.read_exr)
+    ours = renderers.render_wavecrest(wavecrest, case.run(method), SEEDS, folder, mitsuba.read_exr)
     if np.array_equal(ours[0], ours[1]):
         sys.exit(f"oracle_test: {case.name}: wavecrest gave the same image for two seeds; expected independent ones")
 
@@ -90,7 +94,7 @@ def same_picture(wavecrest, case, method, mitsuba, theirs, out):
 
 def same_pictures(wavecrest, case, out):
     """Whether all methods of a case agree with Mitsuba."""
-    mitsuba = renderers.MitsubaScene(case.scene, case.size, case.max_depth, any_filter=case.filters)
+    mitsuba = renderers.MitsubaScene(case.reference, case.size, case.max_depth, any_filter=case.filters)
     theirs = mitsuba.render(case.spp, SEEDS)
     return all([same_picture(wavecrest, case, method, mitsuba, theirs, out) for method in case.methods])
 

@@ -4,11 +4,14 @@ Each returns a stack (renders, height, width, 3) of float32 images, one per seed
 film size, path depth and roulette depth; the film's filter has to be a box in the file already.
 """
 
+import dataclasses
 import pathlib
 import subprocess
 import sys
 
 import numpy as np
+
+import exact_blend
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
@@ -18,25 +21,37 @@ from mitsuba_support import scene_xml, variant  # noqa: E402  (the path has to b
 RUSSIAN_ROULETTE_DEPTH = 5  # unbiased either way; the same so that noise is alike
 
 
+def start_mitsuba():
+    """Mitsuba with the BSDF that stands in for its blendbsdf."""
+    mitsuba = variant.start("llvm_ad_rgb")
+    exact_blend.register(mitsuba)
+    return mitsuba
+
+
+def with_exact_blends(xml_text):
+    return xml_text.replace('"blendbsdf"', '"exact_blend"')
+
+
 class MitsubaScene:
     """A scene loaded once and rendered with many seeds."""
 
     def __init__(self, path, size, max_depth, defaults=None, any_filter=False):
-        self.mitsuba = variant.start("llvm_ad_rgb")
+        self.mitsuba = start_mitsuba()
         text = scene_xml.flatten(path, size=size, defaults=defaults)
         if (kind := scene_xml.filter_type(text)) != "box" and not any_filter:
             raise ValueError(f"{path}: reconstruction filter '{kind}'; expected box for a comparison pixel by pixel")
-        self.scene = self.mitsuba.load_string(text)
+        self.scene = self.mitsuba.load_string(with_exact_blends(text))
         self.integrator = self.mitsuba.load_dict(
-            {"type": "path", "max_depth": max_depth, "rr_depth": RUSSIAN_ROULETTE_DEPTH}
+            {
+                "type": "path",
+                "max_depth": max_depth,
+                "rr_depth": RUSSIAN_ROULETTE_DEPTH,
+                "hide_emitters": scene_xml.hides_emitters(text),
+            }
         )
 
     def render(self, spp, seeds):
-        images = []
-        for seed in seeds:
-            image = self.mitsuba.render(self.scene, integrator=self.integrator, spp=spp, seed=seed)
-            images.append(np.array(image, dtype=np.float32)[..., :3])
-        return np.stack(images)
+        return render_mitsuba(self.mitsuba, self.scene, self.integrator, spp, seeds)
 
     def read_exr(self, path):
         bitmap = self.mitsuba.Bitmap(str(path))
@@ -48,15 +63,35 @@ class MitsubaScene:
         self.mitsuba.Bitmap(np.ascontiguousarray(image, dtype=np.float32)).write(str(path))
 
 
-def render_wavecrest(program, case, method, seeds, folder, read_exr):
+def render_mitsuba(mitsuba, scene, integrator, spp, seeds):
+    """An image for each seed, of colours alone."""
+    images = []
+    for seed in seeds:
+        image = mitsuba.render(scene, integrator=integrator, spp=spp, seed=seed)
+        images.append(np.array(image, dtype=np.float32)[..., :3])
+    return np.stack(images)
+
+
+@dataclasses.dataclass
+class WavecrestRun:
+    """What wavecrest is to render."""
+
+    scene: pathlib.Path
+    method: str
+    spp: int
+    size: tuple  # None: the scene's own, crop window included
+    options: tuple = ()  # further arguments
+
+
+def render_wavecrest(program, run, seeds, folder, read_exr):
     """Runs the program once per seed, leaving its images in the folder."""
     images = []
     for seed in seeds:
         output = folder / f"wavecrest-{seed}.exr"
-        command = [program, "render", case.scene, "--method", method, "--spp", case.samples(method), "--seed", seed]
-        if case.size:
-            command += ["--size", f"{case.size[0]}x{case.size[1]}"]
-        command += ["--max-depth", case.max_depth, "--rr-depth", RUSSIAN_ROULETTE_DEPTH, "--progress", "none", "-o", output, *case.options]
+        command = [program, "render", run.scene, "--method", run.method, "--spp", run.spp, "--seed", seed]
+        if run.size:
+            command += ["--size", f"{run.size[0]}x{run.size[1]}"]
+        command += ["--progress", "none", "-o", output, *run.options]
         subprocess.run([str(word) for word in command], check=True)
         images.append(read_exr(output))
     return np.stack(images)

@@ -97,5 +97,31 @@ class MitsubaAgainstItself(unittest.TestCase):
         self.assertLess(verdict.relative_difference.max(), 0)
 
 
+class ExactBlend(unittest.TestCase):
+    """The BSDF that stands in for Mitsuba's blendbsdf where a part is a mirror."""
+
+    @staticmethod
+    def mean_weight(parts):
+        mitsuba = renderers.start_mitsuba()
+        blend = mitsuba.load_string(
+            f'<bsdf version="3.0.0" type="exact_blend"><float name="weight" value="0.6"/>{parts}</bsdf>'
+        )
+        count = 1 << 18
+        numbers = mitsuba.load_dict({"type": "independent"})
+        numbers.seed(1, count)
+        surface = mitsuba.SurfaceInteraction3f()
+        surface.sh_frame = mitsuba.Frame3f(mitsuba.Vector3f(0, 0, 1))
+        surface.wi = mitsuba.Vector3f(0.6, 0, 0.8)
+        weight = blend.sample(mitsuba.BSDFContext(), surface, numbers.next_1d(), numbers.next_2d())[1]
+        return np.array(weight).mean()
+
+    def test_samples_reflect_as_much_as_the_parts_together(self):
+        # The share of samples that the mirror gets has a standard error of 1e-3.
+        half = '<bsdf type="diffuse"><rgb name="reflectance" value="0.5"/></bsdf>'
+        self.assertAlmostEqual(self.mean_weight(half + '<bsdf type="conductor"/>'), 0.4 * 0.5 + 0.6, delta=2e-3)
+        self.assertAlmostEqual(self.mean_weight('<bsdf type="conductor"/>' + half), 0.4 + 0.6 * 0.5, delta=2e-3)
+        self.assertAlmostEqual(self.mean_weight(half + half), 0.5, delta=1e-6)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -46,6 +46,44 @@ class Converging(unittest.TestCase):
         again = wc.converge(resume=True, out=self.out, say=lambda line: None)
         self.assertEqual(len(again.runs), 4)
 
+    def test_a_campaign_may_become_larger(self):
+        larger = self.out.with_name("larger")
+        options = {"spp": 2, "seeds": 1, "size": (32, 24), "threads": 2, "out": larger, "say": lambda line: None}
+        first = wc.converge(["cornell-diffuse"], methods=["pt"], **options)
+        more = wc.converge(methods=["lt"], resume=True, **{**options, "spp": None})
+        self.assertEqual([run["method"] for run in more.runs], ["pt", "lt"])
+        self.assertEqual(more.runs[0]["stats"], first.runs[0]["stats"])  # not rendered again
+        with self.assertRaisesRegex(wc.UsageError, "expected the same, more, or another --out"):
+            wc.converge(resume=True, **{**options, "spp": 1})
+
+    def test_ctrl_c_ends_a_campaign_that_keeps_its_whole_runs(self):
+        script = """
+import os, signal, sys
+import wavecrest as wc
+lines = []
+def say(line):
+    lines.append(line)
+    if line.startswith("[1/"):
+        os.kill(os.getpid(), signal.SIGINT)
+try:
+    wc.converge(["cornell-diffuse"], methods=["pt"], spp=2, seeds=50, size=(32, 24), threads=2, out=sys.argv[1], say=say)
+except KeyboardInterrupt as stop:
+    print(type(stop).__name__, len(wc.read_results(sys.argv[1]).runs) in range(1, 50))
+"""
+        result = subprocess.run([sys.executable, "-c", script, self.out.with_name("interrupted")],
+                                capture_output=True, text=True, timeout=100, check=False)  # fmt: skip
+        self.assertEqual(result.stdout.split(), ["Interrupted", "True"], result.stderr)
+
+    def test_an_exception_of_say_ends_the_campaign(self):
+        def say(line):
+            if line.startswith("[1/"):
+                raise LookupError("enough")
+
+        out = self.out.with_name("enough")
+        with self.assertRaisesRegex(LookupError, "enough"):
+            wc.converge(["cornell-diffuse"], methods=["pt"], spp=2, seeds=9, size=(32, 24), threads=2, out=out, say=say)
+        self.assertLess(len(wc.read_results(out).runs), 9)
+
     def test_the_program_reads_what_python_wrote(self):
         said = subprocess.run([os.environ["WAVECREST"], "report", self.out], check=True, capture_output=True, text=True)
         self.assertIn("report.html", said.stdout)

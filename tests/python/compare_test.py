@@ -62,6 +62,14 @@ class Comparing(unittest.TestCase):
         self.assertEqual(wc.metrics.rmse(*alpha), 0)
         self.assertEqual(wc.metrics.rmse(HasAnArray(light[0]), light[0][::-1, ::-1]), 0)
 
+    def test_a_bitmap_of_mitsuba_is_an_image(self):
+        import mitsuba
+
+        mitsuba.set_variant("scalar_rgb")
+        light = numpy.random.default_rng(1).random((16, 24, 3), dtype=numpy.float32)
+        self.assertEqual(wc.metrics.rmse(light, mitsuba.Bitmap(light)), 0)
+        self.assertAlmostEqual(wc.metrics.rmse(mitsuba.Bitmap(light), mitsuba.Bitmap(light + 0.5)), 0.5, places=6)
+
     def test_a_reference_serves_many_tests(self):
         reference = wc.Reference(REFERENCE)
         self.assertEqual(dict(reference.compare(TEST, "ssim")), dict(wc.compare(REFERENCE, TEST, "ssim")))
@@ -78,7 +86,7 @@ class Comparing(unittest.TestCase):
         square = numpy.zeros((16, 16, 3), numpy.float32)
         with self.assertRaisesRegex(wc.InputError, "16"):
             wc.compare(square, square[:8], "rmse")
-        with self.assertRaisesRegex(wc.UsageError, "unknown metric 'nonsense'"):
+        with self.assertRaisesRegex(wc.UsageError, "--metrics nonsense: unknown; expected some of rmse"):
             wc.compare(square, square, "nonsense")
         with self.assertRaisesRegex(ValueError, "shape"):
             wc.compare(square[0, 0], square, "rmse")

@@ -119,6 +119,13 @@ signal.signal(signal.SIGINT, signal.SIG_DFL)
         with self.assertRaises(ValueError):
             small().snapshots(times=[2, 1])
 
+    def test_a_scene_that_does_not_exist_is_no_file_and_maybe_a_misspelt_name(self):
+        with self.assertRaisesRegex(wc.InputError, "^cornell-miror: no such file.*did you mean 'cornell-mirror'") as raised:
+            wc.load("cornell-miror")
+        self.assertEqual((raised.exception.file, raised.exception.line), ("cornell-miror", None))
+        with self.assertRaisesRegex(wc.UsageError, "--time 'soon': no duration"):
+            small().render(time="soon")
+
     def test_inspection_is_the_programs(self):
         import json
 

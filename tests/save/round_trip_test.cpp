@@ -36,6 +36,33 @@ TEST(RoundTrip, RectanglesAndDisksAnywhere) {
   }
 }
 
+TEST(RoundTrip, Beams) {
+  const std::string picture =
+      R"(<texture type="checkerboard" name="{}"><rgb name="color0" value="0.1, 0.7, 0.9"/></texture>)";
+  const std::string place =
+      R"(<transform name="to_world"><lookat origin="1, 2, 3" target="0.3, 0.1, 0" up="0, 1, 0"/></transform>)";
+  expectSame(R"(<emitter type="spot">)" + place + fmt::format(fmt::runtime(picture), "texture") + "</emitter>");
+  expectSame(R"(<emitter type="projector">)" + place + fmt::format(fmt::runtime(picture), "irradiance") +
+             R"(<float name="scale" value="0.3"/><string name="focal_length" value="35mm"/></emitter>)");
+  expectSame(R"(<emitter type="projector"><rgb name="irradiance" value="0.1, 0.2, 0.3"/></emitter>)");
+}
+
+TEST(RoundTrip, SunAndSky) {
+  std::mt19937 random(6);
+  for (int i = 0; i < 20; ++i) {
+    const char* time = i % 2 == 0 ? R"(<float name="hour" value="9.3"/><float name="latitude" value="51.7"/>)"
+                                  : R"(<vector name="sun_direction" value="0.3, 0.7, 0.1"/>)";
+    expectSame(fmt::format(R"(<emitter type="sunsky">{}{}<float name="turbidity" value="2.3"/>)"
+                           R"(<float name="sun_scale" value="0.7"/><float name="sun_aperture" value="1.3"/>)"
+                           R"(<rgb name="albedo" value="0.1, 0.2, 0.7"/></emitter>)",
+                           transformOf(random, true, false), time));
+  }
+}
+
+TEST(RoundTrip, HiddenEmitters) {
+  expectSame(R"(<integrator type="path"><boolean name="hide_emitters" value="true"/></integrator>)");
+}
+
 TEST(RoundTrip, SpheresAnywhere) {
   std::mt19937 random(2);
   for (int i = 0; i < 50; ++i) {
@@ -119,6 +146,14 @@ TEST(RoundTrip, MapsAndMasksOfDifferentTexturesKeepTheirOrder) {
   const std::string bump = R"(<bsdf type="bumpmap"><ref id="other"/>)", diffuse = R"(<bsdf type="diffuse"/>)";
   expectSame(boards + R"(<shape type="sphere">)" + mask + bump + diffuse + "</bsdf></bsdf></shape>");
   expectSame(boards + R"(<shape type="sphere">)" + bump + mask + diffuse + "</bsdf></bsdf></shape>");
+}
+
+TEST(RoundTrip, NumbersOfACheckerboardMayBeAbove1) {
+  const Scene again =
+      savedAndLoaded(loadBody(R"(<texture type="checkerboard" id="t"><float name="color0" value="1.4"/></texture>
+      <shape type="sphere"><bsdf type="principledthin"><ref id="t" name="diff_trans"/></bsdf></shape>)"));
+  const uint32_t texture = std::get<Principled>(again.materials[0].kind).diffTrans.texture;
+  EXPECT_EQ(std::get<CheckerboardTexture>(again.textures[texture].kind).color1[0], 1.4);
 }
 
 // Read as numbers, the colours of a checkerboard change places: without the texture that this was done to, they must be
@@ -207,6 +242,24 @@ TEST(RoundTrip, EveryLightAndSensor) {
     <string name="fov_axis" value="diagonal"/><film type="hdrfilm"><integer name="crop_offset_x" value="7"/>
     <integer name="crop_width" value="11"/>
     <rfilter type="tent"><float name="radius" value="1.7"/></rfilter></film></sensor>)");
+}
+
+// Groups are read at their first instance, between shapes of the world and each other.
+TEST(RoundTrip, GroupsAndInstancesInTheirOrder) {
+  const Scene scene = loadBody(R"(<shape type="cube"/>
+    <shape type="shapegroup" id="a"><shape type="sphere"/><shape type="cube"/></shape>
+    <shape type="shapegroup" id="b"><shape type="disk"/></shape>
+    <shape type="instance"><ref id="b"/><transform name="to_world"><scale x="-2" y="3"/></transform></shape>
+    <shape type="instance"><ref id="b"/><transform name="to_world"><translate x="0.3"/></transform></shape>
+    <shape type="rectangle"><emitter type="area"/></shape>
+    <shape type="instance"><ref id="a"/><transform name="to_world"><rotate x="1" y="2" angle="11"/></transform></shape>
+    <shape type="instance"><ref id="b"/></shape>)");
+  const Scene again = savedAndLoaded(scene);
+  EXPECT_EQ(again.hash, scene.hash);
+  ASSERT_EQ(again.groups.size(), 2u);
+  EXPECT_EQ(again.groups[0].id, "b");
+  ASSERT_EQ(again.instances.size(), 4u);
+  EXPECT_EQ(again.instances[2].group, 1u);
 }
 
 TEST(RoundTrip, IdsAreKeptAndMadeUnique) {

@@ -25,8 +25,11 @@ TEST(Sky, SunStandsWhereTheScenesWantIt) {
   EXPECT_GT(dot(direction, Vec3{-0.4716, 0.6428, -0.6037}), std::cos(0.01));  // a pixel is 0.0123 wide
 }
 
-TEST(Sky, SunGivesTheIrradianceOfItsGaussian) {
-  const Image sky = makeSky();
+class SkyTest : public testing::TestWithParam<SunWidth> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, SkyTest, testing::Values(kWideSun, kSmallSun));
+
+TEST_P(SkyTest, SunGivesTheIrradianceOfTheWideOne) {
+  const Image sky = makeSky(GetParam());
   double irradiance = 0;
   for (uint32_t j = 0; j < sky.height; ++j) {
     const double theta = std::numbers::pi * (j + 0.5) / sky.height;

@@ -33,9 +33,10 @@ std::set<fs::path> namedFiles(const fs::path& scene, const fs::path& folder) {
   std::set<fs::path> files;
   for (const auto& match : document.select_nodes("//string[@name='filename']")) {
     std::string value = match.node().attribute("value").value();
-    if (value.starts_with("$")) {
-      const std::string query = "//default[@name='" + value.substr(1) + "']";
-      value = document.select_node(query.c_str()).node().attribute("value").value();
+    if (const size_t at = value.find('$'); at != std::string::npos) {
+      const std::string name = value.substr(at + 1, value.find_first_of("./", at) - at - 1);
+      const std::string query = "//default[@name='" + name + "']";
+      value.replace(at, 1 + name.size(), document.select_node(query.c_str()).node().attribute("value").value());
     }
     files.insert(folder / value);
   }

@@ -17,7 +17,7 @@ def flatten(path, size=None, box_filter=False, defaults=None):
     Raises ValueError where the scene has no such entry.
     """
     path = pathlib.Path(path).resolve()
-    root = _read(path, path.parent)
+    root = _read(path, [path.parent])
     for name, value in (defaults or {}).items():
         entries = [entry for entry in root.iter("default") if entry.get("name") == name]
         if not entries:
@@ -43,6 +43,12 @@ def filter_type(xml_text):
     return "gaussian" if entry is None else entry.get("type")
 
 
+def hides_emitters(xml_text):
+    """Whether the scene's integrator leaves out what rays from the camera see of lights."""
+    entries = ElementTree.fromstring(xml_text).findall(".//integrator/boolean[@name='hide_emitters']")
+    return any(entry.get("value") == "true" for entry in entries)
+
+
 def _set_integer(parent, name, value):
     for entry in parent.findall("integer"):
         if entry.get("name") == name:
@@ -51,28 +57,35 @@ def _set_integer(parent, name, value):
     ElementTree.SubElement(parent, "integer", {"name": name, "value": str(value)})
 
 
-def _read(path, scene_folder):
+def _read(path, folders):
+    """The file's root with absolute file names, looked for beside the file and in the folders of <path> elements."""
     root = ElementTree.parse(path).getroot()
+    for entry in root.findall("path"):  # relative to the file that it stands in, as Mitsuba has it
+        folders.append((path.parent / entry.get("value")).resolve())
+        root.remove(entry)
     for entry in root.iter("string"):
         if entry.get("name") == "filename":
-            entry.set("value", _absolute(entry.get("value"), path.parent, scene_folder))
+            entry.set("value", _absolute(entry.get("value"), path.parent, *folders))
     for entry in root.iter("default"):  # of a variable that stands for a file name
-        if any((folder / entry.get("value")).is_file() for folder in (path.parent, scene_folder)):
-            entry.set("value", _absolute(entry.get("value"), path.parent, scene_folder))
-    _inline_includes(root, path, scene_folder)
+        if any((folder / entry.get("value")).is_file() for folder in (path.parent, *folders)):
+            entry.set("value", _absolute(entry.get("value"), path.parent, *folders))
+    _inline_includes(root, path, folders)
     return root
 
 
-def _inline_includes(parent, path, scene_folder):
-    for index in range(len(parent) - 1, -1, -1):
+def _inline_includes(parent, path, folders):
+    index = 0
+    while index < len(parent):
         child = parent[index]
-        if child.tag == "include":
-            included = _read(pathlib.Path(_absolute(child.get("filename"), path.parent, scene_folder)), scene_folder)
-            parent.remove(child)
-            for offset, element in enumerate(included):
-                parent.insert(index + offset, element)
-        else:
-            _inline_includes(child, path, scene_folder)
+        if child.tag != "include":
+            _inline_includes(child, path, folders)
+            index += 1
+            continue
+        included = _read(pathlib.Path(_absolute(child.get("filename"), path.parent, *folders)), folders)
+        parent.remove(child)
+        for offset, element in enumerate(included):
+            parent.insert(index + offset, element)
+        index += len(included)
 
 
 def _absolute(name, *folders):

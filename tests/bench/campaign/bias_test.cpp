@@ -27,6 +27,17 @@ TEST(ErrorParts, areThoseOfTheDefinition) {
   EXPECT_DOUBLE_EQ(parts.variance, parts.meanSquareError - parts.biasSquared);
 }
 
+TEST(UnbiasedMse, isTheMeanProductOfTheErrorsAgainstTheHalves) {
+  const Reference reference{
+      .mean = constant(1, 1, 1), .difference = constant(1, 1, 0.5f), .info = {}, .noiseFloors = {}};
+  EXPECT_DOUBLE_EQ(*unbiasedMse(constant(1, 1, 3), reference), 1.5 * 2.5);
+  EXPECT_DOUBLE_EQ(*unbiasedMse(constant(1, 1, 1), reference), -0.5 * 0.5) << "less than the reference's own noise";
+  Image bad = constant(1, 1, 3);
+  bad.pixels[1] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_DOUBLE_EQ(*unbiasedMse(bad, reference), 1.5 * 2.5);
+  EXPECT_FALSE(unbiasedMse(bad, {.mean = constant(1, 1, 1), .difference = {}, .info = {}, .noiseFloors = {}}));
+}
+
 TEST(ErrorParts, varianceIsTheVarianceOverSeeds) {
   const Reference plain{.mean = constant(1, 1, 1), .difference = {}, .info = {}, .noiseFloors = {}};
   const ErrorParts parts = errorParts(std::vector{constant(1, 1, 4), constant(1, 1, 2), constant(1, 1, 3)}, plain);

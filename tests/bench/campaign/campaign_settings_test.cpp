@@ -24,6 +24,32 @@ TEST(Profiles, paperIsTheProtocolOfTheStudy) {
   }
 }
 
+// A tenth of the study's times, in its proportions.
+TEST(Profiles, studyHasItsSizeLightPathsAndProportions) {
+  const Profile& study = *findProfile("study");
+  EXPECT_EQ(study.size, (std::array<uint32_t, 2>{1024, 768}));
+  EXPECT_EQ(study.lightPaths, 1024u * 768u);
+  EXPECT_EQ(study.effort("cornell-mirror").seconds, 180);
+  EXPECT_EQ(study.effort("pool-interior").seconds, 360);
+  EXPECT_EQ(study.effort("veach-door").seconds, 720);
+  EXPECT_TRUE(study.effort("veach-door").logarithmicFirst);
+  EXPECT_EQ(findProfile("standard")->lightPaths, study.lightPaths);
+}
+
+TEST(Rows, mltHasOneForEachVariantAndPpmForItsDirectPass) {
+  const auto names = [](const std::vector<CampaignMethod>& rows) {
+    std::vector<std::string> all;
+    for (const CampaignMethod& row : rows) all.push_back(row.name());
+    return all;
+  };
+  const std::array variants{MetropolisVariant::pathspace, MetropolisVariant::mmlt, MetropolisVariant::pssmlt};
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names(rowsOf(Method::mlt, variants, DirectPass::both)), (Names{"mlt-pathspace", "mlt", "mlt-pssmlt"}));
+  EXPECT_EQ(names(rowsOf(Method::ppm, variants, DirectPass::both)), (Names{"ppm", "ppm-direct"}));
+  EXPECT_EQ(names(rowsOf(Method::ppm, variants, DirectPass::no)), (Names{"ppm"}));
+  EXPECT_EQ(names(rowsOf(Method::vcm, variants, DirectPass::both)), (Names{"vcm"}));
+}
+
 TEST(Profiles, quickRendersTenMinutesAndStandardAnHourOrTwo) {
   const auto seconds = [](const Profile& profile) {
     double sum = 0;

@@ -53,7 +53,7 @@ TEST(ResultsStore, whatIsWrittenIsReadBack) {
     store.putScene(sampleScene());
     store.putRun(run);
     store.putBiases({{"box", "pt", 1, 2, 3, 2, 1}});
-    store.putClaims({{"c1", "box", "pt wins", "holds", "pt 0.1, lt 0.2"}});
+    store.putClaims({{"c1", "box", "pt wins", "not judged", "no light", "pt 0.1, lt 0.2"}});
   }
   const CampaignResults results = readResults(folder.folder());
   EXPECT_EQ(results.campaign.at("profile"), "quick");
@@ -83,7 +83,35 @@ TEST(ResultsStore, whatIsWrittenIsReadBack) {
   EXPECT_EQ(results.biases[0].biasSquared, 1);
   EXPECT_EQ(results.biases[0].seeds, 2u);
   ASSERT_EQ(results.claims.size(), 1u);
+  EXPECT_EQ(results.claims[0].verdict, "not judged");
+  EXPECT_EQ(results.claims[0].figure, "no light");
   EXPECT_EQ(results.claims[0].evidence, "pt 0.1, lt 0.2");
+}
+
+// Files of the version before: claims had no figure.
+TEST(ResultsStore, aFileOfTheOldestVersionIsReadAndBroughtUpToDate) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("results.sqlite");
+  {
+    ResultsStore store(path);
+    store.putScene(sampleScene());
+    store.putRun(sampleRun());
+  }
+  {
+    Database database(path, OpenFor::writing);
+    database.execute(
+        "DROP TABLE claim; CREATE TABLE claim(id TEXT PRIMARY KEY, scene TEXT NOT NULL, statement TEXT NOT NULL, "
+        "verdict TEXT NOT NULL CHECK(verdict IN ('holds', 'does not hold', 'undecided')), evidence TEXT NOT NULL); "
+        "INSERT INTO claim VALUES('c1', 'box', 'pt wins', 'holds', 'pt 0.1'); PRAGMA user_version = 1");
+  }
+  EXPECT_EQ(readResults(path).claims.at(0).evidence, "pt 0.1");
+  { const ResultsStore store(path); }
+  const ClaimRecord claim = readResults(path).claims.at(0);
+  EXPECT_EQ(claim.verdict, "holds");
+  EXPECT_EQ(claim.figure, "");
+  { ResultsStore(path).putClaims({{"c2", "box", "lt wins", "not judged", "no light", ""}}); }
+  EXPECT_EQ(readResults(path).claims.at(0).id, "c2");
+  EXPECT_EQ(readResults(path).runs.size(), 1u) << "the rest stays";
 }
 
 TEST(ResultsStore, aRefusalIsARunWithAReason) {

@@ -31,8 +31,43 @@ TEST(Knobs, areThoseThatMeanSomethingForTheMethod) {
   }
 }
 
+TEST(Knobs, canBeChosenByNameAndAreComparedWithTheSame) {
+  const auto all = variantsOf(smallBox(48, 32), settingsOf(Method::pt));
+  const auto chosen = [&](const std::vector<std::string>& words) {
+    std::string told;
+    for (const Variant& v : chooseVariants(all, words)) told += v.knob + " " + v.value + "; ";
+    return told;
+  };
+  EXPECT_EQ(chosen({"kernels"}), "baseline float; --precision double; kernels general; ");
+  EXPECT_EQ(chosen({"--precision", "kernels"}), "baseline float; --precision double; kernels general; ");
+  EXPECT_EQ(chosen({"precision"}), chosen({"--precision"}));
+  EXPECT_THROW(chosen({"radius"}), std::invalid_argument) << "path tracing has none";
+  EXPECT_THROW(chosen({""}), std::invalid_argument);
+  EXPECT_THROW(chosen({"baseline"}), std::invalid_argument);
+}
+
+TEST(Tradeoff, rendersAsManySeedsAsAskedFor) {
+  const TradeResult result =
+      measureTrade(smallBox(48, 32), settingsOf(Method::pt), {.seconds = 1, .seeds = 3, .knobs = {"kernels"}});
+  EXPECT_EQ(result.seeds, 3u);
+  ASSERT_EQ(result.rows.size(), 3u);
+  const TradeRow& row = rowOf(result, "kernels", "general");
+  EXPECT_GT(row.speed.value, 0);
+  EXPECT_EQ(row.mean.value, rowOf(result, "baseline", "float").mean.value) << "the same bits as the set's own kernels";
+}
+
+TEST(Tradeoff, doesNotTestEveryPrimitiveOfALargeScene) {
+  Scene scene = smallBox(48, 32);
+  const Shape some = scene.shapes.front();
+  for (int i = 0; i < 100; ++i) scene.shapes.push_back(some);
+  const TradeResult result =
+      measureTrade(scene, settingsOf(Method::pt), {.seconds = 1, .seeds = 2, .knobs = {"accel"}});
+  EXPECT_NE(rowOf(result, "--accel", "small").refusal, "");
+  EXPECT_EQ(rowOf(result, "--accel", "bvh").refusal, "");
+}
+
 TEST(Tradeoff, findsWhatShortPathsLeaveOutAndNoBiasInRounding) {
-  const TradeResult result = measureTrade(smallBox(48, 32), settingsOf(Method::pt), 3);
+  const TradeResult result = measureTrade(smallBox(48, 32), settingsOf(Method::pt), {.seconds = 3});
   EXPECT_EQ(result.rows.front().knob, "baseline");
   EXPECT_EQ(result.rows.front().efficiency.value, 1);
   const TradeRow& shortPaths = rowOf(result, "--max-depth", "4");

@@ -41,6 +41,27 @@ for nonlinear in [False, True]:
 MATERIALS += [{"type": "diffuse", "diffuse": DIFFUSE, "opacity": 0.3}]
 for exponent in [1, 30, 1000]:
     MATERIALS += [{"type": "phong", "diffuse": [0.5, 0.3, 0.1], "specular": [0.2, 0.4, 0.3], "exponent": exponent}]
+for distribution in ["ggx", "beckmann"]:
+    rough = {"distribution": distribution, "alpha": 0.15, "alphaV": 0.5}
+    MATERIALS += [{"type": "roughconductor", "specular": SPECULAR, **METAL, **rough}]
+    MATERIALS += [{"type": "roughdielectric", "specular": SPECULAR, "transmittance": TRANSMITTANCE, **GLASS, **rough}]
+BASE = [0.8, 0.5, 0.2]
+COAT = {"roughness": 0.4, "anisotropic": 0.6, "spec_tint": 0.5, "sheen": 0.4, "sheen_tint": 0.5, "flatness": 0.4}
+MATERIALS += [{"type": "principled", "base": BASE, "numbers": {"roughness": 0.5}}]
+MATERIALS += [
+    {"type": "principled", "base": BASE, "numbers": {**COAT, "metallic": 0.3, "clearcoat": 0.8, "clearcoat_gloss": 0.2}}
+]
+for eta in [1.4, 0.8]:
+    numbers = {"eta": eta, "roughness": 0.5, "anisotropic": 0.3, "spec_trans": 0.7, "spec_tint": 0.2, "metallic": 0.2}
+    MATERIALS += [{"type": "principled", "base": BASE, "numbers": {**numbers, "clearcoat": 0.5}}]
+MATERIALS += [{"type": "principledthin", "base": BASE, "numbers": {**COAT, "diff_trans": 0.8}}]
+MATERIALS += [{"type": "principledthin", "base": BASE, "numbers": {**COAT, "spec_trans": 0.7, "diff_trans": 0.8, "eta": 1.4}}]
+PAINT, POLISHED = {"type": "diffuse", "diffuse": DIFFUSE}, {"type": "conductor", "specular": SPECULAR, **METAL}
+SATIN = {"type": "roughconductor", "specular": SPECULAR, "distribution": "ggx", "alpha": 0.3, **METAL}
+FROST = {"type": "roughdielectric", "distribution": "ggx", "alpha": 0.3, **GLASS}
+MATERIALS += [{"type": "blendbsdf", "weight": 0.3, "parts": [PAINT, SATIN]}]
+MATERIALS += [{"type": "blendbsdf", "weight": 0.6, "parts": [FROST, PAINT]}]
+MATERIALS += [{"type": "blendbsdf", "weight": 0.25, "parts": [POLISHED, {**SATIN, "opacity": 0.6}], "opacity": 0.8}]
 
 
 def rgb(value):
@@ -49,10 +70,17 @@ def rgb(value):
 
 def plugin(material):
     """The Mitsuba plugin of a material."""
-    result = {"type": material["type"]}
+    result = {"type": material["type"], **material.get("numbers", {})}
+    if "base" in material:
+        result["base_color"] = rgb(material["base"])
+    if "parts" in material:
+        result["weight"] = material["weight"]
+        result["first"], result["second"] = [plugin(part) for part in material["parts"]]
     for name in ["distribution", "alpha", "nonlinear", "material"]:
         if name in material:
             result[name] = material[name]
+    if "alphaV" in material:
+        result["alpha_u"], result["alpha_v"] = result.pop("alpha"), material["alphaV"]
     if "intIor" in material:
         result["int_ior"], result["ext_ior"] = material["intIor"], material["extIor"]
     for name in ["eta", "k"]:
@@ -124,7 +152,8 @@ def describe(material):
         else:
             value = bsdf.eval(context, interaction(fix), mi.Vector3f(*gen))
             pdf = bsdf.pdf(context, interaction(fix), mi.Vector3f(*gen))
-        if material["type"] in ["roughdielectric", "diffuse"] or fix[2] * gen[2] > 0:  # else: trivially nothing
+        both = ["roughdielectric", "diffuse", "principled", "principledthin", "blendbsdf"]
+        if material["type"] in both or fix[2] * gen[2] > 0:  # else: trivially nothing
             item = {"fix": rounded(fix), "gen": rounded(gen), "fCos": rounded(value), "pdf": rounded([pdf])[0]}
             record["values"].append(item)
     if bsdf is None:

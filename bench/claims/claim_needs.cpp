@@ -1,0 +1,83 @@
+#include "bench/claims/claim_needs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "bench/claims/study.h"
+
+namespace wavecrest {
+namespace {
+
+using nlohmann::json;
+
+bool merges(const std::string& method) { return method == "ppm" || method == "bpm" || method == "vcm"; }
+
+std::set<std::string> methodsOf(const Claim& claim) {
+  std::set<std::string> methods;
+  for (const Condition& condition : claim.conditions) {
+    methods.insert(condition.methods.begin(), condition.methods.end());
+    methods.insert(condition.than.begin(), condition.than.end());
+  }
+  return methods;
+}
+
+// Light paths that a search of the first iteration can meet, as a share of the study's: N_L r^2 over its own. Nothing
+// where the run does not say.
+std::optional<double> lightPathShare(const json& stats) {
+  const double iterations = stats.value("iterations", 0.0), paths = stats.value("light_paths", 0.0);
+  if (!(iterations > 0)) return std::nullopt;
+  // Files of earlier versions do not say the radius, which could not be chosen then.
+  const double radius = stats.value("radius", kStudyRadius) / kStudyRadius;
+  return paths / iterations * radius * radius / kStudyPixels;
+}
+
+// Camera and light paths per pixel, or mutations, as a share of what the study had time for.
+std::optional<double> pathShare(const json& stats, const std::string& scene) {
+  const double pixels = stats.value("width", 0.0) * stats.value("height", 0.0);
+  if (!(pixels > 0)) return std::nullopt;
+  const double mutations = stats.value("mutations", 0.0);
+  const double paths = mutations > 0 ? mutations : stats.value("camera_paths", 0.0) + stats.value("light_paths", 0.0);
+  return paths / pixels / studyPathsPerPixel(scene);
+}
+
+// The least share over the runs of a method; nothing where none says.
+template <class Share>
+std::optional<double> leastShare(const SceneLosses& scene, const std::string& method, Share share) {
+  std::optional<double> least;
+  for (const RunRecord* run : scene.runs(method)) {
+    const json stats = json::parse(run->stats, nullptr, false);
+    if (!stats.is_object()) continue;
+    const std::optional<double> own = share(stats);
+    if (own) least = std::min(least.value_or(*own), *own);
+  }
+  return least;
+}
+
+}  // namespace
+
+std::string unmetNeed(const Claim& claim, const SceneLosses& scene) {
+  for (const std::string& method : methodsOf(claim)) {
+    if (claim.needs.lightPaths > 0 && merges(method)) {
+      const std::optional<double> share = leastShare(scene, method, lightPathShare);
+      if (share && *share < claim.needs.lightPaths) {
+        return fmt::format("a search of {} meets {:.2g} of the study's light paths; needs {:g}", method, *share,
+                           claim.needs.lightPaths);
+      }
+    }
+    if (claim.needs.paths > 0) {
+      const auto ofScene = [&](const json& stats) { return pathShare(stats, scene.name()); };
+      const std::optional<double> share = leastShare(scene, method, ofScene);
+      if (share && *share < claim.needs.paths) {
+        return fmt::format("{} made {:.2g} of the study's paths per pixel; needs {:g}", method, *share,
+                           claim.needs.paths);
+      }
+    }
+  }
+  return "";
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,373 @@
+#include "bench/claims/judge_conditions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace wavecrest {
+namespace {
+
+using V = ClaimVerdict;
+
+constexpr double kNearFloor = 2;      // times the loss that the reference's noise alone gives
+constexpr size_t kBiasSnapshots = 3;  // that must agree on a share of bias
+
+// How far a verdict weighs in a conjunction.
+int weightOf(V verdict) {
+  switch (verdict) {
+    case V::fails:
+      return 3;
+    case V::notJudged:
+      return 2;
+    case V::undecided:
+      return 1;
+    case V::holds:
+      break;
+  }
+  return 0;
+}
+
+// One comparison. margin: by how much it holds, below 0 by how much it does not, in logarithms or the metric's unit.
+struct Comparison {
+  V verdict = V::holds;
+  double margin = 0;
+  std::string text = {};
+};
+
+// Whether a value lies above a limit.
+Comparison above(const Band& band, double limit, std::string text) {
+  const double margin = band.mean - limit;
+  const V verdict = margin >= band.halfWidth ? V::holds : margin < -band.halfWidth ? V::fails : V::undecided;
+  return {verdict, margin, std::move(text)};
+}
+Comparison below(const Band& band, double limit, std::string text) {
+  return above({-band.mean, band.halfWidth}, -limit, std::move(text));
+}
+
+std::string nameOf(const std::string& metric) {
+  if (metric == "ssim") return "SSIM";
+  if (metric == "q_mos") return "Q_MOS";
+  return metric == "rmse" ? "RMSE" : metric;
+}
+
+double meanOfLog(std::span<const double> values) { return std::exp(meanBand(values).mean); }
+
+// The comparisons of one condition, and what they come to.
+class Judge {
+ public:
+  Judge(const Condition& condition, const SceneLosses& scene) : condition_(condition), scene_(scene) {}
+
+  Judgement judge() {
+    for (const std::string& method : condition_.methods) requireMeasured(scene_, method);
+    for (const std::string& method : condition_.than) requireMeasured(scene_, method);
+    if (condition_.kind == ConditionKind::biased) {
+      biased();
+    } else if (condition_.kind == ConditionKind::stalls) {
+      stalls();
+    } else {
+      for (const std::string& metric : condition_.metrics) {
+        showValues(metric);
+        judgeMetric(metric);
+      }
+    }
+    return result_;
+  }
+
+ private:
+  // ---- what is collected --------------------------------------------------------------------------------------------
+
+  void note(const std::string& text) {
+    if (result_.evidence.find(text) == std::string::npos) {
+      result_.evidence += (result_.evidence.empty() ? "" : "; ") + text;
+    }
+  }
+
+  // The verdict that weighs most stands, with the comparison that is clearest where it fails, closest where it holds.
+  void add(const Comparison& comparison) {
+    const bool heavier = !any_ || weightOf(comparison.verdict) > weightOf(result_.verdict);
+    const bool same = any_ && comparison.verdict == result_.verdict;
+    if (!heavier && !(same && comparison.margin < margin_)) return;
+    any_ = true;
+    result_.verdict = comparison.verdict;
+    result_.figure = comparison.text;
+    margin_ = comparison.margin;
+  }
+
+  void requireMeasured(const SceneLosses& scene, const std::string& method) {
+    const std::string gap = scene.missing(method);
+    if (gap.empty()) return;
+    note(gap);
+    add({V::notJudged, -std::numeric_limits<double>::infinity(), gap});
+  }
+  bool measured(const std::string& method) const { return scene_.missing(method).empty(); }
+
+  void showValues(const std::string& metric) {
+    std::vector<std::string> methods = condition_.methods;
+    for (const std::string& method : condition_.than) {
+      if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
+    }
+    std::string line;
+    for (const std::string& method : methods) {
+      const std::vector<double> values = scene_.scores(method, metric);
+      if (values.empty()) continue;
+      const Band band = meanBand(values);
+      line += fmt::format("{}{} {:.4g}", line.empty() ? "" : ", ", SceneLosses::rowOf(method), band.mean);
+      if (std::isfinite(band.halfWidth)) line += fmt::format(" \u00b1 {:.2g}", band.halfWidth);
+    }
+    if (const std::optional<double> floor = scene_.floorLoss(metric)) {
+      line += fmt::format(" (noise floor {:.4g})", scoreOfLoss(metric, *floor));
+    }
+    note(metric + ": " + line);
+  }
+
+  // ---- comparisons --------------------------------------------------------------------------------------------------
+
+  bool nearFloor(const std::string& metric, std::span<const double> logLosses) const {
+    const std::optional<double> floor = scene_.floorLoss(metric);
+    return floor && meanOfLog(logLosses) <= kNearFloor * *floor;
+  }
+
+  // Whether the loss of `a` is at least `factor` times that of `b`.
+  Comparison largerLoss(const std::string& metric, const std::string& a, const std::string& b, double factor) const {
+    const std::vector<double> lossesA = scene_.logLosses(a, metric), lossesB = scene_.logLosses(b, metric);
+    if (lossesA.empty() || lossesB.empty()) return {V::notJudged, 0, nameOf(metric) + " was not measured"};
+    std::string text = fmt::format("{} {} {:.3g}, {} {:.3g}", nameOf(metric), a,
+                                   meanBand(scene_.scores(a, metric)).mean, b, meanBand(scene_.scores(b, metric)).mean);
+    if (factor != 1)
+      text += fmt::format(", losses {:.2g} : 1, limit {:g}", meanOfLog(lossesA) / meanOfLog(lossesB), factor);
+    Comparison result = above(lossDifference(metric, lossesA, lossesB), std::log(factor), text);
+    // Where even the larger one is mostly noise of the reference, the true losses may differ by any factor.
+    if (result.verdict != V::holds && nearFloor(metric, lossesA) && nearFloor(metric, lossesB)) {
+      result.verdict = V::notJudged;
+      result.text +=
+          fmt::format("; the reference's noise alone gives {:.3g}", scoreOfLoss(metric, *scene_.floorLoss(metric)));
+    }
+    return result;
+  }
+  static Comparison negated(Comparison c) {
+    c.margin = -c.margin;
+    if (c.verdict == V::holds || c.verdict == V::fails) c.verdict = c.verdict == V::holds ? V::fails : V::holds;
+    return c;
+  }
+
+  // Whether `a` takes less time than `b` to the best loss that both reach.
+  Comparison faster(const std::string& metric, const std::string& a, const std::string& b) const {
+    const std::vector<double> lossesA = scene_.logLosses(a, metric), lossesB = scene_.logLosses(b, metric);
+    if (lossesA.empty() || lossesB.empty()) return {V::notJudged, 0, nameOf(metric) + " was not measured"};
+    const double loss = std::max(meanOfLog(lossesA), meanOfLog(lossesB));
+    const std::vector<double> timesA = scene_.logTimes(a, metric, loss), timesB = scene_.logTimes(b, metric, loss);
+    // Error of unbiased methods falls with the root of time: a spread of losses is twice that of times.
+    Band band = differenceBand(timesB, timesA);
+    if (timesA.size() == 1 || timesB.size() == 1)
+      band.halfWidth = 2 * lossDifference(metric, lossesA, lossesB).halfWidth;
+    Comparison result = above(band, 0,
+                              fmt::format("to {} {:.3g} {} takes {:.3g} s, {} {:.3g} s", nameOf(metric),
+                                          scoreOfLoss(metric, loss), a, meanOfLog(timesA), b, meanOfLog(timesB)));
+    if (result.margin == 0) result.verdict = V::undecided;  // both have it at their first snapshots
+    if (result.verdict != V::holds && nearFloor(metric, lossesA) && nearFloor(metric, lossesB)) {
+      result.verdict = V::notJudged;
+      result.text += "; that is the reference's own noise";
+    }
+    return result;
+  }
+
+  void forPairs(const std::function<Comparison(const std::string&, const std::string&)>& compare) {
+    for (const std::string& a : condition_.methods) {
+      for (const std::string& b : condition_.than) {
+        if (a != b && measured(a) && measured(b)) add(compare(a, b));
+      }
+    }
+  }
+
+  // Those that hold come first, by how clearly they do; those that fail come last.
+  static bool isClearer(const Comparison& x, const Comparison& y) {
+    const auto rank = [](const Comparison& c) {
+      return c.verdict == V::holds ? 0 : c.verdict == V::undecided ? 1 : c.verdict == V::notJudged ? 2 : 3;
+    };
+    return rank(x) != rank(y) ? rank(x) < rank(y) : x.margin > y.margin;
+  }
+  static Comparison best(const std::vector<Comparison>& all) {
+    return *std::min_element(all.begin(), all.end(), isClearer);
+  }
+  static Comparison worst(const std::vector<Comparison>& all) {
+    return *std::max_element(all.begin(), all.end(), isClearer);
+  }
+  // It holds where more than half of them do.
+  static Comparison middle(std::vector<Comparison> all) {
+    std::sort(all.begin(), all.end(), isClearer);
+    return all[all.size() / 2];
+  }
+  std::vector<Comparison> againstAll(const std::string& a,
+                                     const std::function<Comparison(const std::string&)>& compare) const {
+    std::vector<Comparison> all;
+    for (const std::string& b : condition_.than) {
+      if (b != a && measured(b)) all.push_back(compare(b));
+    }
+    return all;
+  }
+
+  void judgeMetric(const std::string& metric) {
+    switch (condition_.kind) {
+      case ConditionKind::better:
+        return forPairs([&](const auto& a, const auto& b) { return largerLoss(metric, b, a, 1); });
+      case ConditionKind::faster:
+        return forPairs([&](const auto& a, const auto& b) { return faster(metric, a, b); });
+      case ConditionKind::good:
+        return forPairs(
+            [&](const auto& a, const auto& b) { return negated(largerLoss(metric, a, b, condition_.factor)); });
+      case ConditionKind::worseHere:
+        return forPairs([&](const auto& a, const auto& b) { return worseHere(metric, a, b); });
+      case ConditionKind::equal:
+        return equal(metric);
+      case ConditionKind::poor:
+      case ConditionKind::behind:
+        return poorOrBehind(metric);
+      case ConditionKind::leads:
+        return leads(metric);
+      case ConditionKind::reaches:
+      case ConditionKind::misses:
+        return threshold(metric);
+      case ConditionKind::stalls:
+      case ConditionKind::biased:
+        return;
+    }
+  }
+
+  void poorOrBehind(const std::string& metric) {
+    const bool poor = condition_.kind == ConditionKind::poor;
+    for (const std::string& method : condition_.methods) {
+      if (!measured(method)) continue;
+      const auto all = againstAll(method, [&](const std::string& other) {
+        return largerLoss(metric, method, other, poor ? condition_.factor : 1);
+      });
+      if (!all.empty()) add(poor ? middle(all) : best(all));
+    }
+  }
+
+  void leads(const std::string& metric) {
+    std::vector<Comparison> candidates;
+    for (const std::string& method : condition_.methods) {
+      if (!measured(method)) continue;
+      const auto all = againstAll(method, [&](const std::string& other) {
+        return negated(largerLoss(metric, method, other, condition_.factor));
+      });
+      if (!all.empty()) candidates.push_back(worst(all));
+    }
+    if (!candidates.empty()) add(best(candidates));
+  }
+
+  void equal(const std::string& metric) {
+    for (const std::string& a : condition_.methods) {
+      for (const std::string& b : condition_.methods) {
+        if (a != b && measured(a) && measured(b)) add(negated(largerLoss(metric, a, b, condition_.factor)));
+      }
+    }
+  }
+
+  // Whether `a` is further behind `b` here than in the control, by the factor.
+  Comparison worseHere(const std::string& metric, const std::string& a, const std::string& b) {
+    const SceneLosses control(condition_.control, scene_.results());
+    const auto behind = [&](const SceneLosses& scene) -> std::optional<Band> {
+      const std::vector<double> lossesA = scene.logLosses(a, metric), lossesB = scene.logLosses(b, metric);
+      if (lossesA.empty() || lossesB.empty()) return std::nullopt;
+      return lossDifference(metric, lossesA, lossesB);
+    };
+    const std::optional<Band> here = behind(scene_), there = behind(control);
+    if (!here || !there) return {V::notJudged, 0, "the control, " + condition_.control + ", was not measured"};
+    const Band band{here->mean - there->mean, std::hypot(here->halfWidth, there->halfWidth)};
+    return above(band, std::log(condition_.factor),
+                 fmt::format("{} loss of {} over {}: {:.2g} here, {:.2g} in {}", nameOf(metric), a, b,
+                             std::exp(here->mean), std::exp(there->mean), condition_.control));
+  }
+
+  void threshold(const std::string& metric) {
+    const bool reaches = condition_.kind == ConditionKind::reaches;
+    for (const std::string& method : condition_.methods) {
+      const std::vector<double> values = scene_.scores(method, metric);
+      if (values.empty()) continue;
+      const Band band = scoreBand(metric, values);
+      const std::string text =
+          fmt::format("{} of {} is {:.3g}, limit {:g}", nameOf(metric), method, band.mean, condition_.score);
+      add(reaches ? above(band, condition_.score, text) : below(band, condition_.score, text));
+    }
+  }
+
+  // A control that stalls as well shows that something else holds the errors up, such as a biased reference.
+  void stalls() {
+    std::string controls;
+    for (const std::string& method : condition_.than) {
+      const std::vector<double> slopes = scene_.errorSlopes(method);
+      if (slopes.empty()) continue;
+      const Band band = slopeBand(slopes);
+      note(fmt::format("slope of {} {:.2f} \u00b1 {:.2f}", method, band.mean, band.halfWidth));
+      controls += fmt::format(", control {} {:.2f}", method, band.mean);
+      if (below(band, condition_.slope, "").verdict == V::holds) continue;
+      add({V::notJudged, 0, fmt::format("the control, {}, may stall as well: slope {:.2f}", method, band.mean)});
+    }
+    for (const std::string& method : condition_.methods) {
+      if (!measured(method)) continue;
+      const std::vector<double> slopes = scene_.errorSlopes(method);
+      if (slopes.empty()) {
+        add({V::notJudged, 0, "no error without the reference's noise was measured"});
+        continue;
+      }
+      const Band band = slopeBand(slopes);
+      note(fmt::format("slope of {} {:.2f} \u00b1 {:.2f}", method, band.mean, band.halfWidth));
+      add(above(
+          band, condition_.slope,
+          fmt::format("error of {} goes as t^{:.2f}, limit {:g}{}", method, band.mean, condition_.slope, controls)));
+    }
+  }
+
+  void biased() {
+    for (const std::string& method : condition_.methods) {
+      std::vector<double> shares;
+      for (const BiasRecord& bias : scene_.results().biases) {
+        if (bias.scene == scene_.name() && bias.method == method) {
+          shares.push_back(bias.biasSquared / bias.meanSquareError);
+        }
+      }
+      if (shares.size() > kBiasSnapshots) shares.erase(shares.begin(), shares.end() - kBiasSnapshots);
+      if (shares.empty()) {
+        if (measured(method)) add({V::notJudged, 0, "bias of " + method + " was not measured: it takes two seeds"});
+        continue;
+      }
+      const auto reached = std::count_if(shares.begin(), shares.end(), [&](double s) { return s >= condition_.share; });
+      const V verdict = reached == static_cast<std::ptrdiff_t>(shares.size()) ? V::holds
+                        : reached == 0                                        ? V::fails
+                                                                              : V::undecided;
+      const std::string text = fmt::format("bias^2 of {} is {:.1f} % of its mean square error, limit {:g} %", method,
+                                           100 * shares.back(), 100 * condition_.share);
+      note(text);
+      add({verdict, shares.back() - condition_.share, text});
+    }
+  }
+
+  const Condition& condition_;
+  const SceneLosses& scene_;
+  Judgement result_;
+  bool any_ = false;
+  double margin_ = 0;
+};
+
+}  // namespace
+
+void Judgement::add(const Judgement& other) {
+  if (figure.empty() || weightOf(other.verdict) > weightOf(verdict)) {
+    verdict = other.verdict;
+    figure = other.figure;
+  }
+  if (other.evidence.empty() || evidence.find(other.evidence) != std::string::npos) return;
+  evidence += (evidence.empty() ? "" : "; ") + other.evidence;
+}
+
+Judgement judgeCondition(const Condition& condition, const SceneLosses& scene) {
+  return Judge(condition, scene).judge();
+}
+
+}  // namespace wavecrest

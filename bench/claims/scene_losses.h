@@ -1,0 +1,62 @@
+// What a claim asks of one scene's runs: scores and losses by seed, their bands, curves over time, and error slopes.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/results/results.h"
+#include "bench/statistics/bands.h"
+
+namespace wavecrest {
+
+// "1 - ssim" and the like: of scores where more is better the distance from the best possible one.
+double lossOf(const std::string& metric, double score);
+double scoreOfLoss(const std::string& metric, double loss);
+
+// mean(a) - mean(b) of logarithms of losses. With one seed on either side the band is the spread that single seeds had
+// among each other in a campaign of three seeds (nine scenes, seven methods; bench/claims/README.md).
+Band lossDifference(const std::string& metric, std::span<const double> a, std::span<const double> b);
+// The same of slopes, and of one method's slope or score alone.
+Band slopeBand(std::span<const double> slopes);
+Band scoreBand(const std::string& metric, std::span<const double> scores);
+
+class SceneLosses {
+ public:
+  SceneLosses(std::string scene, const CampaignResults& results) : scene_(std::move(scene)), results_(results) {}
+
+  const std::string& name() const { return scene_; }
+  const CampaignResults& results() const { return results_; }
+
+  // The row of the campaign that a claim's method is judged by. The study's MLT mutates paths, so it is mlt-pathspace.
+  static std::string rowOf(const std::string& method) { return method == "mlt" ? "mlt-pathspace" : method; }
+  // Why a method has no values; empty if it has.
+  std::string missing(const std::string& method) const;
+  std::vector<const RunRecord*> runs(const std::string& method) const;
+
+  // One number of each seed: the score at the end, the logarithm of its loss.
+  std::vector<double> scores(const std::string& method, const std::string& metric) const;
+  std::vector<double> logLosses(const std::string& method, const std::string& metric) const;
+
+  // The loss that the reference's own noise gives; nothing where that is not known.
+  std::optional<double> floorLoss(const std::string& metric) const;
+
+  // The logarithm of the time that each seed takes to a loss, between snapshots by straight lines over logarithms; of a
+  // seed that does not get there, the logarithm of its end. The first snapshot's time where that is there already.
+  std::vector<double> logTimes(const std::string& method, const std::string& metric, double loss) const;
+
+  // d log(error) / d log(time) over the last three quarters of the time, by least squares; error is the root of the
+  // mean of (T - A)(T - B), in which the reference's noise averages out. Empty where it was not measured.
+  std::vector<double> errorSlopes(const std::string& method) const;
+
+ private:
+  std::vector<double> perSeed(const std::string& method,
+                              const std::function<std::optional<double>(const RunRecord&)>& function) const;
+
+  std::string scene_;
+  const CampaignResults& results_;
+};
+
+}  // namespace wavecrest

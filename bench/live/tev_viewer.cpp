@@ -1,0 +1,108 @@
+#include "bench/live/tev_viewer.h"
+
+#include <algorithm>
+#include <asio.hpp>
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "bench/live/tev_packets.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr auto kPatience = std::chrono::seconds(5);  // for a connection, and for each packet
+constexpr size_t kPacketBytes = size_t{16} << 20;    // of rows, about
+
+}  // namespace
+
+// A stream of packets. Throws std::runtime_error where tev does not take them.
+class TevViewer::Connection {
+ public:
+  explicit Connection(const HostPort& address) {
+    stream_.expires_after(kPatience);
+    stream_.connect(address.host, std::to_string(address.port));
+    check("connecting failed");
+    stream_.socket().set_option(asio::ip::tcp::no_delay(true));
+  }
+  void send(const tev::Packet& packet) {
+    stream_.expires_after(kPatience);
+    stream_.write(packet.data(), static_cast<std::streamsize>(packet.size()));
+    stream_.flush();
+    check("sending failed");
+  }
+  // In bands, so that the film may be of any size.
+  void send(const std::string& name, const Image& image) {
+    const size_t rowBytes = size_t{image.width} * image.channels * sizeof(float);
+    const auto rows = static_cast<uint32_t>(std::max<size_t>(kPacketBytes / rowBytes, 1));
+    for (uint32_t first = 0; first < image.height; first += rows) {
+      send(tev::updateRows(name, image, first, std::min(rows, image.height - first)));
+    }
+  }
+
+ private:
+  void check(const char* step) {
+    if (!stream_) throw std::runtime_error(std::string(step) + ": " + stream_.error().message());
+  }
+  asio::ip::tcp::iostream stream_;
+};
+
+TevViewer::TevViewer(HostPort address, std::string name, std::function<void(const std::string&)> warn)
+    : address_(std::move(address)), name_(std::move(name)), warn_(std::move(warn)) {
+  thread_ = std::thread([this] {
+    try {
+      run();
+    } catch (const std::exception& error) {
+      warn_("--tev " + address_.text() + ": " + error.what() + "; nothing is shown there any more");
+    }
+  });
+}
+
+TevViewer::~TevViewer() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    over_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void TevViewer::take(std::shared_ptr<const Look> look) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    look_ = std::move(look);
+  }
+  changed_.notify_one();
+}
+
+void TevViewer::showFile(const std::string& file) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  file_ = std::filesystem::absolute(file).string();
+}
+
+void TevViewer::run() {
+  Connection connection(address_);
+  bool created = false;
+  for (;;) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [this] { return over_ || look_ != nullptr; });
+    const std::shared_ptr<const Look> look = std::exchange(look_, nullptr);
+    const std::string file = over_ ? file_ : "";
+    lock.unlock();
+
+    if (look) {
+      if (!created) connection.send(tev::createImage(name_, look->image.width, look->image.height));
+      created = true;
+      connection.send(name_, look->image);
+      continue;  // another may have come meanwhile
+    }
+    // The end. An image without a file stays in tev.
+    if (file.empty() || !isLoopback(address_.host)) return;
+    connection.send(tev::openImage(file));
+    if (created) connection.send(tev::closeImage(name_));
+    return;
+  }
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,113 @@
+#include "bench/live/watched_session.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bench/until/until.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kLookInterval = 1;  // seconds, at least
+
+// Whichever comes first.
+template <class T>
+std::optional<T> earlier(std::optional<T> a, std::optional<T> b) {
+  return a && b ? std::min(*a, *b) : a ? a : b;
+}
+
+}  // namespace
+
+WatchedSession::WatchedSession(std::unique_ptr<Session> session, const RenderSettings& settings, LookTaker taker)
+    : session_(std::move(session)),
+      taker_(std::move(taker)),
+      blocks_(session_->film().area().width, session_->film().area().height, kErrorBlocks),
+      errorKnowable_(blocks_.count() > 0 && whyNoFilmError(settings).empty()) {}
+
+template <class Step>
+void WatchedSession::whileWaiting(Step step) {
+  const auto begin = std::chrono::steady_clock::now();
+  step();
+  lookingSeconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void WatchedSession::restore(StateReader& in) {
+  session_->restore(in);
+  errorKnowable_ = false;  // the films of earlier iterations are gone
+}
+
+void WatchedSession::look(bool last) {
+  whileWaiting([&] { takeLook(session_->film().resolve(), last); });
+}
+
+void WatchedSession::takeLook(std::vector<float> film, bool last) {
+  estimateError();
+  const FilmArea& area = session_->film().area();
+  taker_(std::make_shared<const Look>(
+      Look{.image = {.width = area.width, .height = area.height, .channels = 3, .pixels = std::move(film)},
+           .iterations = session_->statistics().iterations,
+           .paths = session_->progressPaths(),
+           .renderSeconds = session_->progressSeconds(),
+           .error = error_,
+           .errorIterations = errorIterations_,
+           .last = last}));
+  // The next one waits until all looks so far are a small part of the time.
+  nextLook_ = std::max(session_->progressSeconds() + kLookInterval, lookingSeconds_ / (0.5 * kMostLooking));
+}
+
+std::optional<uint64_t> WatchedSession::nextSlice() const {
+  if (!errorKnowable_) return std::nullopt;
+  return slices_ ? slices_->nextIterations() : 1;
+}
+
+void WatchedSession::beginSlices() {
+  whileWaiting([&] { takeLook(session_->film().resolve(), false); });
+  const double seconds = std::max(session_->progressSeconds(), 1e-6);
+  const double rare = std::ceil(lookingSeconds_ / (0.5 * kMostLooking * seconds));
+  slices_.emplace(std::bit_ceil(static_cast<uint64_t>(std::clamp(rare, 1.0, 1e9))));
+}
+
+void WatchedSession::addSlice(uint64_t iterations) {
+  if (!slices_) beginSlices();
+  if (slices_->nextIterations() != iterations) return;
+  whileWaiting([&] { slices_->add(blocks_.take(session_->film().resolve())); });
+  slicesUntil_ = iterations;
+}
+
+void WatchedSession::estimateError() {
+  if (!slices_ || errorIterations_ == slicesUntil_) return;
+  const std::optional<FilmError> now = estimateFilmError(slices_->slices(), BlockSample::kWidth);
+  if (!now) return;
+  error_ = now;
+  errorIterations_ = slicesUntil_;
+}
+
+// Whoever renders asks this session whether it was interrupted; signals and timers interrupt the one within.
+void WatchedSession::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
+  if (!session_->interrupted()) resume();
+  renderWatched(iterations, seconds);
+  if (session_->interrupted()) interrupt();
+}
+
+void WatchedSession::renderWatched(std::optional<uint64_t> iterations, std::optional<double> seconds) {
+  for (;;) {
+    const std::optional<uint64_t> slice = nextSlice();
+    const double due = nextLook_;
+    session_->renderUntil(earlier(iterations, slice), earlier(seconds, std::optional(due)));
+    if (session_->interrupted()) return;
+
+    const uint64_t done = session_->statistics().iterations;
+    const bool sliceReached = slice && done == *slice, allDone = iterations && done >= *iterations;
+    // Otherwise the time ended it: chains may end a moment before theirs, where another step does not fit in.
+    const bool timeEnded = !sliceReached && !allDone;
+    if (sliceReached) addSlice(done);
+    if (timeEnded || session_->progressSeconds() >= due) look(false);
+    if (allDone || (seconds && ((timeEnded && *seconds <= due) || session_->progressSeconds() >= *seconds))) return;
+  }
+}
+
+}  // namespace wavecrest

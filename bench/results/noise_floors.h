@@ -1,0 +1,19 @@
+// What a reference's own noise must not exceed, so that images are not measured by it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/results/results.h"
+
+namespace wavecrest {
+
+// An image without any error has at least this SSIM, and at most this share of the best run's relMSE.
+constexpr double kLeastSsimFloor = 0.995, kMostRelmseShare = 0.1;
+
+// The floors that are not met, each as a sentence's part, "SSIM of a perfect image is 0.901, below 0.995". bestRelmse:
+// of the best run that is measured against the reference, where one is known.
+std::vector<std::string> unmetFloors(const MetricValues& noiseFloors, std::optional<double> bestRelmse = {});
+
+}  // namespace wavecrest

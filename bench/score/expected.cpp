@@ -1,0 +1,109 @@
+#include "bench/score/expected.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "bench/score/score_files.h"
+#include "kernels/stages.h"
+
+namespace wavecrest {
+namespace {
+
+std::string entryKey(const ScoreEntry& entry) { return fmt::format("{}/{}", entry.scene, toString(entry.method)); }
+
+std::string groupKey(ScoreSize size, const std::string& group) {
+  return fmt::format("{}/{}/", kScoreSizeNames[static_cast<size_t>(size)], group);
+}
+
+uint64_t parseHash(const std::string& text) {
+  uint64_t hash = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
+  if (error != std::errc() || end != text.data() + text.size() || text.size() != 16) {
+    throw ScoreFileError(fmt::format("'{}' is no hash; expected sixteen hexadecimal digits", text));
+  }
+  return hash;
+}
+
+}  // namespace
+
+uint64_t hashImage(std::span<const float> samples) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (const float sample : samples) hash = (hash ^ std::bit_cast<uint32_t>(sample)) * 0x100000001b3u;
+  return hash;
+}
+
+std::string hashGroup(Isa isa) {
+  const bool specialized = isCompiled(Precision::floating, Specialization::diffuse);
+  return std::string(toString(isa)) + (specialized ? "" : "-general");
+}
+
+ImageHashes ImageHashes::parse(const nlohmann::json& file) {
+  if (!file.is_object() || file.value("score_version", 0) != kScoreVersion || !file.contains("images")) {
+    throw ScoreFileError(fmt::format("has no hashes of score version {}", kScoreVersion));
+  }
+  ImageHashes all;
+  try {
+    for (const auto& [size, groups] : file.at("images").items()) {
+      for (const auto& [group, scenes] : groups.items()) {
+        for (const auto& [scene, methods] : scenes.items()) {
+          for (const auto& [method, hash] : methods.items()) {
+            all.hashes_[fmt::format("{}/{}/{}/{}", size, group, scene, method)] = parseHash(hash.get<std::string>());
+          }
+        }
+      }
+    }
+  } catch (const nlohmann::json::exception&) {
+    throw ScoreFileError("is not made of sizes, instruction sets, scenes, methods and hashes");
+  }
+  return all;
+}
+
+ImageHashes ImageHashes::committed() { return parse(nlohmann::json::parse(kImageHashesJson)); }
+
+nlohmann::ordered_json ImageHashes::toJson() const {
+  nlohmann::ordered_json images = nlohmann::ordered_json::object();
+  for (const auto& [key, hash] : hashes_) {
+    nlohmann::ordered_json* place = &images;
+    for (size_t begin = 0; begin <= key.size();) {
+      const size_t end = std::min(key.find('/', begin), key.size());
+      place = &(*place)[key.substr(begin, end - begin)];
+      begin = end + 1;
+    }
+    *place = fmt::format("{:016x}", hash);
+  }
+  return {{"score_version", kScoreVersion}, {"images", images}};
+}
+
+std::optional<uint64_t> ImageHashes::find(ScoreSize size, const std::string& group, const ScoreEntry& entry) const {
+  const auto found = hashes_.find(groupKey(size, group) + entryKey(entry));
+  return found == hashes_.end() ? std::nullopt : std::optional(found->second);
+}
+
+void ImageHashes::set(ScoreSize size, const std::string& group, const ScoreEntry& entry, uint64_t hash) {
+  hashes_[groupKey(size, group) + entryKey(entry)] = hash;
+}
+
+bool ImageHashes::has(ScoreSize size, const std::string& group) const {
+  const std::string key = groupKey(size, group);
+  const auto found = hashes_.lower_bound(key);
+  return found != hashes_.end() && found->first.starts_with(key);
+}
+
+double ReferenceMachine::rateOf(const ScoreEntry& entry) const { return rates.at(entryKey(entry)); }
+
+const ReferenceMachine& referenceMachine() {
+  static const ReferenceMachine machine = [] {
+    const nlohmann::json file = nlohmann::json::parse(kReferenceMachineJson);
+    ReferenceMachine reference{.name = file.at("machine"), .rates = {}};
+    for (const auto& [scene, methods] : file.at("paths_per_cpu_second").items()) {
+      for (const auto& [method, rate] : methods.items()) reference.rates[scene + "/" + method] = rate.get<double>();
+    }
+    return reference;
+  }();
+  return machine;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,178 @@
+#include "bench/score/score.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/against/child_render.h"
+#include "bench/film_image.h"
+#include "bench/throughput/turns.h"
+#include "engine/load/load.h"
+#include "metrics/image/image_io.h"
+#include "metrics/rmse.h"
+
+namespace wavecrest {
+namespace {
+
+// Of kScoreSlices: on one thread, after one that warms caches up; and in each process.
+constexpr uint64_t kThreadSlices = 3, kProcessSlices = 1;
+
+Scene loadEntry(const ScoreRequest& request, const ScoreEntry& entry) {
+  return loadScene(request.sceneFile(entry.scene), {.filmSize = std::array{entry.width, entry.height}});
+}
+
+// The image on the reference's pixels, each the mean of the film's pixels within it.
+Image reduced(const Image& film, uint32_t width) {
+  const uint32_t side = film.width / width;
+  if (side <= 1) return film;
+  Image small{.width = width, .height = film.height / side, .channels = 3, .pixels = {}};
+  small.pixels.resize(size_t{3} * small.width * small.height);
+  const float scale = 1.0f / static_cast<float>(side * side);
+  for (uint32_t y = 0; y < small.height * side; ++y) {
+    for (uint32_t x = 0; x < small.width * side; ++x) {
+      for (uint32_t channel = 0; channel < 3; ++channel) {
+        const size_t to = 3 * (size_t{y / side} * small.width + x / side) + channel;
+        small.pixels[to] += scale * film.pixels[3 * (size_t{y} * film.width + x) + channel];
+      }
+    }
+  }
+  return small;
+}
+
+QualityAtTime qualityNow(const Session& session, const Image& reference) {
+  const RenderStatistics now = session.statistics();
+  return {.seconds = now.renderSeconds,
+          .cpuSeconds = now.cpuSeconds,
+          .samplesPerPixel = static_cast<double>(now.paths) / static_cast<double>(session.film().area().pixels.size()),
+          .relmse = relmse(reference, reduced(filmImage(session), reference.width)).relmse};
+}
+
+// Renders the workload on all threads, slice by slice.
+void renderOnThreads(const Scene& scene, const RenderSettings& settings, const Image& reference, ScoreRow& row) {
+  const auto session = Session::create(scene, settings);
+  SliceRenderer slices(*session, row.entry.iterations / kScoreSlices);
+  std::vector<double> rates;
+  for (uint64_t done = 1; done <= kScoreSlices; ++done) {
+    rates.push_back(slices.render().pathsPerSecond());
+    if (done == 1) row.hash = hashImage(session->film().resolve());
+    if ((done & (done - 1)) == 0) row.quality.push_back(qualityNow(*session, reference));
+  }
+  row.pathsPerSecond = estimateMedian(rates);
+}
+
+void renderOnOneThread(const Scene& scene, RenderSettings settings, StageEventCounter& events, ScoreRow& row) {
+  settings.threads = 1;
+  settings.measureStages = true;
+  const auto session = Session::create(scene, settings);
+  SliceRenderer renderer(*session, row.entry.iterations / kScoreSlices);
+  renderer.render();
+  events.take();
+  std::vector<Slice> slices;
+  for (uint64_t i = 0; i < kThreadSlices; ++i) slices.push_back(renderer.render());
+  row.pathsPerCpuSecond = estimateMedian(valuesOf(slices, [](const Slice& s) { return s.pathsPerCpuSecond(); }));
+  row.facts = session->statistics();
+  const StageTraffic traffic(scene, settings);
+  const std::map<std::string, StageEvents> counted = events.take();
+  double paths = 0;
+  for (const Slice& slice : slices) paths += static_cast<double>(slice.paths);
+  for (const StageShare& share : stageShares(slices)) {
+    ScoredStage& stage = row.stages.emplace_back();
+    stage.share = share;
+    stage.bytesPerItem = traffic.bytesPerItem(share.name);
+    const auto found = counted.find(share.name);
+    if (found == counted.end() || share.itemsPerPath == 0) continue;
+    for (size_t i = 0; i < kStageEvents; ++i) {
+      stage.eventsPerItem[i] = static_cast<double>(found->second[i]) / (share.itemsPerPath * paths);
+    }
+  }
+}
+
+ScoreRow measureRow(const ScoreRequest& request, const ScoreEntry& entry, const ImageHashes& hashes,
+                    StageEventCounter& events) {
+  const Scene scene = loadEntry(request, entry);
+  const RenderSettings settings = scoreSettings(scene, entry, request.isa, request.threads);
+  const Image reference = readImage(request.references / (entry.scene + ".exr")).image;
+  ScoreRow row;
+  row.entry = entry;
+  renderOnThreads(scene, settings, reference, row);
+  const std::optional<uint64_t> expected = hashes.find(request.size, hashGroup(request.isa), entry);
+  if (expected) row.validity = *expected == row.hash ? Validity::right : Validity::wrong;
+  renderOnOneThread(scene, settings, events, row);
+  const ChildRequest child{.scene = request.sceneFile(entry.scene),
+                           .method = std::string(toString(entry.method)),
+                           .size = fmt::format("{}x{}", entry.width, entry.height),
+                           .iterations = kProcessSlices * entry.iterations / kScoreSlices,
+                           .more = {"--isa", std::string(toString(request.isa))},
+                           .imageFile = {}};
+  row.processesPathsPerSecond = rateOfProcesses(request.threads, child);
+  const double rate = referenceMachine().rateOf(entry);
+  row.score = 100 * row.pathsPerSecond.value / rate;
+  row.coreScore = 100 * row.pathsPerCpuSecond.value / rate;
+  return row;
+}
+
+double geometricMean(const std::vector<ScoreRow>& rows, std::optional<Method> method, double ScoreRow::*figure) {
+  double sum = 0, count = 0;
+  for (const ScoreRow& row : rows) {
+    if (method && row.entry.method != *method) continue;
+    sum += std::log(row.*figure);
+    ++count;
+  }
+  return count > 0 ? std::exp(sum / count) : 0;
+}
+
+}  // namespace
+
+uint64_t imageHashOf(const Scene& scene, const ScoreEntry& entry, Isa isa, uint32_t threads) {
+  const auto session = Session::create(scene, scoreSettings(scene, entry, isa, threads));
+  session->renderUntil(entry.iterations / kScoreSlices, std::nullopt);
+  return hashImage(session->film().resolve());
+}
+
+bool ScoreResult::allRight() const {
+  return std::all_of(rows.begin(), rows.end(), [](const ScoreRow& row) { return row.validity == Validity::right; });
+}
+
+double ScoreResult::score(std::optional<Method> method) const { return geometricMean(rows, method, &ScoreRow::score); }
+
+double ScoreResult::coreScore(std::optional<Method> method) const {
+  return geometricMean(rows, method, &ScoreRow::coreScore);
+}
+
+std::vector<std::string> ScoreResult::doubts() const {
+  std::vector<std::string> doubts = doubtsAbout(machine);
+  const auto count = [&](Validity validity) {
+    return std::count_if(rows.begin(), rows.end(), [&](const ScoreRow& row) { return row.validity == validity; });
+  };
+  if (const auto wrong = count(Validity::wrong); wrong > 0) {
+    doubts.push_back(
+        fmt::format("{} of {} images are not what this workload renders: this is no score", wrong, rows.size()));
+  }
+  if (const auto unknown = count(Validity::unknown); unknown > 0) {
+    doubts.push_back(fmt::format("{} of {} images could not be validated: no hashes are committed for {}", unknown,
+                                 rows.size(), hashGroup(isa)));
+  }
+  return doubts;
+}
+
+ScoreResult measureScore(const ScoreRequest& request, const ImageHashes& hashes,
+                         const std::function<void(const ScoreRow&)>& progress) {
+  ScoreResult result;
+  result.size = request.size;
+  result.isa = request.isa;
+  result.threads = request.threads;
+  result.ceilings = measureCeilings(request.isa);
+  StageEventCounter events;
+  result.eventsRefusal = events.refusal();
+  MachineWatch watch;
+  for (const ScoreEntry& entry : request.entries) {
+    result.rows.push_back(measureRow(request, entry, hashes, events));
+    progress(result.rows.back());
+    watch.look();
+  }
+  result.machine = watch.state();
+  return result;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,89 @@
+// wavecrest bench --score: the score of this machine, or with --write-hashes the hashes that validate scores.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "bench/score/score.h"
+#include "cli/bench_modes.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/option_values.h"
+#include "engine/load/load.h"
+#include "metrics/image/atomic_file.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace {
+
+ImageHashes hashesIn(const std::string& file) {
+  const std::vector<unsigned char> bytes = readFileBytes(file);
+  try {
+    return ImageHashes::parse(nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false));
+  } catch (const ScoreFileError& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
+// --methods and --scene arguments leave a part of the workload: for tests, and to look closer.
+std::vector<ScoreEntry> chosenEntries(const BenchOptions& options, ScoreSize size) {
+  std::vector<ScoreEntry> entries = workloadOf(size);
+  const std::vector<Method> methods = benchMethods(options);
+  const auto contains = [](const auto& list, const auto& value) {
+    return std::find(list.begin(), list.end(), value) != list.end();
+  };
+  for (const std::string& scene : options.scenes) {
+    const bool known =
+        std::any_of(entries.begin(), entries.end(), [&](const ScoreEntry& entry) { return entry.scene == scene; });
+    if (known) continue;
+    throw UsageError(
+        fmt::format("--score {}: has no scene {}; expected none, or some of its own", options.score, scene));
+  }
+  std::erase_if(entries, [&](const ScoreEntry& entry) {
+    return !contains(methods, entry.method) || (!options.scenes.empty() && !contains(options.scenes, entry.scene));
+  });
+  return entries;
+}
+
+// Renders what validates each entry on every instruction set but the scalar twin, and puts its hash into the file. What
+// the file has of other sizes and instruction sets stays.
+int writeHashes(const BenchOptions& options, ScoreSize size, uint32_t threads) {
+  const std::string& file = options.writeHashes;
+  ImageHashes hashes = std::filesystem::exists(file) ? hashesIn(file) : ImageHashes();
+  for (const ScoreEntry& entry : chosenEntries(options, size)) {
+    const Scene scene = loadScene(findScene(entry.scene), {.filmSize = std::array{entry.width, entry.height}});
+    for (const Isa isa : availableIsas()) {
+      if (isa == Isa::scalar) continue;
+      hashes.set(size, hashGroup(isa), entry, imageHashOf(scene, entry, isa, threads));
+    }
+    tell("{} {} {}", options.score, entry.scene, toString(entry.method));
+  }
+  writeFileAtomically(file, hashes.toJson().dump(1) + "\n");
+  return kExitDone;
+}
+
+}  // namespace
+
+int runBenchScore(const BenchOptions& options) {
+  if (!options.size.empty() || !options.duration.empty()) {
+    throw UsageError("--score has sizes and lengths of its own; expected neither --size nor --duration");
+  }
+  const auto size = static_cast<ScoreSize>(parseChoice("--score", options.score, kScoreSizeNames));
+  const uint32_t threads = benchThreads(options);
+  if (!options.writeHashes.empty()) return writeHashes(options, size, threads);
+  const ScoreRequest request{.size = size,
+                             .entries = chosenEntries(options, size),
+                             .isa = bestIsa(),
+                             .threads = threads,
+                             .sceneFile = findScene,
+                             .references = sceneFolder() / "references"};
+  printBench(options, scoreHeading(request));
+  const ImageHashes hashes = options.hashes.empty() ? ImageHashes::committed() : hashesIn(options.hashes);
+  const ScoreResult result =
+      measureScore(request, hashes, [&](const ScoreRow& row) { printBench(options, toText(row)); });
+  printBench(options, toText(result));
+  writeBenchJson(options, "score", toJson(result));
+  return result.allRight() ? kExitDone : kExitCheck;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,41 @@
+// wavecrest bench --specialization: every feature set against the general kernels. Exit code 4 if an image differs.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "bench/specialization/specialization.h"
+#include "cli/bench_modes.h"
+#include "cli/commands.h"
+#include "engine/load/load.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kSpecializationSeconds = 20;
+
+}  // namespace
+
+int runBenchSpecialization(const BenchOptions& options) {
+  const std::vector<Method> methods =
+      options.methods.empty() ? std::vector{Method::pt, Method::vcm} : benchMethods(options);
+  const double seconds = benchSeconds(options, kSpecializationSeconds);
+  std::vector<SpecializationResult> results;
+  nlohmann::ordered_json all = {{"results", nlohmann::ordered_json::array()}};
+  for (const std::filesystem::path& file : benchSceneFiles(options)) {
+    const Scene scene = loadScene(file, benchLoading(options));
+    for (const Method method : methods) {
+      RenderSettings settings = benchSettings(scene, options);
+      settings.method = method;
+      results.push_back(measureSpecialization(scene, settings, seconds));
+      printBench(options, toText(results.back()) + "\n");
+      all["results"].push_back(toJson(results.back()));
+    }
+  }
+  printBench(options, specializationSummary(results));
+  writeBenchJson(options, "specialization", all);
+  const bool differs = std::any_of(results.begin(), results.end(), [](const auto& r) { return r.anyDiffers(); });
+  return differs ? kExitCheck : kExitDone;
+}
+
+}  // namespace wavecrest

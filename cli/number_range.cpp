@@ -1,0 +1,81 @@
+#include "cli/number_range.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+namespace wavecrest {
+namespace {
+
+// The number that is all of the word, or nothing.
+template <class Number>
+std::optional<Number> read(std::string_view word) {
+  Number number{};
+  const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return error == std::errc() && rest == word.data() + word.size() ? std::optional(number) : std::nullopt;
+}
+
+// As it is written: digits after perhaps a minus.
+bool isWritten(const WholeRange&, std::string_view word) {
+  if (word.starts_with('-')) word.remove_prefix(1);
+  return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+bool isWritten(const RealRange&, std::string_view word) {
+  double number = 0;
+  const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const bool isNumber = error != std::errc::invalid_argument && rest == word.data() + word.size();
+  return isNumber && word.find_first_of("0123456789") != std::string_view::npos;  // not nan, not inf
+}
+
+bool contains(const WholeRange& range, std::string_view word) {
+  const std::optional<int64_t> number = read<int64_t>(word);
+  if (number && (number == range.also || *number < 0)) return number == range.also || *number >= range.low;
+  const std::optional<uint64_t> natural = read<uint64_t>(word);  // may exceed int64_t
+  return natural && *natural <= range.high && (range.low < 0 || *natural >= static_cast<uint64_t>(range.low));
+}
+
+bool contains(const RealRange& range, std::string_view word) {
+  const std::optional<double> number = read<double>(word);
+  return number && *number >= range.low && *number <= range.high;
+}
+
+void normalise(const WholeRange&, std::string& word) {
+  const size_t sign = word.starts_with('-') ? 1 : 0;
+  const size_t digit = std::min(word.find_first_not_of('0', sign), word.size() - 1);
+  word.erase(sign, digit - sign);
+}
+void normalise(const RealRange&, std::string&) {}
+
+std::string text(const WholeRange& range) {
+  const std::string also = range.also ? fmt::format(", or {}", *range.also) : "";
+  if (range.low > 0 && range.high == std::numeric_limits<uint64_t>::max()) return fmt::format("{} or more", range.low);
+  return fmt::format("{} to {}{}", range.low, range.high, also);
+}
+std::string text(const RealRange& range) { return fmt::format("{:g} to {:g}", range.low, range.high); }
+
+constexpr const char* kind(const WholeRange&) { return "whole number"; }
+constexpr const char* kind(const RealRange&) { return "number"; }
+
+}  // namespace
+
+std::string describe(const NumberRange& range) {
+  return std::visit([](const auto& given) { return text(given); }, range);
+}
+
+std::string checkNumber(const NumberRange& range, std::string& word) {
+  const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+  if (plus) word.erase(0, 1);
+  return std::visit(
+      [&](const auto& given) -> std::string {
+        if (!isWritten(given, word)) return fmt::format("'{}' is no {}; expected {}", word, kind(given), text(given));
+        if (!contains(given, word)) return fmt::format("'{}' is out of range; expected {}", word, text(given));
+        normalise(given, word);
+        return {};
+      },
+      range);
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,102 @@
+#include "engine/compile/mesh_faces.h"
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <utility>
+
+#include "engine/scene/vector_math.h"
+
+namespace wavecrest {
+namespace {
+
+// Only small meshes are searched for parallelograms: in larger ones they gain nothing.
+constexpr size_t kMergeLimit = 4096;
+Double3 position(const Mesh& mesh, uint32_t vertex) { return widened(mesh.positions[vertex]); }
+
+using Edge = std::pair<uint32_t, uint32_t>;
+
+// Whether the triangles (a, b, c) and (a', c', b') that share the edge b-c, a and d opposite, are one parallelogram
+// with a continuous parameterisation: d = b + c - a in position, uv and normal.
+bool formParallelogram(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+  const Double3 e1 = position(mesh, b) - position(mesh, a), e2 = position(mesh, c) - position(mesh, a);
+  const Double3 gap = position(mesh, d) - position(mesh, a) - e1 - e2;
+  if (length(gap) > 1e-6 * (length(e1) + length(e2))) return false;
+  if (!mesh.uvs.empty()) {
+    for (size_t i = 0; i < 2; ++i) {
+      if (std::abs(mesh.uvs[d][i] + mesh.uvs[a][i] - mesh.uvs[b][i] - mesh.uvs[c][i]) > 1e-5f) return false;
+    }
+  }
+  if (!mesh.normals.empty()) {
+    const Double3 face = normalized(cross(e1, e2));
+    for (const uint32_t vertex : {a, b, c, d}) {
+      if (dot(widened(mesh.normals[vertex]), face) < 1 - 1e-6) return false;
+    }
+  }
+  return true;
+}
+
+// Vertices at the same place count as one when edges are matched: cubes split theirs for flat normals.
+std::vector<uint32_t> weldedVertices(const Mesh& mesh) {
+  std::map<Float3, uint32_t> first;
+  std::vector<uint32_t> welded(mesh.positions.size());
+  for (uint32_t i = 0; i < welded.size(); ++i) welded[i] = first.try_emplace(mesh.positions[i], i).first->second;
+  return welded;
+}
+
+bool hasArea(const Mesh& mesh, const FaceCorners& corners) {
+  const Double3 p0 = position(mesh, corners[0]);
+  return length(cross(position(mesh, corners[1]) - p0, position(mesh, corners[2]) - p0)) > 0;
+}
+
+MeshFaces pairFaces(const Mesh& mesh) {
+  MeshFaces faces;
+  const auto count = static_cast<uint32_t>(mesh.triangles.size());
+  const std::vector<uint32_t> welded = weldedVertices(mesh);
+  std::map<Edge, uint32_t> open;  // directed edge of an unpaired triangle -> 3 * triangle + index of opposite corner
+  std::vector<bool> used(count, false);
+  for (uint32_t i = 0; i < count; ++i) {
+    const auto& t = mesh.triangles[i];
+    for (uint32_t k = 0; k < 3 && !used[i]; ++k) {
+      const uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];  // edge b-c opposite a
+      const auto twin = open.find({welded[c], welded[b]});
+      if (twin == open.end()) continue;
+      const uint32_t other = twin->second / 3, d = mesh.triangles[other][twin->second % 3];
+      if (used[other] || !formParallelogram(mesh, a, b, c, d)) continue;
+      used[i] = used[other] = true;
+      faces.quads.push_back({a, b, c});
+    }
+    for (uint32_t k = 0; k < 3 && !used[i]; ++k) {
+      open[{welded[t[(k + 1) % 3]], welded[t[(k + 2) % 3]]}] = 3 * i + k;
+    }
+  }
+  for (uint32_t i = 0; i < count; ++i) {
+    if (!used[i]) faces.triangles.push_back(i);
+  }
+  return faces;
+}
+
+}  // namespace
+
+MeshFaces facesOf(const Mesh& mesh, const ParallelFor& parallelFor) {
+  MeshFaces faces;
+  if (mesh.triangles.size() <= kMergeLimit) {
+    faces = pairFaces(mesh);
+    std::erase_if(faces.quads, [&](const FaceCorners& quad) { return !hasArea(mesh, quad); });
+    std::erase_if(faces.triangles, [&](uint32_t i) { return !hasArea(mesh, mesh.triangles[i]); });
+    return faces;
+  }
+  std::atomic<bool> complete{true};
+  forEachRange(parallelFor, mesh.triangles.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      if (!hasArea(mesh, mesh.triangles[i])) complete = false;
+    }
+  });
+  faces.allTriangles = complete;
+  for (uint32_t i = 0; i < mesh.triangles.size() && !faces.allTriangles; ++i) {
+    if (hasArea(mesh, mesh.triangles[i])) faces.triangles.push_back(i);
+  }
+  return faces;
+}
+
+}  // namespace wavecrest

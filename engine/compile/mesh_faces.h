@@ -1,0 +1,30 @@
+// The triangles of a mesh as the primitives that stand for them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/scene/scene.h"
+#include "kernels/extend/primitive_source.h"
+
+namespace wavecrest {
+
+// The corners of a triangle; of a parallelogram a corner, then its neighbours along u and v.
+using FaceCorners = std::array<uint32_t, 3>;
+
+// Coplanar pairs of triangles that form a parallelogram (each face of a cube) become one, in small meshes. Triangles
+// without area are left out: they cannot be hit.
+struct MeshFaces {
+  std::vector<FaceCorners> quads;
+  std::vector<uint32_t> triangles;  // which of the mesh's are left, unless allTriangles
+  bool allTriangles = false;        // the triangles are those of the mesh, as they are
+
+  size_t triangleCount(const Mesh& mesh) const { return allTriangles ? mesh.triangles.size() : triangles.size(); }
+  const FaceCorners& triangle(const Mesh& mesh, size_t i) const {
+    return mesh.triangles[allTriangles ? i : triangles[i]];
+  }
+};
+MeshFaces facesOf(const Mesh& mesh, const ParallelFor& parallelFor);
+
+}  // namespace wavecrest

@@ -1,0 +1,246 @@
+#include "engine/compile/scene_geometry.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "engine/parallel_for.h"
+#include "engine/scene/vector_math.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+struct Extent {
+  Double3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+
+  void include(const Double3& p) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], p[axis]);
+      high[axis] = std::max(high[axis], p[axis]);
+    }
+  }
+  void include(const Double3& boxLow, const Double3& boxHigh) {
+    include(boxLow);
+    include(boxHigh);
+  }
+  // Rounded outwards.
+  Box box() const {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    Box box{};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      box.low[axis] = std::nextafter(static_cast<float>(low[axis]), -kInfinity);
+      box.high[axis] = std::nextafter(static_cast<float>(high[axis]), kInfinity);
+    }
+    return box;
+  }
+};
+
+Extent extentOf(const PrimitiveRecord<double>& record) {
+  const BoundingSphere bounds = boundPrimitives(std::span<const PrimitiveRecord<double>>(&record, 1));
+  return {.low = vec(bounds.low), .high = vec(bounds.high)};
+}
+
+// Boxes around the primitives whose centres are in the same cell of a grid.
+std::vector<Box> outlineOf(const PrimitiveList& primitives, const BoundingSphere& bounds) {
+  constexpr size_t kCells = 8;
+  std::map<size_t, Extent> cells;
+  for (size_t i = 0; i < primitives.counts().total(); ++i) {
+    const Extent extent = extentOf(primitives.geometry<double>(i));
+    size_t cell = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const double size = bounds.high[axis] - bounds.low[axis];
+      const double place = ((extent.low[axis] + extent.high[axis]) / 2 - bounds.low[axis]) / size * kCells;
+      cell = cell * kCells + static_cast<size_t>(size > 0 ? std::clamp(place, 0.0, kCells - 1.0) : 0);
+    }
+    cells[cell].include(extent.low, extent.high);
+  }
+  std::vector<Box> outline;
+  for (const auto& [cell, extent] : cells) outline.push_back(extent.box());
+  return outline;
+}
+
+// Calls function(p) for each corner of a box.
+template <class Function>
+void forCorners(const Double3& low, const Double3& high, const Function& function) {
+  for (size_t corner = 0; corner < 8; ++corner) {
+    Double3 p{};
+    for (size_t axis = 0; axis < 3; ++axis) p[axis] = (corner >> axis & 1) != 0 ? high[axis] : low[axis];
+    function(p);
+  }
+}
+
+void assignRows(double (&out)[3][3], const Double3 (&rows)[3]) {
+  for (size_t i = 0; i < 3; ++i) assign(out[i], rows[i]);
+}
+
+}  // namespace
+
+SceneGeometry::SceneGeometry(const Scene& scene, bool textured, bool keeps)
+    : scene_(scene), textured_(textured), keeps_(keeps) {
+  if (keeps) {
+    for (uint32_t i = 0; i < scene.groups.size(); ++i) addGroup(i);
+  }
+  moveTo({});
+}
+
+void SceneGeometry::addGroup(uint32_t index) {
+  const PrimitiveChoice choice{.group = index, .copies = false};
+  auto list = std::make_unique<PrimitiveList>(scene_, textured_, parallelFor, Double3{}, choice);
+  groupOf_.push_back(kNone);
+  if (list->counts().total() == 0) return;
+  groupOf_.back() = static_cast<uint32_t>(groups_.size());
+  Group& group = groups_.emplace_back();
+  // Vertices keep to float, and those that meet still do: they move by the same float.
+  const BoundingSphere there = list->bounds<double>();
+  for (size_t axis = 0; axis < 3; ++axis) group.origin[axis] = static_cast<float>(there.center[axis]);
+  list = std::make_unique<PrimitiveList>(scene_, textured_, parallelFor, group.origin, choice);
+  const BoundingSphere bounds = list->bounds<double>();
+  group.radius = bounds.radius + length(vec(bounds.center));
+  group.outline = outlineOf(*list, bounds);
+  group.primitives = std::move(list);
+}
+
+void SceneGeometry::moveTo(const Double3& origin) {
+  world_ = std::make_unique<PrimitiveList>(scene_, textured_, parallelFor, origin,
+                                           PrimitiveChoice{.group = kNone, .copies = !keeps_});
+  if (keeps_) placeInstances(origin);
+}
+
+void SceneGeometry::placeInstances(const Double3& origin) {
+  instances_.clear();
+  for (const Instance& instance : scene_.instances) {
+    if (groupOf_[instance.group] == kNone) continue;
+    const Group& group = groups_[groupOf_[instance.group]];
+    const Affine toWorld(instance.toWorld);
+    BvhInstance& placed = instances_.emplace_back();
+    placed.group = groupOf_[instance.group];
+    assignRows(placed.toWorld, toWorld.linear);
+    assignRows(placed.toObject, toWorld.inverse);
+    // Every precision has the place that rays have.
+    Double3 place = toWorld.point(group.origin) - origin;
+    for (double& coordinate : place) coordinate = static_cast<float>(coordinate);
+    assign(placed.place, place);
+    Extent extent;
+    for (const Box& box : group.outline) {
+      forCorners(vec(box.low), vec(box.high), [&](const Double3& p) { extent.include(toWorld.vector(p) + place); });
+    }
+    placed.box = extent.box();
+  }
+}
+
+bool SceneGeometry::anyInInstance(const BvhInstance& instance,
+                                  const std::function<bool(const Double3&, const Double3&)>& test) const {
+  const PrimitiveList& list = *groups_[instance.group].primitives;
+  std::atomic<bool> found{false};
+  forEachRange(parallelFor, list.counts().total(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end && !found; ++i) {
+      const PrimitiveRecord<double> record = list.geometry<double>(i);
+      Extent extent;
+      const auto include = [&](const Double3& p) {
+        Double3 there = vec(instance.place);
+        for (size_t axis = 0; axis < 3; ++axis) there[axis] += dot(vec(instance.toWorld[axis]), p);
+        extent.include(there);
+      };
+      const auto kind = static_cast<PrimitiveKind>(record.kind);
+      const Double3 p = vec(record.p0), u = vec(record.e1), v = vec(record.e2);
+      if (kind == PrimitiveKind::sphere) {
+        const Double3 radius{u[0], u[0], u[0]};
+        forCorners(p - radius, p + radius, include);
+      } else {
+        for (const Double3& q : {p, p + u, p + v}) include(q);
+        if (kind == PrimitiveKind::quad) include(p + u + v);
+      }
+      if (test(extent.low, extent.high)) found = true;
+    }
+  });
+  return found;
+}
+
+PrimitiveCounts SceneGeometry::counts() const {
+  PrimitiveCounts counts = world_->counts();
+  for (const Group& group : groups_) {
+    counts.quads += group.primitives->counts().quads;
+    counts.triangles += group.primitives->counts().triangles;
+    counts.spheres += group.primitives->counts().spheres;
+  }
+  return counts;
+}
+
+template <class S>
+BoundingSphere SceneGeometry::bounds() const {
+  Extent all;
+  if (world_->counts().total() != 0) {
+    const BoundingSphere world = world_->bounds<S>();
+    if (instances_.empty()) return world;
+    all.include(vec(world.low), vec(world.high));
+  }
+  for (const BvhInstance& instance : instances_) {
+    all.include(vec(instance.box.low), vec(instance.box.high));
+  }
+  return boundingSphere(all.low, all.high);
+}
+template BoundingSphere SceneGeometry::bounds<float>() const;
+template BoundingSphere SceneGeometry::bounds<double>() const;
+
+double SceneGeometry::groupExtent() const {
+  double extent = 0;
+  for (const Group& group : groups_) extent = std::max(extent, group.radius);
+  return extent;
+}
+
+template <class S>
+Primitives<S> SceneGeometry::compile() const {
+  std::vector<const PrimitiveList*> lists{world_.get()};
+  for (const Group& group : groups_) lists.push_back(group.primitives.get());
+  size_t records = 0, attributes = 0;
+  for (const PrimitiveList* list : lists) {
+    records += list->counts().total();
+    attributes += list->attributes();
+  }
+  Primitives<S> out;
+  out.counts = counts();
+  out.records = RecordArray<PrimitiveRecord<S>>(records);
+  out.attributes = RecordArray<AttributeRecord>(attributes);
+  records = attributes = 0;
+  for (const PrimitiveList* list : lists) {
+    list->compile(out, records, attributes);
+    records += list->counts().total();
+    attributes += list->attributes();
+  }
+  return out;
+}
+template Primitives<float> SceneGeometry::compile() const;
+template Primitives<double> SceneGeometry::compile() const;
+
+template <class S>
+RecordArray<InstanceRecord<S>> SceneGeometry::compileInstances() const {
+  RecordArray<InstanceRecord<S>> records(instances_.size());
+  for (size_t i = 0; i < records.size(); ++i) {
+    records[i] = InstanceRecord<S>{};
+    assign(records[i].place, vec(instances_[i].place));
+    for (size_t row = 0; row < 3; ++row) {
+      assign(records[i].toWorld[row], vec(instances_[i].toWorld[row]));
+      assign(records[i].toObject[row], vec(instances_[i].toObject[row]));
+    }
+  }
+  return records;
+}
+template RecordArray<InstanceRecord<float>> SceneGeometry::compileInstances() const;
+template RecordArray<InstanceRecord<double>> SceneGeometry::compileInstances() const;
+
+std::vector<BvhGroup> SceneGeometry::groups() const {
+  std::vector<BvhGroup> groups;
+  size_t first = world_->counts().total();
+  for (const Group& group : groups_) {
+    groups.push_back({group.primitives->source(first), group.radius});
+    first += group.primitives->counts().total();
+  }
+  return groups;
+}
+
+}  // namespace wavecrest

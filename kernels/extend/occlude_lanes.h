@@ -1,0 +1,45 @@
+// What occlude does in a hierarchy of either kind, of one level (occlude_bvh.cpp) or two (occlude_instances.cpp).
+#pragma once
+
+#include "kernels/extend/bvh_ray.h"
+#include "kernels/extend/visible_lanes.h"
+#include "kernels/extend/walk_bvh.h"
+
+WAVECREST_SIMD_BEGIN
+
+// Shadow ray i, for which the walker's index is `index`. Ray: of bvh_ray.h, or one that knows instances.
+template <class Ray, class S>
+WAVECREST_INLINE void beginShadowRay(Ray& ray, size_t index, const ShadowRays<S>& rays, size_t i) {
+  ray.begin(index, rays.originX[i], rays.originY[i], rays.originZ[i], rays.directionX[i], rays.directionY[i],
+            rays.directionZ[i], kShadowEnd);
+}
+
+// Each ray alone. Writes whether nothing blocks it, as 1 or 0, in the place of its origin's x.
+template <class Ray, class S>
+WAVECREST_INLINE void walkShadowRaysAlone(const BvhView& bvh, ShadowRays<S>& rays) {
+  size_t next = 0;
+  walkBvh<Ray>(
+      bvh,
+      [&](Ray& ray) HWY_ATTR {
+        if (next >= rays.size) return false;
+        beginShadowRay(ray, next, rays, next);
+        ++next;
+        return true;
+      },
+      [&](const Ray& ray) HWY_ATTR { rays.originX[ray.index] = ray.id == kMiss ? 1.0f : 0.0f; });
+}
+
+// The stage. walkAll(bvh, rays): writes what walkShadowRaysAlone does.
+template <class S, class WalkAll>
+WAVECREST_INLINE void occludeThrough(const StageContext<S>& context, Wave<S>& wave, const WalkAll& walkAll) {
+  auto& shadow = wave.shadowRays;
+  const size_t count = shadow.size;
+  context.counters->raysShadow += count;
+  walkAll(*context.scene->bvh, shadow);
+  for (size_t i = 0; i < count; i += kLanes) {
+    addVisible(context, wave, (load(shadow.originX, i) > Float(0)) & firstLanes(count - i), i);
+  }
+  shadow.size = 0;
+}
+
+WAVECREST_SIMD_END

@@ -1,0 +1,93 @@
+#include "library/campaign_resume.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "bench/campaign/file_lock.h"
+#include "bench/results/read_results.h"
+#include "bench/results/results_store.h"
+#include "cli/commands.h"
+#include "library/campaign_options.h"
+#include "scenes/scene_list.h"
+
+namespace wavecrest {
+namespace {
+
+using api::CampaignOptions;
+using Words = std::vector<std::string>;
+
+// The words of a list option, its default spelt out.
+Words listed(const CampaignOptions& options, const std::string& name) {
+  if (const auto given = options.defining.find(name); given != options.defining.end()) return given->second;
+  Words words;
+  if (name == "scenes") {
+    for (const SceneEntry& entry : builtInScenes()) words.emplace_back(entry.name);
+  } else {
+    for (const MethodEntry& entry : kMethods) words.emplace_back(entry.name);
+  }
+  return words;
+}
+
+// Whether every run of `after` takes at least as long as the same run of `before`, all else being equal.
+bool isLonger(const CampaignOptions& before, const CampaignOptions& after) {
+  const CampaignSettings a = campaignSettings(before), b = campaignSettings(after);
+  if (a.iterations.has_value() != b.iterations.has_value()) return false;
+  if (a.iterations) return *b.iterations >= *a.iterations;
+  for (size_t i = 0; i < a.scenes.size(); ++i) {
+    if (b.scenes[i].effort.seconds < a.scenes[i].effort.seconds) return false;
+  }
+  return true;
+}
+
+// `before` with the words of one option, if that makes the campaign larger. Otherwise nothing.
+std::optional<CampaignOptions> extended(const CampaignOptions& before, const std::string& name, const Words& words) {
+  CampaignOptions after = before;
+  if (name == "scenes" || name == "--methods") {
+    Words all = listed(before, name);
+    const size_t known = all.size();
+    for (const std::string& word : words) {
+      if (std::find(all.begin(), all.end(), word) == all.end()) all.push_back(word);
+    }
+    after.defining[name] = all;
+    return all.size() > known ? std::optional(after) : std::nullopt;
+  }
+  after.defining[name] = words;
+  if (name == "--seeds") {
+    return campaignSettings(after).seeds > campaignSettings(before).seeds ? std::optional(after) : std::nullopt;
+  }
+  if (name == "--time" || name == "--spp") return isLonger(before, after) ? std::optional(after) : std::nullopt;
+  return std::nullopt;
+}
+
+}  // namespace
+
+void resumeCampaign(CampaignOptions& options, const std::filesystem::path& results) {
+  const FileLock lock(results);
+  const ResultsStore whole(results);  // also where a process died before it had made the tables
+  const CampaignResults before = readResults(results);
+  const auto stored = before.campaign.find("options");
+  if (stored == before.campaign.end()) return;  // it died before it began
+  CampaignOptions all = options;
+  all.defining = nlohmann::json::parse(stored->second).get<std::map<std::string, Words>>();
+  const std::map<std::string, Words> begun = all.defining;
+  for (const auto& [name, words] : options.defining) {
+    const auto known = begun.find(name);
+    if (known != begun.end() && known->second == words) continue;
+    const std::optional<CampaignOptions> larger = extended(all, name, words);
+    if (!larger) {
+      const std::string was = known == begun.end() ? "the default" : fmt::format("{}", fmt::join(known->second, " "));
+      throw UsageError(fmt::format("{} {}: {} was begun with {}; expected the same, more, or another --out", name,
+                                   fmt::join(words, " "), results.string(), was));
+    }
+    if (name == "--methods" && campaignSettings(all).shard.count > 1) {
+      throw UsageError("--methods: shards divide scenes and methods, so none can be added; expected another --out");
+    }
+    all = *larger;
+  }
+  options.defining = all.defining;
+}
+
+}  // namespace wavecrest

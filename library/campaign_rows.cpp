@@ -1,0 +1,119 @@
+#include "library/campaign_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "cli/commands.h"
+#include "cli/option_values.h"
+
+namespace wavecrest {
+namespace {
+
+const std::vector<std::string>* given(const CampaignWords& words, const char* name) {
+  const auto found = words.find(name);
+  return found == words.end() || found->second.empty() ? nullptr : &found->second;
+}
+
+template <class Number>
+Number parseNumber(const char* option, const std::string& word, Number least, Number most) {
+  Number number{};
+  const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const bool whole = error == std::errc() && rest == word.data() + word.size();
+  if (!whole || !(number >= least) || !(number <= most)) {
+    throw UsageError(fmt::format("{} {}: expected a number from {} to {}", option, word, least, most));
+  }
+  return number;
+}
+
+std::vector<MetropolisVariant> chosenVariants(const CampaignWords& words, const Profile& profile) {
+  std::vector<MetropolisVariant> variants;
+  if (const auto* named = given(words, "--mlt")) {
+    for (const std::string& word : *named) {
+      variants.push_back(static_cast<MetropolisVariant>(parseChoice("--mlt", word, kMetropolisVariantNames)));
+    }
+    return variants;
+  }
+  if (profile.studyRows) variants.push_back(MetropolisVariant::pathspace);
+  variants.push_back(MetropolisVariant::mmlt);
+  return variants;
+}
+
+// The rows that a word of --methods asks for: a method with all that the profile and options make of it, or one row by
+// its own name.
+std::vector<CampaignMethod> rowsOfWord(const std::string& word, const std::vector<MetropolisVariant>& variants,
+                                       DirectPass directPass) {
+  for (const MetropolisVariant variant : {MetropolisVariant::pathspace, MetropolisVariant::pssmlt}) {
+    const CampaignMethod row{.method = Method::mlt, .variant = variant};
+    if (word == row.name()) return {row};
+  }
+  const CampaignMethod direct{.method = Method::ppm, .directPass = true};
+  if (word == direct.name()) return {direct};
+  return rowsOf(parseMethodOption("--methods", word), variants, directPass);
+}
+
+std::vector<CampaignMethod> chosenMethods(const CampaignWords& words, const Profile& profile) {
+  const std::vector<MetropolisVariant> variants = chosenVariants(words, profile);
+  const bool direct = profile.studyRows || given(words, "--direct-pass") != nullptr;
+  std::vector<std::string> names;
+  if (const auto* named = given(words, "--methods")) {
+    names = *named;
+  } else {
+    for (const MethodEntry& entry : kMethods) names.emplace_back(entry.name);
+  }
+  std::vector<CampaignMethod> methods;
+  for (const std::string& name : names) {
+    for (const CampaignMethod& row : rowsOfWord(name, variants, direct ? DirectPass::both : DirectPass::no)) {
+      if (std::find(methods.begin(), methods.end(), row) == methods.end()) methods.push_back(row);
+    }
+  }
+  return methods;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> parseDefinitions(const std::vector<std::string>& words) {
+  std::map<std::string, std::string> definitions;
+  for (const std::string& word : words) {
+    const size_t equals = word.find('=');
+    if (equals == std::string::npos || equals == 0) throw UsageError(fmt::format("-D {}: expected NAME=VALUE", word));
+    definitions[word.substr(0, equals)] = word.substr(equals + 1);
+  }
+  return definitions;
+}
+
+void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSettings& settings) {
+  settings.methods = chosenMethods(words, profile);
+  if (const auto* definitions = given(words, "-D")) settings.definitions = parseDefinitions(*definitions);
+  RenderSettings& render = settings.render;
+  if (const auto* radius = given(words, "--radius")) {
+    render.radius = parseNumber("--radius", radius->front(), 1e-9, 10.0);
+  }
+  if (const auto* alpha = given(words, "--radius-alpha")) {
+    render.radiusAlpha = parseNumber("--radius-alpha", alpha->front(), 0.0, 1.0);
+  }
+  if (profile.lightPaths != 0) render.lightPaths = profile.lightPaths;
+  if (const auto* paths = given(words, "--light-paths")) {
+    render.lightPaths = parseNumber("--light-paths", paths->front(), uint64_t{1}, uint64_t{1} << 32);
+  }
+  if (const auto* clock = given(words, "--clock")) {
+    render.clock = static_cast<ClockKind>(parseChoice("--clock", clock->front(), kClockNames));
+  }
+}
+
+void addRowKeys(const CampaignSettings& settings, std::map<std::string, std::string>& keys) {
+  std::string methods, definitions;
+  for (const CampaignMethod& method : settings.methods) methods += (methods.empty() ? "" : " ") + method.name();
+  for (const auto& [name, value] : settings.definitions) {
+    definitions += fmt::format("{}{}={}", definitions.empty() ? "" : " ", name, value);
+  }
+  keys["methods"] = methods;
+  keys["clock"] = kClockNames[static_cast<size_t>(settings.render.clock)];
+  keys["radius"] = fmt::format("{:g}", settings.render.radius);
+  keys["radius_alpha"] = fmt::format("{:g}", settings.render.radiusAlpha);
+  keys["light_paths"] = settings.render.lightPaths ? std::to_string(*settings.render.lightPaths) : "one per pixel";
+  if (!definitions.empty()) keys["definitions"] = definitions;
+}
+
+}  // namespace wavecrest

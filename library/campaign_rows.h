@@ -1,0 +1,24 @@
+// The options of a campaign that say by which methods and settings its runs are rendered, from words: one place for the
+// command line and the library.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/campaign/campaign_settings.h"
+
+namespace wavecrest {
+
+using CampaignWords = std::map<std::string, std::vector<std::string>>;  // by option name; only what was given
+
+// NAME=VALUE of a scene's variables; UsageError for any other word.
+std::map<std::string, std::string> parseDefinitions(const std::vector<std::string>& words);
+
+// Fills methods, definitions, and of `render` radius, radiusAlpha, lightPaths and clock. Throws UsageError.
+void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSettings& settings);
+
+// What the results file says of them.
+void addRowKeys(const CampaignSettings& settings, std::map<std::string, std::string>& keys);
+
+}  // namespace wavecrest

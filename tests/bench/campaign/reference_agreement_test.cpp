@@ -1,0 +1,67 @@
+// References agree where their truths do, whatever their noise, and disagree where a small part of the image is off.
+#include "bench/campaign/reference_agreement.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "bench/results/noise_floors.h"
+
+namespace wavecrest {
+namespace {
+
+// Two halves of a grey image of this value, with noise of this deviation in each.
+Reference noisy(unsigned seed, double deviation, float value = 0.5f, uint32_t width = 128, uint32_t height = 96) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> noise(0, static_cast<float>(deviation));
+  Image mean{.width = width, .height = height, .channels = 3, .pixels = std::vector<float>(3 * width * height)};
+  Image difference = mean;
+  for (size_t i = 0; i < mean.pixels.size(); ++i) {
+    const float a = value + noise(random), b = value + noise(random);
+    mean.pixels[i] = 0.5f * (a + b);
+    difference.pixels[i] = 0.5f * (a - b);
+  }
+  return {.mean = mean, .difference = difference, .info = {}, .noiseFloors = {}};
+}
+
+// Forty comparisons of equal truths; a limit for one in a hundred lets four of forty pass with a probability of 1e-3 at
+// most (binomial), so this fails by chance that often.
+TEST(CompareReferences, equalTruthsAgree) {
+  int disagreements = 0;
+  for (unsigned i = 0; i < 40; ++i) {
+    disagreements += compareReferences(noisy(2 * i, 0.1), noisy(2 * i + 1, 0.3)).agrees() ? 0 : 1;
+  }
+  EXPECT_LE(disagreements, 3);
+}
+
+TEST(CompareReferences, aCornerThatIsOffIsFound) {
+  const Reference a = noisy(1, 0.1);
+  Reference b = noisy(2, 0.1);
+  for (uint32_t y = 0; y < 32; ++y) {
+    for (uint32_t x = 0; x < 3 * 32; ++x) b.mean.pixels[y * 3 * 128 + x] += 0.02f;
+  }
+  const Agreement agreement = compareReferences(a, b);
+  EXPECT_FALSE(agreement.agrees()) << agreement.describe();
+  EXPECT_GT(agreement.largestZ, 5);
+  EXPECT_LT(std::abs(agreement.relativeDifference), 0.01) << "little of the whole";
+}
+
+TEST(CompareReferences, needsHalvesAndEqualSizes) {
+  Reference plain = noisy(1, 0.1);
+  plain.difference.reset();
+  EXPECT_THROW(compareReferences(noisy(1, 0.1), plain), ReferenceComparisonError);
+  EXPECT_THROW(compareReferences(noisy(1, 0.1), noisy(2, 0.1, 0.5f, 64, 96)), ReferenceComparisonError);
+  EXPECT_THROW(compareReferences(noisy(1, 0.1, 0.5f, 32, 32), noisy(2, 0.1, 0.5f, 32, 32)), ReferenceComparisonError);
+}
+
+TEST(UnmetFloors, areNamedWithTheirBars) {
+  EXPECT_TRUE(unmetFloors({{"ssim", 0.996}, {"relmse", 1e-5}}, 1e-3).empty());
+  const std::vector<std::string> both = unmetFloors({{"ssim", 0.901}, {"relmse", 2e-4}}, 1e-3);
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0], "SSIM of a perfect image is 0.901, below 0.995");
+  EXPECT_EQ(both[1], "relMSE of a perfect image is 0.0002, above a tenth of the best run's 0.001");
+  EXPECT_EQ(unmetFloors({{"relmse", 2e-4}}).size(), 0u) << "no run to compare with";
+}
+
+}  // namespace
+}  // namespace wavecrest

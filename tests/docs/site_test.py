@@ -1,0 +1,56 @@
+"""docs/build.py makes the whole site without a warning, refuses a broken link, and leaves the tree as it was."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+
+def build(root, out, *arguments):
+    command = [sys.executable, root / "docs/build.py", "--out", out, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+class Site(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="wavecrest_docs_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def test_the_site_is_made_without_a_warning_and_holds_readmes_headers_and_help(self):
+        result = build(ROOT, self.folder / "out", "--wavecrest", os.environ["WAVECREST"])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("WARNING", result.stderr)
+        site = self.folder / "out/site"
+        for page, words in [
+            ("index.html", "wavecrest"),
+            ("engine/methods/METHODS.html", "Weights by recursion"),
+            ("interface.html", "render.h"),
+            ("commands.html", "--until-relative-error"),
+        ]:
+            text = (site / page).read_text()
+            self.assertTrue(words in text, f"{page}: lacks {words}")
+            self.assertTrue("commands.html" in text, f"{page}: lacks the navigation")
+
+    def test_a_link_to_nothing_is_an_error(self):
+        tree = self.folder / "tree"
+        (tree / "include/wavecrest").mkdir(parents=True)
+        (tree / "docs").mkdir()
+        shutil.copy(ROOT / "docs/build.py", tree / "docs")
+        subprocess.run(["git", "init", "--quiet", tree], check=True)
+        readme = tree / "README.md"
+        readme.write_text("# A tree\n\n[good](docs/build.py), [within](#a-tree)\n")
+        self.assertEqual(build(tree, self.folder / "out").returncode, 0)
+        readme.write_text("# A tree\n\n[bad](docs/absent.py)\n")
+        result = build(tree, self.folder / "out")
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("README.md: links to docs/absent.py", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

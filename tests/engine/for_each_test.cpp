@@ -1,0 +1,49 @@
+// Turns go round, whether or not all threads come.
+#include "engine/for_each.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+namespace wavecrest {
+namespace {
+
+class TakeTurnsTest : public testing::TestWithParam<size_t> {  // threads that come, of two
+ protected:
+  static constexpr size_t kThreads = 2;
+  const oneapi::tbb::global_control limit_{oneapi::tbb::global_control::max_allowed_parallelism, GetParam()};
+  oneapi::tbb::task_arena arena_{kThreads};
+};
+INSTANTIATE_TEST_SUITE_P(Threads, TakeTurnsTest, testing::Values(1, 2));
+
+TEST_P(TakeTurnsTest, allAreTakenAndNoneTwiceAtATime) {
+  std::vector<std::atomic<int>> inTurn(7), turns(7);
+  arena_.execute([&] {
+    takeTurns(turns.size(), kThreads, [&](size_t i) {
+      EXPECT_EQ(inTurn[i]++, 0);
+      const bool again = ++turns[i] < 100 * static_cast<int>(i + 1);
+      --inTurn[i];
+      return again;
+    });
+  });
+  for (size_t i = 0; i < turns.size(); ++i) EXPECT_EQ(turns[i], 100 * static_cast<int>(i + 1)) << i;
+}
+
+TEST(TakeTurns, waitForNoThreadThatIsLate) {
+  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+  oneapi::tbb::task_arena arena(2);
+  std::vector<int> turns(2);
+  const auto turn = [&](size_t i) {
+    ++turns[i];
+    return turns[0] + turns[1] < 1000;
+  };
+  arena.execute([&] { takeTurns(turns.size(), 2, turn); });
+  EXPECT_GE(std::min(turns[0], turns[1]), 499);
+}
+
+}  // namespace
+}  // namespace wavecrest
