@@ -29,6 +29,7 @@ std::string lastLine(const fs::path& file) {
 // Runs a program to its end with its error output in a file; the exit code, or 128 + the signal that ended it.
 int runProgram(const std::vector<std::string>& arguments, const fs::path& errors) {
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
   posix_spawn_file_actions_t actions;

@@ -15,7 +15,7 @@ constexpr double kReferenceRadius = 1e-4;
 
 // Why an image cannot be the reference of this scene; empty if it can.
 std::string misfit(const Reference& reference, const Scene& scene, const CampaignSettings& settings) {
-  if (const std::string wrong = whyNoReference(reference); !wrong.empty()) return wrong;
+  if (std::string wrong = whyNoReference(reference); !wrong.empty()) return wrong;
   if (reference.mean.width != settings.size[0] || reference.mean.height != settings.size[1]) {
     return fmt::format("is {}x{} pixels; expected {}x{}", reference.mean.width, reference.mean.height, settings.size[0],
                        settings.size[1]);

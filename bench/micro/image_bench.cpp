@@ -35,9 +35,9 @@ Image noisyImage(uint32_t side) {
   for (size_t i = 0; i < image.pixels.size(); ++i) {
     state = state * 1664525u + 1013904223u;
     const float noise = static_cast<float>(state >> 8) * 0x1p-24f;
-    const size_t pixel = i / 3;
-    const float x = static_cast<float>(pixel % side) / static_cast<float>(side);
-    const float y = static_cast<float>(pixel / side) / static_cast<float>(side);
+    const size_t pixel = i / 3, row = pixel / side, column = pixel % side;
+    const float x = static_cast<float>(column) / static_cast<float>(side);
+    const float y = static_cast<float>(row) / static_cast<float>(side);
     image.pixels[i] = (0.2f + x * y) * (0.95f + 0.1f * noise);
   }
   return image;
