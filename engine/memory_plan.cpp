@@ -139,16 +139,20 @@ class Planner {
     }
   }
 
-  // Of a wave per thread, or with a photon map of all waves.
+  // Of a wave per thread, or with a photon map of all waves of the iterations under way.
   size_t vertexBytes(size_t lightPaths) const {
-    const size_t waves = (lightPaths + settings_.waveSize - 1) / settings_.waveSize;
-    return (plan_.pipeline.photonMap ? waves : settings_.threads) * emptyStore_.bytesFor(memory_.verticesPerWave);
+    const size_t waves = piecesOf(lightPaths, settings_.waveSize);
+    const size_t stores =
+        plan_.pipeline.photonMap ? lightStores(settings_, area_.pixels.size(), waves) : settings_.threads;
+    return stores * emptyStore_.bytesFor(memory_.verticesPerWave);
   }
   size_t photons(size_t lightPaths) const {
     const double perPath = static_cast<double>(pilot_.stored) / static_cast<double>(std::max<size_t>(pilot_.paths, 1));
     return static_cast<size_t>(std::llround(perPath * static_cast<double>(lightPaths)));
   }
-  size_t photonBytes(size_t lightPaths) const { return PhotonMap<S>::bytesFor(photons(lightPaths)); }
+  size_t photonBytes(size_t lightPaths) const {
+    return iterationsAtOnce(settings_, area_.pixels.size()) * PhotonMap<S>::bytesFor(photons(lightPaths));
+  }
 
   // The most light paths, up to those asked for, that leave the plan within the budget.
   void fitLightPaths(size_t budget) {
@@ -182,6 +186,13 @@ class Planner {
 };
 
 }  // namespace
+
+size_t lightStores(const RenderSettings& settings, size_t pixels, size_t waves) {
+  constexpr size_t kAheadPerThread = 4, kMostAhead = 4;  // at most a fourth of the waves
+  const size_t atOnce = iterationsAtOnce(settings, pixels);
+  if (atOnce > 1 || settings.cutForThreads() == 1) return atOnce * waves;
+  return waves + std::min<size_t>(piecesOf(waves, kMostAhead), kAheadPerThread * settings.cutForThreads());
+}
 
 template <class S>
 size_t primitiveBytes(const CompiledScene<S>& scene) {

@@ -36,6 +36,11 @@ size_t primitiveBytes(const CompiledScene<S>& scene);
 // Of one wave's columns.
 size_t waveBytes(size_t bytesPerPath, size_t waveSize);
 
+// With a photon map: how many light stores a session has for `waves` light waves an iteration. These are as many for
+// each iteration under way; where there is one, some more, into which threads without work trace light paths of the
+// next.
+size_t lightStores(const RenderSettings& settings, size_t pixels, size_t waves);
+
 struct MemoryPlan {
   size_t bytesPerPath = 0;  // of the columns of a wave
   MemoryUse use;

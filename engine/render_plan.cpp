@@ -129,12 +129,21 @@ MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, 
   return strategies;
 }
 
-uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most) {
-  constexpr size_t kPiecesPerThread = 16, kLeast = 128;
+uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most, uint32_t least) {
+  constexpr size_t kPiecesPerThread = 16;
   if (threads <= 1) return most;
-  const size_t fair = (items + kPiecesPerThread * threads - 1) / (kPiecesPerThread * threads);
-  const size_t whole = (fair + kColumnPadding - 1) / kColumnPadding * kColumnPadding;
-  return static_cast<uint32_t>(std::min<size_t>(most, std::max(whole, kLeast)));
+  const auto whole = [&](size_t pieces) { return piecesOf(piecesOf(items, pieces), kColumnPadding) * kColumnPadding; };
+  // A piece and a half for each thread in any case.
+  const size_t fewest = std::min<size_t>(least, whole(threads + threads / 2));
+  return static_cast<uint32_t>(
+      std::min<size_t>(most, std::max({whole(kPiecesPerThread * threads), fewest, kLeastPiece})));
+}
+
+size_t iterationsAtOnce(const RenderSettings& settings, size_t pixels) {
+  constexpr size_t kPiecesPerThread = 4, kMost = 8;
+  if (settings.cutForThreads() <= 1) return 1;
+  const size_t pieces = piecesOf(pixels, settings.waveSize);
+  return std::clamp<size_t>(piecesOf(kPiecesPerThread * settings.cutForThreads(), pieces), 1, kMost);
 }
 
 RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film, size_t pixels) {
@@ -144,10 +153,23 @@ RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film,
   settings.waveSize = std::max(settings.waveSize, least);
   RenderSettings cut = settings;
   const MethodPage page = pageOf(settings);
-  // Camera walks alone take several iterations of a pixel at once: their waves stay, over fewer pixels.
-  if (!page.hasChains() && page.walk(Walk::light) == nullptr) return cut;
-  const size_t items = page.hasChains() ? std::max<size_t>(settings.metropolis.chains, 1) : pixels;
-  cut.waveSize = std::max(pieceSize(items, settings.cutForThreads(), settings.waveSize), least);
+  const uint32_t threads = settings.cutForThreads();
+  // Camera walks alone take several iterations of a pixel at once: their waves stay, over fewer pixels, up to so many
+  // lanes of all threads.
+  constexpr uint32_t kMostLanes = 1u << 17;
+  if (!page.hasChains() && page.walk(Walk::light) == nullptr) {
+    cut.waveSize = std::max(std::min(settings.waveSize, kMostLanes / std::max(threads, 1u)), least);
+    return cut;
+  }
+  // Methods with light paths need few pieces: without a photon map pieces wait for nothing, so no thread is idle before
+  // the end; with one, several iterations are under way.
+  constexpr uint32_t kLeastWithLight = 256, kLeastWithMap = 512;
+  if (page.hasChains()) {
+    cut.waveSize = pieceSize(std::max<size_t>(settings.metropolis.chains, 1), threads, settings.waveSize);
+  } else {
+    cut.waveSize = pieceSize(pixels, threads, settings.waveSize, page.hasPhotonMap() ? kLeastWithMap : kLeastWithLight);
+  }
+  cut.waveSize = std::max(cut.waveSize, least);
   return cut;
 }
 

@@ -56,8 +56,12 @@ MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, 
 
 // The number of items, pixels or chains, that one task takes: `most`, or fewer if that would leave some of the threads
 // without a task. Images do not depend on it. Too few tasks leave threads idle at the end of a phase. Too small tasks
-// leave lanes idle and repeat the fixed cost of each stage.
-uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most);
+// leave lanes idle and repeat the fixed cost of each stage: below `least` there are only as many as threads need.
+constexpr size_t kLeastPiece = 128;
+uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most, uint32_t least = kLeastPiece);
+// How many iterations with a photon map may be under way at once: more than one where a film of so many pixels has few
+// pieces for each thread. Each takes light stores and a map of its own.
+size_t iterationsAtOnce(const RenderSettings& settings, size_t pixels);
 // How many pieces of a size some items make, and what the one of this index has.
 inline size_t piecesOf(size_t items, size_t size) { return (items + size - 1) / size; }
 inline size_t itemsOfPiece(size_t index, size_t items, size_t size) { return std::min(size, items - index * size); }

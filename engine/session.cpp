@@ -14,6 +14,7 @@
 #include "engine/for_each.h"
 #include "engine/render_clock.h"
 #include "engine/render_plan.h"
+#include "engine/run_schedule.h"
 #include "engine/session_state.h"
 #include "engine/session_worker.h"
 #include "engine/stage_rows.h"
@@ -24,19 +25,24 @@
 namespace wavecrest {
 namespace {
 
+// Phases of an iteration with a photon map: light passes, then the steps of the map, then camera passes.
+constexpr size_t kLightPhase = 0, kMapPhase = 1;
+
 // The part of a session that depends on the storage type of its precision.
 //
 // An iteration is one camera path per pixel and one light path for each, or with a photon map as many light paths as
 // the memory plan says. Without a photon map a wave's light and camera pass follow each other and waves are
-// independent; with one, all light passes come first, then the map, then all camera passes. Such an iteration is
-// finished where time runs out in between: its weights belong to its radius, and splats without the camera paths that
-// share their weights would be of no radius at all.
+// independent; with one, all light passes come first, then the map, then all camera passes: phases of a schedule.
+// While the last tasks of a phase run, threads without work begin the light passes of the next iteration, as far as
+// there are light stores that no camera pass reads. Such an iteration is finished where time runs out in between: its
+// weights belong to its radius, and splats without the camera paths that share their weights would be of no radius at
+// all.
 //
 // Camera paths that need no light paths are taken several iterations at a time, so that the paths of a pixel run
 // together: a wave is then fewer pixels. That changes no path and no sum, only their order in time.
 //
 // Pixels and light paths are cut into pieces whose size follows from their number and the threads', so that small films
-// keep all threads busy and waves of many threads together take no more memory than those of some.
+// keep all threads busy.
 template <class S>
 class TypedSession final : public Session {
  public:
@@ -60,6 +66,11 @@ class TypedSession final : public Session {
     uint32_t iterationBits = 0;
     size_t pixels = 0;
   };
+  // The photon map of an iteration under way, and the stores that it is of, by light wave.
+  struct PhotonSlot {
+    PhotonMap<S> map;
+    std::vector<LightStore<S>*> stores;
+  };
   // Whether a wave is to stop before it traces iteration `next`.
   using Finished = std::function<bool(uint64_t next)>;
 
@@ -77,19 +88,28 @@ class TypedSession final : public Session {
   void traceLight(size_t first, size_t count, uint64_t iteration, LightStore<S>& store, Worker& worker);
   void traceCamera(size_t first, size_t count, uint64_t iteration, uint32_t iterationBits, LightStore<S>* partners,
                    Worker& worker);
-  void traceLightWave(size_t waveIndex, Worker& worker);
+  void traceLightWave(size_t waveIndex, uint64_t iteration, Worker& worker);
   void traceCameraWave(size_t waveIndex, Worker& worker);
   // A restored film may have stopped within an iteration. Renders until all its pixels have as many samples as the one
   // that has most.
   void levelPixels(const Finished& finished);
   // Iterations of a method whose waves are independent.
   void renderWaves(const Finished& finished);
-  // Iterations of a method with a photon map.
-  void renderPhases(const Finished& finished);
+  // Iterations of a method with a photon map. end: the time when no other iteration may begin.
+  void renderPhases(const Finished& finished, double end);
+  Schedule photonSchedule() const;
   PhotonGrid<S> photonGrid(double searchRadius) const;
-  void buildPhotonMap(uint64_t iteration);
+  // The first phase of building the map, and the others.
+  void preparePhotonMap(uint64_t iteration);
+  void buildPhotonMap(const ScheduledTask& task, Worker& worker);
+  size_t lightWaves() const { return piecesOf(memory_.lightPaths, settings_.waveSize); }
+  // Iterations take the stores in turn, each as many as it has light waves.
+  LightStore<S>& storeOf(uint64_t iteration, size_t waveIndex) {
+    return *stores_[(iteration * lightWaves() + waveIndex) % stores_.size()];
+  }
+  PhotonSlot& slotOf(uint64_t iteration) { return slots_[iteration % slots_.size()]; }
   // Light vertices that the camera paths of a wave are joined with.
-  LightStore<S>* partnersOf(size_t waveIndex, Worker& worker);
+  LightStore<S>* partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker);
   void countLightPaths();
 
   oneapi::tbb::task_arena arena_;
@@ -100,14 +120,13 @@ class TypedSession final : public Session {
   MemoryPlan memory_;
   std::vector<size_t> pieces_;          // the first pixel of each camera wave's own, and the end (FilmArea::pieces)
   uint64_t endIteration_ = 0;           // of this renderUntil
-  std::vector<uint64_t> lightDone_;     // next iteration of each wave
   std::vector<CameraProgress> camera_;  // of each tile
   bool level_ = true;                   // false: pixels of a restored film have different numbers of samples
   Arena storeMemory_;
-  std::vector<std::unique_ptr<LightStore<S>>> stores_;  // of each light wave, where a photon map gathers them
-  PhotonMap<S> photons_;
-  std::optional<uint64_t> photonIteration_;  // which iteration the map is of
-  StageTally photonTally_;
+  std::vector<std::unique_ptr<LightStore<S>>> stores_;  // lightStores(), where photon maps gather them
+  std::vector<PhotonSlot> slots_;                       // of the iterations under way
+  std::vector<typename PhotonMap<S>::BuildStep> buildSteps_;
+  double iterationSeconds_ = 0;  // of the latest iterations with a photon map; 0: of none yet
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
   WorkDone earlier_;  // of the sessions that this one goes on for
   RenderClock clock_{settings_.clock, settings_.threads};
@@ -128,19 +147,24 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
   memory_ = planMemory(plan_, settings_, film_.area());
   if (plan_.pipeline.splats()) film_.makeSplats(settings.threads, memory_.splatScale);
   if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.scene->view.camera);
+  // A piece of camera paths is a wave; where waves take several iterations at once, as many pixels as give all threads
+  // work.
   const uint32_t together = 1u << mostIterationBits();
-  pieces_ = film_.area().pieces(
-      pieceSize(pixels * together, settings.cutForThreads(), settings_.waveSize * together) / together,
-      film_.spreads());
-  lightDone_.resize(piecesOf(memory_.lightPaths, settings_.waveSize), settings.firstIteration);
+  const size_t piece =
+      together == 1 ? settings_.waveSize
+                    : pieceSize(pixels * together, settings.cutForThreads(), settings_.waveSize * together) / together;
+  pieces_ = film_.area().pieces(piece, film_.spreads());
   camera_.resize(pieces_.size() - 1, {.next = settings.firstIteration});
   if (plan_.pipeline.photonMap) {
-    for (size_t i = 0; i < lightDone_.size(); ++i) {
+    slots_.resize(iterationsAtOnce(settings_, pixels));
+    const size_t count = lightStores(settings_, pixels, lightWaves());
+    for (size_t i = 0; i < count; ++i) {
       stores_.push_back(std::make_unique<LightStore<S>>(settings_.waveSize, plan_.needs, plan_.lightUse));
       LightStore<S>& store = *stores_.back();
-      if (i == 0) storeMemory_ = Arena(lightDone_.size() * store.arenaBytes(memory_.verticesPerWave));
+      if (i == 0) storeMemory_ = Arena(count * store.arenaBytes(memory_.verticesPerWave));
       store.reserve(memory_.verticesPerWave, storeMemory_);
     }
+    buildSteps_ = PhotonMap<S>::buildSteps(lightWaves());
   }
   pins_.emplace(arena_, settings_.placement);
   buildSeconds_ = secondsSince(begin);
@@ -166,7 +190,7 @@ void TypedSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSt
                           .mis = mis,
                           .light = light,
                           .photonGrid = photonGrid(mis.radius),
-                          .photons = &photons_,
+                          .photons = slots_.empty() ? nullptr : &slotOf(iteration).map,
                           .film = area.window(),
                           .sharedPlace = film_.spreads(),
                           .counters = &worker.counters};
@@ -187,20 +211,21 @@ void TypedSession<S>::traceLight(size_t first, size_t count, uint64_t iteration,
 }
 
 template <class S>
-void TypedSession<S>::traceLightWave(size_t waveIndex, Worker& worker) {
+void TypedSession<S>::traceLightWave(size_t waveIndex, uint64_t iteration, Worker& worker) {
   const size_t count = itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
-  traceLight(waveIndex * settings_.waveSize, count, lightDone_[waveIndex]++, *stores_[waveIndex], worker);
+  traceLight(waveIndex * settings_.waveSize, count, iteration, storeOf(iteration, waveIndex), worker);
 }
 
 template <class S>
-LightStore<S>* TypedSession<S>::partnersOf(size_t waveIndex, Worker& worker) {
+LightStore<S>* TypedSession<S>::partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker) {
   if (!plan_.pipeline.photonMap) return &worker.light;
   if (!plan_.pipeline.cameraPass.strategies.connect) return nullptr;
+  const std::vector<LightStore<S>*>& stores = slotOf(iteration).stores;
   const size_t first = pieces_[waveIndex], count = pieces_[waveIndex + 1] - first;
-  const bool sameCut = waveIndex < stores_.size() && first == waveIndex * settings_.waveSize &&
+  const bool sameCut = waveIndex < stores.size() && first == waveIndex * settings_.waveSize &&
                        count == itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
-  if (sameCut && memory_.lightPaths == film_.area().pixels.size()) return stores_[waveIndex].get();
-  worker.light.collect(stores_, memory_.lightPaths, first, count);
+  if (sameCut && memory_.lightPaths == film_.area().pixels.size()) return stores[waveIndex];
+  worker.light.collect(stores, memory_.lightPaths, first, count);
   return &worker.light;
 }
 
@@ -232,8 +257,8 @@ void TypedSession<S>::traceCameraWave(size_t waveIndex, Worker& worker) {
   if (progress.pixels == 0) progress.iterationBits = iterationBits(progress.next);
   const size_t some = film_.area().pixelsFrom(first + progress.pixels, pixels - progress.pixels,
                                               settings_.waveSize >> progress.iterationBits, film_.spreads());
-  traceCamera(first + progress.pixels, some, progress.next, progress.iterationBits, partnersOf(waveIndex, worker),
-              worker);
+  traceCamera(first + progress.pixels, some, progress.next, progress.iterationBits,
+              partnersOf(waveIndex, progress.next, worker), worker);
   progress.pixels += some;
   if (progress.pixels < pixels) return;
   progress.next += uint64_t{1} << progress.iterationBits;
@@ -261,32 +286,72 @@ PhotonGrid<S> TypedSession<S>::photonGrid(double searchRadius) const {
                              static_cast<double>(std::max<size_t>(memory_.photons, 1)));
 }
 
+// Light passes, the steps of the photon map, camera passes.
 template <class S>
-void TypedSession<S>::buildPhotonMap(uint64_t iteration) {
-  std::vector<LightStore<S>*> stores;
-  for (const auto& store : stores_) stores.push_back(store.get());
-  const uint64_t begin = readTicks();
-  const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
-                                      memory_.lightPaths, iteration);
-  const SpreadMemory spread(settings_.placement);
-  photons_.build(stores, photonGrid(mis.radius), forEach);
-  photonTally_.ticks += readTicks() - begin;
-  photonTally_.items += photons_.size;
-  photonIteration_ = iteration;
+Schedule TypedSession<S>::photonSchedule() const {
+  Schedule schedule{.tasks = {lightWaves(), 1}, .waits = {}};
+  for (const auto& step : buildSteps_) schedule.tasks.push_back(step.tasks);
+  schedule.tasks.push_back(camera_.size());
+  const size_t camera = schedule.tasks.size() - 1;
+  // Camera passes read the stores and the map of their iteration. A pixel's samples are added in order.
+  const size_t atOnce = slots_.size();
+  schedule.waits = {
+      {.phase = kLightPhase, .on = camera, .earlier = atOnce, .ahead = stores_.size() - atOnce * lightWaves()},
+      {.phase = kLightPhase, .on = camera, .earlier = atOnce + 1},
+      {.phase = kMapPhase, .on = camera, .earlier = atOnce},
+      {.phase = camera, .on = camera, .earlier = 1, .sameTask = true}};
+  return schedule;
 }
 
 template <class S>
-void TypedSession<S>::renderPhases(const Finished& finished) {
-  for (;;) {
-    const uint64_t iteration = camera_.front().next;
-    if (finished(iteration)) return;
-    forEach(stores_.size(), [&](size_t wave) { traceLightWave(wave, worker()); });
-    buildPhotonMap(iteration);
-    forEach(camera_.size(), [&](size_t wave) {
-      traceCameraWave(wave, worker());
-      finished(iteration);  // progress alone: an iteration that has begun is finished
-    });
+void TypedSession<S>::preparePhotonMap(uint64_t iteration) {
+  PhotonSlot& slot = slotOf(iteration);
+  slot.stores.resize(lightWaves());
+  for (size_t wave = 0; wave < slot.stores.size(); ++wave) slot.stores[wave] = &storeOf(iteration, wave);
+  const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
+                                      memory_.lightPaths, iteration);
+  const SpreadMemory spread(settings_.placement);
+  slot.map.prepare(slot.stores, photonGrid(mis.radius));
+}
+
+template <class S>
+void TypedSession<S>::buildPhotonMap(const ScheduledTask& task, Worker& worker) {
+  const uint64_t begin = readTicks();
+  PhotonMap<S>& map = slotOf(task.iteration).map;
+  if (task.phase == kMapPhase) {
+    preparePhotonMap(task.iteration);
+    worker.photonTally.items += map.size;
+  } else {
+    (map.*buildSteps_[task.phase - kMapPhase - 1].run)(task.index);
   }
+  worker.photonTally.ticks += readTicks() - begin;
+}
+
+template <class S>
+void TypedSession<S>::renderPhases(const Finished& finished, double end) {
+  const Schedule schedule = photonSchedule();
+  const size_t camera = schedule.tasks.size() - 1;
+  const uint64_t first = camera_.front().next;
+  const double before = clock_.shown();
+  // Iterations that have begun are finished. One begins early, while others are under way, only where it would begin
+  // after them as well.
+  const auto mayBegin = [&](uint64_t iteration, size_t underWay) {
+    if (finished(iteration)) return false;
+    if (underWay == 0 || end == std::numeric_limits<double>::infinity()) return true;
+    const auto done = static_cast<double>(iteration - underWay - first);
+    if (done > 0) iterationSeconds_ = (clock_.shown() - before) / done;
+    return iterationSeconds_ > 0 && clock_.shown() + static_cast<double>(underWay) * iterationSeconds_ < end;
+  };
+  runSchedule(schedule, first, settings_.threads, mayBegin, [&](const ScheduledTask& task) {
+    if (task.phase == kLightPhase) {
+      traceLightWave(task.index, task.iteration, worker());
+    } else if (task.phase == camera) {
+      traceCameraWave(task.index, worker());
+      finished(task.iteration);  // progress alone: an iteration that has begun is finished
+    } else {
+      buildPhotonMap(task, worker());
+    }
+  });
 }
 
 // One iteration at a time, light path and camera path of a pixel together, in runs of pixels that stopped together.
@@ -327,7 +392,12 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
     };
     arena_.execute([&] {
       if (!level_) levelPixels(finished);
-      if (level_) plan_.pipeline.photonMap ? renderPhases(finished) : renderWaves(finished);
+      if (!level_) return;
+      if (plan_.pipeline.photonMap) {
+        renderPhases(finished, seconds.value_or(std::numeric_limits<double>::infinity()));
+      } else {
+        renderWaves(finished);
+      }
     });
   }
   countLightPaths();
@@ -364,9 +434,9 @@ RenderStatistics TypedSession<S>::statistics() const {
   }
   if (plan_.pipeline.photonMap) {
     out.stages.push_back({"photon map"});
-    addTallies({photonTally_}, out.stages.size() - 1, out.stages);
+    for (const auto& worker : workers_) addTallies({worker->photonTally}, out.stages.size() - 1, out.stages);
     for (const auto& store : stores_) out.memory.lightVertices += store->bytes();
-    out.memory.photonMap = photons_.bytes();
+    for (const PhotonSlot& slot : slots_) out.memory.photonMap += slot.map.bytes();
   }
   earlier_.addTo(out);
   return out;
@@ -388,7 +458,6 @@ void TypedSession<S>::restore(StateReader& in) {
   const uint64_t done = film_.maxSamples();
   level_ = film_.minSamples() == done;
   if (!level_ && plan_.pipeline.photonMap) throw StateError("it ends within an iteration");
-  for (uint64_t& next : lightDone_) next = settings_.firstIteration + done;
   for (CameraProgress& progress : camera_) progress.next = settings_.firstIteration + done;
   clock_.goOnFrom(earlier_.renderSeconds, earlier_.cpuSeconds);
   progressPaths_.store(earlier_.paths, std::memory_order_relaxed);

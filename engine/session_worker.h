@@ -17,6 +17,7 @@ struct SessionWorker {
   LightStore<S> light;  // of the wave under way, where light vertices do not outlive it
   StageCounters counters;
   std::vector<StageTally> lightTallies, cameraTallies;
+  StageTally photonTally;  // of building the photon map
   std::optional<SplatWriter<S>> splats;
   uint64_t paths = 0, lightPaths = 0;
 

@@ -1,6 +1,7 @@
 #include "engine/task_recorder.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace wavecrest {
@@ -56,6 +57,20 @@ TaskRecorder::Step::~Step() {
   recorder_->within_ = false;
   divideRest(tasks_, between(begin_, recorder_->end_));
   recorder_->graph_.steps.push_back(std::move(tasks_));
+}
+
+TaskRecorder::Iterations::Iterations(const Schedule& schedule, uint64_t firstIteration)
+    : step_(0, true), first_(firstIteration) {
+  if (records()) step_.tasks_.schedule = schedule;
+}
+
+void TaskRecorder::Iterations::add(const ScheduledTask& task, double seconds) {
+  if (!records()) return;
+  const std::vector<size_t>& phases = step_.tasks_.schedule->tasks;
+  std::vector<std::vector<double>>& iterations = step_.tasks_.chains;
+  while (iterations.size() <= task.iteration - first_) iterations.emplace_back(step_.tasks_.schedule->taskCount());
+  const size_t place = std::accumulate(phases.begin(), phases.begin() + static_cast<ptrdiff_t>(task.phase), task.index);
+  iterations[task.iteration - first_][place] = seconds;
 }
 
 TaskRecorder::Task::Task(Step& step, size_t chain)

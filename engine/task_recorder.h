@@ -1,19 +1,25 @@
 // The graph of a render's tasks: how long each took, and which had to wait for which.
 //
 // A render is a sequence of steps with a barrier after each. A step has chains that do not wait for each other; the
-// tasks of a chain follow one another. What runs between two steps on the calling thread is a step of one task.
+// tasks of a chain follow one another. Iterations of a schedule (schedule.h) are one step, whose tasks wait as the
+// schedule says. What runs between two steps on the calling thread is a step of one task.
 // From this a schedule for any number of threads follows (bench/scaling/list_schedule.h).
 #pragma once
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <vector>
+
+#include "engine/schedule.h"
 
 namespace wavecrest {
 
 struct TaskStep {
-  std::vector<std::vector<double>> chains;  // seconds of each task
-  bool goesOn = false;                      // a longer render has longer chains, not more steps
+  // Seconds of the tasks of each chain; of a schedule those of each iteration, phase after phase.
+  std::vector<std::vector<double>> chains;
+  bool goesOn = false;  // a longer render has longer chains, or more iterations, not more steps
+  std::optional<Schedule> schedule = std::nullopt;
 };
 
 struct TaskGraph {
@@ -45,6 +51,7 @@ class TaskRecorder {
 
    private:
     friend class Task;
+    friend class Iterations;
     friend class TaskRecorder;
     TaskRecorder* recorder_;  // nullptr: nothing is recorded
     Clock::time_point begin_;
@@ -62,6 +69,19 @@ class TaskRecorder {
    private:
     std::vector<double>* chain_;
     Clock::time_point begin_;
+  };
+
+  // A step whose tasks are those of a schedule's iterations. Not safe from several threads.
+  class Iterations {
+   public:
+    Iterations(const Schedule& schedule, uint64_t firstIteration);
+    bool records() const { return step_.recorder_ != nullptr; }
+    // The task took so many seconds.
+    void add(const ScheduledTask& task, double seconds);
+
+   private:
+    Step step_;
+    uint64_t first_;
   };
 
  private:

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -13,10 +15,29 @@ namespace {
 
 double sumOf(const std::vector<double>& tasks) { return std::accumulate(tasks.begin(), tasks.end(), 0.0); }
 
-double longestChain(const TaskStep& step) {
-  double longest = 0;
-  for (const auto& chain : step.chains) longest = std::max(longest, sumOf(chain));
-  return longest;
+// Threads that begin and end tasks: end(task) and then take() for whoever is free. Returns when the last task ends.
+template <class Task, class Take, class End>
+double simulate(uint32_t threads, Take&& take, End&& end) {
+  struct Running {
+    double end;
+    uint64_t order;  // of their beginning, where two end at once
+    Task task;
+    bool operator>(const Running& other) const { return std::pair(end, order) > std::pair(other.end, other.order); }
+  };
+  std::priority_queue<Running, std::vector<Running>, std::greater<>> running;
+  double now = 0;
+  uint64_t begun = 0;
+  for (;;) {
+    while (running.size() < threads) {
+      const std::optional<std::pair<Task, double>> taken = take();
+      if (!taken) break;
+      running.push({now + taken->second, begun++, taken->first});
+    }
+    if (running.empty()) return now;
+    now = running.top().end;
+    end(running.top().task);
+    running.pop();
+  }
 }
 
 // The sum of a figure over the steps of a render `times` as long: figure(step, how often it goes through its tasks).
@@ -35,33 +56,56 @@ double overSteps(const TaskGraph& graph, uint32_t times, Figure&& figure) {
   return seconds;
 }
 
-// When the last task of a step ends; each chain runs through its tasks `times` times.
-double scheduledStep(const TaskStep& step, uint32_t threads, uint32_t times) {
-  struct Running {
-    double end;
-    size_t chain;
-    bool operator>(const Running& other) const { return std::pair(end, chain) > std::pair(other.end, other.chain); }
-  };
-  std::priority_queue<Running, std::vector<Running>, std::greater<>> running;
+// Each chain runs through its tasks `times` times; chains take turns.
+double scheduledChains(const TaskStep& step, uint32_t threads, uint32_t times) {
   std::deque<size_t> ready;
   std::vector<size_t> done(step.chains.size(), 0);
   for (size_t chain = 0; chain < step.chains.size(); ++chain) {
     if (!step.chains[chain].empty()) ready.push_back(chain);
   }
-  double now = 0;
-  while (!ready.empty() || !running.empty()) {
-    while (!ready.empty() && running.size() < threads) {
-      const size_t chain = ready.front();
-      ready.pop_front();
-      const auto& tasks = step.chains[chain];
-      running.push({now + tasks[done[chain]++ % tasks.size()], chain});
-    }
-    now = running.top().end;
-    const size_t chain = running.top().chain;
-    running.pop();
-    if (done[chain] < times * step.chains[chain].size()) ready.push_back(chain);
-  }
-  return now;
+  return simulate<size_t>(
+      threads,
+      [&]() -> std::optional<std::pair<size_t, double>> {
+        if (ready.empty()) return std::nullopt;
+        const size_t chain = ready.front();
+        ready.pop_front();
+        const auto& tasks = step.chains[chain];
+        return std::pair(chain, tasks[done[chain]++ % tasks.size()]);
+      },
+      [&](size_t chain) {
+        if (done[chain] < times * step.chains[chain].size()) ready.push_back(chain);
+      });
+}
+
+// The iterations come `times` times.
+double scheduledIterations(const TaskStep& step, uint32_t threads, uint32_t times) {
+  const Schedule& schedule = *step.schedule;
+  std::vector<size_t> firstOfPhase(schedule.tasks.size());
+  std::exclusive_scan(schedule.tasks.begin(), schedule.tasks.end(), firstOfPhase.begin(), size_t{0});
+  const uint64_t recorded = step.chains.size();
+  ScheduleState state(schedule, 0);
+  const auto mayBegin = [end = times * recorded](uint64_t iteration, size_t) { return iteration < end; };
+  return simulate<ScheduledTask>(
+      threads,
+      [&]() -> std::optional<std::pair<ScheduledTask, double>> {
+        const std::optional<ScheduledTask> task = state.take(mayBegin);
+        if (!task) return std::nullopt;
+        return std::pair(*task, step.chains[task->iteration % recorded][firstOfPhase[task->phase] + task->index]);
+      },
+      [&](const ScheduledTask& task) { state.end(task); });
+}
+
+// When the last task of a step ends.
+double scheduledStep(const TaskStep& step, uint32_t threads, uint32_t times) {
+  return step.schedule ? scheduledIterations(step, threads, times) : scheduledChains(step, threads, times);
+}
+
+double longestChain(const TaskStep& step, uint32_t times) {
+  // As if there were a thread for each task.
+  if (step.schedule) return scheduledIterations(step, std::numeric_limits<uint32_t>::max(), times);
+  double longest = 0;
+  for (const auto& chain : step.chains) longest = std::max(longest, sumOf(chain));
+  return times * longest;
 }
 
 }  // namespace
@@ -74,9 +118,7 @@ double workOf(const TaskGraph& graph, uint32_t times) {
   });
 }
 
-double spanOf(const TaskGraph& graph, uint32_t times) {
-  return overSteps(graph, times, [](const TaskStep& step, uint32_t rounds) { return rounds * longestChain(step); });
-}
+double spanOf(const TaskGraph& graph, uint32_t times) { return overSteps(graph, times, longestChain); }
 
 double scheduledSeconds(const TaskGraph& graph, uint32_t threads, uint32_t times) {
   return overSteps(graph, times,

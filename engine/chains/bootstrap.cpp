@@ -4,15 +4,29 @@
 #include <cassert>
 #include <cmath>
 
+#include "engine/for_each.h"
+
 namespace wavecrest {
 namespace {
 
 constexpr uint32_t kFewestSamples = 32;
+constexpr size_t kBlockSamples = 2048;
+// Chains whose starts one task finds.
+constexpr uint32_t kBlockChains = 1024;
 
 }  // namespace
 
+void BootstrapPlan::add(uint32_t ofLength, uint32_t count) {
+  length.insert(length.end(), count, ofLength);
+  share.insert(share.end(), count, 1.0 / count);
+  if (blocks.empty()) blocks.push_back(0);
+  while (blocks.back() != length.size()) blocks.push_back(std::min(blocks.back() + kBlockSamples, length.size()));
+}
+
 BootstrapPlan plainBootstrap(uint32_t samples) {
-  return {std::vector<uint32_t>(samples, 0), std::vector<double>(samples, 1.0 / samples)};
+  BootstrapPlan plan;
+  plan.add(0, samples);
+  return plan;
 }
 
 BootstrapPlan bootstrapByLength(uint32_t samples, uint32_t minLength, uint32_t maxLength) {
@@ -21,31 +35,52 @@ BootstrapPlan bootstrapByLength(uint32_t samples, uint32_t minLength, uint32_t m
   const double norm = (1 - kLengthRatio) / (1 - std::pow(kLengthRatio, maxLength - minLength + 1));
   for (uint32_t length = minLength; length <= maxLength; ++length) {
     const double wanted = samples * norm * std::pow(kLengthRatio, length - minLength);
-    const uint32_t count = std::max(kFewestSamples, static_cast<uint32_t>(std::lround(wanted)));
-    plan.length.insert(plan.length.end(), count, length);
-    plan.share.insert(plan.share.end(), count, 1.0 / count);
+    plan.add(length, std::max(kFewestSamples, static_cast<uint32_t>(std::lround(wanted))));
   }
   return plan;
 }
 
-Brightness brightnessOf(const BootstrapPlan& plan, const std::vector<float>& targets) {
+std::vector<BlockSums> sumsOf(const BootstrapPlan& plan, const std::vector<float>& targets) {
   assert(plan.length.size() == targets.size());
+  std::vector<BlockSums> blocks(plan.blocks.empty() ? 0 : plan.blocks.size() - 1);
+  forEach(blocks.size(), [&](size_t block) {
+    BlockSums sums;
+    const size_t begin = plan.blocks[block], end = plan.blocks[block + 1];
+    for (size_t i = begin; i < end; ++i) {
+      const double target = static_cast<double>(targets[i]);
+      sums.sum += target;
+      sums.squares += target * target;
+      sums.largest = std::max(sums.largest, targets[i]);
+      if (targets[i] > 0) sums.lastLit = i;
+    }
+    const double mean = sums.sum / static_cast<double>(end - begin);
+    for (size_t i = begin; i < end; ++i) {
+      const double difference = static_cast<double>(targets[i]) - mean;
+      sums.deviations += difference * difference;
+    }
+    blocks[block] = sums;
+  });
+  return blocks;
+}
+
+Brightness brightnessOf(const BootstrapPlan& plan, const std::vector<BlockSums>& blocks) {
   Brightness out;
   double largest = 0, variance = 0;
-  for (size_t begin = 0; begin < targets.size();) {
-    size_t end = begin;
-    double sum = 0, squares = 0;
-    for (; end < targets.size() && plan.length[end] == plan.length[begin]; ++end)
-      sum += static_cast<double>(targets[end]);
-    const auto count = static_cast<double>(end - begin);
-    for (size_t i = begin; i < end; ++i) {
-      const double difference = static_cast<double>(targets[i]) - sum / count;
-      squares += difference * difference;
-      largest = std::max(largest, static_cast<double>(targets[i]) / count);
+  for (size_t block = 0; block < blocks.size();) {
+    // The blocks of one length together (Chan, Golub, LeVeque 1979).
+    const uint32_t length = plan.length[plan.blocks[block]];
+    double count = 0, sum = 0, deviations = 0, most = 0;
+    for (; block < blocks.size() && plan.length[plan.blocks[block]] == length; ++block) {
+      const auto added = static_cast<double>(plan.blocks[block + 1] - plan.blocks[block]);
+      const double difference = count == 0 ? 0 : blocks[block].sum / added - sum / count;
+      deviations += blocks[block].deviations + difference * difference * count * added / (count + added);
+      count += added;
+      sum += blocks[block].sum;
+      most = std::max(most, static_cast<double>(blocks[block].largest));
     }
     out.mean += sum / count;
-    if (count > 1) variance += squares / (count - 1) / count;
-    begin = end;
+    largest = std::max(largest, most / count);
+    if (count > 1) variance += deviations / (count - 1) / count;
   }
   out.standardError = std::sqrt(variance);
   out.largestShare = out.mean > 0 ? largest / out.mean : 0;
@@ -76,25 +111,39 @@ Brightness pooled(const Brightness& a, const Brightness& b) {
   return out;
 }
 
-std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<float>& targets, uint32_t chains,
-                                   double offset) {
-  const auto weight = [&](size_t i) { return plan.share[i] * static_cast<double>(targets[i]); };
-  double sum = 0;
-  uint32_t last = 0;  // the last sample with light: rounding must not lead past it
-  for (size_t i = 0; i < targets.size(); ++i) {
-    sum += weight(i);
-    if (targets[i] > 0) last = static_cast<uint32_t>(i);
+std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<float>& targets,
+                                   const std::vector<BlockSums>& blocks, uint32_t chains, double offset) {
+  // The weights of all blocks before each, and of all. Rounding must not lead past the last sample with light.
+  std::vector<double> before(blocks.size() + 1);
+  size_t lastLit = 0;
+  for (size_t block = 0; block < blocks.size(); ++block) {
+    before[block + 1] = before[block] + plan.share[plan.blocks[block]] * blocks[block].sum;
+    if (blocks[block].sum > 0) lastLit = block;
   }
-  assert(sum > 0);
-  std::vector<uint32_t> out;
-  out.reserve(chains);
-  double reached = 0;
-  uint32_t sample = 0;
-  for (uint32_t chain = 0; chain < chains; ++chain) {
-    const double goal = (chain + offset) / chains * sum;
-    while (sample < last && reached + weight(sample) <= goal) reached += weight(sample++);
-    out.push_back(sample);
-  }
+  assert(before.back() > 0);
+  std::vector<uint32_t> out(chains);
+  forEach((chains + kBlockChains - 1) / kBlockChains, [&](size_t task) {
+    const auto first = static_cast<uint32_t>(task) * kBlockChains, end = std::min(first + kBlockChains, chains);
+    size_t block = 0, sample = 0;
+    double reached = 0;
+    for (uint32_t chain = first; chain < end; ++chain) {
+      const double goal = (chain + offset) / chains * before.back();
+      const auto after = std::upper_bound(before.begin(), before.end() - 1, goal);
+      const size_t holding = std::min(static_cast<size_t>(after - before.begin() - 1), lastLit);
+      if (chain == first || holding != block) {
+        block = holding;
+        sample = plan.blocks[block];
+        reached = before[block];
+      }
+      const double share = plan.share[plan.blocks[block]];
+      const auto weight = [&] { return share * static_cast<double>(targets[sample]); };
+      while (sample < blocks[block].lastLit && reached + weight() <= goal) {
+        reached += weight();
+        ++sample;
+      }
+      out[chain] = static_cast<uint32_t>(sample);
+    }
+  });
   return out;
 }
 

@@ -16,10 +16,14 @@ namespace wavecrest {
 constexpr double kLengthRatio = 0.85;
 
 // Samples to draw, in the order of path lengths: the length of each (0 where chains have none), and the share of the
-// whole that it stands for, one over the number of samples of its length.
+// whole that it stands for, one over the number of samples of its length. Threads go through them by blocks.
 struct BootstrapPlan {
   std::vector<uint32_t> length;
   std::vector<double> share;
+  std::vector<size_t> blocks;  // where each block begins, and the end; samples of a block have one length
+
+  // count samples more, of one length.
+  void add(uint32_t ofLength, uint32_t count);
 };
 
 // All samples alike.
@@ -34,7 +38,16 @@ struct Brightness {
   double standardError = 0;  // of the mean
   double largestShare = 0;   // of one sample in the mean; large where too few samples found light
 };
-Brightness brightnessOf(const BootstrapPlan& plan, const std::vector<float>& targets);
+
+// What the targets of each block are together.
+struct BlockSums {
+  double sum = 0, squares = 0;
+  double deviations = 0;  // of the squares of their distances from the block's mean
+  float largest = 0;
+  size_t lastLit = 0;  // the last sample whose target is not zero, if any
+};
+std::vector<BlockSums> sumsOf(const BootstrapPlan& plan, const std::vector<float>& targets);
+Brightness brightnessOf(const BootstrapPlan& plan, const std::vector<BlockSums>& blocks);
 
 // The same of samples that are kept as sums: the means of all lengths, added up. Lengths without samples add nothing.
 Brightness brightnessOf(const LargeStepSums& samples);
@@ -42,8 +55,9 @@ Brightness brightnessOf(const LargeStepSums& samples);
 Brightness pooled(const Brightness& a, const Brightness& b);
 
 // Systematic resampling: chain m starts from the sample at (m + offset) / chains of the sum of share times target, with
-// offset in [0, 1). Samples in order, so chains are in the order of lengths. Some target must not be zero.
-std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<float>& targets, uint32_t chains,
-                                   double offset);
+// offset in [0, 1). Samples in order, so chains are in the order of lengths. blocks: sumsOf the targets. Some target
+// must not be zero.
+std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<float>& targets,
+                                   const std::vector<BlockSums>& blocks, uint32_t chains, double offset);
 
 }  // namespace wavecrest

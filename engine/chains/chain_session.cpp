@@ -177,13 +177,13 @@ bool ChainSession<S>::beginEpoch(uint64_t epoch, const Stop& stop) {
     addPending();
     chains_->listStuck(stuck_);
   }
-  epochs_.begin();
+  const std::vector<BlockSums> targets = epochs_.begin();
   if (epochs_.dark()) {
     chains_->clear();
     return true;
   }
-  const std::vector<uint32_t> starts =
-      startSamples(epochs_.plan(), epochs_.targets, settings_.metropolis.chains, startOffset(settings_.seed, epoch));
+  const std::vector<uint32_t> starts = startSamples(epochs_.plan(), epochs_.targets, targets,
+                                                    settings_.metropolis.chains, startOffset(settings_.seed, epoch));
   forEach(chains_->size(),
           [&](size_t wave) { chains_->start(wave, epoch, epochs_.plan(), starts, epochs_.scale(), worker()); });
   return true;
@@ -231,7 +231,9 @@ bool ChainSession<S>::traceDirect(const Stop& stop) {
 template <class S>
 uint64_t ChainSession<S>::stepsInTime(uint64_t most, double secondsLeft) const {
   if (stepSeconds_ == 0) return std::min<uint64_t>(most, 1);
-  const auto round = std::max(kRoundSeconds / stepSeconds_, static_cast<double>(kTurnSteps));
+  // A recorded render (bench/scaling) has rounds as long as those of the threads that its work is cut for.
+  const double recorded = static_cast<double>(settings_.cutForThreads()) / settings_.threads;
+  const auto round = std::max(kRoundSeconds * recorded / stepSeconds_, static_cast<double>(kTurnSteps));
   return static_cast<uint64_t>(std::clamp(std::min(round, secondsLeft / stepSeconds_), 0.0, static_cast<double>(most)));
 }
 

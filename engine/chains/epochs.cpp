@@ -7,10 +7,17 @@
 
 namespace wavecrest {
 
-void Epochs::begin() {
-  for (size_t i = 0; i < targets.size(); ++i) sums_.add(plan_.length[i], static_cast<double>(targets[i]));
-  epochs_.push_back({brightnessOf(plan_, targets)});
+std::vector<BlockSums> Epochs::begin() {
+  std::vector<BlockSums> blocks = sumsOf(plan_, targets);
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    const uint32_t length = plan_.length[plan_.blocks[i]];
+    sums_.count[length] += plan_.blocks[i + 1] - plan_.blocks[i];
+    sums_.sum[length] += blocks[i].sum;
+    sums_.squares[length] += blocks[i].squares;
+  }
+  epochs_.push_back({brightnessOf(plan_, blocks)});
   if (unit_ == 0 && !dark()) unit_ = epochs_.back().brightness.mean;
+  return blocks;
 }
 
 Brightness Epochs::ofFilm() const {

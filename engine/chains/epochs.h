@@ -23,8 +23,8 @@ class Epochs {
   // The same for every epoch.
   const BootstrapPlan& plan() const { return plan_; }
 
-  // Begins the next epoch with the targets.
-  void begin();
+  // Begins the next epoch with the targets, of which it returns the sums.
+  std::vector<BlockSums> begin();
   // Its chains have taken so many steps more.
   void addSteps(uint64_t steps) { epochs_.back().steps += steps; }
 

@@ -27,32 +27,47 @@ constexpr size_t withRoom(size_t count) { return count + count / 16; }
 // them the table outgrows the caches.
 constexpr size_t bucketCount(size_t photons) { return std::max<size_t>(std::bit_ceil(photons), kMinBuckets); }
 
+// Stores are counted and dealt by up to this many tasks: a task for each store would be shorter than it takes to hand
+// it out.
+constexpr size_t kMostStoreTasks = 128;
+constexpr size_t storeTasks(size_t stores) { return std::clamp<size_t>(stores, 1, kMostStoreTasks); }
+struct Range {
+  size_t first, end;
+};
+constexpr Range storesOf(size_t task, size_t stores) {
+  const size_t tasks = storeTasks(stores);
+  return {task * stores / tasks, (task + 1) * stores / tasks};
+}
+
 }  // namespace
 
 template <class S>
-void PhotonMap<S>::countPartitions(Stores stores, const ForEach& forEach) {
+void PhotonMap<S>::countPartitions(size_t task) {
   const int partitionShift = std::countr_zero((bucketMask + 1) / kPartitions);
-  const size_t storeCount = stores.size();
-  offsets_.assign(kPartitions * storeCount + 1, 0);
-  forEach(storeCount, [&](size_t i) {
-    const LightVertices<S>& v = stores[i]->vertices;
+  const Range stores = storesOf(task, stores_.size());
+  for (size_t i = stores.first; i < stores.end; ++i) {
+    const LightVertices<S>& v = stores_[i]->vertices;
     std::array<uint32_t, kPartitions> counts{};
     for (size_t k = 0; k < v.size; ++k) ++counts[(v.cell[k] & bucketMask) >> partitionShift];
-    for (uint32_t p = 0; p < kPartitions; ++p) offsets_[p * storeCount + i + 1] = counts[p];
-  });
+    for (uint32_t p = 0; p < kPartitions; ++p) offsets_[p * stores_.size() + i + 1] = counts[p];
+  }
+}
+
+template <class S>
+void PhotonMap<S>::addUpCounts(size_t) {
   for (size_t i = 1; i < offsets_.size(); ++i) offsets_[i] += offsets_[i - 1];
 }
 
 // Store by store into its own part of each partition, so the order is the same whoever does it.
 template <class S>
-void PhotonMap<S>::dealToPartitions(Stores stores, const ForEach& forEach) {
+void PhotonMap<S>::dealToPartitions(size_t task) {
   const int partitionShift = std::countr_zero((bucketMask + 1) / kPartitions);
-  const size_t storeCount = stores.size();
-  forEach(storeCount, [&](size_t i) {
-    const LightVertices<S>& v = stores[i]->vertices;
+  const Range stores = storesOf(task, stores_.size());
+  for (size_t i = stores.first; i < stores.end; ++i) {
+    const LightVertices<S>& v = stores_[i]->vertices;
     const uint32_t firstPhoton = static_cast<uint32_t>(i) << storeShift;
     std::array<uint32_t, kPartitions> next;
-    for (uint32_t p = 0; p < kPartitions; ++p) next[p] = offsets_[p * storeCount + i];
+    for (uint32_t p = 0; p < kPartitions; ++p) next[p] = offsets_[p * stores_.size() + i];
     for (uint32_t k = 0; k < v.size; ++k) {
       const uint32_t bucket = v.cell[k] & bucketMask;
       const uint32_t at = next[bucket >> partitionShift]++;
@@ -61,12 +76,13 @@ void PhotonMap<S>::dealToPartitions(Stores stores, const ForEach& forEach) {
       dealt_[at] = {v.place[k], firstPhoton + k};
       dealtBuckets_[at] = bucket;
     }
-  });
+  }
 }
 
 // A stable counting sort by bucket.
 template <class S>
-void PhotonMap<S>::sortPartition(size_t partition, size_t storeCount) {
+void PhotonMap<S>::sortPartition(size_t partition) {
+  const size_t storeCount = stores_.size();
   const uint32_t perPartition = (bucketMask + 1) / kPartitions;
   const uint32_t first = offsets_[partition * storeCount], end = offsets_[(partition + 1) * storeCount];
   uint32_t* const start = starts_ + partition * perPartition;
@@ -108,8 +124,9 @@ void PhotonMap<S>::reserve(size_t count) {
 }
 
 template <class S>
-void PhotonMap<S>::build(Stores stores, const PhotonGrid<S>& over, const ForEach& forEach) {
+void PhotonMap<S>::prepare(std::span<LightStore<S>* const> stores, const PhotonGrid<S>& over) {
   grid = over;
+  stores_.assign(stores.begin(), stores.end());
   rows.clear();
   size = 0;
   size_t largest = 1;
@@ -125,10 +142,24 @@ void PhotonMap<S>::build(Stores stores, const PhotonGrid<S>& over, const ForEach
   reserve(std::max<size_t>(size, 1));
   const size_t buckets = bucketCount(size);
   bucketMask = static_cast<uint32_t>(buckets) - 1;
-  countPartitions(stores, forEach);
-  dealToPartitions(stores, forEach);
-  forEach(kPartitions, [&](size_t partition) { sortPartition(partition, stores.size()); });
+  offsets_.assign(kPartitions * stores.size() + 1, 0);
   std::fill_n(starts_ + buckets, kStartsBeyond, static_cast<uint32_t>(size));
+}
+
+template <class S>
+std::vector<typename PhotonMap<S>::BuildStep> PhotonMap<S>::buildSteps(size_t stores) {
+  return {{storeTasks(stores), &PhotonMap::countPartitions},
+          {1, &PhotonMap::addUpCounts},
+          {storeTasks(stores), &PhotonMap::dealToPartitions},
+          {kPartitions, &PhotonMap::sortPartition}};
+}
+
+template <class S>
+void PhotonMap<S>::build(std::span<LightStore<S>* const> stores, const PhotonGrid<S>& over, const ForEach& forEach) {
+  prepare(stores, over);
+  for (const BuildStep& step : buildSteps(stores.size())) {
+    forEach(step.tasks, [&](size_t task) { (this->*step.run)(task); });
+  }
 }
 
 template <class S>

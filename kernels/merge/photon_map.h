@@ -50,24 +50,36 @@ struct PhotonMap {
   // 32 bits are too few for the vertices.
   void build(std::span<LightStore<S>* const> stores, const PhotonGrid<S>& over, const ForEach& forEach);
 
+  // The same in parts, for a caller with a schedule of its own: prepare, then the steps one after the other. The tasks
+  // of a step may run in any order and on any threads.
+  struct BuildStep {
+    size_t tasks;
+    void (PhotonMap::*run)(size_t task);
+  };
+  void prepare(std::span<LightStore<S>* const> stores, const PhotonGrid<S>& over);
+  // Of a map over so many stores.
+  static std::vector<BuildStep> buildSteps(size_t stores);
+
   size_t bytes() const;
   // The same for a map of so many photons.
   static size_t bytesFor(size_t count);
 
  private:
-  using Stores = std::span<LightStore<S>* const>;
   static size_t arenaBytes(size_t capacity);
   void reserve(size_t count);
-  void countPartitions(Stores stores, const ForEach& forEach);
-  void dealToPartitions(Stores stores, const ForEach& forEach);
-  void sortPartition(size_t partition, size_t storeCount);
+  // The steps. A task counts or deals the vertices of some stores.
+  void countPartitions(size_t task);
+  void addUpCounts(size_t);
+  void dealToPartitions(size_t task);
+  void sortPartition(size_t partition);
 
+  std::vector<LightStore<S>*> stores_;
   size_t capacity_ = 0;
   PhotonKey* keys_ = nullptr;
   PhotonKey* dealt_ = nullptr;        // by partition
   uint32_t* dealtBuckets_ = nullptr;  // of each of these
   uint32_t* starts_ = nullptr;
-  std::vector<uint32_t> offsets_;  // of each (partition, store)
+  std::vector<uint32_t> offsets_;  // of each (partition, store), where its first photon goes
   Arena arena_;
 };
 

@@ -33,8 +33,10 @@ TEST(Bootstrap, leavesOutTheShortestIfAsked) {
 
 // Lengths 1 and 2 with three and two samples: 1/3 (1 + 2 + 3) + 1/2 (4 + 8).
 TEST(Bootstrap, addsUpTheMeansOfTheLengths) {
-  const BootstrapPlan plan{{1, 1, 1, 2, 2}, {1 / 3.0, 1 / 3.0, 1 / 3.0, 0.5, 0.5}};
-  const Brightness b = brightnessOf(plan, {1, 2, 3, 4, 8});
+  BootstrapPlan plan;
+  plan.add(1, 3);
+  plan.add(2, 2);
+  const Brightness b = brightnessOf(plan, sumsOf(plan, {1, 2, 3, 4, 8}));
   EXPECT_DOUBLE_EQ(b.mean, 8);
   EXPECT_DOUBLE_EQ(b.standardError, std::sqrt(1.0 / 3 + 8.0 / 2));
   EXPECT_DOUBLE_EQ(b.largestShare, 0.5);
@@ -47,7 +49,8 @@ TEST(Bootstrap, startsChainsInProportionToTheTarget) {
   constexpr uint32_t kChains = 13, kOffsets = 64;
   std::vector<double> total(5, 0);
   for (uint32_t k = 0; k < kOffsets; ++k) {
-    const std::vector<uint32_t> starts = startSamples(plan, targets, kChains, (k + 0.5) / kOffsets);
+    const std::vector<uint32_t> starts =
+        startSamples(plan, targets, sumsOf(plan, targets), kChains, (k + 0.5) / kOffsets);
     ASSERT_EQ(starts.size(), kChains);
     EXPECT_TRUE(std::is_sorted(starts.begin(), starts.end()));
     std::vector<double> count(5, 0);
@@ -58,6 +61,57 @@ TEST(Bootstrap, startsChainsInProportionToTheTarget) {
     }
   }
   for (size_t i = 0; i < 5; ++i) EXPECT_NEAR(total[i] / kOffsets, kChains * targets[i] / 8.0, 2.0 / kOffsets) << i;
+}
+
+// Many blocks of samples and chains, in two lengths, some blocks dark: as one walk through all samples.
+TEST(Bootstrap, blocksMakeNoDifference) {
+  BootstrapPlan plan;
+  plan.add(3, 20'000);
+  plan.add(4, 9'000);
+  std::vector<float> targets(29'000, 0.0f);
+  for (size_t i = 5'000; i < 27'000; ++i) {
+    if (i % 3 != 0 && (i < 9'000 || i > 14'000)) targets[i] = static_cast<float>(i * 7919 % 1000) / 16;
+  }
+  const std::vector<BlockSums> blocks = sumsOf(plan, targets);
+  ASSERT_GT(blocks.size(), 10u);
+
+  double mean = 0, variance = 0, sum = 0;
+  for (const auto& [begin, end] : {std::pair<size_t, size_t>{0, 20'000}, {20'000, 29'000}}) {
+    const auto count = static_cast<double>(end - begin);
+    double total = 0, squares = 0;
+    for (size_t i = begin; i < end; ++i) total += static_cast<double>(targets[i]);
+    for (size_t i = begin; i < end; ++i) squares += std::pow(static_cast<double>(targets[i]) - total / count, 2);
+    mean += total / count;
+    variance += squares / (count - 1) / count;
+  }
+  const Brightness b = brightnessOf(plan, blocks);
+  EXPECT_NEAR(b.mean, mean, 1e-12 * mean);
+  EXPECT_NEAR(b.standardError, std::sqrt(variance), 1e-12 * std::sqrt(variance));
+
+  constexpr uint32_t kChains = 5'000;
+  constexpr double kOffset = 0.37;
+  const auto weight = [&](size_t i) { return plan.share[i] * static_cast<double>(targets[i]); };
+  for (size_t i = 0; i < targets.size(); ++i) sum += weight(i);
+  const std::vector<uint32_t> starts = startSamples(plan, targets, blocks, kChains, kOffset);
+  ASSERT_EQ(starts.size(), kChains);
+  double reached = 0;
+  size_t sample = 0;
+  for (uint32_t chain = 0; chain < kChains; ++chain) {
+    const double goal = (chain + kOffset) / kChains * sum;
+    while (reached + weight(sample) <= goal) reached += weight(sample++);
+    EXPECT_EQ(starts[chain], sample) << chain;
+  }
+}
+
+TEST(Bootstrap, noChainStartsInTheDarkAtTheEnd) {
+  BootstrapPlan plan;
+  plan.add(1, 5'000);
+  std::vector<float> targets(5'000, 0.0f);
+  targets[10] = 0.1f;
+  targets[2'500] = 0.7f;
+  const std::vector<uint32_t> starts = startSamples(plan, targets, sumsOf(plan, targets), 3'000, 1 - 0x1p-53);
+  EXPECT_EQ(starts.back(), 2'500u);
+  for (const uint32_t start : starts) EXPECT_GT(targets[start], 0);
 }
 
 // A dark epoch, one of b = 2, and one of b = 5 that goes on three times as long.
@@ -83,7 +137,7 @@ TEST(Epochs, weighTheirBrightnessBySteps) {
 
   const Brightness film = epochs.ofFilm();
   EXPECT_DOUBLE_EQ(film.mean, (0 * 10 + 2 * 10 + 5 * 30) / 50.0);
-  EXPECT_DOUBLE_EQ(film.standardError, 10 * brightnessOf(plainBootstrap(2), {1, 3}).standardError / 50);
+  EXPECT_DOUBLE_EQ(film.standardError, 10 * std::sqrt(2.0 / 2) / 50);
   EXPECT_DOUBLE_EQ(film.largestShare, 0.75);
   // Six samples of three bootstraps, and two more.
   LargeStepSums largeSteps;

@@ -63,5 +63,32 @@ TEST(ListSchedule, waitsOfALongerRenderAreNoLongerWhereItGoesOn) {
   EXPECT_DOUBLE_EQ(spanOf(graph, 10), 0.75 + 10);
 }
 
+// Two light tasks, a map, two camera tasks; one light task may run beside the camera tasks of the iteration before.
+TaskStep iterations(size_t count, const std::vector<double>& tasks, size_t ahead) {
+  return {.chains = std::vector(count, tasks),
+          .goesOn = true,
+          .schedule = Schedule{.tasks = {2, 1, 2},
+                               .waits = {{.phase = 0, .on = 2, .earlier = 1, .ahead = ahead},
+                                         {.phase = 0, .on = 2, .earlier = 2},
+                                         {.phase = 1, .on = 2, .earlier = 1}}}};
+}
+
+TEST(ListSchedule, phasesWaitForEachOther) {
+  const TaskGraph graph{{iterations(3, {2, 1, 1, 4, 2}, 0)}};
+  EXPECT_DOUBLE_EQ(workOf(graph), 30);
+  EXPECT_DOUBLE_EQ(spanOf(graph), 3 * 7);
+  EXPECT_DOUBLE_EQ(scheduledSeconds(graph, 1), 30);
+  EXPECT_DOUBLE_EQ(scheduledSeconds(graph, 2), 3 * 7);
+}
+
+TEST(ListSchedule, theNextIterationFillsTheEndOfAPhase) {
+  const TaskGraph graph{{iterations(3, {2, 1, 1, 4, 2}, 1)}};
+  // One thread has light 2, map 1, camera 4; the other light 1, the first light task of the next iteration, camera 2.
+  // From then on an iteration has light 1, map 1, camera 4 on one thread.
+  EXPECT_DOUBLE_EQ(scheduledSeconds(graph, 2), 7 + 6 + 6);
+  EXPECT_DOUBLE_EQ(scheduledSeconds(graph, 2, 10), 7 + 29 * 6);
+  EXPECT_DOUBLE_EQ(workOf(graph, 10), 300);
+}
+
 }  // namespace
 }  // namespace wavecrest
