@@ -7,11 +7,13 @@
 #include <bit>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "engine/add_samples.h"
 #include "engine/chains/chain_session.h"
 #include "engine/flush_to_zero.h"
 #include "engine/for_each.h"
+#include "engine/photon_iterations.h"
 #include "engine/render_clock.h"
 #include "engine/render_plan.h"
 #include "engine/run_schedule.h"
@@ -19,14 +21,9 @@
 #include "engine/session_worker.h"
 #include "engine/stage_rows.h"
 #include "engine/thread_pins.h"
-#include "kernels/columns/light_vertices.h"
-#include "kernels/merge/photon_map.h"
 
 namespace wavecrest {
 namespace {
-
-// Phases of an iteration with a photon map: light passes, then the steps of the map, then camera passes.
-constexpr size_t kLightPhase = 0, kMapPhase = 1;
 
 // The part of a session that depends on the storage type of its precision.
 //
@@ -66,11 +63,6 @@ class TypedSession final : public Session {
     uint32_t iterationBits = 0;
     size_t pixels = 0;
   };
-  // The photon map of an iteration under way, and the stores that it is of, by light wave.
-  struct PhotonSlot {
-    PhotonMap<S> map;
-    std::vector<LightStore<S>*> stores;
-  };
   // Whether a wave is to stop before it traces iteration `next`.
   using Finished = std::function<bool(uint64_t next)>;
 
@@ -97,17 +89,8 @@ class TypedSession final : public Session {
   void renderWaves(const Finished& finished);
   // Iterations of a method with a photon map. end: the time when no other iteration may begin.
   void renderPhases(const Finished& finished, double end);
-  Schedule photonSchedule() const;
   PhotonGrid<S> photonGrid(double searchRadius) const;
-  // The first phase of building the map, and the others.
-  void preparePhotonMap(uint64_t iteration);
   void buildPhotonMap(const ScheduledTask& task, Worker& worker);
-  size_t lightWaves() const { return piecesOf(memory_.lightPaths, settings_.waveSize); }
-  // Iterations take the stores in turn, each as many as it has light waves.
-  LightStore<S>& storeOf(uint64_t iteration, size_t waveIndex) {
-    return *stores_[(iteration * lightWaves() + waveIndex) % stores_.size()];
-  }
-  PhotonSlot& slotOf(uint64_t iteration) { return slots_[iteration % slots_.size()]; }
   // Light vertices that the camera paths of a wave are joined with.
   LightStore<S>* partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker);
   void countLightPaths();
@@ -122,10 +105,7 @@ class TypedSession final : public Session {
   uint64_t endIteration_ = 0;           // of this renderUntil
   std::vector<CameraProgress> camera_;  // of each tile
   bool level_ = true;                   // false: pixels of a restored film have different numbers of samples
-  Arena storeMemory_;
-  std::vector<std::unique_ptr<LightStore<S>>> stores_;  // lightStores(), where photon maps gather them
-  std::vector<PhotonSlot> slots_;                       // of the iterations under way
-  std::vector<typename PhotonMap<S>::BuildStep> buildSteps_;
+  PhotonIterations<S> photons_;
   double iterationSeconds_ = 0;  // of the latest iterations with a photon map; 0: of none yet
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
   WorkDone earlier_;  // of the sessions that this one goes on for
@@ -155,17 +135,7 @@ TypedSession<S>::TypedSession(const Scene& scene, const RenderSettings& settings
                     : pieceSize(pixels * together, settings.cutForThreads(), settings_.waveSize * together) / together;
   pieces_ = film_.area().pieces(piece, film_.spreads());
   camera_.resize(pieces_.size() - 1, {.next = settings.firstIteration});
-  if (plan_.pipeline.photonMap) {
-    slots_.resize(iterationsAtOnce(settings_, pixels));
-    const size_t count = lightStores(settings_, pixels, lightWaves());
-    for (size_t i = 0; i < count; ++i) {
-      stores_.push_back(std::make_unique<LightStore<S>>(settings_.waveSize, plan_.needs, plan_.lightUse));
-      LightStore<S>& store = *stores_.back();
-      if (i == 0) storeMemory_ = Arena(count * store.arenaBytes(memory_.verticesPerWave));
-      store.reserve(memory_.verticesPerWave, storeMemory_);
-    }
-    buildSteps_ = PhotonMap<S>::buildSteps(lightWaves());
-  }
+  if (plan_.pipeline.photonMap) photons_ = PhotonIterations<S>(plan_, memory_, settings_, pixels);
   pins_.emplace(arena_, settings_.placement);
   buildSeconds_ = secondsSince(begin);
 }
@@ -190,7 +160,7 @@ void TypedSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSt
                           .mis = mis,
                           .light = light,
                           .photonGrid = photonGrid(mis.radius),
-                          .photons = slots_.empty() ? nullptr : &slotOf(iteration).map,
+                          .photons = photons_.mapOf(iteration),
                           .film = area.window(),
                           .sharedPlace = film_.spreads(),
                           .counters = &worker.counters};
@@ -213,14 +183,14 @@ void TypedSession<S>::traceLight(size_t first, size_t count, uint64_t iteration,
 template <class S>
 void TypedSession<S>::traceLightWave(size_t waveIndex, uint64_t iteration, Worker& worker) {
   const size_t count = itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
-  traceLight(waveIndex * settings_.waveSize, count, iteration, storeOf(iteration, waveIndex), worker);
+  traceLight(waveIndex * settings_.waveSize, count, iteration, photons_.storeOf(iteration, waveIndex), worker);
 }
 
 template <class S>
 LightStore<S>* TypedSession<S>::partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker) {
   if (!plan_.pipeline.photonMap) return &worker.light;
   if (!plan_.pipeline.cameraPass.strategies.connect) return nullptr;
-  const std::vector<LightStore<S>*>& stores = slotOf(iteration).stores;
+  const std::span<LightStore<S>* const> stores = photons_.mappedStores(iteration);
   const size_t first = pieces_[waveIndex], count = pieces_[waveIndex + 1] - first;
   const bool sameCut = waveIndex < stores.size() && first == waveIndex * settings_.waveSize &&
                        count == itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
@@ -286,51 +256,18 @@ PhotonGrid<S> TypedSession<S>::photonGrid(double searchRadius) const {
                              static_cast<double>(std::max<size_t>(memory_.photons, 1)));
 }
 
-// Light passes, the steps of the photon map, camera passes.
-template <class S>
-Schedule TypedSession<S>::photonSchedule() const {
-  Schedule schedule{.tasks = {lightWaves(), 1}, .waits = {}};
-  for (const auto& step : buildSteps_) schedule.tasks.push_back(step.tasks);
-  schedule.tasks.push_back(camera_.size());
-  const size_t camera = schedule.tasks.size() - 1;
-  // Camera passes read the stores and the map of their iteration. A pixel's samples are added in order.
-  const size_t atOnce = slots_.size();
-  schedule.waits = {
-      {.phase = kLightPhase, .on = camera, .earlier = atOnce, .ahead = stores_.size() - atOnce * lightWaves()},
-      {.phase = kLightPhase, .on = camera, .earlier = atOnce + 1},
-      {.phase = kMapPhase, .on = camera, .earlier = atOnce},
-      {.phase = camera, .on = camera, .earlier = 1, .sameTask = true}};
-  return schedule;
-}
-
-template <class S>
-void TypedSession<S>::preparePhotonMap(uint64_t iteration) {
-  PhotonSlot& slot = slotOf(iteration);
-  slot.stores.resize(lightWaves());
-  for (size_t wave = 0; wave < slot.stores.size(); ++wave) slot.stores[wave] = &storeOf(iteration, wave);
-  const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
-                                      memory_.lightPaths, iteration);
-  const SpreadMemory spread(settings_.placement);
-  slot.map.prepare(slot.stores, photonGrid(mis.radius));
-}
-
 template <class S>
 void TypedSession<S>::buildPhotonMap(const ScheduledTask& task, Worker& worker) {
+  const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
+                                      memory_.lightPaths, task.iteration);
   const uint64_t begin = readTicks();
-  PhotonMap<S>& map = slotOf(task.iteration).map;
-  if (task.phase == kMapPhase) {
-    preparePhotonMap(task.iteration);
-    worker.photonTally.items += map.size;
-  } else {
-    (map.*buildSteps_[task.phase - kMapPhase - 1].run)(task.index);
-  }
+  photons_.buildMap(task, photonGrid(mis.radius), settings_.placement);
   worker.photonTally.ticks += readTicks() - begin;
+  if (task.phase == PhotonIterations<S>::kMapPhase) worker.photonTally.items += photons_.mapOf(task.iteration)->size;
 }
 
 template <class S>
 void TypedSession<S>::renderPhases(const Finished& finished, double end) {
-  const Schedule schedule = photonSchedule();
-  const size_t camera = schedule.tasks.size() - 1;
   const uint64_t first = camera_.front().next;
   const double before = clock_.shown();
   // Iterations that have begun are finished. One begins early, while others are under way, only where it would begin
@@ -342,10 +279,11 @@ void TypedSession<S>::renderPhases(const Finished& finished, double end) {
     if (done > 0) iterationSeconds_ = (clock_.shown() - before) / done;
     return iterationSeconds_ > 0 && clock_.shown() + static_cast<double>(underWay) * iterationSeconds_ < end;
   };
+  const Schedule schedule = photons_.schedule(camera_.size());
   runSchedule(schedule, first, settings_.threads, mayBegin, [&](const ScheduledTask& task) {
-    if (task.phase == kLightPhase) {
+    if (task.phase == PhotonIterations<S>::kLightPhase) {
       traceLightWave(task.index, task.iteration, worker());
-    } else if (task.phase == camera) {
+    } else if (task.phase == photons_.cameraPhase()) {
       traceCameraWave(task.index, worker());
       finished(task.iteration);  // progress alone: an iteration that has begun is finished
     } else {
@@ -435,8 +373,8 @@ RenderStatistics TypedSession<S>::statistics() const {
   if (plan_.pipeline.photonMap) {
     out.stages.push_back({"photon map"});
     for (const auto& worker : workers_) addTallies({worker->photonTally}, out.stages.size() - 1, out.stages);
-    for (const auto& store : stores_) out.memory.lightVertices += store->bytes();
-    for (const PhotonSlot& slot : slots_) out.memory.photonMap += slot.map.bytes();
+    out.memory.lightVertices += photons_.storeBytes();
+    out.memory.photonMap = photons_.mapBytes();
   }
   earlier_.addTo(out);
   return out;
