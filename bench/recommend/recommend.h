@@ -1,6 +1,6 @@
 // Which method brings a scene to a quality soonest, and how long that takes on this machine.
 //
-// The reference method of `inspect` renders half of the budget, every method a part of the other half: four short
+// The reference method of `inspect`, then every method, then once more and longer the method that comes first: four
 // renders of different seeds each. From those follow noise, bias and speed, and from those the time (prediction.h).
 #pragma once
 
