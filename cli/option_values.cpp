@@ -91,12 +91,14 @@ size_t parseChoice(const std::string& option, const std::string& word, std::span
 
 Method parseMethodOption(const std::string& option, const std::string& word) {
   std::vector<std::string_view> names;
+  names.reserve(std::size(kMethods));
   for (const MethodEntry& entry : kMethods) names.push_back(entry.name);
   return kMethods[parseChoice(option, word, names)].method;
 }
 
 SamplerKind parseSamplerOption(const std::string& option, const std::string& word) {
   std::vector<std::string_view> names;
+  names.reserve(std::size(kAllSamplerKinds));
   for (const SamplerKind kind : kAllSamplerKinds) names.push_back(toString(kind));
   return kAllSamplerKinds[parseChoice(option, word, names)];
 }

@@ -23,6 +23,7 @@
 #include "engine/snapshots.h"
 #include "library/render_settings.h"
 #include "metrics/image/atomic_file.h"
+#include "metrics/image/image_io.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {

@@ -20,7 +20,7 @@ float multiplyAdd(float factor, size_t rounds) {
   for (size_t k = 0; k < kChains; ++k) sums[k] = Float(static_cast<float>(k));
   const Float f(factor), term(1.0f);
   for (size_t round = 0; round < rounds; ++round) {
-    for (size_t k = 0; k < kChains; ++k) sums[k] = mulAdd(sums[k], f, term);
+    for (Float& sum : sums) sum = mulAdd(sum, f, term);
   }
   Float sum = sums[0];
   for (size_t k = 1; k < kChains; ++k) sum = sum + sums[k];

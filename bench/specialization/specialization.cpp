@@ -105,6 +105,7 @@ void compareImages(const Scene& scene, const std::vector<RenderSettings>& settin
 void measureSpeeds(const Scene& scene, const std::vector<RenderSettings>& settings, double seconds,
                    SpecializationResult& result) {
   std::vector<std::unique_ptr<Session>> sessions;
+  sessions.reserve(settings.size());
   for (const RenderSettings& own : settings) sessions.push_back(Session::create(scene, own));
   MachineWatch watch;
   const auto slices = renderInTurn(

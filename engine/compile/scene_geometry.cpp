@@ -60,6 +60,7 @@ std::vector<Box> outlineOf(const PrimitiveList& primitives, const BoundingSphere
     cells[cell].include(extent.low, extent.high);
   }
   std::vector<Box> outline;
+  outline.reserve(cells.size());
   for (const auto& [cell, extent] : cells) outline.push_back(extent.box());
   return outline;
 }
