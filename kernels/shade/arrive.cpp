@@ -118,7 +118,7 @@ WAVECREST_NOINLINE Mask beforeFarClip(const SceneView<typename P::Storage>& scen
 // What the limit of edges ends: this many paths and this much of their beginnings' throughput.
 template <class Real>
 WAVECREST_NOINLINE void countCut(StageCounters& counters, Mask cut, Real throughput) {
-  HWY_ALIGN typename Real::Storage carried[kLanes];
+  HWY_ALIGN typename Real::Storage carried[kLanes] = {};
   store(zeroUnless(cut, throughput), carried);
   counters.cutPaths += countTrue(cut);
   for (const auto value : carried) counters.cutThroughput += static_cast<double>(value);
