@@ -36,7 +36,8 @@ Image makeSky(const SunWidth& width) {
     for (uint32_t i = 0; i < image.width; ++i) {
       Vec3 sum{};
       for (uint32_t k = 0; k < width.samples * width.samples; ++k) {
-        const double x = i + (k % width.samples + 0.5) * step, y = j + (k / width.samples + 0.5) * step;
+        const uint32_t row = k / width.samples, column = k % width.samples;
+        const double x = i + (column + 0.5) * step, y = j + (row + 0.5) * step;
         const double theta = std::numbers::pi * y / image.height, phi = 2 * std::numbers::pi * x / image.width;
         const Vec3 direction{std::sin(phi) * std::sin(theta), std::cos(theta), -std::cos(phi) * std::sin(theta)};
         sum = sum + skyRadiance(direction, sun, width.degrees * kDegree);

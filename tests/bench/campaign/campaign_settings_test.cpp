@@ -39,6 +39,7 @@ TEST(Profiles, studyHasItsSizeLightPathsAndProportions) {
 TEST(Rows, mltHasOneForEachVariantAndPpmForItsDirectPass) {
   const auto names = [](const std::vector<CampaignMethod>& rows) {
     std::vector<std::string> all;
+    all.reserve(rows.size());
     for (const CampaignMethod& row : rows) all.push_back(row.name());
     return all;
   };

@@ -67,7 +67,7 @@ TEST_P(RenderReferenceTest, goesOnWhereItWas) {
 
 // To what the file rounds off: means to float, half differences to half floats.
 TEST_P(RenderReferenceTest, inPartsIsThatOfOneRender) {
-  for (const uint64_t count : {1, 2, 5}) render(count);
+  for (const uint64_t count : {1u, 2u, 5u}) render(count);
   const Reference parts = render(9);
   std::filesystem::remove(file_);
   const Reference whole = render(9);

@@ -121,7 +121,7 @@ TEST(JudgeClaims, goodAndPoorAreAboutAFactor) {
   EXPECT_EQ(made({3.5, 3.51}).verdict(poor), kHolds);
   EXPECT_EQ(made({2.0, 2.02}).verdict(good), kUndecided);
   EXPECT_EQ(made({3.0, 3.02}).verdict(poor), kUndecided);
-  poor.than.push_back("ppm");
+  poor.than.emplace_back("ppm");
   EXPECT_EQ(made({2.5, 2.51}).with("ppm", "rmse", {1.1, 1.11}).verdict(poor), kHolds) << "two of three are enough";
 }
 
