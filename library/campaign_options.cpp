@@ -203,7 +203,7 @@ CampaignSettings begunCampaign(CampaignOptions& options) {
     }
     if (words.empty()) throw UsageError(fmt::format("{}: has no value; expected at least one", name));
   }
-  const CampaignSettings settings = campaignSettings(options);
+  CampaignSettings settings = campaignSettings(options);
   const fs::path results = resultsFile(settings);
   if (!fs::exists(results)) return settings;
   if (!options.resume) {

@@ -123,7 +123,7 @@ TEST(ScheduleState, aTaskMayWaitForTheSameOneOfAnotherIteration) {
 TEST(RunSchedule, runsEveryTaskOnceAndWaits) {
   constexpr size_t kLightTasks = 7, kCameraTasks = 5, kIterations = 40;
   for (const int threads : {1, 2, 8}) {
-    for (const size_t ahead : {0, 3, 7}) {
+    for (const size_t ahead : {0u, 3u, 7u}) {
       std::mutex mutex;
       std::map<Name, int> runs;
       std::map<std::pair<uint64_t, size_t>, size_t> over;
@@ -159,7 +159,7 @@ TEST(RunSchedule, runsEveryTaskOnceAndWaits) {
 }
 
 TEST(RunSchedule, finishesWhatHasBegun) {
-  for (const uint64_t last : {0, 1, 4}) {
+  for (const uint64_t last : {0u, 1u, 4u}) {
     std::atomic<size_t> count = 0;
     const Schedule schedule = photonSchedule(4, 3, 2);
     oneapi::tbb::task_arena arena(2);
