@@ -1,9 +1,10 @@
 """Renders one scene with wavecrest and other programs in turn, and prints speed, efficiency and their ratios.
 
     bench/peers/peers SCENE.xml [--size 256x256] [--spp 64] [--rounds 8] [--threads 1] [--methods pt,lt]
-                      [--programs wavecrest,mitsuba-llvm,...] [--json FILE]
+                      [--programs wavecrest,mitsuba-llvm,...] [--filter scene|box] [--json FILE]
+    bench/peers/peers --table [...]     many scenes at once: table.py
 
-All programs get the same flat XML (box filter, same size and depth). They are loaded and warmed up first; then each round
+All programs get the same flat XML (same size, filter and depth). They are loaded and warmed up first; then each round
 renders once with each of them, in rotating order, so that drift of the machine falls on all alike.
 """
 
@@ -13,10 +14,11 @@ import json
 import pathlib
 import sys
 import tempfile
-import xml.etree.ElementTree as ElementTree
 
 import measure
-from programs import PROGRAMS, Job
+import table
+from job import Failed, Job
+from programs import PROGRAMS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
@@ -40,6 +42,8 @@ def parse_arguments():
     parser.add_argument("--wavecrest", default=str(ROOT / "build" / "release" / "wavecrest"), help="path of the program")
     parser.add_argument("--wavecrest-options", default="", help='further options for it, e.g. "--sampler sobol"')
     parser.add_argument("--smallvcm", help="path of a SmallVCM binary")
+    filters = "box: one pixel; scene: the scene's own, for wavecrest and Mitsuba; the others keep to the box"
+    parser.add_argument("--filter", choices=("scene", "box"), default="box", help=filters)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures here")
     options = parser.parse_args()
     try:
@@ -58,11 +62,6 @@ def parse_arguments():
     if "smallvcm" in options.programs and not options.smallvcm:
         parser.error("smallvcm: expected --smallvcm PATH")
     return options
-
-
-def scene_max_depth(xml_text):
-    entry = ElementTree.fromstring(xml_text).find("integrator/integer[@name='max_depth']")
-    return -1 if entry is None else int(entry.get("value"))
 
 
 def run_method(options, job):
@@ -91,10 +90,13 @@ def run_method(options, job):
 
 
 def main():
+    if "--table" in sys.argv[1:]:
+        table.main([word for word in sys.argv[1:] if word != "--table"])
+        return
     options = parse_arguments()
     results = {"scene": str(options.scene), "size": options.size, "spp": options.spp, "methods": {}}
-    text = scene_xml.flatten(options.scene, size=options.size, box_filter=True)
-    max_depth = scene_max_depth(text) if options.max_depth is None else options.max_depth
+    text = scene_xml.flatten(options.scene, size=options.size, box_filter=options.filter == "box")
+    max_depth = scene_xml.max_depth(text) if options.max_depth is None else options.max_depth
     with tempfile.TemporaryDirectory() as folder:
         scene = pathlib.Path(folder) / options.scene.name
         scene.write_text(text, encoding="utf-8")
@@ -111,4 +113,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Failed as reason:
+        sys.exit(f"peers: {reason}")

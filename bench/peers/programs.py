@@ -1,69 +1,17 @@
 """The programs that are compared, behind one face: start, render(seed) -> Sample, stop. One list, PROGRAMS."""
 
-import dataclasses
 import json
 import os
 import pathlib
 import re
 import subprocess
-import sys
 import tempfile
 import time
 
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-
-
-@dataclasses.dataclass
-class Job:
-    """What every program is asked to do."""
-
-    scene: str  # flat XML file with size and box filter in it
-    method: str
-    size: tuple
-    spp: int
-    threads: int
-    max_depth: int
-    rr_depth: int
-
-
-@dataclasses.dataclass
-class Sample:
-    """One render. image is None where a program's scene is not ours; not seeded: the seed changed nothing."""
-
-    paths: int
-    cpu_seconds: float
-    wall_seconds: float
-    image: np.ndarray | None
-    seeded: bool = True
-
-
-class Child:
-    """A Python child process that keeps scene and compiled kernels between renders (children/protocol.py)."""
-
-    def __init__(self, script, job, **extra):
-        arguments = json.dumps({**dataclasses.asdict(job), **extra})
-        command = [sys.executable, str(HERE / "children" / script), arguments]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        self.about = self._receive()["about"]
-
-    def _receive(self):
-        line = self.process.stdout.readline()
-        if not line:
-            raise RuntimeError(f"{self.process.args[1]} ended with status {self.process.wait()}")
-        return json.loads(line)
-
-    def render(self, seed):
-        with tempfile.TemporaryDirectory() as folder:
-            image = os.path.join(folder, "image.npy")
-            print(json.dumps({"seed": seed, "image": image}), file=self.process.stdin, flush=True)
-            answer = self._receive()
-            return Sample(**answer, image=np.load(image))
-
-    def stop(self):
-        self.process.stdin.close()
-        self.process.wait()
+from child import Child, cycles_python
+from job import Failed, Sample
 
 
 class Wavecrest:
@@ -72,16 +20,20 @@ class Wavecrest:
     def __init__(self, program, job, options=()):
         self.program, self.job, self.options = program, job, options
         self.about = "wavecrest"
+        self.spp = job.spp
         self.render(0)  # files and libraries into memory
 
     def render(self, seed):
         job = self.job
         with tempfile.TemporaryDirectory() as folder:
             image, stats = os.path.join(folder, "image.pfm"), os.path.join(folder, "stats.json")
-            command = [self.program, "render", job.scene, "--method", job.method, "--spp", job.spp, "--seed", seed]
+            command = [self.program, "render", job.scene, "--method", job.method, "--spp", self.spp, "--seed", seed]
             command += ["--threads", job.threads, "--max-depth", job.max_depth, "--rr-depth", job.rr_depth]
             command += ["--progress", "none", "-o", image, "--stats", stats, *self.options]
-            subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL)
+            words = [str(word) for word in command]
+            done = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            if done.returncode != 0:
+                raise Failed((done.stderr.strip().splitlines() or [f"status {done.returncode}"])[-1])
             with open(stats, encoding="utf-8") as file:
                 told = json.load(file)
             self.about = f"wavecrest {told['version']} {told['isa']} {told['precision']} {told['sampler']}"
@@ -168,6 +120,7 @@ PROGRAMS = {
     ),
     "mitsuba-llvm": (("pt", "lt"), lambda job, options: Child("mitsuba_child.py", job, variant="llvm_ad_rgb")),
     "mitsuba-scalar": (("pt", "lt"), lambda job, options: Child("mitsuba_child.py", job, variant="scalar_rgb")),
-    "luxcore": (("pt", "bpt", "vcm"), lambda job, options: Child("luxcore_child.py", job)),
+    "luxcore": (("pt", "bpt", "vcm"), lambda job, options: Child("luxcore_child.py", job, neutral=True)),
+    "cycles": (("pt",), lambda job, options: Child("cycles_child.py", job, python=cycles_python(), neutral=True)),
     "smallvcm": (("pt", "lt", "bpt", "ppm", "bpm", "vcm"), lambda job, options: SmallVcm(options.smallvcm, job)),
 }

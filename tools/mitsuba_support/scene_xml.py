@@ -5,6 +5,7 @@ programs can be handed literally the same text wherever it is stored.
 """
 
 import pathlib
+import re
 import xml.etree.ElementTree as ElementTree
 
 
@@ -24,6 +25,7 @@ def flatten(path, size=None, box_filter=False, defaults=None):
             raise ValueError(f"{path}: no <default name='{name}'>; expected one to set")
         for entry in entries:
             entry.set("value", str(value))
+    _resolve_names_with_variables(root, path.parent)
     if size or box_filter:
         film = root.find(".//film")
         if film is None:
@@ -43,10 +45,26 @@ def filter_type(xml_text):
     return "gaussian" if entry is None else entry.get("type")
 
 
+def max_depth(xml_text):
+    """Of the scene's integrator; -1, unlimited, where it says none."""
+    entry = ElementTree.fromstring(xml_text).find("integrator/integer[@name='max_depth']")
+    return -1 if entry is None else int(entry.get("value"))
+
+
 def hides_emitters(xml_text):
     """Whether the scene's integrator leaves out what rays from the camera see of lights."""
     entries = ElementTree.fromstring(xml_text).findall(".//integrator/boolean[@name='hide_emitters']")
     return any(entry.get("value") == "true" for entry in entries)
+
+
+def _resolve_names_with_variables(root, *folders):
+    """Makes file names such as assets/$sun.exr absolute, by the values of the variables in them."""
+    values = {entry.get("name"): entry.get("value") for entry in root.iter("default")}
+    for entry in root.iter("string"):
+        name = entry.get("value", "")
+        if entry.get("name") == "filename" and "$" in name.lstrip("$"):
+            name = re.sub(r"\$\{?(\w+)\}?", lambda found: values.get(found[1], found[0]), name)
+            entry.set("value", _absolute(name, *folders))
 
 
 def _set_integer(parent, name, value):

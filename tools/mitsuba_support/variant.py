@@ -31,10 +31,16 @@ def start(variant, threads=0):
     """Imports Mitsuba with the variant set and returns the module; threads = 0 leaves its default."""
     if variant.startswith("llvm"):
         os.environ["DRJIT_LIBLLVM_PATH"] = find_llvm()
-    import drjit
     import mitsuba
 
     mitsuba.set_variant(variant)
+    set_threads(threads)
+    return mitsuba
+
+
+def set_threads(threads):
+    """The number of threads from now on; 0 leaves it. With one thread Mitsuba 3.9.1 hangs while it loads an EXR file."""
+    import drjit
+
     if threads:
         drjit.set_thread_count(threads)
-    return mitsuba
