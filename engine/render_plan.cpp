@@ -140,9 +140,10 @@ uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most, uint32_t least
 }
 
 size_t iterationsAtOnce(const RenderSettings& settings, size_t pixels) {
-  constexpr size_t kPiecesPerThread = 4, kMost = 8;
+  constexpr size_t kPiecesPerThread = 8, kMost = 8;
   if (settings.cutForThreads() <= 1) return 1;
-  const size_t pieces = piecesOf(pixels, settings.waveSize);
+  const size_t lightPaths = settings.lightPaths.value_or(pixels);
+  const size_t pieces = piecesOf(pixels, settings.waveSize) + piecesOf(lightPaths, settings.waveSize);
   return std::clamp<size_t>(piecesOf(kPiecesPerThread * settings.cutForThreads(), pieces), 1, kMost);
 }
 

@@ -59,8 +59,8 @@ MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, 
 // leave lanes idle and repeat the fixed cost of each stage: below `least` there are only as many as threads need.
 constexpr size_t kLeastPiece = 128;
 uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most, uint32_t least = kLeastPiece);
-// How many iterations with a photon map may be under way at once: more than one where a film of so many pixels has few
-// pieces for each thread. Each takes light stores and a map of its own.
+// How many iterations with a photon map may be under way at once: more than one where those of a film of so many pixels
+// have few pieces of light and camera paths for each thread. Each takes light stores and a map of its own.
 size_t iterationsAtOnce(const RenderSettings& settings, size_t pixels);
 // How many pieces of a size some items make, and what the one of this index has.
 inline size_t piecesOf(size_t items, size_t size) { return (items + size - 1) / size; }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/render_plan.h"
 #include "engine/session.h"
 #include "tests/engine/test_scenes.h"
 
@@ -66,6 +67,38 @@ INSTANTIATE_TEST_SUITE_P(Methods, MemoryPlanTest, testing::ValuesIn([] {
                            return methods;
                          }()),
                          [](const auto& instance) { return std::string(toString(instance.param)); });
+
+TEST(MemoryPlan, severalIterationsAreUnderWayWhereOneIsTooLittleForAllThreads) {
+  constexpr size_t kSmall = 256 * 192, kLarge = 1024 * 768;
+  RenderSettings settings = settingsFor(Method::vcm);
+  const auto atOnce = [&](size_t pixels, uint32_t threads) {
+    settings.threads = threads;
+    return iterationsAtOnce(withPieces(settings, FilmSettings{}, pixels), pixels);
+  };
+  EXPECT_EQ(atOnce(kSmall, 1), 1u);
+  EXPECT_EQ(atOnce(kSmall, 2), 1u);
+  EXPECT_GT(atOnce(kSmall, 64), 1u);
+  EXPECT_EQ(atOnce(kLarge, 64), 1u);
+  EXPECT_GT(atOnce(32 * 32, 2), 1u);
+  settings.lightPaths = kLarge;
+  EXPECT_EQ(atOnce(kSmall, 64), 1u) << "light paths alone give all threads work";
+}
+
+// A map and stores for each iteration under way.
+TEST(MemoryPlan, holdsAllIterationsUnderWay) {
+  const Scene scene = sceneFile("cornell-mirror", 160, 120);
+  RenderSettings settings = settingsFor(Method::vcm);
+  const MemoryUse one = planMemory(scene, settings).use;
+  settings.threads = 16;
+  const MemoryUse many = planMemory(scene, settings).use;
+  EXPECT_GT(many.photonMap, 3 * one.photonMap / 2);
+  EXPECT_GT(many.lightVertices, 3 * one.lightVertices / 2);
+  const MemoryUse held = statisticsOf(scene, settings, 6).memory;
+  EXPECT_GT(static_cast<double>(many.photonMap), 0.75 * static_cast<double>(held.photonMap));
+  EXPECT_LT(static_cast<double>(many.photonMap), 1.33 * static_cast<double>(held.photonMap));
+  EXPECT_GT(static_cast<double>(many.lightVertices), 0.75 * static_cast<double>(held.lightVertices));
+  EXPECT_LT(static_cast<double>(many.lightVertices), 1.33 * static_cast<double>(held.lightVertices));
+}
 
 TEST(MemoryPlan, growsWithThreads) {
   const Scene scene = sceneFile("cornell-diffuse", 40, 30);
