@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 #include <numeric>
+#include <unordered_map>
 
 #include "engine/compile/sky.h"
 #include "engine/scene/scene_error.h"
@@ -12,8 +13,9 @@
 namespace wavecrest {
 namespace {
 
-// Share of the light picks that goes to all lights alike, so that a dim light near the receiver is still sampled.
-constexpr double kDefensiveShare = 0.1;
+// Share of the light picks that goes to all emitters alike. What an emitter gives to a place depends on much more than
+// its power: a lamp above a table gives as much as the sky above it, with a thousandth of the sky's power.
+constexpr double kEvenShare = 0.5;
 
 template <class S>
 Double3 widenedRecord(const S (&a)[3]) {
@@ -60,7 +62,8 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radianc
   return light;
 }
 
-// Collects the records with their power (luminance of the flux), which decides how often each is picked.
+// Collects the records with their power (luminance of the flux into the scene) and their emitter, which decide how
+// often each is picked.
 template <class S>
 class LightCollector {
  public:
@@ -79,26 +82,42 @@ class LightCollector {
       // A texture only scales the power that picks go by; any positive value keeps the estimate right.
       if (light.texture != kNone) assign(light.radiance, {1, 1, 1});
       const double brightness = light.texture == kNone ? luminance(radiance) : 1.0;
+      emitter_ = shape;
       add(light, std::numbers::pi * areaOf(primitives.records[i]) * brightness);
     }
   }
 
   void addOthers() {
+    emitter_ = static_cast<uint32_t>(scene_.shapes.size());
     for (const Emitter& emitter : scene_.emitters) {
       location_ = emitter.source;
+      ++emitter_;
       std::visit([&](const auto& kind) { visit(kind); }, emitter.kind);
     }
   }
 
   Lights<S> finish() {
-    const double total = std::accumulate(power_.begin(), power_.end(), 0.0);
-    const auto count = static_cast<double>(power_.size());
+    struct EmitterPower {
+      double power = 0, records = 0;
+    };
+    std::unordered_map<uint32_t, EmitterPower> emitters;
+    double total = 0;
     for (size_t i = 0; i < power_.size(); ++i) {
-      const double byPower = total > 0 ? power_[i] / total : 1 / count;
-      power_[i] = (1 - kDefensiveShare) * byPower + kDefensiveShare / count;
-      lights_.records[i].pick = static_cast<S>(power_[i]);
+      EmitterPower& emitter = emitters[emitterOf_[i]];
+      emitter.power += power_[i];
+      ++emitter.records;
+      total += power_[i];
     }
-    if (!power_.empty()) lights_.table = makeAliasTable(power_);
+    const auto count = static_cast<double>(emitters.size());
+    std::vector<double> picks(power_.size());
+    for (size_t i = 0; i < picks.size(); ++i) {
+      const EmitterPower& emitter = emitters[emitterOf_[i]];
+      const double within = emitter.power > 0 ? power_[i] / emitter.power : 1 / emitter.records;
+      const double byPower = total > 0 ? emitter.power / total : 1 / count;
+      picks[i] = within * ((1 - kEvenShare) * byPower + kEvenShare / count);
+      lights_.records[i].pick = static_cast<S>(picks[i]);
+    }
+    if (!picks.empty()) lights_.table = makeAliasTable(picks);
     return std::move(lights_);
   }
 
@@ -106,6 +125,7 @@ class LightCollector {
   void add(const LightRecord<S>& light, double power) {
     lights_.records.push_back(light);
     power_.push_back(power);
+    emitterOf_.push_back(emitter_);
   }
 
   void visit(const AreaEmitter&) {}  // by primitive
@@ -158,7 +178,9 @@ class LightCollector {
     assign(light.normal, directional.direction);
     assign(light.radiance, directional.irradiance);
     light.kind = static_cast<uint32_t>(LightKind::directional);
-    add(light, discArea() * luminance(directional.irradiance));
+    double area = 0;
+    for (size_t axis = 0; axis < 3; ++axis) area += std::abs(directional.direction[axis]) * faceArea(axis);
+    add(light, area * luminance(directional.irradiance));
   }
   void visit(const ConstantEmitter& constant) {
     LightRecord<S> light = blank();
@@ -188,7 +210,12 @@ class LightCollector {
       throw SceneError(location_, "a second environment emitter; expected at most one");
     }
     lights_.infinite = static_cast<uint32_t>(lights_.records.size());
-    add(light, 4 * std::numbers::pi * discArea() * meanLuminance);
+    // Of all directions the box shows a fourth of its surface in the mean (Cauchy).
+    add(light, 2 * std::numbers::pi * (faceArea(0) + faceArea(1) + faceArea(2)) * meanLuminance);
+  }
+  // Of the box that light from far away enters by, across an axis.
+  double faceArea(size_t axis) const {
+    return 4 * bounds_.halfExtent((axis + 1) % 3) * bounds_.halfExtent((axis + 2) % 3);
   }
   static Double3 column(const Matrix4& m, size_t i) { return {m[0][i], m[1][i], m[2][i]}; }
   // What gives -1 and 1 at the sides of a light's picture, which is on the plane at distance 1 along its z axis and
@@ -197,7 +224,6 @@ class LightCollector {
     const Double3 axis = column(toWorld, i);
     return (length(column(toWorld, 2)) / (dot(axis, axis) * half)) * axis;
   }
-  double discArea() const { return std::numbers::pi * bounds_.radius * bounds_.radius; }
   static LightRecord<S> blank() {
     LightRecord<S> light{};
     light.texture = kNoIndex;
@@ -209,6 +235,8 @@ class LightCollector {
   const Double3 origin_;
   Lights<S> lights_;
   std::vector<double> power_;
+  std::vector<uint32_t> emitterOf_;  // each record's shape, or for lights without one a number above
+  uint32_t emitter_ = 0;             // of the records that are added
   SourceLocation location_;
 };
 

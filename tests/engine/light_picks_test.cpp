@@ -1,0 +1,75 @@
+// How often each light is picked: half by the power that it sends into the scene, half evenly among emitters.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "engine/compile/compiled_scene.h"
+#include "tests/load/scene_file.h"
+
+namespace wavecrest {
+namespace {
+
+// A floor of side 2 h, and emitters.
+Scene floorWith(const std::string& emitters, double h = 1) {
+  return testing::loadBody("<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"" +
+                           std::to_string(h) + "\"/></transform></shape>" + emitters);
+}
+std::string lamp(double side, double radiance, const std::string& shape = "rectangle") {
+  return "<shape type=\"" + shape + "\"><transform name=\"to_world\"><scale value=\"" + std::to_string(side / 2) +
+         "\"/></transform><emitter type=\"area\"><rgb name=\"radiance\" value=\"" + std::to_string(radiance) +
+         "\"/></emitter></shape>";
+}
+std::string pointLight(double intensity) {
+  return "<emitter type=\"point\"><rgb name=\"intensity\" value=\"" + std::to_string(intensity) + "\"/></emitter>";
+}
+
+std::vector<double> picksOf(const Scene& scene) {
+  const auto compiled = compileScene<double>(scene, Accel::bvh);
+  std::vector<double> picks;
+  for (const LightRecord<double>& record : compiled->lights.records) picks.push_back(record.pick);
+  return picks;
+}
+
+TEST(LightPicks, areHalfByPowerAndHalfEven) {
+  // pi A L = 4 pi 3 and 4 pi I = 4 pi: three fourths and one fourth of the power.
+  const std::vector<double> picks = picksOf(floorWith(lamp(2, 3) + pointLight(1)));
+  ASSERT_EQ(picks.size(), 2u);
+  EXPECT_NEAR(picks[0], 0.5 * 0.75 + 0.25, 1e-12);
+  EXPECT_NEAR(picks[1], 0.5 * 0.25 + 0.25, 1e-12);
+}
+
+TEST(LightPicks, ofTheFacesOfOneLampAddUpToThoseOfOneEmitter) {
+  const std::vector<double> picks = picksOf(floorWith(lamp(2, 1, "cube") + pointLight(1000)));
+  ASSERT_EQ(picks.size(), 7u);
+  const double byPower = 24 / (24 + 4000.0);  // over pi
+  for (size_t face = 0; face < 6; ++face) EXPECT_NEAR(picks[face], (0.5 * byPower + 0.25) / 6, 1e-9) << face;
+}
+
+TEST(LightPicks, countWhatLightFromFarAwaySendsThroughTheScenesBox) {
+  // A flat box of side 10: pi times its surface, 200; a point light of the same flux is picked as often.
+  const double flux = std::numbers::pi * 200;
+  const std::vector<double> picks =
+      picksOf(floorWith("<emitter type=\"constant\"/>" + pointLight(flux / (4 * std::numbers::pi)), 5));
+  ASSERT_EQ(picks.size(), 2u);
+  EXPECT_NEAR(picks[0], 0.5, 1e-3) << "the box is a little wider than the floor";
+  // Along the floor the sun meets only the edge of the box.
+  const auto sun = [](const char* direction) {
+    return std::string("<emitter type=\"directional\"><vector name=\"direction\" value=\"") + direction +
+           "\"/></emitter>";
+  };
+  EXPECT_NEAR(picksOf(floorWith(sun("1, 0, 0") + pointLight(1), 5))[0], 0.25, 0.01);
+  EXPECT_GT(picksOf(floorWith(sun("0, 0, -1") + pointLight(1), 5))[0], 0.25 + 0.5 * 0.85);
+}
+
+TEST(LightPicks, addUpToOneWhereNothingShines) {
+  const std::vector<double> picks = picksOf(floorWith(lamp(2, 0) + pointLight(0)));
+  ASSERT_EQ(picks.size(), 2u);
+  EXPECT_DOUBLE_EQ(picks[0], 0.5);
+  EXPECT_DOUBLE_EQ(picks[1], 0.5);
+}
+
+}  // namespace
+}  // namespace wavecrest
