@@ -29,5 +29,16 @@ class Sample:
     seeded: bool = True
 
 
+def parse_size(parser, word):
+    """(width, height) of a --size WIDTHxHEIGHT; ends the program with the parser's usage where it is none."""
+    try:
+        width, height = (int(number) for number in word.split("x"))
+    except ValueError:
+        width = height = 0
+    if min(width, height) < 1:
+        parser.error(f"--size {word}; expected WIDTHxHEIGHT")
+    return width, height
+
+
 class Failed(RuntimeError):
     """A program cannot do the job. The message says why in one line."""

@@ -17,7 +17,7 @@ import tempfile
 
 import measure
 import table
-from job import Failed, Job
+from job import Failed, Job, parse_size
 from programs import PROGRAMS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -46,12 +46,7 @@ def parse_arguments():
     parser.add_argument("--filter", choices=("scene", "box"), default="box", help=filters)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures here")
     options = parser.parse_args()
-    try:
-        options.size = tuple(int(word) for word in options.size.split("x"))
-        if len(options.size) != 2 or min(options.size) < 1:
-            raise ValueError
-    except ValueError:
-        parser.error(f"--size {options.size}; expected WIDTHxHEIGHT")
+    options.size = parse_size(parser, options.size)
     for name, known in (("methods", METHODS), ("programs", PROGRAMS)):
         chosen = getattr(options, name).split(",")
         if unknown := [word for word in chosen if word not in known]:

@@ -17,6 +17,7 @@ import tempfile
 import table_run
 import table_scenes
 import table_text
+from job import parse_size
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
@@ -42,12 +43,7 @@ def parse_arguments(words):
     parser.add_argument("--markdown", type=pathlib.Path, help="also write the table here, as bench/peers/TABLE.md")
     parser.add_argument("--from", dest="source", type=pathlib.Path, help="write the table of this JSON file")
     options = parser.parse_args(words)
-    try:
-        options.size = tuple(int(word) for word in options.size.split("x"))
-        if len(options.size) != 2 or min(options.size) < 1:
-            raise ValueError
-    except ValueError:
-        parser.error(f"--size {options.size}; expected WIDTHxHEIGHT")
+    options.size = parse_size(parser, options.size)
     options.methods = options.methods.split(",")
     if unknown := [method for method in options.methods if method not in table_run.PEERS]:
         parser.error(f"--methods: unknown '{unknown[0]}'; expected some of {','.join(table_run.PEERS)}")
