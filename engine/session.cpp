@@ -31,9 +31,8 @@ namespace {
 // the memory plan says. Without a photon map a wave's light and camera pass follow each other and waves are
 // independent; with one, all light passes come first, then the map, then all camera passes: phases of a schedule.
 // While the last tasks of a phase run, threads without work begin the light passes of the next iteration, as far as
-// there are light stores that no camera pass reads. Such an iteration is finished where time runs out in between: its
-// weights belong to its radius, and splats without the camera paths that share their weights would be of no radius at
-// all.
+// there are light stores that no camera pass reads. An iteration with a photon map that has begun is finished, even
+// after the time limit: its weights belong to its radius, and its splats share them with its camera paths.
 //
 // Camera paths that need no light paths are taken several iterations at a time, so that the paths of a pixel run
 // together: a wave is then fewer pixels. That changes no path and no sum, only their order in time.

@@ -155,7 +155,7 @@ class Judge {
     return c;
   }
 
-  // Whether `a` takes less time than `b` to the best loss that both reach.
+  // Takes the best loss that both methods reach. Compares the time that each needs to get there.
   Comparison faster(const std::string& metric, const std::string& a, const std::string& b) const {
     const std::vector<double> lossesA = scene_.logLosses(a, metric), lossesB = scene_.logLosses(b, metric);
     if (lossesA.empty() || lossesB.empty()) return {V::notJudged, 0, nameOf(metric) + " was not measured"};

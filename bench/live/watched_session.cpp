@@ -86,7 +86,8 @@ void WatchedSession::estimateError() {
   errorIterations_ = slicesUntil_;
 }
 
-// Whoever renders asks this session whether it was interrupted; signals and timers interrupt the one within.
+// Callers look at this session's interrupt flag. Signals and timers set that of the session within: both are kept
+// equal.
 void WatchedSession::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
   if (!session_->interrupted()) resume();
   renderWatched(iterations, seconds);

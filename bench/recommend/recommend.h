@@ -1,7 +1,7 @@
 // Which method brings a scene to a quality soonest, and how long that takes on this machine.
 //
-// The reference method of `inspect`, then every method, then once more and longer the method that comes first: four
-// renders of different seeds each. From those follow noise, bias and speed, and from those the time (prediction.h).
+// Renders pilots: the reference method of `inspect`, then every method, then a longer pilot of the method that came out
+// first. A pilot is four renders of different seeds. Its noise, bias and speed predict the time (prediction.h).
 #pragma once
 
 #include <array>

@@ -155,7 +155,7 @@ std::string originOf(const Metadata& metadata) {
   };
   std::string text;
   if (!value("method").empty()) text += fmt::format(", two halves by {}", value("method"));
-  // Files of earlier versions do not say that they are biased, but methods that merge have a radius.
+  // A reference with a merge radius is biased. Files of earlier versions have the radius, but no word of the bias.
   if (std::strtod(value("radius").c_str(), nullptr) > 0) text += ", biased by its merge radius";
   const double error = std::strtod(value("relative_error").c_str(), nullptr);
   if (error > 0) text += fmt::format(", off by about {} % of a sample's value", formatSignificant(100 * error, 2));
