@@ -62,7 +62,7 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radianc
   return light;
 }
 
-// Collects the records with their power (luminance of the flux into the scene) and their emitter, which decide how
+// Collects the records with their power (luminance of the flux onto the scene) and their emitter, which decide how
 // often each is picked.
 template <class S>
 class LightCollector {
@@ -210,8 +210,11 @@ class LightCollector {
       throw SceneError(location_, "a second environment emitter; expected at most one");
     }
     lights_.infinite = static_cast<uint32_t>(lights_.records.size());
-    // Of all directions the box shows a fourth of its surface in the mean (Cauchy).
-    add(light, 2 * std::numbers::pi * (faceArea(0) + faceArea(1) + faceArea(2)) * meanLuminance);
+    // What falls on a plane as large as the box looks from far away: of all directions it shows a fourth of its surface
+    // in the mean (Cauchy). Four times as much enters the box, but most of that passes between its surfaces, and what
+    // meets them is found by their BSDFs' samples as well.
+    const double across = (faceArea(0) + faceArea(1) + faceArea(2)) / 2;
+    add(light, std::numbers::pi * across * meanLuminance);
   }
   // Of the box that light from far away enters by, across an axis.
   double faceArea(size_t axis) const {

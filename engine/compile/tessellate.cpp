@@ -9,23 +9,39 @@ namespace wavecrest {
 namespace {
 
 constexpr uint32_t kSegments = 256;
+// Rings of a disc, and parts of a cylinder along its axis. Triangles as long as the whole shape and as narrow as a
+// segment have boxes that overlap by far: the hierarchy over four times as many shorter ones is faster by a third.
+constexpr uint32_t kRings = 4, kParts = 4;
+
+Float3 rounded(const Double3& p) {
+  return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+}
 
 }  // namespace
 
 Mesh tessellated(const Disk& disk) {
   Mesh mesh;
-  const auto add = [&](const Double3& p, float r, float angle) {
-    mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-    mesh.uvs.push_back({r, angle});
+  // A sector has corners of its own: where sectors meet, in the centre above all, the angle is another one in each.
+  const auto add = [&](uint32_t ring, uint32_t segment) {
+    const double r = static_cast<double>(ring) / kRings, angle = 2 * std::numbers::pi * segment / kSegments;
+    mesh.positions.push_back(
+        rounded(disk.center + disk.axisU * (r * std::cos(angle)) + disk.axisV * (r * std::sin(angle))));
+    mesh.uvs.push_back({static_cast<float>(r), static_cast<float>(segment) / kSegments});
   };
-  for (uint32_t i = 0; i < kSegments; ++i) {
-    const auto angleOf = [](uint32_t k) { return 2 * std::numbers::pi * k / kSegments; };
-    const auto rim = [&](double a) { return disk.center + disk.axisU * std::cos(a) + disk.axisV * std::sin(a); };
-    const auto base = static_cast<uint32_t>(mesh.positions.size());
-    add(disk.center, 0, static_cast<float>(i) / kSegments);
-    add(rim(angleOf(i)), 1, static_cast<float>(i) / kSegments);
-    add(rim(angleOf(i + 1)), 1, static_cast<float>(i + 1) / kSegments);
-    mesh.triangles.push_back({base, base + 1, base + 2});
+  for (uint32_t sector = 0; sector < kSegments; ++sector) {
+    const auto centre = static_cast<uint32_t>(mesh.positions.size());
+    add(0, sector);
+    for (uint32_t ring = 1; ring <= kRings; ++ring) {
+      const auto outer = static_cast<uint32_t>(mesh.positions.size());
+      add(ring, sector);
+      add(ring, sector + 1);
+      if (ring == 1) {
+        mesh.triangles.push_back({centre, outer, outer + 1});
+      } else {
+        mesh.triangles.push_back({outer - 2, outer, outer + 1});
+        mesh.triangles.push_back({outer - 2, outer + 1, outer - 1});
+      }
+    }
   }
   return mesh;
 }
@@ -38,22 +54,23 @@ Mesh tessellated(const Cylinder& cylinder) {
   for (uint32_t i = 0; i <= kSegments; ++i) {
     const double angle = 2 * std::numbers::pi * i / kSegments;
     const Double3 n = x * std::cos(angle) + y * std::sin(angle);
-    for (uint32_t end = 0; end < 2; ++end) {
-      const Double3 p = cylinder.p0 + axis * end + n * cylinder.radius;
-      mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-      mesh.normals.push_back(
-          {static_cast<float>(n[0] * side), static_cast<float>(n[1] * side), static_cast<float>(n[2] * side)});
-      mesh.uvs.push_back({static_cast<float>(i) / kSegments, static_cast<float>(end)});
+    for (uint32_t k = 0; k <= kParts; ++k) {
+      const double along = static_cast<double>(k) / kParts;
+      mesh.positions.push_back(rounded(cylinder.p0 + axis * along + n * cylinder.radius));
+      mesh.normals.push_back(rounded(n * side));
+      mesh.uvs.push_back({static_cast<float>(i) / kSegments, static_cast<float>(along)});
     }
   }
   for (uint32_t i = 0; i < kSegments; ++i) {
-    const uint32_t a = 2 * i, b = a + 1, c = a + 2, d = a + 3;
-    if (cylinder.flipNormals != mirrored) {
-      mesh.triangles.push_back({a, b, c});
-      mesh.triangles.push_back({d, c, b});
-    } else {
-      mesh.triangles.push_back({a, c, b});
-      mesh.triangles.push_back({d, b, c});
+    for (uint32_t k = 0; k < kParts; ++k) {
+      const uint32_t a = i * (kParts + 1) + k, b = a + 1, c = a + kParts + 1, d = c + 1;
+      if (cylinder.flipNormals != mirrored) {
+        mesh.triangles.push_back({a, b, c});
+        mesh.triangles.push_back({d, c, b});
+      } else {
+        mesh.triangles.push_back({a, c, b});
+        mesh.triangles.push_back({d, b, c});
+      }
     }
   }
   return mesh;

@@ -5,7 +5,7 @@
 
 namespace wavecrest {
 
-// A disc as a fan, a cylinder as a ring of quads with the true normals at the vertices.
+// A disc as rings of quads around a fan, a cylinder as rings of quads with the true normals at the vertices.
 Mesh tessellated(const Disk& disk);
 Mesh tessellated(const Cylinder& cylinder);
 
