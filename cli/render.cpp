@@ -347,6 +347,11 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
       .add("--light-paths", options->lightPaths,
            "light paths of an iteration of ppm, bpm or vcm; default: as many as pixels")
       .between(1, int64_t{1} << 32);
+  command
+      .add("--connection-roulette", options->connectionRoulette,
+           "bpt, vcm: join connections below this part of a typical pixel's brightness by chance; 0: join all")
+      .showDefault()
+      .between(0.0, 100.0);
   command.addFlag("--direct-pass", options->directPass, "ppm: direct light by next event estimation, not from photons");
   command.add("--memory", options->memory, "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
   command.add("--mlt", options->mlt, "what the chains of mlt walk in: pssmlt, mmlt or pathspace; default: mmlt");

@@ -70,8 +70,12 @@ struct RenderSettings {
   uint32_t threads = 1;
   uint32_t waveSize = 2048;  // paths
   PathLimits limits;
-  double radius = 0.001;        // of the first merges, relative to the bounding sphere's
-  double radiusAlpha = 0.75;    // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
+  double radius = 0.001;      // of the first merges, relative to the bounding sphere's
+  double radiusAlpha = 0.75;  // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
+  // Connections that carry less than this part of what a typical pixel is worth are joined with a probability in
+  // proportion, which keeps their mean and saves their shadow rays. 0: all are joined. In scenes whose shadow rays cost
+  // next to nothing (Accel::small) all are, whatever this says.
+  double connectionRoulette = 0.1;
   bool directPass = false;      // ppm: direct light by next event estimation, the rest from photons
   uint64_t firstIteration = 0;  // of this session: what came before was rendered by another
   // N_L, the light paths of an iteration: one per pixel unless stated. Only methods with a photon map may have another
@@ -89,6 +93,10 @@ struct RenderSettings {
 
   uint32_t cutForThreads() const { return piecesForThreads.value_or(threads); }
 };
+
+// Whether connections of the method are subject to roulette. Those of chains are not: what they carry is what chains
+// follow.
+inline bool hasConnectionRoulette(Method method) { return method != Method::mlt && strategiesOf(method).connect; }
 
 // The settings with the longest path that their method can make, where they ask for longer ones.
 inline RenderSettings withinDepthOfMethod(RenderSettings settings) {

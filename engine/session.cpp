@@ -21,6 +21,7 @@
 #include "engine/session_worker.h"
 #include "engine/stage_rows.h"
 #include "engine/thread_pins.h"
+#include "engine/typical_brightness.h"
 
 namespace wavecrest {
 namespace {
@@ -93,6 +94,8 @@ class TypedSession final : public Session {
   // Light vertices that the camera paths of a wave are joined with.
   LightStore<S>* partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker);
   void countLightPaths();
+  // What connections are joined for sure above (LightStore::rouletteBelow).
+  S rouletteBelow() const;
 
   oneapi::tbb::task_arena arena_;
   std::optional<ThreadPins> pins_;  // once the session is built
@@ -105,7 +108,8 @@ class TypedSession final : public Session {
   std::vector<CameraProgress> camera_;  // of each tile
   bool level_ = true;                   // false: pixels of a restored film have different numbers of samples
   PhotonIterations<S> photons_;
-  double iterationSeconds_ = 0;  // of the latest iterations with a photon map; 0: of none yet
+  std::optional<S> rouletteBelow_;  // once a render has begun
+  double iterationSeconds_ = 0;     // of the latest iterations with a photon map; 0: of none yet
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
   WorkDone earlier_;  // of the sessions that this one goes on for
   RenderClock clock_{settings_.clock, settings_.threads};
@@ -213,6 +217,7 @@ void TypedSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration
   wave.firstPath = first;
   wave.iterationBits = iterationBits;
   wave.pathCount = count << iterationBits;
+  if (partners != nullptr) partners->rouletteBelow = *rouletteBelow_;
   tracePass(plan_.pipeline.cameraPass, iteration, partners, worker);
   worker.counters.nonFinite += addSamples(film_, plan_, {settings_.sampler, settings_.seed, iteration}, wave);
   worker.paths += wave.pathCount;
@@ -308,6 +313,13 @@ void TypedSession<S>::levelPixels(const Finished& finished) {
   level_ = film_.minSamples() == goal;
 }
 
+template <class S>
+S TypedSession<S>::rouletteBelow() const {
+  const bool applies = hasConnectionRoulette(settings_.method) && plan_.accel() != Accel::small;
+  if (!applies || settings_.connectionRoulette == 0) return 0;
+  return static_cast<S>(settings_.connectionRoulette * typicalBrightness(plan_, settings_, film_.area()));
+}
+
 // A snapshot divides the sums of splats by the light paths that made them.
 template <class S>
 void TypedSession<S>::countLightPaths() {
@@ -328,6 +340,7 @@ void TypedSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
       return (seconds && now >= *seconds) || interrupted();
     };
     arena_.execute([&] {
+      if (!rouletteBelow_) rouletteBelow_ = rouletteBelow();
       if (!level_) levelPixels(finished);
       if (!level_) return;
       if (plan_.pipeline.photonMap) {

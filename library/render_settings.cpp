@@ -40,6 +40,7 @@ RenderSettings renderSettings(const api::RenderOptions& options, const Scene& sc
   settings.metropolis = chosenChains(options);
   settings.radius = options.radius;
   settings.radiusAlpha = options.radiusAlpha;
+  settings.connectionRoulette = options.connectionRoulette;
   if (options.lightPaths != 0) {
     if (!strategiesOf(settings.method).merge) {
       throw UsageError(fmt::format("--light-paths: {} has one light path per camera path; expected ppm, bpm or vcm",

@@ -126,6 +126,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
     stats.update({{"radius", settings.radius}, {"radius_alpha", settings.radiusAlpha}});
     if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
   }
+  if (hasConnectionRoulette(settings.method)) stats["connection_roulette"] = settings.connectionRoulette;
   if (statistics.chains) stats.update(chainStats(settings, *statistics.chains));
   return stats;
 }

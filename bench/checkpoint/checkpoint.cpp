@@ -77,6 +77,7 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                      {"direct_pass", settings.directPass},
                      {"wave", settings.waveSize}});
   }
+  if (hasConnectionRoulette(settings.method)) identity["connection_roulette"] = settings.connectionRoulette;
   if (settings.method == Method::mlt) identity.update(chainIdentity(settings.metropolis));
   return identity;
 }

@@ -80,6 +80,12 @@ void addMerging(Variants& variants, const RenderSettings& base, uint64_t pixels)
   }
 }
 
+void addConnections(Variants& variants) {
+  for (const double part : {0.0, 0.03, 0.3}) {
+    variants.add("--connection-roulette", fmt::format("{:g}", part)).connectionRoulette = part;
+  }
+}
+
 void addChains(Variants& variants, const RenderSettings& base) {
   for (size_t i = 0; i < kMetropolisVariantNames.size(); ++i) {
     const auto variant = static_cast<MetropolisVariant>(i);
@@ -102,6 +108,7 @@ std::vector<Variant> variantsOf(const Scene& scene, const RenderSettings& base) 
   addPaths(variants, base);
   if (scene.film.filter != ReconstructionFilter::box) addFilter(variants, base);
   if (strategiesOf(base.method).merge) addMerging(variants, base, filmArea(scene.film).pixels.size());
+  if (hasConnectionRoulette(base.method)) addConnections(variants);
   if (base.method == Method::mlt) addChains(variants, base);
   return variants.take();
 }

@@ -23,6 +23,9 @@ struct RenderOptions {
   double radius = 0.001, radiusAlpha = 0.75;
   uint64_t lightPaths = 0;  // of an iteration of ppm, bpm or vcm; 0: as many as pixels
   bool directPass = false;  // ppm: direct light by next event estimation
+  // bpt, vcm: connections that carry less than this part of a typical pixel's brightness are joined with a probability
+  // in proportion, in scenes whose shadow rays are worth it; 0: all are joined.
+  double connectionRoulette = 0.1;
 
   // mlt: pssmlt, mmlt or pathspace (empty: mmlt); Markov chains; independent samples from which they start; steps
   // before they start anew (0: by the number of samples); whether chains render direct light, too.

@@ -43,6 +43,9 @@ template <class S>
 class LightStore {
  public:
   LightVertices<S> vertices;
+  // Connections that carry less, by the largest of their three channels, are joined with a probability in proportion to
+  // what they carry (METHODS 5.9). 0: all are.
+  S rouletteBelow = 0;
 
   LightStore(size_t lanes, const ColumnNeeds& needs, LightVertexUse use = {})
       : lanes_(lanes), firstOfLane_(lanes, kNoIndex), lastOfLane_(lanes, kNoIndex) {

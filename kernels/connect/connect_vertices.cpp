@@ -97,6 +97,26 @@ constexpr uint32_t kAnyLightDepth = 2;
 // Light vertices of a whole iteration are more than the caches hold: their rows are asked for so many pairs ahead.
 constexpr size_t kRowsAhead = 128;
 
+// The probability that a connection is joined at all, by what it carries.
+template <class Real>
+WAVECREST_INLINE Real chanceOf(Vec3<Real> contribution, Real rouletteBelow) {
+  return min(Real(1), maxComponent(contribution) / rouletteBelow);
+}
+
+// A number for each pair. Those of a camera vertex are spread evenly over the depths of the light vertices.
+template <class S>
+WAVECREST_INLINE Float rouletteNumbers(const StageContext<S>& context, const Wave<S>& wave, UInt lane, UInt light) {
+  UInt depth(1u);
+  for (uint32_t d = 2; d <= context.light->depths(); ++d) {
+    const Mask shallower = light < UInt(static_cast<uint32_t>(context.light->firstOf(d)));
+    depth = depth + select(shallower, UInt(0u), UInt(1u));
+  }
+  constexpr float kGoldenRatio = 0.61803399f;
+  const Float number =
+      draw(context, pathOf(context, wave, lane), Block::opacity).d + toFloat(depth) * Float(kGoldenRatio);
+  return number - floor(number);
+}
+
 // Weighted contributions of a block of pairs of vertices that have BSDFs of kBsdfs; shadow rays from `out` on; where
 // they end.
 template <class P, uint32_t kBsdfs>
@@ -135,13 +155,19 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
   const Real yFix = max(abs(y.fixCosine), Real(kSmallestCosine));
   const Real scale =
       zBsdf.lightCosine * yBsdf.lightCosine * yCosine * inverseDist2 * reciprocal(yFix * (Real(1) + wLight + wCamera));
-  const Vec3<Real> contribution = zRow.throughput * zBsdf.f * yRow.throughput * yBsdf.f * scale;
+  Vec3<Real> contribution = zRow.throughput * zBsdf.f * yRow.throughput * yBsdf.f * scale;
 
   // Points closer than the offsets that keep their segment off the surfaces cannot be told apart.
   const Real apart = Real(4) * (z.offset + y.offset);
   const Mask carries = active & (maxComponent(contribution) > Real(0)), tooClose = carries & (dist2 <= apart * apart);
   if (any(tooClose)) context.counters->closePairs += countTrue(tooClose);
-  const Mask lit = andNot(carries, tooClose);
+  Mask lit = andNot(carries, tooClose);
+  if (context.light->rouletteBelow > 0) {
+    const Real chance = chanceOf(contribution, Real(context.light->rouletteBelow));
+    const UInt light = load(pairs.light, i);
+    lit = lit & (to<Real>(rouletteNumbers(context, wave, load(lanes), light)) < chance);
+    contribution = contribution * (Real(1) / chance);
+  }
   if (none(lit)) return out;
   const Vec3<Real> origin = offsetOrigin(z.position, z.normal, z.offset, towards);
   const Vec3<Real> end = offsetOrigin(y.position, y.normal, y.offset, -towards);

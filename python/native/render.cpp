@@ -73,6 +73,7 @@ void addOptions(nb::module_& module) {
       .def_rw("radius_alpha", &RenderOptions::radiusAlpha)
       .def_rw("light_paths", &RenderOptions::lightPaths)
       .def_rw("direct_pass", &RenderOptions::directPass)
+      .def_rw("connection_roulette", &RenderOptions::connectionRoulette)
       .def_rw("mlt", &RenderOptions::mlt)
       .def_rw("chains", &RenderOptions::chains)
       .def_rw("bootstrap", &RenderOptions::bootstrap)

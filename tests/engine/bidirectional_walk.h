@@ -24,6 +24,7 @@ struct WalkSettings {
   uint64_t seed = 1;
   uint32_t iteration = 0;
   PathLimits limits{.maxDepth = 6, .rouletteDepth = 64};
+  float rouletteBelow = 0;  // of connections
   Precision precision = Precision::floating;
 };
 
@@ -83,6 +84,7 @@ class BidirectionalWalk {
                                               static_cast<double>(settings.lightPaths));
     context_.counters = &counters;
     context_.film = area_.window();
+    light_.rouletteBelow = static_cast<S>(settings.rouletteBelow);
   }
 
   StageCounters counters;

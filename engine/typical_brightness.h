@@ -1,0 +1,16 @@
+// How bright a render's pixels typically are, found out by a few paths before it begins.
+#pragma once
+
+#include "engine/film_area.h"
+#include "engine/render_plan.h"
+
+namespace wavecrest {
+
+// The radiance of a typical pixel, by the brightest of its three channels: the power mean with exponent 1/2 over places
+// spread over the film, so that lamps in view and single bright paths count for little. By path tracing, whatever the
+// method, with random numbers of its own; 0 where nothing is found. Depends on the scene and the settings' seed and
+// limits, not on threads or the size of waves.
+template <class S>
+double typicalBrightness(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
+
+}  // namespace wavecrest
