@@ -75,7 +75,7 @@ struct RenderSettings {
   // Connections that carry less than this part of what a typical pixel is worth are joined with a probability in
   // proportion, which keeps their mean and saves their shadow rays. 0: all are joined. In scenes whose shadow rays cost
   // next to nothing (Accel::small) all are, whatever this says.
-  double connectionRoulette = 0.1;
+  double connectionRoulette = 0.2;
   bool directPass = false;      // ppm: direct light by next event estimation, the rest from photons
   uint64_t firstIteration = 0;  // of this session: what came before was rendered by another
   // N_L, the light paths of an iteration: one per pixel unless stated. Only methods with a photon map may have another

@@ -11,7 +11,6 @@ namespace {
 
 // Places on the film, and paths at each: enough of them to know a place's brightness within a factor of two or so.
 constexpr size_t kPlaces = 32, kPathsPerPlace = 64;
-constexpr size_t kWavePaths = 2 * kPathsPerPlace;
 
 }  // namespace
 
@@ -34,24 +33,22 @@ double typicalBrightness(const RenderPlan<S>& plan, const RenderSettings& settin
                           .mis = misSettings(pass.strategies, settings, plan.scene->view.radius, 1, 0),
                           .film = area.window(),
                           .counters = &counters};
-  std::vector<double> brightness(pixels.size());
-  Wave<S> wave(kWavePaths, plan.needs);
-  wave.pathCount = kWavePaths;
-  for (wave.firstPath = 0; wave.firstPath < pixels.size(); wave.firstPath += kWavePaths) {
-    ++context.sampler.iteration;  // a small film has the same pixels again
-    runPass(pass, context, wave, nullptr);
-    for (size_t i = 0; i < kWavePaths; ++i) {
-      const double value = std::max({wave.radiance.red[i], wave.radiance.green[i], wave.radiance.blue[i]});
-      brightness[wave.firstPath + i] = std::isfinite(value) ? value : 0;
-    }
-  }
-  double roots = 0;
+  Wave<S> wave(static_cast<uint32_t>(pixels.size()), plan.needs);
+  wave.pathCount = pixels.size();
+  runPass(pass, context, wave, nullptr);
+  std::vector<double> places;  // where there is light
   for (size_t place = 0; place < kPlaces; ++place) {
     double sum = 0;
-    for (size_t i = 0; i < kPathsPerPlace; ++i) sum += brightness[place * kPathsPerPlace + i];
-    roots += std::sqrt(std::max(sum, 0.0) / kPathsPerPlace);
+    for (size_t i = place * kPathsPerPlace; i < (place + 1) * kPathsPerPlace; ++i) {
+      const double value = std::max({wave.radiance.red[i], wave.radiance.green[i], wave.radiance.blue[i]});
+      if (std::isfinite(value)) sum += value;
+    }
+    if (sum > 0) places.push_back(sum / kPathsPerPlace);
   }
-  return (roots / kPlaces) * (roots / kPlaces);
+  if (places.empty()) return 0;
+  const auto median = places.begin() + static_cast<ptrdiff_t>(places.size() / 2);
+  std::nth_element(places.begin(), median, places.end());
+  return *median;
 }
 template double typicalBrightness(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);
 template double typicalBrightness(const RenderPlan<double>&, const RenderSettings&, const FilmArea&);

@@ -6,10 +6,10 @@
 
 namespace wavecrest {
 
-// The radiance of a typical pixel, by the brightest of its three channels: the power mean with exponent 1/2 over places
-// spread over the film, so that lamps in view and single bright paths count for little. By path tracing, whatever the
-// method, with random numbers of its own; 0 where nothing is found. Depends on the scene and the settings' seed and
-// limits, not on threads or the size of waves.
+// The radiance of a typical pixel, by the brightest of its three channels: the median of places spread over the film,
+// so that lamps in view and single bright paths do not count, of those where there is any light. By path tracing,
+// whatever the method, with random numbers of its own; 0 where nothing is found. Depends on the scene and the settings'
+// seed and limits, not on threads or the size of waves.
 template <class S>
 double typicalBrightness(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
 

@@ -81,7 +81,7 @@ void addMerging(Variants& variants, const RenderSettings& base, uint64_t pixels)
 }
 
 void addConnections(Variants& variants) {
-  for (const double part : {0.0, 0.03, 0.3}) {
+  for (const double part : {0.0, 0.05, 0.8}) {
     variants.add("--connection-roulette", fmt::format("{:g}", part)).connectionRoulette = part;
   }
 }

@@ -25,7 +25,7 @@ struct RenderOptions {
   bool directPass = false;  // ppm: direct light by next event estimation
   // bpt, vcm: connections that carry less than this part of a typical pixel's brightness are joined with a probability
   // in proportion, in scenes whose shadow rays are worth it; 0: all are joined.
-  double connectionRoulette = 0.1;
+  double connectionRoulette = 0.2;
 
   // mlt: pssmlt, mmlt or pathspace (empty: mmlt); Markov chains; independent samples from which they start; steps
   // before they start anew (0: by the number of samples); whether chains render direct light, too.
