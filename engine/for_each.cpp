@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/run_tasks.h"
+#include "engine/task_order.h"
 #include "engine/task_recorder.h"
 
 namespace wavecrest {
@@ -27,8 +28,8 @@ void forEach(size_t count, const std::function<void(size_t)>& body) {
 
 namespace {
 
-// A queue has a token for each i; one that had its turn goes back to its end. A thread that finds none has nothing left
-// to do: others have all of them.
+// Each i waits in a queue for its turn, and goes back to the end of it after the turn. A worker that finds the queue
+// empty ends: each i that is left is in the hands of another worker, which goes on with it.
 class Turns {
  public:
   struct Task {

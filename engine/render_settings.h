@@ -72,9 +72,9 @@ struct RenderSettings {
   PathLimits limits;
   double radius = 0.001;      // of the first merges, relative to the bounding sphere's
   double radiusAlpha = 0.75;  // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
-  // Connections that carry less than this part of what a typical pixel is worth are joined with a probability in
-  // proportion, which keeps their mean and saves their shadow rays. 0: all are joined. In scenes whose shadow rays cost
-  // next to nothing (Accel::small) all are, whatever this says.
+  // bpt, vcm: Russian roulette of connections whose contribution is below this share of a typical pixel's brightness.
+  // It saves shadow rays and changes no mean. 0: no roulette. Never used with Accel::small, where a shadow ray costs
+  // less than the roulette.
   double connectionRoulette = 0.2;
   bool directPass = false;      // ppm: direct light by next event estimation, the rest from photons
   uint64_t firstIteration = 0;  // of this session: what came before was rendered by another

@@ -9,7 +9,7 @@
 namespace wavecrest {
 namespace {
 
-// A schedule's state with its lock, and how many threads went without tasks.
+// The state of a schedule behind a lock. Counts the workers that found no task and ended.
 class Dispatcher {
  public:
   struct Task {

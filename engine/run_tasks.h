@@ -11,13 +11,16 @@ namespace wavecrest {
 
 // Runs a policy's tasks on the current arena's threads, at most `threads` at a time, and returns when none is left.
 //
-// The graph has a message for each thread that works. A message takes tasks until there is none for it, and ends; so
-// one that waits for a thread that is late keeps no task waiting. Whoever makes others ready sends messages for the
-// threads that went without. A Policy has a type Task and, both safe from several threads at once,
-//   size_t next(std::optional<Task>& task)  ends the task, if there is one, and takes the next, or nothing; returns for
-//                                           how many threads that went without there are tasks now
-//   void run(Task& task)
-// An exception of either ends the tasks and is thrown on.
+// A message of the graph stands for a worker: it runs one task after the other, and ends when the policy has none for
+// it. When the end of a task makes others ready, new messages start workers for them. Tasks belong to no worker, so no
+// task waits for a thread that comes late.
+//
+// A Policy defines a type Task and two functions. Several threads may call them at once.
+//   size_t next(std::optional<Task>& task)  Ends `task` if it holds one. Puts the next task there, or nothing if none
+//   is
+//                                           ready. Returns how many workers to start.
+//   void run(Task& task)                    Does the work.
+// An exception from either stops the other workers, and is thrown on.
 template <class Policy>
 void runTasks(Policy& policy, size_t threads) {
   namespace flow = oneapi::tbb::flow;

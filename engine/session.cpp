@@ -94,7 +94,7 @@ class TypedSession final : public Session {
   // Light vertices that the camera paths of a wave are joined with.
   LightStore<S>* partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker);
   void countLightPaths();
-  // What connections are joined for sure above (LightStore::rouletteBelow).
+  // The limit for roulette of connections (LightStore::rouletteBelow).
   S rouletteBelow() const;
 
   oneapi::tbb::task_arena arena_;

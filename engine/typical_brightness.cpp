@@ -9,7 +9,7 @@
 namespace wavecrest {
 namespace {
 
-// Places on the film, and paths at each: enough of them to know a place's brightness within a factor of two or so.
+// Places on the film, and paths at each. The brightness of a place need only be right within a factor of two or so.
 constexpr size_t kPlaces = 32, kPathsPerPlace = 64;
 
 }  // namespace

@@ -86,8 +86,8 @@ void WatchedSession::estimateError() {
   errorIterations_ = slicesUntil_;
 }
 
-// Callers look at this session's interrupt flag. Signals and timers set that of the session within: both are kept
-// equal.
+// Signals and timers set the interrupt flag of the wrapped session. Callers read the flag of this one, so it is copied
+// before and after.
 void WatchedSession::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
   if (!session_->interrupted()) resume();
   renderWatched(iterations, seconds);

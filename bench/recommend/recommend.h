@@ -1,7 +1,8 @@
 // Which method brings a scene to a quality soonest, and how long that takes on this machine.
 //
-// Renders pilots: the reference method of `inspect`, then every method, then a longer pilot of the method that came out
-// first. A pilot is four renders of different seeds. Its noise, bias and speed predict the time (prediction.h).
+// Makes short test renders, called pilots: one by the reference method of `inspect`, one by every method, and a longer
+// one by the method predicted to be first. A pilot is four renders of different seeds. Its noise, bias and speed
+// predict the time (prediction.h).
 #pragma once
 
 #include <array>

@@ -210,9 +210,9 @@ class LightCollector {
       throw SceneError(location_, "a second environment emitter; expected at most one");
     }
     lights_.infinite = static_cast<uint32_t>(lights_.records.size());
-    // What falls on a plane as large as the box looks from far away: of all directions it shows a fourth of its surface
-    // in the mean (Cauchy). Four times as much enters the box, but most of that passes between its surfaces, and what
-    // meets them is found by their BSDFs' samples as well.
+    // The flux onto a plane whose area is the box's projected area, averaged over directions: a quarter of its surface
+    // (Cauchy's formula). The flux through the box is four times that, but most of it leaves again without meeting a
+    // surface, and BSDF sampling finds the rest of the sky as well.
     const double across = (faceArea(0) + faceArea(1) + faceArea(2)) / 2;
     add(light, std::numbers::pi * across * meanLuminance);
   }

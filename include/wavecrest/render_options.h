@@ -23,8 +23,8 @@ struct RenderOptions {
   double radius = 0.001, radiusAlpha = 0.75;
   uint64_t lightPaths = 0;  // of an iteration of ppm, bpm or vcm; 0: as many as pixels
   bool directPass = false;  // ppm: direct light by next event estimation
-  // bpt, vcm: connections that carry less than this part of a typical pixel's brightness are joined with a probability
-  // in proportion, in scenes whose shadow rays are worth it; 0: all are joined.
+  // bpt, vcm: Russian roulette of connections whose contribution is below this share of a typical pixel's brightness.
+  // 0: no roulette. Small scenes, whose shadow rays cost next to nothing, never use it.
   double connectionRoulette = 0.2;
 
   // mlt: pssmlt, mmlt or pathspace (empty: mmlt); Markov chains; independent samples from which they start; steps

@@ -43,8 +43,8 @@ template <class S>
 class LightStore {
  public:
   LightVertices<S> vertices;
-  // Connections that carry less, by the largest of their three channels, are joined with a probability in proportion to
-  // what they carry (METHODS 5.9). 0: all are.
+  // Limit for Russian roulette of connections (METHODS 5.9), compared with the largest channel of a contribution. 0: no
+  // roulette, all connections are joined.
   S rouletteBelow = 0;
 
   LightStore(size_t lanes, const ColumnNeeds& needs, LightVertexUse use = {})
