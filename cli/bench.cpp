@@ -58,6 +58,18 @@ RenderSettings benchSettings(const Scene& scene, const BenchOptions& options) {
   return settings;
 }
 
+void forEachBenchCase(const BenchOptions& options, const std::vector<Method>& methods,
+                      const std::function<void(const BenchCase&)>& measure) {
+  for (const std::filesystem::path& file : benchSceneFiles(options)) {
+    const Scene scene = loadScene(file, benchLoading(options));
+    for (const Method method : methods) {
+      BenchCase one{.scene = scene, .file = file, .settings = benchSettings(scene, options)};
+      one.settings.method = method;
+      measure(one);
+    }
+  }
+}
+
 uint32_t benchThreads(const BenchOptions& options) {
   return options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
 }

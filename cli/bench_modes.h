@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -44,6 +45,14 @@ std::vector<Method> benchMethods(const BenchOptions& options);
 LoadOptions benchLoading(const BenchOptions& options);
 // The best instruction set, all cores unless told otherwise, and the scene's own limits of paths.
 RenderSettings benchSettings(const Scene& scene, const BenchOptions& options);
+// Calls measure for each scene with each method.
+struct BenchCase {
+  const Scene& scene;
+  const std::filesystem::path& file;
+  RenderSettings settings;
+};
+void forEachBenchCase(const BenchOptions& options, const std::vector<Method>& methods,
+                      const std::function<void(const BenchCase&)>& measure);
 // As many as asked for, or as the machine has.
 uint32_t benchThreads(const BenchOptions& options);
 double benchSeconds(const BenchOptions& options, double unlessGiven);

@@ -7,7 +7,6 @@
 #include "bench/specialization/specialization.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
-#include "engine/load/load.h"
 
 namespace wavecrest {
 namespace {
@@ -22,16 +21,11 @@ int runBenchSpecialization(const BenchOptions& options) {
   const double seconds = benchSeconds(options, kSpecializationSeconds);
   std::vector<SpecializationResult> results;
   nlohmann::ordered_json all = {{"results", nlohmann::ordered_json::array()}};
-  for (const std::filesystem::path& file : benchSceneFiles(options)) {
-    const Scene scene = loadScene(file, benchLoading(options));
-    for (const Method method : methods) {
-      RenderSettings settings = benchSettings(scene, options);
-      settings.method = method;
-      results.push_back(measureSpecialization(scene, settings, seconds));
-      printBench(options, toText(results.back()) + "\n");
-      all["results"].push_back(toJson(results.back()));
-    }
-  }
+  forEachBenchCase(options, methods, [&](const BenchCase& one) {
+    results.push_back(measureSpecialization(one.scene, one.settings, seconds));
+    printBench(options, toText(results.back()) + "\n");
+    all["results"].push_back(toJson(results.back()));
+  });
   printBench(options, specializationSummary(results));
   writeBenchJson(options, "specialization", all);
   const bool differs = std::any_of(results.begin(), results.end(), [](const auto& r) { return r.anyDiffers(); });

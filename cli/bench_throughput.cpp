@@ -19,9 +19,18 @@ int runBenchThroughput(const BenchOptions& options) {
   const std::vector<Method> methods = benchMethods(options);
   const double seconds = benchSeconds(options, kThroughputSeconds);
   nlohmann::ordered_json all = {{"scenes", nlohmann::ordered_json::array()}};
+  std::vector<SceneBench> benches;
   for (const std::filesystem::path& file : benchSceneFiles(options)) {
-    const Scene scene = loadScene(file, benchLoading(options));
-    const SceneResult result = benchScene(scene, benchSettings(scene, options), methods, seconds);
+    Scene scene = loadScene(file, benchLoading(options));
+    const RenderSettings settings = benchSettings(scene, options);
+    benches.emplace_back(std::move(scene), settings, methods, seconds);
+  }
+  for (size_t visit = 1; visit < kVisitsForInterval; ++visit) {
+    for (SceneBench& bench : benches) bench.visit();
+  }
+  for (SceneBench& bench : benches) {
+    bench.visit();
+    const SceneResult result = bench.finish();
     printBench(options, toText(result) + "\n");
     all["scenes"].push_back(toJson(result));
   }

@@ -30,7 +30,7 @@ struct ReferenceOptions {
   SceneOptions scene;
   std::string method = "auto", time, sampler = "independent", precision = "float", isa = "auto", output;
   double relativeError = 0, radius = kReferenceRadius;
-  std::string agreeWith;
+  std::string agreeWith, compact;
   uint64_t spp = 0, seed = 0;
   uint32_t threads = 0;
   std::string progress = "auto";
@@ -77,15 +77,21 @@ ReferenceGoal goalOf(const ReferenceOptions& options) {
   return goal;
 }
 
+void requireExr(std::string_view option, const std::filesystem::path& file) {
+  if (file.extension() == ".exr") return;
+  throw UsageError(
+      fmt::format("{} {}: expected a name that ends in .exr, which keeps the halves", option, file.string()));
+}
+
 int runReference(const ReferenceOptions& options) {
   const std::filesystem::path scenePath = findScene(options.scene.scene);
   const std::string output = options.output.empty() ? scenePath.stem().string() + ".reference.exr" : options.output;
-  if (std::filesystem::path(output).extension() != ".exr") {
-    throw UsageError(fmt::format("-o {}: expected a name that ends in .exr, which keeps the halves", output));
-  }
+  requireExr("-o", output);
+  if (!options.compact.empty()) requireExr("--compact", options.compact);
   FileCheck files;
   files.input("the scene", scenePath);
   files.output("-o", output);
+  if (!options.compact.empty()) files.output("--compact", options.compact);
   if (!options.agreeWith.empty()) files.input("--agree-with", options.agreeWith);
   const ReferenceGoal goal = goalOf(options);
   const auto kind = options.quiet
@@ -119,6 +125,7 @@ int runReference(const ReferenceOptions& options) {
       tell("wavecrest: interrupted before anything was rendered; no reference was written");
       return kExitInterrupted;
     }
+    if (!options.compact.empty() && !guard.interrupted()) writeCompactReference(options.compact, reference);
     fmt::print("{}: {} iterations of each half, {:.1f} s, relative error {:.5f}\n", output, reference.info.iterations,
                reference.info.renderSeconds, reference.info.relativeError);
     for (const auto& [name, value] : reference.noiseFloors) fmt::print("noise floor {:8} {:.6g}\n", name, value);
@@ -168,6 +175,8 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--radius", options->radius, "first merge radius of ppm, bpm and vcm").showDefault().between(1e-9, 10.0);
   command.add("-o,--output", options->output, "EXR file; default: SCENE.reference.exr; goes on if it exists");
+  command.add("--compact", options->compact,
+              "EXR file: the same in half floats, a seventh of the size; to measure against, not to go on with");
   command.add("--agree-with", options->agreeWith,
               "another reference of the scene: fail with exit code 4 where a z-test says that they differ in truth");
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();

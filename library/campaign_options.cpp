@@ -113,6 +113,16 @@ RenderSettings renderSettings(const CampaignOptions& options) {
 
 }  // namespace
 
+namespace {
+
+// Those that come with the scenes: of 256x192, and of other sizes in folders of their own, where there are any.
+fs::path sceneReferences(const std::array<uint32_t, 2>& size) {
+  const fs::path folder = sceneFolder() / "references", own = folder / fmt::format("{}x{}", size[0], size[1]);
+  return fs::is_directory(own) ? own : folder;
+}
+
+}  // namespace
+
 CampaignSettings campaignSettings(const CampaignOptions& options) {
   const Profile& profile = chosenProfile(options);
   CampaignSettings settings;
@@ -133,7 +143,7 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
   constexpr std::array<std::string_view, 2> kImageChoices{"all", "last"};
   settings.keepImages = parseChoice("--images", get(options, "--images", "all"), kImageChoices) == 0;
   settings.referenceRequired = !options.reference.empty();
-  settings.referenceFolder = options.reference.empty() ? sceneFolder() / "references" : fs::path(options.reference);
+  settings.referenceFolder = options.reference.empty() ? sceneReferences(settings.size) : fs::path(options.reference);
   if (options.check && settings.iterations) {
     throw UsageError("--check: the study's findings are about equal time; expected no --spp beside it");
   }

@@ -18,10 +18,14 @@ constexpr const char* kPrefix = "wavecrest:";
 constexpr const char* kFloorPrefix = "wavecrest:noise_floor.";
 constexpr const char *kDifference = "difference", *kVariance = "variance";
 
-Image roundedTo12Bits(Image image) {
+// Significant bits that are kept: of the layers beside the mean, which are noise, and of a compact reference's.
+constexpr uint32_t kLayerBits = 12, kCompactLayerBits = 3;
+
+Image roundedTo(uint32_t bits, Image image) {
+  const uint32_t dropped = 24 - bits, half = 1u << dropped >> 1;
   for (float& sample : image.pixels) {
     if (!std::isfinite(sample)) continue;
-    sample = std::bit_cast<float>((std::bit_cast<uint32_t>(sample) + 0x800u) & ~0xfffu);
+    sample = std::bit_cast<float>((std::bit_cast<uint32_t>(sample) + half) >> dropped << dropped);
   }
   return image;
 }
@@ -41,6 +45,7 @@ void visitInfo(Info& info, Visit visit) {
   visit("method", info.method);
   visit("sampler", info.sampler);
   visit("precision", info.precision);
+  visit("samples", info.samples);
   visit("seed", info.seed);
   visit("max_depth", info.maxDepth);
   visit("roulette_depth", info.rouletteDepth);
@@ -122,10 +127,17 @@ std::string whyNoReference(const Reference& image) {
 void writeReference(const std::filesystem::path& path, const Reference& reference) {
   std::vector<ExrLayer> layers;
   if (reference.difference) {
-    layers.push_back({kDifference, roundedTo12Bits(*reference.difference)});
-    layers.push_back({kVariance, roundedTo12Bits(squared(*reference.difference))});
+    layers.push_back({kDifference, roundedTo(kLayerBits, *reference.difference)});
+    layers.push_back({kVariance, roundedTo(kLayerBits, squared(*reference.difference))});
   }
   writeExr(path.string(), reference.mean, toMetadata(reference), layers);
+}
+
+void writeCompactReference(const std::filesystem::path& path, const Reference& reference) {
+  Reference compact{.mean = {}, .difference = {}, .info = reference.info, .noiseFloors = reference.noiseFloors};
+  compact.info.samples = ReferenceInfo::kCompactSamples;
+  const ExrLayer layer{kDifference, roundedTo(kCompactLayerBits, reference.difference.value())};
+  writeExr(path.string(), reference.mean, toMetadata(compact), {&layer, 1}, {}, ExrSamples::halves);
 }
 
 Reference readReference(const std::filesystem::path& path) {

@@ -5,6 +5,10 @@
 // bits: they are noise, and the zeros compress. String attributes say how the image was made (ReferenceInfo) and the
 // noise floor of every metric, as "wavecrest:noise_floor.NAME". An EXR without the layers can be read as
 // one, but is none: whyNoReference.
+//
+// A compact reference is one for a repository, a seventh of the size: half floats of the mean, the difference to three
+// significant bits, no variance. Images are measured against it as against the whole one; rendering does not go on with
+// it.
 #pragma once
 
 #include <filesystem>
@@ -19,6 +23,7 @@ namespace wavecrest {
 // How a reference was made. The first part decides its value in the limit: rendering may go on only where it agrees.
 struct ReferenceInfo {
   std::string scene, sceneHash, method, sampler, precision;
+  std::string samples = kWholeSamples;  // kCompactSamples of a compact one
   uint64_t seed = 0;
   uint32_t maxDepth = 0, rouletteDepth = 0;
   double radius = 0, radiusAlpha = 0;  // of methods that merge, else 0
@@ -29,6 +34,8 @@ struct ReferenceInfo {
   double relativeError = 0;  // root of the mean relative variance, see relativeError()
   std::string version, commit;
 
+  static constexpr const char *kWholeSamples = "float", *kCompactSamples = "half";
+  bool isCompact() const { return samples == kCompactSamples; }
   bool isBiased() const { return radius > 0; }
 };
 
@@ -56,8 +63,10 @@ void measureNoiseFloors(Reference& reference);
 // it is its own. Empty: it can.
 std::string whyNoReference(const Reference& image);
 
-// Throws ImageError.
+// Throw ImageError. Of a compact one also where a sample is beyond kLargestHalf. Its noise floors are those of the
+// whole.
 void writeReference(const std::filesystem::path& path, const Reference& reference);
+void writeCompactReference(const std::filesystem::path& path, const Reference& reference);
 Reference readReference(const std::filesystem::path& path);
 
 }  // namespace wavecrest

@@ -49,6 +49,7 @@ void requireSame(const std::filesystem::path& file, const ReferenceInfo& found, 
   require("method", found.method, wanted.method);
   require("sampler", found.sampler, wanted.sampler);
   require("precision", found.precision, wanted.precision);
+  require("samples", found.samples, wanted.samples);
   require("seed", found.seed, wanted.seed);
   require("max_depth", found.maxDepth, wanted.maxDepth);
   require("roulette_depth", found.rouletteDepth, wanted.rouletteDepth);

@@ -14,8 +14,9 @@ namespace {
 
 // Small in user units, so that text stays readable when a phone shows the plot 330 pixels wide.
 constexpr double kWidth = 460, kHeight = 320;
-constexpr double kLeft = 50, kTop = 12, kBottom = kHeight - 46;
-constexpr double kMarkRoom = 18;                            // between the plot and the text of an end label
+constexpr double kTop = 12, kBottom = kHeight - 46;
+constexpr double kLeastLeft = 50, kTickGap = 7;  // the margin at the left, and what is between a label and the axis
+constexpr double kMarkRoom = 18;                 // between the plot and the text of an end label
 constexpr double kLeastMargin = 44, kGreatestMargin = 190;  // at the right
 constexpr double kLabelSpacing = 15;
 constexpr double kTitleHeight = 26;  // above the plot in a file
@@ -23,8 +24,8 @@ constexpr size_t kDensePoints = 24;  // from here on marks shrink to dots
 
 struct Frame {
   Axis x, y;
-  double right;
-  double pixelX(double value) const { return kLeft + x.position(value) * (right - kLeft); }
+  double left, right;
+  double pixelX(double value) const { return left + x.position(value) * (right - left); }
   double pixelY(double value) const { return kBottom - y.position(value) * (kBottom - kTop); }
 };
 
@@ -45,6 +46,17 @@ std::vector<PlotCurve> showableCurves(const Plot& plot) {
   }
   std::erase_if(curves, [](const PlotCurve& curve) { return curve.points.empty(); });
   return curves;
+}
+
+// The left margin takes the longest label of the axis.
+double leftMargin(const Axis& axis) {
+  constexpr double kLetter = 9;
+  size_t longest = 0;  // in characters of UTF-8
+  for (const AxisTick& tick : axis.ticks()) {
+    const auto begins = [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0) != 0x80; };
+    longest = std::max<size_t>(longest, std::count_if(tick.label.begin(), tick.label.end(), begins));
+  }
+  return std::max(kLeastLeft, kTickGap + kLetter * static_cast<double>(longest));
 }
 
 // What an end label needs at most: bold letters of a wide font, at the size that phones get (assets/report.css).
@@ -73,8 +85,8 @@ Frame frameAround(const Plot& plot, const std::vector<PlotCurve>& curves) {
   double longest = 0;
   for (const PlotCurve& curve : curves) longest = std::max(longest, labelWidth(curve.label));
   const double margin = kMarkRoom + longest;
-  return {Axis(plot.xScale, left, right), Axis(plot.yScale, low, high),
-          kWidth - std::clamp(margin, kLeastMargin, kGreatestMargin)};
+  const Axis y(plot.yScale, low, high);
+  return {Axis(plot.xScale, left, right), y, leftMargin(y), kWidth - std::clamp(margin, kLeastMargin, kGreatestMargin)};
 }
 
 void drawGrid(std::string& svg, const Plot& plot, const Frame& frame) {
@@ -89,27 +101,27 @@ void drawGrid(std::string& svg, const Plot& plot, const Frame& frame) {
   }
   for (const AxisTick& tick : frame.y.ticks()) {
     const double y = frame.pixelY(tick.value);
-    append(svg, "<line class=\"{}\" x1=\"{}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>",
-           tick.label.empty() ? "minor" : "major", kLeft, y, frame.right, y);
+    append(svg, "<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>",
+           tick.label.empty() ? "minor" : "major", frame.left, y, frame.right, y);
     if (!tick.label.empty()) {
-      append(svg, "<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", kLeft - 7, y + 4,
-             tick.label);
+      append(svg, "<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", frame.left - kTickGap,
+             y + 4, tick.label);
     }
   }
-  append(svg, "<path class=\"axis\" d=\"M{} {}V{}H{:.1f}\"/>", kLeft, kTop, kBottom, frame.right);
+  append(svg, "<path class=\"axis\" d=\"M{:.1f} {}V{}H{:.1f}\"/>", frame.left, kTop, kBottom, frame.right);
   append(svg, "<text class=\"axis-label\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-         0.5 * (kLeft + frame.right), kHeight - 8, escapeHtml(plot.xLabel));
+         0.5 * (frame.left + frame.right), kHeight - 8, escapeHtml(plot.xLabel));
 }
 
 void drawLine(std::string& svg, const PlotLine& line, const char* cssClass, AxisScale scale, const Frame& frame) {
   if (!showable(scale, line.y) || frame.y.position(line.y) < 0 || frame.y.position(line.y) > 1) return;
   const double y = frame.pixelY(line.y);
-  append(svg, "<line class=\"{}\" x1=\"{}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", cssClass, kLeft, y,
+  append(svg, "<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", cssClass, frame.left, y,
          frame.right, y);
   if (line.label.empty()) return;
   // Above the line, or below it where there is no room.
-  append(svg, "<text class=\"note\" x=\"{}\" y=\"{:.1f}\">{}</text>", kLeft + 6, y - kTop < 18 ? y + 14 : y - 5,
-         escapeHtml(line.label));
+  append(svg, "<text class=\"note\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", frame.left + 6,
+         y - kTop < 18 ? y + 14 : y - 5, escapeHtml(line.label));
 }
 
 // A straight line on two logarithmic axes, a little above the curve that ends lowest, cut off at the lower edge.
@@ -236,7 +248,8 @@ std::string drawPlot(const Plot& plot) {
   const std::vector<PlotCurve> curves = showableCurves(plot);
   std::string svg;
   if (curves.empty()) {
-    append(svg, "<text class=\"note\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">no data that these axes can show</text>",
+    append(svg,
+           "<text class=\"note\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">no data that these axes can show</text>",
            kWidth / 2, kHeight / 2);
     return svg;
   }
@@ -271,7 +284,7 @@ std::string renderPlotFile(const Plot& plot) {
       "<title>{}</title>\n<style>\n{}svg {{ background: #fff; font-family: sans-serif; }}\n</style>\n"
       "<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n{}</svg>\n",
       -kTitleHeight, kWidth, height, 1.5 * kWidth, 1.5 * height, escapeHtml(plot.title), withoutVariables(kPlotCss),
-      kLeft, -8, escapeHtml(plot.title), drawPlot(plot));
+      kLeastLeft, -8, escapeHtml(plot.title), drawPlot(plot));
 }
 
 }  // namespace wavecrest

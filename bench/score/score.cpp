@@ -76,7 +76,7 @@ void renderOnOneThread(const Scene& scene, RenderSettings settings, StageEventCo
   const std::map<std::string, StageEvents> counted = events.take();
   double paths = 0;
   for (const Slice& slice : slices) paths += static_cast<double>(slice.paths);
-  for (const StageShare& share : stageShares(slices)) {
+  for (const StageShare& share : stageShares({slices})) {
     ScoredStage& stage = row.stages.emplace_back();
     stage.share = share;
     stage.bytesPerItem = traffic.bytesPerItem(share.name);

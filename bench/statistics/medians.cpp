@@ -46,6 +46,26 @@ Estimate estimateMedian(std::span<const double> values) {
   return {.value = median({values.begin(), values.end()}), .interval = bootstrapMedian(values)};
 }
 
+Estimate estimateMedianOfVisits(std::span<const std::vector<double>> visits, double level) {
+  assert(!visits.empty());
+  if (visits.size() == 1) return estimateMedian(visits.front());
+  std::vector<double> medians;
+  for (const std::vector<double>& values : visits) medians.push_back(median(values));
+  std::sort(medians.begin(), medians.end());
+  // k values of n are below the median with probability C(n, k) / 2^n. As many are left out at either end as the
+  // level allows.
+  const size_t n = medians.size();
+  size_t outside = 0;
+  double term = std::ldexp(1.0, -static_cast<int>(n)), tail = term;
+  while (2 * (outside + 1) < n) {
+    term *= static_cast<double>(n - outside) / static_cast<double>(outside + 1);
+    tail += term;
+    if (2 * tail > 1 - level) break;
+    ++outside;
+  }
+  return {.value = quantile(medians, 0.5), .interval = {medians[outside], medians[n - 1 - outside]}};
+}
+
 double relativeSpread(std::vector<double> values) {
   assert(!values.empty());
   std::sort(values.begin(), values.end());

@@ -10,27 +10,43 @@ constexpr double kReferencePart = 0.3, kErrorPart = 0.15, kSpeedPart = 0.2, kEmb
 
 }  // namespace
 
-SceneResult benchScene(const Scene& scene, const RenderSettings& settings, const std::vector<Method>& methods,
-                       double seconds) {
-  const FilmArea area = filmArea(scene.film);
-  SceneResult result{.scene = scene.name,
-                     .hash = scene.hash,
+SceneBench::SceneBench(Scene scene, const RenderSettings& settings, const std::vector<Method>& methods, double seconds)
+    : scene_(std::make_unique<const Scene>(std::move(scene))),
+      settings_(settings),
+      methods_(methods),
+      seconds_(seconds) {
+  for (const Method method : methods_) speeds_.emplace_back(*scene_, settingsOf(method));
+}
+
+RenderSettings SceneBench::settingsOf(Method method) const {
+  RenderSettings settings = settings_;
+  settings.method = method;
+  return settings;
+}
+
+void SceneBench::visit() {
+  constexpr double kVisits = kVisitsForInterval;
+  for (SpeedMeasurement& speed : speeds_) speed.visit(kSpeedPart * seconds_ / kVisits);
+}
+
+SceneResult SceneBench::finish() const {
+  const FilmArea area = filmArea(scene_->film);
+  SceneResult result{.scene = scene_->name,
+                     .hash = scene_->hash,
                      .width = area.width,
                      .height = area.height,
-                     .threads = settings.threads,
-                     .reference = renderReference(scene, settings, kReferencePart * seconds),
+                     .threads = settings_.threads,
+                     .reference = renderReference(*scene_, settings_, kReferencePart * seconds_),
                      .methods = {},
                      .errors = {}};
-  const double errorSeconds = kErrorPart * seconds / static_cast<double>(kAllSamplerKinds.size());
-  result.errors = measureEqualTime(scene, settings, methods, result.reference, errorSeconds);
-  for (const Method method : methods) {
-    RenderSettings own = settings;
-    own.method = method;
-    MethodResult& row = result.methods.emplace_back();
-    row.method = method;
-    row.speed = measureSpeed(scene, own, kSpeedPart * seconds);
-    row.bareEmbree = measureBareEmbree(scene, own, kEmbreePart * seconds);
-    row.policies = measurePolicies(scene, own, kPoliciesPart * seconds);
+  const double errorSeconds = kErrorPart * seconds_ / static_cast<double>(kAllSamplerKinds.size());
+  result.errors = measureEqualTime(*scene_, settings_, methods_, result.reference, errorSeconds);
+  for (size_t i = 0; i < methods_.size(); ++i) {
+    const RenderSettings own = settingsOf(methods_[i]);
+    result.methods.push_back({.method = methods_[i],
+                              .speed = speeds_[i].speed(),
+                              .bareEmbree = measureBareEmbree(*scene_, own, kEmbreePart * seconds_),
+                              .policies = measurePolicies(*scene_, own, kPoliciesPart * seconds_)});
   }
   return result;
 }

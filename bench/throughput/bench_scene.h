@@ -1,6 +1,7 @@
 // Everything that `wavecrest bench` finds out about one scene, as plain data, and how it is shown.
 #pragma once
 
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -28,10 +29,28 @@ struct SceneResult {
   std::vector<ErrorRow> errors;
 };
 
-// seconds: render time of all measurements of one method, about; the reference and the errors at equal time come once
-// per scene out of the first method's share.
-SceneResult benchScene(const Scene& scene, const RenderSettings& settings, const std::vector<Method>& methods,
-                       double seconds);
+// Measures one scene by several methods. Speed is measured in visits, so that several scenes can take turns and the
+// drift of the machine shows in the intervals of each; all else comes once, at the end.
+class SceneBench {
+ public:
+  // seconds: render time of all measurements of one method, about; the reference and the errors at equal time come once
+  // per scene out of the first method's share. Keeps the scene.
+  SceneBench(Scene scene, const RenderSettings& settings, const std::vector<Method>& methods, double seconds);
+
+  // A kVisitsForInterval-th of the time for speed, of all methods.
+  void visit();
+  // After the visits.
+  SceneResult finish() const;
+
+ private:
+  RenderSettings settingsOf(Method method) const;
+
+  std::unique_ptr<const Scene> scene_;  // where it was when measurements began
+  RenderSettings settings_;
+  std::vector<Method> methods_;
+  double seconds_;
+  std::vector<SpeedMeasurement> speeds_;  // by method
+};
 
 // Tables for a terminal.
 std::string toText(const SceneResult& result);

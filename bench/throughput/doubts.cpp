@@ -8,19 +8,22 @@
 namespace wavecrest {
 namespace {
 
-// Slices that the wider of these figures would need to be known to kWideInterval: its error falls with their root.
+// How much longer the wider of these figures would have to be measured to be known to kWideInterval, on a machine that
+// does not drift: its error falls with the root.
 void doubtPrecision(const Speed& speed, std::vector<std::string>& doubts) {
   const double error = std::max(speed.pathsPerSecond.relativeError(), speed.pathsPerCpuSecond.relativeError());
   if (error <= kWideInterval) return;
   const double times = error / kWideInterval;
+  const VisitSlices& visits = speed.scaling.front().slices;
   doubts.push_back(
-      fmt::format("paths/s are known to {:.0f} % only, from {} slices: expected within {:.0f} %; try {:.0f} "
-                  "times the duration",
-                  100 * error, speed.scaling.front().slices.size(), 100 * kWideInterval, std::ceil(times * times)));
+      fmt::format("paths/s are known to {:.0f} % only, from {} slices in {} visits: expected within {:.0f} %; try "
+                  "{:.0f} times the duration, or a quieter machine",
+                  100 * error, allSlices(visits).size(), visits.size(), 100 * kWideInterval, std::ceil(times * times)));
 }
 
 void doubtSlices(const ScalingRow& row, std::vector<std::string>& doubts) {
-  const double spread = relativeSpread(valuesOf(row.slices, [](const Slice& s) { return s.pathsPerCpuSecond(); }));
+  const double spread =
+      relativeSpread(valuesOf(allSlices(row.slices), [](const Slice& s) { return s.pathsPerCpuSecond(); }));
   if (spread <= kWideSpread) return;
   doubts.push_back(fmt::format("slices on {} thread{} differ by {:.0f} % in CPU time: the machine is not quiet",
                                row.threads, row.threads == 1 ? "" : "s", 100 * spread));

@@ -18,10 +18,13 @@ void add(Json& object, const std::string& name, const Estimate& estimate, double
   object[name + "_interval"] = {scale * estimate.interval.low, scale * estimate.interval.high};
 }
 
-Json slicesJson(const std::vector<Slice>& slices) {
+Json slicesJson(const VisitSlices& visits) {
   Json rows = Json::array();
-  for (const Slice& slice : slices) {
-    rows.push_back({{"paths", slice.paths}, {"seconds", slice.seconds}, {"cpu_seconds", slice.cpuSeconds}});
+  for (size_t visit = 0; visit < visits.size(); ++visit) {
+    for (const Slice& slice : visits[visit]) {
+      rows.push_back(
+          {{"visit", visit}, {"paths", slice.paths}, {"seconds", slice.seconds}, {"cpu_seconds", slice.cpuSeconds}});
+    }
   }
   return rows;
 }

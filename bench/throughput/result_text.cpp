@@ -33,12 +33,14 @@ void addStages(Text& text, const Speed& speed) {
 }
 
 void addSpeed(Text& text, const Speed& speed, uint32_t threads) {
+  const VisitSlices& visits = speed.scaling.front().slices;
   line(text, "  {} M paths/s on {} thread{}, {} per core; {:.2f} rays/path, {} M rays/s, {} per core",
        rate(speed.pathsPerSecond), threads, threads == 1 ? "" : "s", rate(speed.pathsPerCpuSecond), speed.raysPerPath,
        rate(speed.raysPerSecond, 1), rate(speed.raysPerCpuSecond, 1));
-  line(text, "  {} kernels on {}, intersector {}; {} bytes/path; medians of {} slices, +-: {:.0f} % interval",
+  line(text,
+       "  {} kernels on {}, intersector {}; {} bytes/path; medians of {} slices in {} visits, +-: {:.0f} % interval",
        enumeratorName(kSpecializationNames, speed.facts.specialization), toString(speed.facts.isa),
-       enumeratorName(kAccelNames, speed.facts.accel), speed.bytesPerPath, speed.scaling.front().slices.size(),
+       enumeratorName(kAccelNames, speed.facts.accel), speed.bytesPerPath, allSlices(visits).size(), visits.size(),
        100 * kIntervalLevel);
   for (const std::string& doubt : doubtsAbout(speed)) line(text, "  doubt: {}", doubt);
   addStages(text, speed);

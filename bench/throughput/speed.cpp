@@ -5,7 +5,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kFewestSpeedRounds = 3, kMostSpeedRounds = 15;
+constexpr size_t kMostRounds = 5;  // of a visit
 
 std::vector<uint32_t> threadCounts(uint32_t most) {
   std::vector<uint32_t> counts;
@@ -15,17 +15,22 @@ std::vector<uint32_t> threadCounts(uint32_t most) {
 }
 
 template <class Projection>
-Estimate estimateOf(const std::vector<Slice>& slices, Projection&& projection) {
-  return estimateMedian(valuesOf(slices, projection));
+Estimate estimateOf(const VisitSlices& slices, Projection&& projection) {
+  std::vector<std::vector<double>> visits;
+  for (const std::vector<Slice>& visit : slices) visits.push_back(valuesOf(visit, projection));
+  return estimateMedianOfVisits(visits);
 }
 
 // Of each round the ratio of two sessions' figures: what holds up a whole round falls out.
 template <class Projection>
-Estimate estimateRatio(const std::vector<Slice>& slices, const std::vector<Slice>& base, Projection&& projection) {
-  std::vector<double> ratios = valuesOf(slices, projection);
-  const std::vector<double> below = valuesOf(base, projection);
-  for (size_t i = 0; i < ratios.size(); ++i) ratios[i] /= below[i];
-  return estimateMedian(ratios);
+Estimate estimateRatio(const VisitSlices& slices, const VisitSlices& base, Projection&& projection) {
+  std::vector<std::vector<double>> visits;
+  for (size_t visit = 0; visit < slices.size(); ++visit) {
+    std::vector<double>& ratios = visits.emplace_back(valuesOf(slices[visit], projection));
+    const std::vector<double> below = valuesOf(base[visit], projection);
+    for (size_t i = 0; i < ratios.size(); ++i) ratios[i] /= below[i];
+  }
+  return estimateMedianOfVisits(visits);
 }
 
 // A stage's row of one slice. Its seconds are of the time-stamp counter, which goes on while another program has the
@@ -47,13 +52,20 @@ double cpuRate(const Slice& slice) { return slice.pathsPerCpuSecond(); }
 
 }  // namespace
 
-std::vector<StageShare> stageShares(const std::vector<Slice>& slices) {
+std::vector<Slice> allSlices(const VisitSlices& visits) {
+  std::vector<Slice> all;
+  for (const std::vector<Slice>& slices : visits) all.insert(all.end(), slices.begin(), slices.end());
+  return all;
+}
+
+std::vector<StageShare> stageShares(const VisitSlices& slices) {
+  const std::vector<RenderStatistics::StageRow>& rows = slices.front().front().stages;
   std::vector<StageShare> shares;
-  for (size_t i = 0; i < slices.front().stages.size(); ++i) {
+  for (size_t i = 0; i < rows.size(); ++i) {
     StageShare& share = shares.emplace_back();
-    share.name = slices.front().stages[i].name;
+    share.name = rows[i].name;
     double items = 0, laneSlots = 0, paths = 0;
-    for (const Slice& slice : slices) {
+    for (const Slice& slice : allSlices(slices)) {
       items += static_cast<double>(slice.stages[i].items);
       laneSlots += static_cast<double>(slice.stages[i].laneSlots);
       paths += static_cast<double>(slice.paths);
@@ -67,21 +79,43 @@ std::vector<StageShare> stageShares(const std::vector<Slice>& slices) {
   return shares;
 }
 
-Speed measureSpeed(const Scene& scene, const RenderSettings& settings, double seconds) {
-  const std::vector<uint32_t> threads = threadCounts(settings.threads);
-  std::vector<std::unique_ptr<Session>> sessions;
-  for (const uint32_t count : threads) {
-    RenderSettings own = settings;
-    own.threads = count;
-    own.measureStages = true;
-    sessions.push_back(Session::create(scene, own));
-  }
-  MachineWatch watch;
-  auto slices =
-      renderInTurn(sessions, {.seconds = seconds, .fewestRounds = kFewestSpeedRounds, .mostRounds = kMostSpeedRounds},
-                   [&] { watch.look(); });
-  const std::vector<Slice>&one = slices.front(), &all = slices.back();
+SpeedMeasurement::SpeedMeasurement(const Scene& scene, const RenderSettings& settings)
+    : scene_(scene), settings_(settings), threads_(threadCounts(settings.threads)), slices_(threads_.size()) {
+  settings_.measureStages = true;
+}
 
+std::vector<std::unique_ptr<Session>> SpeedMeasurement::makeSessions() const {
+  std::vector<std::unique_ptr<Session>> sessions;
+  for (const uint32_t count : threads_) {
+    RenderSettings own = settings_;
+    own.threads = count;
+    own.seed += slices_.front().size();
+    sessions.push_back(Session::create(scene_, own));
+  }
+  return sessions;
+}
+
+void SpeedMeasurement::visit(double seconds) {
+  const auto sessions = makeSessions();
+  std::vector<SliceRenderer> renderers;
+  const bool first = iterations_.empty();
+  for (size_t i = 0; i < sessions.size(); ++i) {
+    renderers.emplace_back(*sessions[i], first ? 1 : iterations_[i]);
+    if (first) {
+      renderers.back().fill(seconds / static_cast<double>((kMostRounds + 1) * sessions.size()));
+      iterations_.push_back(renderers.back().iterations());
+    } else {
+      renderers.back().render();  // fills caches, starts threads; chains bootstrap
+    }
+  }
+  auto slices = renderInTurn(renderers, {.seconds = seconds, .fewestRounds = 1, .mostRounds = kMostRounds},
+                             [&] { watch_.look(); });
+  for (size_t i = 0; i < slices.size(); ++i) slices_[i].push_back(std::move(slices[i]));
+  facts_ = sessions.front()->statistics();
+}
+
+Speed SpeedMeasurement::speed() const {
+  const VisitSlices &one = slices_.front(), &all = slices_.back();
   Speed speed{.pathsPerSecond = estimateOf(all, wallRate),
               .raysPerSecond = estimateOf(all, [](const Slice& s) { return s.rays() / s.seconds; }),
               .pathsPerCpuSecond = estimateOf(one, cpuRate),
@@ -89,21 +123,21 @@ Speed measureSpeed(const Scene& scene, const RenderSettings& settings, double se
               .stages = stageShares(one),
               .restShare = estimateOf(one, restIn),
               .scaling = {},
-              .facts = sessions.front()->statistics(),
-              .machine = watch.state()};
+              .facts = facts_,
+              .machine = watch_.state()};
   double rays = 0, paths = 0;
-  for (const Slice& slice : one) {
+  for (const Slice& slice : allSlices(one)) {
     rays += slice.rays();
     paths += static_cast<double>(slice.paths);
   }
   speed.raysPerPath = rays / paths;
   speed.bytesPerPath = speed.facts.bytesPerPath;
-  for (size_t i = 0; i < threads.size(); ++i) {
-    speed.scaling.push_back({.threads = threads[i],
-                             .pathsPerSecond = estimateOf(slices[i], wallRate),
-                             .speedup = estimateRatio(slices[i], one, wallRate),
-                             .cpuEfficiency = estimateRatio(slices[i], one, cpuRate),
-                             .slices = slices[i]});
+  for (size_t i = 0; i < threads_.size(); ++i) {
+    speed.scaling.push_back({.threads = threads_[i],
+                             .pathsPerSecond = estimateOf(slices_[i], wallRate),
+                             .speedup = estimateRatio(slices_[i], one, wallRate),
+                             .cpuEfficiency = estimateRatio(slices_[i], one, cpuRate),
+                             .slices = slices_[i]});
   }
   return speed;
 }

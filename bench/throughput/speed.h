@@ -20,15 +20,20 @@ struct StageShare {
   std::optional<double> laneUse;  // items / lanes of the blocks they filled; of stages that work in blocks
 };
 
+// slices[visit][slice] of one thread count (SpeedMeasurement).
+using VisitSlices = std::vector<std::vector<Slice>>;
+// Those of all visits, one after the other.
+std::vector<Slice> allSlices(const VisitSlices& visits);
+
 // slices: of one thread that measures its stages, each of whole iterations.
-std::vector<StageShare> stageShares(const std::vector<Slice>& slices);
+std::vector<StageShare> stageShares(const VisitSlices& slices);
 
 struct ScalingRow {
   uint32_t threads = 1;
   Estimate pathsPerSecond;  // wall time
   Estimate speedup;         // against one thread in the same round
   Estimate cpuEfficiency;   // paths per CPU second against one thread: 1 unless threads hinder each other
-  std::vector<Slice> slices;
+  VisitSlices slices;
 };
 
 struct Speed {
@@ -43,7 +48,28 @@ struct Speed {
   MachineState machine;             // meanwhile
 };
 
-// Renders with 1, 2, 4, ... and settings.threads threads in turn for about `seconds` of render time altogether.
-Speed measureSpeed(const Scene& scene, const RenderSettings& settings, double seconds);
+// Measures the speed of a method in visits, between which other measurements are made: a machine that drifts, by its
+// clock or its neighbours, does so from one visit to the next, and intervals are of visits.
+class SpeedMeasurement {
+ public:
+  SpeedMeasurement(const Scene& scene, const RenderSettings& settings);
+
+  // Renders with 1, 2, 4, ... and settings.threads threads in turn for about `seconds` of render time altogether, on
+  // sessions of its own with random numbers of its own. The first one finds out how many iterations fill a slice.
+  void visit(double seconds);
+  // After one visit at least.
+  Speed speed() const;
+
+ private:
+  std::vector<std::unique_ptr<Session>> makeSessions() const;
+
+  const Scene& scene_;
+  RenderSettings settings_;
+  std::vector<uint32_t> threads_;
+  std::vector<uint64_t> iterations_;  // of a slice, by thread count
+  std::vector<VisitSlices> slices_;   // by thread count
+  RenderStatistics facts_;
+  MachineWatch watch_;
+};
 
 }  // namespace wavecrest

@@ -40,27 +40,32 @@ Slice SliceRenderer::render() {
   return difference(session_.statistics(), before);
 }
 
-std::vector<std::vector<Slice>> renderInTurn(std::span<const std::unique_ptr<Session>> sessions, const TurnPlan& plan,
+std::vector<std::vector<Slice>> renderInTurn(std::span<SliceRenderer> renderers, const TurnPlan& plan,
                                              const std::function<void()>& afterRound) {
-  // One more slice for finding out how long slices take.
-  const double sliceSeconds = plan.seconds / static_cast<double>((plan.mostRounds + 1) * sessions.size());
-  std::vector<SliceRenderer> candidates;
-  for (const auto& session : sessions) {
-    candidates.emplace_back(*session);
-    candidates.back().fill(sliceSeconds);
-  }
-  std::vector<std::vector<Slice>> slices(sessions.size());
+  std::vector<std::vector<Slice>> slices(renderers.size());
   double spent = 0;
   for (size_t round = 0; round < plan.mostRounds; ++round) {
     if (round >= plan.fewestRounds && spent >= plan.seconds) break;
-    for (size_t k = 0; k < candidates.size(); ++k) {
-      const size_t i = round % 2 == 0 ? k : candidates.size() - 1 - k;
-      slices[i].push_back(candidates[i].render());
+    for (size_t k = 0; k < renderers.size(); ++k) {
+      const size_t i = round % 2 == 0 ? k : renderers.size() - 1 - k;
+      slices[i].push_back(renderers[i].render());
       spent += slices[i].back().seconds;
     }
     afterRound();
   }
   return slices;
+}
+
+std::vector<std::vector<Slice>> renderInTurn(std::span<const std::unique_ptr<Session>> sessions, const TurnPlan& plan,
+                                             const std::function<void()>& afterRound) {
+  // One more slice for finding out how long slices take.
+  const double sliceSeconds = plan.seconds / static_cast<double>((plan.mostRounds + 1) * sessions.size());
+  std::vector<SliceRenderer> renderers;
+  for (const auto& session : sessions) {
+    renderers.emplace_back(*session);
+    renderers.back().fill(sliceSeconds);
+  }
+  return renderInTurn(renderers, plan, afterRound);
 }
 
 }  // namespace wavecrest

@@ -37,6 +37,7 @@ class SliceRenderer {
   // bootstrap in it. Chains advance in steps of many mutations; a slice must hold several, so that none is left empty.
   void fill(double sliceSeconds);
   Slice render();
+  uint64_t iterations() const { return iterations_; }
 
  private:
   Session& session_;
@@ -48,9 +49,14 @@ struct TurnPlan {
   size_t fewestRounds = 1, mostRounds = 1;  // where an iteration takes long, fewest rounds may take more time
 };
 
+// Renders a slice of each in turn, round by round: first to last, then last to first, until rounds are many enough and
+// the time is spent. slices[renderer][round]. afterRound: what else is to be done in turn with the slices.
+std::vector<std::vector<Slice>> renderInTurn(
+    std::span<SliceRenderer> renderers, const TurnPlan& plan, const std::function<void()>& afterRound = [] {});
+
 // slices[session][round]. Slices of one session have the same number of iterations, a power of two, as many as fill its
 // share of the time. How long they take is found in renders that are not kept; those also fill caches and start
-// threads. afterRound: what else is to be done in turn with the slices.
+// threads.
 std::vector<std::vector<Slice>> renderInTurn(
     std::span<const std::unique_ptr<Session>> sessions, const TurnPlan& plan,
     const std::function<void()>& afterRound = [] {});

@@ -9,11 +9,14 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
+#include <half.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <exception>
+#include <list>
 #include <mutex>
 #include <thread>
 
@@ -208,17 +211,47 @@ constexpr int kBlockRows = 16;  // of ZIP_COMPRESSION
 // Of each thread between two reports of progress: threads wait for each other at the end.
 constexpr int kRowsAtOnce = 16 * kBlockRows;
 
-void addChannels(Imf::Header& header, Imf::FrameBuffer& frame, const Image& image, const std::string& prefix) {
-  const std::vector<std::string> names =
-      image.channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
-  for (size_t c = 0; c < names.size(); ++c) {
-    // FrameBuffer has no const form; writing only reads through it.
-    char* base = reinterpret_cast<char*>(const_cast<float*>(image.pixels.data() + c));
-    const size_t xStride = image.channels * sizeof(float);
-    header.channels().insert(prefix + names[c], Imf::Channel(Imf::FLOAT));
-    frame.insert(prefix + names[c], Imf::Slice(Imf::FLOAT, base, xStride, xStride * image.width));
+// What a file takes its samples from: the images themselves, or halves made of them, which live as long as this does.
+class ChannelSource {
+ public:
+  ChannelSource(const std::string& path, ExrSamples samples) : path_(path), samples_(samples) {}
+
+  void add(Imf::Header& header, Imf::FrameBuffer& frame, const Image& image, const std::string& prefix) {
+    if (samples_ == ExrSamples::floats) {
+      // FrameBuffer has no const form; writing only reads through it.
+      addChannels(header, frame, const_cast<float*>(image.pixels.data()), Imf::FLOAT, image, prefix);
+    } else {
+      addChannels(header, frame, halvesOf(image).data(), Imf::HALF, image, prefix);
+    }
   }
-}
+
+ private:
+  template <class Sample>
+  static void addChannels(Imf::Header& header, Imf::FrameBuffer& frame, Sample* samples, Imf::PixelType type,
+                          const Image& image, const std::string& prefix) {
+    const std::vector<std::string> names =
+        image.channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+    for (size_t c = 0; c < names.size(); ++c) {
+      const size_t xStride = image.channels * sizeof(Sample);
+      header.channels().insert(prefix + names[c], Imf::Channel(type));
+      frame.insert(prefix + names[c],
+                   Imf::Slice(type, reinterpret_cast<char*>(samples + c), xStride, xStride * image.width));
+    }
+  }
+
+  std::vector<Imath::half>& halvesOf(const Image& image) {
+    std::vector<Imath::half>& halves = halves_.emplace_back(image.pixels.begin(), image.pixels.end());
+    for (const float sample : image.pixels) {
+      if (std::abs(sample) > kLargestHalf)
+        throw ImageError(path_, "a sample is " + std::to_string(sample), "expected at most 65504, the largest half");
+    }
+    return halves;
+  }
+
+  const std::string& path_;
+  const ExrSamples samples_;
+  std::list<std::vector<Imath::half>> halves_;
+};
 
 }  // namespace
 
@@ -236,17 +269,18 @@ size_t exrWritingBytes(uint32_t width, uint32_t height) {
 }
 
 void writeExr(const std::string& path, const Image& image, const Metadata& metadata, std::span<const ExrLayer> layers,
-              const WriteProgress& progress) {
+              const WriteProgress& progress, ExrSamples samples) {
   try {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const auto& [key, value] : metadata) header.insert(key, Imf::StringAttribute(value));
     Imf::FrameBuffer frame;
-    addChannels(header, frame, image, "");
+    ChannelSource source(path, samples);
+    source.add(header, frame, image, "");
     for (const ExrLayer& layer : layers) {
       if (layer.image.width != image.width || layer.image.height != image.height)
         throw ImageError(path, "EXR layer '" + layer.name + "' differs in size", "expected the main image's size");
-      addChannels(header, frame, layer.image, layer.name + ".");
+      source.add(header, frame, layer.image, layer.name + ".");
     }
     FileOutput stream(path);
     {

@@ -29,9 +29,15 @@ struct ExrLayer {
 // Told the part that is written so far, 0 to 1, every now and then.
 using WriteProgress = std::function<void(double fraction)>;
 
-// Single part, 32-bit float, ZIP-compressed scan lines. Channels R G B, or Y for one channel.
+// Of all channels of a file. Halves have 11 significant bits, and end at kLargestHalf.
+enum class ExrSamples { floats, halves };
+constexpr float kLargestHalf = 65504;
+
+// Single part, ZIP-compressed scan lines. Channels R G B, or Y for one channel. Throws ImageError, also where a sample
+// is beyond kLargestHalf in a file of halves.
 void writeExr(const std::string& path, const Image& image, const Metadata& metadata = {},
-              std::span<const ExrLayer> layers = {}, const WriteProgress& progress = {});
+              std::span<const ExrLayer> layers = {}, const WriteProgress& progress = {},
+              ExrSamples samples = ExrSamples::floats);
 
 // What writeExr takes besides an image of three channels: the blocks that OpenEXR's threads compress, and the file's
 // buffer.

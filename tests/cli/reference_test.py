@@ -50,6 +50,19 @@ class Reference(CommandTest):
         self.reference("--until-relative-error", "0.9", "-o", "r.exr")
         self.assertEqual(pathlib.Path(self.path("r.exr")).read_bytes(), before)
 
+    def test_a_compact_one_is_measured_against_but_not_gone_on_with(self):
+        self.reference("--spp", "4", "-o", "whole.exr", "--compact", "r.exr")
+        header = self.header("r.exr")
+        self.assertEqual(header["wavecrest:samples"], "half")
+        self.assertNotIn(b"variance.B\0", header["channels"])
+        self.assertEqual(header["wavecrest:noise_floor.ssim"], self.header("whole.exr")["wavecrest:noise_floor.ssim"])
+        before = pathlib.Path(self.path("r.exr")).read_bytes()
+        result = self.reference("--spp", "8", "--quiet", "-o", "r.exr", expect=INPUT)
+        self.assert_one_error_line(result, r"r\.exr: its samples is 'half', not 'float'; expected")
+        self.assertEqual(pathlib.Path(self.path("r.exr")).read_bytes(), before)
+        compared = self.run_wavecrest("compare", "r.exr", "whole.exr", "--metrics", "ssim")
+        self.assertRegex(compared.stdout, r"ssim +mean (1|0\.9999)")
+
     def test_what_a_killed_writer_left_is_removed(self):
         self.write("r.exr.tmp.1.0", "part of a reference")
         self.reference("--spp", "1", "-o", "r.exr")

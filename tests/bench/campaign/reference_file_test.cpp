@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <random>
 
 #include "tests/metrics/temporary_folder.h"
@@ -74,6 +75,41 @@ TEST(ReferenceFile, holdsTheVarianceOfTheMean) {
     const float d = written.difference->pixels[i];
     ASSERT_NEAR(variance.pixels[i], d * d, d * d * 0x1p-12f);
   }
+}
+
+TEST(ReferenceFile, aCompactOneMeasuresAsTheWholeOneDoes) {
+  const test::TemporaryFolder folder;
+  const Reference written = sampleReference();
+  writeReference(folder.path("whole.exr"), written);
+  writeCompactReference(folder.path("compact.exr"), written);
+  const Reference read = readReference(folder.path("compact.exr"));
+  EXPECT_TRUE(read.info.isCompact());
+  EXPECT_FALSE(readReference(folder.path("whole.exr")).info.isCompact());
+  EXPECT_EQ(whyNoReference(read), "");
+  EXPECT_EQ(read.noiseFloors, written.noiseFloors) << "as measured before rounding";
+  EXPECT_EQ(read.info.iterations, written.info.iterations);
+  double square = 0, squareWritten = 0;
+  for (size_t i = 0; i < read.mean.pixels.size(); ++i) {
+    const float m = written.mean.pixels[i], d = written.difference->pixels[i];
+    ASSERT_NEAR(read.mean.pixels[i], m, std::fabs(m) * 0x1p-11f);
+    ASSERT_NEAR(read.difference->pixels[i], d, std::fabs(d) * 0x1p-3f);
+    square += std::pow(double{read.difference->pixels[i]}, 2);
+    squareWritten += std::pow(double{d}, 2);
+  }
+  // Rounding errors of up to an eighth cancel in the sum over 2304 samples, whose squares tell of the noise.
+  EXPECT_NEAR(square, squareWritten, 0.01 * squareWritten);
+  EXPECT_LT(std::filesystem::file_size(folder.path("compact.exr")),
+            std::filesystem::file_size(folder.path("whole.exr")) / 3);
+}
+
+TEST(ReferenceFile, aCompactOneHoldsNothingAboveTheLargestHalf) {
+  const test::TemporaryFolder folder;
+  Reference bright = sampleReference();
+  bright.mean.pixels[5] = 65504;
+  writeCompactReference(folder.path("r.exr"), bright);
+  EXPECT_EQ(readReference(folder.path("r.exr")).mean.pixels[5], 65504);
+  bright.mean.pixels[5] = 65505;
+  EXPECT_THROW(writeCompactReference(folder.path("r.exr"), bright), ImageError);
 }
 
 TEST(ReferenceFile, relativeErrorIsThatOfTheDefinition) {

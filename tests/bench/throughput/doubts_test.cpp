@@ -8,7 +8,7 @@ namespace {
 
 Estimate within(double value, double part) { return {value, {value * (1 - part), value * (1 + part)}}; }
 
-// On a quiet machine: one and two threads, fifteen slices that differ by a few thousandths.
+// On a quiet machine: one and two threads, fifteen slices of one visit that differ by a few thousandths.
 Speed quietSpeed() {
   std::vector<Slice> slices(15);
   for (size_t i = 0; i < slices.size(); ++i) {
@@ -21,8 +21,8 @@ Speed quietSpeed() {
   Speed speed;
   speed.pathsPerSecond = within(2e6, 0.01);
   speed.pathsPerCpuSecond = within(1e6, 0.01);
-  speed.scaling = {{1, within(1e6, 0.01), within(1, 0), within(1, 0), slices},
-                   {2, within(2e6, 0.01), within(1.97, 0.01), within(0.99, 0.01), slices}};
+  speed.scaling = {{1, within(1e6, 0.01), within(1, 0), within(1, 0), {slices}},
+                   {2, within(2e6, 0.01), within(1.97, 0.01), within(0.99, 0.01), {slices}}};
   return speed;
 }
 
@@ -39,7 +39,7 @@ TEST(Doubts, tooShortARunSaysSo) {
 
 TEST(Doubts, unevenSlicesAreNamed) {
   Speed speed = quietSpeed();
-  for (size_t i = 0; i < 15; i += 2) speed.scaling[1].slices[i].cpuSeconds *= 1.3;
+  for (size_t i = 0; i < 15; i += 2) speed.scaling[1].slices[0][i].cpuSeconds *= 1.3;
   const auto doubts = doubtsAbout(speed);
   ASSERT_EQ(doubts.size(), 1u);
   EXPECT_NE(doubts[0].find("on 2 threads differ"), std::string::npos);

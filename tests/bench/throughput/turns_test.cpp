@@ -15,6 +15,12 @@ RenderSettings measured(Method method) {
   return settings;
 }
 
+Speed speedOf(const Scene& scene, size_t visits, double visitSeconds) {
+  SpeedMeasurement measurement(scene, measured(Method::vcm));
+  for (size_t visit = 0; visit < visits; ++visit) measurement.visit(visitSeconds);
+  return measurement.speed();
+}
+
 TEST(Turns, slicesAreWholeIterationsAndOfEqualSize) {
   const Scene scene = smallBox(24, 16);
   for (const Method method : {Method::pt, Method::vcm, Method::lt}) {
@@ -31,8 +37,8 @@ TEST(Turns, slicesAreWholeIterationsAndOfEqualSize) {
 
 TEST(Turns, itemsOfAPathAreTheSameInEveryMeasurement) {
   const Scene scene = smallBox(24, 16);
-  const Speed a = measureSpeed(scene, measured(Method::vcm), 0.2);
-  const Speed b = measureSpeed(scene, measured(Method::vcm), 0.4);
+  const Speed a = speedOf(scene, 1, 0.2);
+  const Speed b = speedOf(scene, 3, 0.15);
   ASSERT_EQ(a.stages.size(), b.stages.size());
   for (size_t i = 0; i < a.stages.size(); ++i) {
     // Other numbers of iterations: some 10^5 paths at the least, so a standard error of 0.3 % or less.
