@@ -89,7 +89,6 @@ std::vector<std::unique_ptr<Session>> SpeedMeasurement::makeSessions() const {
   for (const uint32_t count : threads_) {
     RenderSettings own = settings_;
     own.threads = count;
-    own.seed += slices_.front().size();
     sessions.push_back(Session::create(scene_, own));
   }
   return sessions;

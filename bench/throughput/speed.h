@@ -54,8 +54,9 @@ class SpeedMeasurement {
  public:
   SpeedMeasurement(const Scene& scene, const RenderSettings& settings);
 
-  // Renders with 1, 2, 4, ... and settings.threads threads in turn for about `seconds` of render time altogether, on
-  // sessions of its own with random numbers of its own. The first one finds out how many iterations fill a slice.
+  // Renders with 1, 2, 4, ... and settings.threads threads in turn for about `seconds` of render time altogether. Each
+  // visit has sessions of its own and renders the same iterations again, so that visits differ by the machine alone.
+  // The first one finds out how many iterations fill a slice.
   void visit(double seconds);
   // After one visit at least.
   Speed speed() const;
