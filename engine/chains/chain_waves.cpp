@@ -14,14 +14,26 @@ uint32_t keptColumns(const ChainSamples& samples, const ChainState::Kept& kept) 
   return kept.vertices[1] == 0 ? samples.firstColumn[1] : samples.column(1, 4 * kept.vertices[1]);
 }
 
+// Chains that stay together. Where each thread has several waves, these are its groups, as it takes the next one when
+// it has done with one; one thread waits for nobody.
+size_t groupSize(const RenderSettings& settings) {
+  constexpr size_t kFewWaves = 8;  // of a thread
+  const uint32_t threads = settings.cutForThreads();
+  const bool few = piecesOf(settings.metropolis.chains, settings.waveSize) < kFewWaves * threads;
+  return threads > 1 && few ? std::min<size_t>(kColumnPadding, settings.waveSize) : settings.waveSize;
+}
+
 }  // namespace
 
 template <class S>
 ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
-    : plan_(plan), settings_(settings), area_(area) {
+    : plan_(plan),
+      settings_(settings),
+      area_(area),
+      group_(groupSize(settings)),
+      waves_(piecesOf(groups(), settings.waveSize / group_)) {
   const ChainState::Kept kept = keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth);
-  const size_t waves = piecesOf(settings.metropolis.chains, settings.waveSize);
-  for (size_t wave = 0; wave < waves; ++wave) {
+  for (size_t wave = 0; wave < size(); ++wave) {
     states_.emplace_back(chainCount(wave), kept).multiplexed = plan.pipeline.lightPass.has_value();
     if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan.pathLaws.law().maxEdges, plan.needs);
   }
@@ -29,8 +41,22 @@ ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& setti
 }
 
 template <class S>
+size_t ChainWaves<S>::groups() const {
+  return piecesOf(settings_.metropolis.chains, group_);
+}
+
+template <class S>
 size_t ChainWaves<S>::chainCount(size_t wave) const {
-  return itemsOfPiece(wave, settings_.metropolis.chains, settings_.waveSize);
+  const size_t ofWave = piecesOf(groups() - wave, size()), last = wave + (ofWave - 1) * size();
+  return (ofWave - 1) * group_ + itemsOfPiece(last, settings_.metropolis.chains, group_);
+}
+
+template <class S>
+template <class Visit>
+void ChainWaves<S>::forEachGroup(Visit&& visit) const {
+  for (size_t group = 0; group < groups(); ++group) {
+    visit(group % size(), group / size() * group_, itemsOfPiece(group, settings_.metropolis.chains, group_));
+  }
 }
 
 template <class S>
@@ -44,7 +70,7 @@ void ChainWaves<S>::start(size_t wave, uint64_t epoch, const BootstrapPlan& boot
   const LargeStepSums largeBefore = state.largeSteps;
   // Replays the samples and accepts them all.
   for (size_t i = 0; i < count; ++i) {
-    const uint32_t sample = starts[firstChain(wave) + i];
+    const uint32_t sample = starts[chainAt(wave, i)];
     chains.source[i] = sample;
     chains.length[i] = bootstrap.length[sample];
     chains.target[i] = 0;
@@ -64,7 +90,7 @@ void ChainWaves<S>::start(size_t wave, uint64_t epoch, const BootstrapPlan& boot
   state.samples.stream = Stream::chain;
   state.samples.largeStep = static_cast<float>(settings_.metropolis.largeStep);
   for (size_t i = 0; i < count; ++i) {
-    chains.source[i] = static_cast<uint32_t>(firstChain(wave) + i);
+    chains.source[i] = static_cast<uint32_t>(chainAt(wave, i));
     chains.weight[i] = 0;
     chains.rejections[i] = 0;
     if (inPathSpace()) chains.length[i] = 0;  // of any length from now on
@@ -92,31 +118,31 @@ void ChainWaves<S>::advance(size_t wave, uint64_t first, uint64_t steps, ChainWo
 
 template <class S>
 void ChainWaves<S>::addPending(std::vector<PendingSplat>& splats) const {
-  for (size_t wave = 0; wave < size(); ++wave) {
+  forEachGroup([&](size_t wave, size_t first, size_t count) {
     const ChainState& state = states_[wave];
     const Chains& chains = state.columns;
-    for (size_t i = 0; i < chainCount(wave); ++i) {
+    for (size_t i = first; i < first + count; ++i) {
       if (!(chains.target[i] > 0)) continue;
       const double visits = static_cast<double>(chains.weight[i]) * static_cast<double>(state.splatFactor);
       splats.push_back({chains.pixel[i],
                         {visits * static_cast<double>(chains.red[i]), visits * static_cast<double>(chains.green[i]),
                          visits * static_cast<double>(chains.blue[i])}});
     }
-  }
+  });
 }
 
 template <class S>
 void ChainWaves<S>::listStuck(std::vector<StuckChain>& list) const {
-  for (size_t wave = 0; wave < size(); ++wave) {
+  forEachGroup([&](size_t wave, size_t first, size_t count) {
     const Chains& chains = states_[wave].columns;
-    for (size_t i = 0; i < chainCount(wave); ++i) {
+    for (size_t i = first; i < first + count; ++i) {
       if (chains.rejections[i] < kStuckRejections) continue;
       const uint32_t edges = inPathSpace()               ? paths_[wave].headers.edges[i]
                              : states_[wave].multiplexed ? chains.length[i]
                                                          : chains.cameraVertices[i];
-      list.push_back({static_cast<uint32_t>(firstChain(wave) + i), chains.rejections[i], edges, chains.pixel[i]});
+      list.push_back({static_cast<uint32_t>(chainAt(wave, i)), chains.rejections[i], edges, chains.pixel[i]});
     }
-  }
+  });
   std::stable_sort(list.begin(), list.end(),
                    [](const StuckChain& a, const StuckChain& b) { return a.rejections > b.rejections; });
   if (list.size() > kListedStuckChains) list.resize(kListedStuckChains);
@@ -187,9 +213,10 @@ void ChainWaves<S>::save(StateWriter& out) const {
   std::vector<std::vector<Row>> rows;
   for (size_t wave = 0; wave < size(); ++wave) rows.push_back(rowsOf(wave, vertices));
   for (size_t row = 0; row < rows.front().size(); ++row) {
-    for (size_t wave = 0; wave < size(); ++wave) {
-      out.bytes({rows[wave][row].items, chainCount(wave) * rows[wave][row].bytes});
-    }
+    forEachGroup([&](size_t wave, size_t first, size_t count) {
+      const Row& of = rows[wave][row];
+      out.bytes({of.items + first * of.bytes, count * of.bytes});
+    });
   }
 }
 
@@ -205,9 +232,10 @@ void ChainWaves<S>::restore(StateReader& in, double splatFactor) {
   std::vector<std::vector<Row>> rows;
   for (size_t wave = 0; wave < size(); ++wave) rows.push_back(rowsOf(wave, vertices));
   for (size_t row = 0; row < rows.front().size(); ++row) {
-    for (size_t wave = 0; wave < size(); ++wave) {
-      in.items(rows[wave][row].items, chainCount(wave) * rows[wave][row].bytes);
-    }
+    forEachGroup([&](size_t wave, size_t first, size_t count) {
+      const Row& of = rows[wave][row];
+      in.items(of.items + first * of.bytes, count * of.bytes);
+    });
   }
   for (size_t wave = 0; wave < size(); ++wave) {
     ChainState& state = states_[wave];
