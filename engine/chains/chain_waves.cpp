@@ -54,8 +54,11 @@ size_t ChainWaves<S>::chainCount(size_t wave) const {
 template <class S>
 template <class Visit>
 void ChainWaves<S>::forEachGroup(Visit&& visit) const {
-  for (size_t group = 0; group < groups(); ++group) {
-    visit(group % size(), group / size() * group_, itemsOfPiece(group, settings_.metropolis.chains, group_));
+  size_t group = 0;
+  for (size_t first = 0; group < groups(); first += group_) {
+    for (size_t wave = 0; wave < size() && group < groups(); ++wave, ++group) {
+      visit(wave, first, itemsOfPiece(group, settings_.metropolis.chains, group_));
+    }
   }
 }
 
