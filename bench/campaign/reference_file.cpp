@@ -18,8 +18,9 @@ constexpr const char* kPrefix = "wavecrest:";
 constexpr const char* kFloorPrefix = "wavecrest:noise_floor.";
 constexpr const char *kDifference = "difference", *kVariance = "variance";
 
-// Significant bits that are kept: of the layers beside the mean, which are noise, and of a compact reference's.
-constexpr uint32_t kLayerBits = 12, kCompactLayerBits = 3;
+// Significant bits that are kept: of the layers beside the mean, which are noise; and of a compact reference's mean and
+// difference. Rounding makes squares of differences 1 % too small.
+constexpr uint32_t kLayerBits = 12, kCompactBits = 9, kCompactLayerBits = 2;
 
 Image roundedTo(uint32_t bits, Image image) {
   const uint32_t dropped = 24 - bits, half = 1u << dropped >> 1;
@@ -137,7 +138,8 @@ void writeCompactReference(const std::filesystem::path& path, const Reference& r
   Reference compact{.mean = {}, .difference = {}, .info = reference.info, .noiseFloors = reference.noiseFloors};
   compact.info.samples = ReferenceInfo::kCompactSamples;
   const ExrLayer layer{kDifference, roundedTo(kCompactLayerBits, reference.difference.value())};
-  writeExr(path.string(), reference.mean, toMetadata(compact), {&layer, 1}, {}, ExrSamples::halves);
+  writeExr(path.string(), roundedTo(kCompactBits, reference.mean), toMetadata(compact), {&layer, 1}, {},
+           ExrSamples::halves);
 }
 
 Reference readReference(const std::filesystem::path& path) {

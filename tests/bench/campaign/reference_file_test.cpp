@@ -91,13 +91,13 @@ TEST(ReferenceFile, aCompactOneMeasuresAsTheWholeOneDoes) {
   double square = 0, squareWritten = 0;
   for (size_t i = 0; i < read.mean.pixels.size(); ++i) {
     const float m = written.mean.pixels[i], d = written.difference->pixels[i];
-    ASSERT_NEAR(read.mean.pixels[i], m, std::fabs(m) * 0x1p-11f);
-    ASSERT_NEAR(read.difference->pixels[i], d, std::fabs(d) * 0x1p-3f);
+    ASSERT_NEAR(read.mean.pixels[i], m, std::fabs(m) * 0x1p-9f);
+    ASSERT_NEAR(read.difference->pixels[i], d, std::fabs(d) * 0x1p-2f);
     square += std::pow(double{read.difference->pixels[i]}, 2);
     squareWritten += std::pow(double{d}, 2);
   }
-  // Rounding errors of up to an eighth cancel in the sum over 2304 samples, whose squares tell of the noise.
-  EXPECT_NEAR(square, squareWritten, 0.01 * squareWritten);
+  // Rounding errors of up to a quarter cancel in the sum over 2304 samples, whose squares tell of the noise.
+  EXPECT_NEAR(square, squareWritten, 0.02 * squareWritten);
   EXPECT_LT(std::filesystem::file_size(folder.path("compact.exr")),
             std::filesystem::file_size(folder.path("whole.exr")) / 3);
 }
@@ -105,9 +105,9 @@ TEST(ReferenceFile, aCompactOneMeasuresAsTheWholeOneDoes) {
 TEST(ReferenceFile, aCompactOneHoldsNothingAboveTheLargestHalf) {
   const test::TemporaryFolder folder;
   Reference bright = sampleReference();
-  bright.mean.pixels[5] = 65504;
+  bright.mean.pixels[5] = 65408;  // the largest half of nine significant bits
   writeCompactReference(folder.path("r.exr"), bright);
-  EXPECT_EQ(readReference(folder.path("r.exr")).mean.pixels[5], 65504);
+  EXPECT_EQ(readReference(folder.path("r.exr")).mean.pixels[5], 65408);
   bright.mean.pixels[5] = 65505;
   EXPECT_THROW(writeCompactReference(folder.path("r.exr"), bright), ImageError);
 }
