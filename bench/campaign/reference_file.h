@@ -6,9 +6,9 @@
 // noise floor of every metric, as "wavecrest:noise_floor.NAME". An EXR without the layers can be read as
 // one, but is none: whyNoReference.
 //
-// A compact reference is one for a repository, a seventh of the size: half floats of the mean, the difference to three
-// significant bits, no variance. Images are measured against it as against the whole one; rendering does not go on with
-// it.
+// A compact reference is a smaller file for a repository, a seventh of the size: half floats, the mean rounded to nine
+// significant bits, the difference to two, and no variance. Images can be measured against it as against the whole
+// file. Rendering cannot go on from it.
 #pragma once
 
 #include <filesystem>

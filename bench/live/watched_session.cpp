@@ -86,8 +86,8 @@ void WatchedSession::estimateError() {
   errorIterations_ = slicesUntil_;
 }
 
-// Signals and timers set the interrupt flag of the wrapped session. Callers read the flag of this one, so it is copied
-// before and after.
+// A signal or timer interrupts the wrapped session, but callers ask this one whether it was interrupted. So the flag is
+// copied from the one to the other, before the render and after.
 void WatchedSession::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
   if (!session_->interrupted()) resume();
   renderWatched(iterations, seconds);

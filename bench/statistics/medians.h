@@ -32,12 +32,11 @@ constexpr uint32_t kResamples = 2000;
 
 Estimate estimateMedian(std::span<const double> values);
 
-// The median of repetitions that were made in several visits, hours of a shared machine or minutes of a quiet one
-// apart: the median of the visits' medians. What a machine does between two visits moves all values of one, so the
-// values themselves are not independent; the visits are. The interval is of order statistics: the narrowest pair of
-// visits, as many from either end, that holds the median with probability `level` whatever the distribution (Conover
-// 1999, chapter 3.2). Six visits are the fewest for 95 %; with fewer it is their range, and with one that of its own
-// values. No visit may be empty.
+// The median of repetitions made in several visits, between which time passes: the median of the visits' medians. A
+// machine whose speed drifts moves all values of a visit together, so values of one visit are not independent, but
+// visits are. The interval is between two of the sorted medians, as far from either end: the narrowest such pair that
+// holds the true median with probability `level`, whatever the distribution (Conover 1999, chapter 3.2). 95 % takes six
+// visits at least; with fewer the interval is their range, and with one that of estimateMedian. No visit may be empty.
 Estimate estimateMedianOfVisits(std::span<const std::vector<double>> visits, double level = kIntervalLevel);
 constexpr size_t kVisitsForInterval = 6;
 

@@ -37,7 +37,8 @@ class SceneBench {
   // per scene out of the first method's share. Keeps the scene.
   SceneBench(Scene scene, const RenderSettings& settings, const std::vector<Method>& methods, double seconds);
 
-  // A kVisitsForInterval-th of the time for speed, of all methods.
+  // Measures the speed of every method once. Call it kVisitsForInterval times: each call takes that part of the time
+  // for speed.
   void visit();
   // After the visits.
   SceneResult finish() const;

@@ -14,8 +14,8 @@ uint32_t keptColumns(const ChainSamples& samples, const ChainState::Kept& kept) 
   return kept.vertices[1] == 0 ? samples.firstColumn[1] : samples.column(1, 4 * kept.vertices[1]);
 }
 
-// Chains that stay together. Where each thread has several waves, these are its groups, as it takes the next one when
-// it has done with one; one thread waits for nobody.
+// How many chains go to a wave together. Where threads have many waves each, a group is a whole wave: a thread takes
+// the next wave when it is done with one, so long ones hold up nobody. One thread never waits.
 size_t groupSize(const RenderSettings& settings) {
   constexpr size_t kFewWaves = 8;  // of a thread
   const uint32_t threads = settings.cutForThreads();

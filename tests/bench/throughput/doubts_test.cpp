@@ -8,7 +8,8 @@ namespace {
 
 Estimate within(double value, double part) { return {value, {value * (1 - part), value * (1 + part)}}; }
 
-// On a quiet machine: one and two threads, fifteen slices of one visit that differ by a few thousandths.
+// As measured on a quiet machine with one and two threads: one visit of fifteen slices, whose CPU times differ by at
+// most 1.4 %.
 Speed quietSpeed() {
   std::vector<Slice> slices(15);
   for (size_t i = 0; i < slices.size(); ++i) {
