@@ -1,7 +1,7 @@
 // The film of a session as an image, for metrics and files.
 #pragma once
 
-#include "engine/session.h"
+#include "engine/session/session.h"
 #include "metrics/image/image.h"
 
 namespace wavecrest {

@@ -9,9 +9,9 @@
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
-#include "cli/option_values.h"
 #include "cli/pinning.h"
 #include "engine/version.h"
+#include "library/option_values.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {

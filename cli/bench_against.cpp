@@ -10,7 +10,7 @@
 #include "bench/against/stored.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
-#include "cli/option_values.h"
+#include "library/option_values.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {

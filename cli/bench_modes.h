@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/load/load.h"
-#include "engine/render_settings.h"
+#include "engine/plan/render_settings.h"
 #include "engine/scene/scene.h"
 
 namespace wavecrest {

@@ -8,8 +8,8 @@
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/option_values.h"
 #include "engine/load/load.h"
+#include "library/option_values.h"
 #include "metrics/image/atomic_file.h"
 #include "scenes/scene_list.h"
 

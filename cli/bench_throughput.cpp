@@ -25,15 +25,10 @@ int runBenchThroughput(const BenchOptions& options) {
     const RenderSettings settings = benchSettings(scene, options);
     benches.emplace_back(std::move(scene), settings, methods, seconds);
   }
-  for (size_t visit = 1; visit < kVisitsForInterval; ++visit) {
-    for (SceneBench& bench : benches) bench.visit();
-  }
-  for (SceneBench& bench : benches) {
-    bench.visit();
-    const SceneResult result = bench.finish();
+  benchInTurn(benches, [&](const SceneResult& result) {
     printBench(options, toText(result) + "\n");
     all["scenes"].push_back(toJson(result));
-  }
+  });
   writeBenchJson(options, "throughput", all);
   return kExitDone;
 }

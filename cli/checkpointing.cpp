@@ -7,7 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/file_check.h"
-#include "cli/option_values.h"
+#include "library/option_values.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {

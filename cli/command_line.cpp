@@ -6,7 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/describe.h"
-#include "cli/suggestion.h"
+#include "library/suggestion.h"
 
 namespace wavecrest {
 namespace {

@@ -15,9 +15,9 @@
 #include "cli/interrupt.h"
 #include "cli/live_render.h"
 #include "cli/messages.h"
-#include "cli/option_values.h"
 #include "cli/progress.h"
 #include "library/campaign_options.h"
+#include "library/option_values.h"
 
 namespace wavecrest {
 namespace {

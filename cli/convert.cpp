@@ -5,9 +5,9 @@
 
 #include "cli/commands.h"
 #include "cli/file_check.h"
-#include "cli/option_values.h"
 #include "cli/scene_options.h"
 #include "engine/save/save.h"
+#include "library/option_values.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {

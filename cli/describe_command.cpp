@@ -5,9 +5,9 @@
 
 #include "cli/commands.h"
 #include "cli/describe.h"
-#include "cli/option_values.h"
 #include "engine/methods/method_list.h"
 #include "engine/version.h"
+#include "library/option_values.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {

@@ -6,10 +6,10 @@
 #include <thread>
 
 #include "cli/commands.h"
-#include "cli/option_values.h"
 #include "cli/scene_options.h"
-#include "engine/inspection.h"
+#include "engine/inspect/inspection.h"
 #include "library/inspection_json.h"
+#include "library/option_values.h"
 
 namespace wavecrest {
 namespace {

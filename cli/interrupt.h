@@ -9,7 +9,7 @@
 #include <csignal>
 #include <string>
 
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 

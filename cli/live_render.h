@@ -9,7 +9,7 @@
 #include "cli/command_line.h"
 #include "cli/progress.h"
 #include "engine/scene/scene.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "cli/progress.h"
-#include "engine/placement.h"
+#include "engine/tasks/placement.h"
 
 namespace wavecrest {
 

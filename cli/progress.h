@@ -10,7 +10,7 @@
 #include <string_view>
 #include <thread>
 
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 

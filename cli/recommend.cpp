@@ -8,8 +8,8 @@
 
 #include "bench/recommend/recommend.h"
 #include "cli/commands.h"
-#include "cli/option_values.h"
 #include "cli/scene_options.h"
+#include "library/option_values.h"
 #include "metrics/ssim.h"
 
 namespace wavecrest {

@@ -15,16 +15,15 @@
 #include "cli/file_check.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
-#include "cli/option_values.h"
 #include "cli/scene_options.h"
-#include "engine/path_classes.h"
+#include "engine/inspect/path_classes.h"
+#include "library/option_values.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {
 namespace {
 
 constexpr double kDefaultRelativeError = 0.01;
-constexpr double kReferenceRadius = 1e-4;  // of merging methods: their bias must be far below any that is measured
 
 struct ReferenceOptions {
   SceneOptions scene;

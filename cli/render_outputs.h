@@ -13,8 +13,8 @@
 #include "bench/results/results.h"
 #include "cli/progress.h"
 #include "engine/scene/scene.h"
-#include "engine/session.h"
-#include "engine/snapshots.h"
+#include "engine/session/session.h"
+#include "engine/session/snapshots.h"
 
 namespace wavecrest {
 

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/option_values.h"
 #include "engine/load/load.h"
 #include "library/campaign_rows.h"
+#include "library/option_values.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {

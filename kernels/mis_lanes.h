@@ -58,28 +58,28 @@ WAVECREST_INLINE double edgeSwitch(const MisSettings& mis, uint32_t depth) {
   return depth >= 2 && !mis.connect ? 0.0 : 1.0;
 }
 
-// kVM m + e dVCM + p_r dVC: densities of everything behind this vertex relative to joining it by a connection.
+// vmWeight m + e dVCM + p_r dVC: densities of everything behind this vertex relative to joining it by a connection.
 template <class Real>
 WAVECREST_INLINE Real behindConnection(const MisSettings& settings, uint32_t depth, const MisSums<Real>& mis,
                                        Real pdfReverse) {
-  return Real(settings.kVM) + mulAdd(Real(edgeSwitch(settings, depth)), mis.dVCM, pdfReverse * mis.dVC);
+  return Real(settings.vmWeight) + mulAdd(Real(edgeSwitch(settings, depth)), mis.dVCM, pdfReverse * mis.dVC);
 }
 
-// e dVCM kVC + p dVM: the same relative to joining it by a merge.
+// e dVCM vcWeight + p dVM: the same relative to joining it by a merge.
 template <class Real>
 WAVECREST_INLINE Real behindMerge(const MisSettings& settings, uint32_t depth, const MisSums<Real>& mis, Real pdf) {
-  return mulAdd(Real(edgeSwitch(settings, depth) * settings.kVC), mis.dVCM, pdf * mis.dVM);
+  return mulAdd(Real(edgeSwitch(settings, depth) * settings.vcWeight), mis.dVCM, pdf * mis.dVM);
 }
 
-// Scattering (34)-(36). genCosine: |gen . geometric normal|.
+// Scattering (34)-(36). woCosine: |wo . geometric normal|.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE MisSums<typename P::Real> scatterMis(const MisSettings& settings, uint32_t depth,
                                                       const MisSums<typename P::Real>& mis, typename P::Real pdf,
-                                                      typename P::Real pdfReverse, typename P::Real genCosine) {
+                                                      typename P::Real pdfReverse, typename P::Real woCosine) {
   using Real = typename P::Real;
   const Real inversePdf = reciprocal(pdf);
   if constexpr (has(kFeatures, kBidirectional)) {
-    const Real scale = genCosine * inversePdf;
+    const Real scale = woCosine * inversePdf;
     return {inversePdf, scale * behindConnection(settings, depth, mis, pdfReverse),
             scale * (Real(settings.merge ? 1 : 0) + behindMerge(settings, depth, mis, pdfReverse))};
   } else {
@@ -89,13 +89,13 @@ WAVECREST_INLINE MisSums<typename P::Real> scatterMis(const MisSettings& setting
 
 // Scattering over a delta lobe (53)-(55): no strategy can take this vertex's place, and the densities behind it change
 // by the ratio of the two directions' discrete densities per area. With refraction that is
-// J = (P_r / P_f) |gen . N| (c_fix / c_gen) (eta_fix / eta_gen)^2, c being cosines to the shading normal.
+// J = (P_r / P_f) |wo . N| (c_wi / c_wo) (eta_wi / eta_wo)^2, c being cosines to the shading normal.
 template <class Real>
 WAVECREST_INLINE MisSums<Real> scatterSpecularMis(const MisSums<Real>& mis, Real jacobian) {
   return {Real(0), mis.dVC * jacobian, mis.dVM * jacobian};
 }
 
-// A row stores one of dVC and dVM. Where vertices are connected it is dVC, and dVM follows from it: dVM = kVC dVC
+// A row stores one of dVC and dVM. Where vertices are connected it is dVC, and dVM follows from it: dVM = vcWeight dVC
 // (METHODS 5.6).
 template <class Real>
 WAVECREST_INLINE Real keptBehind(const MisSettings& settings, const MisSums<Real>& mis) {
@@ -103,7 +103,7 @@ WAVECREST_INLINE Real keptBehind(const MisSettings& settings, const MisSums<Real
 }
 template <class Real>
 WAVECREST_INLINE Real mergeSum(const MisSettings& settings, Real behind) {
-  return behind * Real(settings.connect ? settings.kVC : 1.0);
+  return behind * Real(settings.connect ? settings.vcWeight : 1.0);
 }
 
 WAVECREST_SIMD_END

@@ -75,7 +75,7 @@ enum MaterialFlags : uint32_t {
   kHasDelta = 2,   // some lobe is a delta: smooth reflection or refraction, or opacity below 1
   kHasFinite = 4,  // some lobe is not
   kNonlinear = 8,  // plastic: internal scattering shifts colour
-  // Of materials with a bump or normal map (kernels/shade/normal_map_lanes.h).
+  // Of materials with a bump or normal map (kernels/surface/normal_map_lanes.h).
   kMapped = 16,
   kFlipsNormals = 32,
   kSoftensTerminator = 64,

@@ -10,13 +10,13 @@
 #include <optional>
 #include <string_view>
 
+#include "kernels/columns/filter_spread.h"
+#include "kernels/columns/photon_grid.h"
+#include "kernels/columns/splat_sums.h"
 #include "kernels/columns/wave.h"
-#include "kernels/merge/photon_grid.h"
 #include "kernels/sampling/sampler.h"
 #include "kernels/scene_view.h"
 #include "kernels/simd/isa.h"
-#include "kernels/splat/filter_spread.h"
-#include "kernels/splat/splat_sums.h"
 #include "kernels/stage_catalogue.h"
 
 namespace wavecrest {
@@ -114,12 +114,11 @@ struct MisSettings {
   bool merge = false;           // vertex merging
   bool mergeWeights = true;     // false: merging makes each path once, and alone
   bool powerHeuristic = false;  // where s = 0 and s = 1 are all there is: weights by squares of densities
-  double kVM = 0;               // merging seen from a connection: pi r^2 N_L, or 0 without merging
-  double kVC = 0;               // connection seen from a merge: its reciprocal, or 0 where merging stands alone
+  double vmWeight = 0;          // merging seen from a connection: pi r^2 N_L, or 0 without merging
+  double vcWeight = 0;          // connection seen from a merge: its reciprocal, or 0 where merging stands alone
   double mergeNorm = 0;         // 1 / (pi r^2 N_L)
   double radius = 0;            // r
   double lightPaths = 0;        // N_L
-  double camN = 0;              // light paths per camera path of one pixel
 };
 
 // The rendered rectangle of the film: what contributions of light walks are projected to.
@@ -184,15 +183,18 @@ struct StageContext {
   PathLimits limits;
   Walk walk = Walk::camera;
   MisSettings mis;
-  uint32_t depth = 0;                     // index of the vertex that the stage works on; 0 is the path's origin
-  DepthRange lightDepths{};               // of the light vertices that connectVertices joins
+  uint32_t depth = 0;        // index of the vertex that the stage works on; 0 is the path's origin
+  DepthRange lightDepths{};  // of the light vertices that connectVertices joins
+  // Limit for Russian roulette of connections (METHODS 5.9), compared with the largest channel of a contribution. 0: no
+  // roulette, all connections are joined.
+  S rouletteBelow = 0;
   uint32_t repetition = 0;                // of the stages that join vertices until none is left
   LightStore<S>* light = nullptr;         // light vertices of this wave's paths
   PhotonGrid<S> photonGrid{};             // where they are in it, if they are to be merged
   const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place
   FilmWindow film;
   // Camera paths of an iteration all have the same place in their pixel's filter, and the film spreads their samples
-  // (kernels/splat/filter_spread.h).
+  // (kernels/columns/filter_spread.h).
   bool sharedPlace = false;
   bool splatting = true;              // light walks push Splats; else they add to their lanes, as those of chains do
   ChainState* chains = nullptr;       // of Markov chains: their state, one chain to a lane

@@ -6,7 +6,7 @@
 #include "bench/campaign/run_campaign.h"
 #include "bench/report/write_report.h"
 #include "bench/results/read_results.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 #include "engine/version.h"
 #include "library/campaign_options.h"
 #include "library/translate.h"

@@ -12,10 +12,10 @@
 #include "bench/report/results_folder.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
-#include "cli/commands.h"
-#include "cli/option_values.h"
 #include "library/campaign_resume.h"
 #include "library/campaign_rows.h"
+#include "library/errors.h"
+#include "library/option_values.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {

@@ -9,8 +9,8 @@
 #include "bench/campaign/file_lock.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
-#include "cli/commands.h"
 #include "library/campaign_options.h"
+#include "library/errors.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "cli/commands.h"
-#include "cli/option_values.h"
+#include "library/errors.h"
+#include "library/option_values.h"
 
 namespace wavecrest {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "cli/commands.h"
-#include "cli/suggestion.h"
+#include "library/errors.h"
+#include "library/suggestion.h"
 
 namespace wavecrest {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "engine/inspection.h"
+#include "engine/inspect/inspection.h"
 #include "engine/scene/scene.h"
 
 namespace wavecrest {

@@ -6,7 +6,7 @@
 
 #include "bench/campaign/render_stats.h"
 #include "bench/film_image.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 #include "library/image_conversion.h"
 #include "library/render_settings.h"
 #include "library/scene_data.h"

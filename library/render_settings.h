@@ -1,7 +1,7 @@
 // From a render's options, in words, to the engine's settings.
 #pragma once
 
-#include "engine/render_settings.h"
+#include "engine/plan/render_settings.h"
 #include "engine/scene/scene.h"
 #include "wavecrest/render_options.h"
 

@@ -7,10 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "cli/commands.h"
-#include "engine/inspection.h"
+#include "engine/inspect/inspection.h"
 #include "engine/load/load.h"
-#include "engine/render_plan.h"
+#include "engine/plan/render_plan.h"
+#include "library/errors.h"
 #include "library/inspection_json.h"
 #include "library/render_settings.h"
 #include "library/scene_data.h"

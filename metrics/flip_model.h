@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernels/simd/isa.h"
-#include "metrics/plane.h"
+#include "metrics/planes/plane.h"
 
 namespace wavecrest {
 

@@ -10,7 +10,7 @@
 
 #include "kernels/simd/isa.h"
 #include "metrics/kernels/ssim_row.h"
-#include "metrics/plane.h"
+#include "metrics/planes/plane.h"
 
 namespace wavecrest {
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/against/child_render.h"
+#include "bench/against/program_copy.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {
@@ -41,7 +42,10 @@ void compareImages(const Image& ours, const Image& other, AgainstRow& row) {
 class Runner {
  public:
   explicit Runner(const AgainstRequest& request)
-      : request_(request), runSeconds_(std::min(kLongestRun, request.seconds / (2.0 * kFewestRounds))) {
+      : request_(request),
+        runSeconds_(std::min(kLongestRun, request.seconds / (2.0 * kFewestRounds))),
+        ours_(ownBinary()),
+        other_(request.other) {
     result_.ours = ownBinary();
     result_.other = request.other;
     result_.threads = request.threads;
@@ -62,6 +66,7 @@ class Runner {
   }
 
   AgainstResult run(const std::function<void(size_t, size_t)>& progress) {
+    for (ProgramCopy* program : {&ours_, &other_}) tryCopy(*program);
     for (size_t i = 0; i < children_.size(); ++i) prepare(i);
     const auto rounds = static_cast<size_t>(std::round(request_.seconds / (2 * runSeconds_)));
     for (size_t round = 0; round < rounds; ++round) {
@@ -78,8 +83,21 @@ class Runner {
   }
 
  private:
-  nlohmann::json render(const fs::path& binary, const ChildRequest& child) {
-    return renderInChild(binary, child, folder_);
+  nlohmann::json render(const ProgramCopy& program, const ChildRequest& child) {
+    return renderInChild(program.path(), child, folder_);
+  }
+
+  // Not all programs run from anywhere.
+  void tryCopy(ProgramCopy& program) {
+    if (children_.empty()) return;
+    const nlohmann::json original = render(program, children_.front());
+    try {
+      program.renew();
+      if (versionOf(render(program, children_.front())) == versionOf(original)) return;
+    } catch (const ChildError&) {
+    }
+    program.stayInPlace();
+    result_.inPlace.push_back(&program == &ours_ ? result_.ours : result_.other);
   }
 
   // Compares one iteration's images, and finds how many iterations fill a run.
@@ -87,9 +105,9 @@ class Runner {
     ChildRequest& child = children_[i];
     const std::string file = (folder_.path() / "image.pfm").string();
     child.imageFile = file;
-    const nlohmann::json other = render(result_.other, child);
+    const nlohmann::json other = render(other_, child);
     const Image otherImage = readImage(file).image;
-    const nlohmann::json ours = render(result_.ours, child);
+    const nlohmann::json ours = render(ours_, child);
     compareImages(readImage(file).image, otherImage, result_.rows[i]);
     child.imageFile.reset();
     result_.ourVersion = versionOf(ours);
@@ -99,7 +117,7 @@ class Runner {
     for (int step = 0; step < 2 && seconds < runSeconds_; ++step) {
       const double factor = runSeconds_ / std::max(seconds, 1e-3);
       child.iterations = static_cast<uint64_t>(std::ceil(static_cast<double>(child.iterations) * factor));
-      seconds = cpuSecondsOf(render(result_.ours, child));
+      seconds = cpuSecondsOf(render(ours_, child));
     }
     result_.rows[i].iterations = child.iterations;
   }
@@ -109,13 +127,15 @@ class Runner {
     child.seed = round;
     AgainstRow& row = result_.rows[i];
     for (const size_t turn : {round % 2, 1 - round % 2}) {
-      if (turn == 0) row.ourSeconds.push_back(cpuSecondsOf(render(result_.ours, child)));
-      if (turn == 1) row.otherSeconds.push_back(cpuSecondsOf(render(result_.other, child)));
+      ProgramCopy& program = turn == 0 ? ours_ : other_;
+      program.renew();
+      (turn == 0 ? row.ourSeconds : row.otherSeconds).push_back(cpuSecondsOf(render(program, child)));
     }
   }
 
   const AgainstRequest& request_;
   const double runSeconds_;  // CPU time of a run, about
+  ProgramCopy ours_, other_;
   const ScratchFolder folder_;
   std::vector<ChildRequest> children_;  // one for each row
   AgainstResult result_;

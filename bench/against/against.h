@@ -2,7 +2,8 @@
 // time, which leaves out what other programs take from the cores.
 //
 // One round renders every scene by every method once with each build, the second round in the opposite order, so a
-// machine that changes its speed meets both alike. Any build with `render --stats` can be the other one.
+// machine that changes its speed meets both alike. Each run is of a fresh copy of its program (program_copy.h). Any
+// build with `render --stats` can be the other one.
 #pragma once
 
 #include <filesystem>
@@ -38,6 +39,9 @@ struct AgainstRow {
 struct AgainstResult {
   std::filesystem::path ours, other;
   std::string ourVersion, otherVersion;  // version and commit, as the builds tell
+  // Of the two those that only run where they stand. Where in memory that is makes part of their speed, in all runs
+  // alike, which a verdict cannot tell from a difference of the code.
+  std::vector<std::filesystem::path> inPlace;
   uint32_t threads = 1;
   FamilyLevel family;
   std::vector<AgainstRow> rows;

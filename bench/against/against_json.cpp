@@ -21,10 +21,17 @@ nlohmann::ordered_json toJson(const AgainstResult& result) {
                     {"cpu_seconds", row.ourSeconds},
                     {"other_cpu_seconds", row.otherSeconds}});
   }
-  return {{"binary", result.ours.string()},       {"other_binary", result.other.string()},
-          {"other_version", result.otherVersion}, {"threads", result.threads},
-          {"family_level", result.family.level},  {"tolerance", result.family.tolerance},
-          {"interval_level", kIntervalLevel},     {"comparisons", rows}};
+  nlohmann::ordered_json inPlace = nlohmann::ordered_json::array();
+  for (const std::filesystem::path& program : result.inPlace) inPlace.push_back(program.string());
+  return {{"binary", result.ours.string()},
+          {"other_binary", result.other.string()},
+          {"other_version", result.otherVersion},
+          {"in_place", std::move(inPlace)},
+          {"threads", result.threads},
+          {"family_level", result.family.level},
+          {"tolerance", result.family.tolerance},
+          {"interval_level", kIntervalLevel},
+          {"comparisons", rows}};
 }
 
 }  // namespace wavecrest

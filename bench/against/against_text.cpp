@@ -25,6 +25,10 @@ std::string toText(const AgainstResult& result) {
       text,
       "\np: signed-rank test of the pairs, corrected for {} comparison{} (Holm): a false verdict anywhere in {} of 100",
       result.rows.size(), result.rows.size() == 1 ? "" : "s", 100 * result.family.level);
+  for (const std::filesystem::path& program : result.inPlace) {
+    line(text, "{} runs only where it stands: a few per cent of difference may come from where its file lies in memory",
+         program.string());
+  }
   if (result.family.tolerance > 0) {
     line(text, "a loss of up to {:g} % is tolerated", 100 * result.family.tolerance);
   }

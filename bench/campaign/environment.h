@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "engine/render_settings.h"
+#include "engine/plan/render_settings.h"
 
 namespace wavecrest {
 

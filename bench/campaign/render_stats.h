@@ -7,7 +7,7 @@
 
 #include "bench/results/results.h"
 #include "engine/scene/scene.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {

@@ -14,8 +14,8 @@
 #include "bench/campaign/scene_reference.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
+#include "engine/inspect/path_classes.h"
 #include "engine/load/load.h"
-#include "engine/path_classes.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {

@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "engine/path_classes.h"
+#include "engine/inspect/path_classes.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Of merging methods in a reference: their bias goes with the square.
-constexpr double kReferenceRadius = 1e-4;
 
 // Why an image cannot be the reference of this scene; empty if it can.
 std::string misfit(const Reference& reference, const Scene& scene, const CampaignSettings& settings) {

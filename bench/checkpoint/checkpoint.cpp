@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "bench/enumerator_name.h"
-#include "engine/session_state.h"
+#include "engine/state/state_stream.h"
 #include "engine/version.h"
 #include "metrics/image/atomic_file.h"
 

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "engine/scene/scene.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 

@@ -13,7 +13,7 @@
 #include "bench/live/block_sample.h"
 #include "bench/live/look.h"
 #include "bench/until/film_error.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 

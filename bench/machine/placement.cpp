@@ -4,7 +4,7 @@
 #include <future>
 #include <map>
 
-#include "engine/thread_pins.h"
+#include "engine/tasks/thread_pins.h"
 
 namespace wavecrest {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "bench/micro/registration.h"
 #include "bench/throughput/cpu_timer.h"
-#include "engine/splat_films.h"
+#include "engine/film/splat_films.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
 #include "tests/kernels/stage_scene.h"
@@ -59,9 +59,9 @@ StageScene<float>& room() {
 MisSettings misFor(size_t lightPaths) {
   MisSettings mis{.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true};
   mis.radius = std::sqrt(kPhotonsPerQuery / (std::numbers::pi * static_cast<double>(lightPaths)));
-  mis.lightPaths = mis.camN = static_cast<double>(lightPaths);
-  mis.kVM = kPhotonsPerQuery;
-  mis.kVC = mis.mergeNorm = 1 / kPhotonsPerQuery;
+  mis.lightPaths = static_cast<double>(lightPaths);
+  mis.vmWeight = kPhotonsPerQuery;
+  mis.vcWeight = mis.mergeNorm = 1 / kPhotonsPerQuery;
   return mis;
 }
 
@@ -111,7 +111,7 @@ void fillStore(LightStore<float>& store, const PhotonGrid<float>& grid, size_t c
     const float cosine = std::sqrt(1 - tilt * tilt);
     v.row[i] = {.position = {random.uniform(0, 1), random.uniform(0, 1), z},
                 .offset = 1e-6f,
-                .fix = {tilt, 0, up * cosine},
+                .wi = {tilt, 0, up * cosine},
                 .tag = std::bit_cast<float>(1u << kMaterialBits),  // material 0, one edge from the light
                 .normal = {0, 0, up},
                 .dVCM = density,

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "metrics/cvvdp/cvvdp.h"
-#include "metrics/fft.h"
 #include "metrics/flip.h"
 #include "metrics/hdrvdp2/hdrvdp2.h"
 #include "metrics/image/srgb.h"
 #include "metrics/ms_ssim.h"
-#include "metrics/plane.h"
+#include "metrics/planes/fft.h"
+#include "metrics/planes/plane.h"
 #include "metrics/pu21.h"
 #include "metrics/ssim.h"
 #include "tests/metrics/golden.h"

@@ -7,7 +7,7 @@
 
 #include "bench/film_image.h"
 #include "bench/text_lines.h"
-#include "engine/path_classes.h"
+#include "engine/inspect/path_classes.h"
 #include "engine/scene/scene_error.h"
 
 namespace wavecrest {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/recommend/prediction.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 

@@ -1,4 +1,4 @@
-// What a recorded graph of tasks (engine/task_recorder.h) would take on other numbers of threads.
+// What a recorded graph of tasks (engine/tasks/task_recorder.h) would take on other numbers of threads.
 //
 // As Cilkview does (He, Leiserson, Leiserson 2010): the work is the time of all tasks together, the span that of the
 // longest sequence in which each waits for the one before; no number of threads is faster than work / span times one.
@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "engine/task_recorder.h"
+#include "engine/tasks/task_recorder.h"
 
 namespace wavecrest {
 

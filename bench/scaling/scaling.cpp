@@ -10,9 +10,9 @@
 #include "bench/against/child_render.h"
 #include "bench/scaling/list_schedule.h"
 #include "bench/throughput/turns.h"
-#include "engine/render_plan.h"
-#include "engine/session.h"
-#include "engine/task_recorder.h"
+#include "engine/plan/render_plan.h"
+#include "engine/session/session.h"
+#include "engine/tasks/task_recorder.h"
 
 namespace wavecrest {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "bench/machine/machine_watch.h"
 #include "bench/statistics/medians.h"
-#include "engine/render_settings.h"
+#include "engine/plan/render_settings.h"
 #include "engine/scene/scene.h"
 
 namespace wavecrest {

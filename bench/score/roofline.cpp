@@ -8,7 +8,7 @@
 #include "bench/score/peak_loops.h"
 #include "bench/throughput/cpu_timer.h"
 #include "compiled_isas.h"
-#include "engine/render_plan.h"
+#include "engine/plan/render_plan.h"
 #include "kernels/columns/memory_block.h"
 
 namespace wavecrest {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string_view>
 
-#include "engine/render_settings.h"
+#include "engine/plan/render_settings.h"
 #include "engine/scene/scene.h"
 #include "kernels/stage_catalogue.h"
 

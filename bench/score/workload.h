@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/render_settings.h"
+#include "engine/plan/render_settings.h"
 #include "engine/scene/scene.h"
 
 namespace wavecrest {

@@ -7,8 +7,8 @@
 #include "bench/against/child_render.h"
 #include "bench/specialization/code_size.h"
 #include "bench/throughput/turns.h"
-#include "engine/film.h"
-#include "engine/render_plan.h"
+#include "engine/film/film.h"
+#include "engine/plan/render_plan.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {

@@ -8,7 +8,7 @@
 #include "bench/throughput/cpu_timer.h"
 #include "bench/throughput/turns.h"
 #include "bench/throughput/wave_capture.h"
-#include "engine/flush_to_zero.h"
+#include "engine/tasks/flush_to_zero.h"
 #include "kernels/extend/embree_packets.h"
 
 namespace wavecrest {

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/render_settings.h"
+#include "engine/plan/render_settings.h"
 
 namespace wavecrest {
 

@@ -1,6 +1,6 @@
 #include "bench/throughput/bench_scene.h"
 
-#include "engine/render_plan.h"
+#include "engine/plan/render_plan.h"
 
 namespace wavecrest {
 namespace {
@@ -49,6 +49,17 @@ SceneResult SceneBench::finish() const {
                               .policies = measurePolicies(*scene_, own, kPoliciesPart * seconds_)});
   }
   return result;
+}
+
+// The last visits come with what is measured at the end, so that a scene's result is shown as soon as it is known.
+void benchInTurn(std::vector<SceneBench>& benches, const std::function<void(const SceneResult&)>& done) {
+  for (size_t visit = 1; visit < kVisitsForInterval; ++visit) {
+    for (SceneBench& bench : benches) bench.visit();
+  }
+  for (SceneBench& bench : benches) {
+    bench.visit();
+    done(bench.finish());
+  }
 }
 
 }  // namespace wavecrest

@@ -1,6 +1,7 @@
 // Everything that `wavecrest bench` finds out about one scene, as plain data, and how it is shown.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -37,10 +38,9 @@ class SceneBench {
   // per scene out of the first method's share. Keeps the scene.
   SceneBench(Scene scene, const RenderSettings& settings, const std::vector<Method>& methods, double seconds);
 
-  // Measures the speed of every method once. Call it kVisitsForInterval times: each call takes that part of the time
-  // for speed.
+  // Measures the speed of every method once, in one of kVisitsForInterval parts of the time for it.
   void visit();
-  // After the visits.
+  // After all visits.
   SceneResult finish() const;
 
  private:
@@ -52,6 +52,9 @@ class SceneBench {
   double seconds_;
   std::vector<SpeedMeasurement> speeds_;  // by method
 };
+
+// All of the measurements; calls done(result) with each scene's, in their order.
+void benchInTurn(std::vector<SceneBench>& benches, const std::function<void(const SceneResult&)>& done);
 
 // Tables for a terminal.
 std::string toText(const SceneResult& result);

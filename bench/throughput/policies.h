@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/statistics/medians.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 

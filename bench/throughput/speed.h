@@ -8,7 +8,7 @@
 #include "bench/machine/machine_watch.h"
 #include "bench/statistics/medians.h"
 #include "bench/throughput/turns.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 

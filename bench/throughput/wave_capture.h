@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/render_plan.h"
+#include "engine/plan/render_plan.h"
 
 namespace wavecrest {
 

@@ -6,8 +6,9 @@
 #include <stdexcept>
 
 #include "bench/enumerator_name.h"
-#include "engine/film.h"
-#include "engine/render_plan.h"
+#include "engine/compile/compiled_scene.h"
+#include "engine/film/film.h"
+#include "engine/plan/render_plan.h"
 #include "kernels/stages.h"
 
 namespace wavecrest {
@@ -80,6 +81,11 @@ void addMerging(Variants& variants, const RenderSettings& base, uint64_t pixels)
   }
 }
 
+// Small scenes join all connections, whatever the setting.
+bool isSmall(const Scene& scene, const RenderSettings& settings) {
+  return compileScene<float>(scene, settings.accel)->accel() == Accel::small;
+}
+
 void addConnections(Variants& variants) {
   for (const double part : {0.0, 0.05, 0.8}) {
     variants.add("--connection-roulette", fmt::format("{:g}", part)).connectionRoulette = part;
@@ -108,7 +114,7 @@ std::vector<Variant> variantsOf(const Scene& scene, const RenderSettings& base) 
   addPaths(variants, base);
   if (scene.film.filter != ReconstructionFilter::box) addFilter(variants, base);
   if (strategiesOf(base.method).merge) addMerging(variants, base, filmArea(scene.film).pixels.size());
-  if (hasConnectionRoulette(base.method)) addConnections(variants);
+  if (hasConnectionRoulette(base.method) && !isSmall(scene, base)) addConnections(variants);
   if (base.method == Method::mlt) addChains(variants, base);
   return variants.take();
 }

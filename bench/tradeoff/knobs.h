@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/render_settings.h"
+#include "engine/plan/render_settings.h"
 #include "engine/scene/scene.h"
 
 namespace wavecrest {

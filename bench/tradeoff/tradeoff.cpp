@@ -8,10 +8,10 @@
 #include "bench/statistics/bands.h"
 #include "bench/tradeoff/block_means.h"
 #include "bench/until/film_error.h"
-#include "engine/memory_plan.h"
-#include "engine/path_classes.h"
+#include "engine/inspect/path_classes.h"
+#include "engine/plan/memory_plan.h"
 #include "engine/scene/scene_error.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 namespace {

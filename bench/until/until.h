@@ -7,7 +7,7 @@
 #include <string>
 
 #include "bench/until/film_error.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
 #include "metrics/prepared_reference.h"
 
 namespace wavecrest {

@@ -4,7 +4,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "engine/for_each.h"
+#include "engine/plan/path_laws.h"
+#include "engine/tasks/for_each.h"
 
 namespace wavecrest {
 namespace {

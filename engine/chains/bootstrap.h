@@ -12,9 +12,6 @@
 
 namespace wavecrest {
 
-// Samples, and paths that chains propose anew: of length k + 1 to those of length k.
-constexpr double kLengthRatio = 0.85;
-
 // Samples to draw, in the order of path lengths: the length of each (0 where chains have none), and the share of the
 // whole that it stands for, one over the number of samples of its length. Threads go through them by blocks.
 struct BootstrapPlan {

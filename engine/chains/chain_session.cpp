@@ -1,5 +1,5 @@
 #include "engine/chains/chain_session.h"
-#include "engine/add_samples.h"
+#include "engine/session/add_samples.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/task_arena.h>
@@ -13,12 +13,14 @@
 #include "engine/chains/chain_waves.h"
 #include "engine/chains/chain_worker.h"
 #include "engine/chains/epochs.h"
-#include "engine/flush_to_zero.h"
-#include "engine/for_each.h"
-#include "engine/render_clock.h"
-#include "engine/session_state.h"
-#include "engine/stage_rows.h"
-#include "engine/thread_pins.h"
+#include "engine/plan/chain_layout.h"
+#include "engine/session/render_clock.h"
+#include "engine/session/stage_rows.h"
+#include "engine/session/work_done.h"
+#include "engine/state/state_stream.h"
+#include "engine/tasks/flush_to_zero.h"
+#include "engine/tasks/for_each.h"
+#include "engine/tasks/thread_pins.h"
 
 namespace wavecrest {
 namespace {
@@ -195,7 +197,7 @@ void ChainSession<S>::advance(uint64_t steps) {
   takeTurns(chains_->size(), settings_.threads, [&](size_t wave) {
     const uint64_t some = std::min(kTurnSteps, steps - done[wave]);
     chains_->advance(wave, step_ + done[wave], some, worker());
-    progressPaths_.fetch_add(some * chains_->chainCount(wave), std::memory_order_relaxed);
+    progressPaths_.fetch_add(some * chains_->layout().chainsOf(wave), std::memory_order_relaxed);
     done[wave] += some;
     return done[wave] < steps;
   });

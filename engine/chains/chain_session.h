@@ -7,7 +7,7 @@
 
 #include <memory>
 
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 

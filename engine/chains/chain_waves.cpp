@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "engine/flush_to_zero.h"
-#include "engine/session_state.h"
+#include "engine/state/state_stream.h"
+#include "engine/tasks/flush_to_zero.h"
 
 namespace wavecrest {
 namespace {
@@ -14,50 +14,26 @@ uint32_t keptColumns(const ChainSamples& samples, const ChainState::Kept& kept) 
   return kept.vertices[1] == 0 ? samples.firstColumn[1] : samples.column(1, 4 * kept.vertices[1]);
 }
 
-// How many chains go to a wave together. Where threads have many waves each, a group is a whole wave: a thread takes
-// the next wave when it is done with one, so long ones hold up nobody. One thread never waits.
-size_t groupSize(const RenderSettings& settings) {
-  constexpr size_t kFewWaves = 8;  // of a thread
-  const uint32_t threads = settings.cutForThreads();
-  const bool few = piecesOf(settings.metropolis.chains, settings.waveSize) < kFewWaves * threads;
-  return threads > 1 && few ? std::min<size_t>(kColumnPadding, settings.waveSize) : settings.waveSize;
-}
-
 }  // namespace
 
 template <class S>
 ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
-    : plan_(plan),
-      settings_(settings),
-      area_(area),
-      group_(groupSize(settings)),
-      waves_(piecesOf(groups(), settings.waveSize / group_)) {
+    : plan_(plan), settings_(settings), area_(area), layout_(settings) {
   const ChainState::Kept kept = keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth);
   for (size_t wave = 0; wave < size(); ++wave) {
-    states_.emplace_back(chainCount(wave), kept).multiplexed = plan.pipeline.lightPass.has_value();
+    states_.emplace_back(layout_.chainsOf(wave), kept).multiplexed = plan.pipeline.lightPass.has_value();
     if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan.pathLaws.law().maxEdges, plan.needs);
   }
   if (!states_.empty()) sampleRows_ = size_t{4} * keptColumns(states_.front().samples, kept);
 }
 
 template <class S>
-size_t ChainWaves<S>::groups() const {
-  return piecesOf(settings_.metropolis.chains, group_);
-}
-
-template <class S>
-size_t ChainWaves<S>::chainCount(size_t wave) const {
-  const size_t ofWave = piecesOf(groups() - wave, size()), last = wave + (ofWave - 1) * size();
-  return (ofWave - 1) * group_ + itemsOfPiece(last, settings_.metropolis.chains, group_);
-}
-
-template <class S>
 template <class Visit>
 void ChainWaves<S>::forEachGroup(Visit&& visit) const {
   size_t group = 0;
-  for (size_t first = 0; group < groups(); first += group_) {
-    for (size_t wave = 0; wave < size() && group < groups(); ++wave, ++group) {
-      visit(wave, first, itemsOfPiece(group, settings_.metropolis.chains, group_));
+  for (size_t first = 0; group < layout_.groups(); first += layout_.groupSize()) {
+    for (size_t wave = 0; wave < size() && group < layout_.groups(); ++wave, ++group) {
+      visit(wave, first, layout_.chainsOfGroup(group));
     }
   }
 }
@@ -68,12 +44,12 @@ void ChainWaves<S>::start(size_t wave, uint64_t epoch, const BootstrapPlan& boot
   const FlushToZero flushToZero;
   ChainState& state = states_[wave];
   Chains& chains = state.columns;
-  const size_t count = chainCount(wave);
+  const size_t count = layout_.chainsOf(wave);
   const ChainCounters before = state.counters;
   const LargeStepSums largeBefore = state.largeSteps;
   // Replays the samples and accepts them all.
   for (size_t i = 0; i < count; ++i) {
-    const uint32_t sample = starts[chainAt(wave, i)];
+    const uint32_t sample = starts[layout_.chainAt(wave, i)];
     chains.source[i] = sample;
     chains.length[i] = bootstrap.length[sample];
     chains.target[i] = 0;
@@ -93,7 +69,7 @@ void ChainWaves<S>::start(size_t wave, uint64_t epoch, const BootstrapPlan& boot
   state.samples.stream = Stream::chain;
   state.samples.largeStep = static_cast<float>(settings_.metropolis.largeStep);
   for (size_t i = 0; i < count; ++i) {
-    chains.source[i] = static_cast<uint32_t>(chainAt(wave, i));
+    chains.source[i] = static_cast<uint32_t>(layout_.chainAt(wave, i));
     chains.weight[i] = 0;
     chains.rejections[i] = 0;
     if (inPathSpace()) chains.length[i] = 0;  // of any length from now on
@@ -103,7 +79,7 @@ void ChainWaves<S>::start(size_t wave, uint64_t epoch, const BootstrapPlan& boot
 template <class S>
 void ChainWaves<S>::clear() {
   for (size_t wave = 0; wave < size(); ++wave) {
-    std::fill_n(static_cast<float*>(states_[wave].columns.target), chainCount(wave), 0.0f);
+    std::fill_n(static_cast<float*>(states_[wave].columns.target), layout_.chainsOf(wave), 0.0f);
   }
 }
 
@@ -114,7 +90,7 @@ void ChainWaves<S>::advance(size_t wave, uint64_t first, uint64_t steps, ChainWo
   StageContext<S> context = chainContext(plan_, settings_, area_);
   for (uint64_t step = first; step < first + steps; ++step) {
     context.sampler.iteration = step;
-    worker.trace(context, state, chainCount(wave), settings_.measureStages, pathsOf(wave));
+    worker.trace(context, state, layout_.chainsOf(wave), settings_.measureStages, pathsOf(wave));
     worker.decide(context, state, settings_.measureStages);
   }
 }
@@ -143,7 +119,7 @@ void ChainWaves<S>::listStuck(std::vector<StuckChain>& list) const {
       const uint32_t edges = inPathSpace()               ? paths_[wave].headers.edges[i]
                              : states_[wave].multiplexed ? chains.length[i]
                                                          : chains.cameraVertices[i];
-      list.push_back({static_cast<uint32_t>(chainAt(wave, i)), chains.rejections[i], edges, chains.pixel[i]});
+      list.push_back({static_cast<uint32_t>(layout_.chainAt(wave, i)), chains.rejections[i], edges, chains.pixel[i]});
     }
   });
   std::stable_sort(list.begin(), list.end(),
@@ -177,7 +153,7 @@ uint32_t ChainWaves<S>::pathVertices() const {
   uint32_t edges = 0;
   for (size_t wave = 0; wave < paths_.size(); ++wave) {
     const uint32_t* const ofWave = paths_[wave].headers.edges;
-    edges = std::max(edges, *std::max_element(ofWave, ofWave + chainCount(wave)));
+    edges = std::max(edges, *std::max_element(ofWave, ofWave + layout_.chainsOf(wave)));
   }
   return edges + 1;
 }
@@ -244,7 +220,7 @@ void ChainWaves<S>::restore(StateReader& in, double splatFactor) {
     ChainState& state = states_[wave];
     const uint32_t* const pixels = state.columns.pixel;
     const size_t filmPixels = area_.pixels.size();
-    if (std::any_of(pixels, pixels + chainCount(wave), [&](uint32_t pixel) { return pixel >= filmPixels; })) {
+    if (std::any_of(pixels, pixels + layout_.chainsOf(wave), [&](uint32_t pixel) { return pixel >= filmPixels; })) {
       throw StateError("its chains are beyond the film");
     }
     state.splatFactor = static_cast<float>(splatFactor);

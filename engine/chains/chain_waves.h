@@ -5,7 +5,8 @@
 
 #include "engine/chains/bootstrap.h"
 #include "engine/chains/chain_worker.h"
-#include "engine/session.h"
+#include "engine/plan/chain_layout.h"
+#include "engine/session/session.h"
 #include "kernels/columns/chain_paths.h"
 
 namespace wavecrest {
@@ -18,15 +19,10 @@ class ChainWaves {
  public:
   // As many chains as the settings say, in waves of at most their size, which are nowhere at first. All three must
   // outlive them.
-  //
-  // Chains start in the order of path lengths. A wave of the longest paths alone would take several times as long as
-  // others, which wait for it at the end of a round; so where threads have few waves each, groups of chains that stand
-  // together are dealt to waves in turn.
   ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
 
-  // Waves, and the chains of one.
-  size_t size() const { return waves_; }
-  size_t chainCount(size_t wave) const;
+  size_t size() const { return layout_.waves(); }
+  const ChainLayout& layout() const { return layout_; }
 
   // The chains of a wave start anew, chain m from sample starts[m] of an epoch's bootstrap. What they add to the film
   // from now on is multiplied by splatFactor.
@@ -62,9 +58,6 @@ class ChainWaves {
   std::vector<Row> rowsOf(size_t wave, uint32_t vertices) const;
   // The most that the path of a chain has.
   uint32_t pathVertices() const;
-  size_t groups() const;
-  // The chain in a lane of a wave.
-  size_t chainAt(size_t wave, size_t lane) const { return (wave + lane / group_ * size()) * group_ + lane % group_; }
   // Calls visit(wave, first lane, chains) for each group, in the order of chains.
   template <class Visit>
   void forEachGroup(Visit&& visit) const;
@@ -75,8 +68,7 @@ class ChainWaves {
   const RenderPlan<S>& plan_;
   const RenderSettings& settings_;
   const FilmArea& area_;
-  const size_t group_;  // chains of a group: a block of lanes, or a wave
-  const size_t waves_;
+  const ChainLayout layout_;
   size_t sampleRows_ = 0;  // of the numbers that a wave keeps
   std::vector<ChainState> states_;
   std::vector<PathStore<S>> paths_;  // in path space; rows as long as those of proposals

@@ -8,34 +8,12 @@
 namespace wavecrest {
 namespace {
 
-constexpr uint32_t bit(Block block) { return 1u << static_cast<uint32_t>(block); }
-
 template <class S>
 const Pass<S>& passOf(const Pipeline<S>& pipeline, Walk walk) {
   return walk == Walk::camera ? pipeline.cameraPass : *pipeline.lightPass;
 }
 
 }  // namespace
-
-template <class S>
-ChainState::Kept keptSamples(const Pipeline<S>& pipeline, const SceneView<S>& scene, uint32_t maxDepth) {
-  const uint32_t sky = scene.environment.width != 0 ? bit(Block::environment) : 0u;
-  ChainState::Kept kept;
-  if (pipeline.chains->inPathSpace) {  // numbers are drawn for all that walks do, and none is kept
-    kept.blocks[0] = kept.blocks[1] = {0xfu, 0xfu};
-    return kept;
-  }
-  if (!pipeline.lightPass) {
-    kept.blocks[0] = {bit(Block::scatter), bit(Block::scatter) | bit(Block::light) | sky};
-    kept.vertices[0] = maxDepth;  // the last vertex, which draws nothing, does not count
-    return kept;
-  }
-  // One next event at most, whose numbers are those of vertex 0 whatever the path's length.
-  kept.blocks[0] = {bit(Block::scatter) | bit(Block::light) | bit(Block::opacity) | sky, bit(Block::scatter)};
-  kept.blocks[1] = {bit(Block::scatter) | bit(Block::light) | sky, bit(Block::scatter)};
-  kept.vertices[0] = kept.vertices[1] = maxDepth;
-  return kept;
-}
 
 template <class S>
 StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
@@ -211,7 +189,6 @@ std::vector<std::string> stageNames(const Pipeline<S>& pipeline) {
 }
 
 #define WAVECREST_INSTANTIATE_CHAINS(S)                                                                \
-  template ChainState::Kept keptSamples(const Pipeline<S>&, const SceneView<S>&, uint32_t);            \
   template StageContext<S> chainContext(const RenderPlan<S>&, const RenderSettings&, const FilmArea&); \
   template class ChainWorker<S>;                                                                       \
   template std::vector<std::string> stageNames(const Pipeline<S>&);

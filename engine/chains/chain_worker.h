@@ -4,22 +4,15 @@
 #include <optional>
 #include <vector>
 
-#include "engine/render_plan.h"
+#include "engine/plan/render_plan.h"
 #include "kernels/columns/chains.h"
 #include "kernels/columns/light_vertices.h"
 
 namespace wavecrest {
 
-// Which primary samples the chains of a method keep, for paths of up to maxDepth edges.
-template <class S>
-ChainState::Kept keptSamples(const Pipeline<S>& pipeline, const SceneView<S>& scene, uint32_t maxDepth);
-
 // The context of a chain's stages: everything but the chains themselves. The plan must outlive it.
 template <class S>
 StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
-
-// Waves that a worker holds where walks are joined: the walks', and those of WalkEnds.
-constexpr size_t kWavesOfJoinedWalks = 4;
 
 template <class S>
 class ChainWorker {

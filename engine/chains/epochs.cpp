@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/session_state.h"
+#include "engine/state/state_stream.h"
 
 namespace wavecrest {
 

@@ -13,9 +13,9 @@
 #include "engine/compile/materials.h"
 #include "engine/compile/scene_geometry.h"
 #include "engine/compile/tabulate.h"
-#include "engine/parallel_for.h"
 #include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
+#include "engine/tasks/parallel_for.h"
 
 namespace wavecrest {
 

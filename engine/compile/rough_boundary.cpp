@@ -15,7 +15,7 @@ constexpr int kSlopeSteps = 192, kAzimuthSteps = 32;
 // Stands for mu = 0.
 constexpr double kGrazing = 1e-6;
 
-// Smith's G1 of a direction with the given cosine (kernels/shade/microfacet_lanes.h, beckmann_lanes.h).
+// Smith's G1 of a direction with the given cosine (kernels/bsdf/microfacet_lanes.h, beckmann_lanes.h).
 double smithG1(const RoughBoundary& boundary, double cosine) {
   const double z = std::abs(cosine);
   const double tangent = std::sqrt(std::max(0.0, 1 - z * z)) / z;

@@ -7,8 +7,8 @@
 #include <limits>
 #include <map>
 
-#include "engine/parallel_for.h"
 #include "engine/scene/vector_math.h"
+#include "engine/tasks/parallel_for.h"
 
 namespace wavecrest {
 namespace {

@@ -7,7 +7,7 @@
 #include "engine/load/mesh_attributes.h"
 #include "engine/load/mesh_shapes.h"
 #include "engine/load/parameters.h"
-#include "engine/parallel_for.h"
+#include "engine/tasks/parallel_for.h"
 
 namespace wavecrest {
 namespace {

@@ -1,8 +1,8 @@
 // How a method is written: one page, a list of phases that name stages of the catalogue (kernels/stage_catalogue.h).
 //
 // A page is plain data. What follows from it is computed once, here: which strategies the method has and how they are
-// weighted, whether it needs kernels with light paths, and the names of its rows in --stats. engine/pipeline.h turns it
-// into calls of compiled kernels.
+// weighted, whether it needs kernels with light paths, and the names of its rows in --stats. engine/plan/pipeline.h
+// turns it into calls of compiled kernels.
 #pragma once
 
 #include <cstdint>
@@ -103,8 +103,8 @@ inline OncePhase atEnds(EndsOf ends, Walk walk, uint32_t depth, std::vector<Stag
 
 // ---- what follows from a page ---------------------------------------------------------------------------------------
 
-// The ways in which a method joins s light vertices and t camera vertices. engine/path_classes.h derives from them
-// which paths the method can make.
+// The ways in which a method joins s light vertices and t camera vertices. engine/inspect/path_classes.h derives from
+// them which paths the method can make.
 struct PathStrategies {
   bool emission = false;            // s = 0: a camera path meets a light
   bool nextEvent = false;           // s = 1
@@ -118,7 +118,7 @@ struct PathStrategies {
 PathStrategies strategiesOf(const MethodPage& page);
 
 // The switches of the weights on this walk: all strategies that make the same paths. The constants of an iteration are
-// filled in by misSettings (engine/render_plan.h).
+// filled in by misSettings (engine/plan/render_plan.h).
 MisSettings weightsOf(const MethodPage& page, Walk walk);
 
 // Whether it needs kernels with the whole MIS recursion: it lists a stage that only those have.

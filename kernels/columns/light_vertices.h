@@ -16,7 +16,7 @@ constexpr uint32_t kOtherLink = 1u << 31, kLinkIndex = kOtherLink - 1;
 template <class S>
 struct LightVertices : Columns<LightVertices<S>> {
   Column<VertexRow<S>> row;
-  // In the grid of photons (kernels/merge/photon_grid.h). Dropped without merges; all below are without connections.
+  // In the grid of photons (kernels/columns/photon_grid.h). Dropped without merges; all below are without connections.
   Column<uint32_t> cell, place;
   Column<S> shadingX, shadingY, shadingZ;  // dropped where the scene has no shading normals
   Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
@@ -43,9 +43,6 @@ template <class S>
 class LightStore {
  public:
   LightVertices<S> vertices;
-  // Limit for Russian roulette of connections (METHODS 5.9), compared with the largest channel of a contribution. 0: no
-  // roulette, all connections are joined.
-  S rouletteBelow = 0;
 
   LightStore(size_t lanes, const ColumnNeeds& needs, LightVertexUse use = {})
       : lanes_(lanes), firstOfLane_(lanes, kNoIndex), lastOfLane_(lanes, kNoIndex) {

@@ -53,8 +53,8 @@ template <class S>
 struct PathStates : Columns<PathStates<S>> {
   Column<S> throughputR, throughputG, throughputB;
   Column<S> dVCM, dVC, dVM;  // dVC, dVM: dropped without connections
-  // What makes a throughput comparable with 1 in Russian roulette: on camera paths the product of (eta_gen /
-  // eta_fix)^2, on light paths the reciprocal of the first throughput. Dropped where it is always 1.
+  // What makes a throughput comparable with 1 in Russian roulette: on camera paths the product of (eta_wo /
+  // eta_wi)^2, on light paths the reciprocal of the first throughput. Dropped where it is always 1.
   Column<S> rouletteScale;
   Column<uint32_t> lane;
   Column<uint32_t> light;  // light that a light path began on; dropped without connections
@@ -84,13 +84,13 @@ struct VertexPairs : Columns<VertexPairs> {
 // A vertex as joining it with one of the other walk reads it, sixteen numbers in one place, in float one cache line:
 // what pairs it with comes to it in no order, again and again.
 //   tag: index into SceneView::materials, and for light vertices the edges from the light (kernels/shade/vertex_tag.h)
-//   fix: unit direction back along the path
+//   wi: unit direction back along the path
 //   dVCM, throughput: as in PathStates
-//   behind: dVC where light vertices are connected, else dVM; where they are merged as well, dVM is kVC dVC
+//   behind: dVC where light vertices are connected, else dVM; where they are merged as well, dVM is vcWeight dVC
 template <class S>
 struct alignas(kColumnAlignment) VertexRow {
   S position[3], offset;
-  S fix[3], tag;
+  S wi[3], tag;
   S normal[3], dVCM;
   S throughput[3], behind;
 };

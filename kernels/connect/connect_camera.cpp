@@ -6,7 +6,7 @@
 // METHODS 4.3, 5.6. The contribution leaves out 1/N_L: the film divides by the number of light paths, as the average
 // over passes does. Densities are per pixel whatever the reconstruction filter, so weights do not depend on it.
 #include "kernels/columns/chains.h"
-#include "kernels/generate/camera_lanes.h"
+#include "kernels/endpoints/camera_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/shading_lanes.h"
@@ -54,20 +54,19 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
     if (none(active & onFilm)) continue;
 
     const auto bsdf = shading.scattering(active & onFilm, view.direction);
-    const Real genCosine = abs(dot(view.direction, shading.normal));
-    const Real fixCosine = abs(shading.fixCosine);
-    const Real pdfA = view.pdf * genCosine;
+    const Real woCosine = abs(dot(view.direction, shading.normal));
+    const Real wiCosine = abs(shading.wiCosine);
+    const Real pdfA = view.pdf * woCosine;
     const MisSums<Real> mis = loadMis<kFeatures>(paths, i);
     // LT has no other strategy: its weight is 1.
-    const Real wLight = pdfA * Real(context.mis.camN > 0 ? 1 / context.mis.camN : 0.0) *
+    const Real wLight = pdfA * Real(context.mis.lightPaths > 0 ? 1 / context.mis.lightPaths : 0.0) *
                         behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
-    // f c(omega_l) / n(omega_l): omega_l is fix, the light's side.
-    const Real scale = pdfA * bsdf.lightCosine *
-                       reciprocal(max(fixCosine, Real(kSmallestCosine)) * (Real(1) + wLight)) *
+    // f c(omega_l) / n(omega_l): omega_l is wi, the light's side.
+    const Real scale = pdfA * bsdf.lightCosine * reciprocal(max(wiCosine, Real(kSmallestCosine)) * (Real(1) + wLight)) *
                        (column.weight * row.weight);
     const Vec3<Real> contribution =
         loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * bsdf.f * scale;
-    const Mask lit = active & onFilm & (fixCosine > Real(0)) & (maxComponent(contribution) > Real(0));
+    const Mask lit = active & onFilm & (wiCosine > Real(0)) & (maxComponent(contribution) > Real(0));
     if (none(lit)) continue;
 
     const Vec3<Real> origin = offsetOrigin(shading.position, shading.normal, shading.offset, view.direction);

@@ -152,9 +152,9 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
       behindConnection(context.mis, context.depth, MisSums<Real>{zRow.dVCM, zRow.behind, Real(0)}, zBsdf.pdfReverse);
 
   // c_z(omega_l) at the camera's end; c_y(omega_l) / n_y(omega_l) n_y(to z) at the light's (METHODS 3.9).
-  const Real yFix = max(abs(y.fixCosine), Real(kSmallestCosine));
+  const Real yWi = max(abs(y.wiCosine), Real(kSmallestCosine));
   const Real scale =
-      zBsdf.lightCosine * yBsdf.lightCosine * yCosine * inverseDist2 * reciprocal(yFix * (Real(1) + wLight + wCamera));
+      zBsdf.lightCosine * yBsdf.lightCosine * yCosine * inverseDist2 * reciprocal(yWi * (Real(1) + wLight + wCamera));
   Vec3<Real> contribution = zRow.throughput * zBsdf.f * yRow.throughput * yBsdf.f * scale;
 
   // Points closer than the offsets that keep their segment off the surfaces cannot be told apart.
@@ -162,11 +162,13 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
   const Mask carries = active & (maxComponent(contribution) > Real(0)), tooClose = carries & (dist2 <= apart * apart);
   if (any(tooClose)) context.counters->closePairs += countTrue(tooClose);
   Mask lit = andNot(carries, tooClose);
-  if (context.light->rouletteBelow > 0) {
-    const Real chance = chanceOf(contribution, Real(context.light->rouletteBelow));
-    const UInt light = load(pairs.light, i);
-    lit = lit & (to<Real>(rouletteNumbers(context, wave, load(lanes), light)) < chance);
-    contribution = contribution * (Real(1) / chance);
+  if (context.rouletteBelow > 0) {
+    const Real chance = chanceOf(contribution, Real(context.rouletteBelow));
+    if (any(lit & (chance < Real(1)))) {
+      const UInt light = load(pairs.light, i);
+      lit = lit & (to<Real>(rouletteNumbers(context, wave, load(lanes), light)) < chance);
+      contribution = contribution * (Real(1) / chance);
+    }
   }
   if (none(lit)) return out;
   const Vec3<Real> origin = offsetOrigin(z.position, z.normal, z.offset, towards);

@@ -2,7 +2,7 @@
 // contribution, weight included, where there is any.
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: ShadowRays [<= n], in that order. METHODS 2.2, 5.6.
-#include "kernels/connect/light_sample_lanes.h"
+#include "kernels/endpoints/light_sample_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/shading_lanes.h"

@@ -4,7 +4,7 @@
 // [pathCount], in lane order; Radiance set to zero. The raster position is uniform in the pixel, so W_j cos / p = 1 and
 // the throughput begins at 1.
 #include "kernels/columns/chains.h"
-#include "kernels/generate/camera_lanes.h"
+#include "kernels/endpoints/camera_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/stage_declarations.h"
 
@@ -78,7 +78,8 @@ void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<
     // without that strategy the recursion starts from nothing.
     MisSums<Real> mis{Real(0), Real(0), Real(0)};
     if constexpr (has(kFeatures, kBidirectional)) {
-      if (context.mis.camera) mis.dVCM = Real(context.mis.camN) / cameraPdf<P>(context.scene->camera, ray.direction);
+      if (context.mis.camera)
+        mis.dVCM = Real(context.mis.lightPaths) / cameraPdf<P>(context.scene->camera, ray.direction);
     }
     storeMis<kFeatures>(mis, wave.paths, i);
     if constexpr (hasRouletteScale(kFeatures)) store(Real(1), wave.paths.rouletteScale, i);

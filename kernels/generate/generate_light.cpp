@@ -4,11 +4,11 @@
 // [pathCount], in lane order. Sampling of emission after METHODS 2.2: a point on the light by area and a direction by
 // cosine; for infinite lights a direction and a point on the faces of the scene's box that it enters by. MIS sums of
 // the origin: METHODS 5.3.
-#include "kernels/connect/light_sample_lanes.h"
+#include "kernels/endpoints/light_lanes.h"
+#include "kernels/endpoints/light_sample_lanes.h"
+#include "kernels/endpoints/scene_box_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/sampling/warp_lanes.h"
-#include "kernels/shade/light_lanes.h"
-#include "kernels/shade/scene_box_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
@@ -190,7 +190,7 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
     const Real zero(0);
     if (!context.mis.nextEvent) ray.mis.dVCM = zero;
     if (!context.mis.emission) ray.mis.dVC = zero;
-    ray.mis.dVM = ray.mis.dVC * Real(context.mis.kVC);
+    ray.mis.dVM = ray.mis.dVC * Real(context.mis.vcWeight);
     storeVec3(ray.origin, rays.originX, rays.originY, rays.originZ, i);
     storeVec3(ray.direction, rays.directionX, rays.directionY, rays.directionZ, i);
     storeVec3(ray.throughput, paths.throughputR, paths.throughputG, paths.throughputB, i);

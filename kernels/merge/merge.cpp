@@ -279,7 +279,7 @@ class Merger {
     const auto row = gatherRows<P, kBsdfs>(*context_.scene, wave_.vertexRows.row, wave_.surfaces, nearVertex_ + i);
     const auto& shading = row.shading;
     const Vec3<Real> position = vec3(photons(&VertexRow<S>::position));
-    const FourColumns<Real> back = photons(&VertexRow<S>::fix), facing = photons(&VertexRow<S>::normal),
+    const FourColumns<Real> back = photons(&VertexRow<S>::wi), facing = photons(&VertexRow<S>::normal),
                             carried = photons(&VertexRow<S>::throughput);
     const Vec3<Real> direction = vec3(back), normal = vec3(facing);
     // On the same side of the surface, and not beyond the path length.
@@ -296,7 +296,8 @@ class Merger {
     if (context_.mis.mergeWeights) {
       const MisSums<Real> light{facing.d, Real(0), mergeSum(context_.mis, carried.d)};
       const MisSums<Real> camera{row.dVCM, Real(0), mergeSum(context_.mis, row.behind)};
-      // Where connections compete (kVC > 0) every edge may be one; else kVC is 0 and the switch does not matter.
+      // Where connections compete (vcWeight > 0) every edge may be one; else vcWeight is 0 and the switch does not
+      // matter.
       const Real wLight = behindMerge(context_.mis, 1, light, bsdf.pdf);
       const Real wCamera = behindMerge(context_.mis, 1, camera, bsdf.pdfReverse);
       weight = reciprocal(Real(1) + wLight + wCamera);

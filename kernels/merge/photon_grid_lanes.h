@@ -1,8 +1,8 @@
 // PhotonGrid for kernels: cells and places of a vector of points.
 #pragma once
 
+#include "kernels/columns/photon_grid.h"
 #include "kernels/lane_support.h"
-#include "kernels/merge/photon_grid.h"
 
 WAVECREST_SIMD_BEGIN
 

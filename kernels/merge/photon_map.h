@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "kernels/columns/light_vertices.h"
-#include "kernels/merge/photon_grid.h"
+#include "kernels/columns/photon_grid.h"
 
 namespace wavecrest {
 

@@ -15,7 +15,7 @@ WAVECREST_SIMD_BEGIN
 namespace {
 
 // Scattering at a vertex, in both directions. step: f c / pdf towards the light's side. Densities per solid angle;
-// those of a delta lobe P eta_gen^2 |cos gen|, in one measure for both directions, with its probabilities P as choices.
+// those of a delta lobe P eta_wo^2 |cos wo|, in one measure for both directions, with its probabilities P as choices.
 template <class Real>
 struct TwoWayScattering {
   Vec3<Real> step;
@@ -36,11 +36,11 @@ WAVECREST_INLINE TwoWayScattering<typename P::Real> scatteringOf(const ShadingLa
     if (any(delta)) {
       const Uniform4 u{numberOfEvent<P, kFeatures>(shading.bsdf, event), Float(0), Float(0), Float(0)};
       const auto sample = shading.sampled(delta, u);
-      const Mask found = active & (eventOf<P, kFeatures>(shading.bsdf, shading.fix, sample, u.a) == event);
+      const Mask found = active & (eventOf<P, kFeatures>(shading.bsdf, shading.wi, sample, u.a) == event);
       out.step = select(delta, zeroUnless(found, sample.weight), out.step);
-      out.eyePdf = select(delta, sample.pdf * abs(sample.gen.z), out.eyePdf);
+      out.eyePdf = select(delta, sample.pdf * abs(sample.wo.z), out.eyePdf);
       out.lightPdf =
-          select(delta, sample.pdfReverse * sample.etaRatio * sample.etaRatio * abs(shading.fix.z), out.lightPdf);
+          select(delta, sample.pdfReverse * sample.etaRatio * sample.etaRatio * abs(shading.wi.z), out.lightPdf);
       out.eyeChoice = select(delta, sample.pdf, out.eyeChoice);
       out.lightChoice = select(delta, sample.pdfReverse, out.lightChoice);
     }

@@ -4,7 +4,7 @@
 // contribution 1, so that after occlude Radiance is 1 in the lanes whose paths are whole; where walks need no joint it
 // is 1 already. Raster positions of paths that are joined with the lens; events of the rows that are kept and left
 // anew.
-#include "kernels/generate/camera_lanes.h"
+#include "kernels/endpoints/camera_lanes.h"
 #include "kernels/mutate/path_lanes.h"
 #include "kernels/stage_declarations.h"
 

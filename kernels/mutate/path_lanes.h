@@ -6,10 +6,10 @@
 
 #include "kernels/columns/chain_paths.h"
 #include "kernels/columns/chains.h"
-#include "kernels/generate/camera_lanes.h"
+#include "kernels/endpoints/camera_lanes.h"
+#include "kernels/endpoints/light_lanes.h"
+#include "kernels/endpoints/scene_box_lanes.h"
 #include "kernels/mutate/path_law.h"
-#include "kernels/shade/light_lanes.h"
-#include "kernels/shade/scene_box_lanes.h"
 #include "kernels/shade/shading_lanes.h"
 
 WAVECREST_SIMD_BEGIN
@@ -63,15 +63,15 @@ WAVECREST_INLINE UInt rowAt(Walk walk, UInt origin, uint32_t depth) {
   return walk == Walk::light ? origin + UInt(depth) : origin - UInt(depth);
 }
 
-// A surface vertex, with `fix` the direction to the neighbour that a walk comes from.
+// A surface vertex, with `wi` the direction to the neighbour that a walk comes from.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename P::Storage>& scene,
                                                         const PathVertices<typename P::Storage>& v, UInt at,
-                                                        Vec3<typename P::Real> fix, Walk walk) {
+                                                        Vec3<typename P::Real> wi, Walk walk) {
   using Real = typename P::Real;
   const Vec3<Real> normal = normalAt(v, at);
   VertexLanes<Real> vertex{.position = positionAt(v, at),
-                           .fix = fix,
+                           .wi = wi,
                            .normal = normal,
                            .shadingNormal = normal,
                            .baseNormal = normal,
@@ -102,11 +102,10 @@ WAVECREST_INLINE Float numberOfEvent(const BsdfInputOf<P, kFeatures>& bsdf, UInt
 
 // The event that sampling by the number u.a led to.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE UInt eventOf(const BsdfInputOf<P, kFeatures>& bsdf, Vec3<typename P::Real> fix,
+WAVECREST_INLINE UInt eventOf(const BsdfInputOf<P, kFeatures>& bsdf, Vec3<typename P::Real> wi,
                               const BsdfSample<typename P::Real>& sample, [[maybe_unused]] Float number) {
   using Real = typename P::Real;
-  UInt event =
-      select((fix.z * sample.gen.z) > Real(0), eventCode(PathEvent::reflected), eventCode(PathEvent::refracted));
+  UInt event = select((wi.z * sample.wo.z) > Real(0), eventCode(PathEvent::reflected), eventCode(PathEvent::refracted));
   if constexpr (has(kFeatures, kLayeredBsdfs)) {
     const Real opacity = bsdf.opacity();
     event = select((opacity < Real(1)) & (to<Real>(number) >= opacity), eventCode(PathEvent::passed), event);
@@ -128,7 +127,7 @@ WAVECREST_INLINE WalkStep<typename P::Real> walkOn(const ShadingLanes<P, kFeatur
   using Real = typename P::Real;
   u.a = select(same, numberOfEvent<P, kFeatures>(shading.bsdf, event), u.a);
   const auto sample = shading.sampled(active, u);
-  WalkStep<Real> step{shading.toWorld(sample.gen), eventOf<P, kFeatures>(shading.bsdf, shading.fix, sample, u.a),
+  WalkStep<Real> step{shading.toWorld(sample.wo), eventOf<P, kFeatures>(shading.bsdf, shading.wi, sample, u.a),
                       noLanes()};
   step.alive =
       active & (maxComponent(sample.weight) > Real(0)) & (sample.pdf > Real(0)) & (!same | (step.event == event));

@@ -1,5 +1,5 @@
 // The laws by which mutations of paths choose what to delete and how much to put in its place (METHODS 7.6), as tables
-// that a render fills once (engine/chains/path_law.h).
+// that a render fills once (engine/plan/path_laws.h).
 #pragma once
 
 #include <array>

@@ -7,7 +7,7 @@
 // directions elsewhere.
 #include <algorithm>
 
-#include "kernels/generate/camera_lanes.h"
+#include "kernels/endpoints/camera_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/mutate/path_lanes.h"
 #include "kernels/stage_declarations.h"
@@ -112,15 +112,15 @@ WAVECREST_NOINLINE size_t leaveKept(const StageContext<typename P::Storage>& con
   const Mask surface = m & (camera ? allLanes() : !(row == zero));
   const UInt at = select(surface, row, one), behind = camera ? at + one : at - one;
   const Vec3<Real> position = positionAt(v, at * stride + lane);
-  Vec3<Real> fix = positionAt(v, behind * stride + lane);
+  Vec3<Real> wi = positionAt(v, behind * stride + lane);
   Mask direction = noLanes();  // x_0 at infinity is a direction
   if (!camera) {
     const RecordLanes<LightRecord<typename P::Storage>> light(
         context.scene->lights, select(surface & (behind == zero), gather(v.primitive, lane), zero));
     direction = (behind == zero) & isInfinite(light(context.scene->lights->kind));
   }
-  fix = select(direction, fix, fix - position);
-  const auto shading = pathShading<P, kFeatures>(*context.scene, v, at * stride + lane, normalize(fix), context.walk);
+  wi = select(direction, wi, wi - position);
+  const auto shading = pathShading<P, kFeatures>(*context.scene, v, at * stride + lane, normalize(wi), context.walk);
   WalkStep<Real> step = leave<P, kFeatures>(context, shading, surface, lane, at);
   Vec3<Real> from = shading.position, normal = shading.normal;
   Real offset = shading.offset;

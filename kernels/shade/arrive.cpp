@@ -9,14 +9,14 @@
 #include <cmath>
 
 #include "kernels/columns/chains.h"
-#include "kernels/generate/camera_lanes.h"
+#include "kernels/endpoints/camera_lanes.h"
+#include "kernels/endpoints/light_lanes.h"
+#include "kernels/endpoints/scene_box_lanes.h"
 #include "kernels/mis_lanes.h"
-#include "kernels/shade/interpolation_lanes.h"
-#include "kernels/shade/light_lanes.h"
-#include "kernels/shade/scene_box_lanes.h"
-#include "kernels/shade/surface_lanes.h"
 #include "kernels/shade/vertex_order_lanes.h"
 #include "kernels/stage_declarations.h"
+#include "kernels/surface/interpolation_lanes.h"
+#include "kernels/surface/surface_lanes.h"
 
 WAVECREST_SIMD_BEGIN
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "kernels/shade/bsdf_lanes.h"
+#include "kernels/bsdf/bsdf_lanes.h"
 
 WAVECREST_SIMD_BEGIN
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/mis_lanes.h"
-#include "kernels/shade/interpolation_lanes.h"
+#include "kernels/surface/interpolation_lanes.h"
 
 WAVECREST_SIMD_BEGIN
 

@@ -33,10 +33,10 @@ WAVECREST_INLINE typename P::Real survival(Vec3<typename P::Real> throughput, ty
 template <class P, uint32_t kBsdfs>
 WAVECREST_INLINE typename P::Real specularJacobian(const ShadingLanes<P, kBsdfs>& shading,
                                                    const BsdfSample<typename P::Real>& sample,
-                                                   typename P::Real genCosine) {
+                                                   typename P::Real woCosine) {
   using Real = typename P::Real;
-  const Real cosines = abs(shading.fix.z) * reciprocal(max(abs(sample.gen.z), Real(1e-12f)));
-  return sample.pdfReverse * reciprocal(sample.pdf) * genCosine * cosines * sample.etaRatio * sample.etaRatio;
+  const Real cosines = abs(shading.wi.z) * reciprocal(max(abs(sample.wo.z), Real(1e-12f)));
+  return sample.pdfReverse * reciprocal(sample.pdf) * woCosine * cosines * sample.etaRatio * sample.etaRatio;
 }
 
 // Scatters vertices [begin, end), whose BSDFs are of kBsdfs, to `out`; where they end. Both stages share its code.
@@ -57,17 +57,17 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     const UInt lane = select(active, load(paths.lane, i), UInt(0u));
     const Uniform4 u = draw(context, pathOf(context, wave, lane), Block::scatter);
     const auto sample = shading.sampled(active, u);
-    const Vec3<Real> direction = shading.toWorld(sample.gen);
-    const Real genCosine = abs(dot(direction, shading.normal));
+    const Vec3<Real> direction = shading.toWorld(sample.wo);
+    const Real woCosine = abs(dot(direction, shading.normal));
 
     Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * sample.weight;
     Mask alive = active & (maxComponent(throughput) > Real(0)) & (sample.pdf > Real(0));
     if (lobes == Lobes::specularOnly) alive = alive & sample.specular;
     if constexpr (has(kFeatures, kBidirectional) && has(kFeatures, kShadingNormals | kTextures)) {
       if (context.walk == Walk::light) {  // METHODS 3.9: the non-symmetry of interpolated normals (Veach 1997, 5.3)
-        const Real fixCosine = max(abs(shading.fixCosine), Real(kSmallestCosine));
-        throughput = throughput *
-                     (abs(shading.fix.z) * genCosine * reciprocal(fixCosine * max(abs(sample.gen.z), Real(1e-12f))));
+        const Real wiCosine = max(abs(shading.wiCosine), Real(kSmallestCosine));
+        throughput =
+            throughput * (abs(shading.wi.z) * woCosine * reciprocal(wiCosine * max(abs(sample.wo.z), Real(1e-12f))));
       }
     }
     Real rouletteScale(1);
@@ -83,10 +83,10 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
 
     const MisSums<Real> before = loadMis<kFeatures>(paths, i);
     MisSums<Real> mis =
-        scatterMis<P, kFeatures>(context.mis, context.depth, before, sample.pdf, sample.pdfReverse, genCosine);
+        scatterMis<P, kFeatures>(context.mis, context.depth, before, sample.pdf, sample.pdfReverse, woCosine);
     if constexpr (!onlyDiffuse(kBsdfs)) {
       if (any(sample.specular)) {
-        const auto over = scatterSpecularMis(before, specularJacobian(shading, sample, genCosine));
+        const auto over = scatterSpecularMis(before, specularJacobian(shading, sample, woCosine));
         mis = {select(sample.specular, over.dVCM, mis.dVCM), select(sample.specular, over.dVC, mis.dVC),
                select(sample.specular, over.dVM, mis.dVM)};
       }

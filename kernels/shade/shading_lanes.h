@@ -1,14 +1,14 @@
 // The vertex of each lane as BSDFs want it: material, shading frame and the direction back along the path in it.
 #pragma once
 
-#include "kernels/shade/bsdf_lanes.h"
-#include "kernels/shade/normal_map_lanes.h"
-#include "kernels/shade/surface_lanes.h"
+#include "kernels/bsdf/bsdf_lanes.h"
 #include "kernels/simd/math.h"
+#include "kernels/surface/normal_map_lanes.h"
+#include "kernels/surface/surface_lanes.h"
 
 WAVECREST_SIMD_BEGIN
 
-// Scattering between `fix` and a direction at a vertex. Densities as in BsdfValue.
+// Scattering between `wi` and a direction at a vertex. Densities as in BsdfValue.
 template <class Real>
 struct Scattering {
   Vec3<Real> f;
@@ -19,7 +19,7 @@ struct Scattering {
 // What a vertex is, before its material is known: of a live path, or of a stored light vertex.
 template <class Real>
 struct VertexLanes {
-  Vec3<Real> position, fix, normal, shadingNormal;
+  Vec3<Real> position, wi, normal, shadingNormal;
   Vec3<Real> baseNormal;  // the shading normal without its map, in feature sets with normal maps
   Real offset;
   Float u, v;     // texture coordinates
@@ -35,9 +35,9 @@ struct ShadingLanes {
   Vec3<Real> position, normal;
   Real offset;
   Frame<Real> frame;
-  Vec3<Real> fix;  // in the frame, after turning a two-sided surface towards it
-  Real side;       // -1 where a two-sided surface was turned, else 1
-  Real fixCosine;  // fix . geometric normal, signed
+  Vec3<Real> wi;  // in the frame, after turning a two-sided surface towards it
+  Real side;      // -1 where a two-sided surface was turned, else 1
+  Real wiCosine;  // wi . geometric normal, signed
   BsdfInputOf<P, kFeatures> bsdf;
   std::conditional_t<has(kFeatures, kNormalMaps), NormalMapLanes<Real>, NoNormalMaps> map;
   std::conditional_t<has(kFeatures, kCompoundBsdfs), Vec3<Real>, NoTangents>
@@ -49,9 +49,9 @@ struct ShadingLanes {
         normal(vertex.normal),
         offset(vertex.offset),
         frame(Frame<Real>::fromNormal(vertex.shadingNormal)),
-        fix(frame.toLocal(vertex.fix)),
+        wi(frame.toLocal(vertex.wi)),
         side(Real(1)),
-        fixCosine(dot(vertex.fix, vertex.normal)),
+        wiCosine(dot(vertex.wi, vertex.normal)),
         bsdf(input) {}
 
   WAVECREST_INLINE Vec3<Real> toLocal(Vec3<Real> v) const {
@@ -63,29 +63,29 @@ struct ShadingLanes {
   // By the lobes that are not deltas. The shading normal alone decides what f is, as in Mitsuba 3: where the geometric
   // normal has a direction on the other side, the ray goes through the surface.
   WAVECREST_INLINE Scattering<Real> scattering(Mask active, Vec3<Real> direction) const {
-    const Vec3<Real> gen = toLocal(direction);
-    const BsdfValue<Real> value = evalBsdf<P, kFeatures>(bsdf, active, fix, gen);
-    Scattering<Real> out{value.f, value.pdf, value.pdfReverse, abs(bsdf.walk == Walk::camera ? gen.z : fix.z)};
+    const Vec3<Real> wo = toLocal(direction);
+    const BsdfValue<Real> value = evalBsdf<P, kFeatures>(bsdf, active, wi, wo);
+    Scattering<Real> out{value.f, value.pdf, value.pdfReverse, abs(bsdf.walk == Walk::camera ? wo.z : wi.z)};
     if constexpr (has(kFeatures, kNormalMaps)) {
       if (map.present) applyMap(active, direction, out);
     }
     return out;
   }
 
-  // A direction to go on. gen is in this frame; the weight of a light walk is such that METHODS 3.9 with this frame's
+  // A direction to go on. wo is in this frame; the weight of a light walk is such that METHODS 3.9 with this frame's
   // cosines makes it f c(omega_l) / pdf with those that count.
   WAVECREST_INLINE BsdfSample<Real> sampled(Mask active, const Uniform4& u) const {
     if constexpr (has(kFeatures, kNormalMaps)) {
       if (map.present) return bsdf.walk == Walk::camera ? sampledFromEye(active, u) : sampledFromLight(active, u);
     }
-    return sampleBsdf<P, kFeatures>(bsdf, active, fix, u);
+    return sampleBsdf<P, kFeatures>(bsdf, active, wi, u);
   }
 
  private:
   // The vertex with the other of its two normals (normal_map_lanes.h).
   struct View {
     Frame<Real> frame;
-    Vec3<Real> fix;
+    Vec3<Real> wi;
     Real side;
     WAVECREST_INLINE Vec3<Real> toLocal(Vec3<Real> v) const {
       const Vec3<Real> local = frame.toLocal(v);
@@ -95,10 +95,10 @@ struct ShadingLanes {
   };
   WAVECREST_INLINE View otherView() const {
     View view{Frame<Real>::fromNormal(map.otherOf(frame.n)), {}, Real(1)};
-    view.fix = view.frame.toLocal(map.fix);
+    view.wi = view.frame.toLocal(map.wi);
     const Mask twoSided = (bsdf.flags & UInt(kTwoSided)) == UInt(kTwoSided);
-    view.side = select(twoSided & (view.fix.z < Real(0)), Real(-1), Real(1));
-    view.fix.z = view.fix.z * view.side;
+    view.side = select(twoSided & (view.wi.z < Real(0)), Real(-1), Real(1));
+    view.wi.z = view.wi.z * view.side;
     return view;
   }
   // The BSDF for lanes that are seen from another frame.
@@ -118,21 +118,21 @@ struct ShadingLanes {
   // seesThis: the eye faces the normal of this frame.
   WAVECREST_INLINE Real lightFactor(Mask seesThis, Vec3<Real> direction) const {
     const Vec3<Real> seen = select(seesThis, frame.n, map.otherOf(frame.n));
-    return bsdf.walk == Walk::camera ? map.lightFactor(seen, direction, map.fix)
-                                     : map.lightFactor(seen, map.fix, direction);
+    return bsdf.walk == Walk::camera ? map.lightFactor(seen, direction, map.wi)
+                                     : map.lightFactor(seen, map.wi, direction);
   }
 
   WAVECREST_INLINE void applyMap(Mask active, Vec3<Real> direction, Scattering<Real>& out) const {
     const Mask mapped = active & map.lanes;
     if (none(mapped)) return;
     const bool camera = bsdf.walk == Walk::camera;
-    const Real one(1), share = map.lightShare(frame.n, camera ? direction : map.fix);
+    const Real one(1), share = map.lightShare(frame.n, camera ? direction : map.wi);
     const Mask seesThis = camera ? mapped : mapped & map.sees(direction, frame.n);
     const Mask both = andNot(mapped, seesThis & (share >= one));
     if (any(both)) {
       const View other = otherView();
       const BsdfValue<Real> value =
-          evalBsdf<P, kFeatures>(bsdfIn(both, other), both, other.fix, other.toLocal(direction));
+          evalBsdf<P, kFeatures>(bsdfIn(both, other), both, other.wi, other.toLocal(direction));
       const auto mixed = [&](Real a, Real b)
                              WAVECREST_LAMBDA { return select(both, a * share + b * (one - share), a); };
       if (camera) {
@@ -140,7 +140,7 @@ struct ShadingLanes {
       } else {
         const Mask seesOther = andNot(mapped, seesThis);
         out.f = select(seesOther, value.f, out.f);
-        out.lightCosine = select(seesOther, abs(other.fix.z), out.lightCosine);
+        out.lightCosine = select(seesOther, abs(other.wi.z), out.lightCosine);
         out.pdfReverse = select(seesOther, value.pdfReverse, out.pdfReverse);
         out.pdf = mixed(out.pdf, value.pdf);
       }
@@ -149,15 +149,15 @@ struct ShadingLanes {
   }
 
   // Lanes that went on straight through an absent surface, whatever its normal.
-  static WAVECREST_INLINE Mask passes(const BsdfSample<Real>& sample, Vec3<Real> fix) {
-    return sample.specular & (sample.gen.x == -fix.x) & (sample.gen.y == -fix.y) & (sample.gen.z == -fix.z);
+  static WAVECREST_INLINE Mask passes(const BsdfSample<Real>& sample, Vec3<Real> wi) {
+    return sample.specular & (sample.wo.x == -wi.x) & (sample.wo.y == -wi.y) & (sample.wo.z == -wi.z);
   }
 
   WAVECREST_INLINE BsdfSample<Real> sampledFromEye(Mask active, const Uniform4& u) const {
-    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, fix, u);
-    const Mask mapped = andNot(active & map.lanes, passes(sample, fix));
+    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, wi, u);
+    const Mask mapped = andNot(active & map.lanes, passes(sample, wi));
     if (none(mapped)) return sample;
-    const Vec3<Real> direction = toWorld(sample.gen);
+    const Vec3<Real> direction = toWorld(sample.wo);
     const Mask finite = andNot(mapped, sample.specular);
     const Real back = sample.pdfReverse * map.lightShare(frame.n, direction);
     sample.pdfReverse = select(mapped, back, sample.pdfReverse);
@@ -169,22 +169,22 @@ struct ShadingLanes {
   WAVECREST_INLINE BsdfSample<Real> sampledFromLight(Mask active, const Uniform4& u) const {
     const Real one(1), tiny(1e-12f);
     const View other = otherView();
-    const Real share = select(map.lanes, map.lightShare(frame.n, map.fix), one);
+    const Real share = select(map.lanes, map.lightShare(frame.n, map.wi), one);
     const Mask drawsOther = active & (to<Real>(u.b) >= share);
     const Real drawn = select(drawsOther, one - share, share);
     // What is left of u.b goes into the direction.
     const Float rest = toFloat(select(drawsOther, to<Real>(u.b) - share, to<Real>(u.b)) / drawn);
     const Uniform4 numbers{u.a, min(max(rest, Float(0)), Float(0x1.fffffep-1f)), u.c, u.d};
-    const Vec3<Real> from = select(drawsOther, other.fix, fix);
+    const Vec3<Real> from = select(drawsOther, other.wi, wi);
     BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdfIn(drawsOther, other), active, from, numbers);
     const Mask mapped = andNot(active & map.lanes, passes(sample, from));
-    const Vec3<Real> direction = select(drawsOther, other.toWorld(sample.gen), toWorld(sample.gen));
-    const Vec3<Real> gen = select(drawsOther, toLocal(direction), sample.gen);
+    const Vec3<Real> direction = select(drawsOther, other.toWorld(sample.wo), toWorld(sample.wo));
+    const Vec3<Real> wo = select(drawsOther, toLocal(direction), sample.wo);
 
     const Mask seesThis = mapped & map.sees(direction, frame.n);
     // A delta lobe joins its two directions by the drawn normal alone, which must be the one that the eye faces.
     const Mask delta = mapped & sample.specular, joins = andNot(drawsOther, seesThis) | andNot(seesThis, drawsOther);
-    const Real turn = abs(from.z * gen.z) / max(abs(sample.gen.z * fix.z), tiny);  // of cosines to this frame's
+    const Real turn = abs(from.z * wo.z) / max(abs(sample.wo.z * wi.z), tiny);  // of cosines to this frame's
     const Real factor = zeroUnless(joins, turn * lightFactor(seesThis, direction) / drawn);
     sample.weight = select(delta, sample.weight * factor, sample.weight);
     sample.pdfReverse = select(delta, sample.pdfReverse * turn, sample.pdfReverse);
@@ -193,12 +193,12 @@ struct ShadingLanes {
     const Mask finite = andNot(mapped, sample.specular);
     if (any(finite)) {
       const Scattering<Real> all = scattering(finite, direction);
-      const Real scale = all.lightCosine * abs(gen.z) / max(abs(fix.z) * all.pdf, tiny);
+      const Real scale = all.lightCosine * abs(wo.z) / max(abs(wi.z) * all.pdf, tiny);
       sample.weight = select(finite, all.f * scale, sample.weight);
       sample.pdfReverse = select(finite, all.pdfReverse, sample.pdfReverse);
       sample.pdf = select(finite, all.pdf, sample.pdf);
     }
-    sample.gen = gen;
+    sample.wo = wo;
     return sample;
   }
 };
@@ -221,11 +221,11 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
                .flips = flagged(kFlipsNormals),
                .softens = flagged(kSoftensTerminator),
                .mirrorsBack = flagged(kMirrorsBack),
-               .fix = vertex.fix,
+               .wi = vertex.wi,
                .base = vertex.baseNormal,
                .mapped = vertex.shadingNormal};
-      s.frame = Frame<Real>::fromNormal(select(s.map.lanes, s.map.normalFor(vertex.fix), vertex.shadingNormal));
-      s.fix = s.frame.toLocal(vertex.fix);
+      s.frame = Frame<Real>::fromNormal(select(s.map.lanes, s.map.normalFor(vertex.wi), vertex.shadingNormal));
+      s.wi = s.frame.toLocal(vertex.wi);
     }
   }
   if constexpr (has(kFeatures, kTextures)) {
@@ -241,8 +241,8 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
       s.bsdf.setTangent(s.tangent, s.frame);
     }
   }
-  s.side = select(flagged(kTwoSided) & (s.fix.z < Real(0)), Real(-1), Real(1));
-  s.fix.z = s.fix.z * s.side;
+  s.side = select(flagged(kTwoSided) & (s.wi.z < Real(0)), Real(-1), Real(1));
+  s.wi.z = s.wi.z * s.side;
   return s;
 }
 
@@ -275,7 +275,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename
   const auto& surfaces = wave.surfaces;
   const auto normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
   VertexLanes<Real> vertex{.position = loadVec3(rays.originX, rays.originY, rays.originZ, i),
-                           .fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i),
+                           .wi = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i),
                            .normal = normal,
                            .shadingNormal = normal,
                            .baseNormal = normal,

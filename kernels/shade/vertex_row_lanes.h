@@ -16,14 +16,14 @@ WAVECREST_INLINE auto makeRows(const StageContext<S>& context, const Wave<S>& wa
   const auto& surfaces = wave.surfaces;
   const auto& paths = wave.paths;
   const auto position = loadVec3(rays.originX, rays.originY, rays.originZ, i);
-  const auto fix = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
+  const auto wi = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
   const auto normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
   const auto throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
   const auto mis = loadMis<kFeatures>(paths, i);
   const UInt primitive = select(firstLanes(rays.size - i), load(wave.hits.primitive, i), UInt(0u));
   RecordBlock<decltype(position.x)> rows;
   rows.set(0, position.x, position.y, position.z, load(surfaces.offset, i));
-  rows.set(1, fix.x, fix.y, fix.z, packTag(materialOf(*context.scene, primitive), edges, fix.x));
+  rows.set(1, wi.x, wi.y, wi.z, packTag(materialOf(*context.scene, primitive), edges, wi.x));
   rows.set(2, normal.x, normal.y, normal.z, mis.dVCM);
   rows.set(3, throughput.x, throughput.y, throughput.z, keptBehind(context.mis, mis));
   return rows;
@@ -56,12 +56,12 @@ WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::S
                                                    const uint32_t* index) {
   using Real = typename P::Real;
   const FourColumns<Real> place = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].position; }),
-                          back = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].fix; }),
+                          back = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].wi; }),
                           side = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].normal; }),
                           carried = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].throughput; });
   const Vec3<Real> normal{side.a, side.b, side.c};
   VertexLanes<Real> vertex{.position = {place.a, place.b, place.c},
-                           .fix = {back.a, back.b, back.c},
+                           .wi = {back.a, back.b, back.c},
                            .normal = normal,
                            .shadingNormal = normal,
                            .baseNormal = normal,

@@ -1,5 +1,6 @@
-// spreadSamples: adds the samples of one tile and iteration to the pixels around them (kernels/splat/filter_spread.h).
-// filterPlaces: where in the filter the iterations place their samples, for whoever computes the weights.
+// spreadSamples: adds the samples of one tile and iteration to the pixels around them
+// (kernels/columns/filter_spread.h). filterPlaces: where in the filter the iterations place their samples, for whoever
+// computes the weights.
 //
 // in: the tile's samples, and the weights along both axes. out: the tile's sums. The filter is separable: first down
 // the columns into a line of sums, then along the line. Samples that are not finite count as black.
@@ -7,7 +8,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "kernels/generate/camera_lanes.h"
+#include "kernels/endpoints/camera_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN

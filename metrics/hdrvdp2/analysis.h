@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "metrics/fourier_filter.h"
 #include "metrics/hdrvdp2/model.h"
 #include "metrics/hdrvdp2/steerable_pyramid.h"
 #include "metrics/image/image.h"
+#include "metrics/planes/fourier_filter.h"
 
 namespace wavecrest::vdp {
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstddef>
 
-#include "metrics/plane.h"
+#include "metrics/planes/plane.h"
 
 namespace wavecrest::vdp {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metrics/plane.h"
+#include "metrics/planes/plane.h"
 
 namespace wavecrest::vdp {
 namespace {

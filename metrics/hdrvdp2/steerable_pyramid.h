@@ -9,7 +9,7 @@
 
 #include "kernels/simd/isa.h"
 #include "metrics/hdrvdp2/steerable_filters.h"
-#include "metrics/plane.h"
+#include "metrics/planes/plane.h"
 
 namespace wavecrest::vdp {
 

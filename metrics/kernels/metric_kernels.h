@@ -1,9 +1,9 @@
 // The SIMD kernels of the metrics, and how one instruction set's copy of them is chosen at run time.
 //
 // Each source of this folder is compiled once per instruction set; table.cpp of each compilation fills one
-// MetricKernels. Kernels work on rows of floats that follow the padding rule of metrics/plane.h. They know nothing of
-// images, threads or allocation. Rows may be processed beyond their width, up to the next multiple of 16: callers
-// provide the room.
+// MetricKernels. Kernels work on rows of floats that follow the padding rule of metrics/planes/plane.h. They know
+// nothing of images, threads or allocation. Rows may be processed beyond their width, up to the next multiple of 16:
+// callers provide the room.
 #pragma once
 
 #include "kernels/simd/isa.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/load/load.h"
-#include "engine/render_settings.h"
+#include "engine/plan/render_settings.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {

@@ -272,11 +272,12 @@ class Against(CommandTest):
 
     ARGUMENTS = ("cornell-diffuse", "--methods", "pt,lt", "--size", "16x16", "--duration", "0.2s")
 
-    def other_build(self, times):
+    def other_build(self, times, first=""):
         script = self.write(
             "other",
             "#!/usr/bin/env python3\n"
             "import json, subprocess, sys\n"
+            f"{first}\n"
             f"code = subprocess.call([{WAVECREST!r}, *sys.argv[1:]])\n"
             "stats = sys.argv[sys.argv.index('--stats') + 1]\n"
             "content = json.load(open(stats))\n"
@@ -296,6 +297,7 @@ class Against(CommandTest):
         rows = result["comparisons"]
         self.assertEqual([(row["scene"], row["method"]) for row in rows],
                          [("cornell-diffuse", "pt"), ("cornell-diffuse", "lt")])
+        self.assertEqual(result["in_place"], [])
         for row in rows:
             self.assertTrue(row["same_image"])
             self.assertEqual(row["verdict"], "no difference")
@@ -309,6 +311,13 @@ class Against(CommandTest):
     def test_a_faster_build_is_called_faster(self):
         told = self.run_wavecrest("bench", *self.ARGUMENTS, "--against", self.other_build(5), expect=DONE)
         self.assertRegex(told.stdout, r"\bfaster\b")
+
+    def test_a_build_that_must_stay_where_it_is_is_measured_there(self):
+        other = self.other_build(1, first="assert sys.argv[0].endswith('/other')")
+        told = self.run_wavecrest("bench", *self.ARGUMENTS, "--against", other, "--family-level", "1e-6",
+                                  "--json", self.path("out.json"), expect=DONE)
+        self.assertIn(f"{other} runs only where it stands", told.stdout)
+        self.assertEqual(read_json(self.path("out.json"))["in_place"], [str(other)])
 
     def test_what_cannot_be_run_is_a_usage_error(self):
         result = self.run_wavecrest("bench", "--against", self.path("nothing"), expect=USAGE)

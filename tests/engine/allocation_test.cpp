@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "engine/chains/chain_worker.h"
-#include "engine/pipeline.h"
-#include "engine/render_plan.h"
+#include "engine/plan/chain_layout.h"
+#include "engine/plan/pipeline.h"
+#include "engine/plan/render_plan.h"
 #include "tests/engine/test_scenes.h"
 
 namespace {

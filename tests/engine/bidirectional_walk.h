@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "engine/for_each.h"
-#include "engine/render_plan.h"
+#include "engine/plan/render_plan.h"
+#include "engine/tasks/for_each.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
 
@@ -31,11 +31,11 @@ struct WalkSettings {
 // Strategies that share a path, with their constants (METHODS 5.1).
 inline MisSettings misOf(MisSettings strategies, double sceneRadius, const WalkSettings& settings) {
   strategies.radius = settings.radius * sceneRadius;
-  strategies.lightPaths = strategies.camN = static_cast<double>(settings.lightPaths);
+  strategies.lightPaths = static_cast<double>(settings.lightPaths);
   const double density = std::numbers::pi * strategies.radius * strategies.radius * strategies.lightPaths;
   strategies.mergeNorm = 1 / density;
-  strategies.kVM = strategies.merge ? density : 0;
-  strategies.kVC = strategies.merge && strategies.connect ? 1 / density : 0;
+  strategies.vmWeight = strategies.merge ? density : 0;
+  strategies.vcWeight = strategies.merge && strategies.connect ? 1 / density : 0;
   return strategies;
 }
 
@@ -84,7 +84,7 @@ class BidirectionalWalk {
                                               static_cast<double>(settings.lightPaths));
     context_.counters = &counters;
     context_.film = area_.window();
-    light_.rouletteBelow = static_cast<S>(settings.rouletteBelow);
+    context_.rouletteBelow = static_cast<S>(settings.rouletteBelow);
   }
 
   StageCounters counters;

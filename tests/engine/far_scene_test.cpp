@@ -4,7 +4,7 @@
 
 #include <bit>
 
-#include "engine/inspection.h"
+#include "engine/inspect/inspection.h"
 #include "engine/scene/vector_math.h"
 #include "tests/effort.h"
 #include "tests/engine/render_statistics.h"

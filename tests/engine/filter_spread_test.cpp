@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "engine/spread_sums.h"
+#include "engine/film/spread_sums.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/saved_state.h"
 #include "tests/engine/test_scenes.h"
@@ -23,7 +23,7 @@ CameraView cameraOf(FilterKind filter, double scale) {
 
 // ---- against the formula --------------------------------------------------------------------------------------------
 
-// h of kernels/splat/filter_spread.h along one axis, up to a factor.
+// h of kernels/columns/filter_spread.h along one axis, up to a factor.
 double filterAt(const CameraView& camera, double x) {
   if (camera.filter == FilterKind::tent) return std::max(0.0, 1 - std::abs(x) / camera.filterScale);
   if (std::abs(x) > 4.5 * camera.filterScale) return 0;

@@ -1,5 +1,5 @@
 // Turns go round, whether or not all threads come.
-#include "engine/for_each.h"
+#include "engine/tasks/for_each.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

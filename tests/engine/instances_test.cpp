@@ -2,7 +2,7 @@
 // is to become copies.
 #include <gtest/gtest.h>
 
-#include "engine/render_plan.h"
+#include "engine/plan/render_plan.h"
 #include "engine/scene/scene_error.h"
 #include "tests/effort.h"
 #include "tests/engine/instanced_scenes.h"

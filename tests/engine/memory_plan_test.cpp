@@ -1,10 +1,10 @@
 // The memory plan is what a session then holds.
-#include "engine/memory_plan.h"
+#include "engine/plan/memory_plan.h"
 
 #include <gtest/gtest.h>
 
-#include "engine/render_plan.h"
-#include "engine/session.h"
+#include "engine/plan/render_plan.h"
+#include "engine/session/session.h"
 #include "tests/engine/test_scenes.h"
 
 namespace wavecrest {

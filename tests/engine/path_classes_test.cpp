@@ -1,5 +1,5 @@
 // Verdicts on path classes: by the rules, by the study's choices of reference, and by what rendering shows.
-#include "engine/path_classes.h"
+#include "engine/inspect/path_classes.h"
 
 #include <gtest/gtest.h>
 

@@ -78,7 +78,7 @@ class PathDensity {
     for (size_t s = 2; s < k && mis_.connect; ++s) {
       if (joinable(s - 1) && joinable(s)) out.connect[s] = product(s, s);
     }
-    if (mis_.camera && joinable(k - 1)) out.connect[k] = mis_.camN * product(k, k);
+    if (mis_.camera && joinable(k - 1)) out.connect[k] = mis_.lightPaths * product(k, k);
     const double disc = std::numbers::pi * mis_.radius * mis_.radius * mis_.lightPaths;
     for (size_t i = 1; i < k && mis_.merge; ++i) {
       if (joinable(i)) out.merge[i] = disc * product(i + 1, i);
@@ -106,10 +106,9 @@ class PathDensity {
   }
 
   double scatterDensity(const PathVertex& v, Walk walk) const {
-    const Double3 fix = walk == Walk::light ? v.toLight : v.toCamera,
-                  gen = walk == Walk::light ? v.toCamera : v.toLight;
-    const auto bsdf = ReferenceBsdf::facing(scene_.materials[v.material], v.shading, fix);
-    return v.specular ? bsdf.specularDensity(fix, gen) : bsdf.pdfW(fix, gen);
+    const Double3 wi = walk == Walk::light ? v.toLight : v.toCamera, wo = walk == Walk::light ? v.toCamera : v.toLight;
+    const auto bsdf = ReferenceBsdf::facing(scene_.materials[v.material], v.shading, wi);
+    return v.specular ? bsdf.specularDensity(wi, wo) : bsdf.pdfW(wi, wo);
   }
 
   double cameraDensity(const FullPath& path) const {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/chains/chain_worker.h"
+#include "engine/plan/chain_layout.h"
 #include "kernels/mutate/path_pattern.h"
 #include "tests/engine/light_scenes.h"
 #include "tests/engine/path_transition.h"

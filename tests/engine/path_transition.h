@@ -105,18 +105,18 @@ class PathTransition {
   }
   // Per solid angle of the direction from x_i to x_next, arriving from x_from.
   double density(const ScratchPath& x, size_t i, size_t from, size_t next) const {
-    const Double3 fix = direction(x, i, from), gen = direction(x, i, next);
-    const auto reference = ReferenceBsdf::facing(material(x[i]), x[i].normal, fix);
-    return x[i].specular ? reference.specularDensity(fix, gen) : reference.pdfW(fix, gen);
+    const Double3 wi = direction(x, i, from), wo = direction(x, i, next);
+    const auto reference = ReferenceBsdf::facing(material(x[i]), x[i].normal, wi);
+    return x[i].specular ? reference.specularDensity(wi, wo) : reference.pdfW(wi, wo);
   }
   // The probability of the lobe that x_i takes, where it is a delta.
   double lobe(const ScratchPath& x, size_t i, size_t from, size_t next) const {
-    const Double3 gen = direction(x, i, next);
-    const bool inside = dot(gen, x[i].normal) < 0;
+    const Double3 wo = direction(x, i, next);
+    const bool inside = dot(wo, x[i].normal) < 0;
     const MaterialRecord& m = material(x[i]);
     const bool glass = static_cast<BsdfKind>(m.kind) == BsdfKind::dielectric;
     const double eta2 = glass && inside ? double{m.eta[0]} * m.eta[0] : 1.0;
-    return density(x, i, from, next) / (eta2 * std::abs(dot(gen, x[i].normal)));
+    return density(x, i, from, next) / (eta2 * std::abs(dot(wo, x[i].normal)));
   }
 
   double bsdf(const ScratchPath& x, size_t i, size_t channel) const {
@@ -126,7 +126,7 @@ class PathTransition {
       const auto reference = ReferenceBsdf::facing(m, x[i].normal, toEye);
       return reference.pdfW(toEye, toLight) > 0 ? double{m.reflectance[channel]} / std::numbers::pi : 0;
     }
-    // An eye walk's f c / pdf is the lobe's tint, and of refraction (eta_fix / eta_gen)^2 times that.
+    // An eye walk's f c / pdf is the lobe's tint, and of refraction (eta_wi / eta_wo)^2 times that.
     double weight = m.specular[channel];
     if (dot(toEye, x[i].normal) * dot(toLight, x[i].normal) < 0) {
       const double eta = dot(toEye, x[i].normal) > 0 ? 1 / double{m.eta[0]} : double{m.eta[0]};

@@ -18,35 +18,35 @@ struct ReferenceBsdf {
   const MaterialRecord* material;
   Double3 normal;
 
-  static ReferenceBsdf facing(const MaterialRecord& material, const Double3& normal, const Double3& fix) {
-    const bool turned = (material.flags & kTwoSided) != 0 && dot(normal, fix) < 0;
+  static ReferenceBsdf facing(const MaterialRecord& material, const Double3& normal, const Double3& wi) {
+    const bool turned = (material.flags & kTwoSided) != 0 && dot(normal, wi) < 0;
     return {&material, turned ? normal * -1.0 : normal};
   }
 
-  // Of gen per solid angle given fix, by the lobes that are not deltas.
-  double pdfW(const Double3& fix, const Double3& gen) const {
-    const double cosFix = dot(fix, normal), cosGen = dot(gen, normal);
+  // Of wo per solid angle given wi, by the lobes that are not deltas.
+  double pdfW(const Double3& wi, const Double3& wo) const {
+    const double cosWi = dot(wi, normal), cosWo = dot(wo, normal);
     switch (static_cast<BsdfKind>(material->kind)) {
       case BsdfKind::diffuse:
-        return cosFix > 0 && cosGen > 0 ? cosGen / std::numbers::pi : 0;
+        return cosWi > 0 && cosWo > 0 ? cosWo / std::numbers::pi : 0;
       case BsdfKind::phong: {
-        if (cosFix <= 0 || cosGen <= 0) return 0;
-        const Double3 mirrored = normal * (2 * cosFix) - fix;
-        const double lobe = std::pow(std::max(dot(mirrored, gen), 0.0), double{material->alpha});
+        if (cosWi <= 0 || cosWo <= 0) return 0;
+        const Double3 mirrored = normal * (2 * cosWi) - wi;
+        const double lobe = std::pow(std::max(dot(mirrored, wo), 0.0), double{material->alpha});
         const double pick = material->specularPick;
-        return pick * (material->alpha + 1) / (2 * std::numbers::pi) * lobe + (1 - pick) * cosGen / std::numbers::pi;
+        return pick * (material->alpha + 1) / (2 * std::numbers::pi) * lobe + (1 - pick) * cosWo / std::numbers::pi;
       }
-      case BsdfKind::roughConductor: {  // G1(fix) D(m) / (4 cos fix)
-        if (cosFix <= 0 || cosGen <= 0) return 0;
+      case BsdfKind::roughConductor: {  // G1(wi) D(m) / (4 cos wi)
+        if (cosWi <= 0 || cosWo <= 0) return 0;
         const double alpha2 = double{material->alpha} * material->alpha;
-        const double cosM = dot(normalized(fix + gen), normal);
+        const double cosM = dot(normalized(wi + wo), normal);
         const double bracket = cosM * cosM * (alpha2 - 1) + 1;
         const double d = alpha2 / (std::numbers::pi * bracket * bracket);
-        const double g1 = 2 * cosFix / (cosFix + std::sqrt(alpha2 + (1 - alpha2) * cosFix * cosFix));
-        return g1 * d / (4 * cosFix);
+        const double g1 = 2 * cosWi / (cosWi + std::sqrt(alpha2 + (1 - alpha2) * cosWi * cosWi));
+        return g1 * d / (4 * cosWi);
       }
       case BsdfKind::plastic:
-        return cosFix > 0 && cosGen > 0 ? (1 - plasticPick(cosFix)) * cosGen / std::numbers::pi : 0;
+        return cosWi > 0 && cosWo > 0 ? (1 - plasticPick(cosWi)) * cosWo / std::numbers::pi : 0;
       case BsdfKind::conductor:
       case BsdfKind::dielectric:
         return 0;
@@ -56,22 +56,22 @@ struct ReferenceBsdf {
     }
   }
 
-  // Of the delta lobe that leads from fix to gen: the factor that stands for its density. Densities of a path that
+  // Of the delta lobe that leads from wi to wo: the factor that stands for its density. Densities of a path that
   // differ in the end from which the vertex is sampled contain the same delta function if it is written in the measure
-  // eta^2 cos dw, which reflection and refraction preserve: P eta_gen^2 cos_gen remains.
-  double specularDensity(const Double3& fix, const Double3& gen) const {
-    const double cosFix = dot(fix, normal), cosGen = dot(gen, normal);
+  // eta^2 cos dw, which reflection and refraction preserve: P eta_wo^2 cos_wo remains.
+  double specularDensity(const Double3& wi, const Double3& wo) const {
+    const double cosWi = dot(wi, normal), cosWo = dot(wo, normal);
     const double eta = material->eta[0];
     switch (static_cast<BsdfKind>(material->kind)) {
       case BsdfKind::conductor:
-        return std::abs(cosGen);
+        return std::abs(cosWo);
       case BsdfKind::plastic:
-        return plasticPick(cosFix) * std::abs(cosGen);
+        return plasticPick(cosWi) * std::abs(cosWo);
       case BsdfKind::dielectric: {
-        const double reflectance = fresnel(std::abs(cosFix), cosFix > 0 ? eta : 1 / eta);
-        const double etaGen = cosGen > 0 ? 1 : eta;
-        const double pick = cosFix * cosGen > 0 ? reflectance : 1 - reflectance;
-        return pick * etaGen * etaGen * std::abs(cosGen);
+        const double reflectance = fresnel(std::abs(cosWi), cosWi > 0 ? eta : 1 / eta);
+        const double etaWo = cosWo > 0 ? 1 : eta;
+        const double pick = cosWi * cosWo > 0 ? reflectance : 1 - reflectance;
+        return pick * etaWo * etaWo * std::abs(cosWo);
       }
       default:
         ADD_FAILURE() << "no delta lobe in BSDF kind " << material->kind;

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/session.h"
+#include "engine/session/session.h"
 
 namespace wavecrest {
 

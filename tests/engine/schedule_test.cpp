@@ -1,5 +1,5 @@
 // Which tasks a schedule hands out, and that they run once each, in an order that its waits allow.
-#include "engine/schedule.h"
+#include "engine/tasks/schedule.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/task_arena.h>
@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "engine/run_schedule.h"
+#include "engine/tasks/run_schedule.h"
 
 namespace wavecrest {
 namespace {

@@ -1,6 +1,6 @@
 // A render that is broken anywhere and goes on in another session, with other threads and waves, is bit for bit the
 // one that was never broken; and a state of another render is refused.
-#include "engine/session_state.h"
+#include "engine/state/state_stream.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // When snapshots are due, and that no render goes on past its time.
-#include "engine/snapshots.h"
+#include "engine/session/snapshots.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Sums of splats next to their limits, shared by many workers, and images of any brightness.
-#include "engine/splat_films.h"
+#include "engine/film/splat_films.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "engine/for_each.h"
 #include "engine/methods/method_list.h"
+#include "engine/tasks/for_each.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/saved_state.h"
 #include "tests/engine/test_scenes.h"

@@ -1,12 +1,12 @@
 // Contracts of stages: a wave as stages leave it keeps them, and each damage to it is found.
-#include "engine/stage_contracts.h"
+#include "engine/plan/stage_contracts.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <limits>
 
-#include "engine/render_plan.h"
+#include "engine/plan/render_plan.h"
 #include "kernels/columns/light_vertices.h"
 #include "tests/engine/light_scenes.h"
 #include "tests/engine/render_statistics.h"
@@ -23,7 +23,7 @@ class StageContractsTest : public testing::Test {
     context_.scene = &plan_.scene->view;
     context_.pixels = area_.pixels.data();
     context_.mis = plan_.pipeline.cameraPass.strategies;
-    context_.mis.camN = kPaths;
+    context_.mis.lightPaths = kPaths;
     context_.counters = &counters_;
     context_.light = &store_;
     context_.limits = {.maxDepth = 6, .rouletteDepth = 6};

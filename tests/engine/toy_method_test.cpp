@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "engine/flush_to_zero.h"
 #include "engine/methods/method_list.h"
-#include "engine/render_plan.h"
+#include "engine/plan/render_plan.h"
+#include "engine/tasks/flush_to_zero.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
 

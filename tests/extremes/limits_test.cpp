@@ -6,7 +6,7 @@
 
 #include "bench/extremes/extreme_scenes.h"
 #include "engine/compile/textures.h"
-#include "engine/render_plan.h"
+#include "engine/plan/render_plan.h"
 #include "engine/scene/scene_error.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"

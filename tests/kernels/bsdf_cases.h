@@ -196,7 +196,7 @@ inline Direction fromAngles(double theta, double phi) {
 inline double dot(const Direction& a, const Direction& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Directions back along the path for a case: near normal, oblique and grazing; from below too where light may come.
-inline std::vector<Direction> fixDirections(const BsdfCase& bsdf) {
+inline std::vector<Direction> wiDirections(const BsdfCase& bsdf) {
   std::vector<Direction> directions{fromAngles(0.05, 1.0), fromAngles(0.9, 4.0), fromAngles(1.5, 2.0)};
   if (bsdf.back) {
     directions.push_back(fromAngles(std::numbers::pi - 0.4, 0.5));
@@ -229,10 +229,10 @@ inline std::vector<std::array<float, 3>> randomDraws(size_t count, uint32_t seed
 
 // Calls function(draw) for each of `count` draws, in batches that stay in cache.
 template <class Function>
-void forEachDraw(const BsdfEntries& entries, const BsdfQuery& query, const Direction& fix, size_t count, uint32_t seed,
+void forEachDraw(const BsdfEntries& entries, const BsdfQuery& query, const Direction& wi, size_t count, uint32_t seed,
                  Function&& function) {
   constexpr size_t kBatch = 4096;
-  const std::vector<Direction> fixes(std::min(count, kBatch), fix);
+  const std::vector<Direction> fixes(std::min(count, kBatch), wi);
   std::vector<BsdfDraw> draws(fixes.size());
   for (size_t first = 0; first < count; first += kBatch) {
     const size_t size = std::min(kBatch, count - first);
@@ -242,17 +242,17 @@ void forEachDraw(const BsdfEntries& entries, const BsdfQuery& query, const Direc
   }
 }
 
-inline std::vector<BsdfDraw> drawSamples(const BsdfEntries& entries, const BsdfQuery& query, const Direction& fix,
+inline std::vector<BsdfDraw> drawSamples(const BsdfEntries& entries, const BsdfQuery& query, const Direction& wi,
                                          size_t count, uint32_t seed) {
   std::vector<BsdfDraw> draws;
-  forEachDraw(entries, query, fix, count, seed, [&](const BsdfDraw& draw) { draws.push_back(draw); });
+  forEachDraw(entries, query, wi, count, seed, [&](const BsdfDraw& draw) { draws.push_back(draw); });
   return draws;
 }
 
 inline std::vector<BsdfEvaluation> evaluate(const BsdfEntries& entries, const BsdfQuery& query,
-                                            std::span<const Direction> fix, std::span<const Direction> gen) {
-  std::vector<BsdfEvaluation> values(fix.size());
-  entries.eval(query, fix, gen, values.data());
+                                            std::span<const Direction> wi, std::span<const Direction> wo) {
+  std::vector<BsdfEvaluation> values(wi.size());
+  entries.eval(query, wi, wo, values.data());
   return values;
 }
 

@@ -1,7 +1,7 @@
 // The BSDFs behind plain pointers, for the BSDF tests. Values cross as double, whatever the precision policy.
 #include "tests/kernels/bsdf_entries.h"
 
-#include "kernels/shade/bsdf_lanes.h"
+#include "kernels/bsdf/bsdf_lanes.h"
 #include "kernels/shade/vertex_tag.h"
 #include "kernels/simd/isa_table.h"
 
@@ -69,32 +69,32 @@ BsdfInputOf<P, kAllFeatures> inputOf(const SceneView<typename P::Storage>& scene
 }
 
 template <class P>
-void evalBlocks(const BsdfQuery& query, std::span<const Direction> fix, std::span<const Direction> gen,
+void evalBlocks(const BsdfQuery& query, std::span<const Direction> wi, std::span<const Direction> wo,
                 BsdfEvaluation* out) {
   using Real = typename P::Real;
   const SceneView<typename P::Storage> scene = sceneOf<P>(query);
   const BsdfInputOf<P, kAllFeatures> input = inputOf<P>(scene, query);
-  for (size_t i = 0; i < fix.size(); i += kLanes) {
-    const auto value = evalBsdf<P, kAllFeatures>(input, firstLanes(fix.size() - i), loadDirections<Real>(fix, i),
-                                                 loadDirections<Real>(gen, i));
-    storeLanes(value.f, i, fix.size(), [&](size_t item, size_t k, double x) { out[item].f[k] = x; });
-    storeLanes(value.pdf, i, fix.size(), [&](size_t item, double x) { out[item].pdf = x; });
-    storeLanes(value.pdfReverse, i, fix.size(), [&](size_t item, double x) { out[item].pdfReverse = x; });
+  for (size_t i = 0; i < wi.size(); i += kLanes) {
+    const auto value = evalBsdf<P, kAllFeatures>(input, firstLanes(wi.size() - i), loadDirections<Real>(wi, i),
+                                                 loadDirections<Real>(wo, i));
+    storeLanes(value.f, i, wi.size(), [&](size_t item, size_t k, double x) { out[item].f[k] = x; });
+    storeLanes(value.pdf, i, wi.size(), [&](size_t item, double x) { out[item].pdf = x; });
+    storeLanes(value.pdfReverse, i, wi.size(), [&](size_t item, double x) { out[item].pdfReverse = x; });
   }
 }
 
 template <class P>
-void sampleBlocks(const BsdfQuery& query, std::span<const Direction> fix, std::span<const std::array<float, 3>> u,
+void sampleBlocks(const BsdfQuery& query, std::span<const Direction> wi, std::span<const std::array<float, 3>> u,
                   BsdfDraw* out) {
   using Real = typename P::Real;
   const SceneView<typename P::Storage> scene = sceneOf<P>(query);
   const BsdfInputOf<P, kAllFeatures> input = inputOf<P>(scene, query);
-  const size_t count = fix.size();
+  const size_t count = wi.size();
   for (size_t i = 0; i < count; i += kLanes) {
     const auto number = [&](size_t k) { return loadLanes<Float>(i, count, [&](size_t item) { return u[item][k]; }); };
-    const auto draw = sampleBsdf<P, kAllFeatures>(input, firstLanes(count - i), loadDirections<Real>(fix, i),
+    const auto draw = sampleBsdf<P, kAllFeatures>(input, firstLanes(count - i), loadDirections<Real>(wi, i),
                                                   {number(0), number(1), number(2), Float(0.5f)});
-    storeLanes(draw.gen, i, count, [&](size_t item, size_t k, double x) { out[item].gen[k] = x; });
+    storeLanes(draw.wo, i, count, [&](size_t item, size_t k, double x) { out[item].wo[k] = x; });
     storeLanes(draw.weight, i, count, [&](size_t item, size_t k, double x) { out[item].weight[k] = x; });
     storeLanes(draw.pdf, i, count, [&](size_t item, double x) { out[item].pdf = x; });
     storeLanes(draw.pdfReverse, i, count, [&](size_t item, double x) { out[item].pdfReverse = x; });
@@ -114,14 +114,13 @@ double firstLane(Real a) {
 constexpr BsdfEntries kEntries = {
     .lanes = kLanes,
     .eval =
-        [](const BsdfQuery& query, std::span<const Direction> fix, std::span<const Direction> gen,
-           BsdfEvaluation* out) {
-          withPolicy(query.precision, [&](auto policy) { evalBlocks<decltype(policy)>(query, fix, gen, out); });
+        [](const BsdfQuery& query, std::span<const Direction> wi, std::span<const Direction> wo, BsdfEvaluation* out) {
+          withPolicy(query.precision, [&](auto policy) { evalBlocks<decltype(policy)>(query, wi, wo, out); });
         },
     .sample =
-        [](const BsdfQuery& query, std::span<const Direction> fix, std::span<const std::array<float, 3>> u,
+        [](const BsdfQuery& query, std::span<const Direction> wi, std::span<const std::array<float, 3>> u,
            BsdfDraw* out) {
-          withPolicy(query.precision, [&](auto policy) { sampleBlocks<decltype(policy)>(query, fix, u, out); });
+          withPolicy(query.precision, [&](auto policy) { sampleBlocks<decltype(policy)>(query, wi, u, out); });
         },
     .readMaterials =
         [](const SceneView<float>& scene, const uint32_t* index, uint32_t element, MaterialWords* out) {

@@ -22,7 +22,7 @@ struct BsdfEvaluation {
 };
 
 struct BsdfDraw {
-  Direction gen;
+  Direction wo;
   std::array<double, 3> weight;
   double pdf, pdfReverse, etaRatio;
   bool specular;
@@ -52,10 +52,10 @@ struct PrimitiveWords {
 
 struct BsdfEntries {
   size_t lanes;
-  void (*eval)(const BsdfQuery& query, std::span<const Direction> fix, std::span<const Direction> gen,
+  void (*eval)(const BsdfQuery& query, std::span<const Direction> wi, std::span<const Direction> wo,
                BsdfEvaluation* out);
   // u holds the numbers a, b and c of each draw.
-  void (*sample)(const BsdfQuery& query, std::span<const Direction> fix, std::span<const std::array<float, 3>> u,
+  void (*sample)(const BsdfQuery& query, std::span<const Direction> wi, std::span<const std::array<float, 3>> u,
                  BsdfDraw* out);
   // Of the material of each lane: its record's words before the last array, word by word, and what MaterialLanes reads
   // of that array's element.

@@ -107,22 +107,22 @@ TEST_P(BsdfExtremesTest, everythingIsFinite) {
       for (const Walk walk : {Walk::camera, Walk::light}) {
         const BsdfQuery query{
             .material = &bsdf.record, .compounds = bsdf.compounds, .precision = precision, .walk = walk};
-        for (const Direction& fix : directions) {
+        for (const Direction& wi : directions) {
           const auto values =
-              evaluate(entries<BsdfEntries>(), query, std::vector<Direction>(directions.size(), fix), directions);
+              evaluate(entries<BsdfEntries>(), query, std::vector<Direction>(directions.size(), wi), directions);
           for (size_t k = 0; k < values.size(); ++k) {
-            ASSERT_TRUE(finite(values[k].f)) << bsdf.name << " " << fix[2] << " " << directions[k][2];
-            ASSERT_TRUE(finite({values[k].pdf, values[k].pdfReverse, 0})) << bsdf.name << " " << fix[2];
+            ASSERT_TRUE(finite(values[k].f)) << bsdf.name << " " << wi[2] << " " << directions[k][2];
+            ASSERT_TRUE(finite({values[k].pdf, values[k].pdfReverse, 0})) << bsdf.name << " " << wi[2];
             ASSERT_GE(values[k].pdf, 0) << bsdf.name;
           }
           std::vector<BsdfDraw> drawn(draws.size());
-          entries<BsdfEntries>().sample(query, std::vector<Direction>(draws.size(), fix), draws, drawn.data());
+          entries<BsdfEntries>().sample(query, std::vector<Direction>(draws.size(), wi), draws, drawn.data());
           for (const BsdfDraw& draw : drawn) {
-            ASSERT_TRUE(finite(draw.weight)) << bsdf.name << " " << fix[2];
+            ASSERT_TRUE(finite(draw.weight)) << bsdf.name << " " << wi[2];
             if (draw.weight[0] == 0) continue;
-            ASSERT_TRUE(finite(draw.gen) && finite({draw.pdf, draw.pdfReverse, draw.etaRatio})) << bsdf.name;
-            ASSERT_NEAR(dot(draw.gen, draw.gen), 1, 1e-5) << bsdf.name << " " << fix[2];
-            ASSERT_GT(draw.pdf, 0) << bsdf.name << " " << fix[2];
+            ASSERT_TRUE(finite(draw.wo) && finite({draw.pdf, draw.pdfReverse, draw.etaRatio})) << bsdf.name;
+            ASSERT_NEAR(dot(draw.wo, draw.wo), 1, 1e-5) << bsdf.name << " " << wi[2];
+            ASSERT_GT(draw.pdf, 0) << bsdf.name << " " << wi[2];
           }
         }
       }
@@ -134,22 +134,22 @@ TEST_P(BsdfExtremesTest, everythingIsFinite) {
 struct Average {
   double weight = 0, cosine = 0;
 };
-Average averageOf(const BsdfEntries& entries, const BsdfCase& bsdf, const Direction& fix) {
+Average averageOf(const BsdfEntries& entries, const BsdfCase& bsdf, const Direction& wi) {
   Average average;
   constexpr size_t kDraws = effort(20000, 1000);
-  forEachDraw(entries, {.material = &bsdf.record, .compounds = bsdf.compounds}, fix, kDraws, 4,
+  forEachDraw(entries, {.material = &bsdf.record, .compounds = bsdf.compounds}, wi, kDraws, 4,
               [&](const BsdfDraw& draw) {
                 average.weight += draw.weight[0] / kDraws;
-                average.cosine += draw.weight[0] * draw.gen[2] / kDraws;
+                average.cosine += draw.weight[0] * draw.wo[2] / kDraws;
               });
   return average;
 }
 
 void expectContinuous(const BsdfEntries& entries, const BsdfCase& below, const BsdfCase& above, double tolerance) {
-  for (const Direction& fix : fixDirections(below)) {
-    const Average a = averageOf(entries, below, fix), b = averageOf(entries, above, fix);
-    EXPECT_NEAR(a.weight, b.weight, tolerance) << below.name << " " << fix[2];
-    EXPECT_NEAR(a.cosine, b.cosine, tolerance) << below.name << " " << fix[2];
+  for (const Direction& wi : wiDirections(below)) {
+    const Average a = averageOf(entries, below, wi), b = averageOf(entries, above, wi);
+    EXPECT_NEAR(a.weight, b.weight, tolerance) << below.name << " " << wi[2];
+    EXPECT_NEAR(a.cosine, b.cosine, tolerance) << below.name << " " << wi[2];
   }
 }
 
@@ -171,9 +171,9 @@ TEST_P(BsdfExtremesTest, aMatchedIndexLetsEverythingPass) {
   expectContinuous(kernel, bsdfCase("glass", glass(0.01, 1 + 0.999e-4), true),
                    bsdfCase("glass", glass(0.01, 1 + 1.001e-4), true), 1e-2);
   const BsdfCase matched = bsdfCase("matched", glass(0, 1), true);
-  for (const Direction& fix : fixDirections(matched)) {
-    for (const BsdfDraw& draw : drawSamples(kernel, {.material = &matched.record}, fix, 100, 2)) {
-      EXPECT_NEAR(dot(draw.gen, fix), -1, 1e-6);
+  for (const Direction& wi : wiDirections(matched)) {
+    for (const BsdfDraw& draw : drawSamples(kernel, {.material = &matched.record}, wi, 100, 2)) {
+      EXPECT_NEAR(dot(draw.wo, wi), -1, 1e-6);
       EXPECT_NEAR(draw.weight[0], 1, 1e-6);
     }
   }

@@ -113,11 +113,11 @@ TEST_P(BsdfGoldenTest, valuesAndDensitiesAreMitsubas) {
     const Tolerance tolerance = toleranceOf(entry["material"]);
     for (const Json& item : entry["values"]) {
       SCOPED_TRACE(entry["material"].dump() + item.dump());
-      const std::vector<Direction> fix{directionOf(item["fix"], bsdf)}, gen{directionOf(item["gen"], bsdf)};
+      const std::vector<Direction> wi{directionOf(item["wi"], bsdf)}, wo{directionOf(item["wo"], bsdf)};
       for (const Precision precision : {Precision::floating, Precision::doubled}) {
         const auto value =
             evaluate(entries<BsdfEntries>(),
-                     {.material = &bsdf.record, .compounds = bsdf.compounds, .precision = precision}, fix, gen)
+                     {.material = &bsdf.record, .compounds = bsdf.compounds, .precision = precision}, wi, wo)
                 .front();
         const double pdf = item["pdf"];
         if (sampledAlike) {
@@ -125,7 +125,7 @@ TEST_P(BsdfGoldenTest, valuesAndDensitiesAreMitsubas) {
         }
         for (size_t k = 0; k < 3; ++k) {
           const double expected = item["fCos"][k];
-          ASSERT_NEAR(value.f[k] * std::abs(gen[0][2]), expected, tolerance.value * expected + 1e-6);
+          ASSERT_NEAR(value.f[k] * std::abs(wo[0][2]), expected, tolerance.value * expected + 1e-6);
         }
         compared += pdf > 0 ? 1 : 0;
       }
@@ -142,11 +142,11 @@ TEST_P(BsdfGoldenTest, deltaLobesAreMitsubas) {
     if (bsdf.isAmong(kBlendKinds)) continue;
     for (const Json& item : entry["deltas"]) {
       SCOPED_TRACE(entry["material"].dump() + item.dump());
-      const std::vector<Direction> fix{directionOf(item["fix"], bsdf)};
+      const std::vector<Direction> wi{directionOf(item["wi"], bsdf)};
       std::vector<std::array<float, 3>> u{{item["u"].get<float>(), 0.3f, 0.6f}};
       // Mitsuba's mask passes light on for large numbers, as we do, and its lobes come in our order.
       BsdfDraw draw{};
-      entries<BsdfEntries>().sample({.material = &bsdf.record, .precision = Precision::doubled}, fix, u, &draw);
+      entries<BsdfEntries>().sample({.material = &bsdf.record, .precision = Precision::doubled}, wi, u, &draw);
       const double weight = item["weight"][0];
       if (weight == 0) {
         EXPECT_EQ(draw.weight[0], 0);
@@ -156,7 +156,7 @@ TEST_P(BsdfGoldenTest, deltaLobesAreMitsubas) {
       ASSERT_NEAR(draw.pdf, item["pdf"], 1e-5);
       ASSERT_NEAR(1 / draw.etaRatio, item["eta"], 1e-5);
       for (size_t k = 0; k < 3; ++k) {
-        ASSERT_NEAR(draw.gen[k], item["gen"][k], 1e-5);
+        ASSERT_NEAR(draw.wo[k], item["wo"][k], 1e-5);
         ASSERT_NEAR(draw.weight[k], item["weight"][k], 1e-4 * weight);
       }
       ++compared;

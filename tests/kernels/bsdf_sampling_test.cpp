@@ -35,7 +35,7 @@ struct Integrals {
   std::array<double, 3> albedo{};  // INT f |cos|
 };
 
-double mirrorAzimuth(const Direction& fix) { return std::atan2(-fix[1], -fix[0]); }
+double mirrorAzimuth(const Direction& wi) { return std::atan2(-wi[1], -wi[0]); }
 
 size_t cellOf(const Direction& d, double mirrorPhi) {
   const double theta = std::acos(std::clamp(d[2], -1.0, 1.0));
@@ -46,11 +46,11 @@ size_t cellOf(const Direction& d, double mirrorPhi) {
   return std::min(row, kThetaCells - 1) * kPhiCells + std::min(column, kPhiCells - 1);
 }
 
-Integrals integrate(const BsdfEntries& entries, const BsdfQuery& query, const Direction& fix) {
+Integrals integrate(const BsdfEntries& entries, const BsdfQuery& query, const Direction& wi) {
   Integrals integrals;
   integrals.pdf.resize(kThetaCells * kPhiCells);
   constexpr double kThetaStep = std::numbers::pi / kThetaCells, kStep = 2.0 / kPhiCells;
-  const double mirrorPhi = mirrorAzimuth(fix);
+  const double mirrorPhi = mirrorAzimuth(wi);
   std::vector<Direction> gens;
   std::vector<double> weights;
   for (size_t row = 0; row < kThetaCells; ++row) {
@@ -67,7 +67,7 @@ Integrals integrate(const BsdfEntries& entries, const BsdfQuery& query, const Di
         }
       }
     }
-    const std::vector<Direction> fixes(gens.size(), fix);
+    const std::vector<Direction> fixes(gens.size(), wi);
     const auto values = evaluate(entries, query, fixes, gens);
     for (size_t n = 0; n < gens.size(); ++n) {
       integrals.pdf[row * kPhiCells + n / (kNodes * kNodes)] += values[n].pdf * weights[n];
@@ -94,7 +94,7 @@ std::vector<BsdfCase> integratedCases() {
   return list;
 }
 std::vector<Direction> integratedDirections(const BsdfCase& bsdf) {
-  std::vector<Direction> fixes = fixDirections(bsdf);
+  std::vector<Direction> fixes = wiDirections(bsdf);
   fixes.resize(effort(fixes.size(), 1));
   return fixes;
 }
@@ -118,15 +118,15 @@ double sidakDeviations(size_t tests) {
 // One material and direction on one instruction set and precision, against integrals of the double policy: draws fall
 // into cells as the density says, draws that are rejected or take a delta lobe being one more cell; and their mean
 // weight is the albedo.
-void checkSampling(const BsdfEntries& entries, const BsdfQuery& query, const Direction& fix, const Integrals& integrals,
+void checkSampling(const BsdfEntries& entries, const BsdfQuery& query, const Direction& wi, const Integrals& integrals,
                    double maxDeviations) {
   const size_t drawn = drawCount(query.precision);
   const auto n = static_cast<double>(drawn);
-  const double mirrorPhi = mirrorAzimuth(fix);
+  const double mirrorPhi = mirrorAzimuth(wi);
   std::vector<size_t> counted(integrals.pdf.size() + 1);
   std::array<double, 3> sum{}, squares{};
-  forEachDraw(entries, query, fix, drawn, 7, [&](const BsdfDraw& draw) {
-    ++counted[counts(draw) ? cellOf(draw.gen, mirrorPhi) : counted.size() - 1];
+  forEachDraw(entries, query, wi, drawn, 7, [&](const BsdfDraw& draw) {
+    ++counted[counts(draw) ? cellOf(draw.wo, mirrorPhi) : counted.size() - 1];
     for (size_t k = 0; k < 3 && counts(draw); ++k) {
       sum[k] += draw.weight[k];
       squares[k] += draw.weight[k] * draw.weight[k];
@@ -155,16 +155,16 @@ class BsdfDrawsTest : public testing::TestWithParam<BsdfCase> {};
 
 TEST_P(BsdfDrawsTest, followTheDensityAndAddUpToTheAlbedo) {
   const double maxDeviations = sidakDeviations(integralCount() * kPrecisions.size() * availableIsas().size());
-  for (const Direction& fix : integratedDirections(GetParam())) {
+  for (const Direction& wi : integratedDirections(GetParam())) {
     const BsdfQuery exact{
         .material = &GetParam().record, .compounds = GetParam().compounds, .precision = Precision::doubled};
-    const Integrals integrals = integrate(IsaTable<BsdfEntries>::of(bestIsa()), exact, fix);
+    const Integrals integrals = integrate(IsaTable<BsdfEntries>::of(bestIsa()), exact, wi);
     for (const Isa isa : availableIsas()) {
       for (const Precision precision : kPrecisions) {
         SCOPED_TRACE(std::string(toString(isa)) + ", " + std::string(kPrecisionNames[static_cast<size_t>(precision)]) +
-                     ", cosine " + std::to_string(fix[2]));
+                     ", cosine " + std::to_string(wi[2]));
         checkSampling(IsaTable<BsdfEntries>::of(isa),
-                      {.material = &GetParam().record, .compounds = GetParam().compounds, .precision = precision}, fix,
+                      {.material = &GetParam().record, .compounds = GetParam().compounds, .precision = precision}, wi,
                       integrals, maxDeviations);
       }
     }
@@ -189,15 +189,15 @@ TEST_P(BsdfSamplingTest, weightIsValueTimesCosineOverDensity) {
         // Directions carry an error of an ulp of 1, which a lobe of width w amplifies to 1 / w of its value.
         const double tolerance = precision == Precision::doubled ? 1e-7 : 1e-2;
         double sumOfErrors = 0, terms = 0;
-        for (const Direction& fix : fixDirections(bsdf)) {
-          auto draws = drawSamples(kernel, query, fix, effort(2000, 100), 11);
+        for (const Direction& wi : wiDirections(bsdf)) {
+          auto draws = drawSamples(kernel, query, wi, effort(2000, 100), 11);
           std::erase_if(draws, [](const BsdfDraw& d) { return !counts(d); });
           std::vector<Direction> gens;
           gens.reserve(draws.size());
-          for (const BsdfDraw& draw : draws) gens.push_back(draw.gen);
-          const auto values = evaluate(kernel, query, std::vector<Direction>(gens.size(), fix), gens);
+          for (const BsdfDraw& draw : draws) gens.push_back(draw.wo);
+          const auto values = evaluate(kernel, query, std::vector<Direction>(gens.size(), wi), gens);
           for (size_t i = 0; i < draws.size(); ++i) {
-            ASSERT_NEAR(draws[i].pdf, values[i].pdf, tolerance * values[i].pdf) << draws[i].gen[2];
+            ASSERT_NEAR(draws[i].pdf, values[i].pdf, tolerance * values[i].pdf) << draws[i].wo[2];
             ASSERT_NEAR(draws[i].pdfReverse, values[i].pdfReverse, tolerance * values[i].pdfReverse);
             for (size_t k = 0; k < 3; ++k) {
               const double weight = values[i].f[k] * std::abs(gens[i][2]) / values[i].pdf;
@@ -218,9 +218,9 @@ TEST_P(BsdfSamplingTest, weightIsValueTimesCosineOverDensity) {
 TEST_P(BsdfSamplingTest, noMaterialCreatesEnergy) {
   for (const BsdfCase& bsdf : bsdfCases()) {
     if (bsdf.isAmong(bitOf(BsdfKind::principled) | bitOf(BsdfKind::principledThin))) continue;
-    for (const Direction& fix : fixDirections(bsdf)) {
+    for (const Direction& wi : wiDirections(bsdf)) {
       const BsdfQuery query{.material = &bsdf.record, .compounds = bsdf.compounds, .walk = Walk::light};
-      const auto draws = drawSamples(entries<BsdfEntries>(), query, fix, effort(20000, 500), 3);
+      const auto draws = drawSamples(entries<BsdfEntries>(), query, wi, effort(20000, 500), 3);
       for (size_t k = 0; k < 3; ++k) {
         double sum = 0, squares = 0;
         for (const BsdfDraw& draw : draws) {
@@ -239,11 +239,11 @@ TEST_P(BsdfSamplingTest, noMaterialCreatesEnergy) {
 struct DeltaMean {
   std::array<double, 3> mean{}, error{};
 };
-DeltaMean deltaMean(const BsdfEntries& entries, const BsdfQuery& query, const Direction& fix) {
+DeltaMean deltaMean(const BsdfEntries& entries, const BsdfQuery& query, const Direction& wi) {
   constexpr size_t kDraws = effort(20000, 1000);
   DeltaMean result;
   std::array<double, 3> squares{};
-  forEachDraw(entries, query, fix, kDraws, 5, [&](const BsdfDraw& draw) {
+  forEachDraw(entries, query, wi, kDraws, 5, [&](const BsdfDraw& draw) {
     for (size_t k = 0; k < 3 && draw.specular; ++k) {
       result.mean[k] += draw.weight[k] / kDraws;
       squares[k] += draw.weight[k] * draw.weight[k] / kDraws;
@@ -258,16 +258,16 @@ DeltaMean deltaMean(const BsdfEntries& entries, const BsdfQuery& query, const Di
 // Delta lobes alone: the same light as when all lobes are sampled and the others thrown away, and nothing else.
 TEST_P(BsdfSamplingTest, deltaLobesAloneCarryTheirShare) {
   for (const BsdfCase& bsdf : bsdfCases()) {
-    for (const Direction& fix : fixDirections(bsdf)) {
+    for (const Direction& wi : wiDirections(bsdf)) {
       SCOPED_TRACE(bsdf.name);
       const BsdfQuery all{.material = &bsdf.record, .compounds = bsdf.compounds},
           alone{.material = &bsdf.record, .compounds = bsdf.compounds, .specularOnly = true};
-      const DeltaMean expected = deltaMean(entries<BsdfEntries>(), all, fix);
-      const DeltaMean actual = deltaMean(entries<BsdfEntries>(), alone, fix);
+      const DeltaMean expected = deltaMean(entries<BsdfEntries>(), all, wi);
+      const DeltaMean actual = deltaMean(entries<BsdfEntries>(), alone, wi);
       for (size_t k = 0; k < 3; ++k) {
         EXPECT_NEAR(actual.mean[k], expected.mean[k], 5 * (actual.error[k] + expected.error[k]) + 1e-5);
       }
-      forEachDraw(entries<BsdfEntries>(), alone, fix, effort(1000, 200), 6, [](const BsdfDraw& draw) {
+      forEachDraw(entries<BsdfEntries>(), alone, wi, effort(1000, 200), 6, [](const BsdfDraw& draw) {
         ASSERT_TRUE(draw.specular || draw.weight[0] + draw.weight[1] + draw.weight[2] == 0);
       });
     }

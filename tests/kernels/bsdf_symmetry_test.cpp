@@ -52,7 +52,7 @@ TEST_P(BsdfSymmetryTest, valuesAreReciprocalAndReverseDensitiesAreSwapped) {
   }
 }
 
-// The value does not depend on who asks: fix as the eye's side on a camera walk is gen on a light walk.
+// The value does not depend on who asks: wi as the eye's side on a camera walk is wo on a light walk.
 TEST_P(BsdfSymmetryTest, bothWalksSeeTheSameValue) {
   const auto eye = randomDirections(kPairs, 3), light = randomDirections(kPairs, 4);
   for (const BsdfCase& bsdf : bsdfCases()) {
@@ -77,20 +77,19 @@ TEST_P(BsdfSymmetryTest, deltaLobesLeadBack) {
     // Several parts of these lead into the same direction, with probabilities of their own.
     if (bsdf.isAmong(kBlendKinds) && bsdf.name != "blendGlass") continue;
     const BsdfQuery query{.material = &bsdf.record, .compounds = bsdf.compounds, .precision = Precision::doubled};
-    for (const Direction& fix : fixDirections(bsdf)) {
-      for (const BsdfDraw& draw : drawSamples(entries<BsdfEntries>(), query, fix, effort(200, 20), 8)) {
+    for (const Direction& wi : wiDirections(bsdf)) {
+      for (const BsdfDraw& draw : drawSamples(entries<BsdfEntries>(), query, wi, effort(200, 20), 8)) {
         if (!draw.specular || draw.weight[0] == 0) continue;
         bool found = false;
-        for (const BsdfDraw& back : drawSamples(entries<BsdfEntries>(), query, draw.gen, 200, 9)) {
-          if (!back.specular || dot(back.gen, fix) < 1 - 1e-9) continue;
+        for (const BsdfDraw& back : drawSamples(entries<BsdfEntries>(), query, draw.wo, 200, 9)) {
+          if (!back.specular || dot(back.wo, wi) < 1 - 1e-9) continue;
           found = true;
           ASSERT_NEAR(draw.pdfReverse, back.pdf, 1e-9);
           ASSERT_NEAR(draw.etaRatio * back.etaRatio, 1, 1e-9);
           ASSERT_NEAR(draw.weight[0] * back.weight[0] * draw.pdf * back.pdf,
                       std::pow(draw.weight[0] * draw.pdf / (draw.etaRatio * draw.etaRatio), 2), 1e-6);
         }
-        if (draw.pdf > 0.05 && draw.gen[2] * fix[2] != 0 && (bsdf.back || fix[2] > 0) &&
-            (bsdf.back || draw.gen[2] > 0)) {
+        if (draw.pdf > 0.05 && draw.wo[2] * wi[2] != 0 && (bsdf.back || wi[2] > 0) && (bsdf.back || draw.wo[2] > 0)) {
           ASSERT_TRUE(found);
         }
       }
@@ -109,9 +108,9 @@ TEST_P(BsdfSymmetryTest, everyInstructionSetAgreesWithTheScalarTwin) {
       const bool inFloat = precision != Precision::doubled || isBeckmann(bsdf);
       const Precision rounding = inFloat && precision == Precision::doubled ? Precision::floating : precision;
       const double ulp = inFloat ? 0x1p-23 : 0x1p-52;
-      const auto fix = randomDirections(kPairs, 5), gen = randomDirections(kPairs, 6);
-      const auto values = evaluate(entries<BsdfEntries>(), query, fix, gen);
-      const auto expected = evaluate(twin<BsdfEntries>(), query, fix, gen);
+      const auto wi = randomDirections(kPairs, 5), wo = randomDirections(kPairs, 6);
+      const auto values = evaluate(entries<BsdfEntries>(), query, wi, wo);
+      const auto expected = evaluate(twin<BsdfEntries>(), query, wi, wo);
       double sum = 0;
       for (size_t i = 0; i < kPairs; ++i) {
         ASSERT_NEAR(values[i].pdf, expected[i].pdf, tolerated(rounding, expected[i].pdf)) << i;
@@ -123,19 +122,19 @@ TEST_P(BsdfSymmetryTest, everyInstructionSetAgreesWithTheScalarTwin) {
       // Draws: a number that lies within rounding of a lobe's probability may go either way.
       std::vector<BsdfDraw> draws(kPairs), twins(kPairs);
       const auto u = randomDraws(kPairs, 10);
-      entries<BsdfEntries>().sample(query, fix, u, draws.data());
-      twin<BsdfEntries>().sample(query, fix, u, twins.data());
+      entries<BsdfEntries>().sample(query, wi, u, draws.data());
+      twin<BsdfEntries>().sample(query, wi, u, twins.data());
       // Beckmann's slopes are drawn in float under every precision.
       const double drawUlp = isBeckmann(bsdf) ? 0x1p-23 : ulp;
       size_t otherLobe = 0;
       for (size_t i = 0; i < kPairs; ++i) {
         const bool drawn = draws[i].weight[0] > 0, drawnByTwin = twins[i].weight[0] > 0;
-        if (drawn != drawnByTwin || (drawn && dot(draws[i].gen, twins[i].gen) < 0.99)) {
+        if (drawn != drawnByTwin || (drawn && dot(draws[i].wo, twins[i].wo) < 0.99)) {
           ++otherLobe;
           continue;
         }
         if (!drawn) continue;
-        for (size_t k = 0; k < 3; ++k) ASSERT_NEAR(draws[i].gen[k], twins[i].gen[k], 4096 * drawUlp) << i;
+        for (size_t k = 0; k < 3; ++k) ASSERT_NEAR(draws[i].wo[k], twins[i].wo[k], 4096 * drawUlp) << i;
       }
       EXPECT_LE(otherLobe, 4u);
     }

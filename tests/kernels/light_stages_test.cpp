@@ -74,7 +74,7 @@ class LightComparison {
     context_.sampler = {.kind = SamplerKind::independent, .seed = 11, .iteration = 3};
     context_.limits = {.maxDepth = 7, .rouletteDepth = 4};
     context_.film = {0, 0, scene_.view.camera.width, scene_.view.camera.height};
-    context_.mis = {.connect = true, .camera = true, .lightPaths = kPaths, .camN = kPaths};
+    context_.mis = {.connect = true, .camera = true, .lightPaths = kPaths};
   }
 
   void compare(const LightCase<S>& stage) {

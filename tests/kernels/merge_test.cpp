@@ -116,7 +116,7 @@ struct Photons {
         const S(&p)[3] = points[first + i].x;
         v.row[i] = {.position = {p[0], p[1], p[2]},
                     .offset = 0,
-                    .fix = {0, 0, 1},
+                    .wi = {0, 0, 1},
                     .tag = oneEdge(),
                     .normal = {0, 0, 1},
                     .dVCM = 0,

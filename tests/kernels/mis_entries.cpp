@@ -22,10 +22,10 @@ struct Steps {
   }
 
   static void scatter(const MisSettings& settings, uint32_t depth, size_t count, const S* pdf, const S* pdfReverse,
-                      const S* genCosine, const MisColumns<S>& sums) {
+                      const S* woCosine, const MisColumns<S>& sums) {
     for (size_t i = 0; i < count; i += kLanes) {
       storeSums(scatterMis<P, kBidirectional>(settings, depth, loadSums(sums, i), loadUnaligned(pdf + i),
-                                              loadUnaligned(pdfReverse + i), loadUnaligned(genCosine + i)),
+                                              loadUnaligned(pdfReverse + i), loadUnaligned(woCosine + i)),
                 sums, i);
     }
   }

@@ -18,7 +18,7 @@ struct MisColumns {
 template <class S>
 struct MisKernels {
   void (*scatter)(const MisSettings& settings, uint32_t depth, size_t count, const S* pdf, const S* pdfReverse,
-                  const S* genCosine, const MisColumns<S>& sums);
+                  const S* woCosine, const MisColumns<S>& sums);
   void (*scatterSpecular)(size_t count, const S* jacobian, const MisColumns<S>& sums);
   void (*behindConnection)(const MisSettings& settings, uint32_t depth, size_t count, const MisColumns<S>& sums,
                            const S* pdfReverse, S* out);

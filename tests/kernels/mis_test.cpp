@@ -89,19 +89,19 @@ void scatter(const MisKernels<S>& kernels, const MisSettings& mis, uint32_t dept
              Walk walk, Sums<S>& sums) {
   const bool light = walk == Walk::light;
   const Values<S>&forward = light ? v.pdfToCamera : v.pdfToLight, &reverse = light ? v.pdfToLight : v.pdfToCamera;
-  const Values<S>& genNormal = light ? v.normalToCamera : v.normalToLight;
+  const Values<S>& woNormal = light ? v.normalToCamera : v.normalToLight;
   Sums<S> over = sums;
   Values<S> jacobian;
   for (size_t path = 0; path < kPaths; ++path) {
-    const S fixShading = light ? v.shadingToLight[path] : v.shadingToCamera[path],
-            genShading = light ? v.shadingToCamera[path] : v.shadingToLight[path],
-            fixEta = light ? v.etaToLight[path] : v.etaToCamera[path],
-            genEta = light ? v.etaToCamera[path] : v.etaToLight[path];
-    const S eta = fixEta / genEta;
-    jacobian[path] = reverse[path] / forward[path] * genNormal[path] * fixShading / genShading * eta * eta;
+    const S wiShading = light ? v.shadingToLight[path] : v.shadingToCamera[path],
+            woShading = light ? v.shadingToCamera[path] : v.shadingToLight[path],
+            wiEta = light ? v.etaToLight[path] : v.etaToCamera[path],
+            woEta = light ? v.etaToCamera[path] : v.etaToLight[path];
+    const S eta = wiEta / woEta;
+    jacobian[path] = reverse[path] / forward[path] * woNormal[path] * wiShading / woShading * eta * eta;
   }
   kernels.scatterSpecular(kPaths, jacobian.data(), over.columns());
-  kernels.scatter(mis, depth, kPaths, forward.data(), reverse.data(), genNormal.data(), sums.columns());
+  kernels.scatter(mis, depth, kPaths, forward.data(), reverse.data(), woNormal.data(), sums.columns());
   for (size_t path = 0; path < kPaths; ++path) {
     if (v.specular[path] == 0) continue;
     sums.dVCM[path] = over.dVCM[path];
@@ -120,7 +120,7 @@ std::vector<Sums<S>> walkLight(const MisKernels<S>& kernels, const MisSettings& 
     const S n0 = p.infinite[path] != 0 ? S(1) : p.x[0].normalToCamera[path];
     sums.dVCM[path] = mis.nextEvent ? p.direct[path] / emission : S(0);
     sums.dVC[path] = p.delta[path] != 0 || !mis.emission ? S(0) : n0 / emission;
-    sums.dVM[path] = sums.dVC[path] * static_cast<S>(mis.kVC);
+    sums.dVM[path] = sums.dVC[path] * static_cast<S>(mis.vcWeight);
   }
   for (size_t i = 1; i < p.k(); ++i) {
     for (size_t path = 0; path < kPaths; ++path) {
@@ -139,7 +139,7 @@ std::vector<Sums<S>> walkCamera(const MisKernels<S>& kernels, const MisSettings&
   std::vector<Sums<S>> out(p.k());
   Sums<S> sums;
   for (size_t path = 0; path < kPaths; ++path) {
-    sums.dVCM[path] = mis.camera ? static_cast<S>(mis.camN) / p.camera[path] : S(0);
+    sums.dVCM[path] = mis.camera ? static_cast<S>(mis.lightPaths) / p.camera[path] : S(0);
     sums.dVC[path] = sums.dVM[path] = 0;
   }
   for (size_t i = p.k(); i-- > 0;) {
@@ -199,7 +199,7 @@ std::vector<double> weights(const MisKernels<S>& kernels, const MisSettings& mis
     } else if (s == k) {
       if (specular(k - 1)) continue;
       const S area = p.camera[path] * p.x[k - 1].normalToCamera[path] / p.x[k - 1].dist2[path];
-      wLight = area / static_cast<S>(mis.camN) * behindLight[path];
+      wLight = area / static_cast<S>(mis.lightPaths) * behindLight[path];
     } else {
       if (specular(s - 1) || specular(s)) continue;
       const S edge2 = p.x[s - 1].dist2[path];
@@ -255,9 +255,9 @@ struct Densities {
     for (size_t s = 2; s < k && mis.connect; ++s) {
       if (!specular(s - 1) && !specular(s)) connect[s] = product(s, s);
     }
-    if (mis.camera && k >= 2 && !specular(k - 1)) connect[k] = mis.camN * product(k, k);
+    if (mis.camera && k >= 2 && !specular(k - 1)) connect[k] = mis.lightPaths * product(k, k);
     for (size_t i = 1; i < k && mis.merge; ++i) {
-      if (!specular(i)) merge[i] = mis.kVM * product(i + 1, i);
+      if (!specular(i)) merge[i] = mis.vmWeight * product(i + 1, i);
     }
     for (const double density : connect) sum += density;
     for (const double density : merge) sum += density;
@@ -280,9 +280,9 @@ std::vector<StrategySet> strategySets() {
       {"t = 1", {.emission = false, .nextEvent = false, .camera = true}}};
   for (StrategySet& set : sets) {
     const double density = 0.37 * 1234;  // pi r^2 N_L
-    set.mis.camN = 1234;
-    set.mis.kVM = set.mis.merge ? density : 0;
-    set.mis.kVC = set.mis.merge && set.mis.connect ? 1 / density : 0;
+    set.mis.lightPaths = 1234;
+    set.mis.vmWeight = set.mis.merge ? density : 0;
+    set.mis.vcWeight = set.mis.merge && set.mis.connect ? 1 / density : 0;
   }
   return sets;
 }

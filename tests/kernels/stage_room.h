@@ -150,7 +150,7 @@ StageScene<S> makeRoom(bool spheres, bool specular, bool maps) {
   return scene;
 }
 
-// What the session gives to waves of these kernels (engine/render_plan.cpp).
+// What the session gives to waves of these kernels (engine/plan/render_plan.cpp).
 inline ColumnNeeds columnNeedsOf(Specialization specialization) {
   const uint32_t features = kSpecializationFeatures[static_cast<size_t>(specialization)];
   return {.shadingNormals = (features & kShadingNormals) != 0,

@@ -1,5 +1,5 @@
 // The batched transforms against kissfft, one lane at a time.
-#include "metrics/fft.h"
+#include "metrics/planes/fft.h"
 
 #include <gtest/gtest.h>
 #include <kissfft/kiss_fft.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "metrics/plane.h"
+#include "metrics/planes/plane.h"
 
 namespace wavecrest {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "metrics/kernels/metric_kernels.h"
-#include "metrics/plane.h"
+#include "metrics/planes/plane.h"
 
 namespace wavecrest {
 namespace {

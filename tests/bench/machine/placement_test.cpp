@@ -10,7 +10,7 @@
 #include <optional>
 #include <set>
 
-#include "engine/thread_pins.h"
+#include "engine/tasks/thread_pins.h"
 
 namespace wavecrest {
 namespace {

@@ -1,13 +1,13 @@
 // What a recorder keeps of a render: all of its time, and its tasks as the work was cut.
-#include "engine/task_recorder.h"
+#include "engine/tasks/task_recorder.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "bench/scaling/list_schedule.h"
-#include "engine/for_each.h"
-#include "engine/session.h"
+#include "engine/session/session.h"
+#include "engine/tasks/for_each.h"
 #include "tests/bench/small_box.h"
 
 namespace wavecrest {

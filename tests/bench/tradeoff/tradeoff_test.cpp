@@ -31,6 +31,18 @@ TEST(Knobs, areThoseThatMeanSomethingForTheMethod) {
   }
 }
 
+TEST(Knobs, leaveOutConnectionRouletteWhereAllConnectionsAreJoined) {
+  const Scene scene = smallBox(48, 32);
+  for (const Accel accel : {Accel::small, Accel::bvh}) {
+    RenderSettings settings = settingsOf(Method::bpt);
+    settings.accel = accel;
+    const auto variants = variantsOf(scene, settings);
+    EXPECT_EQ(std::any_of(variants.begin(), variants.end(),
+                          [](const Variant& v) { return v.knob == "--connection-roulette"; }),
+              accel == Accel::bvh);
+  }
+}
+
 TEST(Knobs, canBeChosenByNameAndAreComparedWithTheSame) {
   const auto all = variantsOf(smallBox(48, 32), settingsOf(Method::pt));
   const auto chosen = [&](const std::vector<std::string>& words) {

@@ -103,37 +103,37 @@ def direction(theta, phi):
 
 
 def pairs(material):
-    """Directions (fix, gen): spread over the sphere, and near the mirror and refracted directions, where lobes are."""
+    """Directions (wi, wo): spread over the sphere, and near the mirror and refracted directions, where lobes are."""
     rng = np.random.default_rng(1)
     result = []
     for theta in [0.02, 0.5, 1.1, 1.5, math.pi - 0.3, math.pi - 1.2]:
-        fix = direction(theta, 0.7)
+        wi = direction(theta, 0.7)
         for _ in range(5):
-            result.append((fix, direction(math.acos(rng.uniform(-1, 1)), rng.uniform(0, 2 * math.pi))))
+            result.append((wi, direction(math.acos(rng.uniform(-1, 1)), rng.uniform(0, 2 * math.pi))))
         for spread in [0.03, 0.2]:
             for side in [1, -1]:
                 tilt, turn = rng.normal(0, spread, 2)
-                gen = direction(theta + tilt, 0.7 + math.pi + turn)
-                result.append((fix, [gen[0], gen[1], side * gen[2]]))
+                wo = direction(theta + tilt, 0.7 + math.pi + turn)
+                result.append((wi, [wo[0], wo[1], side * wo[2]]))
     return result
 
 
-def interaction(fix):
+def interaction(wi):
     si = mi.SurfaceInteraction3f()
-    si.wi = mi.Vector3f(*fix)
+    si.wi = mi.Vector3f(*wi)
     return si
 
 
-def phong(material, fix, gen):
-    if fix[2] <= 0 or gen[2] <= 0:
+def phong(material, wi, wo):
+    if wi[2] <= 0 or wo[2] <= 0:
         return [0, 0, 0], 0
     n = material["exponent"]
     luminance = lambda c: 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]
     kd, ks = material["diffuse"], material["specular"]
     pick = luminance(ks) / (luminance(ks) + luminance(kd))
-    power = max(0, -fix[0] * gen[0] - fix[1] * gen[1] + fix[2] * gen[2]) ** n
-    value = [(d / math.pi + s * (n + 2) / (2 * math.pi) * power) * gen[2] for d, s in zip(kd, ks)]
-    return value, pick * (n + 1) / (2 * math.pi) * power + (1 - pick) * gen[2] / math.pi
+    power = max(0, -wi[0] * wo[0] - wi[1] * wo[1] + wi[2] * wo[2]) ** n
+    value = [(d / math.pi + s * (n + 2) / (2 * math.pi) * power) * wo[2] for d, s in zip(kd, ks)]
+    return value, pick * (n + 1) / (2 * math.pi) * power + (1 - pick) * wo[2] / math.pi
 
 
 def rounded(values):
@@ -146,27 +146,27 @@ def describe(material):
     if material["type"] == "plastic":  # Mitsuba's fit, where the renderer integrates
         record["fdrInt"] = float(re.search(r"fdr_int = ([\d.e-]+)", str(bsdf)).group(1))
     context = mi.BSDFContext()
-    for fix, gen in pairs(material):
+    for wi, wo in pairs(material):
         if bsdf is None:
-            value, pdf = phong(material, fix, gen)
+            value, pdf = phong(material, wi, wo)
         else:
-            value = bsdf.eval(context, interaction(fix), mi.Vector3f(*gen))
-            pdf = bsdf.pdf(context, interaction(fix), mi.Vector3f(*gen))
+            value = bsdf.eval(context, interaction(wi), mi.Vector3f(*wo))
+            pdf = bsdf.pdf(context, interaction(wi), mi.Vector3f(*wo))
         both = ["roughdielectric", "diffuse", "principled", "principledthin", "blendbsdf"]
-        if material["type"] in both or fix[2] * gen[2] > 0:  # else: trivially nothing
-            item = {"fix": rounded(fix), "gen": rounded(gen), "fCos": rounded(value), "pdf": rounded([pdf])[0]}
+        if material["type"] in both or wi[2] * wo[2] > 0:  # else: trivially nothing
+            item = {"wi": rounded(wi), "wo": rounded(wo), "fCos": rounded(value), "pdf": rounded([pdf])[0]}
             record["values"].append(item)
     if bsdf is None:
         return record
-    for fix in [direction(theta, 0.7) for theta in [0.02, 0.5, 1.1, 1.5, math.pi - 0.3, math.pi - 1.2]]:
+    for wi in [direction(theta, 0.7) for theta in [0.02, 0.5, 1.1, 1.5, math.pi - 0.3, math.pi - 1.2]]:
         for pick in [0.001, 0.2, 0.999]:
-            sample, weight = bsdf.sample(context, interaction(fix), pick, mi.Point2f(0.3, 0.6))
+            sample, weight = bsdf.sample(context, interaction(wi), pick, mi.Point2f(0.3, 0.6))
             if int(sample.sampled_type) & int(mi.BSDFFlags.Delta):
                 record["deltas"].append(
                     {
-                        "fix": rounded(fix),
+                        "wi": rounded(wi),
                         "u": pick,
-                        "gen": rounded(sample.wo),
+                        "wo": rounded(sample.wo),
                         "weight": rounded(weight),
                         "pdf": rounded([sample.pdf])[0],
                         "eta": rounded([sample.eta])[0],

@@ -1,0 +1,118 @@
+#include "engine/inspect/inspection.h"
+
+#include <utility>
+
+#include "engine/scene/scene_error.h"
+
+namespace wavecrest {
+namespace {
+
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that lints, does not find by itself
+
+bool isRough(const TexturedFloat& alpha) { return alpha.texture != kNone || alpha.value >= double{kSmallestAlpha}; }
+
+std::string nameOf(const Material& material) {
+  return std::visit(
+      Overloaded{[](const Diffuse&) -> std::string { return "diffuse"; },
+                 [](const Conductor& c) -> std::string { return isRough(c.alpha) ? "roughconductor" : "conductor"; },
+                 [](const Dielectric& d) -> std::string {
+                   return d.thin ? "thindielectric" : isRough(d.alpha) ? "roughdielectric" : "dielectric";
+                 },
+                 [](const Plastic& p) -> std::string { return isRough(p.alpha) ? "roughplastic" : "plastic"; },
+                 [](const Phong&) -> std::string { return "phong"; },
+                 [](const Principled& p) -> std::string { return p.thin ? "principledthin" : "principled"; },
+                 [](const Blend&) -> std::string { return "blendbsdf"; }},
+      material.kind);
+}
+
+std::string nameOf(const Emitter& emitter) {
+  return std::visit(Overloaded{[](const AreaEmitter&) -> std::string { return "area"; },
+                               [](const PointEmitter&) -> std::string { return "point"; },
+                               [](const SpotEmitter&) -> std::string { return "spot"; },
+                               [](const SunskyEmitter&) -> std::string { return "sunsky"; },
+                               [](const ProjectorEmitter&) -> std::string { return "projector"; },
+                               [](const DirectionalEmitter&) -> std::string { return "directional"; },
+                               [](const ConstantEmitter&) -> std::string { return "constant"; },
+                               [](const EnvmapEmitter&) -> std::string { return "envmap"; }},
+                    emitter.kind);
+}
+
+std::vector<std::string> needsOf(const Scene& scene, bool keeps) {
+  constexpr std::pair<uint32_t, const char*> kWords[] = {
+      {kSpecularBsdfs, "specular BSDFs"},
+      {kLayeredBsdfs, "layered BSDFs"},
+      {kTextures, "textures"},
+      {kShadingNormals, "shading normals"},
+      {kCurvedShapes, "analytic spheres"},
+      {kRareLights, "spot, projector, directional or environment lights"},
+      {kCompoundBsdfs, "compound BSDFs"},
+      {kInstances, "instances"}};
+  const uint32_t features = sceneFeatures(scene, keeps);
+  std::vector<std::string> needs;
+  for (const auto& [bit, words] : kWords) {
+    if ((features & bit) != 0) needs.emplace_back(words);
+  }
+  if (scene.sensor.kind != Sensor::Kind::perspective || scene.film.filter != ReconstructionFilter::box) {
+    needs.emplace_back("a lens or filter beyond pinhole and box");
+  }
+  return needs;
+}
+
+void countKinds(const Scene& scene, SceneInspection& out) {
+  for (const Material& material : scene.materials) {
+    ++out.bsdfs[nameOf(material)];
+    if (material.twoSided) ++out.bsdfs["twosided"];
+    if (material.opacity) ++out.bsdfs["mask"];
+    if (material.bumpTexture != kNone) ++out.bsdfs["bumpmap"];
+    if (material.normalTexture != kNone) ++out.bsdfs["normalmap"];
+  }
+  for (const Emitter& emitter : scene.emitters) ++out.lights[nameOf(emitter)];
+  for (const Texture& texture : scene.textures) {
+    ++out.textures[std::holds_alternative<BitmapTexture>(texture.kind) ? "bitmap" : "checkerboard"];
+  }
+}
+
+}  // namespace
+
+SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
+  SceneInspection out;
+  countKinds(scene, out);
+  out.sensor = Sensor::kKindNames[static_cast<size_t>(scene.sensor.kind)];
+  out.filter = kFilterNames[static_cast<size_t>(scene.film.filter)];
+
+  const auto compiled = compileScene<float>(scene, settings.accel, true, settings.instancing);
+  out.groups = scene.groups.size();
+  out.instances = scene.instances.size();
+  out.keepsInstances = compiled->view.instances != nullptr;
+  out.needs = needsOf(scene, out.keepsInstances);
+  out.primitives = compiled->primitives.counts;
+  out.bounds = compiled->bounds;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (double* coordinate : {&out.bounds.center[axis], &out.bounds.low[axis], &out.bounds.high[axis]}) {
+      *coordinate += compiled->origin[axis];
+    }
+  }
+  out.accel = compiled->accel();
+  out.hierarchyNodes = compiled->bvh ? compiled->bvh->nodes() : 0;
+  out.bytesPerPrimitive = static_cast<double>(primitiveBytes(*compiled)) / out.primitives.total();
+
+  for (const MethodEntry& entry : kMethods) {
+    MethodInspection& row = out.methods.emplace_back();
+    row.method = settings.method = entry.method;
+    row.specialization = specializationFor(scene, settings);
+    try {
+      row.memory = planMemory(scene, settings);
+    } catch (const SceneError& error) {
+      row.refusal = error.what();
+    }
+  }
+  out.paths = classifyPaths(scene);
+  return out;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,219 @@
+#include "engine/inspect/path_classes.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace wavecrest {
+namespace {
+
+// ---- which classes there are ----------------------------------------------------------------------------------------
+
+// A path from the light to its last event so far.
+struct Prefix {
+  PathBits bits;
+  bool lastIsD = false, any = false;
+  bool operator==(const Prefix&) const = default;
+};
+
+Prefix extended(Prefix path, bool diffuse) {
+  if (diffuse) {
+    if (!path.any) path.bits.firstD = true;
+    path.bits.hasDD |= path.any && path.lastIsD;
+    path.bits.hasD = true;
+  }
+  path.any = true;
+  path.lastIsD = diffuse;
+  return path;
+}
+
+// All prefixes that the scene's links allow, breadth first.
+std::vector<Prefix> reachablePrefixes(const SceneLinks& links, LightKindOfPath light) {
+  std::vector<Prefix> found;
+  const auto add = [&](const Prefix& path) {
+    if (std::find(found.begin(), found.end(), path) == found.end()) found.push_back(path);
+  };
+  Prefix start;
+  start.bits.deltaLight = light == LightKindOfPath::delta;
+  for (const EventKind event : {EventKind::diffuse, EventKind::specular}) {
+    if (links.fromLight[static_cast<size_t>(light)][static_cast<size_t>(event)]) {
+      add(extended(start, event == EventKind::diffuse));
+    }
+  }
+  for (size_t i = 0; i < found.size(); ++i) {  // NOLINT(modernize-loop-convert): it grows
+    const Prefix path = found[i];
+    const auto last = static_cast<size_t>(path.lastIsD ? EventKind::diffuse : EventKind::specular);
+    for (const EventKind event : {EventKind::diffuse, EventKind::specular}) {
+      if (links.between[last][static_cast<size_t>(event)]) add(extended(path, event == EventKind::diffuse));
+    }
+  }
+  return found;
+}
+
+std::string signatureOf(const PathBits& bits) {
+  std::string text = bits.deltaLight ? "P " : "A ";
+  if (!bits.hasD) return text + "S+ E";
+  if (!bits.firstD) text += "S+ ";
+  text += bits.hasDD ? "D D " : "D ";
+  if (!bits.lastD) text += "S+ ";
+  return text + "E";
+}
+
+std::string describe(const PathBits& bits) {
+  if (!bits.hasD) return "lights seen in specular surfaces";
+  std::string text;
+  if (bits.firstD) {
+    text = bits.hasDD ? "indirect light" : "direct light";
+  } else {
+    text = bits.hasDD ? "indirect light of caustics" : "caustics";
+  }
+  if (!bits.lastD) text += " seen in specular surfaces";
+  return text;
+}
+
+std::vector<PathClass> findClasses(const SceneLinks& links) {
+  std::vector<PathClass> classes;
+  if (links.eyeMeetsLight) classes.push_back({"A E", "lights in view", {}, {}});
+  for (const LightKindOfPath light : {LightKindOfPath::extended, LightKindOfPath::delta}) {
+    std::vector<PathBits> seen;
+    for (const Prefix& path : reachablePrefixes(links, light)) {
+      const auto last = static_cast<size_t>(path.lastIsD ? EventKind::diffuse : EventKind::specular);
+      if (!links.fromEye[last]) continue;
+      PathBits bits = path.bits;
+      bits.lastD = path.lastIsD;
+      // From a delta light over delta lobes alone nothing reaches an image, by any method.
+      if (bits.deltaLight && !bits.hasD) continue;
+      if (std::find(seen.begin(), seen.end(), bits) == seen.end()) seen.push_back(bits);
+    }
+    // Plain ones first: without specular events, then with more and more of them.
+    const auto order = [](const PathBits& b) { return std::array{!b.firstD + !b.lastD, !b.firstD + 0, b.hasDD + 0}; };
+    std::sort(seen.begin(), seen.end(), [&](const PathBits& a, const PathBits& b) { return order(a) < order(b); });
+    for (const PathBits& bits : seen) classes.push_back({signatureOf(bits), describe(bits), bits, {}});
+  }
+  return classes;
+}
+
+// ---- which method makes which ---------------------------------------------------------------------------------------
+
+struct Judge {
+  const SceneLinks& links;
+  const EfficiencyLimits& limits;
+
+  // The best that any of the method's strategies makes of the class.
+  Verdict verdict(const PathStrategies& method, const PathBits& path) const {
+    Verdict best = Verdict::impossible;
+    const auto offer = [&](bool makes, bool efficient) {
+      if (makes) best = std::min(best, efficient ? Verdict::sampled : Verdict::inefficient);
+    };
+    // Where a method traces only specular views, an eye that sees the last event as D has it from t = 1.
+    const bool inView = !method.specularViewsOnly || !path.lastD;
+    const bool mergingAlone = method.merge && !method.nextEvent;
+    offer(method.emission && inView && !path.deltaLight && !(mergingAlone && path.hasD), emissionIsEfficient(path));
+    // Indirect light has to be looked for where light falls.
+    offer(method.nextEvent && inView && path.firstD, !path.hasDD || links.lightCoverage >= limits.lightCoverage);
+    offer(method.connect && path.hasDD, !links.onlyGlossyPairs);
+    offer(method.camera && path.lastD, links.cameraCoverage >= limits.cameraCoverage && !links.eyeSeesGlossy);
+    offer(method.merge && path.hasD, !(method.mergeAtFirstVertex && path.lastD && links.eyeSeesGlossy));
+    return best;
+  }
+
+  // A light behind delta lobes alone is met for certain; behind a diffuse event, by chance.
+  bool emissionIsEfficient(const PathBits& path) const {
+    return !path.hasD || links.lightSolidAngle >= limits.lightSolidAngle;
+  }
+};
+
+// ---- the reference --------------------------------------------------------------------------------------------------
+
+struct Count {
+  size_t inefficient = 0, impossible = 0;
+  std::string names;  // of the first classes that are not sampled
+};
+
+Count countFor(const PathClassTable& table, Method method) {
+  Count count;
+  size_t named = 0;
+  for (const PathClass& pathClass : table.classes) {
+    const Verdict verdict = table.verdict(pathClass, method);
+    count.inefficient += verdict == Verdict::inefficient ? 1 : 0;
+    count.impossible += verdict == Verdict::impossible ? 1 : 0;
+    if (verdict == Verdict::sampled || ++named > 2) continue;
+    count.names += (count.names.empty() ? "" : ", ") + pathClass.signature;
+  }
+  if (named > 2) count.names += ", ...";
+  return count;
+}
+
+std::string impossibleFor(const PathClassTable& table, Method method) {
+  std::string names;
+  for (const PathClass& pathClass : table.classes) {
+    if (table.verdict(pathClass, method) != Verdict::impossible) continue;
+    names += (names.empty() ? "" : ", ") + pathClass.signature;
+  }
+  return names;
+}
+
+// METHODS 8.3, which is the study's rule, with one line more: light tracing where it makes every class well and path
+// tracing does not, because no connection is then worth its price.
+ReferenceChoice chooseReference(const PathClassTable& table) {
+  const auto offers = [&](Method method) {
+    return std::find(table.methods.begin(), table.methods.end(), method) != table.methods.end();
+  };
+  const auto count = [&](Method method) { return countFor(table, method); };
+  if (offers(Method::pt)) {
+    const Count pt = count(Method::pt);
+    if (pt.impossible + pt.inefficient == 0) return {Method::pt, false, "path tracing samples every class of paths"};
+    if (offers(Method::lt) && pt.impossible != 0) {
+      const Count lt = count(Method::lt);
+      if (lt.impossible + lt.inefficient == 0) {
+        return {Method::lt, false,
+                "path tracing cannot make " + pt.names + "; light tracing samples every class without connections"};
+      }
+    }
+    if (offers(Method::bpt)) {
+      const Count bpt = count(Method::bpt);
+      if (bpt.impossible == 0 && (pt.impossible != 0 || bpt.inefficient < pt.inefficient)) {
+        return {Method::bpt, false,
+                "path tracing " + std::string(pt.impossible != 0 ? "cannot make " : "is inefficient for ") + pt.names +
+                    "; bidirectional path tracing is unbiased and samples " +
+                    (bpt.inefficient == 0 ? "every class" : "all classes, few of them inefficiently")};
+      }
+    }
+    if (pt.impossible == 0) {
+      return {Method::pt, false, "path tracing makes every class of paths, " + pt.names + " inefficiently"};
+    }
+  }
+  for (const Method method : {Method::vcm, Method::ppm}) {
+    if (!offers(method) || count(method).impossible != 0) continue;
+    const std::string lacking = offers(Method::bpt) ? " (bpt lacks " + impossibleFor(table, Method::bpt) + ")" : "";
+    return {method, true,
+            "no unbiased method makes every class" + lacking + "; a tiny radius keeps the bias of merging small"};
+  }
+  throw std::invalid_argument("chooseReference: none of the methods makes every class");
+}
+
+}  // namespace
+
+Verdict PathClassTable::verdict(const PathClass& pathClass, Method method) const {
+  const auto found = std::find(methods.begin(), methods.end(), method);
+  if (found == methods.end()) throw std::invalid_argument("PathClassTable: a method that was not asked for");
+  return pathClass.verdicts[static_cast<size_t>(found - methods.begin())];
+}
+
+PathClassTable classifyPaths(const SceneLinks& links, std::span<const MethodEntry> methods,
+                             const EfficiencyLimits& limits) {
+  PathClassTable table;
+  const Judge judge{links, limits};
+  for (const MethodEntry& entry : methods) table.methods.push_back(entry.method);
+  table.classes = findClasses(links);
+  for (PathClass& pathClass : table.classes) {
+    for (const MethodEntry& entry : methods) {
+      pathClass.verdicts.push_back(judge.verdict(strategiesOf(entry.method), pathClass.bits));
+    }
+  }
+  table.reference = chooseReference(table);
+  return table;
+}
+
+PathClassTable classifyPaths(const Scene& scene) { return classifyPaths(findLinks(scene)); }
+
+}  // namespace wavecrest

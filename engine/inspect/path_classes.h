@@ -1,0 +1,70 @@
+// Path classes: which kinds of light paths a scene has, which of them each method can make, and by which method its
+// reference should be rendered (METHODS.md section 8; Veach 1997, chapter 8, for the notation).
+//
+// A path is a light, events and the eye. Events with delta lobes are S, others D. Whether a strategy can make a path
+// depends only on the light's kind and on where D stands, so paths with the same answers form a class. Classes are
+// listed for the links that exist in the scene (engine/inspect/scene_links.h), each under its shortest path.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/inspect/scene_links.h"
+#include "engine/methods/method_list.h"
+
+namespace wavecrest {
+
+enum class Verdict { sampled, inefficient, impossible };
+constexpr std::array<std::string_view, 3> kVerdictNames{"sampled", "inefficient", "impossible"};
+
+// The bits of METHODS 8.1.
+struct PathBits {
+  bool deltaLight = false;  // point, spot or directional: no ray meets it
+  bool firstD = false;      // the event next to the light is D
+  bool lastD = false;       // the event next to the eye is D
+  bool hasDD = false;       // two D are neighbours
+  bool hasD = false;
+  bool operator==(const PathBits&) const = default;
+};
+
+struct PathClass {
+  std::string signature;    // "A S+ D E": A extended light, P delta light, S+ one or more; D D stands for two or more
+  std::string description;  // in words
+  PathBits bits;
+  std::vector<Verdict> verdicts;  // one per method, in the order asked for
+};
+
+struct ReferenceChoice {
+  Method method = Method::pt;
+  bool biased = false;  // merging alone makes some class: the radius has to be tiny
+  std::string reason;
+};
+
+struct PathClassTable {
+  std::vector<Method> methods;
+  std::vector<PathClass> classes;
+  ReferenceChoice reference;
+
+  // Verdict of one of the methods on a class.
+  Verdict verdict(const PathClass& pathClass, Method method) const;
+};
+
+// From these figures on a strategy is efficient. The study turned from pt to bpt where lamps filled 0.06 sr of what a
+// typical vertex sees, so its references are reproduced with 0.1.
+struct EfficiencyLimits {
+  double lightSolidAngle = 0.1;  // sr: s = 0 behind a diffuse event
+  double cameraCoverage = 0.01;  // share of light vertices that the lens sees: t = 1
+  double lightCoverage = 0.1;    // share of camera vertices that see a light: s = 1 on indirect light
+};
+
+// The table of a scene with these links, for some methods.
+PathClassTable classifyPaths(const SceneLinks& links, std::span<const MethodEntry> methods = kMethods,
+                             const EfficiencyLimits& limits = {});
+
+// The table of a scene. Throws std::runtime_error where the scene cannot be rendered.
+PathClassTable classifyPaths(const Scene& scene);
+
+}  // namespace wavecrest

@@ -1,0 +1,47 @@
+// How the chains of a render lie in waves, and what they keep there.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/plan/pipeline.h"
+#include "engine/plan/render_settings.h"
+#include "kernels/columns/chains.h"
+
+namespace wavecrest {
+
+// Which chain goes to which wave.
+//
+// Chains start in the order of path lengths. A wave of the longest paths alone would take several times as long as
+// others, which wait for it at the end of a round; so where threads have few waves each, groups of chains that stand
+// together are dealt to waves in turn. Where they have many, a group is a whole wave: a thread takes the next one when
+// it is done, so long ones hold up nobody. One thread never waits.
+class ChainLayout {
+ public:
+  // The settings' number of chains, in waves of at most their size.
+  explicit ChainLayout(const RenderSettings& settings);
+
+  size_t waves() const { return waves_; }
+  size_t groups() const { return groups_; }
+  // The most chains that a group has, and those of one group.
+  size_t groupSize() const { return groupSize_; }
+  size_t chainsOfGroup(size_t group) const;
+  // The chains of a wave.
+  size_t chainsOf(size_t wave) const;
+  // The chain in a lane of a wave.
+  size_t chainAt(size_t wave, size_t lane) const {
+    return (wave + lane / groupSize_ * waves_) * groupSize_ + lane % groupSize_;
+  }
+
+ private:
+  size_t chains_, groupSize_, groups_, waves_;
+};
+
+// Which primary samples the chains of a method keep, for paths of up to maxDepth edges.
+template <class S>
+ChainState::Kept keptSamples(const Pipeline<S>& pipeline, const SceneView<S>& scene, uint32_t maxDepth);
+
+// Waves that a worker holds where walks are joined: the walks', and those of WalkEnds.
+constexpr size_t kWavesOfJoinedWalks = 4;
+
+}  // namespace wavecrest

@@ -1,0 +1,231 @@
+#include "engine/plan/memory_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "engine/film/spread_sums.h"
+#include "engine/plan/chain_layout.h"
+#include "engine/tasks/flush_to_zero.h"
+#include "kernels/columns/light_vertices.h"
+#include "kernels/merge/photon_map.h"
+
+namespace wavecrest {
+namespace {
+
+template <class Items>
+size_t bytesOf(const Items& items) {
+  return items.size() * sizeof(items[0]);
+}
+
+// Light paths that are walked, whatever the size of waves: the unit of splats follows from them, and with it the last
+// bits of an image.
+constexpr size_t kPilotPaths = 8192;
+
+// Later waves and iterations may need some more room than the first ones.
+constexpr double kSpread = 1.05;
+
+// What the first waves of light paths of iteration 0 left behind.
+struct Pilot {
+  size_t paths = 0, stored = 0;
+  size_t room = 0;  // of the largest store: of all vertices, and of those that it might have stored at last
+  // Splats that are finite and not black, and the sum of their exponents: integers, which no order of sums changes.
+  int64_t splats = 0, exponents = 0;
+};
+
+template <class S>
+Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
+                     size_t lightPaths) {
+  const FlushToZero flushToZero;
+  Wave<S> wave(settings.waveSize, plan.needs);
+  LightStore<S> store(settings.waveSize, plan.needs, plan.lightUse);
+  StageCounters counters;
+  StageContext<S> context;
+  context.scene = &plan.scene->view;
+  context.pixels = area.pixels.data();
+  context.sampler = {settings.sampler, settings.seed, 0};
+  context.limits = settings.limits;
+  context.mis = misSettings(plan.pipeline.lightPass->strategies, settings, plan.scene->view.radius, lightPaths, 0);
+  context.light = &store;
+  context.film = area.window();
+  context.counters = &counters;
+  Pilot pilot;
+  const SplatDrain<S> drain = [&](Splats<S>& splats) {
+    for (size_t i = 0; i < splats.size; ++i) {
+      const auto value = static_cast<double>(std::max({splats.red[i], splats.green[i], splats.blue[i]}));
+      if (!(value > 0 && std::isfinite(value))) continue;
+      ++pilot.splats;
+      pilot.exponents += std::ilogb(value);
+    }
+    splats.size = 0;
+  };
+  const size_t wanted = std::min(kPilotPaths, lightPaths);
+  while (pilot.paths < wanted) {
+    wave.firstPath = pilot.paths;
+    wave.pathCount = std::min<size_t>(settings.waveSize, wanted - pilot.paths);
+    runPass<S>(*plan.pipeline.lightPass, context, wave, nullptr, drain);
+    pilot.paths += wave.pathCount;
+    pilot.stored += store.vertices.size;
+    pilot.room = std::max(pilot.room, store.roomUsed());
+  }
+  return pilot;
+}
+
+template <class S>
+class Planner {
+ public:
+  Planner(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
+      : plan_(plan), settings_(settings), area_(area), emptyStore_(settings.waveSize, plan.needs, plan.lightUse) {
+    if (settings.lightPaths && !plan.pipeline.photonMap) {
+      throw std::invalid_argument("planMemory: a number of light paths for " + std::string(toString(settings.method)));
+    }
+  }
+
+  MemoryPlan run() {
+    const size_t pixels = area_.pixels.size();
+    MemoryUse& use = memory_.use;
+    use.scene = sceneBytes(*plan_.scene);
+    memory_.bytesPerPath = Wave<S>(1, plan_.needs).bytesPerPath();
+    use.waves = settings_.threads * waveBytes(memory_.bytesPerPath, settings_.waveSize);
+    use.film = area_.bytes() + pixels * sizeof(uint64_t);
+    use.film += spreadsSamples(plan_, settings_) ? SpreadSums::bytesFor(plan_.scene->view.camera, area_)
+                                                 : pixels * 3 * sizeof(double);
+    use.image = Film::imageBytesFor(pixels, spreadsSamples(plan_, settings_), plan_.pipeline.chains.has_value());
+    if (plan_.pipeline.splats()) use.splats = SplatFilms::bytesFor(pixels, settings_.threads);
+    if (plan_.pipeline.chains) {
+      addChains();
+    } else if (plan_.pipeline.lightPass) {
+      addLightPaths(static_cast<size_t>(settings_.lightPaths.value_or(pixels)));
+    }
+    if (settings_.memoryBytes && use.total() > *settings_.memoryBytes) refuse(use.total());
+    return memory_;
+  }
+
+ private:
+  // Waves of walks' ends and a light vertex per lane where walks are joined; chains by the waves they are cut into.
+  void addChains() {
+    MemoryUse& use = memory_.use;
+    memory_.splatScale = std::ldexp(1.0, kSplatUnitBits);  // a chain's splat has luminance 1
+    const bool pathSpace = plan_.pipeline.chains->inPathSpace;
+    const uint32_t edges = plan_.pathLaws.law().maxEdges;
+    if (pathSpace) {
+      use.waves += settings_.threads * PathMutations<S>::bytesFor(settings_.waveSize, edges, plan_.needs);
+    } else if (plan_.pipeline.lightPass) {
+      use.waves *= kWavesOfJoinedWalks;
+      use.lightVertices = settings_.threads * emptyStore_.bytesFor(settings_.waveSize);
+    }
+    const auto kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
+    const ChainLayout layout(settings_);
+    for (size_t wave = 0; wave < layout.waves(); ++wave) {
+      use.chains += ChainState::bytesFor(layout.chainsOf(wave), kept);
+      if (pathSpace) use.chains += PathStore<S>::bytesFor(settings_.waveSize, edges, plan_.needs);
+    }
+  }
+  void addLightPaths(size_t asked) {
+    pilot_ = walkLightPaths(plan_, settings_, area_, asked);
+    // Where the pilot has no splat, those of the render are rare, and any unit of theirs is fine enough.
+    const int64_t exponent = pilot_.splats == 0 ? 0 : pilot_.exponents / pilot_.splats;
+    memory_.splatScale = std::ldexp(1.0, kSplatUnitBits - static_cast<int>(exponent));
+    const double spread = pilot_.paths < asked ? kSpread : 1;
+    memory_.verticesPerWave = static_cast<size_t>(spread * static_cast<double>(pilot_.room));
+    memory_.lightPaths = asked;
+    if (plan_.pipeline.photonMap && settings_.memoryBytes) fitLightPaths(*settings_.memoryBytes);
+    memory_.use.lightVertices = vertexBytes(memory_.lightPaths);
+    if (plan_.pipeline.photonMap) {
+      memory_.photons = photons(memory_.lightPaths);
+      memory_.use.photonMap = photonBytes(memory_.lightPaths);
+    }
+  }
+
+  // Of a wave per thread, or with a photon map of all waves of the iterations under way.
+  size_t vertexBytes(size_t lightPaths) const {
+    const size_t waves = piecesOf(lightPaths, settings_.waveSize);
+    const size_t stores =
+        plan_.pipeline.photonMap ? lightStores(settings_, area_.pixels.size(), waves) : settings_.threads;
+    return stores * emptyStore_.bytesFor(memory_.verticesPerWave);
+  }
+  size_t photons(size_t lightPaths) const {
+    const double perPath = static_cast<double>(pilot_.stored) / static_cast<double>(std::max<size_t>(pilot_.paths, 1));
+    return static_cast<size_t>(std::llround(perPath * static_cast<double>(lightPaths)));
+  }
+  size_t photonBytes(size_t lightPaths) const {
+    return iterationsAtOnce(settings_, area_.pixels.size()) * PhotonMap<S>::bytesFor(photons(lightPaths));
+  }
+
+  // The most light paths, up to those asked for, that leave the plan within the budget.
+  void fitLightPaths(size_t budget) {
+    const size_t fixed = memory_.use.total();
+    const auto needed = [&](size_t paths) { return fixed + vertexBytes(paths) + photonBytes(paths); };
+    size_t most = memory_.lightPaths, fits = std::min<size_t>(settings_.waveSize, most);
+    if (needed(fits) > budget) refuse(needed(fits));
+    while (fits < most) {
+      const size_t middle = fits + (most - fits + 1) / 2;
+      if (needed(middle) <= budget) {
+        fits = middle;
+      } else {
+        most = middle - 1;
+      }
+    }
+    memory_.lightPaths = fits;
+  }
+
+  [[noreturn]] void refuse(size_t needed) const {
+    const auto megabytes = [](double bytes) { return std::to_string(static_cast<uint64_t>(std::ceil(bytes / 1e6))); };
+    throw MemoryBudgetError("this scene needs " + megabytes(static_cast<double>(needed)) + " MB at least by " +
+                            std::string(toString(settings_.method)) + "; expected a budget of that or more");
+  }
+
+  const RenderPlan<S>& plan_;
+  const RenderSettings& settings_;
+  const FilmArea& area_;
+  const LightStore<S> emptyStore_;
+  Pilot pilot_;
+  MemoryPlan memory_;
+};
+
+}  // namespace
+
+size_t lightStores(const RenderSettings& settings, size_t pixels, size_t waves) {
+  constexpr size_t kAheadPerThread = 4, kMostAhead = 4;  // at most a fourth of the waves
+  const size_t atOnce = iterationsAtOnce(settings, pixels);
+  if (atOnce > 1 || settings.cutForThreads() == 1) return atOnce * waves;
+  return waves + std::min<size_t>(piecesOf(waves, kMostAhead), kAheadPerThread * settings.cutForThreads());
+}
+
+template <class S>
+size_t primitiveBytes(const CompiledScene<S>& scene) {
+  return bytesOf(scene.primitives.records) + bytesOf(scene.primitives.attributes) + bytesOf(scene.instances) +
+         (scene.embree ? scene.embree->bytes() : 0) + (scene.bvh ? scene.bvh->bytes() : 0);
+}
+template size_t primitiveBytes(const CompiledScene<float>&);
+template size_t primitiveBytes(const CompiledScene<double>&);
+
+template <class S>
+size_t sceneBytes(const CompiledScene<S>& scene) {
+  return primitiveBytes(scene) + bytesOf(scene.materials) + bytesOf(scene.compounds) + bytesOf(scene.textures.records) +
+         bytesOf(scene.textures.texels) + bytesOf(scene.lights.records) + bytesOf(scene.lights.table) +
+         bytesOf(scene.lights.environment.texels) + bytesOf(scene.lights.environment.probability) +
+         bytesOf(scene.lights.environment.table);
+}
+template size_t sceneBytes(const CompiledScene<float>&);
+template size_t sceneBytes(const CompiledScene<double>&);
+
+size_t waveBytes(size_t bytesPerPath, size_t waveSize) { return bytesPerPath * paddedItems(waveSize); }
+
+template <class S>
+MemoryPlan planMemory(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
+  return Planner<S>(plan, settings, area).run();
+}
+template MemoryPlan planMemory(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);
+template MemoryPlan planMemory(const RenderPlan<double>&, const RenderSettings&, const FilmArea&);
+
+MemoryPlan planMemory(const Scene& scene, const RenderSettings& asked) {
+  const RenderSettings settings = withinDepthOfMethod(asked);
+  const FilmArea area = filmArea(scene.film);
+  const RenderSettings cut = withPieces(settings, scene.film, area.pixels.size());
+  return settings.precision == Precision::doubled ? planMemory(planRender<double>(scene, cut), cut, area)
+                                                  : planMemory(planRender<float>(scene, cut), cut, area);
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,181 @@
+#include "engine/plan/render_plan.h"
+#include "engine/film/spread_sums.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "engine/compile/materials.h"
+#include "engine/scene/scene_error.h"
+
+namespace wavecrest {
+namespace {
+
+ColumnNeeds columnNeeds(const Scene& scene, Specialization specialization, bool keepsInstances) {
+  const uint32_t features = featuresOf(specialization);
+  return {.shadingNormals = (features & kShadingNormals) != 0,
+          .textures = (features & kTextures) != 0,
+          .normalMaps = (features & sceneFeatures(scene) & kNormalMaps) != 0,
+          .tangents = (features & kCompoundBsdfs) != 0 && hasTangents(scene),
+          .instances = keepsInstances,
+          .rouletteScale = (features & (kSpecularBsdfs | kBidirectional)) != 0,
+          .connections = (features & kBidirectional) != 0,
+          .bsdfOrder = (features & (kSpecularBsdfs | kLayeredBsdfs)) != 0};
+}
+
+// Mutations of path space keep the events of a path: reflection, refraction or passing, but not which part of a blend.
+void refuseDeltaBlends(const Scene& scene) {
+  for (const Shape& shape : scene.shapes) {
+    if (shape.material == kNone) continue;
+    const Material& material = scene.materials[shape.material];
+    if (!std::holds_alternative<Blend>(material.kind)) continue;
+    Material whole = material;
+    whole.opacity.reset();
+    if ((compileMaterial(whole, scene).flags & kHasDelta) == 0) continue;
+    throw SceneError(material.source,
+                     "pathspace cannot tell the delta lobes of a blend apart; expected BSDFs without "
+                     "them in it, or --mlt mmlt");
+  }
+}
+
+MethodPage pageOf(const RenderSettings& settings) {
+  return pageOf(settings.method, settings.metropolis.variant, settings.directPass);
+}
+
+bool isBidirectional(const RenderSettings& settings) { return isBidirectional(pageOf(settings)); }
+
+}  // namespace
+
+Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
+  const bool keeps = keepsInstances(scene, settings.accel, settings.instancing);
+  const uint32_t features = sceneFeatures(scene, keeps) | (isBidirectional(settings) ? kBidirectional : 0u);
+  const Specialization least = chooseSpecialization(features, settings.precision);
+  if (!settings.specialization) return least;
+  if ((features & ~featuresOf(*settings.specialization)) != 0) {
+    throw SceneError({scene.name}, "scene and method need the '" +
+                                       std::string(kSpecializationNames[static_cast<size_t>(least)]) + "' kernels");
+  }
+  return chooseSpecialization(featuresOf(*settings.specialization), settings.precision);
+}
+
+template <class S>
+Intersector<S> chooseIntersector(const Stages<S>& stages, const CompiledScene<S>& scene) {
+  if (scene.accel() == Accel::small) return {stages.extendSmall, stages.occludeSmall, stages.lanes};
+  if (scene.view.instances != nullptr) return {stages.extendInstances, stages.occludeInstances, stages.lanes};
+  if (scene.accel() == Accel::bvh) return {stages.extendBvh, stages.occludeBvh, stages.lanes};
+  return {extendEmbree<S>, occludeEmbree<S>, kEmbreePacket};
+}
+template Intersector<float> chooseIntersector(const Stages<float>&, const CompiledScene<float>&);
+template Intersector<double> chooseIntersector(const Stages<double>&, const CompiledScene<double>&);
+
+template <class S>
+RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
+  RenderPlan<S> plan;
+  // Densities of path space are those of rays that leave one point.
+  const bool inPathSpace =
+      settings.method == Method::mlt && settings.metropolis.variant == MetropolisVariant::pathspace;
+  if (inPathSpace && scene.sensor.kind != Sensor::Kind::perspective) {
+    throw SceneError({scene.name}, "pathspace needs a pinhole; expected one, or --mlt mmlt");
+  }
+  plan.specialization = specializationFor(scene, settings);
+  if (inPathSpace) refuseDeltaBlends(scene);
+  plan.scene = compileScene<S>(scene, settings.accel, settings.precision != Precision::fast, settings.instancing);
+  plan.needs = columnNeeds(scene, plan.specialization, plan.scene->view.instances != nullptr);
+  const CameraView& camera = plan.scene->view.camera;
+  const bool clipped = camera.nearClip > 0 || std::isfinite(camera.farClip);
+  if (clipped && settings.method == Method::mlt && settings.metropolis.variant == MetropolisVariant::pathspace) {
+    throw SceneError({scene.name},
+                     "pathspace knows no clips of the camera, and the scene has a surface outside of them; "
+                     "expected other clips, or another method");
+  }
+  const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, plan.specialization);
+  plan.isa = stages.isa;
+  plan.stages = &stages;
+  plan.pipeline = makePipeline(pageOf(settings), stages, chooseIntersector(stages, *plan.scene));
+  plan.needs.splats = plan.pipeline.splats();
+  plan.lightUse = {.connected = !plan.pipeline.photonMap || plan.pipeline.cameraPass.strategies.connect,
+                   .merged = plan.pipeline.photonMap};
+  if (plan.pipeline.chains && plan.pipeline.chains->inPathSpace) {
+    const uint32_t least = settings.metropolis.directPass ? kDirectLength + 1 : 1;
+    plan.pathLaws = PathLaws(least, std::max(settings.limits.maxDepth, least));
+    plan.pathLaws.kinds = settings.metropolis.pathMutations;
+  }
+  return plan;
+}
+template RenderPlan<float> planRender(const Scene&, const RenderSettings&);
+template RenderPlan<double> planRender(const Scene&, const RenderSettings&);
+
+template <class S>
+bool spreadsSamples(const RenderPlan<S>& plan, const RenderSettings& settings) {
+  const bool samples = !plan.pipeline.chains || plan.pipeline.chains->directPass;
+  return samples && settings.filterMode == FilterMode::spread && canSpread(plan.scene->view.camera);
+}
+template bool spreadsSamples(const RenderPlan<float>&, const RenderSettings&);
+template bool spreadsSamples(const RenderPlan<double>&, const RenderSettings&);
+
+MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t count,
+                        uint64_t iteration) {
+  const auto lightPaths = static_cast<double>(count);
+  strategies.lightPaths = lightPaths;
+  const double shrink = std::pow(static_cast<double>(iteration + 1), (settings.radiusAlpha - 1) / 2);
+  strategies.radius = std::max(settings.radius * shrink, kSmallestRadius) * sceneRadius;
+  const double density = std::numbers::pi * strategies.radius * strategies.radius * lightPaths;
+  strategies.mergeNorm = 1 / density;
+  strategies.vmWeight = strategies.merge && strategies.mergeWeights ? density : 0;
+  strategies.vcWeight = strategies.merge && strategies.connect ? 1 / density : 0;
+  return strategies;
+}
+
+uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most, uint32_t least) {
+  constexpr size_t kPiecesPerThread = 16;
+  if (threads <= 1) return most;
+  const auto whole = [&](size_t pieces) { return piecesOf(piecesOf(items, pieces), kColumnPadding) * kColumnPadding; };
+  // A piece and a half for each thread in any case.
+  const size_t fewest = std::min<size_t>(least, whole(threads + threads / 2));
+  return static_cast<uint32_t>(
+      std::min<size_t>(most, std::max({whole(kPiecesPerThread * threads), fewest, kLeastPiece})));
+}
+
+size_t iterationsAtOnce(const RenderSettings& settings, size_t pixels) {
+  constexpr size_t kPiecesPerThread = 8, kMost = 8;
+  if (settings.cutForThreads() <= 1) return 1;
+  const size_t lightPaths = settings.lightPaths.value_or(pixels);
+  const size_t pieces = piecesOf(pixels, settings.waveSize) + piecesOf(lightPaths, settings.waveSize);
+  return std::clamp<size_t>(piecesOf(kPiecesPerThread * settings.cutForThreads(), pieces), 1, kMost);
+}
+
+RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film, size_t pixels) {
+  RenderSettings settings = asked;
+  const bool spreads = settings.filterMode == FilterMode::spread && film.filter != ReconstructionFilter::box;
+  const auto least = static_cast<uint32_t>(spreads ? kTilePixels : 1);
+  settings.waveSize = std::max(settings.waveSize, least);
+  RenderSettings cut = settings;
+  const MethodPage page = pageOf(settings);
+  const uint32_t threads = settings.cutForThreads();
+  // Camera walks alone take several iterations of a pixel at once: their waves stay, over fewer pixels, up to so many
+  // lanes of all threads.
+  constexpr uint32_t kMostLanes = 1u << 17;
+  if (!page.hasChains() && page.walk(Walk::light) == nullptr) {
+    cut.waveSize = std::max(std::min(settings.waveSize, kMostLanes / std::max(threads, 1u)), least);
+    return cut;
+  }
+  // Methods with light paths need few pieces: without a photon map pieces wait for nothing, so no thread is idle before
+  // the end; with one, several iterations are under way.
+  constexpr uint32_t kLeastWithLight = 256, kLeastWithMap = 512;
+  if (page.hasChains()) {
+    cut.waveSize = pieceSize(std::max<size_t>(settings.metropolis.chains, 1), threads, settings.waveSize);
+  } else {
+    cut.waveSize = pieceSize(pixels, threads, settings.waveSize, page.hasPhotonMap() ? kLeastWithMap : kLeastWithLight);
+  }
+  cut.waveSize = std::max(cut.waveSize, least);
+  return cut;
+}
+
+FilmArea filmArea(const FilmSettings& film) {
+  if (film.cropWidth == 0 || film.cropHeight == 0) return FilmArea::make(0, 0, film.width, film.height);
+  return FilmArea::make(film.cropX, film.cropY, film.cropWidth, film.cropHeight);
+}
+
+}  // namespace wavecrest

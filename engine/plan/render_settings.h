@@ -1,0 +1,109 @@
+// What a user may choose about a render, as plain data.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "engine/compile/compiled_scene.h"
+#include "engine/methods/method_list.h"
+#include "engine/plan/clock_kind.h"
+#include "engine/tasks/placement.h"
+#include "kernels/mutate/path_law.h"
+
+namespace wavecrest {
+
+// Edges of the longest path where none is stated. Light vertices keep their depth in a few bits, chains memory for each
+// vertex; what the limit cuts is counted (StageCounters::cutPaths). A method without either has none to speak of: four
+// numbers of each vertex' random blocks still fit in 32 bits.
+constexpr uint32_t kUnlimitedDepth = kMostEdges, kChainDepth = 64, kWalkDepth = 1u << 24;
+
+// Markov chains. Their number is a setting, not a consequence of threads or waves, so that images depend on neither.
+struct MetropolisSettings {
+  MetropolisVariant variant = MetropolisVariant::mmlt;
+  uint32_t chains = 16384;
+  uint32_t bootstrapSamples = 131072;  // independent samples from which chains start, and the image's brightness comes
+  std::optional<uint32_t> restartSteps;      // steps before all chains start anew; unless set, epochSteps() says
+  double largeStep = 0.3;                    // probability of a step that forgets where the chain is
+  uint32_t pathMutations = PathLaw().kinds;  // pathspace: kinds beside large steps (PathLaw)
+  bool directPass = true;  // mmlt, pathspace: emitters in view and direct light by path tracing, the rest by chains
+};
+
+// Mutations to a bootstrap sample. The error of b falls only with the number of bootstraps, so they get a fixed part of
+// a render, however long it is: a sixteenth costs little and is no longer what limits an image
+// (engine/chains/README.md).
+constexpr uint64_t kMutationsPerBootstrapSample = 16;
+
+// Steps from one bootstrap, of so many samples, to the next.
+inline uint64_t epochSteps(const MetropolisSettings& settings, uint64_t samples) {
+  if (settings.restartSteps) return *settings.restartSteps;
+  return std::max<uint64_t>(kMutationsPerBootstrapSample * samples / settings.chains, 1);
+}
+
+// Limits of paths from what a scene file or a user says: depth in edges, -1 for as many as roulette allows; the first
+// vertex where roulette may end a path.
+inline PathLimits pathLimits(int maxDepth, int rouletteDepth) {
+  PathLimits limits;
+  limits.maxDepth = maxDepth > 0 ? std::min(static_cast<uint32_t>(maxDepth), kUnlimitedDepth) : kUnlimitedDepth;
+  limits.rouletteDepth = static_cast<uint32_t>(rouletteDepth);
+  return limits;
+}
+
+// What a camera sample adds to: all pixels that the reconstruction filter spreads it to
+// (kernels/columns/filter_spread.h), or the one pixel that it was drawn for. Filters that are too wide to be spread are
+// sampled; a box is the same by both.
+enum class FilterMode { spread, sample };
+constexpr std::array<std::string_view, 2> kFilterModeNames{"spread", "sample"};
+
+struct RenderSettings {
+  Method method = Method::pt;
+  MetropolisSettings metropolis;
+  Precision precision = Precision::floating;
+  Isa isa = Isa::scalar;
+  Accel accel = Accel::automatic;
+  Instancing instancing = Instancing::automatic;
+  SamplerKind sampler = SamplerKind::independent;
+  FilterMode filterMode = FilterMode::spread;
+  uint64_t seed = 0;
+  uint32_t threads = 1;
+  uint32_t waveSize = 2048;  // paths
+  PathLimits limits;
+  double radius = 0.001;      // of the first merges, relative to the bounding sphere's
+  double radiusAlpha = 0.75;  // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
+  // bpt, vcm: Russian roulette of connections whose contribution is below this share of a typical pixel's brightness.
+  // It saves shadow rays and changes no mean. 0: no roulette. Never used with Accel::small, where a shadow ray costs
+  // less than the roulette.
+  double connectionRoulette = 0.2;
+  bool directPass = false;      // ppm: direct light by next event estimation, the rest from photons
+  uint64_t firstIteration = 0;  // of this session: what came before was rendered by another
+  // N_L, the light paths of an iteration: one per pixel unless stated. Only methods with a photon map may have another
+  // number; the others join each light path with its own camera path.
+  std::optional<uint64_t> lightPaths;
+  std::optional<uint64_t> memoryBytes;           // budget; lowers N_L where that is what fills the memory
+  std::optional<uint64_t> iterations;            // stop after this many,
+  std::optional<double> seconds;                 // or after this much render time, whichever comes first,
+  ClockKind clock = ClockKind::wall;             // as this clock counts it; a session that goes on for another: wall
+  std::optional<Specialization> specialization;  // overrides the scene's own; it must cover the scene
+  bool measureStages = false;
+  // Work is cut into pieces as for so many threads, however many there are; unset: for those that there are.
+  std::optional<uint32_t> piecesForThreads;
+  Placement placement;  // of the threads and the memory that they share; images do not depend on it
+
+  uint32_t cutForThreads() const { return piecesForThreads.value_or(threads); }
+};
+
+// Whether connections of the method are subject to roulette. Those of chains are not: what they carry is what chains
+// follow.
+inline bool hasConnectionRoulette(Method method) { return method != Method::mlt && strategiesOf(method).connect; }
+
+// The settings with the longest path that their method can make, where they ask for longer ones.
+inline RenderSettings withinDepthOfMethod(RenderSettings settings) {
+  uint32_t& depth = settings.limits.maxDepth;
+  if (settings.method == Method::mlt) depth = std::min(depth, kChainDepth);
+  if (settings.method == Method::pt && depth == kUnlimitedDepth) depth = kWalkDepth;
+  return settings;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,68 @@
+// Clocks of a session, and the limit on its worker threads.
+#pragma once
+
+#include <oneapi/tbb/global_control.h>
+
+#include <atomic>
+#include <chrono>
+
+#include "engine/plan/clock_kind.h"
+
+namespace wavecrest {
+
+using Clock = std::chrono::steady_clock;
+
+inline double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// CPU time of the process up to now, all threads together.
+double processCpuSeconds();
+
+// The clock of a session. It runs while the session renders; other threads may look at it meanwhile.
+class RenderClock {
+ public:
+  RenderClock(ClockKind kind, unsigned threads) : kind_(kind), threads_(threads) {}
+
+  // What is charged up to the last stop, and both clocks there.
+  double seconds() const { return charged(wallSeconds_, cpuSeconds_); }
+  double wallSeconds() const { return wallSeconds_; }
+  double cpuSeconds() const { return cpuSeconds_; }
+  // Seconds as of the last look, from any thread.
+  double shown() const { return shown_.load(std::memory_order_relaxed); }
+  // Goes on where the clock of another session stopped.
+  void goOnFrom(double wallSeconds, double cpuSeconds);
+
+  // The clock runs while this lives.
+  class Running {
+   public:
+    explicit Running(RenderClock& clock) : clock_(clock) {}
+    ~Running();
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+    // Seconds now, which other threads see from now on. Safe from several threads.
+    double look() const;
+
+   private:
+    RenderClock& clock_;
+    const Clock::time_point begin_ = Clock::now();
+    const double cpuBegin_ = processCpuSeconds();
+  };
+
+ private:
+  double charged(double wall, double cpu) const;
+
+  const ClockKind kind_;
+  const double threads_;
+  double wallSeconds_ = 0, cpuSeconds_ = 0;
+  std::atomic<double> shown_{0};
+};
+
+// TBB gives an arena of more threads than the machine has cores no workers for the surplus unless it is told to. Only
+// while a session works: the least of all limits alive counts, and several sessions may be.
+struct WorkerLimit {
+  explicit WorkerLimit(size_t threads) : control(oneapi::tbb::global_control::max_allowed_parallelism, threads) {}
+  oneapi::tbb::global_control control;
+};
+
+}  // namespace wavecrest

@@ -1,0 +1,109 @@
+// A session: one render of one scene by one method, its clock and its film.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/film/film.h"
+#include "engine/plan/memory_plan.h"
+#include "engine/plan/render_settings.h"
+#include "kernels/columns/chains.h"
+
+namespace wavecrest {
+
+class StateReader;
+class StateWriter;
+
+// A chain that has rejected kStuckRejections proposals in a row, or more.
+struct StuckChain {
+  uint32_t chain = 0;
+  uint32_t rejections = 0;
+  uint32_t edges = 0;  // of the path it is at; of pssmlt the vertices that draw numbers
+  uint32_t pixel = 0;  // of the film's rectangle, row by row
+};
+constexpr size_t kListedStuckChains = 16;
+
+// What Markov chains have done so far.
+struct ChainStatistics {
+  uint64_t mutations = 0;    // of all chains, rejected ones included
+  uint64_t directPaths = 0;  // of the separate pass for direct light
+  uint64_t epochs = 0;
+  double brightness = 0, brightnessError = 0;  // b, the mean luminance of what chains render, and its standard error
+  // b from the bootstraps and all large steps together; too small where chains are bound to lengths and b is uncertain
+  // (engine/chains/README.md). The image is scaled by the bootstraps' own, which chains start from.
+  double pooledBrightness = 0, pooledError = 0;
+  double largestShare =
+      0;  // of one bootstrap sample in b, at most over epochs: large where chains start too much alike
+  ChainCounters counters;
+  std::vector<StuckChain> stuck;  // the worst at the ends of epochs and now
+  size_t bytes = 0;               // of the chains' state
+};
+
+// Numbers of a render so far, as --stats reports them.
+struct RenderStatistics {
+  uint64_t iterations = 0;  // whole iterations in the film (the least over pixels)
+  uint64_t paths = 0;       // camera paths
+  uint64_t lightPaths = 0;
+  StageCounters counters;
+  double buildSeconds = 0, renderSeconds = 0, cpuSeconds = 0;  // renderSeconds: by the clock of the settings
+  double renderWallSeconds = 0;
+  struct StageRow {
+    std::string name;
+    uint64_t items = 0;
+    uint64_t laneSlots = 0;  // lanes of the blocks that the items filled; items / laneSlots is the lane use
+    double seconds = 0;      // summed over threads
+  };
+  std::vector<StageRow> stages;
+  Isa isa{};
+  Specialization specialization{};
+  Accel accel{};
+  FilterMode filterMode{};                // what the film does: boxes and very wide filters are never spread
+  size_t bytesPerPath = 0;                // of a wave's columns
+  MemoryUse memory;                       // of all threads that have worked
+  std::optional<ChainStatistics> chains;  // of mlt
+};
+
+class Session {
+ public:
+  virtual ~Session() = default;
+
+  // Renders until the given iteration count or render time (both counted from the session's beginning) is reached, or
+  // interrupt() was called. The clock runs only inside. May be called again to go on.
+  virtual void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) = 0;
+
+  // Asks a running renderUntil to return once the waves under way are done. Safe from any thread and signal handler.
+  void interrupt() { interrupted_.store(true, std::memory_order_relaxed); }
+  bool interrupted() const { return interrupted_.load(std::memory_order_relaxed); }
+  // Takes an interrupt() back, so that renderUntil goes on.
+  void resume() { interrupted_.store(false, std::memory_order_relaxed); }
+
+  virtual RenderStatistics statistics() const = 0;
+  virtual const Film& film() const = 0;
+  virtual const MemoryPlan& memoryPlan() const = 0;
+  // All that a session of the same scene and settings needs to go on from here, whatever its number of threads and size
+  // of waves (engine/session/work_done.h). No renderUntil may be running.
+  virtual void save(StateWriter& out) const = 0;
+  // Takes over the state that another session saved. Images are from then on the same, bit for bit, as if this session
+  // had rendered everything; counts and clocks go on as well, except the time for building. To be called before the
+  // first renderUntil. Throws StateError if the state belongs to another render; the session must not be used then.
+  virtual void restore(StateReader& in) = 0;
+
+  // Iterations of the slowest wave and seconds so far, for progress shown from another thread.
+  virtual double progressSeconds() const = 0;
+  virtual uint64_t progressPaths() const = 0;
+
+  // Compiles the scene and plans the memory. Throws std::runtime_error where the scene cannot be rendered, and
+  // MemoryBudgetError where it does not fit the settings' budget.
+  static std::unique_ptr<Session> create(const Scene& scene, const RenderSettings& settings);
+
+ private:
+  std::atomic<bool> interrupted_{false};
+};
+
+}  // namespace wavecrest

@@ -1,0 +1,57 @@
+#include "engine/session/work_done.h"
+
+#include <utility>
+
+namespace wavecrest {
+
+WorkDone WorkDone::of(const RenderStatistics& statistics) {
+  return {.paths = statistics.paths,
+          .lightPaths = statistics.lightPaths,
+          .counters = statistics.counters,
+          .renderSeconds = statistics.renderWallSeconds,
+          .cpuSeconds = statistics.cpuSeconds,
+          .stages = statistics.stages};
+}
+
+void WorkDone::save(StateWriter& out) const {
+  static_assert(sizeof(StageCounters) == 11 * sizeof(uint64_t), "padding would be written");
+  out.value(paths);
+  out.value(lightPaths);
+  out.value(counters);
+  out.value(renderSeconds);
+  out.value(cpuSeconds);
+  out.value(uint64_t{stages.size()});
+  for (const RenderStatistics::StageRow& row : stages) {
+    out.value(row.items);
+    out.value(row.laneSlots);
+    out.value(row.seconds);
+  }
+}
+
+void WorkDone::restore(StateReader& in, std::vector<RenderStatistics::StageRow> rows) {
+  paths = in.value<uint64_t>();
+  lightPaths = in.value<uint64_t>();
+  counters = in.value<StageCounters>();
+  renderSeconds = in.value<double>();
+  cpuSeconds = in.value<double>();
+  stages = std::move(rows);
+  in.expect(stages.size(), "stages");
+  for (RenderStatistics::StageRow& row : stages) {
+    row.items = in.value<uint64_t>();
+    row.laneSlots = in.value<uint64_t>();
+    row.seconds = in.value<double>();
+  }
+}
+
+void WorkDone::addTo(RenderStatistics& statistics) const {
+  statistics.paths += paths;
+  statistics.lightPaths += lightPaths;
+  statistics.counters += counters;
+  for (size_t i = 0; i < stages.size(); ++i) {
+    statistics.stages[i].items += stages[i].items;
+    statistics.stages[i].laneSlots += stages[i].laneSlots;
+    statistics.stages[i].seconds += stages[i].seconds;
+  }
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,67 @@
+#include "engine/tasks/run_schedule.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "engine/tasks/run_tasks.h"
+#include "engine/tasks/task_recorder.h"
+
+namespace wavecrest {
+namespace {
+
+// The state of a schedule behind a lock. Counts the workers that found no task and ended.
+class Dispatcher {
+ public:
+  struct Task {
+    ScheduledTask scheduled;
+    double seconds = 0;  // if the render is recorded
+  };
+  using Run = std::function<void(const ScheduledTask&)>;
+
+  Dispatcher(const Schedule& schedule, uint64_t firstIteration, const ScheduleState::MayBegin& mayBegin, const Run& run)
+      : state_(schedule, firstIteration), mayBegin_(mayBegin), run_(run), recorded_(schedule, firstIteration) {}
+
+  size_t next(std::optional<Task>& task) {
+    const std::lock_guard lock(mutex_);
+    if (task) {
+      state_.end(task->scheduled);
+      recorded_.add(task->scheduled, task->seconds);
+      task.reset();
+    }
+    const std::optional<ScheduledTask> taken = state_.take(mayBegin_);
+    if (!taken) {
+      ++waiting_;
+      return 0;
+    }
+    task = Task{.scheduled = *taken};
+    const size_t wake = std::min(waiting_, state_.ready());
+    waiting_ -= wake;
+    return wake;
+  }
+  void run(Task& task) const {
+    if (!recorded_.records()) return run_(task.scheduled);
+    const auto begin = TaskRecorder::Clock::now();
+    run_(task.scheduled);
+    task.seconds = std::chrono::duration<double>(TaskRecorder::Clock::now() - begin).count();
+  }
+  uint64_t firstUnderWay() const { return state_.firstUnderWay(); }
+
+ private:
+  std::mutex mutex_;
+  ScheduleState state_;
+  const ScheduleState::MayBegin& mayBegin_;
+  const Run& run_;
+  size_t waiting_ = 0;
+  TaskRecorder::Iterations recorded_;
+};
+
+}  // namespace
+
+uint64_t runSchedule(const Schedule& schedule, uint64_t firstIteration, size_t threads,
+                     const ScheduleState::MayBegin& mayBegin, const std::function<void(const ScheduledTask&)>& run) {
+  Dispatcher dispatcher(schedule, firstIteration, mayBegin, run);
+  runTasks(dispatcher, threads);
+  return dispatcher.firstUnderWay();
+}
+
+}  // namespace wavecrest

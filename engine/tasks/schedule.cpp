@@ -1,0 +1,71 @@
+#include "engine/tasks/schedule.h"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+namespace wavecrest {
+
+size_t Schedule::taskCount() const { return std::accumulate(tasks.begin(), tasks.end(), size_t{0}); }
+
+const ScheduleState::Phase* ScheduleState::phaseOf(uint64_t iteration, size_t phase) const {
+  const uint64_t place = iteration - first_;
+  return place < begun_.size() ? &begun_[place][phase] : nullptr;
+}
+
+bool ScheduleState::isOver(uint64_t iteration, size_t phase) const {
+  if (iteration < first_) return true;
+  const Phase* const state = phaseOf(iteration, phase);
+  return state != nullptr && state->over == schedule_.tasks[phase];
+}
+
+size_t ScheduleState::readyOf(uint64_t iteration, size_t phase, size_t taken) const {
+  if (phase > 0 && !isOver(iteration, phase - 1)) return 0;
+  size_t most = schedule_.tasks[phase];
+  for (const ScheduleWait& wait : schedule_.waits) {
+    if (wait.phase != phase || iteration < first_ + wait.earlier || isOver(iteration - wait.earlier, wait.on)) continue;
+    const Phase* const on = phaseOf(iteration - wait.earlier, wait.on);
+    most = std::min(most, wait.sameTask && on != nullptr ? on->first : wait.ahead);
+  }
+  return std::max(most, taken) - taken;
+}
+
+std::optional<ScheduledTask> ScheduleState::take(const MayBegin& mayBegin) {
+  const auto takeOf = [this](uint64_t place, size_t phase) {
+    return ScheduledTask{first_ + place, phase, begun_[place][phase].taken++};
+  };
+  for (size_t place = 0; place < begun_.size(); ++place) {
+    for (size_t phase = 0; phase < schedule_.tasks.size(); ++phase) {
+      if (readyOf(first_ + place, phase, begun_[place][phase].taken) != 0) return takeOf(place, phase);
+    }
+  }
+  const uint64_t next = first_ + begun_.size();
+  if (readyOf(next, 0, 0) == 0 || !mayBegin(next, begun_.size())) return std::nullopt;
+  Iteration& begun = begun_.emplace_back(schedule_.tasks.size());
+  for (size_t phase = 0; phase < begun.size(); ++phase) begun[phase].isOver.resize(schedule_.tasks[phase]);
+  return takeOf(begun_.size() - 1, 0);
+}
+
+void ScheduleState::end(const ScheduledTask& task) {
+  assert(task.iteration >= first_ && task.iteration - first_ < begun_.size());
+  Phase& phase = begun_[task.iteration - first_][task.phase];
+  ++phase.over;
+  phase.isOver[task.index] = true;
+  while (phase.first < phase.isOver.size() && phase.isOver[phase.first]) ++phase.first;
+  while (!begun_.empty() && begun_.front().back().over == schedule_.tasks.back()) {
+    begun_.pop_front();
+    ++first_;
+  }
+}
+
+size_t ScheduleState::ready() const {
+  size_t count = readyOf(first_ + begun_.size(), 0, 0);
+  for (size_t place = 0; place < begun_.size(); ++place) {
+    for (size_t phase = 0; phase < schedule_.tasks.size(); ++phase) {
+      count += readyOf(first_ + place, phase, begun_[place][phase].taken);
+    }
+  }
+  return count;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,68 @@
+#include "engine/waves/photon_iterations.h"
+
+#include "engine/tasks/thread_pins.h"
+
+namespace wavecrest {
+
+template <class S>
+PhotonIterations<S>::PhotonIterations(const RenderPlan<S>& plan, const MemoryPlan& memory,
+                                      const RenderSettings& settings, size_t pixels)
+    : lightWaves_(piecesOf(memory.lightPaths, settings.waveSize)),
+      slots_(iterationsAtOnce(settings, pixels)),
+      buildSteps_(PhotonMap<S>::buildSteps(lightWaves_)) {
+  const size_t count = lightStores(settings, pixels, lightWaves_);
+  stores_.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan.needs, plan.lightUse));
+    LightStore<S>& store = *stores_.back();
+    if (i == 0) memory_ = Arena(count * store.arenaBytes(memory.verticesPerWave));
+    store.reserve(memory.verticesPerWave, memory_);
+  }
+  for (Slot& slot : slots_) slot.stores.resize(lightWaves_);
+}
+
+template <class S>
+Schedule PhotonIterations<S>::schedule(size_t cameraPieces) const {
+  Schedule schedule{.tasks = {lightWaves_, 1}, .waits = {}};
+  for (const auto& step : buildSteps_) schedule.tasks.push_back(step.tasks);
+  schedule.tasks.push_back(cameraPieces);
+  // Camera passes read the stores and the map of their iteration. A pixel's samples are added in order.
+  const size_t atOnce = slots_.size(), camera = cameraPhase();
+  schedule.waits = {
+      {.phase = kLightPhase, .on = camera, .earlier = atOnce, .ahead = stores_.size() - atOnce * lightWaves_},
+      {.phase = kLightPhase, .on = camera, .earlier = atOnce + 1},
+      {.phase = kMapPhase, .on = camera, .earlier = atOnce},
+      {.phase = camera, .on = camera, .earlier = 1, .sameTask = true}};
+  return schedule;
+}
+
+template <class S>
+void PhotonIterations<S>::buildMap(const ScheduledTask& task, const PhotonGrid<S>& grid, const Placement& placement) {
+  Slot& slot = slots_[task.iteration % slots_.size()];
+  if (task.phase != kMapPhase) {
+    (slot.map.*buildSteps_[task.phase - kMapPhase - 1].run)(task.index);
+    return;
+  }
+  for (size_t wave = 0; wave < lightWaves_; ++wave) slot.stores[wave] = &storeOf(task.iteration, wave);
+  const SpreadMemory spread(placement);
+  slot.map.prepare(slot.stores, grid);
+}
+
+template <class S>
+size_t PhotonIterations<S>::storeBytes() const {
+  size_t bytes = 0;
+  for (const auto& store : stores_) bytes += store->bytes();
+  return bytes;
+}
+
+template <class S>
+size_t PhotonIterations<S>::mapBytes() const {
+  size_t bytes = 0;
+  for (const Slot& slot : slots_) bytes += slot.map.bytes();
+  return bytes;
+}
+
+template class PhotonIterations<float>;
+template class PhotonIterations<double>;
+
+}  // namespace wavecrest

@@ -1,0 +1,403 @@
+#include "engine/waves/wave_session.h"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "engine/plan/render_plan.h"
+#include "engine/session/add_samples.h"
+#include "engine/session/render_clock.h"
+#include "engine/session/stage_rows.h"
+#include "engine/session/work_done.h"
+#include "engine/state/state_stream.h"
+#include "engine/tasks/flush_to_zero.h"
+#include "engine/tasks/for_each.h"
+#include "engine/tasks/run_schedule.h"
+#include "engine/tasks/thread_pins.h"
+#include "engine/waves/photon_iterations.h"
+#include "engine/waves/typical_brightness.h"
+#include "engine/waves/wave_worker.h"
+
+namespace wavecrest {
+namespace {
+
+template <class S>
+class WaveSession final : public Session {
+ public:
+  WaveSession(const Scene& scene, const RenderSettings& settings);
+
+  void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) override;
+  RenderStatistics statistics() const override;
+  void save(StateWriter& out) const override;
+  void restore(StateReader& in) override;
+  const Film& film() const override { return film_; }
+  const MemoryPlan& memoryPlan() const override { return memory_; }
+  double progressSeconds() const override { return clock_.shown(); }
+  uint64_t progressPaths() const override { return progressPaths_.load(std::memory_order_relaxed); }
+
+ private:
+  using Worker = WaveWorker<S>;
+  // How far the camera paths of a wave's pixels are: 2^iterationBits iterations from `next` on are under way, and done
+  // for the first `pixels` of them.
+  struct CameraProgress {
+    uint64_t next = 0;
+    uint32_t iterationBits = 0;
+    size_t pixels = 0;
+  };
+  // Whether a wave is to stop before it traces iteration `next`.
+  using Finished = std::function<bool(uint64_t next)>;
+
+  Worker& worker();
+  // Takes the worker's wave, whose paths are set, through a pass. iteration: the first of its paths'.
+  void tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker);
+  // The logarithm of how many iterations a camera wave takes at most: of spread samples as many as leave it whole
+  // tiles.
+  uint32_t mostIterationBits() const {
+    return plan_.pipeline.mostIterationBits(settings_.waveSize / (film_.spreads() ? uint32_t{kTilePixels} : 1));
+  }
+  uint32_t iterationBits(uint64_t next) const;
+  // Light paths or the camera paths of pixels [first, first + count), of one iteration; of camera paths 2^iterationBits
+  // iterations.
+  void traceLight(size_t first, size_t count, uint64_t iteration, LightStore<S>& store, Worker& worker);
+  void traceCamera(size_t first, size_t count, uint64_t iteration, uint32_t iterationBits, LightStore<S>* partners,
+                   Worker& worker);
+  void traceLightWave(size_t waveIndex, uint64_t iteration, Worker& worker);
+  void traceCameraWave(size_t waveIndex, Worker& worker);
+  // A restored film may have stopped within an iteration. Renders until all its pixels have as many samples as the one
+  // that has most.
+  void levelPixels(const Finished& finished);
+  // Iterations of a method whose waves are independent.
+  void renderWaves(const Finished& finished);
+  // Iterations of a method with a photon map. end: the time when no other iteration may begin.
+  void renderPhases(const Finished& finished, double end);
+  PhotonGrid<S> photonGrid(double searchRadius) const;
+  void buildPhotonMap(const ScheduledTask& task, Worker& worker);
+  // Light vertices that the camera paths of a wave are joined with.
+  LightStore<S>* partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker);
+  void countLightPaths();
+
+  oneapi::tbb::task_arena arena_;
+  std::optional<ThreadPins> pins_;  // once the session is built
+  Film film_;
+  const RenderSettings settings_;
+  RenderPlan<S> plan_;
+  MemoryPlan memory_;
+  std::vector<size_t> pieces_;          // the first pixel of each camera wave's own, and the end (FilmArea::pieces)
+  uint64_t endIteration_ = 0;           // of this renderUntil
+  std::vector<CameraProgress> camera_;  // of each tile
+  bool level_ = true;                   // false: pixels of a restored film have different numbers of samples
+  PhotonIterations<S> photons_;
+  std::optional<S> rouletteBelow_;  // StageContext's, once a render has begun
+  double iterationSeconds_ = 0;     // of the latest iterations with a photon map; 0: of none yet
+  oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
+  WorkDone earlier_;  // of the sessions that this one goes on for
+  RenderClock clock_{settings_.clock, settings_.threads};
+  double buildSeconds_ = 0;
+  std::atomic<uint64_t> progressPaths_{0};
+};
+
+template <class S>
+WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings)
+    : arena_(static_cast<int>(settings.threads)),
+      film_(filmArea(scene.film)),
+      settings_(withPieces(settings, scene.film, film_.area().pixels.size())) {
+  const auto begin = Clock::now();
+  const WorkerLimit limit(settings.threads);
+  const SpreadMemory spread(settings.placement);
+  const size_t pixels = film_.area().pixels.size();
+  arena_.execute([&] { plan_ = planRender<S>(scene, settings_); });
+  memory_ = planMemory(plan_, settings_, film_.area());
+  if (plan_.pipeline.splats()) film_.makeSplats(settings.threads, memory_.splatScale);
+  if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.scene->view.camera);
+  // A piece of camera paths is a wave; where waves take several iterations at once, as many pixels as give all threads
+  // work.
+  const uint32_t together = 1u << mostIterationBits();
+  const size_t piece =
+      together == 1 ? settings_.waveSize
+                    : pieceSize(pixels * together, settings.cutForThreads(), settings_.waveSize * together) / together;
+  pieces_ = film_.area().pieces(piece, film_.spreads());
+  camera_.resize(pieces_.size() - 1, {.next = settings.firstIteration});
+  if (plan_.pipeline.photonMap) photons_ = PhotonIterations<S>(plan_, memory_, settings_, pixels);
+  pins_.emplace(arena_, settings_.placement);
+  buildSeconds_ = secondsSince(begin);
+}
+
+template <class S>
+typename WaveSession<S>::Worker& WaveSession<S>::worker() {
+  std::unique_ptr<Worker>& mine = workers_.local();
+  if (!mine) mine = std::make_unique<Worker>(plan_, memory_, settings_.waveSize, film_);
+  return *mine;
+}
+
+template <class S>
+void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker) {
+  const FlushToZero flushToZero;
+  const FilmArea& area = film_.area();
+  const MisSettings mis =
+      misSettings(pass.strategies, settings_, plan_.scene->view.radius, memory_.lightPaths, iteration);
+  StageContext<S> context{.scene = &plan_.scene->view,
+                          .pixels = area.pixels.data(),
+                          .sampler = {settings_.sampler, settings_.seed, iteration},
+                          .limits = settings_.limits,
+                          .mis = mis,
+                          .rouletteBelow = *rouletteBelow_,
+                          .light = light,
+                          .photonGrid = photonGrid(mis.radius),
+                          .photons = photons_.mapOf(iteration),
+                          .film = area.window(),
+                          .sharedPlace = film_.spreads(),
+                          .counters = &worker.counters};
+  auto& tallies = pass.walk == Walk::light ? worker.lightTallies : worker.cameraTallies;
+  SplatDrain<S> drain;
+  if (pass.splats) drain = [&](Splats<S>& splats) { worker.splats->drain(splats, worker.counters); };
+  runPass(pass, context, worker.wave, settings_.measureStages ? tallies.data() : nullptr, drain);
+}
+
+template <class S>
+void WaveSession<S>::traceLight(size_t first, size_t count, uint64_t iteration, LightStore<S>& store, Worker& worker) {
+  Wave<S>& wave = worker.wave;
+  wave.firstPath = first;
+  wave.pathCount = count;
+  wave.iterationBits = 0;
+  tracePass(*plan_.pipeline.lightPass, iteration, &store, worker);
+  worker.lightPaths += wave.pathCount;
+}
+
+template <class S>
+void WaveSession<S>::traceLightWave(size_t waveIndex, uint64_t iteration, Worker& worker) {
+  const size_t count = itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
+  traceLight(waveIndex * settings_.waveSize, count, iteration, photons_.storeOf(iteration, waveIndex), worker);
+}
+
+template <class S>
+LightStore<S>* WaveSession<S>::partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker) {
+  if (!plan_.pipeline.photonMap) return &worker.light;
+  if (!plan_.pipeline.cameraPass.strategies.connect) return nullptr;
+  const std::span<LightStore<S>* const> stores = photons_.mappedStores(iteration);
+  const size_t first = pieces_[waveIndex], count = pieces_[waveIndex + 1] - first;
+  const bool sameCut = waveIndex < stores.size() && first == waveIndex * settings_.waveSize &&
+                       count == itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
+  if (sameCut && memory_.lightPaths == film_.area().pixels.size()) return stores[waveIndex];
+  worker.light.collect(stores, memory_.lightPaths, first, count);
+  return &worker.light;
+}
+
+// Never more iterations at once than there were before, so that a film that is looked at early has samples everywhere.
+template <class S>
+uint32_t WaveSession<S>::iterationBits(uint64_t next) const {
+  const auto log2 = [](uint64_t n) { return static_cast<uint32_t>(std::bit_width(std::max<uint64_t>(n, 1))) - 1; };
+  return std::min({mostIterationBits(), static_cast<uint32_t>(std::countr_zero(next)),
+                   log2(next - settings_.firstIteration), log2(endIteration_ - next)});
+}
+
+template <class S>
+void WaveSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration, uint32_t iterationBits,
+                                 LightStore<S>* partners, Worker& worker) {
+  Wave<S>& wave = worker.wave;
+  wave.firstPath = first;
+  wave.iterationBits = iterationBits;
+  wave.pathCount = count << iterationBits;
+  tracePass(plan_.pipeline.cameraPass, iteration, partners, worker);
+  worker.counters.nonFinite += addSamples(film_, plan_, {settings_.sampler, settings_.seed, iteration}, wave);
+  worker.paths += wave.pathCount;
+  progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
+}
+
+template <class S>
+void WaveSession<S>::traceCameraWave(size_t waveIndex, Worker& worker) {
+  CameraProgress& progress = camera_[waveIndex];
+  const size_t first = pieces_[waveIndex], pixels = pieces_[waveIndex + 1] - first;
+  if (progress.pixels == 0) progress.iterationBits = iterationBits(progress.next);
+  const size_t some = film_.area().pixelsFrom(first + progress.pixels, pixels - progress.pixels,
+                                              settings_.waveSize >> progress.iterationBits, film_.spreads());
+  traceCamera(first + progress.pixels, some, progress.next, progress.iterationBits,
+              partnersOf(waveIndex, progress.next, worker), worker);
+  progress.pixels += some;
+  if (progress.pixels < pixels) return;
+  progress.next += uint64_t{1} << progress.iterationBits;
+  progress.pixels = 0;
+}
+
+template <class S>
+void WaveSession<S>::renderWaves(const Finished& finished) {
+  takeTurns(camera_.size(), settings_.threads, [&](size_t wave) {
+    if (finished(camera_[wave].next)) return false;
+    Worker& mine = worker();
+    if (plan_.pipeline.lightPass) {
+      traceLight(pieces_[wave], pieces_[wave + 1] - pieces_[wave], camera_[wave].next, mine.light, mine);
+    }
+    traceCameraWave(wave, mine);
+    return !finished(camera_[wave].next);
+  });
+}
+
+template <class S>
+PhotonGrid<S> WaveSession<S>::photonGrid(double searchRadius) const {
+  if (!plan_.pipeline.photonMap) return {};
+  const SceneView<S>& scene = plan_.scene->view;
+  return PhotonGrid<S>::over(scene.center, scene.radius, searchRadius,
+                             static_cast<double>(std::max<size_t>(memory_.photons, 1)));
+}
+
+template <class S>
+void WaveSession<S>::buildPhotonMap(const ScheduledTask& task, Worker& worker) {
+  const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
+                                      memory_.lightPaths, task.iteration);
+  const uint64_t begin = readTicks();
+  photons_.buildMap(task, photonGrid(mis.radius), settings_.placement);
+  worker.photonTally.ticks += readTicks() - begin;
+  if (task.phase == PhotonIterations<S>::kMapPhase) worker.photonTally.items += photons_.mapOf(task.iteration)->size;
+}
+
+template <class S>
+void WaveSession<S>::renderPhases(const Finished& finished, double end) {
+  const uint64_t first = camera_.front().next;
+  const double before = clock_.shown();
+  // Iterations that have begun are finished. One begins early, while others are under way, only where it would begin
+  // after them as well.
+  const auto mayBegin = [&](uint64_t iteration, size_t underWay) {
+    if (finished(iteration)) return false;
+    if (underWay == 0 || end == std::numeric_limits<double>::infinity()) return true;
+    const auto done = static_cast<double>(iteration - underWay - first);
+    if (done > 0) iterationSeconds_ = (clock_.shown() - before) / done;
+    return iterationSeconds_ > 0 && clock_.shown() + static_cast<double>(underWay) * iterationSeconds_ < end;
+  };
+  const Schedule schedule = photons_.schedule(camera_.size());
+  runSchedule(schedule, first, settings_.threads, mayBegin, [&](const ScheduledTask& task) {
+    if (task.phase == PhotonIterations<S>::kLightPhase) {
+      traceLightWave(task.index, task.iteration, worker());
+    } else if (task.phase == photons_.cameraPhase()) {
+      traceCameraWave(task.index, worker());
+      finished(task.iteration);  // progress alone: an iteration that has begun is finished
+    } else {
+      buildPhotonMap(task, worker());
+    }
+  });
+}
+
+// One iteration at a time, light path and camera path of a pixel together, in runs of pixels that stopped together.
+template <class S>
+void WaveSession<S>::levelPixels(const Finished& finished) {
+  const uint64_t goal = film_.maxSamples();
+  const std::vector<PixelRun> runs = film_.runsBelow(goal, settings_.waveSize);
+  forEach(runs.size(), [&](size_t index) {
+    const PixelRun& run = runs[index];
+    Worker& mine = worker();
+    for (uint64_t next = settings_.firstIteration + run.samples; next < settings_.firstIteration + goal; ++next) {
+      if (finished(next)) return;
+      if (plan_.pipeline.lightPass) traceLight(run.first, run.count, next, mine.light, mine);
+      traceCamera(run.first, run.count, next, 0, &mine.light, mine);
+    }
+  });
+  level_ = film_.minSamples() == goal;
+}
+
+// A snapshot divides the sums of splats by the light paths that made them.
+template <class S>
+void WaveSession<S>::countLightPaths() {
+  uint64_t lightPaths = earlier_.lightPaths;
+  for (const auto& worker : workers_) lightPaths += worker->lightPaths;
+  film_.setSplatFactor(lightPaths == 0 ? 0 : 1 / static_cast<double>(lightPaths));
+}
+
+template <class S>
+void WaveSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) {
+  {
+    const RenderClock::Running clock(clock_);
+    const WorkerLimit limit(settings_.threads);
+    endIteration_ = iterations ? settings_.firstIteration + *iterations : std::numeric_limits<uint64_t>::max();
+    const Finished finished = [&](uint64_t next) {
+      if (next >= endIteration_) return true;
+      const double now = clock.look();
+      return (seconds && now >= *seconds) || interrupted();
+    };
+    arena_.execute([&] {
+      if (!rouletteBelow_) rouletteBelow_ = connectionRouletteLimit(plan_, settings_, film_.area());
+      if (!level_) levelPixels(finished);
+      if (!level_) return;
+      if (plan_.pipeline.photonMap) {
+        renderPhases(finished, seconds.value_or(std::numeric_limits<double>::infinity()));
+      } else {
+        renderWaves(finished);
+      }
+    });
+  }
+  countLightPaths();
+}
+
+template <class S>
+RenderStatistics WaveSession<S>::statistics() const {
+  RenderStatistics out;
+  out.iterations = film_.minSamples();
+  out.buildSeconds = buildSeconds_;
+  out.renderSeconds = clock_.seconds();
+  out.renderWallSeconds = clock_.wallSeconds();
+  out.cpuSeconds = clock_.cpuSeconds();
+  out.isa = plan_.isa;
+  out.specialization = plan_.specialization;
+  out.accel = plan_.accel();
+  out.filterMode = film_.spreads() ? FilterMode::spread : FilterMode::sample;
+  out.memory.scene = sceneBytes(*plan_.scene);
+  out.memory.film = film_.bytes();
+  out.memory.image = film_.imageBytes();
+  if (plan_.pipeline.splats()) out.memory.splats = film_.splats().bytes();
+  if (plan_.pipeline.lightPass) addRows(*plan_.pipeline.lightPass, out.stages);
+  const size_t cameraRow = out.stages.size();
+  addRows(plan_.pipeline.cameraPass, out.stages);
+  for (const auto& worker : workers_) {
+    out.paths += worker->paths;
+    out.lightPaths += worker->lightPaths;
+    out.counters += worker->counters;
+    out.bytesPerPath = worker->wave.bytesPerPath();
+    out.memory.waves += waveBytes(out.bytesPerPath, settings_.waveSize);
+    if (plan_.pipeline.lightPass && !plan_.pipeline.photonMap) out.memory.lightVertices += worker->light.bytes();
+    addTallies(worker->lightTallies, 0, out.stages);
+    addTallies(worker->cameraTallies, cameraRow, out.stages);
+  }
+  if (plan_.pipeline.photonMap) {
+    out.stages.push_back({"photon map"});
+    for (const auto& worker : workers_) addTallies({worker->photonTally}, out.stages.size() - 1, out.stages);
+    out.memory.lightVertices += photons_.storeBytes();
+    out.memory.photonMap = photons_.mapBytes();
+  }
+  earlier_.addTo(out);
+  return out;
+}
+
+// Which iterations a wave has done is what its pixels' numbers of samples say; light vertices and photons are made anew
+// in each iteration.
+template <class S>
+void WaveSession<S>::save(StateWriter& out) const {
+  film_.save(out);
+  WorkDone::of(statistics()).save(out);
+}
+
+template <class S>
+void WaveSession<S>::restore(StateReader& in) {
+  film_.restore(in);
+  earlier_.restore(in, statistics().stages);
+  in.finish();
+  const uint64_t done = film_.maxSamples();
+  level_ = film_.minSamples() == done;
+  if (!level_ && plan_.pipeline.photonMap) throw StateError("it ends within an iteration");
+  for (CameraProgress& progress : camera_) progress.next = settings_.firstIteration + done;
+  clock_.goOnFrom(earlier_.renderSeconds, earlier_.cpuSeconds);
+  progressPaths_.store(earlier_.paths, std::memory_order_relaxed);
+  countLightPaths();
+}
+
+}  // namespace
+
+template <class S>
+std::unique_ptr<Session> makeWaveSession(const Scene& scene, const RenderSettings& settings) {
+  return std::make_unique<WaveSession<S>>(scene, settings);
+}
+template std::unique_ptr<Session> makeWaveSession<float>(const Scene&, const RenderSettings&);
+template std::unique_ptr<Session> makeWaveSession<double>(const Scene&, const RenderSettings&);
+
+}  // namespace wavecrest

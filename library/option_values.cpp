@@ -1,0 +1,106 @@
+#include "library/option_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "library/errors.h"
+#include "library/suggestion.h"
+
+namespace wavecrest {
+
+double parseDuration(const std::string& option, const std::string& text) {
+  const auto fail = [&]() -> double {
+    throw UsageError(fmt::format("{} '{}': no duration; expected one like 6s, 2m or 1h30m", option, text));
+  };
+  double total = 0;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  if (at == end) return fail();
+  while (at != end) {
+    double number = 0;
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || next == at) return fail();
+    at = next;
+    const char unit = at == end ? 's' : *at++;
+    const double scale = unit == 'h' ? 3600 : unit == 'm' ? 60 : unit == 's' ? 1 : 0;
+    total += number * scale;
+    if (scale == 0) return fail();
+  }
+  return std::isfinite(total) && total > 0 ? total : fail();
+}
+
+SnapshotSchedule parseSnapshotSchedule(const std::string& option, const std::string& text) {
+  if (text.empty()) return SnapshotSchedule::none();
+  return text == "log" ? SnapshotSchedule::logarithmic() : SnapshotSchedule::every(parseDuration(option, text));
+}
+
+Isa parseIsaOption(const std::string& word) {
+  if (word == "auto") return bestIsa();
+  std::vector<std::string_view> names{"auto"};
+  for (const Isa isa : kAllIsas) names.push_back(toString(isa));
+  const Isa isa = kAllIsas[parseChoice("--isa", word, names) - 1];
+  const auto& available = availableIsas();
+  if (std::find(available.begin(), available.end(), isa) == available.end()) {
+    throw UsageError(fmt::format("--isa {}: this machine or build does not have it", word));
+  }
+  return isa;
+}
+
+std::array<uint32_t, 2> parseSize(const std::string& option, const std::string& text) {
+  std::array<uint32_t, 2> size{};
+  const char* const end = text.data() + text.size();
+  const auto [x, widthError] = std::from_chars(text.data(), end, size[0]);
+  if (widthError == std::errc() && x != end && *x == 'x') {
+    const auto [rest, heightError] = std::from_chars(x + 1, end, size[1]);
+    const auto valid = [](uint32_t n) { return n >= 1 && n <= 65535; };
+    if (heightError == std::errc() && rest == end && valid(size[0]) && valid(size[1])) return size;
+  }
+  throw UsageError(fmt::format("{} '{}': no size; expected WIDTHxHEIGHT, each 1 to 65535", option, text));
+}
+
+uint64_t parseMemory(const std::string& option, const std::string& text) {
+  const auto fail = [&]() -> uint64_t {
+    throw UsageError(fmt::format("{} '{}': no memory size; expected one like 800M, 1.5G or 512MiB", option, text));
+  };
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || next == text.data() || next == end) return fail();
+  const std::string_view unit(next, static_cast<size_t>(end - next));
+  const bool binary = unit.size() > 1 && unit[1] == 'i';
+  const std::string_view rest = unit.substr(1);
+  if (!rest.empty() && rest != "B" && rest != "iB") return fail();
+  const size_t power = std::string_view("KMGT").find(unit[0]);
+  if (power == std::string_view::npos) return fail();
+  const double bytes = number * std::pow(binary ? 1024.0 : 1000.0, static_cast<double>(power + 1));
+  return bytes >= 1e6 && bytes <= 1e15 ? static_cast<uint64_t>(bytes) : fail();
+}
+
+size_t parseChoice(const std::string& option, const std::string& word, std::span<const std::string_view> names) {
+  std::vector<std::string> known(names.begin(), names.end());
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == word) return i;
+  }
+  throw UsageError(fmt::format("{} {}: unknown; expected one of {}{}", option, word, fmt::join(known, ", "),
+                               didYouMean(word, known)));
+}
+
+Method parseMethodOption(const std::string& option, const std::string& word) {
+  std::vector<std::string_view> names;
+  names.reserve(std::size(kMethods));
+  for (const MethodEntry& entry : kMethods) names.push_back(entry.name);
+  return kMethods[parseChoice(option, word, names)].method;
+}
+
+SamplerKind parseSamplerOption(const std::string& option, const std::string& word) {
+  std::vector<std::string_view> names;
+  names.reserve(std::size(kAllSamplerKinds));
+  for (const SamplerKind kind : kAllSamplerKinds) names.push_back(toString(kind));
+  return kAllSamplerKinds[parseChoice(option, word, names)];
+}
+
+}  // namespace wavecrest

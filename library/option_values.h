@@ -1,0 +1,39 @@
+// Values that several commands take: durations, sizes, memory, and words of a list. `option` is the name that the
+// UsageError of a wrong word begins with.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/session/snapshots.h"
+
+namespace wavecrest {
+
+// "6s", "2m", "1h30m", "0.5s", or plain seconds. Positive and finite, or UsageError.
+double parseDuration(const std::string& option, const std::string& text);
+
+// "" for no snapshots, "log" for render times that grow by a fixed ratio, else a duration between snapshots.
+SnapshotSchedule parseSnapshotSchedule(const std::string& option, const std::string& text);
+
+// "auto" for the best there is, or the name of one that this machine and build have; UsageError otherwise.
+Isa parseIsaOption(const std::string& word);
+
+// "1024x768": both 1 to 65535, or UsageError.
+std::array<uint32_t, 2> parseSize(const std::string& option, const std::string& text);
+
+// "800M", "1.5G", "512MiB": bytes, by powers of 1000, or of 1024 with an i. At least 1 MB, or UsageError.
+uint64_t parseMemory(const std::string& option, const std::string& text);
+
+// The method of that name.
+Method parseMethodOption(const std::string& option, const std::string& word);
+
+// "independent" or "sobol".
+SamplerKind parseSamplerOption(const std::string& option, const std::string& word);
+
+// The position of a word in a list of names; the UsageError of any other word lists them and suggests the closest.
+size_t parseChoice(const std::string& option, const std::string& word, std::span<const std::string_view> names);
+
+}  // namespace wavecrest
