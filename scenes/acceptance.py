@@ -89,6 +89,7 @@ def statistic(kind, pixels):
 BEST_FOR_EXPOSURE = {"pool-interior": "lt", "cornell-spheres": "lt", "lafortune-room": "lt"}
 EXPOSURE_BOUNDS = (0.25, 0.6)
 MOST_CLIPPED = 0.02
+BLOCKS_ACROSS = 48
 
 
 def srgb(linear):
@@ -101,10 +102,15 @@ def evaluate_exposure(scene, render):
     method = BEST_FOR_EXPOSURE.get(scene, "pt")
     image = render(Shot(scene, method))
     mean = srgb(image).mean()
-    # A lamp in view is all that lies above 1 at depth 1; noise above 1 is smoothed away in blocks of 4 x 4.
-    height, width = (size // 4 * 4 for size in image.shape[:2])
-    blocks = image[:height, :width].reshape(height // 4, 4, width // 4, 4, 3).mean((1, 3))
-    lamps = render(Shot(scene, "pt", 1))[:height, :width].reshape(height // 4, 4, width // 4, 4, 3).max((1, 3))
+    # A lamp in view is all that lies above 1 at depth 1. Noise and thin caustics above 1 are smoothed away in blocks that
+    # are the same part of the image at any size.
+    side = max(image.shape[1] // BLOCKS_ACROSS, 1)
+    rows, columns = (size // side for size in image.shape[:2])
+
+    def blocks_of(picture):
+        return picture[: rows * side, : columns * side].reshape(rows, side, columns, side, 3)
+
+    blocks, lamps = blocks_of(image).mean((1, 3)), blocks_of(render(Shot(scene, "pt", 1))).max((1, 3))
     clipped = np.mean((blocks.max(-1) > 1) & (lamps.max(-1) <= 1))
     holds = EXPOSURE_BOUNDS[0] <= mean <= EXPOSURE_BOUNDS[1] and clipped <= MOST_CLIPPED
     text = f"well exposed: mean of sRGB {mean:.3f} by {method} (bounds {EXPOSURE_BOUNDS[0]} .. {EXPOSURE_BOUNDS[1]})"
