@@ -97,27 +97,16 @@ class LightCollector {
   }
 
   Lights<S> finish() {
-    struct EmitterPower {
-      double power = 0, records = 0;
-    };
-    std::unordered_map<uint32_t, EmitterPower> emitters;
-    double total = 0;
+    std::vector<double> power(lights_.emitters, 0), records(lights_.emitters, 0);
     for (size_t i = 0; i < power_.size(); ++i) {
-      EmitterPower& emitter = emitters[emitterOf_[i]];
-      emitter.power += power_[i];
-      ++emitter.records;
-      total += power_[i];
+      power[lights_.emitterOf[i]] += power_[i];
+      ++records[lights_.emitterOf[i]];
     }
-    const auto count = static_cast<double>(emitters.size());
-    std::vector<double> picks(power_.size());
-    for (size_t i = 0; i < picks.size(); ++i) {
-      const EmitterPower& emitter = emitters[emitterOf_[i]];
-      const double within = emitter.power > 0 ? power_[i] / emitter.power : 1 / emitter.records;
-      const double byPower = total > 0 ? emitter.power / total : 1 / count;
-      picks[i] = within * ((1 - kEvenShare) * byPower + kEvenShare / count);
-      lights_.records[i].pick = static_cast<S>(picks[i]);
+    for (size_t i = 0; i < power_.size(); ++i) {
+      const uint32_t emitter = lights_.emitterOf[i];
+      lights_.withinEmitter.push_back(power[emitter] > 0 ? power_[i] / power[emitter] : 1 / records[emitter]);
     }
-    if (!picks.empty()) lights_.table = makeAliasTable(picks);
+    if (lights_.emitters != 0) setPicks(lights_, evenedShares(power, kEvenShare));
     return std::move(lights_);
   }
 
@@ -125,7 +114,9 @@ class LightCollector {
   void add(const LightRecord<S>& light, double power) {
     lights_.records.push_back(light);
     power_.push_back(power);
-    emitterOf_.push_back(emitter_);
+    const auto number = static_cast<uint32_t>(numbers_.size());
+    lights_.emitterOf.push_back(numbers_.try_emplace(emitter_, number).first->second);
+    lights_.emitters = numbers_.size();
   }
 
   void visit(const AreaEmitter&) {}  // by primitive
@@ -238,8 +229,8 @@ class LightCollector {
   const Double3 origin_;
   Lights<S> lights_;
   std::vector<double> power_;
-  std::vector<uint32_t> emitterOf_;  // each record's shape, or for lights without one a number above
-  uint32_t emitter_ = 0;             // of the records that are added
+  uint32_t emitter_ = 0;  // of the records that are added: their shape, or for lights without one a number above
+  std::unordered_map<uint32_t, uint32_t> numbers_;  // Lights::emitterOf by that
   SourceLocation location_;
 };
 
@@ -293,6 +284,31 @@ Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primit
 }
 template Lights<float> compileLights(const Scene&, const BoundingSphere&, Primitives<float>&, const Double3&);
 template Lights<double> compileLights(const Scene&, const BoundingSphere&, Primitives<double>&, const Double3&);
+
+template <class S>
+void setPicks(Lights<S>& lights, const std::vector<double>& shares) {
+  std::vector<double> picks(lights.records.size());
+  for (size_t i = 0; i < picks.size(); ++i) {
+    picks[i] = lights.withinEmitter[i] * shares[lights.emitterOf[i]];
+    lights.records[i].pick = static_cast<S>(picks[i]);
+  }
+  const std::vector<AliasEntry> table = makeAliasTable(picks);
+  lights.table.resize(table.size());
+  std::copy(table.begin(), table.end(), lights.table.begin());
+}
+template void setPicks(Lights<float>&, const std::vector<double>&);
+template void setPicks(Lights<double>&, const std::vector<double>&);
+
+std::vector<double> evenedShares(const std::vector<double>& weights, double even) {
+  const auto count = static_cast<double>(weights.size());
+  const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+  std::vector<double> shares;
+  for (const double weight : weights) {
+    const double own = total > 0 ? weight / total : 1 / count;
+    shares.push_back((1 - even) * own + even / count);
+  }
+  return shares;
+}
 
 std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights) {
   const size_t count = weights.size();

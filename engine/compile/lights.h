@@ -12,8 +12,12 @@ template <class S>
 struct Lights {
   std::vector<LightRecord<S>> records;
   std::vector<AliasEntry> table;  // over records
-  Environment environment;        // of the envmap emitter, if there is one
-  uint32_t infinite = kNoIndex;   // the constant or environment emitter
+  // Of each record its emitter, counted from 0, and its share of that emitter's picks.
+  std::vector<uint32_t> emitterOf;
+  std::vector<double> withinEmitter;
+  size_t emitters = 0;
+  Environment environment;       // of the envmap emitter, if there is one
+  uint32_t infinite = kNoIndex;  // the constant or environment emitter
 };
 
 // Each emitting primitive becomes a light of its own, so that picking a light by power also picks the place on a mesh
@@ -22,6 +26,13 @@ struct Lights {
 template <class S>
 Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives,
                         const Double3& origin = {});
+
+// How often each emitter is picked from now on: shares that are at least 0 and add up to 1. Records and table stay
+// where they are.
+template <class S>
+void setPicks(Lights<S>& lights, const std::vector<double>& shares);
+// Shares of which the part `even`, 0 to 1, is the same for all, and the rest in proportion to `weights`, at least 0.
+std::vector<double> evenedShares(const std::vector<double>& weights, double even);
 
 // Gives each textured light a texture of its own in the coordinates of its primitive, which is what sampling a light
 // knows; appended to the textures. Throws SceneError for a textured sphere.

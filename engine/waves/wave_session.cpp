@@ -19,6 +19,7 @@
 #include "engine/tasks/for_each.h"
 #include "engine/tasks/run_schedule.h"
 #include "engine/tasks/thread_pins.h"
+#include "engine/waves/light_picks.h"
 #include "engine/waves/photon_iterations.h"
 #include "engine/waves/typical_brightness.h"
 #include "engine/waves/wave_worker.h"
@@ -110,7 +111,10 @@ WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings)
   const WorkerLimit limit(settings.threads);
   const SpreadMemory spread(settings.placement);
   const size_t pixels = film_.area().pixels.size();
-  arena_.execute([&] { plan_ = planRender<S>(scene, settings_); });
+  arena_.execute([&] {
+    plan_ = planRender<S>(scene, settings_);
+    if (!plan_.pipeline.lightPass) pickLightsByView(plan_, settings_, film_.area());
+  });
   memory_ = planMemory(plan_, settings_, film_.area());
   if (plan_.pipeline.splats()) film_.makeSplats(settings.threads, memory_.splatScale);
   if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.scene->view.camera);

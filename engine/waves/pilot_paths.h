@@ -1,0 +1,24 @@
+// A few paths by path tracing at places spread over the film, before a render begins: what they find decides how it
+// samples, and never what its image is on average.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/film/film_area.h"
+#include "engine/plan/render_plan.h"
+
+namespace wavecrest {
+
+// What counts. weighted: all light, each path by one estimate, as in a render. byChance: light that paths meet by
+// chance, whole. unweighted: the same and also, whole, what sampled lights give.
+enum class PilotLight { weighted, byChance, unweighted };
+
+// The mean radiance of each of `places`, which share 2048 paths, by its brightest channel; paths that are not finite
+// give nothing. Whatever the settings' method, with random numbers that no render uses, and the same ones each time.
+// Depends on the scene and the settings' seed and limits, not on threads or the size of waves.
+template <class S>
+std::vector<double> brightnessOfPlaces(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
+                                       size_t places, PilotLight light);
+
+}  // namespace wavecrest
