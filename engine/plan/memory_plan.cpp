@@ -21,7 +21,7 @@ size_t bytesOf(const Items& items) {
 
 // Light paths that are walked, whatever the size of waves: the unit of splats follows from them, and with it the last
 // bits of an image.
-constexpr size_t kPilotPaths = 8192;
+constexpr size_t kPilotLightPaths = 8192;
 
 // Later waves and iterations may need some more room than the first ones.
 constexpr double kSpread = 1.05;
@@ -60,7 +60,7 @@ Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, 
     }
     splats.size = 0;
   };
-  const size_t wanted = std::min(kPilotPaths, lightPaths);
+  const size_t wanted = std::min(kPilotLightPaths, lightPaths);
   while (pilot.paths < wanted) {
     wave.firstPath = pilot.paths;
     wave.pathCount = std::min<size_t>(settings.waveSize, wanted - pilot.paths);

@@ -8,8 +8,8 @@
 namespace wavecrest {
 
 template <class S>
-std::vector<double> brightnessOfPlaces(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
-                                       size_t places, PilotLight light) {
+std::vector<double> tracePilotPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
+                                    size_t places, PilotLight light) {
   const FlushToZero flushToZero;
   const Pass<S> pass =
       makePipeline(pageOf(Method::pt, {}), *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass;
@@ -18,8 +18,7 @@ std::vector<double> brightnessOfPlaces(const RenderPlan<S>& plan, const RenderSe
   if (light != PilotLight::weighted) strategies.emission = strategies.nextEvent = false;  // nothing shares a path
   if (light == PilotLight::byChance) view.lightCount = 0;
   // Each place is a run of pixels in the order of waves, which is a small tile.
-  constexpr size_t kPaths = 2048;
-  const size_t pathsPerPlace = kPaths / places;
+  const size_t pathsPerPlace = kPilotPaths / places;
   std::vector<uint32_t> pixels;
   for (size_t place = 0; place < places; ++place) {
     const size_t first = place * area.pixels.size() / places;
@@ -36,16 +35,16 @@ std::vector<double> brightnessOfPlaces(const RenderPlan<S>& plan, const RenderSe
   Wave<S> wave(static_cast<uint32_t>(pixels.size()), plan.needs);
   wave.pathCount = pixels.size();
   runPass(pass, context, wave, nullptr);
-  std::vector<double> brightness(places, 0);
+  std::vector<double> brightness(pixels.size(), 0);
   for (size_t i = 0; i < pixels.size(); ++i) {
     const double value = std::max({wave.radiance.red[i], wave.radiance.green[i], wave.radiance.blue[i]});
-    if (std::isfinite(value)) brightness[i / pathsPerPlace] += value / static_cast<double>(pathsPerPlace);
+    if (std::isfinite(value)) brightness[i] = value;
   }
   return brightness;
 }
-template std::vector<double> brightnessOfPlaces(const RenderPlan<float>&, const RenderSettings&, const FilmArea&,
-                                                size_t, PilotLight);
-template std::vector<double> brightnessOfPlaces(const RenderPlan<double>&, const RenderSettings&, const FilmArea&,
-                                                size_t, PilotLight);
+template std::vector<double> tracePilotPaths(const RenderPlan<float>&, const RenderSettings&, const FilmArea&, size_t,
+                                             PilotLight);
+template std::vector<double> tracePilotPaths(const RenderPlan<double>&, const RenderSettings&, const FilmArea&, size_t,
+                                             PilotLight);
 
 }  // namespace wavecrest

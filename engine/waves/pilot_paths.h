@@ -14,11 +14,13 @@ namespace wavecrest {
 // chance, whole. unweighted: the same and also, whole, what sampled lights give.
 enum class PilotLight { weighted, byChance, unweighted };
 
-// The mean radiance of each of `places`, which share 2048 paths, by its brightest channel; paths that are not finite
-// give nothing. Whatever the settings' method, with random numbers that no render uses, and the same ones each time.
-// Depends on the scene and the settings' seed and limits, not on threads or the size of waves.
+// The radiance of each path, by its brightest channel, or 0 where it is not finite: kPilotPaths of them, as many at
+// each of `places`, one place after the other. Whatever the settings' method, with random numbers that no render uses,
+// and the same ones each time. Depends on the scene and the settings' seed and limits, not on threads or the size of
+// waves.
+constexpr size_t kPilotPaths = 2048;
 template <class S>
-std::vector<double> brightnessOfPlaces(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
-                                       size_t places, PilotLight light);
+std::vector<double> tracePilotPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
+                                    size_t places, PilotLight light);
 
 }  // namespace wavecrest

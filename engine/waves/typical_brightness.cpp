@@ -10,7 +10,10 @@ namespace wavecrest {
 template <class S>
 double typicalBrightness(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
   constexpr size_t kPlaces = 32;  // the brightness of each need only be right within a factor of two or so
-  std::vector<double> places = brightnessOfPlaces(plan, settings, area, kPlaces, PilotLight::weighted);
+  constexpr size_t kPathsPerPlace = kPilotPaths / kPlaces;
+  const std::vector<double> paths = tracePilotPaths(plan, settings, area, kPlaces, PilotLight::weighted);
+  std::vector<double> places(kPlaces, 0);
+  for (size_t i = 0; i < paths.size(); ++i) places[i / kPathsPerPlace] += paths[i] / kPathsPerPlace;
   std::erase(places, 0.0);
   if (places.empty()) return 0;
   const auto median = places.begin() + static_cast<ptrdiff_t>(places.size() / 2);
