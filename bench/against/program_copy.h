@@ -21,7 +21,8 @@ class ProgramCopy {
   const std::filesystem::path& path() const { return path_; }
   // Copies the program anew. Throws ChildError if there is no memory for it.
   void renew();
-  // The program is run where it stands, always: scripts, and programs that look for libraries beside them.
+  // From now on path() is the program itself, for programs that do not run from a copy, such as those that look for
+  // libraries beside them.
   void stayInPlace();
   bool inPlace() const { return inPlace_; }
 

@@ -53,7 +53,7 @@ class SceneBench {
   std::vector<SpeedMeasurement> speeds_;  // by method
 };
 
-// All of the measurements; calls done(result) with each scene's, in their order.
+// Makes all visits, the scenes taking turns, and finishes the scenes one after the other, each with a call of done.
 void benchInTurn(std::vector<SceneBench>& benches, const std::function<void(const SceneResult&)>& done);
 
 // Tables for a terminal.

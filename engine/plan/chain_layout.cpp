@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint32_t bit(Block block) { return 1u << static_cast<uint32_t>(block); }
 
-size_t chainsOfGroups(const RenderSettings& settings) {
+size_t groupSizeFor(const RenderSettings& settings) {
   constexpr size_t kFewWaves = 8;  // of a thread
   const uint32_t threads = settings.cutForThreads();
   const bool few = piecesOf(settings.metropolis.chains, settings.waveSize) < kFewWaves * threads;
@@ -20,7 +20,7 @@ size_t chainsOfGroups(const RenderSettings& settings) {
 
 ChainLayout::ChainLayout(const RenderSettings& settings)
     : chains_(settings.metropolis.chains),
-      groupSize_(chainsOfGroups(settings)),
+      groupSize_(groupSizeFor(settings)),
       groups_(piecesOf(chains_, groupSize_)),
       waves_(piecesOf(groups_, settings.waveSize / groupSize_)) {}
 

@@ -12,10 +12,10 @@ namespace wavecrest {
 
 // Which chain goes to which wave.
 //
-// Chains start in the order of path lengths. A wave of the longest paths alone would take several times as long as
-// others, which wait for it at the end of a round; so where threads have few waves each, groups of chains that stand
-// together are dealt to waves in turn. Where they have many, a group is a whole wave: a thread takes the next one when
-// it is done, so long ones hold up nobody. One thread never waits.
+// Chains are numbered in the order of their first paths' lengths. A wave of the longest paths takes several times as
+// long as the others, and at the end of a round all threads would wait for it. So where there are few waves for each
+// thread, chains are cut into small groups, and wave w gets groups w, w + waves, w + 2 waves, ...: all waves then have
+// paths of all lengths. Where there are many waves, or one thread, nobody waits long, and a group is a whole wave.
 class ChainLayout {
  public:
   // The settings' number of chains, in waves of at most their size.

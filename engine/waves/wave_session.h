@@ -7,8 +7,8 @@
 // there are light stores that no camera pass reads. An iteration with a photon map that has begun is finished, even
 // after the time limit: its weights belong to its radius, and its splats share them with its camera paths.
 //
-// Camera paths that need no light paths are taken several iterations at a time, so that the paths of a pixel run
-// together: a wave is then fewer pixels. That changes no path and no sum, only their order in time.
+// Methods without light paths trace several iterations in one wave, which then has fewer pixels: the paths of a pixel
+// follow each other and find the same data in the caches. That changes no path and no sum, only their order in time.
 //
 // Pixels and light paths are cut into pieces whose size follows from their number and the threads', so that small films
 // keep all threads busy.
