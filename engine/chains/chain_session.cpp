@@ -1,8 +1,6 @@
 #include "engine/chains/chain_session.h"
-#include "engine/session/add_samples.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +12,12 @@
 #include "engine/chains/chain_worker.h"
 #include "engine/chains/epochs.h"
 #include "engine/plan/chain_layout.h"
-#include "engine/session/render_clock.h"
+#include "engine/session/add_samples.h"
+#include "engine/session/planned_session.h"
 #include "engine/session/stage_rows.h"
-#include "engine/session/work_done.h"
 #include "engine/state/state_stream.h"
 #include "engine/tasks/flush_to_zero.h"
 #include "engine/tasks/for_each.h"
-#include "engine/tasks/thread_pins.h"
 
 namespace wavecrest {
 namespace {
@@ -43,7 +40,7 @@ double startOffset(uint64_t seed, uint64_t epoch) {
 }
 
 template <class S>
-class ChainSession final : public Session {
+class ChainSession final : public PlannedSession<S> {
  public:
   ChainSession(const Scene& scene, const RenderSettings& settings);
 
@@ -51,12 +48,12 @@ class ChainSession final : public Session {
   RenderStatistics statistics() const override;
   void save(StateWriter& out) const override;
   void restore(StateReader& in) override;
-  const Film& film() const override { return film_; }
-  const MemoryPlan& memoryPlan() const override { return memory_; }
-  double progressSeconds() const override { return clock_.shown(); }
-  uint64_t progressPaths() const override { return progressPaths_.load(std::memory_order_relaxed); }
 
  private:
+  using Base = PlannedSession<S>;
+  using Base::arena_, Base::clock_, Base::earlier_, Base::film_, Base::memory_, Base::plan_, Base::progressPaths_,
+      Base::settings_;
+
   ChainWorker<S>& worker();
   uint64_t stepsFor(uint64_t iterations) const;
   uint64_t mutations() const { return step_ * settings_.metropolis.chains; }
@@ -75,12 +72,6 @@ class ChainSession final : public Session {
   void addPending();
   void updateFilm();
 
-  oneapi::tbb::task_arena arena_;
-  std::optional<ThreadPins> pins_;  // once the session is built
-  Film film_;
-  const RenderSettings settings_;
-  RenderPlan<S> plan_;
-  MemoryPlan memory_;
   Epochs epochs_;
   std::optional<ChainWaves<S>> chains_;  // from the plan on
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
@@ -89,36 +80,23 @@ class ChainSession final : public Session {
   uint64_t step_ = 0;               // steps that every chain has taken
   double stepSeconds_ = 0;          // that the latest took
   std::vector<StuckChain> stuck_;   // at the ends of epochs
-  WorkDone earlier_;                // of the sessions that this one goes on for; its counts but not its paths
-  RenderClock clock_{settings_.clock, settings_.threads};
-  double buildSeconds_ = 0;
-  std::atomic<uint64_t> progressPaths_{0};
 };
 
 template <class S>
-ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings)
-    : arena_(static_cast<int>(settings.threads)),
-      film_(filmArea(scene.film)),
-      settings_(withPieces(settings, scene.film, film_.area().pixels.size())) {
+ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings) : Base(scene, settings) {
   if (settings.firstIteration != 0) {
     throw std::invalid_argument("ChainSession: chains cannot begin in the middle; expected the first iteration");
   }
-  const auto begin = Clock::now();
-  const WorkerLimit limit(settings.threads);
-  const SpreadMemory spread(settings.placement);
-  arena_.execute([&] { plan_ = planRender<S>(scene, settings_); });
-  memory_ = planMemory(plan_, settings_, film_.area());
-  film_.makeSplats(settings.threads, memory_.splatScale);
-  if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.scene->view.camera);
-  const MetropolisSettings& metropolis = settings.metropolis;
-  const bool multiplexed = plan_.pipeline.lightPass.has_value();
-  epochs_ = Epochs(multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,
-                                                   settings.limits.maxDepth)
-                               : plainBootstrap(metropolis.bootstrapSamples));
-  chains_.emplace(plan_, settings_, film_.area());
-  bootstrapped_.resize(piecesOf(epochs_.targets.size(), settings_.waveSize));
-  pins_.emplace(arena_, settings_.placement);
-  buildSeconds_ = secondsSince(begin);
+  this->finishBuilding([&] {
+    film_.makeSplats(settings_.threads, memory_.splatScale);
+    const MetropolisSettings& metropolis = settings_.metropolis;
+    const bool multiplexed = plan_.pipeline.lightPass.has_value();
+    epochs_ = Epochs(multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,
+                                                     settings_.limits.maxDepth)
+                                 : plainBootstrap(metropolis.bootstrapSamples));
+    chains_.emplace(plan_, settings_, film_.area());
+    bootstrapped_.resize(piecesOf(epochs_.targets.size(), settings_.waveSize));
+  });
 }
 
 template <class S>
@@ -268,7 +246,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
     const uint64_t goal = iterations ? stepsFor(*iterations) : std::numeric_limits<uint64_t>::max();
     constexpr double kEndless = std::numeric_limits<double>::infinity();
     const double end = std::min(seconds.value_or(kEndless), settings_.seconds.value_or(kEndless));
-    const Stop stop = [&] { return (seconds && clock.look() >= *seconds) || interrupted(); };
+    const Stop stop = [&] { return (seconds && clock.look() >= *seconds) || this->interrupted(); };
     arena_.execute([&] {
       while (!stop()) {
         if (direct() && !traceDirect(stop)) return;
@@ -289,17 +267,9 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
 
 template <class S>
 RenderStatistics ChainSession<S>::statistics() const {
-  RenderStatistics out;
+  RenderStatistics out = this->plannedStatistics();
   out.iterations = mutations() / film_.area().pixels.size();
   out.paths = mutations();
-  out.buildSeconds = buildSeconds_;
-  out.renderSeconds = clock_.seconds();
-  out.renderWallSeconds = clock_.wallSeconds();
-  out.cpuSeconds = clock_.cpuSeconds();
-  out.isa = plan_.isa;
-  out.specialization = plan_.specialization;
-  out.accel = plan_.accel();
-  out.filterMode = film_.spreads() ? FilterMode::spread : FilterMode::sample;
   for (std::string& name : stageNames(plan_.pipeline)) out.stages.push_back({std::move(name)});
   for (const auto& worker : workers_) {
     out.counters += worker->counters;
@@ -314,7 +284,6 @@ RenderStatistics ChainSession<S>::statistics() const {
     out.stages.push_back({"direct pass"});
     for (const auto& worker : workers_) addTallies({worker->directTally}, out.stages.size() - 1, out.stages);
   }
-
   earlier_.addTo(out);
   ChainStatistics& chains = out.chains.emplace();
   chains.mutations = mutations();
@@ -335,9 +304,6 @@ RenderStatistics ChainSession<S>::statistics() const {
   // Walks of chains end where their strategies say, and those of the direct pass after its two edges: nothing is cut.
   out.counters.cutPaths = 0;
   out.counters.cutThroughput = 0;
-  out.memory.scene = sceneBytes(*plan_.scene);
-  out.memory.film = film_.bytes();
-  out.memory.image = film_.imageBytes();
   out.memory.splats = film_.splats().bytes();
   out.memory.chains = chains.bytes;
   return out;
@@ -370,8 +336,7 @@ void ChainSession<S>::restore(StateReader& in) {
   chains_->restore(in, lit ? epochs_.scale() : 1);
   in.finish();
   directDone_ = film_.minSamples();
-  clock_.goOnFrom(earlier_.renderSeconds, earlier_.cpuSeconds);
-  progressPaths_.store(mutations(), std::memory_order_relaxed);
+  this->goOnFromEarlier(mutations());
   updateFilm();
 }
 

@@ -1,7 +1,6 @@
 #include "engine/waves/wave_session.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <bit>
@@ -9,16 +8,13 @@
 #include <optional>
 #include <span>
 
-#include "engine/plan/render_plan.h"
 #include "engine/session/add_samples.h"
-#include "engine/session/render_clock.h"
+#include "engine/session/planned_session.h"
 #include "engine/session/stage_rows.h"
-#include "engine/session/work_done.h"
 #include "engine/state/state_stream.h"
 #include "engine/tasks/flush_to_zero.h"
 #include "engine/tasks/for_each.h"
 #include "engine/tasks/run_schedule.h"
-#include "engine/tasks/thread_pins.h"
 #include "engine/waves/light_picks.h"
 #include "engine/waves/photon_iterations.h"
 #include "engine/waves/typical_brightness.h"
@@ -28,7 +24,7 @@ namespace wavecrest {
 namespace {
 
 template <class S>
-class WaveSession final : public Session {
+class WaveSession final : public PlannedSession<S> {
  public:
   WaveSession(const Scene& scene, const RenderSettings& settings);
 
@@ -36,12 +32,11 @@ class WaveSession final : public Session {
   RenderStatistics statistics() const override;
   void save(StateWriter& out) const override;
   void restore(StateReader& in) override;
-  const Film& film() const override { return film_; }
-  const MemoryPlan& memoryPlan() const override { return memory_; }
-  double progressSeconds() const override { return clock_.shown(); }
-  uint64_t progressPaths() const override { return progressPaths_.load(std::memory_order_relaxed); }
 
  private:
+  using Base = PlannedSession<S>;
+  using Base::arena_, Base::clock_, Base::earlier_, Base::film_, Base::memory_, Base::plan_, Base::progressPaths_,
+      Base::settings_;
   using Worker = WaveWorker<S>;
   // How far the camera paths of a wave's pixels are: 2^iterationBits iterations from `next` on are under way, and done
   // for the first `pixels` of them.
@@ -82,12 +77,6 @@ class WaveSession final : public Session {
   LightStore<S>* partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker);
   void countLightPaths();
 
-  oneapi::tbb::task_arena arena_;
-  std::optional<ThreadPins> pins_;  // once the session is built
-  Film film_;
-  const RenderSettings settings_;
-  RenderPlan<S> plan_;
-  MemoryPlan memory_;
   std::vector<size_t> pieces_;          // the first pixel of each camera wave's own, and the end (FilmArea::pieces)
   uint64_t endIteration_ = 0;           // of this renderUntil
   std::vector<CameraProgress> camera_;  // of each tile
@@ -96,39 +85,25 @@ class WaveSession final : public Session {
   std::optional<S> rouletteBelow_;  // StageContext's, once a render has begun
   double iterationSeconds_ = 0;     // of the latest iterations with a photon map; 0: of none yet
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
-  WorkDone earlier_;  // of the sessions that this one goes on for
-  RenderClock clock_{settings_.clock, settings_.threads};
-  double buildSeconds_ = 0;
-  std::atomic<uint64_t> progressPaths_{0};
 };
 
 template <class S>
-WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings)
-    : arena_(static_cast<int>(settings.threads)),
-      film_(filmArea(scene.film)),
-      settings_(withPieces(settings, scene.film, film_.area().pixels.size())) {
-  const auto begin = Clock::now();
-  const WorkerLimit limit(settings.threads);
-  const SpreadMemory spread(settings.placement);
-  const size_t pixels = film_.area().pixels.size();
-  arena_.execute([&] {
-    plan_ = planRender<S>(scene, settings_);
-    if (!plan_.pipeline.lightPass) pickLightsByView(plan_, settings_, film_.area());
+WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings) : Base(scene, settings) {
+  this->finishBuilding([&] {
+    const size_t pixels = film_.area().pixels.size();
+    if (!plan_.pipeline.lightPass) arena_.execute([&] { pickLightsByView(plan_, settings_, film_.area()); });
+    if (plan_.pipeline.splats()) film_.makeSplats(settings_.threads, memory_.splatScale);
+    // A piece of camera paths is a wave; where waves take several iterations at once, as many pixels as give all
+    // threads work.
+    const uint32_t together = 1u << mostIterationBits();
+    const size_t piece =
+        together == 1
+            ? settings_.waveSize
+            : pieceSize(pixels * together, settings_.cutForThreads(), settings_.waveSize * together) / together;
+    pieces_ = film_.area().pieces(piece, film_.spreads());
+    camera_.resize(pieces_.size() - 1, {.next = settings_.firstIteration});
+    if (plan_.pipeline.photonMap) photons_ = PhotonIterations<S>(plan_, memory_, settings_, pixels);
   });
-  memory_ = planMemory(plan_, settings_, film_.area());
-  if (plan_.pipeline.splats()) film_.makeSplats(settings.threads, memory_.splatScale);
-  if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.scene->view.camera);
-  // A piece of camera paths is a wave; where waves take several iterations at once, as many pixels as give all threads
-  // work.
-  const uint32_t together = 1u << mostIterationBits();
-  const size_t piece =
-      together == 1 ? settings_.waveSize
-                    : pieceSize(pixels * together, settings.cutForThreads(), settings_.waveSize * together) / together;
-  pieces_ = film_.area().pieces(piece, film_.spreads());
-  camera_.resize(pieces_.size() - 1, {.next = settings.firstIteration});
-  if (plan_.pipeline.photonMap) photons_ = PhotonIterations<S>(plan_, memory_, settings_, pixels);
-  pins_.emplace(arena_, settings_.placement);
-  buildSeconds_ = secondsSince(begin);
 }
 
 template <class S>
@@ -318,7 +293,7 @@ void WaveSession<S>::renderUntil(std::optional<uint64_t> iterations, std::option
     const Finished finished = [&](uint64_t next) {
       if (next >= endIteration_) return true;
       const double now = clock.look();
-      return (seconds && now >= *seconds) || interrupted();
+      return (seconds && now >= *seconds) || this->interrupted();
     };
     arena_.execute([&] {
       if (!rouletteBelow_) rouletteBelow_ = connectionRouletteLimit(plan_, settings_, film_.area());
@@ -336,19 +311,8 @@ void WaveSession<S>::renderUntil(std::optional<uint64_t> iterations, std::option
 
 template <class S>
 RenderStatistics WaveSession<S>::statistics() const {
-  RenderStatistics out;
+  RenderStatistics out = this->plannedStatistics();
   out.iterations = film_.minSamples();
-  out.buildSeconds = buildSeconds_;
-  out.renderSeconds = clock_.seconds();
-  out.renderWallSeconds = clock_.wallSeconds();
-  out.cpuSeconds = clock_.cpuSeconds();
-  out.isa = plan_.isa;
-  out.specialization = plan_.specialization;
-  out.accel = plan_.accel();
-  out.filterMode = film_.spreads() ? FilterMode::spread : FilterMode::sample;
-  out.memory.scene = sceneBytes(*plan_.scene);
-  out.memory.film = film_.bytes();
-  out.memory.image = film_.imageBytes();
   if (plan_.pipeline.splats()) out.memory.splats = film_.splats().bytes();
   if (plan_.pipeline.lightPass) addRows(*plan_.pipeline.lightPass, out.stages);
   const size_t cameraRow = out.stages.size();
@@ -390,8 +354,7 @@ void WaveSession<S>::restore(StateReader& in) {
   level_ = film_.minSamples() == done;
   if (!level_ && plan_.pipeline.photonMap) throw StateError("it ends within an iteration");
   for (CameraProgress& progress : camera_) progress.next = settings_.firstIteration + done;
-  clock_.goOnFrom(earlier_.renderSeconds, earlier_.cpuSeconds);
-  progressPaths_.store(earlier_.paths, std::memory_order_relaxed);
+  this->goOnFromEarlier(earlier_.paths);
   countLightPaths();
 }
 

@@ -1,0 +1,57 @@
+#include "engine/session/planned_session.h"
+
+#include "engine/tasks/for_each.h"
+
+namespace wavecrest {
+
+template <class S>
+PlannedSession<S>::PlannedSession(const Scene& scene, const RenderSettings& settings)
+    : arena_(static_cast<int>(settings.threads)),
+      film_(filmArea(scene.film)),
+      settings_(withPieces(settings, scene.film, film_.area().pixels.size())) {
+  const auto begin = Clock::now();
+  const WorkerLimit limit(settings_.threads);
+  const SpreadMemory spread(settings_.placement);
+  arena_.execute([&] { plan_ = planRender<S>(scene, settings_); });
+  memory_ = planMemory(plan_, settings_, film_.area());
+  if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.scene->view.camera);
+  buildSeconds_ = secondsSince(begin);
+}
+
+template <class S>
+void PlannedSession<S>::finishBuilding(const std::function<void()>& rest) {
+  const auto begin = Clock::now();
+  const WorkerLimit limit(settings_.threads);
+  const SpreadMemory spread(settings_.placement);
+  rest();
+  pins_.emplace(arena_, settings_.placement);
+  buildSeconds_ += secondsSince(begin);
+}
+
+template <class S>
+RenderStatistics PlannedSession<S>::plannedStatistics() const {
+  RenderStatistics out;
+  out.buildSeconds = buildSeconds_;
+  out.renderSeconds = clock_.seconds();
+  out.renderWallSeconds = clock_.wallSeconds();
+  out.cpuSeconds = clock_.cpuSeconds();
+  out.isa = plan_.isa;
+  out.specialization = plan_.specialization;
+  out.accel = plan_.accel();
+  out.filterMode = film_.spreads() ? FilterMode::spread : FilterMode::sample;
+  out.memory.scene = sceneBytes(*plan_.scene);
+  out.memory.film = film_.bytes();
+  out.memory.image = film_.imageBytes();
+  return out;
+}
+
+template <class S>
+void PlannedSession<S>::goOnFromEarlier(uint64_t progressPaths) {
+  clock_.goOnFrom(earlier_.renderSeconds, earlier_.cpuSeconds);
+  progressPaths_.store(progressPaths, std::memory_order_relaxed);
+}
+
+template class PlannedSession<float>;
+template class PlannedSession<double>;
+
+}  // namespace wavecrest
