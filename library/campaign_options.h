@@ -23,7 +23,7 @@ CampaignSettings campaignSettings(const api::CampaignOptions& options);
 // options.resume.
 CampaignSettings begunCampaign(api::CampaignOptions& options);
 
-// What the results file says of the campaign beside its environment.
+// What the results file says of the campaign besides its environment.
 std::map<std::string, std::string> campaignKeys(const api::CampaignOptions& options, const CampaignSettings& settings);
 
 // Judges the study's findings on the results, stores the verdicts with them and writes the report. For a campaign that

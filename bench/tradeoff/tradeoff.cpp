@@ -157,10 +157,12 @@ TradeResult measureTrade(const Scene& scene, const RenderSettings& base, const T
   result.seeds = effort.seeds;
   std::vector<Variant> variants = variantsOf(scene, base);
   if (!effort.knobs.empty()) variants = chooseVariants(std::move(variants), effort.knobs);
+  // The double reference takes a fixed part of the time.
   MachineWatch watch;
   const TradeReference reference = renderReference(scene, base, kReferencePart * effort.seconds);
   result.referenceMethod = reference.method;
 
+  // All variants render the same number of iterations, as many as the rest of the time allows.
   const OneRender first = render(scene, base, 1, {});
   const double oneIteration = first.cpuSeconds / base.threads;
   const double share = (1 - kReferencePart) * effort.seconds / static_cast<double>(effort.seeds * variants.size());
@@ -172,6 +174,7 @@ TradeResult measureTrade(const Scene& scene, const RenderSettings& base, const T
       measured[i].refusal = "for scenes of few primitives; this one has too many";
     }
   }
+  // Variants in turn, forwards and backwards, so that drift of the machine meets all of them.
   for (size_t seed = 0; seed < effort.seeds; ++seed) {
     for (size_t k = 0; k < variants.size(); ++k) {
       const size_t i = seed % 2 == 0 ? k : variants.size() - 1 - k;
@@ -186,6 +189,7 @@ TradeResult measureTrade(const Scene& scene, const RenderSettings& base, const T
     }
     watch.look();
   }
+  // Each variant against the baseline and against double.
   const auto isDouble = [](const Variant& variant) { return variant.settings.precision == Precision::doubled; };
   const auto doubled = std::find_if(variants.begin(), variants.end(), isDouble) - variants.begin();
   for (size_t i = 0; i < variants.size(); ++i) {

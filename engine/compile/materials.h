@@ -15,7 +15,7 @@ bool isTextured(const Material& material, const Scene& scene);
 
 // The scene is read for the means of textures, which decide how often a lobe is sampled.
 MaterialRecord compileMaterial(const Material& material, const Scene& scene);
-// What a compound BSDF has beside that; empty for other materials.
+// Parameters that only compound BSDFs have; empty for other materials.
 CompoundRecord compileCompound(const Material& material);
 
 // Reflectance of a smooth dielectric boundary for diffuse light: INT_0^1 F(c, eta) 2 c dc, by quadrature; eta is the

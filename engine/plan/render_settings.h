@@ -27,7 +27,7 @@ struct MetropolisSettings {
   uint32_t bootstrapSamples = 131072;  // independent samples from which chains start, and the image's brightness comes
   std::optional<uint32_t> restartSteps;      // steps before all chains start anew; unless set, epochSteps() says
   double largeStep = 0.3;                    // probability of a step that forgets where the chain is
-  uint32_t pathMutations = PathLaw().kinds;  // pathspace: kinds beside large steps (PathLaw)
+  uint32_t pathMutations = PathLaw().kinds;  // pathspace: kinds besides large steps (PathLaw)
   bool directPass = true;  // mmlt, pathspace: emitters in view and direct light by path tracing, the rest by chains
 };
 

@@ -27,7 +27,7 @@ struct ScheduleWait {
 
 struct Schedule {
   std::vector<size_t> tasks;        // of each phase, at least one
-  std::vector<ScheduleWait> waits;  // beside these, a phase waits for the one before it
+  std::vector<ScheduleWait> waits;  // besides these, a phase waits for the one before it
 
   size_t taskCount() const;
 };

@@ -42,7 +42,7 @@ WAVECREST_INLINE void storeRows(const StageContext<S>& context, const Wave<S>& w
   }
 }
 
-// What connections read beside rows.
+// What connections read besides rows.
 template <uint32_t kFeatures, class S>
 WAVECREST_INLINE void storeColumns(const SceneView<S>& scene, const Wave<S>& wave, size_t i, LightVertices<S>& vertices,
                                    size_t out) {

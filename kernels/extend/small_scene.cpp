@@ -63,6 +63,7 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, 
   view_.sphereCount = ofKind(PrimitiveKind::sphere);
   if (count == 0) return;
 
+  // Leaves decide the rays that pass too close to an edge for the loops over planes.
   LeafMaker leaves(PrimitiveSource::of(primitives, count), inTurn);
   addLeaves(leaves);
   std::vector<Box> bounds;
@@ -71,6 +72,7 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, 
   }
   const double reach = rayReach(unionOf(bounds.data(), bounds.size()), eye);
 
+  // Quads that bound boxes, closed boxes first; those too thin for a ray's rounding errors stay single quads.
   std::vector<bool> taken(count, false);
   const auto take = [&taken](uint32_t face) { taken[face] = true; };
   const std::vector<FoundBox> boxes = findBoxes(primitives, view_.firstTriangle, triangles);
@@ -82,12 +84,14 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, 
       box.forEachQuad(take);
     }
   }
+  // Faces that bound other convex solids.
   for (const FoundSolid& solid : findSolids(primitives, view_.firstTriangle, triangles, taken)) {
     if (solid.thickness * kMostThicknesses < reach) continue;
     addSolid(solid);
     solid.forEachFace(take);
   }
   for (uint32_t i = 0; i < view_.firstSphere; ++i) {
+    // The remaining quads and triangles as planes; every face has coordinates for its u and v.
     coordinates_.push_back(inFloat(dualBasis(primitives[i])));
     if (taken[i]) continue;
     addPlane(primitives[i], i, reach);

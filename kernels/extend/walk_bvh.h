@@ -44,16 +44,19 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
   constexpr size_t kEntries = 4;
   uint8_t lists[kEntries][kUnderWay], current[kUnderWay];
   size_t sizes[kEntries] = {};
+  // Puts a walker on the list of its next entry's kind.
   const auto stand = [&](uint8_t i, uint32_t reference) HWY_ATTR {
     walkers[i].at = reference;
     const uint32_t entry = reference >> kBvhEntryShift;
     lists[entry][sizes[entry]++] = i;
   };
+  // Takes the next waiting entry off the walker's stack and fetches it ahead of the visit.
   const auto goOn = [&](uint8_t i) HWY_ATTR {
     const uint32_t reference = walkers[i].stack[--walkers[i].waiting];
     prefetchEntry(bvh, reference);
     stand(i, reference);
   };
+  // Gives a walker its next ray, if there is one.
   const auto enter = [&](uint8_t i) HWY_ATTR {
     Walker& walker = walkers[i];
     walker.stack[0] = kBvhEnd;
@@ -83,6 +86,7 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
     sizes[which] = 0;
     return size;
   };
+  // All walkers that stand at an entry of one kind: the same code for each, one after the other.
   const auto visitAll = [&]<class Record>(BvhEntry entry, std::type_identity<Record>) HWY_ATTR {
     for (size_t k = 0, size = take(entry); k < size; ++k) {
       Walker& walker = walkers[current[k]];
@@ -91,6 +95,7 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
     }
   };
 
+  // Every walker begins with a ray; each turn visits all nodes, then all leaves, and replaces the rays that are done.
   for (size_t i = 0; i < kUnderWay; ++i) enter(static_cast<uint8_t>(i));
   while (sizes[0] + sizes[1] + sizes[2] + sizes[3] > 0) {
     visitAll(BvhEntry::node, std::type_identity<BvhNode>());

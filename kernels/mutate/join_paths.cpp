@@ -44,16 +44,20 @@ void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P
     const UInt lane = select(active, load(plans.order, i), zero);
     const UInt edges = gather(headers.edges, lane), kept = gather(plans.lightKept, lane);
     const UInt walked = gather(plans.lightWalked, lane), eyeTo = gather(plans.eyeTo, lane);
+    // Paths whose two walks reached as many vertices as planned; the last vertex of each walk gets its BSDF event.
     const Mask whole = active & (edges != zero) & (gather(plans.eyeReached, lane) == gather(plans.eyeRays, lane)) &
                        (gather(plans.lightReached, lane) == gather(plans.lightRays, lane));
     const Mask leftLight = whole & (one < kept), leftEye = whole & (eyeTo < edges);
     storeWhere(gather(plans.lightEvent, lane), leftLight, v.event, select(leftLight, kept - one, zero) * stride + lane);
     storeWhere(gather(plans.eyeEvent, lane), leftEye, v.event, select(leftEye, eyeTo, zero) * stride + lane);
 
+    // Eye walks that met a light need no edge.
     const Mask byChance = whole & (kept == zero) & (walked == zero);
     if (any(byChance)) takeEmission(wave, headers, byChance, lane);
     const Mask joins = andNot(whole, byChance);
     if (none(joins)) continue;
+    // The edge that joins the walks, from the eye's vertex z to the light's vertex y. An infinite light has a direction
+    // and no position: its edge ends outside the scene.
     const UInt lightRow = select(joins, kept + walked - one, zero);
     const UInt yAt = lightRow * stride + lane, zAt = yAt + stride;
     const Vec3<Real> y = positionAt(v, yAt), z = positionAt(v, zAt);
@@ -65,6 +69,7 @@ void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P
     const Real zOffset = gather(v.offset, zAt), yOffset = gather(v.offset, yAt);
     const Real apart = Real(4) * (zOffset + yOffset);
     Mask lit = joins & (length2(segment) > apart * apart);
+    // Where the eye's vertex is the lens, the edge decides the film position.
     const Mask toLens = joins & (lightRow + one == edges);
     if (any(toLens)) {
       const auto view = project<P>(scene.camera, y, Uniform4{});
@@ -73,6 +78,7 @@ void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P
       storeWhere(to<Float>(view.rasterX), toLens & seen, headers.rasterX, lane);
       storeWhere(to<Float>(view.rasterY), toLens & seen, headers.rasterY, lane);
     }
+    // A shadow ray from z to y, offset from both surfaces.
     const Vec3<Real> origin = offsetOrigin(z, normalAt(v, zAt), zOffset, segment);
     const Vec3<Real> near = offsetOrigin(y, normalAt(v, yAt), yOffset, -segment);
     const Vec3<Real> end = select(infinite, z + segment, near);

@@ -26,7 +26,7 @@ struct PathLaw {
   const float* deletionShare = nullptr;
   // Probability of lengths up to k, from k = 0, of paths that are made anew.
   const float* lengthsUpTo = nullptr;
-  // Bits of what is proposed beside large steps: each kind by itself leaves the distribution of paths as it is.
+  // Bits of what is proposed besides large steps: each kind by itself leaves the distribution of paths as it is.
   static constexpr uint32_t kFromEye = 1, kBidirectional = 2, kCaustic = 4;
   uint32_t kinds = kFromEye | kBidirectional | kCaustic;
 

@@ -7,7 +7,7 @@
 
 WAVECREST_SIMD_BEGIN
 
-// Which mutations beside the large step suit a path, as numbers 0 or 1, and how many they are.
+// Which mutations besides the large step suit a path, as numbers 0 or 1, and how many they are.
 struct SuitableKinds {
   UInt fromEye, bidirectional, caustic, count;
 };

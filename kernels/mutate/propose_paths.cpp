@@ -126,14 +126,17 @@ WAVECREST_NOINLINE void proposeWave(const StageContext<S>& context, const Wave<S
   const UInt zero(0u), one(1u);
   for (size_t i = 0; i < count; i += kLanes) {
     const UInt source = load(chains.source, i);
+    // Random numbers of the step: its kind, its acceptance threshold, and what the mutation chooses.
     const ChainNumbers step = chainBits(context.sampler, source, 0, ChainUse::step);
     const ChainNumbers more = chainBits(context.sampler, source, 1, ChainUse::step);
     store(mulAdd(toUnitInterval(step.c), Float(0x1p-24f), toUnitInterval(step.b)), chains.threshold, i);
     const UInt edges = paths.current == nullptr ? zero : load(paths.current->headers.edges, i);
     const Mask large = (toUnitInterval(step.a) < Float(context.chains->samples.largeStep)) | (edges == zero);
 
+    // Large steps, and chains that are nowhere yet, plan a whole path.
     Plan plan = anew(law, edges, load(chains.length, i), more.a, toUnitInterval(more.d));
     if (paths.current != nullptr && !all(large)) {
+      // Small steps choose evenly among the mutations that suit the current path.
       const auto& current = paths.current->headers;
       const UInt eyeEnd = load(current.eyeEnd, i), causticStart = load(current.causticStart, i);
       const Mask multiChain = load(current.multiChain, i) != zero;
@@ -155,11 +158,13 @@ WAVECREST_NOINLINE void proposeWave(const StageContext<S>& context, const Wave<S
       plan.possible = plan.possible & (large | !(kinds.count == zero));
     }
 
+    // How many rays each walk needs: one fewer where it begins with a new end of the path.
     const Mask newLens = plan.eyeFrom == edges + one;
     const UInt eyeWalked = plan.added - plan.lightWalked;
     const UInt lightRays = select(plan.lightKept == zero, max(plan.lightWalked, one) - one, plan.lightWalked);
     const UInt eyeRays = select(newLens, eyeWalked - one, eyeWalked);
     const UInt length = select(plan.possible, edges + one - plan.eyeFrom + plan.lightKept + plan.added - one, zero);
+    // The plan goes into the columns; walks have reached nothing yet.
     store(plan.kind, plans.kind, i);
     store(plan.lightKept, plans.lightKept, i);
     store(plan.eyeFrom, plans.eyeFrom, i);
@@ -180,6 +185,7 @@ WAVECREST_NOINLINE void proposeWave(const StageContext<S>& context, const Wave<S
     store(Float(1), chains.scale, i);
     store(Float(0), chains.estimate, i);
     if (paths.current != nullptr) {
+      // What the proposal keeps unless its walks replace it: the film position and the light's radiance.
       const auto& current = paths.current->headers;
       store(load(current.rasterX, i), proposed.rasterX, i);
       store(load(current.rasterY, i), proposed.rasterY, i);

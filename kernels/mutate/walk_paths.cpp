@@ -220,11 +220,13 @@ void beginEyeWalks(const StageContext<typename P::Storage>& context, Wave<typena
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
     const UInt lane = select(active, load(paths.plans.order, i), zero);
+    // Lanes with a plan; newLens: those that replace the lens vertex; walks: those whose eye walk has rays.
     const UInt edges = gather(headers.edges, lane);
     const Mask planned = active & (edges != zero);
     const Mask newLens = planned & (edges < gather(paths.plans.eyeTo, lane));
     const Mask walks = planned & (gather(paths.plans.eyeRays, lane) != zero);
     if (any(newLens)) {
+      // The lens as the path's last vertex.
       const Vec3<Real> origin = broadcast<Real>(camera.origin), none{Real(0), Real(0), Real(0)};
       const UInt at = select(newLens, edges, zero) * stride + lane;
       storeWhere(origin, newLens, v.positionX, v.positionY, v.positionZ, at);
@@ -235,6 +237,7 @@ void beginEyeWalks(const StageContext<typename P::Storage>& context, Wave<typena
     }
     const Mask fromLens = newLens & walks, fromRow = andNot(walks, newLens);
     if (any(fromLens)) {
+      // Rays through the film, and rays that leave a vertex the proposal keeps.
       const Uniform4 u = draw(context, lane, Block::scatter);
       const auto raster = newRaster(context, lane, isPerturbation(gather(paths.plans.kind, lane)), u);
       const Mask seen = fromLens & raster.onFilm;

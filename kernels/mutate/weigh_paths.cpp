@@ -242,11 +242,13 @@ WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave)
     const auto& headers = paths.proposed.headers;
     const PathBlock<S> proposed(paths.proposed, lane, active);
     const Float rasterX = gather(headers.rasterX, lane), rasterY = gather(headers.rasterY, lane);
+    // The proposal's contribution to the film over its reference density.
     const Vec3<Real> value = proposed.overReference(active) * filmWeight<Real>(context, rasterX, rasterY);
     const Real luminance = luminanceOf(value);
     const ProposedPixel pixel = choosePixel(context, lane, rasterX, rasterY);
     const Mask lit = active & pixel.onFilm & (luminance > Real(0)) & (luminance < Real(1e30f));
 
+    // ratio: f(y) T(y -> x) / (f(x) T(x -> y)), or the target of a chain that is nowhere yet.
     Double ratio(0.0);
     const Mask somewhere = active & (gather(chains.target, lane) > Float(0));
     if (any(andNot(active, somewhere))) {
@@ -257,6 +259,7 @@ WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave)
       ratio = zeroUnless(possible, to<Double>(luminance) * splits / select(possible, sum, Double(1.0)));
     }
     if (any(somewhere)) {
+      // Probabilities to propose y from x and x from y, over the same reference density.
       const Real angle = to<Real>(gather(plans.angle, lane));
       const PathBlock<S> current(*paths.current, lane, somewhere);
       const auto& from = paths.current->headers;
@@ -276,6 +279,7 @@ WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave)
       ratio = select(somewhere, zeroUnless(possible, min(quotient, Double(1e30))), ratio);
       storeWhere(Float(1), somewhere, chains.target, lane);
     }
+    // What the film gets: the colour at the proposed pixel, scaled so that its luminance is the ratio.
     const Vec3<Real> colour = zeroUnless(lit, value);
     storeWhere(colour, active, wave.radiance.red, wave.radiance.green, wave.radiance.blue, lane);
     const Float scale = to<Float>(ratio / to<Double>(select(lit, luminance, Real(1))));

@@ -18,7 +18,7 @@ struct ChainNumbers {
   UInt a, b, c, d;
 };
 
-// What a chain's random bits decide, beside the numbers of its walks.
+// What a chain's random bits decide, besides the numbers of its walks.
 enum class ChainUse : uint32_t { cameraWalk, lightWalk, step };
 
 WAVECREST_INLINE ChainNumbers chainBits(const SamplerSettings& sampler, UInt source, uint32_t block, ChainUse use) {

@@ -151,6 +151,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
     const UInt hitPrimitive = load(wave.hits.primitive, i);
+    // Which rays of the block hit a primitive.
     Mask hit = andNot(active, hitPrimitive == UInt(kMiss));
     const UInt primitive = select(hit, hitPrimitive, UInt(0u));
     const Vec3<Real> direction = loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
@@ -160,6 +161,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     const UInt lane = load(paths.lane, i);
     MisSums<Real> mis = loadMis<kFeatures>(paths, i);
 
+    // Rays that leave the scene: radiance of the sky or of another infinite light.
     Mask counted = active;  // emission counts
     if (mergingAlone) counted = active & (mis.dVCM == Real(0)) & (mis.dVM == Real(0));
     if (stopsAtEmission) {
@@ -176,6 +178,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
       if (none(hit)) continue;
     }
 
+    // The point of each hit, and the MIS sums carried over the edge to it: densities become those of area (METHODS 5.6).
     const auto at = primitivesOf(scene, primitive);
     const InstanceLanes<P, kFeatures> instance(scene, wave.hits, i, hit);
     const SurfacePoint<Real> inGroup =
@@ -199,12 +202,14 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     }
     mis.dVCM = mis.dVCM * toArea * inverseCosine;
 
+    // Shading normal and texture coordinates.
     Interpolated<Real> shading{surface.normal, surface.normal, Float(0), Float(0), Float(0)};
     if constexpr (has(kFeatures, kShadingNormals | kTextures)) {
       shading = interpolate<P, kFeatures>(scene, at, hit, inGroup, surface.normal, instance);
     }
 
     if (camera) {
+      // Emission of the surface.
       const UInt light = at(scene.primitives->light);
       const Mask emits = andNot(hit & (cosine > Real(0)), light == UInt(kNoIndex));
       if (any(emits)) {
@@ -214,6 +219,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
         addRadiance(wave.radiance, lane, emits & counted, throughput * radiance);
       }
     }
+    // The vertex goes into the wave, sorted by BSDF; paths at the limit of edges end here.
     Real rouletteScale(1);
     if constexpr (hasRouletteScale(kFeatures)) rouletteScale = load(paths.rouletteScale, i);
     if (!goesOn) {
