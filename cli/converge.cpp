@@ -157,6 +157,7 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
       .separatedByCommas();
   defining("--profile", "quick, standard, study or paper; default: quick").oneValue();
   defining("--time", "render time of each run; default: the profile's").oneValue();
+  defining("--time-factor", "multiplies the profile's run times, as 0.25").oneValue();
   defining("--snapshot-every", "interval between snapshots, or log; default: the profile's").oneValue();
   defining("--spp", "iterations of each run instead of time; snapshots after 1, 2, 4, ...").oneValue();
   defining("--seeds", "runs of each method, seeds 1 to N; default: the profile's").oneValue();

@@ -25,15 +25,27 @@ namespace fs = std::filesystem;
 using api::CampaignOptions;
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 18> kDefiningOptions{"scenes",         "--profile",
-                                                            "--time",         "--snapshot-every",
-                                                            "--spp",          "--seeds",
-                                                            "--precision",    "--sampler",
-                                                            "--size",         "--images",
-                                                            "--methods",      "--radius",
-                                                            "--radius-alpha", "--light-paths",
-                                                            "--direct-pass",  "--mlt",
-                                                            "--clock",        "-D"};
+constexpr std::array<std::string_view, 19> kDefiningOptions{"scenes",
+                                                            "--profile",
+                                                            "--time-factor",
+                                                            "--time",
+                                                            "--snapshot-every",
+                                                            "--spp",
+                                                            "--seeds",
+                                                            "--precision",
+                                                            "--sampler",
+                                                            "--size",
+                                                            "--images",
+                                                            "--methods",
+                                                            "--radius",
+                                                            "--radius-alpha",
+                                                            "--light-paths",
+                                                            "--direct-pass",
+                                                            "--mlt",
+                                                            "--clock",
+                                                            "-D"};
+
+constexpr double kLeastFactor = 1e-4, kMostFactor = 1e4;  // of --time-factor
 
 bool has(const CampaignOptions& options, const char* name) { return options.defining.contains(name); }
 
@@ -75,6 +87,11 @@ const Profile& chosenProfile(const CampaignOptions& options) {
 
 Effort effortOf(const CampaignOptions& options, const Profile& profile, std::string_view scene) {
   Effort effort = profile.effort(scene);
+  if (has(options, "--time-factor")) {
+    const double factor = parseNumber("--time-factor", get(options, "--time-factor"), kLeastFactor, kMostFactor);
+    effort.seconds *= factor;
+    effort.snapshotSeconds *= factor;
+  }
   if (has(options, "--time")) effort.seconds = parseDuration("--time", get(options, "--time"));
   if (has(options, "--snapshot-every")) {
     const std::string every = get(options, "--snapshot-every");
@@ -134,6 +151,9 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
     throw UsageError(
         "--spp counts iterations and takes snapshots after 1, 2, 4, ...; expected no --time or "
         "--snapshot-every beside it");
+  }
+  if (has(options, "--time-factor") && (has(options, "--time") || settings.iterations)) {
+    throw UsageError("--time-factor multiplies the profile's run times; expected no --time or --spp beside it");
   }
   settings.size = has(options, "--size") ? parseSize("--size", get(options, "--size")) : profile.size;
   settings.render = renderSettings(options);

@@ -58,7 +58,8 @@ std::optional<CampaignOptions> extended(const CampaignOptions& before, const std
   if (name == "--seeds") {
     return campaignSettings(after).seeds > campaignSettings(before).seeds ? std::optional(after) : std::nullopt;
   }
-  if (name == "--time" || name == "--spp") return isLonger(before, after) ? std::optional(after) : std::nullopt;
+  if (name == "--time" || name == "--time-factor" || name == "--spp")
+    return isLonger(before, after) ? std::optional(after) : std::nullopt;
   return std::nullopt;
 }
 

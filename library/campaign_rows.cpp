@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "library/errors.h"
 #include "library/option_values.h"
@@ -14,17 +13,6 @@ namespace {
 const std::vector<std::string>* given(const CampaignWords& words, const char* name) {
   const auto found = words.find(name);
   return found == words.end() || found->second.empty() ? nullptr : &found->second;
-}
-
-template <class Number>
-Number parseNumber(const char* option, const std::string& word, Number least, Number most) {
-  Number number{};
-  const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  const bool whole = error == std::errc() && rest == word.data() + word.size();
-  if (!whole || !(number >= least) || !(number <= most)) {
-    throw UsageError(fmt::format("{} {}: expected a number from {} to {}", option, word, least, most));
-  }
-  return number;
 }
 
 std::vector<MetropolisVariant> chosenVariants(const CampaignWords& words, const Profile& profile) {

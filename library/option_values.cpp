@@ -12,6 +12,19 @@
 
 namespace wavecrest {
 
+template <class Number>
+Number parseNumber(const std::string& option, const std::string& word, Number least, Number most) {
+  Number number{};
+  const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const bool whole = error == std::errc() && rest == word.data() + word.size();
+  if (!whole || !(number >= least) || !(number <= most)) {
+    throw UsageError(fmt::format("{} {}: expected a number from {} to {}", option, word, least, most));
+  }
+  return number;
+}
+template double parseNumber(const std::string&, const std::string&, double, double);
+template uint64_t parseNumber(const std::string&, const std::string&, uint64_t, uint64_t);
+
 double parseDuration(const std::string& option, const std::string& text) {
   const auto fail = [&]() -> double {
     throw UsageError(fmt::format("{} '{}': no duration; expected one like 6s, 2m or 1h30m", option, text));

@@ -12,6 +12,10 @@
 
 namespace wavecrest {
 
+// A number from least to most, or UsageError. Number: double or uint64_t.
+template <class Number>
+Number parseNumber(const std::string& option, const std::string& word, Number least, Number most);
+
 // "6s", "2m", "1h30m", "0.5s", or plain seconds. Positive and finite, or UsageError.
 double parseDuration(const std::string& option, const std::string& text);
 

@@ -143,6 +143,19 @@ class Extending(Converge):
         self.assertTrue(all(end >= 0.3 for end in ends), ends)
         self.assertEqual(len(self.image_names("a")), 4)
 
+    def test_by_a_larger_part_of_the_profiles_time(self):
+        quick = ["cornell-diffuse", "--methods", "pt", "--size", "20x20", "--seeds", "1", "--out", "a", "--images", "last"]
+        self.converge(*quick, "--time-factor", "0.02")
+        self.converge("--out", "a", "--resume", "--time-factor", "0.01", expect=USAGE)
+        self.converge("--out", "a", "--resume", "--time-factor", "0.05")
+        database = sqlite3.connect(self.results("a"))
+        ((end,),) = database.execute("SELECT MAX(render_seconds) FROM snapshot")
+        ((time,),) = database.execute("SELECT value FROM campaign WHERE key = 'time'")
+        database.close()
+        self.assertEqual(time, "0.2")
+        self.assertGreaterEqual(end, 0.2)
+        self.assertLess(end, 2)
+
     def test_shards_are_not_divided_anew(self):
         self.tiny("a", "--shard", "1/2")
         result = self.converge("--out", "a", "--resume", "--shard", "1/2", "--methods", "bpt", expect=USAGE)
