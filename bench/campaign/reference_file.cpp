@@ -18,8 +18,8 @@ constexpr const char* kPrefix = "wavecrest:";
 constexpr const char* kFloorPrefix = "wavecrest:noise_floor.";
 constexpr const char *kDifference = "difference", *kVariance = "variance";
 
-// Significant bits that are kept: of the layers besides the mean, which are noise; and of a compact reference's mean and
-// difference. Rounding makes squares of differences 1 % too small.
+// Significant bits that are kept: of the layers besides the mean, which are noise; and of a compact reference's mean
+// and difference. Rounding makes squares of differences 1 % too small.
 constexpr uint32_t kLayerBits = 12, kCompactBits = 9, kCompactLayerBits = 2;
 
 Image roundedTo(uint32_t bits, Image image) {

@@ -178,7 +178,8 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
       if (none(hit)) continue;
     }
 
-    // The point of each hit, and the MIS sums carried over the edge to it: densities become those of area (METHODS 5.6).
+    // The point of each hit, and the MIS sums carried over the edge to it: densities become those of area
+    // (METHODS 5.6).
     const auto at = primitivesOf(scene, primitive);
     const InstanceLanes<P, kFeatures> instance(scene, wave.hits, i, hit);
     const SurfacePoint<Real> inGroup =
