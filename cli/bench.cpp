@@ -21,6 +21,7 @@ constexpr int kBenchSchemaVersion = 1;  // of bench/schema.json
 
 }  // namespace
 
+// The scenes of the command line; by default two Cornell boxes.
 std::vector<std::filesystem::path> benchSceneFiles(const BenchOptions& options) {
   if (options.scenes.empty()) return {findScene("cornell-diffuse"), sceneFolder() / "mitsuba-cornell-box.xml"};
   std::vector<std::filesystem::path> files;
@@ -28,6 +29,7 @@ std::vector<std::filesystem::path> benchSceneFiles(const BenchOptions& options) 
   return files;
 }
 
+// The methods of --methods; by default all.
 std::vector<Method> benchMethods(const BenchOptions& options) {
   std::vector<Method> methods;
   for (const std::string& word : options.methods) methods.push_back(parseMethodOption("--methods", word));
@@ -38,11 +40,14 @@ std::vector<Method> benchMethods(const BenchOptions& options) {
 }
 
 void printBench(const BenchOptions& options, const std::string& text) {
+  // Tables on stdout would spoil the JSON there.
   if (options.json == "-") return;
   fmt::print("{}", text);
+  // A measurement takes long, so each row is shown once it is there.
   std::fflush(stdout);
 }
 
+// Loads scenes at --size, or at the size that they state.
 LoadOptions benchLoading(const BenchOptions& options) {
   LoadOptions loading;
   if (!options.size.empty()) loading.filmSize = parseSize("--size", options.size);
@@ -61,6 +66,7 @@ RenderSettings benchSettings(const Scene& scene, const BenchOptions& options) {
 void forEachBenchCase(const BenchOptions& options, const std::vector<Method>& methods,
                       const std::function<void(const BenchCase&)>& measure) {
   for (const std::filesystem::path& file : benchSceneFiles(options)) {
+    // A scene is loaded once for all methods.
     const Scene scene = loadScene(file, benchLoading(options));
     for (const Method method : methods) {
       BenchCase one{.scene = scene, .file = file, .settings = benchSettings(scene, options)};
@@ -74,12 +80,14 @@ uint32_t benchThreads(const BenchOptions& options) {
   return options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
 }
 
+// Seconds of --duration, or what the mode takes by default.
 double benchSeconds(const BenchOptions& options, double unlessGiven) {
   return options.duration.empty() ? unlessGiven : parseDuration("--duration", options.duration);
 }
 
 void writeBenchJson(const BenchOptions& options, const std::string& kind, const nlohmann::ordered_json& figures) {
   if (options.json.empty()) return;
+  // The head that all results have. The figures follow at the same level.
   nlohmann::ordered_json all = {{"schema_version", kBenchSchemaVersion},
                                 {"kind", kind},
                                 {"version", kVersion},
@@ -91,6 +99,7 @@ void writeBenchJson(const BenchOptions& options, const std::string& kind, const 
 
 namespace {
 
+// The first mode that was asked for runs. Throughput is the default.
 int runBench(const BenchOptions& options) {
   if (!options.compare.empty()) return runBenchCompare(options);
   if (!options.against.empty()) return runBenchAgainst(options);
@@ -106,6 +115,7 @@ int runBench(const BenchOptions& options) {
 void addBenchCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<BenchOptions>();
   const Command command = program.add("bench", "measure speed, where it goes, and what it buys");
+  // Options of several modes.
   command.add("scenes", options->scenes, "built-in scenes or XML files; default: two Cornell boxes");
   command.add("--methods", options->methods, "methods, separated by commas; default: all").separatedByCommas();
   command.add("--duration", options->duration,
@@ -117,6 +127,7 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
       .between(1, 4096);
   command.addFlag("--pin", options->pin,
                   "bind threads to cores and spread shared memory over their nodes; not with the modes below");
+  // Comparison with another build, or of two stored results.
   command.add("--against", options->against, "compare with another build: the path of its wavecrest");
   command.add("--compare", options->compare, "compare two stored results of one machine: BEFORE.json AFTER.json")
       .exactly(2);
@@ -126,6 +137,7 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.add("--tolerance", options->tolerance, "--against, --compare: part of the speed that may be lost")
       .showDefault()
       .between(0.0, 0.9);
+  // The other modes and their own options.
   command.addFlag("--scaling", options->scaling,
                   "speedup over threads: measured here, and predicted up to 256 from the graph of tasks");
   command.add("--score", options->score, "one figure for this machine, from a fixed workload: small, medium or large");
@@ -144,6 +156,7 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.addFlag("--extremes", options->extremes, "take scenes and renders to their extremes, one property at a time");
   command.add("--html", options->html, "--extremes, --tradeoff: write a page with plots");
   command.run([options, &exitCode] {
+    // Options that do not go with the chosen mode are refused.
     const bool throughput = !options->extremes && !options->scaling && !options->tradeoff && !options->specialization &&
                             options->score.empty() && options->against.empty() && options->compare.empty();
     if (options->pin && !throughput) throw UsageError("--pin goes with none of bench's other modes; expected it alone");
@@ -154,6 +167,7 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
     if (!options->html.empty() && !options->tradeoff) {
       throw UsageError("--html goes with --extremes or --tradeoff; expected one of them");
     }
+    // Options of a single mode.
     if ((!options->knobs.empty() || options->seeds != 0) && !options->tradeoff) {
       throw UsageError("--knobs and --seeds go with --tradeoff; expected it");
     }

@@ -16,14 +16,17 @@
 namespace wavecrest {
 namespace {
 
+// CPU time per scene and method, both builds together, unless --duration says otherwise.
 constexpr double kAgainstSeconds = 20;
 
+// Progress in one line that overwrites itself; nothing where stderr is no terminal.
 void showRound(size_t done, size_t all) {
   if (isatty(STDERR_FILENO) == 0) return;
   fmt::print(stderr, "\rround {} of {}{}", done, all, done == all ? "\n" : "");
   std::fflush(stderr);
 }
 
+// A stored result of `bench --json`.
 nlohmann::json readResult(const std::string& file) {
   const std::vector<unsigned char> bytes = readFileBytes(file);
   nlohmann::json result = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
@@ -34,6 +37,7 @@ nlohmann::json readResult(const std::string& file) {
 }  // namespace
 
 int runBenchAgainst(const BenchOptions& options) {
+  // Checks options before anything is rendered. The size is passed on to both builds as text.
   if (access(options.against.c_str(), X_OK) != 0 || std::filesystem::is_directory(options.against)) {
     throw UsageError(fmt::format("--against {}: cannot be run; expected the path of a wavecrest", options.against));
   }
@@ -48,6 +52,7 @@ int runBenchAgainst(const BenchOptions& options) {
                          .more = {}};
   for (const Method method : benchMethods(options)) request.methods.emplace_back(toString(method));
   try {
+    // Measures; the exit code tells whether this build is slower.
     const AgainstResult result = runAgainst(request, showRound);
     printBench(options, toText(result));
     writeBenchJson(options, "against", toJson(result));

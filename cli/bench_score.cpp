@@ -16,6 +16,7 @@
 namespace wavecrest {
 namespace {
 
+// The hashes in a file that --write-hashes made.
 ImageHashes hashesIn(const std::string& file) {
   const std::vector<unsigned char> bytes = readFileBytes(file);
   try {
@@ -25,7 +26,7 @@ ImageHashes hashesIn(const std::string& file) {
   }
 }
 
-// --methods and --scene arguments leave a part of the workload: for tests, and to look closer.
+// The workload, or the part of it that has the named methods and scenes. A scene that is not in it is a UsageError.
 std::vector<ScoreEntry> chosenEntries(const BenchOptions& options, ScoreSize size) {
   std::vector<ScoreEntry> entries = workloadOf(size);
   const std::vector<Method> methods = benchMethods(options);
@@ -45,8 +46,8 @@ std::vector<ScoreEntry> chosenEntries(const BenchOptions& options, ScoreSize siz
   return entries;
 }
 
-// Renders what validates each entry on every instruction set but the scalar twin, and puts its hash into the file. What
-// the file has of other sizes and instruction sets stays.
+// Renders the image that validates each entry, on all instruction sets of this machine but scalar, and stores its hash
+// in the file. Hashes of other sizes and instruction sets stay.
 int writeHashes(const BenchOptions& options, ScoreSize size, uint32_t threads) {
   const std::string& file = options.writeHashes;
   ImageHashes hashes = std::filesystem::exists(file) ? hashesIn(file) : ImageHashes();
@@ -65,12 +66,14 @@ int writeHashes(const BenchOptions& options, ScoreSize size, uint32_t threads) {
 }  // namespace
 
 int runBenchScore(const BenchOptions& options) {
+  // Checks options; --write-hashes replaces the measurement.
   if (!options.size.empty() || !options.duration.empty()) {
     throw UsageError("--score has sizes and lengths of its own; expected neither --size nor --duration");
   }
   const auto size = static_cast<ScoreSize>(parseChoice("--score", options.score, kScoreSizeNames));
   const uint32_t threads = benchThreads(options);
   if (!options.writeHashes.empty()) return writeHashes(options, size, threads);
+  // The request: a workload, this machine, and where its scenes and references are.
   const ScoreRequest request{.size = size,
                              .entries = chosenEntries(options, size),
                              .isa = bestIsa(),
@@ -78,6 +81,7 @@ int runBenchScore(const BenchOptions& options) {
                              .sceneFile = findScene,
                              .references = sceneFolder() / "references"};
   printBench(options, scoreHeading(request));
+  // Measures. Each row is printed once it is measured.
   const ImageHashes hashes = options.hashes.empty() ? ImageHashes::committed() : hashesIn(options.hashes);
   const ScoreResult result =
       measureScore(request, hashes, [&](const ScoreRow& row) { printBench(options, toText(row)); });

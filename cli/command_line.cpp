@@ -11,12 +11,13 @@
 namespace wavecrest {
 namespace {
 
-// Options that a user may want to be the same in every call, and the variables that say so.
+// Options that can also be set by an environment variable, for users who want the same value in every call.
 constexpr std::pair<const char*, const char*> kVariables[] = {
     {"--threads", "WAVECREST_THREADS"},   {"--isa", "WAVECREST_ISA"},       {"--precision", "WAVECREST_PRECISION"},
     {"--progress", "WAVECREST_PROGRESS"}, {"--memory", "WAVECREST_MEMORY"}, {"--sampler", "WAVECREST_SAMPLER"},
     {"-m,--method", "WAVECREST_METHOD"},  {"--size", "WAVECREST_SIZE"},     {"--seed", "WAVECREST_SEED"}};
 
+// Connects an option to its environment variable, if it has one. name: as registered, "-m,--method".
 CLI::Option* withVariable(CLI::Option* option, const std::string& name) {
   for (const auto& [known, variable] : kVariables) {
     if (name == known) option->envname(variable);
@@ -35,7 +36,8 @@ std::vector<std::string> longNames(const CLI::App& app) {
 
 constexpr const char* kRange = "range";  // the validator that all numbers have
 
-// CLI11 itself would take "010" for 8, "nan" for a number in any range, and what is too large for the largest.
+// Lets the option take only numbers of this range. CLI11's own checks would read "010" as 8, accept "nan" in every
+// range and read a number that overflows as the largest one.
 Option withRange(CLI::Option* option, const NumberRange& range) {
   CLI::Validator* const validator = option->get_validator(kRange);
   validator->operation([range](std::string& word) { return checkNumber(range, word); });
@@ -43,6 +45,8 @@ Option withRange(CLI::Option* option, const NumberRange& range) {
   return Option(option);
 }
 
+// Adds a number option that takes all values of its type. The validator sees the word before CLI11 converts it, so it
+// can also rewrite the word.
 template <class Number>
 Option addNumber(CLI::App& app, const std::string& name, Number& value, const std::string& description) {
   CLI::Option* const option = withVariable(app.add_option(name, value, description), name);
@@ -51,7 +55,7 @@ Option addNumber(CLI::App& app, const std::string& name, Number& value, const st
   return Option(option);
 }
 
-// "--spp: 1 required UINT missing" for people.
+// Turns CLI11's "--spp: 1 required UINT missing" into "--spp: expected a value". Other texts stay as they are.
 std::string withoutTypes(const CLI::ArgumentMismatch& error) {
   std::string text = error.what();
   const size_t end = text.find(": "), required = text.find(" required");
@@ -60,6 +64,7 @@ std::string withoutTypes(const CLI::ArgumentMismatch& error) {
   return text.substr(0, end) + (count == "1" ? ": expected a value" : ": expected " + count + " values");
 }
 
+// Joins the lines of a message by spaces.
 std::string oneLine(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -108,6 +113,7 @@ void Command::run(std::function<void()> callback) const { app_->callback(std::mo
 CommandLine::CommandLine(const std::string& description, const std::string& name)
     : app_(std::make_unique<CLI::App>(description, name)) {
   app_->require_subcommand(1);
+  // An unknown key in the settings file is an error, so that misspelt options are noticed.
   app_->set_config("--config", "", "settings file (TOML): options of COMMAND under [COMMAND]");
   app_->allow_config_extras(CLI::config_extras_mode::error);
 }
@@ -130,33 +136,39 @@ std::vector<std::string> CommandLine::commandNames() const {
 void CommandLine::failParsing(const std::string& what) const {
   const std::vector<CLI::App*> commands = app_->get_subcommands();
   const std::string command = commands.empty() ? "" : " " + commands.front()->get_name();
+  // A word that CLI11 could not place: the message suggests the closest option of the command.
   for (const std::string& extra : app_->remaining(true)) {
     std::vector<std::string> known = longNames(commands.empty() ? *app_ : *commands.front());
     const std::string word = extra.substr(0, extra.find('='));
     throw UsageError("unknown argument '" + extra + "'" + didYouMean(word, known) + "; expected those of `wavecrest" +
                      command + " --help`");
   }
+  // Everything else: the message of CLI11.
   throw UsageError(oneLine(what) + "; see `wavecrest" + command + " --help`");
 }
 
 bool CommandLine::parse(std::vector<std::string> arguments, int& exitCode) {
+  // `help COMMAND` stands for `COMMAND --help`, and `help` for --help.
   const std::vector<std::string> names = commandNames();
   if (!arguments.empty() && arguments.front() == "help") {
     if (arguments.size() > 2) throw UsageError("help " + arguments[1] + " " + arguments[2] + ": expected one command");
     arguments =
         arguments.size() > 1 ? std::vector{arguments[1], std::string("--help")} : std::vector{std::string("--help")};
   }
+  // An unknown command gets a message with all commands and a suggestion.
   const bool isCommand = !arguments.empty() && !arguments.front().starts_with('-');
   if (isCommand && std::find(names.begin(), names.end(), arguments.front()) == names.end()) {
     throw UsageError("unknown command '" + arguments.front() + "'; expected one of " + CLI::detail::join(names, ", ") +
                      didYouMean(arguments.front(), names));
   }
-  std::reverse(arguments.begin(), arguments.end());  // CLI11 takes a stack
+  // CLI11 takes the arguments as a stack, the first one at the end.
+  std::reverse(arguments.begin(), arguments.end());
   try {
     app_->parse(std::move(arguments));
   } catch (const CLI::ArgumentMismatch& error) {
     failParsing(withoutTypes(error));
   } catch (const CLI::ParseError& error) {
+    // CLI11 throws for --help and --version too. These errors have the exit code of success.
     const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
     if (!asked) failParsing(error.what());
     app_->exit(error);

@@ -6,6 +6,7 @@
 namespace wavecrest {
 namespace {
 
+// The style is part of the page, which needs no other file.
 constexpr const char* kStyle = R"(
 :root { --paper: #fbfbf9; --ink: #1c2126; --soft: #5c666f; --line: #d9dcde; --best: #1a7340; }
 @media (prefers-color-scheme: dark) {
@@ -25,6 +26,7 @@ figure { margin: 0; }
 img { max-width: 100%; min-width: 128px; image-rendering: pixelated; border: 1px solid var(--line); }
 )";
 
+// Adds an image, embedded as PNG, with its caption.
 void addFigure(std::string& page, const Image8& image, const std::string& caption) {
   const std::vector<uint8_t> png =
       encodeImage({.label = {}, .width = image.width, .height = image.height, .rgb = image.pixels}, ImageCoding{});
@@ -32,7 +34,7 @@ void addFigure(std::string& page, const Image8& image, const std::string& captio
          base64(png), escapeHtml(caption), escapeHtml(caption));
 }
 
-// A row of the table: a metric's main score of every test, the best of several marked.
+// Adds a row of the table: a metric's main score of each test. With several tests the best is marked.
 void addScoreRow(std::string& page, const std::vector<MeasuredTest>& tests, size_t index) {
   const Metric& metric = *tests.front().scores[index].metric;
   const auto scoreOf = [&](const MeasuredTest& test) { return mainScore(metric, test.scores[index].measurement); };
@@ -45,12 +47,14 @@ void addScoreRow(std::string& page, const std::vector<MeasuredTest>& tests, size
          metric.higherIsBetter ? "more" : "less");
   for (const MeasuredTest& test : tests) {
     const double score = scoreOf(test);
+    // Tests with equal best scores are all marked.
     const bool marked = tests.size() > 1 && score == best;
     append(page, "<td{}>{}</td>", marked ? " class=\"best\"" : "", formatSignificant(score, 6));
   }
   page += "</tr>\n";
 }
 
+// Adds the table of scores: one column per test, one row per metric.
 void addTable(std::string& page, const std::vector<MeasuredTest>& tests) {
   page += "<div class=\"scroll\"><table><thead><tr><th></th>";
   for (const MeasuredTest& test : tests) append(page, "<th>{}</th>", escapeHtml(test.file));
@@ -65,14 +69,17 @@ void addTable(std::string& page, const std::vector<MeasuredTest>& tests) {
 
 std::string comparePage(const std::string& referenceFile, const Image8& reference,
                         const std::vector<MeasuredTest>& tests) {
+  // Head, and the table of all tests.
   std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n";
   page += "<meta name=\"viewport\" content=\"width=device-width\">\n";
   append(page, "<title>Against {}</title><style>{}</style></head><body>\n", escapeHtml(referenceFile), kStyle);
   append(page, "<h1>Against {}</h1>\n", escapeHtml(referenceFile));
   addTable(page, tests);
+  // The reference.
   page += "<h2>Reference</h2><div class=\"row\">\n";
   addFigure(page, reference, referenceFile);
   page += "</div>\n";
+  // Each test, with the map of every metric.
   for (const MeasuredTest& test : tests) {
     append(page, "<h2>{}</h2><div class=\"row\">\n", escapeHtml(test.file));
     addFigure(page, test.codes, test.file);

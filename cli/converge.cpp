@@ -25,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+// The library's options of a campaign, and those that only the command line has.
 struct ConvergeOptions : api::CampaignOptions {
   std::string progress = "auto", view;
   bool directPass = false;
@@ -32,12 +33,14 @@ struct ConvergeOptions : api::CampaignOptions {
 
 // ---- what people see ------------------------------------------------------------------------------------------------
 
+// "2h05m", "3m07s" or "12s", rounded to whole seconds.
 std::string durationText(double seconds) {
   const auto whole = static_cast<uint64_t>(std::max(seconds, 0.0) + 0.5);
   if (whole >= 3600) return fmt::format("{}h{:02}m", whole / 3600, whole / 60 % 60);
   return whole >= 60 ? fmt::format("{}m{:02}s", whole / 60, whole % 60) : fmt::format("{}s", whole);
 }
 
+// What is ahead, before the first run.
 void showPlan(ProgressKind kind, const CampaignPlan& plan) {
   if (kind == ProgressKind::none) return;
   if (kind == ProgressKind::jsonl) {
@@ -56,6 +59,7 @@ void showPlan(ProgressKind kind, const CampaignPlan& plan) {
   tell("{}", text);
 }
 
+// One line for a run that is over: the scores of its last snapshot, or why the method was refused.
 void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& progress) {
   if (kind == ProgressKind::none) return;
   if (kind == ProgressKind::jsonl) {
@@ -66,6 +70,7 @@ void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& pr
     tell("{}", line.dump());
     return;
   }
+  // As text, only the scores that most readers want.
   std::string outcome = run.reason;
   if (!run.snapshots.empty()) {
     const SnapshotRecord& last = run.snapshots.back();
@@ -79,11 +84,12 @@ void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& pr
        run.scene, run.method, run.seed, outcome);
 }
 
+// The last line after a signal.
 std::string stopLine(const ConvergeOptions& options) {
   return fmt::format("stopped; `wavecrest converge --out {} --resume` goes on", options.out);
 }
 
-// Null where none was asked for. Shows what earlier processes have done.
+// Starts the page of --view and shows runs of earlier processes on it. Null where no page was asked for.
 std::unique_ptr<CampaignView> openPage(const ConvergeOptions& options, const CampaignSettings& settings,
                                        ProgressKind kind) {
   if (options.view.empty()) return nullptr;
@@ -99,9 +105,11 @@ std::unique_ptr<CampaignView> openPage(const ConvergeOptions& options, const Cam
 }
 
 int runConverge(ConvergeOptions options) {
+  // Settings, of options and of the results file that the campaign goes on with.
   const CampaignSettings settings = begunCampaign(options);
   const fs::path results = resultsFile(settings);
   const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  // Page, signals and what is shown of the campaign.
   const std::unique_ptr<CampaignView> view = openPage(options, settings, kind);
   InterruptGuard guard(stopLine(options));
   const CampaignHooks hooks{.session = {.watch = [&](Session* session) { guard.watch(session); },
@@ -131,6 +139,7 @@ int runConverge(ConvergeOptions options) {
                                     tell("{}", line);
                                   }
                                 }};
+  // Runs the campaign.
   const bool complete = runCampaign(settings, campaignKeys(options, settings), hooks);
   if (view) view->showEnd(complete);
   if (!complete) {
@@ -138,7 +147,9 @@ int runConverge(ConvergeOptions options) {
     return kExitInterrupted;
   }
   fmt::print("{}\n", results.string());
-  if (settings.shard.count > 1) return kExitDone;  // the whole is judged and shown where all parts are read
+  // A shard is only a part. `wavecrest report` judges and shows all parts together.
+  if (settings.shard.count > 1) return kExitDone;
+  // Judges the findings and writes the report.
   const WrittenReport report = finishCampaign(settings);
   for (const fs::path& file : report.files) fmt::print("{}\n", file.string());
   return options.check ? showFindings(report.claims) : kExitDone;
@@ -149,9 +160,11 @@ int runConverge(ConvergeOptions options) {
 void addConvergeCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<ConvergeOptions>();
   const Command command = program.add("converge", "measure how methods converge: scenes x methods x seeds");
+  // Adds an option that is part of what the campaign is. Its words go into `defining` under its name.
   const auto defining = [&](const char* name, const char* description) {
     return command.add(name, options->defining[name], description);
   };
+  // What the campaign is: stored with the results, and compared with them by --resume.
   defining("scenes", "built-in scenes or XML files; default: the nine");
   defining("--methods", "methods, separated by commas; also mlt-pathspace, mlt-pssmlt, ppm-direct; default: all")
       .separatedByCommas();
@@ -177,6 +190,7 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   defining("--clock", "what a run is charged: wall, or cpu time over threads; both are stored; default: wall")
       .oneValue();
   defining("-D", "value of the scenes' $name: NAME=VALUE").repeatable();
+  // How this process runs it.
   command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
   command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--out", options->out, "folder of results.sqlite, images and references").showDefault();
@@ -188,10 +202,12 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
                   "go on with the campaign in --out, or extend it: more scenes, methods, seeds, time");
   command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
   command.run([options, command, &exitCode] {
+    // Registration has made an entry for every option. Only those that were given stay.
     for (const std::string_view name : campaignWords()) {
       if (!command.given(std::string(name))) options->defining.erase(std::string(name));
     }
     if (options->directPass) options->defining["--direct-pass"] = {"yes"};
+    // Whatever is wrong with files leaves as InputError.
     try {
       exitCode = runConverge(*options);
     } catch (const ReferenceError& error) {

@@ -15,12 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The scene is loaded with all that the file says (keepAll), also features that change no image.
 struct ConvertOptions {
   SceneOptions scene{.keepAll = true};
   std::string output, progress = "auto";
 };
 
-// The folder for meshes and bitmaps may exist, and files of ours in it are replaced.
+// Throws UsageError where the folder for meshes and bitmaps exists as a file. Files in an existing folder are replaced.
 void checkFolder(const SavePlan& plan) {
   std::error_code ignored;
   if (plan.files.size() > 1 && fs::exists(plan.folder, ignored) && !fs::is_directory(plan.folder, ignored)) {
@@ -30,6 +31,7 @@ void checkFolder(const SavePlan& plan) {
 }
 
 int runConvert(const ConvertOptions& options) {
+  // Checks names before the scene is loaded.
   const fs::path output = options.output;
   if (output.extension() != ".xml") {
     throw UsageError(fmt::format("-o {}: expected a name that ends in .xml", options.output));
@@ -41,14 +43,17 @@ int runConvert(const ConvertOptions& options) {
 
   const Scene scene = loadScene(options.scene, kind);
   printNotes(scene, kind);
+  // Plans all files of the output, and checks that none is a file of the scene.
   const SavePlan plan = planSave(scene, output);
   for (const std::string& input : scene.files) files.input("the scene", input);
   for (const SavedFile& file : plan.files) {
     if (file.path != output) files.laterOutput("-o", file.path);
   }
   checkFolder(plan);
+  // Writes the files.
   saveScene(plan);
   printNotes(plan.notes, kind);
+  // One of the files is the XML itself.
   const size_t assets = plan.files.size() - 1;
   fmt::print("{}: {} shapes, {} materials, {} lights{}\n", options.output, scene.shapes.size(), scene.materials.size(),
              scene.emitters.size(), assets == 0 ? "" : fmt::format("; {} files in {}", assets, plan.folder.string()));

@@ -10,7 +10,7 @@ namespace {
 
 using Values = std::vector<CompletionWords>;
 
-// An option or a place as all four formats need it.
+// An option, or a positional argument (place), as all four formats need it.
 struct OptionFacts {
   std::vector<std::string> names;  // "-o", "--output"; of a place its plain name
   std::string description;
@@ -23,14 +23,17 @@ struct CommandFacts {
   std::vector<OptionFacts> options;
 };
 
+// The facts of an option, with the words of `values` that complete it.
 OptionFacts factsOf(const CLI::Option& option, const Values& values) {
   OptionFacts facts;
+  // Names with their dashes; a positional argument has a plain name only.
   for (const std::string& name : option.get_snames()) facts.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) facts.names.push_back("--" + name);
   facts.place = facts.names.empty();
   if (facts.place) facts.names.push_back(option.get_name());
   facts.description = option.get_description();
   facts.takesValue = option.get_expected_max() > 0 && option.get_type_size_max() > 0;
+  // Words for its value, listed under one of its names.
   for (const CompletionWords& value : values) {
     const bool named = std::any_of(facts.names.begin(), facts.names.end(), [&](const std::string& name) {
       return std::find(value.names.begin(), value.names.end(), name) != value.names.end();
@@ -40,6 +43,7 @@ OptionFacts factsOf(const CLI::Option& option, const Values& values) {
   return facts;
 }
 
+// All commands with their options, in the order of their registration.
 std::vector<CommandFacts> commandsOf(const CLI::App& program, const Values& values) {
   std::vector<CommandFacts> all;
   for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
@@ -52,6 +56,7 @@ std::vector<CommandFacts> commandsOf(const CLI::App& program, const Values& valu
 
 // ---- man: roff ------------------------------------------------------------------------------------------------------
 
+// Escapes text for roff. A line that began with a period or an apostrophe would be read as a request.
 std::string roff(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -62,9 +67,11 @@ std::string roff(const std::string& text) {
 }
 
 std::string manPage(const CLI::App& program, const std::vector<CommandFacts>& commands, const std::string& version) {
+  // Name and synopsis.
   std::string page = fmt::format(".TH WAVECREST 1 \"\" \"wavecrest {}\"\n.SH NAME\nwavecrest \\- {}\n", version,
                                  roff(program.get_description()));
   page += ".SH SYNOPSIS\n.B wavecrest\n.I COMMAND\n[OPTIONS]\n.SH COMMANDS\n";
+  // A subsection for each command, a tagged paragraph for each option.
   for (const CommandFacts& command : commands) {
     page += fmt::format(".SS {}\n{}\n", roff(command.name), roff(command.description));
     for (const OptionFacts& option : command.options) {
@@ -82,6 +89,7 @@ std::string manPage(const CLI::App& program, const std::vector<CommandFacts>& co
 
 // ---- bash -----------------------------------------------------------------------------------------------------------
 
+// All names of all options of a command, separated by spaces.
 std::string optionNames(const CommandFacts& command) {
   std::string names;
   for (const OptionFacts& option : command.options) {
@@ -90,10 +98,12 @@ std::string optionNames(const CommandFacts& command) {
   return names;
 }
 
+// A shell function that completes by the command and by the word before the cursor.
 std::string bashCompletion(const std::vector<CommandFacts>& commands) {
   std::string names, cases;
   for (const CommandFacts& command : commands) {
     names += (names.empty() ? "" : " ") + command.name;
+    // After an option that takes a value: the words that it may be, else file names.
     std::string values, places;
     for (const OptionFacts& option : command.options) {
       if (option.place && option.words) places = fmt::format(" {}", fmt::join(*option.words, " "));
@@ -103,6 +113,7 @@ std::string bashCompletion(const std::vector<CommandFacts>& commands) {
                        : "COMPREPLY=($(compgen -f -- \"$word\"))";
       values += fmt::format("        {}) {}; return ;;\n", fmt::join(option.names, "|"), reply);
     }
+    // Elsewhere: option names after a dash, else files and the words of positional arguments.
     cases += fmt::format("    {})\n      case $before in\n{}      esac\n", command.name, values);
     cases += fmt::format("      if [[ $word == -* ]]; then COMPREPLY=($(compgen -W \"{}\" -- \"$word\"))\n",
                          optionNames(command));
@@ -125,7 +136,7 @@ complete -o filenames -F _wavecrest wavecrest
 
 // ---- zsh ------------------------------------------------------------------------------------------------------------
 
-// Inside single quotes, where a colon and brackets end a description.
+// Escapes text for a single-quoted spec of _arguments, where colons and brackets end a description.
 std::string zshText(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -135,6 +146,7 @@ std::string zshText(const std::string& text) {
   return out;
 }
 
+// The specs of an option, one per name, or of a positional argument. The asterisk allows repetition.
 std::string zshArgument(const OptionFacts& option) {
   const std::string action = option.words ? fmt::format("({})", fmt::join(*option.words, " ")) : "_files";
   if (option.place) {
@@ -152,6 +164,7 @@ std::string zshArgument(const OptionFacts& option) {
   return text;
 }
 
+// A shell function that completes the first word by commands, and the others by _arguments of the command.
 std::string zshCompletion(const std::vector<CommandFacts>& commands) {
   std::string names, cases;
   for (const CommandFacts& command : commands) {
@@ -187,6 +200,7 @@ _wavecrest "$@"
 
 // ---- fish -----------------------------------------------------------------------------------------------------------
 
+// Escapes text for fish's single quotes.
 std::string fishText(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -196,6 +210,7 @@ std::string fishText(const std::string& text) {
   return out;
 }
 
+// One `complete` line for each command and for each option of a command.
 std::string fishCompletion(const std::vector<CommandFacts>& commands) {
   std::string text = "# fish completion of wavecrest; printed by `wavecrest describe fish`\n";
   for (const CommandFacts& command : commands) {
@@ -209,6 +224,7 @@ std::string fishCompletion(const std::vector<CommandFacts>& commands) {
         continue;
       }
       std::string names;
+      // -l is for names after two dashes, -s for single letters, -o for longer names after one dash.
       for (const std::string& name : option.names) {
         names +=
             name.starts_with("--") ? " -l " + name.substr(2) : (name.size() == 2 ? " -s " : " -o ") + name.substr(1);

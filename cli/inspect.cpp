@@ -14,6 +14,7 @@
 namespace wavecrest {
 namespace {
 
+// The options as written on the command line.
 struct InspectOptions {
   SceneOptions scene;
   std::string precision = "float", accel = "auto", instances = "auto";
@@ -21,6 +22,7 @@ struct InspectOptions {
   bool json = false;
 };
 
+// Names as the options and the JSON spell them.
 std::string name(Specialization specialization) {
   return std::string(kSpecializationNames[static_cast<size_t>(specialization)]);
 }
@@ -29,14 +31,17 @@ std::string name(Verdict verdict) { return std::string(kVerdictNames[static_cast
 
 // ---- text -----------------------------------------------------------------------------------------------------------
 
+// "1 dielectric, 2 diffuse"; "none" for an empty map.
 std::string listed(const std::map<std::string, size_t>& counts) {
   std::string text;
   for (const auto& [kind, count] : counts) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, kind);
   return text.empty() ? "none" : text;
 }
 
+// Decimal megabytes (10^6 bytes) without the unit.
 std::string megabytes(size_t bytes) { return fmt::format("{:.2f}", static_cast<double>(bytes) / 1e6); }
 
+// One line for each kind of fact about the scene, then what kernels and intersector it gets.
 void printFacts(const Scene& scene, const SceneInspection& facts) {
   const BoundingSphere& bounds = facts.bounds;
   std::string needs;
@@ -58,6 +63,8 @@ void printFacts(const Scene& scene, const SceneInspection& facts) {
              needs.empty() ? "nothing but diffuse surfaces" : needs, name(facts.accel), nodes, facts.bytesPerPrimitive);
 }
 
+// One row per method: its kernels and the memory of a render. A method that cannot render the scene has the reason
+// instead.
 void printMemory(const SceneInspection& facts) {
   fmt::print("memory, MB (light vertices and photon map from a few waves of light paths)\n");
   fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>9}\n", "method", "kernels",
@@ -75,6 +82,7 @@ void printMemory(const SceneInspection& facts) {
   }
 }
 
+// One row per path class and one column per method. The last line names the method for references.
 void printClasses(const PathClassTable& table) {
   fmt::print("\npaths from light to eye (A lamp or sky, P point, spot or sun, D diffuse or rough, S smooth, E eye)\n");
   fmt::print("{:<16}", "class");
@@ -95,7 +103,9 @@ void printNoteList(const std::vector<Note>& notes) {
   for (const Note& note : notes) fmt::print("{}\n", toString(note));
 }
 
+// Prints what inspectScene finds, as text or JSON. Nothing is rendered.
 int runInspect(const InspectOptions& options) {
+  // Of the planned render only the settings that decide kernels, intersector and memory are needed.
   RenderSettings settings;
   settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
   settings.accel = static_cast<Accel>(parseChoice("--accel", options.accel, kAccelNames));
@@ -103,8 +113,10 @@ int runInspect(const InspectOptions& options) {
   settings.isa = bestIsa();
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
+  // Scene and facts.
   const Scene scene = loadScene(options.scene);
   const SceneInspection facts = inspectScene(scene, settings);
+  // Output: one JSON object, or text.
   if (options.json) {
     fmt::print("{}\n", inspectionJson(scene, facts).dump(2));
     return kExitDone;

@@ -11,15 +11,19 @@
 namespace wavecrest {
 namespace {
 
-// Handlers may only use what is lock-free.
+// State that the handlers share with the guard; handlers may use only what is lock-free. watched: the session that
+// renders, or null. endsAtOnce: the guard is idle.
 std::atomic<Session*> watched{nullptr};
 std::atomic<bool> endsAtOnce{false}, saveWanted{false}, pauseWanted{false};
 std::atomic<int64_t> firstRequest{0};  // milliseconds on the monotonic clock; 0: none yet
 static_assert(std::atomic<Session*>::is_always_lock_free && std::atomic<int64_t>::is_always_lock_free);
+// Set before the handlers are installed. Handlers only read it.
 std::string endLine;
 
+// A Ctrl-C that comes more than this after the first request ends the program at once.
 constexpr int64_t kImpatience = 1000;  // milliseconds
 
+// Time on the monotonic clock; never 0, which means that there was no request.
 int64_t milliseconds() {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
@@ -27,23 +31,28 @@ int64_t milliseconds() {
 }
 
 void onStop(int signal) {
+  // Idle: nothing can be lost.
   if (endsAtOnce.load()) {
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, endLine.data(), endLine.size());
     _exit(kExitInterrupted);
   }
   Session* const session = watched.load();
+  // The first request is noted. Where there was one before, `none` then holds its time.
   int64_t none = 0;
   const int64_t now = milliseconds();
   if (!firstRequest.compare_exchange_strong(none, now) && signal == SIGINT && session != nullptr &&
       now - none > kImpatience) {
     _exit(kExitInterrupted);
   }
+  // Otherwise the session returns once the waves under way are done.
   if (session != nullptr) session->interrupt();
 }
 
 // Whether the session is to return: to end, to be saved or to pause.
 bool isWanted() { return firstRequest.load() != 0 || saveWanted.load() || pauseWanted.load(); }
 
+// Stores the reason before the interrupt, because the thread that renders looks for the reason once the session
+// returns.
 void pauseFor(std::atomic<bool>& reason) {
   reason.store(true);
   if (Session* const session = watched.load()) session->interrupt();
@@ -65,7 +74,7 @@ InterruptGuard::InterruptGuard(const std::string& lineAtEnd) {
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
     sigaction(kSignals[i], &action, &previous_[i]);
-    // nohup stays in force.
+    // Under nohup SIGHUP is ignored. That stays so.
     if (kSignals[i] == SIGHUP && previous_[i].sa_handler == SIG_IGN) sigaction(SIGHUP, &previous_[i], nullptr);
   }
 }
@@ -92,6 +101,7 @@ bool InterruptGuard::takePauseRequest() { return pauseWanted.exchange(false); }
 void InterruptGuard::goOn() {
   Session* const session = watched.load();
   if (session == nullptr) return;
+  // resume() also erases the interrupt of a request that has just come, so that interrupt is repeated.
   session->resume();
   if (isWanted()) session->interrupt();
 }

@@ -14,17 +14,19 @@
 namespace wavecrest {
 namespace {
 
+// What is wrong with an address; empty if nothing is. leastPort: 0 where the system may choose a port, else 1.
 std::string checkAddress(const std::string& word, int leastPort) {
   const std::optional<HostPort> address = parseHostPort(word);
   if (address && address->port >= leastPort) return {};
   return fmt::format("'{}' is no address; expected PORT or HOST:PORT", word);
 }
 
-// Looks of one scene by several methods lie side by side in tev.
+// The name of the image in tev. It tells methods and seeds apart, so tev shows their images side by side.
 std::string nameInTev(const Scene& scene, const RenderSettings& settings) {
   return fmt::format("{} {} seed {}", scene.name, toString(settings.method), settings.seed);
 }
 
+// Starts the server of --view. The facts are shown on the page.
 std::unique_ptr<RenderView> openPage(const HostPort& address, const Scene& scene, const RenderSettings& settings,
                                      const FilmArea& film) {
   const nlohmann::ordered_json facts = {{"scene", scene.name},
@@ -49,6 +51,7 @@ void addViewOption(const Command& command, std::string& view) {
       .checkedBy([](const std::string& word) { return checkAddress(word, 0); });
 }
 
+// tev listens at its address, so the port cannot be 0 there.
 void addLiveOptions(const Command& command, LiveOptions& options) {
   command.add("--tev", options.tev, "show the image under way in the viewer tev, which listens at HOST:PORT")
       .valueOr(kTevAddress)
@@ -57,11 +60,13 @@ void addLiveOptions(const Command& command, LiveOptions& options) {
 }
 
 void tellPage(ProgressKind kind, const std::string& url) {
+  // Without the address nobody could open the page, so it is shown even where progress is off.
   noteLine(kind == ProgressKind::none ? ProgressKind::automatic : kind, {{"view", url}}, "view: " + url);
 }
 
 LiveRender::LiveRender(const LiveOptions& options, const Scene& scene, const RenderSettings& settings,
                        ProgressKind kind, std::unique_ptr<Session>& session) {
+  // Starts what was asked for: page, viewer or both.
   if (!options.view.empty()) {
     view_ = openPage(*parseHostPort(options.view), scene, settings, session->film().area());
     tellPage(kind, view_->url());
@@ -70,7 +75,9 @@ LiveRender::LiveRender(const LiveOptions& options, const Scene& scene, const Ren
     tev_ = std::make_unique<TevViewer>(*parseHostPort(options.tev), nameInTev(scene, settings),
                                        [kind](const std::string& text) { warn(kind, text); });
   }
+  // Without page and viewer the session stays as it is.
   if (!view_ && !tev_) return;
+  // The session is replaced by one that takes looks and hands each to page and viewer.
   auto watched =
       std::make_unique<WatchedSession>(std::move(session), settings, [this](const std::shared_ptr<const Look>& look) {
         if (view_) view_->take(look);
@@ -80,6 +87,7 @@ LiveRender::LiveRender(const LiveOptions& options, const Scene& scene, const Ren
   session = std::move(watched);
 }
 
+// Here, because only this file knows the complete types of viewer and page.
 LiveRender::~LiveRender() = default;
 
 Session& LiveRender::interruptible(Session& session) const {

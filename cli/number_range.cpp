@@ -17,12 +17,13 @@ std::optional<Number> read(std::string_view word) {
   return error == std::errc() && rest == word.data() + word.size() ? std::optional(number) : std::nullopt;
 }
 
-// As it is written: digits after perhaps a minus.
+// Whether a word has the form of a whole number: digits, perhaps after a minus.
 bool isWritten(const WholeRange&, std::string_view word) {
   if (word.starts_with('-')) word.remove_prefix(1);
   return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
+// Whether a word has the form of a number. So has a number that overflows: it is out of range.
 bool isWritten(const RealRange&, std::string_view word) {
   double number = 0;
   const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
@@ -30,6 +31,7 @@ bool isWritten(const RealRange&, std::string_view word) {
   return isNumber && word.find_first_of("0123456789") != std::string_view::npos;  // not nan, not inf
 }
 
+// Whether the number is in the range, or is the one exception (`also`).
 bool contains(const WholeRange& range, std::string_view word) {
   const std::optional<int64_t> number = read<int64_t>(word);
   if (number && (number == range.also || *number < 0)) return number == range.also || *number >= range.low;
@@ -42,6 +44,7 @@ bool contains(const RealRange& range, std::string_view word) {
   return number && *number >= range.low && *number <= range.high;
 }
 
+// Removes leading zeros; the last digit stays.
 void normalise(const WholeRange&, std::string& word) {
   const size_t sign = word.starts_with('-') ? 1 : 0;
   const size_t digit = std::min(word.find_first_not_of('0', sign), word.size() - 1);
@@ -49,6 +52,7 @@ void normalise(const WholeRange&, std::string& word) {
 }
 void normalise(const RealRange&, std::string&) {}
 
+// text() and kind(): the range and what its numbers are called, for messages.
 std::string text(const WholeRange& range) {
   const std::string also = range.also ? fmt::format(", or {}", *range.also) : "";
   if (range.low > 0 && range.high == std::numeric_limits<uint64_t>::max()) return fmt::format("{} or more", range.low);
@@ -66,6 +70,7 @@ std::string describe(const NumberRange& range) {
 }
 
 std::string checkNumber(const NumberRange& range, std::string& word) {
+  // from_chars takes no plus, so it is removed.
   const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
   if (plus) word.erase(0, 1);
   return std::visit(

@@ -13,15 +13,17 @@
 namespace wavecrest {
 namespace {
 
+// automatic becomes a bar on a terminal and none elsewhere; other kinds stay.
 ProgressKind resolved(ProgressKind kind) {
   if (kind != ProgressKind::automatic) return kind;
   return isatty(STDERR_FILENO) != 0 ? ProgressKind::bar : ProgressKind::none;
 }
 
+// Time between two updates. Columns of the longest bar, and of the text beside it.
 constexpr auto kInterval = std::chrono::milliseconds(250);
 constexpr size_t kWidestBar = 40, kTextWidth = 40;
 
-// Of the bar, such that its line fits the terminal; 0 leaves it out.
+// Columns of the bar for which its line fits the terminal. 0: there is no room for a bar.
 size_t barWidth() {
   winsize size{};
   if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return kWidestBar;
@@ -36,6 +38,7 @@ void noteLine(ProgressKind kind, const nlohmann::ordered_json& line, const std::
 }
 
 void warn(ProgressKind kind, const std::string& text) {
+  // Warnings are shown even where progress is off.
   noteLine(kind == ProgressKind::none ? ProgressKind::automatic : kind, {{"warning", text}}, "warning: " + text);
 }
 
@@ -44,6 +47,7 @@ Progress::Progress(ProgressKind kind, const Session& session, std::optional<doub
     : kind_(resolved(kind)), session_(session), seconds_(seconds), paths_(paths) {
   if (kind_ == ProgressKind::none) return;
   thread_ = std::thread([this] {
+    // Sleeps in short steps, so that the destructor does not wait for a whole interval.
     while (!done_.load()) {
       show(false);
       for (int tick = 0; tick < 10 && !done_.load(); ++tick) std::this_thread::sleep_for(kInterval / 10);
@@ -58,16 +62,19 @@ Progress::~Progress() {
 }
 
 void Progress::show(bool last) const {
+  // The larger fraction counts, because the render ends at the first goal that it reaches.
   const double now = session_.progressSeconds();
   const uint64_t paths = session_.progressPaths();
   double fraction = 0;
   if (seconds_) fraction = std::max(fraction, now / *seconds_);
   if (paths_) fraction = std::max(fraction, static_cast<double>(paths) / static_cast<double>(*paths_));
   fraction = std::min(fraction, 1.0);
+  // JSON: one line for each update.
   if (kind_ == ProgressKind::jsonl) {
     tell(R"({{"fraction":{:.4f},"render_seconds":{:.3f},"paths":{}}})", fraction, now, paths);
     return;
   }
+  // Bar: the line overwrites itself.
   const size_t width = barWidth();
   const auto filled = static_cast<size_t>(fraction * static_cast<double>(width));
   const std::string bar = width == 0 ? "" : "[" + std::string(filled, '=') + std::string(width - filled, ' ') + "] ";
@@ -87,6 +94,7 @@ WritingProgress::~WritingProgress() {
 
 void WritingProgress::show(double fraction) {
   const auto now = std::chrono::steady_clock::now();
+  // Skips updates that come too early. The last update of a file that was shown before is never skipped.
   if (kind_ == ProgressKind::none || (now < next_ && !(shown_ && fraction >= 1))) return;
   next_ = now + kInterval;
   shown_ = true;

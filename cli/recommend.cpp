@@ -15,6 +15,7 @@
 namespace wavecrest {
 namespace {
 
+// The options as written on the command line.
 struct RecommendOptions {
   SceneOptions scene;
   std::vector<std::string> methods;
@@ -24,6 +25,7 @@ struct RecommendOptions {
   bool json = false;
 };
 
+// The methods of --methods; by default all.
 std::vector<Method> recommendMethods(const RecommendOptions& options) {
   std::vector<Method> methods;
   for (const std::string& word : options.methods) methods.push_back(parseMethodOption("--methods", word));
@@ -34,6 +36,7 @@ std::vector<Method> recommendMethods(const RecommendOptions& options) {
 }
 
 void runRecommend(const RecommendOptions& options) {
+  // Options are checked before the scene is loaded.
   const RecommendRequest request{
       .targetSsim = options.targetSsim,
       .seconds = parseDuration("--budget", options.budget),
@@ -41,15 +44,18 @@ void runRecommend(const RecommendOptions& options) {
       .clock = static_cast<PilotClock>(parseChoice("--clock", options.clock, kPilotClockNames))};
   const Scene scene = loadScene(options.scene);
   const FilmArea area = filmArea(scene.film);
+  // The target is an SSIM, so the film must be large enough for one.
   if (std::min(area.width, area.height) < kSsimSmallestSide) {
     throw UsageError(fmt::format("recommend: a film of {}x{} is too small for SSIM; expected at least {} pixels a side",
                                  area.width, area.height, kSsimSmallestSide));
   }
+  // Settings of all pilots.
   RenderSettings settings;
   settings.isa = bestIsa();
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   const Recommendation result = recommend(scene, settings, request);
+  // Output: JSON, or a paragraph and a table.
   fmt::print("{}", options.json ? toJson(result).dump(2) + "\n" : toText(result));
 }
 

@@ -23,8 +23,10 @@
 namespace wavecrest {
 namespace {
 
+// The goal where no other is asked for.
 constexpr double kDefaultRelativeError = 0.01;
 
+// The options as written on the command line; 0 or empty: not given.
 struct ReferenceOptions {
   SceneOptions scene;
   std::string method = "auto", time, sampler = "independent", precision = "float", isa = "auto", output;
@@ -36,7 +38,7 @@ struct ReferenceOptions {
   bool quiet = false;
 };
 
-// Said once in a while; on a terminal in one line that is written over.
+// One line for each look at the goal. On a terminal it overwrites the line before.
 void showAdvance(ProgressKind kind, const ReferenceInfo& info) {
   if (kind == ProgressKind::none) return;
   if (kind == ProgressKind::jsonl) {
@@ -49,11 +51,13 @@ void showAdvance(ProgressKind kind, const ReferenceInfo& info) {
                           info.renderSeconds, info.iterations, info.relativeError, bar ? " " : "\n"));
 }
 
+// The method that was named, or the one that suits the scene's path classes (METHODS 8.3).
 ReferenceChoice chosenMethod(const ReferenceOptions& options, const Scene& scene) {
   if (options.method == "auto") return classifyPaths(scene).reference;
   return {.method = parseMethodOption("--method", options.method), .biased = false, .reason = "asked for"};
 }
 
+// Settings of both halves. settings.seed becomes a seed for each of them (referenceSeed).
 RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, Method method) {
   RenderSettings settings;
   settings.method = method;
@@ -67,6 +71,7 @@ RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, 
   return settings;
 }
 
+// All goals that were asked for. The first that is reached ends the render.
 ReferenceGoal goalOf(const ReferenceOptions& options) {
   ReferenceGoal goal;
   if (options.relativeError > 0) goal.relativeError = options.relativeError;
@@ -76,6 +81,7 @@ ReferenceGoal goalOf(const ReferenceOptions& options) {
   return goal;
 }
 
+// Only EXR has layers for the difference of the halves.
 void requireExr(std::string_view option, const std::filesystem::path& file) {
   if (file.extension() == ".exr") return;
   throw UsageError(
@@ -83,6 +89,7 @@ void requireExr(std::string_view option, const std::filesystem::path& file) {
 }
 
 int runReference(const ReferenceOptions& options) {
+  // Checks options and file names before anything takes time.
   const std::filesystem::path scenePath = findScene(options.scene.scene);
   const std::string output = options.output.empty() ? scenePath.stem().string() + ".reference.exr" : options.output;
   requireExr("-o", output);
@@ -96,6 +103,7 @@ int runReference(const ReferenceOptions& options) {
   const auto kind = options.quiet
                         ? ProgressKind::none
                         : static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  // Loads the scene and chooses the method.
   InterruptGuard guard("wavecrest: interrupted while loading; " + output + " is as it was");
   const Scene scene = loadScene(options.scene, kind);
   printNotes(scene, kind);
@@ -105,6 +113,8 @@ int runReference(const ReferenceOptions& options) {
   noteLine(kind, {{"method", toString(method.method)}, {"reason", method.reason}},
            fmt::format("{} by {}: {}", scene.name, toString(method.method), method.reason));
 
+  // SIGUSR1 interrupts one half. The request waits in saveNow until both halves have the same number of iterations, as
+  // only then can the reference be saved.
   bool saveNow = false;
   const ReferenceHooks hooks{.session = {.watch = [&](Session* session) { guard.watch(session); },
                                          .goesOn =
@@ -119,12 +129,14 @@ int runReference(const ReferenceOptions& options) {
                              .saveNow = [&] { return std::exchange(saveNow, false) || guard.takeSaveRequest(); },
                              .advance = [&](const ReferenceInfo& info) { showAdvance(kind, info); }};
   try {
+    // Renders both halves. renderReference writes the file, also after a signal.
     const Reference reference = renderReference(scene, settings, method.reason, goal, output, hooks);
     if (reference.info.iterations == 0) {
       tell("wavecrest: interrupted before anything was rendered; no reference was written");
       return kExitInterrupted;
     }
     if (!options.compact.empty() && !guard.interrupted()) writeCompactReference(options.compact, reference);
+    // Shows how good the reference is.
     fmt::print("{}: {} iterations of each half, {:.1f} s, relative error {:.5f}\n", output, reference.info.iterations,
                reference.info.renderSeconds, reference.info.relativeError);
     for (const auto& [name, value] : reference.noiseFloors) fmt::print("noise floor {:8} {:.6g}\n", name, value);
@@ -135,6 +147,7 @@ int runReference(const ReferenceOptions& options) {
     for (const std::string& floor : unmetFloors(reference.noiseFloors)) {
       warn(kind, fmt::format("{}: {}; render it for longer", output, floor));
     }
+    // Checks it against another reference of the scene.
     if (!options.agreeWith.empty() && !guard.interrupted()) {
       const Agreement agreement = compareReferences(reference, readReference(options.agreeWith));
       fmt::print("{} and {} {}\n", output, options.agreeWith, agreement.describe());
@@ -159,6 +172,7 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<ReferenceOptions>();
   const Command command = program.add("reference", "render a scene's reference image, or go on with it");
   addSceneOptions(command, options->scene);
+  // Method and goals.
   command.add("-m,--method", options->method, "auto: by the scene's classes of paths; or a method").showDefault();
   command
       .add("--until-relative-error", options->relativeError,
@@ -166,6 +180,7 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
       .between(1e-9, 1.0);
   command.add("--time", options->time, "stop after this much render time in all: 10m, 6h");
   command.add("--spp", options->spp, "stop after N iterations of each half").atLeast(1);
+  // Settings.
   command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
   command.add("--seed", options->seed, "seed of both halves, which differ in its high word").between(0, 0xffffffff);
   command.add("--sampler", options->sampler, "independent or sobol").showDefault();
@@ -173,6 +188,7 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
       .showDefault();
   command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--radius", options->radius, "first merge radius of ppm, bpm and vcm").showDefault().between(1e-9, 10.0);
+  // Outputs and checks.
   command.add("-o,--output", options->output, "EXR file; default: SCENE.reference.exr; goes on if it exists");
   command.add("--compact", options->compact,
               "EXR file: the same in half floats, a seventh of the size; to measure against, not to go on with");

@@ -19,14 +19,16 @@
 namespace wavecrest {
 namespace {
 
+// The options as written on the command line.
 struct ReportOptions {
   std::vector<std::string> paths;
   ReportFiles files;
   bool check = false, judge = false;
 };
 
-// Judges the findings by today's conditions, and stores the verdicts in place of the old ones.
+// Judges the study's findings by this program's conditions, and stores the verdicts in place of the old ones.
 void judgeAnew(const std::vector<std::filesystem::path>& paths) {
+  // A folder stands for the results file in it.
   const std::filesystem::path file = std::filesystem::is_directory(paths[0]) ? paths[0] / kResultsFile : paths[0];
   if (paths.size() > 1 || !std::filesystem::is_regular_file(file)) {
     throw UsageError("--judge: stores verdicts in one results file; expected the folder of one campaign");
@@ -50,13 +52,16 @@ void addReportCommand(CommandLine& program, int& exitCode) {
   command.addFlag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");
   command.addFlag("--judge", options->judge, "judge the study's findings anew, by the conditions of this program");
   command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");
+  // Whatever is wrong with the input leaves as InputError.
   command.run([options, &exitCode] {
     exitCode = kExitDone;
     const std::vector<std::filesystem::path> paths(options->paths.begin(), options->paths.end());
     try {
+      // The verdicts come first, because the report shows them.
       if (options->judge) judgeAnew(paths);
       const WrittenReport report = writeReport(paths, options->files);
       for (const auto& file : report.files) fmt::print("{}\n", file.string());
+      // --check: the exit code tells whether all findings hold.
       if (!options->check) return;
       if (report.claims.empty()) {
         throw InputError(options->paths[0] + ": holds no judged finding; expected a campaign by time that is over");

@@ -11,6 +11,7 @@
 namespace wavecrest {
 namespace {
 
+// The reference of --until-ssim. It must have the size of the film, which must be large enough for SSIM.
 std::unique_ptr<PreparedReference> readReference(const std::string& name, const FilmArea& film) {
   if (std::min(film.width, film.height) < kSsimSmallestSide) {
     throw UsageError(fmt::format("--until-ssim: a film of {}x{} is too small; expected at least {} pixels a side",
@@ -24,6 +25,7 @@ std::unique_ptr<PreparedReference> readReference(const std::string& name, const 
   return std::make_unique<PreparedReference>(name, std::move(file));
 }
 
+// The error and its confidence interval as text. reached: as renderUntilError returns it.
 std::string describeError(const nlohmann::ordered_json& reached) {
   if (reached["relative_error"].is_null()) return "relative error not known yet";
   return fmt::format("relative error {:.3g}, {:.3g} to {:.3g} with {:.0f} % confidence",
@@ -35,16 +37,19 @@ std::string describeError(const nlohmann::ordered_json& reached) {
 
 UntilGoal::UntilGoal(const UntilRequest& request, const RenderSettings& settings, const FilmArea& film)
     : request_(request) {
+  // Options that do not fit together.
   if ((request.ssim == 0) != request.reference.empty()) {
     throw UsageError("--until-ssim and --reference: one without the other; expected both or neither");
   }
   if (request.ssim > 0 && request.relativeError > 0) {
     throw UsageError("--until-ssim and --until-relative-error: two goals; expected one of them");
   }
+  // An SSIM goal needs its reference.
   if (request.ssim > 0) {
     reference_ = readReference(request.reference, film);
     return;
   }
+  // An error goal needs independent iterations.
   if (const std::string reason = whyNoFilmError(settings); !reason.empty()) {
     throw UsageError(
         fmt::format("--until-relative-error: {}; expected another method or --sampler independent", reason));
@@ -52,12 +57,14 @@ UntilGoal::UntilGoal(const UntilRequest& request, const RenderSettings& settings
 }
 
 nlohmann::ordered_json UntilGoal::render(Session& session, const RenderSettings& settings) {
+  // Only an SSIM goal has a reference.
   if (!reference_) return renderUntilError(session, settings);
   const SsimNow now = renderUntilSsim(session, settings, {.reference = *reference_, .ssim = request_.ssim});
   return {{"reached", now.reached}, {"iterations", now.iterations}, {"ssim", now.ssim}, {"ssim_goal", request_.ssim}};
 }
 
 nlohmann::ordered_json UntilGoal::renderUntilError(Session& session, const RenderSettings& settings) {
+  // An error that is not known yet is null.
   using Json = nlohmann::ordered_json;
   const ErrorNow now = error_.renderUntil(session, settings, request_.relativeError);
   return {{"reached", now.reached},

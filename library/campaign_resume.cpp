@@ -19,7 +19,7 @@ namespace {
 using api::CampaignOptions;
 using Words = std::vector<std::string>;
 
-// The words of a list option, its default spelt out.
+// The words of "scenes" or "--methods"; where the option was not given, all names that it stands for by default.
 Words listed(const CampaignOptions& options, const std::string& name) {
   if (const auto given = options.defining.find(name); given != options.defining.end()) return given->second;
   Words words;
@@ -31,7 +31,8 @@ Words listed(const CampaignOptions& options, const std::string& name) {
   return words;
 }
 
-// Whether every run of `after` takes at least as long as the same run of `before`, all else being equal.
+// Whether every run of `after` has at least the time or the iterations of the same run of `before`. Both have the same
+// scenes.
 bool isLonger(const CampaignOptions& before, const CampaignOptions& after) {
   const CampaignSettings a = campaignSettings(before), b = campaignSettings(after);
   if (a.iterations.has_value() != b.iterations.has_value()) return false;
@@ -45,6 +46,7 @@ bool isLonger(const CampaignOptions& before, const CampaignOptions& after) {
 // `before` with the words of one option, if that makes the campaign larger. Otherwise nothing.
 std::optional<CampaignOptions> extended(const CampaignOptions& before, const std::string& name, const Words& words) {
   CampaignOptions after = before;
+  // Scenes and methods: new words are appended. Nothing is removed.
   if (name == "scenes" || name == "--methods") {
     Words all = listed(before, name);
     const size_t known = all.size();
@@ -54,6 +56,7 @@ std::optional<CampaignOptions> extended(const CampaignOptions& before, const std
     after.defining[name] = all;
     return all.size() > known ? std::optional(after) : std::nullopt;
   }
+  // Other options: the new value must ask for more. Options without an order cannot change.
   after.defining[name] = words;
   if (name == "--seeds") {
     return campaignSettings(after).seeds > campaignSettings(before).seeds ? std::optional(after) : std::nullopt;
@@ -67,13 +70,17 @@ std::optional<CampaignOptions> extended(const CampaignOptions& before, const std
 
 void resumeCampaign(CampaignOptions& options, const std::filesystem::path& results) {
   const FileLock lock(results);
-  const ResultsStore whole(results);  // also where a process died before it had made the tables
+  // Makes the tables where an earlier process died before it had made them.
+  const ResultsStore whole(results);
+  // Reads with which options the campaign began.
   const CampaignResults before = readResults(results);
   const auto stored = before.campaign.find("options");
-  if (stored == before.campaign.end()) return;  // it died before it began
+  // Without options the earlier process died before its first run, so the campaign begins with the given ones.
+  if (stored == before.campaign.end()) return;
   CampaignOptions all = options;
   all.defining = nlohmann::json::parse(stored->second).get<std::map<std::string, Words>>();
   const std::map<std::string, Words> begun = all.defining;
+  // Each option that is given again must be the same, or make the campaign larger.
   for (const auto& [name, words] : options.defining) {
     const auto known = begun.find(name);
     if (known != begun.end() && known->second == words) continue;

@@ -10,11 +10,13 @@
 namespace wavecrest {
 namespace {
 
+// The words of an option; null where it was not given.
 const std::vector<std::string>* given(const CampaignWords& words, const char* name) {
   const auto found = words.find(name);
   return found == words.end() || found->second.empty() ? nullptr : &found->second;
 }
 
+// The variants of mlt that are rows of the campaign: those of --mlt, or by the profile mmlt and perhaps path space.
 std::vector<MetropolisVariant> chosenVariants(const CampaignWords& words, const Profile& profile) {
   std::vector<MetropolisVariant> variants;
   if (const auto* named = given(words, "--mlt")) {
@@ -28,8 +30,8 @@ std::vector<MetropolisVariant> chosenVariants(const CampaignWords& words, const 
   return variants;
 }
 
-// The rows that a word of --methods asks for: a method with all that the profile and options make of it, or one row by
-// its own name.
+// The rows for a word of --methods. A plain method has all rows that the profile and the options give it. The name of a
+// row ("mlt-pathspace", "ppm-direct") stands for that row alone.
 std::vector<CampaignMethod> rowsOfWord(const std::string& word, const std::vector<MetropolisVariant>& variants,
                                        DirectPass directPass) {
   for (const MetropolisVariant variant : {MetropolisVariant::pathspace, MetropolisVariant::pssmlt}) {
@@ -41,8 +43,10 @@ std::vector<CampaignMethod> rowsOfWord(const std::string& word, const std::vecto
   return rowsOf(parseMethodOption("--methods", word), variants, directPass);
 }
 
+// All rows of the campaign in the order of the words, each once.
 std::vector<CampaignMethod> chosenMethods(const CampaignWords& words, const Profile& profile) {
   const std::vector<MetropolisVariant> variants = chosenVariants(words, profile);
+  // ppm has a second row, with a direct pass, if the profile or the options ask for it.
   const bool direct = profile.studyRows || given(words, "--direct-pass") != nullptr;
   std::vector<std::string> names;
   if (const auto* named = given(words, "--methods")) {
@@ -50,6 +54,7 @@ std::vector<CampaignMethod> chosenMethods(const CampaignWords& words, const Prof
   } else {
     for (const MethodEntry& entry : kMethods) names.emplace_back(entry.name);
   }
+  // Two words may stand for the same row.
   std::vector<CampaignMethod> methods;
   for (const std::string& name : names) {
     for (const CampaignMethod& row : rowsOfWord(name, variants, direct ? DirectPass::both : DirectPass::no)) {
@@ -72,8 +77,10 @@ std::map<std::string, std::string> parseDefinitions(const std::vector<std::strin
 }
 
 void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSettings& settings) {
+  // Rows, and values of the scenes' variables.
   settings.methods = chosenMethods(words, profile);
   if (const auto* definitions = given(words, "-D")) settings.definitions = parseDefinitions(*definitions);
+  // Settings of merging methods, and the clock.
   RenderSettings& render = settings.render;
   if (const auto* radius = given(words, "--radius")) {
     render.radius = parseNumber("--radius", radius->front(), 1e-9, 10.0);
@@ -81,6 +88,7 @@ void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSett
   if (const auto* alpha = given(words, "--radius-alpha")) {
     render.radiusAlpha = parseNumber("--radius-alpha", alpha->front(), 0.0, 1.0);
   }
+  // An option is stronger than the profile's choice.
   if (profile.lightPaths != 0) render.lightPaths = profile.lightPaths;
   if (const auto* paths = given(words, "--light-paths")) {
     render.lightPaths = parseNumber("--light-paths", paths->front(), uint64_t{1}, uint64_t{1} << 32);
@@ -91,6 +99,7 @@ void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSett
 }
 
 void addRowKeys(const CampaignSettings& settings, std::map<std::string, std::string>& keys) {
+  // Lists as text, for readers of the file.
   std::string methods, definitions;
   for (const CampaignMethod& method : settings.methods) methods += (methods.empty() ? "" : " ") + method.name();
   for (const auto& [name, value] : settings.definitions) {

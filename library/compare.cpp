@@ -11,12 +11,14 @@
 namespace wavecrest::api {
 namespace {
 
+// An image of the interface as one that was read from a file. name: for messages.
 ImageFile toFile(const std::string& name, Image image) {
   checkPixels(name, image);
   const Encoding encoding = image.srgb ? Encoding::srgb8 : Encoding::linear;
   return {.image = toImage(std::move(image)), .encoding = encoding, .metadata = {}};
 }
 
+// Names, scores and map of one metric.
 MetricResult toResult(Measured measured) {
   const Metric& metric = *measured.metric;
   MetricResult result;
@@ -27,6 +29,7 @@ MetricResult toResult(Measured measured) {
     result.scores.push_back({scoreName(metric, score.name), score.value});
   }
   result.map = std::move(measured.measurement.map);
+  // Where the metric has no range of its own, false colours end at the quantile of the map.
   if (result.mapRange == 0) result.mapRange = quantile(result.map, 0.999);
   return result;
 }
@@ -47,6 +50,7 @@ std::vector<MetricInfo> metrics() {
   return all;
 }
 
+// What the handle keeps; the header does not show the engine's types.
 struct Reference::Data {
   PreparedReference prepared;
 };
@@ -66,6 +70,7 @@ Reference& Reference::operator=(Reference&&) noexcept = default;
 Comparison Reference::compare(Image test, const std::vector<std::string>& metrics, bool withMaps,
                               const std::string& name) const {
   return translated([&] {
+    // Prepares the test image, then measures it by all chosen metrics.
     const ComparedImage prepared = data_->prepared.prepareTest(name, toFile(name, std::move(test)));
     const std::vector<const Metric*> chosen = chosenMetrics(metrics, prepared.file.image);
     std::vector<Measured> all = measure(data_->prepared, prepared, chosen, withMaps);
@@ -74,6 +79,7 @@ Comparison Reference::compare(Image test, const std::vector<std::string>& metric
                           .nonFinitePixels = prepared.nonFinitePixels,
                           .results = {},
                           .json = comparisonJson(all, prepared.nonFinitePixels).dump()};
+    // The results take the maps, so the JSON is made before them.
     for (Measured& measured : all) comparison.results.push_back(toResult(std::move(measured)));
     return comparison;
   });

@@ -11,10 +11,12 @@
 namespace wavecrest {
 namespace {
 
+// Whether the shorter side of the image is long enough for the metric.
 bool largeEnough(const Image& image, const Metric& metric) {
   return std::min(image.width, image.height) >= metric.smallestSide;
 }
 
+// Throws ImageError where the image is too small for the metric. name: of the image, for the message.
 void requireSide(const std::string& name, const Image& image, const Metric& metric) {
   if (largeEnough(image, metric)) return;
   throw ImageError(name,
@@ -45,6 +47,7 @@ std::vector<const Metric*> chosenMetrics(const std::vector<std::string>& names, 
   std::vector<const Metric*> chosen;
   for (const Metric& metric : metricList()) {
     const bool named = std::find(names.begin(), names.end(), metric.name) != names.end();
+    // Named metrics are chosen whatever their size, so that measure() can refuse them with a message.
     if (names.empty() ? metric.byDefault && largeEnough(image, metric) : named) chosen.push_back(&metric);
   }
   return chosen;
@@ -52,6 +55,7 @@ std::vector<const Metric*> chosenMetrics(const std::vector<std::string>& names, 
 
 std::vector<Measured> measure(const PreparedReference& reference, const ComparedImage& test,
                               const std::vector<const Metric*>& metrics, bool withMaps) {
+  // All metrics are checked before the first one, which may take long, is measured.
   for (const Metric* metric : metrics) requireSide(reference.name(), test.file.image, *metric);
   std::vector<Measured> all;
   all.reserve(metrics.size());
@@ -60,10 +64,13 @@ std::vector<Measured> measure(const PreparedReference& reference, const Compared
 }
 
 nlohmann::ordered_json comparisonJson(const std::vector<Measured>& all, uint64_t nonFinitePixels) {
+  // Scores. A score without a name is the value of its metric, and further scores of that metric have keys beside it. A
+  // metric whose scores all have names is an object.
   nlohmann::ordered_json json;
   for (const Measured& measured : all) {
     const std::string name(measured.metric->name);
     const auto& scores = measured.measurement.scores;
+    // Whether the metric has a value of its own.
     const bool single = scores.front().name.empty();
     for (const Score& score : scores) {
       if (score.name.empty()) {
@@ -75,6 +82,7 @@ nlohmann::ordered_json comparisonJson(const std::vector<Measured>& all, uint64_t
       }
     }
   }
+  // Pixels that were left out, and for some metrics the conditions that their scores depend on.
   json["nonfinite_pixels"] = nonFinitePixels;
   for (const Measured& measured : all) {
     const Metric& metric = *measured.metric;

@@ -25,8 +25,10 @@ Error::~Error() = default;
 
 namespace {
 
+// An input error whose text alone names the file.
 api::Error inputError(const std::exception& error) { return {api::ErrorKind::input, error.what()}; }
 
+// An input error with file and line.
 api::Error loadError(const LoadError& error, const std::string& text) {
   return {api::ErrorKind::input, text, error.location.file, static_cast<int>(error.location.line)};
 }
@@ -34,10 +36,13 @@ api::Error loadError(const LoadError& error, const std::string& text) {
 }  // namespace
 
 std::string textOf(const MissingFileError& error) {
+  // A known asset that has not been fetched or generated.
   const std::string hint = missingAssetHint(error.file);
   if (!hint.empty()) return std::string(error.what()) + ": " + hint;
+  // A scene file (line 0) that looks like a name may be a built-in scene misspelt.
   const bool maybeName = error.location.line == 0 && !error.file.has_parent_path() && !error.file.has_extension();
   if (!maybeName) return error.what();
+  // The message suggests the closest name.
   std::vector<std::string> known;
   for (const SceneEntry& scene : builtInScenes()) known.emplace_back(scene.name);
   return std::string(error.what()) + ", or a name that `wavecrest scenes` lists" +
@@ -45,6 +50,8 @@ std::string textOf(const MissingFileError& error) {
 }
 
 api::Error currentError() {
+  // Rethrows the exception being handled, to tell its type. Derived types stand before their bases: MissingFileError
+  // before LoadError.
   try {
     throw;
   } catch (const api::Error& error) {
@@ -72,6 +79,7 @@ api::Error currentError() {
   } catch (const ResultsFileError& error) {
     return inputError(error);
   } catch (const std::bad_alloc&) {
+    // What is left are faults of the library or the machine.
     return {api::ErrorKind::fault, "out of memory"};
   } catch (const std::exception& error) {
     return {api::ErrorKind::fault, error.what()};

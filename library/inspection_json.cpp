@@ -9,8 +9,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
+// The memory of a method, or why it cannot render the scene.
 ordered_json toJson(const MethodInspection& row) {
   if (!row.refusal.empty()) return {{"refused", row.refusal}};
+  // Bytes by what they are for.
   const MemoryUse& use = row.memory.use;
   return {{"bytes_per_path", row.memory.bytesPerPath},
           {"scene_bytes", use.scene},
@@ -27,12 +29,14 @@ ordered_json toJson(const MethodInspection& row) {
 }  // namespace
 
 ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts) {
+  // Methods: kernels and memory of each.
   ordered_json specializations, memory, classes = ordered_json::array();
   for (const MethodInspection& row : facts.methods) {
     const std::string method(toString(row.method));
     specializations[method] = enumeratorName(kSpecializationNames, row.specialization);
     memory[method] = toJson(row);
   }
+  // Path classes: the verdict of each method.
   for (const PathClass& pathClass : facts.paths.classes) {
     ordered_json verdicts;
     for (const Method method : facts.paths.methods) {
@@ -40,6 +44,7 @@ ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts) {
     }
     classes.push_back({{"class", pathClass.signature}, {"description", pathClass.description}, {"methods", verdicts}});
   }
+  // What was approximated or left out when the scene was loaded.
   ordered_json notes = ordered_json::array();
   for (const Note& note : scene.notes) {
     notes.push_back({{"file", note.source.file},
@@ -48,7 +53,10 @@ ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts) {
                      {"effect", note.effect},
                      {"count", note.count}});
   }
+  // All of it, in the order of the output. "specialization" is that of the first method; "specializations" has those of
+  // all methods.
   const BoundingSphere& bounds = facts.bounds;
+  // Vectors are arrays of three numbers.
   const auto vec = [](const double(&a)[3]) { return ordered_json{a[0], a[1], a[2]}; };
   return {{"scene", scene.name},
           {"features",

@@ -20,8 +20,11 @@
 namespace wavecrest::api {
 namespace {
 
+// Most pixels in a row or a column of a film.
 constexpr uint32_t kLargestSide = 65535;
 
+// The engine's options. A width or height of 0 is left to the scene file; if only one is 0, the file's aspect ratio
+// decides it.
 wavecrest::LoadOptions loadOptions(const LoadOptions& options) {
   wavecrest::LoadOptions load;
   load.defines = options.defines;
@@ -52,12 +55,14 @@ Scene::Scene(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
 Scene Scene::load(const std::string& nameOrPath, const LoadOptions& options) {
   return translated([&] {
+    // The load time includes looking for the file.
     const auto begin = std::chrono::steady_clock::now();
     if (options.spp > std::numeric_limits<uint32_t>::max()) {
       throw UsageError(fmt::format("spp {}: expected at most {}", options.spp, std::numeric_limits<uint32_t>::max()));
     }
     auto data = std::make_shared<Data>();
     data->scene = loadScene(findScene(nameOrPath), loadOptions(options));
+    // The sample count counts for renders that state neither iterations nor time.
     if (options.spp != 0) data->scene.defaults.sampleCount = static_cast<uint32_t>(options.spp);
     data->loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return Scene(std::move(data));
@@ -65,6 +70,7 @@ Scene Scene::load(const std::string& nameOrPath, const LoadOptions& options) {
 }
 
 const std::string& Scene::name() const { return data_->scene.name; }
+// Size of the rendered rectangle: the crop window, or the whole film.
 uint32_t Scene::width() const { return filmArea(data_->scene.film).width; }
 uint32_t Scene::height() const { return filmArea(data_->scene.film).height; }
 uint64_t Scene::spp() const { return data_->scene.defaults.sampleCount; }

@@ -13,12 +13,13 @@ namespace {
 
 // ---- errors of the numbers as read ----------------------------------------------------------------------------------
 
-// The two images as the error metrics see them: on one scale.
+// Two images on one scale: both light, or both codes in 0..1.
 struct ErrorPair {
   const Image& reference;
   const Image& test;
 };
 
+// Calls function with the pair that the error metrics compare, and returns what it returns.
 template <class Function>
 auto onOneScale(const PreparedReference& reference, const ComparedImage& test, Function function) {
   const ImageFile &a = reference.image().file, &b = test.file;
@@ -29,6 +30,7 @@ auto onOneScale(const PreparedReference& reference, const ComparedImage& test, F
   return aLinear ? function(ErrorPair{a.image, decoded}) : function(ErrorPair{decoded, b.image});
 }
 
+// 8-bit codes as values in 0..1.
 Image toUnitRange(const Image8& codes) {
   Image image{codes.width, codes.height, 3, std::vector<float>(codes.pixels.size())};
   std::transform(codes.pixels.begin(), codes.pixels.end(), image.pixels.begin(),
@@ -36,7 +38,8 @@ Image toUnitRange(const Image8& codes) {
   return image;
 }
 
-// Root mean square difference of the channels of each pixel; relative divides by the squared reference.
+// Error of each pixel: the root mean square difference of its channels or, if relative, the mean of its squared
+// differences over the squared reference, as in relmse. Pixels that are not finite have no error.
 std::vector<float> errorMap(const ErrorPair& images, bool relative) {
   std::vector<float> map(images.reference.pixelCount());
   for (size_t i = 0; i < map.size(); ++i) {
@@ -54,6 +57,8 @@ std::vector<float> errorMap(const ErrorPair& images, bool relative) {
 Measurement measureRmse(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
   const bool bothCodes = reference.image().file.encoding == Encoding::srgb8 && test.file.encoding == Encoding::srgb8;
   Measurement result;
+  // Two 8-bit files are compared as whole codes, which is exact. An exposure changes the codes but not the values as
+  // read, so the values are compared then.
   if (reference.settings().gammaCorrectedErrors || (bothCodes && reference.settings().exposure == 0)) {
     const Image8 &a = reference.image().codes, &b = test.codes;
     result.scores = {{"", rmse(a, b, CodeScale::gammaCorrected).rmse}};
@@ -84,6 +89,7 @@ Measurement measureRelmse(const PreparedReference& reference, const ComparedImag
 
 // ---- perceptual metrics on 8-bit codes ------------------------------------------------------------------------------
 
+// Similarities become 1 - similarity, because maps are zero where nothing differs.
 std::vector<float> badness(std::vector<float> similarities) {
   for (float& v : similarities) v = 1 - v;
   return similarities;
@@ -139,6 +145,8 @@ Measurement measurePu21Ssim(const PreparedReference& reference, const ComparedIm
 constexpr std::string_view kPu21Conditions = "PU21 banding_glare, linear 1.0 shown at 100 cd/m2";
 
 // clang-format off
+// sampleExponent: the error of a mean of n independent images falls as n^-1/2, its square as n^-1. The perceptual
+// scores follow no power law.
 constexpr std::array kMetrics{
     Metric{.name = "rmse", .symbol = "RMSE", .title = "root mean square error",
            .basis = "linear radiance", .score = "", .higherIsBetter = false, .sampleExponent = -0.5,
@@ -193,6 +201,8 @@ const Metric* findMetric(std::string_view name) {
 }
 
 std::string scoreName(const Metric& metric, std::string_view score) {
+  // A score without a name, or the mean, is called as its metric. Other scores take the metric's name as a prefix,
+  // unless the metric's main score has a name of its own.
   const auto isMain = [](std::string_view name) { return name.empty() || name == "mean"; };
   if (isMain(score)) return std::string(metric.name);
   return (isMain(metric.score) ? std::string(metric.name) + "_" : std::string()) + std::string(score);

@@ -14,6 +14,7 @@ std::string sizeText(const Image& image) { return std::to_string(image.width) + 
 Image8 codesOf(const ImageFile& file, double exposure) {
   if (file.encoding == Encoding::linear) return encodeSrgb8(file.image, exposure);
   if (exposure != 0) return encodeSrgb8(linearLight(file), exposure);
+  // Values of an 8-bit file are code / 255, so rounding gives the codes back. Values of a 16-bit file lose precision.
   Image8 codes{file.image.width, file.image.height, std::vector<uint8_t>(file.image.pixels.size())};
   std::transform(file.image.pixels.begin(), file.image.pixels.end(), codes.pixels.begin(),
                  [](float v) { return static_cast<uint8_t>(std::lround(255 * v)); });
@@ -46,11 +47,13 @@ Image linearLight(const ImageFile& file) {
 
 PreparedReference::PreparedReference(std::string name, ImageFile file, const ComparisonSettings& settings)
     : name_(std::move(name)), settings_(settings), parts_(std::make_unique<Parts>()) {
+  // Count excluded pixels, and refuse images without any other.
   const Image& image = file.image;
   if (image.pixelCount() == 0) throw ImageError(name_, "empty image", "expected at least one pixel");
   for (size_t i = 0; i < image.pixelCount(); ++i) image_.nonFinitePixels += !finitePixel(image, i);
   if (image_.nonFinitePixels == image.pixelCount())
     throw ImageError(name_, "no pixel is finite", "expected an image with numbers");
+  // Excluded pixels are black in the codes.
   image_.codes = codesOf(file, settings.exposure);
   for (size_t i = 0; i < image.pixelCount(); ++i)
     if (!finitePixel(image, i))
@@ -64,6 +67,8 @@ ComparedImage PreparedReference::prepareTest(const std::string& name, ImageFile 
     throw ImageError(name, "image of " + sizeText(file.image) + " pixels",
                      "expected " + sizeText(reference) + " as in " + name_);
   }
+  // A pixel that is not finite in either image takes the reference's codes, so that the perceptual metrics see no
+  // difference there.
   ComparedImage test;
   test.codes = codesOf(file, settings_.exposure);
   for (size_t i = 0; i < reference.pixelCount(); ++i) {
@@ -77,12 +82,14 @@ ComparedImage PreparedReference::prepareTest(const std::string& name, ImageFile 
   return test;
 }
 
+// The part, made by the first thread that asks for it. Other threads wait until it is made.
 template <class T, class Make>
 const T& PreparedReference::get(Lazy<T>& part, Make make) {
   std::call_once(part.once, [&] { part.value.emplace(make()); });
   return *part.value;
 }
 
+// The parts of the metrics. HDR-FLIP and PU21 see linear light, the others 8-bit codes.
 const PreparedSsim& PreparedReference::ssim() const {
   return get(parts_->ssim, [&] { return PreparedSsim(image_.codes, settings_.isa); });
 }
@@ -92,6 +99,7 @@ const PreparedHdrVdp2& PreparedReference::hdrVdp2() const {
 const PreparedFlip& PreparedReference::flip() const {
   return get(parts_->flip, [&] { return PreparedFlip(image_.codes, kFlipPixelsPerDegree, settings_.isa); });
 }
+// HDR-FLIP chooses its exposures itself, so the exposure of the settings does not apply.
 const PreparedHdrFlip& PreparedReference::hdrFlip() const {
   return get(parts_->hdrFlip,
              [&] { return PreparedHdrFlip(linearLight(image_.file), kFlipPixelsPerDegree, settings_.isa); });
@@ -111,6 +119,7 @@ Image PreparedReference::lightOf(const ComparedImage& test) const {
   Image light = linearLight(test.file);
   if (test.nonFinitePixels == 0) return light;
   const Image &a = image_.file.image, &b = test.file.image;
+  // A pixel that is not finite in either image takes the reference's light.
   const Image referenceLight = linearLight(image_.file);
   for (size_t pixel = 0; pixel < light.pixelCount(); ++pixel) {
     const size_t i = 3 * pixel;

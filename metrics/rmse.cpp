@@ -13,6 +13,7 @@
 namespace wavecrest {
 namespace {
 
+// Of one row: squared differences summed up by channel, and the number of excluded pixels.
 struct RowSums {
   std::array<double, 3> squares{};
   uint64_t excluded = 0;
@@ -44,6 +45,7 @@ RmseResult rmseOf(const AnyImage& reference, const AnyImage& test, Value value) 
     for (size_t c = 0; c < 3; ++c) sum.squares[c] += row.squares[c];
     sum.excluded += row.excluded;
   }
+  // Means over the pixels that are not excluded. Without any such pixel they are 0 / 0, NaN.
   RmseResult result;
   result.excludedPixels = sum.excluded;
   const auto count = static_cast<double>(reference.pixelCount() - sum.excluded);
@@ -67,6 +69,7 @@ RmseResult rmse(const Image8& reference, const Image8& test, CodeScale scale) {
 }
 
 RelmseResult relmse(const Image& reference, const Image& test, const RelmseSettings& settings) {
+  // Relative squared error of each pixel.
   std::vector<double> errors(reference.pixelCount());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, errors.size()), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
@@ -79,6 +82,7 @@ RelmseResult relmse(const Image& reference, const Image& test, const RelmseSetti
     }
   });
   RelmseResult result;
+  // Pixels that are not finite are excluded.
   const auto finiteEnd = std::remove_if(errors.begin(), errors.end(), [](double e) { return !std::isfinite(e); });
   result.excludedPixels = static_cast<uint64_t>(errors.end() - finiteEnd);
   errors.erase(finiteEnd, errors.end());

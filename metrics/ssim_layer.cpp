@@ -30,8 +30,10 @@ Taps gaussianTaps() {
 
 // Window means and variances in double: done once per reference, so plain loops do.
 void windowMoments(const Plane& values, size_t channels, const Taps& taps, Plane& mean, Plane& variance) {
+  // Weight of row or sample i of the window, 0..10.
   const auto weight = [&](size_t i) { return taps[i < kSsimRadius ? kSsimRadius - i : i - kSsimRadius]; };
   tbb::parallel_for(size_t{0}, mean.height(), [&](size_t y) {
+    // Down the columns: weighted sums of the samples and of their squares.
     std::vector<double> sums(values.width()), squares(values.width());
     for (size_t i = 0; i < kSsimTaps; ++i) {
       const float* row = values.row(y + i);
@@ -40,6 +42,7 @@ void windowMoments(const Plane& values, size_t channels, const Taps& taps, Plane
         squares[x] += weight(i) * row[x] * row[x];
       }
     }
+    // Along the row: the samples of one channel are `channels` apart. The variance is E[x^2] - E[x]^2.
     for (size_t x = 0; x < mean.width(); ++x) {
       double m = 0, s = 0;
       for (size_t i = 0; i < kSsimTaps; ++i) {
@@ -58,6 +61,7 @@ PreparedSsimLayer::PreparedSsimLayer(Plane values, size_t channels, SsimConstant
     : isa_(isa), channels_(channels), constants_(constants), values_(std::move(values)) {
   const Taps taps = gaussianTaps();
   std::transform(taps.begin(), taps.end(), taps_.begin(), [](double t) { return static_cast<float>(t); });
+  // Windows lie inside the layer, so a row has ten windows fewer than pixels, and a column ten fewer than rows.
   const size_t windows = values_.width() - 2 * kSsimRadius * channels, rows = values_.height() - 2 * kSsimRadius;
   mean_ = Plane(windows, rows, kSsimSlack);
   variance_ = Plane(windows, rows, kSsimSlack);
@@ -78,6 +82,7 @@ void PreparedSsimLayer::compareBand(size_t bandIndex, const TestRows& testRows, 
     difference = Plane(width, kBandRows + kSsimTaps - 1, kSsimSlack);
     oneRow = Plane(width, 1, kSsimSlack);
   }
+  // The windows of the band's last row reach ten rows below it.
   for (size_t i = 0; i < rows + kSsimTaps - 1; ++i) {
     float* y = values.row(i);
     float* d = difference.row(i);
@@ -86,6 +91,8 @@ void PreparedSsimLayer::compareBand(size_t bandIndex, const TestRows& testRows, 
     for (size_t column = 0; column < width; ++column) d[column] = x[column] - y[column];
   }
 
+  // One call of the kernel for each row of windows. The kernel always writes its values. Where no map is asked for,
+  // they go to a scratch row.
   const auto kernel = metricKernels(isa_).ssimRow;
   for (size_t i = 0; i < rows; ++i) {
     SsimRow row{};
@@ -105,6 +112,7 @@ void PreparedSsimLayer::compareBand(size_t bandIndex, const TestRows& testRows, 
 }
 
 SsimSums PreparedSsimLayer::mean(const std::vector<SsimSums>& rowSums) const {
+  // Row sums are added from top to bottom, so the mean does not depend on the number of threads.
   SsimSums mean{};
   for (const SsimSums& sums : rowSums)
     for (size_t c = 0; c < channels_; ++c) mean[c] += sums[c];

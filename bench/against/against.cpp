@@ -24,6 +24,8 @@ std::string versionOf(const nlohmann::json& stats) {
   return fmt::format("{} {}", stats.value("version", "?"), stats.value("commit", "?"));
 }
 
+// Whether the images have the same bits, and their relative difference. Images of different sizes have a difference of
+// 1.
 void compareImages(const Image& ours, const Image& other, AgainstRow& row) {
   row.sameImage = ours.width == other.width && ours.height == other.height && ours.pixels == other.pixels;
   if (ours.pixels.size() != other.pixels.size()) {
@@ -36,9 +38,11 @@ void compareImages(const Image& ours, const Image& other, AgainstRow& row) {
     square += value * value;
     difference += d * d;
   }
+  // The difference is relative to the other's image, or absolute where that image is black.
   row.imageDifference = square > 0 ? std::sqrt(difference / square) : std::sqrt(difference);
 }
 
+// All runs of one request: copies the programs, prepares each row, measures in rounds, and judges.
 class Runner {
  public:
   explicit Runner(const AgainstRequest& request)
@@ -66,13 +70,16 @@ class Runner {
   }
 
   AgainstResult run(const std::function<void(size_t, size_t)>& progress) {
+    // Programs that can be copied, and the iterations of each row.
     for (ProgramCopy* program : {&ours_, &other_}) tryCopy(*program);
     for (size_t i = 0; i < children_.size(); ++i) prepare(i);
+    // Each round has one pair of runs for each row.
     const auto rounds = static_cast<size_t>(std::round(request_.seconds / (2 * runSeconds_)));
     for (size_t round = 0; round < rounds; ++round) {
       for (size_t i = 0; i < children_.size(); ++i) measurePair(i, round);
       progress(round + 1, rounds);
     }
+    // Verdicts, corrected for all rows together.
     std::vector<Comparison*> comparisons;
     for (AgainstRow& row : result_.rows) {
       row.comparison = comparePaired(row.ourSeconds, row.otherSeconds, request_.family);
@@ -88,6 +95,7 @@ class Runner {
   }
 
   // Not all programs run from anywhere.
+  // A program stays in place if its copy fails or names another version.
   void tryCopy(ProgramCopy& program) {
     if (children_.empty()) return;
     const nlohmann::json original = render(program, children_.front());
@@ -113,6 +121,7 @@ class Runner {
     result_.ourVersion = versionOf(ours);
     result_.otherVersion = versionOf(other);
     double seconds = cpuSecondsOf(ours);
+    // Iterations so that a run of our build takes runSeconds_.
     // Twice: the first iterations of a render are slower than later ones.
     for (int step = 0; step < 2 && seconds < runSeconds_; ++step) {
       const double factor = runSeconds_ / std::max(seconds, 1e-3);
@@ -122,6 +131,7 @@ class Runner {
     result_.rows[i].iterations = child.iterations;
   }
 
+  // One run of each build with the same seed, ours first in even rounds.
   void measurePair(size_t i, size_t round) {
     ChildRequest& child = children_[i];
     child.seed = round;

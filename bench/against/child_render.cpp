@@ -17,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The last non-empty line of a file. In error output the message is there.
 std::string lastLine(const fs::path& file) {
   std::ifstream in(file);
   std::string last;
@@ -28,15 +29,18 @@ std::string lastLine(const fs::path& file) {
 
 // Runs a program to its end with its error output in a file; the exit code, or 128 + the signal that ended it.
 int runProgram(const std::vector<std::string>& arguments, const fs::path& errors) {
+  // Arguments end with a null pointer. posix_spawn does not write to them.
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
+  // No input, no output, and errors in the file.
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  // Start the program and wait for its end. A signal may interrupt waitpid.
   pid_t child = 0;
   const int failed = posix_spawn(&child, words.front(), &actions, nullptr, words.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
@@ -63,7 +67,9 @@ ScratchFolder::~ScratchFolder() {
 
 nlohmann::json renderInChild(const fs::path& binary, const ChildRequest& request, const ScratchFolder& folder) {
   const fs::path stats = folder.path() / "stats.json", errors = folder.path() / "errors.txt";
+  // The folder may have the statistics of an earlier run.
   fs::remove(stats);
+  // The command line.
   std::vector<std::string> arguments = {binary.string(),
                                         "render",
                                         request.scene.string(),
@@ -82,11 +88,13 @@ nlohmann::json renderInChild(const fs::path& binary, const ChildRequest& request
   if (!request.size.empty()) arguments.insert(arguments.end(), {"--size", request.size});
   if (request.imageFile) arguments.insert(arguments.end(), {"--output", *request.imageFile});
   arguments.insert(arguments.end(), request.more.begin(), request.more.end());
+  // Run the program, and report its last error line if it fails.
   const int code = runProgram(arguments, errors);
   if (code != 0) {
     throw ChildError(fmt::format("{}: render {} --method {} ended with code {}: {}", binary.string(),
                                  request.scene.filename().string(), request.method, code, lastLine(errors)));
   }
+  // Read the statistics.
   std::ifstream in(stats);
   nlohmann::json all = nlohmann::json::parse(in, nullptr, false);
   if (!all.is_object() || !all.contains("cpu_seconds")) {
@@ -100,6 +108,7 @@ double rateOfProcesses(uint32_t count, const ChildRequest& request) {
   for (uint32_t i = 0; i < count; ++i) {
     ChildRequest own = request;
     own.seed = i;
+    // Each process has a thread that waits for it, and a folder of its own.
     rates.push_back(std::async(std::launch::async, [own = std::move(own)] {
       const ScratchFolder folder;
       return renderInChild(ownBinary(), own, folder).at("paths_per_second").get<double>();

@@ -16,6 +16,7 @@ using Json = nlohmann::json;
 // CPU seconds per path of each slice on one thread, by "scene method WxH".
 using Series = std::map<std::string, std::vector<double>>;
 
+// CPU seconds per path of a method's slices on one thread; empty if one thread was not measured.
 std::vector<double> slicesOfOneThread(const Json& method) {
   std::vector<double> values;
   for (const Json& row : method.at("scaling")) {
@@ -27,6 +28,7 @@ std::vector<double> slicesOfOneThread(const Json& method) {
   return values;
 }
 
+// The series of all scenes and methods. Throws StoredMismatch where the file is not of bench.
 Series seriesOf(const Json& result) {
   Series series;
   try {
@@ -36,6 +38,7 @@ Series seriesOf(const Json& result) {
             fmt::format("{} {} {}x{}", scene.at("scene").get<std::string>(), method.at("method").get<std::string>(),
                         scene.at("width").get<int>(), scene.at("height").get<int>());
         const std::vector<double> values = slicesOfOneThread(method);
+        // Without slices of one thread there is nothing to compare.
         if (!values.empty()) series[name] = values;
       }
     }
@@ -45,7 +48,7 @@ Series seriesOf(const Json& result) {
   return series;
 }
 
-// What makes times comparable at all.
+// Processor and number of cores. Only times of equal machines are compared.
 std::string machineOf(const Json& result) {
   if (!result.contains("machine")) throw StoredMismatch("does not say which machine it comes from");
   const Json& machine = result.at("machine");
@@ -60,10 +63,12 @@ bool StoredComparison::anySlower() const {
 }
 
 StoredComparison compareStored(const Json& before, const Json& after, const FamilyLevel& family) {
+  // Read both results, which must be of one machine.
   const Series old = seriesOf(before), now = seriesOf(after);
   if (const std::string a = machineOf(before), b = machineOf(after); a != b) {
     throw StoredMismatch(fmt::format("come from different machines: {}; {}", a, b));
   }
+  // Compare the series that both have.
   StoredComparison result{.family = family, .rows = {}, .unmatched = {}};
   for (const auto& [name, values] : old) {
     const auto found = now.find(name);
@@ -72,16 +77,20 @@ StoredComparison compareStored(const Json& before, const Json& after, const Fami
       continue;
     }
     StoredRow& row = result.rows.emplace_back();
+    // The name is "scene method WxH".
     const size_t first = name.find(' '), second = name.find(' ', first + 1);
     row.scene = name.substr(0, first);
     row.method = name.substr(first + 1, second - first - 1);
     row.size = name.substr(second + 1);
+    // The later result is in the place of "ours": a speedup above 1 means that it is faster.
     row.comparison = compareUnpaired(found->second, values, family);
   }
+  // Name the series that only the later result has.
   for (const auto& [name, values] : now) {
     if (old.count(name) == 0) result.unmatched.push_back(name);
   }
   if (result.rows.empty()) throw StoredMismatch("have no scene, method and size in common");
+  // Verdicts, corrected for all rows together.
   std::vector<Comparison*> comparisons;
   for (StoredRow& row : result.rows) comparisons.push_back(&row.comparison);
   judge(comparisons, family);

@@ -16,9 +16,11 @@ std::vector<double> logarithms(std::span<const double> values) {
   return logs;
 }
 
-// What is tested: any difference, or with a tolerance a speed below what is tolerated. The former finds gains too.
+// Added to the logarithm of a speedup before it is tested. A gain is tested against equal speed, a loss against the
+// largest loss that the tolerance allows.
 double shift(double medianLog, const FamilyLevel& family) { return medianLog < 0 ? -std::log1p(-family.tolerance) : 0; }
 
+// From logarithms back to ratios of speed.
 Comparison fromLogs(double medianLog, const Interval& interval, double probability) {
   return {.speedup = std::exp(medianLog),
           .interval = {std::exp(interval.low), std::exp(interval.high)},
@@ -34,6 +36,7 @@ std::string_view toString(SpeedVerdict verdict) {
 
 Comparison comparePaired(std::span<const double> ours, std::span<const double> other, const FamilyLevel& family) {
   assert(ours.size() == other.size() && !ours.empty());
+  // Logarithm of the speedup in each pair: the other build's time over ours.
   std::vector<double> gains = logarithms(other);
   const std::vector<double> own = logarithms(ours);
   for (size_t i = 0; i < gains.size(); ++i) gains[i] -= own[i];
@@ -49,6 +52,7 @@ Comparison compareUnpaired(std::span<const double> ours, std::span<const double>
   assert(!ours.empty() && !other.empty());
   std::vector<double> own = logarithms(ours);
   const std::vector<double> theirs = logarithms(other);
+  // Logarithm of the speedup: the other build's median time over ours.
   const double middle = median(theirs) - median(own);
   // Bootstrap of the difference of two medians: both samples are drawn anew each time.
   std::mt19937_64 random(own.size() + theirs.size());
@@ -62,6 +66,7 @@ Comparison compareUnpaired(std::span<const double> ours, std::span<const double>
   std::sort(differences.begin(), differences.end());
   const auto at = [&](double part) { return differences[static_cast<size_t>(part * (kResamples - 1))]; };
   const Interval interval{at(0.5 * (1 - kIntervalLevel)), at(0.5 * (1 + kIntervalLevel))};
+  // A shift of the logarithmic speedup is a shift of our times in the opposite direction.
   for (double& value : own) value -= shift(middle, family);
   const bool tolerated = middle < 0 && middle + shift(middle, family) >= 0;
   return fromLogs(middle, interval, tolerated ? 1 : rankSumProbability(own, theirs));
@@ -74,6 +79,7 @@ void judge(std::span<Comparison* const> comparisons, const FamilyLevel& family) 
   for (size_t i = 0; i < comparisons.size(); ++i) {
     Comparison& comparison = *comparisons[i];
     comparison.probability = probabilities[i];
+    // Above the level the verdict stays noDifference.
     if (comparison.probability > family.level) continue;
     comparison.verdict = comparison.speedup > 1 ? SpeedVerdict::faster : SpeedVerdict::slower;
   }

@@ -23,8 +23,10 @@ Effort studyEffort(std::string_view scene) {
   return {.seconds = seconds, .snapshotSeconds = seconds / 24, .logarithmicFirst = true};
 }
 
+// Light paths of an iteration in the study: as many as its images have pixels.
 constexpr uint64_t kStudyLightPaths = 1024 * 768;
 
+// Snapshots without an interval are at render times of a fixed ratio.
 constexpr std::array kProfiles{
     Profile{.name = "quick",
             .description = "a first look: some ten minutes for the nine scenes",
@@ -65,12 +67,14 @@ constexpr std::array kProfiles{
 std::span<const Profile> profiles() { return kProfiles; }
 
 const Profile* findProfile(std::string_view name) {
+  // Null for a name that no profile has.
   const auto found = std::find_if(kProfiles.begin(), kProfiles.end(), [&](const Profile& p) { return p.name == name; });
   return found == kProfiles.end() ? nullptr : &*found;
 }
 
 std::string CampaignMethod::name() const {
   std::string name(toString(method));
+  // The default variant, mmlt, is plain "mlt".
   if (method == Method::mlt && variant != MetropolisVariant::mmlt) {
     name += "-" + std::string(kMetropolisVariantNames[static_cast<size_t>(variant)]);
   }
@@ -79,6 +83,7 @@ std::string CampaignMethod::name() const {
 
 std::vector<CampaignMethod> rowsOf(Method method, std::span<const MetropolisVariant> variants, DirectPass directPass) {
   std::vector<CampaignMethod> rows;
+  // A row for each variant of mlt; a row with and one without the direct pass of ppm; one row for others.
   if (method == Method::mlt) {
     for (const MetropolisVariant variant : variants) rows.push_back({.method = method, .variant = variant});
   } else if (method == Method::ppm) {
@@ -91,6 +96,7 @@ std::vector<CampaignMethod> rowsOf(Method method, std::span<const MetropolisVari
 }
 
 std::filesystem::path resultsFile(const CampaignSettings& settings) {
+  // Each shard has a file of its own, so several processes can work in one folder.
   if (settings.shard.count == 1) return settings.out / kResultsFile;
   return settings.out / fmt::format("results.{}-of-{}.sqlite", settings.shard.index, settings.shard.count);
 }

@@ -12,13 +12,15 @@
 namespace wavecrest {
 namespace {
 
+// The side of a block. Tiles in the width and the height of the image.
 constexpr uint32_t kBlock = 8;  // pixels
 constexpr uint32_t kTilesX = 4, kTilesY = 3;
 
-// Of equal truths: twelve tiles and the whole share it equally (Bonferroni).
+// Probability of a false alarm where the truths agree. The tests of twelve tiles and of the whole image share it
+// equally (Bonferroni).
 constexpr double kFalseAlarms = 0.01;
 
-// What Student's t of so many degrees of freedom exceeds, in either direction, with this probability.
+// The value that the magnitude of Student's t exceeds with this probability, by bisection.
 double studentLimit(int degreesOfFreedom, double probability) {
   double low = 0, high = 1e4;
   for (int i = 0; i < 60; ++i) {
@@ -28,7 +30,8 @@ double studentLimit(int degreesOfFreedom, double probability) {
   return high;
 }
 
-// The means of blocks of an image, over pixels and channels; samples that are not finite count as 0.
+// The mean of each block over its pixels and channels. Samples that are not finite count as 0; what is left of the
+// image at its right and bottom edge is ignored.
 std::vector<double> blockMeans(const Image& image, uint32_t columns, uint32_t rows) {
   std::vector<double> means(size_t{columns} * rows);
   const uint32_t channels = image.channels;
@@ -42,7 +45,8 @@ std::vector<double> blockMeans(const Image& image, uint32_t columns, uint32_t ro
   return means;
 }
 
-// Sums over some blocks.
+// Sums over the blocks of a tile. variance: of the sum of differences, estimated from the half differences of both
+// references.
 struct Sums {
   double difference = 0, variance = 0, total = 0;
   int blocks = 0;
@@ -84,10 +88,12 @@ std::string Agreement::describe() const {
 
 Agreement compareReferences(const Reference& a, const Reference& b) {
   requireComparable(a, b);
+  // Means of blocks, for both references and their half differences.
   const uint32_t columns = a.mean.width / kBlock, rows = a.mean.height / kBlock;
   const std::vector<double> meansA = blockMeans(a.mean, columns, rows), meansB = blockMeans(b.mean, columns, rows);
   const std::vector<double> halvesA = blockMeans(*a.difference, columns, rows),
                             halvesB = blockMeans(*b.difference, columns, rows);
+  // Sums them over tiles and over the whole image.
   std::vector<Sums> tiles(size_t{kTilesX} * kTilesY);
   Sums whole;
   for (uint32_t y = 0; y < rows; ++y) {
@@ -98,6 +104,8 @@ Agreement compareReferences(const Reference& a, const Reference& b) {
       whole.add(meansA[i], meansB[i], halvesA[i], halvesB[i]);
     }
   }
+  // The largest z, and the limit for it. The tile with the fewest blocks has the fewest degrees of freedom, so its
+  // limit holds for all.
   Agreement agreement{.tiles = kTilesX * kTilesY, .largestZ = whole.z()};
   int fewest = whole.blocks;
   for (const Sums& tile : tiles) {

@@ -14,14 +14,17 @@
 namespace wavecrest {
 namespace {
 
+// Names of attributes and layers.
 constexpr const char* kPrefix = "wavecrest:";
 constexpr const char* kFloorPrefix = "wavecrest:noise_floor.";
 constexpr const char *kDifference = "difference", *kVariance = "variance";
 
-// Significant bits that are kept: of the layers besides the mean, which are noise; and of a compact reference's mean
-// and difference. Rounding makes squares of differences 1 % too small.
+// Significant bits that are kept: of the layers of a whole reference, and of the mean and the difference of a compact
+// one. With two bits, squares of differences come out 1 % too small in the mean.
 constexpr uint32_t kLayerBits = 12, kCompactBits = 9, kCompactLayerBits = 2;
 
+// Rounds to so many significant bits. Floats have 24; the half that is added carries into the exponent where the
+// mantissa overflows.
 Image roundedTo(uint32_t bits, Image image) {
   const uint32_t dropped = 24 - bits, half = 1u << dropped >> 1;
   for (float& sample : image.pixels) {
@@ -31,6 +34,7 @@ Image roundedTo(uint32_t bits, Image image) {
   return image;
 }
 
+// The square of each sample.
 Image squared(Image image) {
   for (float& sample : image.pixels) sample *= sample;
   return image;
@@ -60,12 +64,14 @@ void visitInfo(Info& info, Visit visit) {
   visit("commit", info.commit);
 }
 
+// Whether all of the text is a number, which is then stored.
 template <class Number>
 bool parseNumber(const std::string& text, Number& number) {
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && rest == text.data() + text.size();
 }
 
+// The attributes of the file: the fields of ReferenceInfo, "biased", and the noise floors.
 Metadata toMetadata(const Reference& reference) {
   Metadata metadata;
   visitInfo(reference.info, [&](const char* name, const auto& value) {
@@ -76,6 +82,7 @@ Metadata toMetadata(const Reference& reference) {
   return metadata;
 }
 
+// A visitor that reads fields from attributes. Fields without an attribute keep their value.
 struct FromMetadata {
   const std::filesystem::path& path;
   const Metadata& metadata;
@@ -106,6 +113,7 @@ Image Reference::half(float sign) const {
 }
 
 double relativeError(const Image& mean, const Image& difference) {
+  // relmse of half A against the mean: their difference is D.
   Image half = mean;
   for (size_t i = 0; i < half.pixels.size(); ++i) half.pixels[i] += difference.pixels[i];
   return std::sqrt(relmse(mean, half).relmse);
@@ -114,6 +122,7 @@ double relativeError(const Image& mean, const Image& difference) {
 void measureNoiseFloors(Reference& reference) {
   reference.noiseFloors.clear();
   if (!reference.difference) return;
+  // Only metrics that campaigns measure.
   for (const NoiseFloor& floor : noiseFloors(reference.halfA(), reference.halfB(), metricList())) {
     const Metric& metric = *findMetric(floor.metric);
     if (metric.byDefault) reference.noiseFloors[scoreName(metric, metric.score)] = floor.score;
@@ -136,6 +145,7 @@ void writeReference(const std::filesystem::path& path, const Reference& referenc
 
 void writeCompactReference(const std::filesystem::path& path, const Reference& reference) {
   Reference compact{.mean = {}, .difference = {}, .info = reference.info, .noiseFloors = reference.noiseFloors};
+  // The attributes are those of the whole reference, but for the kind of samples. So its noise floors are kept too.
   compact.info.samples = ReferenceInfo::kCompactSamples;
   const ExrLayer layer{kDifference, roundedTo(kCompactLayerBits, reference.difference.value())};
   writeExr(path.string(), roundedTo(kCompactBits, reference.mean), toMetadata(compact), {&layer, 1}, {},
@@ -148,6 +158,7 @@ Reference readReference(const std::filesystem::path& path) {
     throw ImageError(path.string(), "is not in linear light", "expected a reference as EXR");
   }
   Reference reference{.mean = std::move(file.image), .difference = {}, .info = {}, .noiseFloors = {}};
+  // Fields and noise floors, from the attributes.
   const FromMetadata from{path, file.metadata};
   visitInfo(reference.info, from);
   for (const auto& [name, text] : file.metadata) {
@@ -155,7 +166,8 @@ Reference readReference(const std::filesystem::path& path) {
       from.parse(name, text, reference.noiseFloors[name.substr(std::string_view(kFloorPrefix).size())]);
     }
   }
-  // A plain render has iterations too; the relative error is a reference's alone.
+  // Only references have the attribute of the relative error. A plain render has no halves, so it is read without a
+  // difference.
   if (file.metadata.contains(std::string(kPrefix) + "relative_error"))
     reference.difference = readExrLayer(path.string(), kDifference);
   return reference;

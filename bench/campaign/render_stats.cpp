@@ -10,18 +10,21 @@
 namespace wavecrest {
 namespace {
 
+// The largest resident set of the process so far. Linux counts it in KiB.
 uint64_t peakMemoryBytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-// What only Metropolis light transport has.
+// The part of the stats that only mlt has: brightness b, chains, and acceptance of each kind of mutation.
 nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainStatistics& chains) {
   const ChainCounters& counters = chains.counters;
+  // Accepted over proposed; 0 where nothing was proposed.
   const auto share = [](uint64_t part, uint64_t whole) {
     return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
   };
+  // Chains that rejected many proposals in a row.
   nlohmann::ordered_json stuck = nlohmann::ordered_json::array();
   for (const StuckChain& chain : chains.stuck) {
     stuck.push_back(
@@ -43,6 +46,8 @@ nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainSta
       {"stuck_runs", counters.stuck},
       {"stuck_chains", stuck},
   };
+  // Steps and acceptance by kind of mutation, in the order of Mutation. All variants make large steps. Path space makes
+  // no small steps, the others nothing else.
   constexpr std::array<const char*, kMutationKinds> kNames{"large", "small",       "bidirectional",
                                                            "lens",  "multi_chain", "caustic"};
   for (size_t kind = 0; kind < kMutationKinds; ++kind) {
@@ -63,7 +68,9 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
                                    const std::vector<SnapshotRecord>& snapshots) {
   const double seconds = statistics.renderSeconds;
   const uint64_t rays = statistics.counters.raysClosest + statistics.counters.raysShadow;
+  // Before any render time has passed, rates are 0.
   const auto perSecond = [&](uint64_t count) { return seconds > 0 ? static_cast<double>(count) / seconds : 0.0; };
+  // Stages and snapshots are arrays of objects.
   nlohmann::ordered_json stages = nlohmann::ordered_json::array();
   for (const auto& stage : statistics.stages) {
     stages.push_back({{"name", stage.name}, {"items", stage.items}, {"seconds", stage.seconds}});
@@ -75,6 +82,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
                             {"iterations", snapshot.iterations},
                             {"file", snapshot.file}});
   }
+  // Scalars of every render. Rates are per second of render time; lt counts light paths.
   nlohmann::ordered_json stats = {
       {"version", kVersion},
       {"commit", kCommit},
@@ -122,6 +130,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"stages", stages},
       {"snapshots", snapshotRows},
   };
+  // Keys of some methods only.
   if (strategiesOf(settings.method).merge) {
     stats.update({{"radius", settings.radius}, {"radius_alpha", settings.radiusAlpha}});
     if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
@@ -134,6 +143,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
 Metadata statsMetadata(const nlohmann::ordered_json& stats) {
   Metadata out;
   for (const auto& [key, value] : stats.items()) {
+    // Arrays and objects are left out.
     if (value.is_primitive()) out["wavecrest:" + key] = value.is_string() ? value.get<std::string>() : value.dump();
   }
   return out;

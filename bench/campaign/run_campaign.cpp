@@ -28,7 +28,8 @@ double secondsSince(Clock::time_point begin) { return std::chrono::duration<doub
 
 std::string hashOf(const Scene& scene) { return fmt::format("{:016x}", scene.hash); }
 
-// The methods of a scene that this shard does.
+// The methods of a scene that this shard does. scene: its index. Groups of scene and method are counted through and
+// dealt to the shards in turn.
 std::vector<CampaignMethod> methodsOfShard(const CampaignSettings& settings, size_t scene) {
   std::vector<CampaignMethod> methods;
   for (size_t i = 0; i < settings.methods.size(); ++i) {
@@ -38,19 +39,22 @@ std::vector<CampaignMethod> methodsOfShard(const CampaignSettings& settings, siz
   return methods;
 }
 
-// Guesses how long the rest takes: its render time, and what runs so far took beyond theirs. Time is counted in render
-// seconds, or in runs of counted iterations, which are taken for equally long.
+// Estimates the time left from the wall time that finished work took. Work is counted in render seconds. Where
+// iterations are counted, a run is one unit, as all runs are taken for equally long.
 class Pace {
  public:
   explicit Pace(const CampaignSettings& settings) : settings_(settings) {}
 
+  // Units of work: of a run, and of rendering a reference.
   double ofRun(const CampaignScene& scene) const { return settings_.iterations ? 1 : scene.effort.seconds; }
   double ofReference(const CampaignScene& scene) const { return kReferenceEffort * ofRun(scene); }
 
+  // ahead: work of all runs and references that are missing.
   void begin(const CampaignPlan& plan, double ahead) {
     progress_ = {.done = plan.done, .total = plan.runs};
     ahead_ = ahead;
   }
+  // Takes a finished run into account. wallSeconds: what it took, measuring included.
   const CampaignProgress& finish(const CampaignScene& scene, double wallSeconds) {
     ++progress_.done;
     pass(ofRun(scene), wallSeconds);
@@ -71,24 +75,28 @@ class Pace {
   double ahead_ = 0, passed_ = 0, wallSeconds_ = 0;
 };
 
+// A campaign in one process. Its steps are described in the header.
 class Campaign {
  public:
   Campaign(const CampaignSettings& settings, const CampaignHooks& hooks)
       : settings_(settings), hooks_(hooks), pace_(settings) {}
 
   bool run(const std::map<std::string, std::string>& keys) {
+    // Opens or makes the results file. plan() throws where the campaign cannot run, so a new campaign makes its folder
+    // only afterwards.
     if (fs::exists(resultsFile(settings_))) {
       lock_.emplace(resultsFile(settings_));
       store_.emplace(resultsFile(settings_));
       plan();
       createFolders();
-      // What a process left that was killed while it wrote.
+      // Removes temporary files of a process that was killed while it wrote.
       removeTemporariesIn((settings_.out / "images").string());
       removeTemporariesIn((settings_.out / "references").string());
     } else {
       plan();
       create();
     }
+    // Stores what the campaign is, then runs scene by scene.
     store_->putCampaign(keys);
     store_->addEnvironment(environment(settings_.render));
     for (size_t s = 0; s < settings_.scenes.size(); ++s) {
@@ -103,33 +111,37 @@ class Campaign {
     fs::create_directories(settings_.out / "references");
   }
 
-  // What is written from here on begins to exist when everything else is known to be there.
+  // Makes folders, lock and results file of a new campaign.
   void create() {
     createFolders();
     const fs::path results = resultsFile(settings_);
     lock_.emplace(results);
+    // Another process may have begun the campaign since run() looked.
     if (fs::exists(results)) {
       throw FileLockError(fmt::format("{}: another process has begun it; expected one at a time", results.string()));
     }
     store_.emplace(results);
   }
 
+  // Nothing for a run that is not stored, and for all runs before the results file is open.
   std::optional<ResultsStore::KnownRun> knownRun(const CampaignScene& scene, const CampaignMethod& method,
                                                  uint64_t seed) {
     return store_ ? store_->findRun(scene.name, method.name(), seed) : std::nullopt;
   }
-  // Whether a run is there, as long as it is asked for.
+  // Whether a run is stored that was asked for at least the present time or iterations. A refused run is done: the
+  // method would be refused again.
   bool isDone(const CampaignScene& scene, const CampaignMethod& method, uint64_t seed) {
     const std::optional<ResultsStore::KnownRun> run = knownRun(scene, method, seed);
     if (!run || run->state == RunState::refused) return run.has_value();
     const nlohmann::json stats = nlohmann::json::parse(run->stats);
     if (settings_.iterations) return stats.value("iterations", uint64_t{0}) >= *settings_.iterations;
-    // Files of earlier versions say only how long it took.
+    // Results files without the key say only how long the run took, which may be a little less than it was asked for.
     const auto asked = stats.find("asked_seconds");
     if (asked != stats.end()) return asked->get<double>() >= scene.effort.seconds;
     return stats.value("render_seconds", 0.0) >= 0.95 * scene.effort.seconds;
   }
-  // Counts what is ahead, and throws now what would be thrown later.
+  // Counts the runs and references that are missing. Loads their scenes, so that a scene or reference that cannot be
+  // used throws before the first run.
   void plan() {
     CampaignPlan plan;
     double ahead = 0;
@@ -145,12 +157,14 @@ class Campaign {
       plan.unreferenced.push_back(entry.name);
       plan.referenceSeconds += pace_.ofReference(entry);
     }
+    // With counted iterations the plan has no seconds.
     if (!settings_.iterations) plan.renderSeconds = ahead;
     pace_.begin(plan, ahead + plan.referenceSeconds);
     if (settings_.iterations) plan.referenceSeconds = 0;
     if (hooks_.planned) hooks_.planned(plan);
   }
 
+  // Whether no reference has to be rendered for the scene.
   bool hasReference(const CampaignScene& entry) {
     const Scene scene = load(entry);
     return isKnown(entry, scene) || referenceExists(scene, entry, settings_);
@@ -166,6 +180,7 @@ class Campaign {
     return known.has_value();
   }
 
+  // Loads a scene in the size of the campaign. Meanwhile a signal may end the process at once.
   Scene load(const CampaignScene& entry) const {
     LoadOptions loading;
     loading.filmSize = settings_.size;
@@ -184,9 +199,10 @@ class Campaign {
     return missing;
   }
 
-  // False if it was stopped.
+  // Renders the missing runs of a scene, then takes the errors of its methods apart. False: the campaign was stopped.
   bool runScene(const CampaignScene& entry, const std::vector<CampaignMethod>& methods) {
     if (methods.empty()) return true;
+    // A scene without missing runs is not loaded.
     if (missingRuns(entry, methods) > 0) {
       const auto begin = Clock::now();
       const Scene scene = load(entry);
@@ -200,11 +216,13 @@ class Campaign {
     return true;
   }
 
-  // Of a scene that an earlier process began the same one; else a new one, with which the scene begins.
+  // The reference of the scene. A scene that an earlier process began keeps its reference. Otherwise one is copied or
+  // rendered, and the scene is stored with it.
   Reference reference(const CampaignScene& entry, const Scene& scene) {
     if (isKnown(entry, scene)) {
       Reference known = readReference(settings_.out / referenceFile(entry.name));
-      putScene(entry, scene, known);  // for methods that are new to it
+      // Methods that are new to the campaign need verdicts on the path classes.
+      putScene(entry, scene, known);
       return known;
     }
     const bool exists = referenceExists(scene, entry, settings_);
@@ -218,6 +236,7 @@ class Campaign {
     return reference;
   }
 
+  // Stores the scene with the facts of its reference and its path classes.
   void putScene(const CampaignScene& entry, const Scene& scene, const Reference& reference) {
     store_->putScene({.name = entry.name,
                       .hash = hashOf(scene),
@@ -241,6 +260,8 @@ class Campaign {
     return records;
   }
 
+  // Renders and stores each missing run. Seeds are the outer loop, so that changes of the machine meet all methods.
+  // False: stopped.
   bool runMissing(const CampaignScene& entry, const Scene& scene, const std::vector<CampaignMethod>& methods,
                   const PreparedReference& prepared, const Reference& reference, double loadSeconds) {
     for (uint64_t seed = 1; seed <= settings_.seeds; ++seed) {
@@ -258,6 +279,7 @@ class Campaign {
                                                           .loadSeconds = loadSeconds},
                                                          hooks_.session);
         if (!run || stopped()) return false;
+        // A stored run that was asked for less is replaced.
         knownRun(entry, method, seed) ? store_->replaceRun(*run) : store_->putRun(*run);
         const CampaignProgress& progress = pace_.finish(entry, secondsSince(begin));
         if (hooks_.finished) hooks_.finished(*run, progress);
@@ -266,6 +288,8 @@ class Campaign {
     return true;
   }
 
+  // The settings of a run: the campaign's, with the method, the seed and the end of the run. Light paths apply to
+  // methods that merge only.
   RenderSettings runSettings(const CampaignScene& entry, const Scene& scene, const CampaignMethod& method,
                              uint64_t seed) const {
     RenderSettings render = settings_.render;
@@ -281,6 +305,7 @@ class Campaign {
     return render;
   }
 
+  // Snapshots of a run: after 1, 2, 4, ... iterations, or by time as the effort says.
   SnapshotSchedule schedule(const CampaignScene& entry) const {
     if (settings_.iterations) return SnapshotSchedule::doubling();
     const double interval = entry.effort.snapshotSeconds;
@@ -289,13 +314,15 @@ class Campaign {
                                          : SnapshotSchedule::every(interval);
   }
 
-  // Of the methods that have none yet of all these seeds and of the last snapshot. Every seed of them is done.
+  // Takes the error of each method apart into variance and bias, once all its seeds are done. Methods whose stored
+  // result has as many seeds and the same last snapshot are skipped.
   void putBiases(const CampaignScene& entry, const std::vector<CampaignMethod>& methods) {
     if (settings_.seeds < 2) return;
     const CampaignResults results = readResults(resultsFile(settings_));
     const Reference reference = readReference(settings_.out / referenceFile(entry.name));
     for (const CampaignMethod& method : methods) {
       const std::string name = method.name();
+      // The method's runs, and the last snapshot that all of them have.
       std::vector<const RunRecord*> runs;
       unsigned last = std::numeric_limits<unsigned>::max();
       for (const RunRecord& run : results.runs) {

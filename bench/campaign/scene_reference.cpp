@@ -24,14 +24,15 @@ std::string misfit(const Reference& reference, const Scene& scene, const Campaig
   return "";
 }
 
-// The one in the reference folder if it fits; else `wrong` says why it cannot be used.
+// The reference in the reference folder. wrong: why it cannot be used; then `reference` is empty.
 struct GivenReference {
   fs::path file;
   std::optional<Reference> reference;
   std::string wrong;
 };
 
-// Throws ReferenceError where there is none and none may be rendered.
+// Looks for the reference in the reference folder. Throws ReferenceError where it cannot be used and none may be
+// rendered.
 GivenReference givenReference(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings) {
   GivenReference given{.file = settings.referenceFolder / (entry.name + ".exr"), .reference = {}, .wrong = {}};
   const bool exists = fs::is_regular_file(given.file);
@@ -47,6 +48,7 @@ GivenReference givenReference(const Scene& scene, const CampaignScene& entry, co
     throw ReferenceError(fmt::format("{}: {}{}; make it by `wavecrest reference`", given.file.string(), given.wrong,
                                      exists ? "" : "; expected the reference of " + entry.name));
   }
+  // Shards that render references by time would get different images. By iterations all get the same one.
   if (settings.shard.count > 1 && !settings.iterations) {
     throw ReferenceError(
         fmt::format("{}: {}; expected --reference with a folder of references, or every shard would "
@@ -56,6 +58,8 @@ GivenReference givenReference(const Scene& scene, const CampaignScene& entry, co
   return given;
 }
 
+// Renders the reference, or goes on with it, by the method that suits the path classes. Its effort is a multiple of
+// that of a run.
 Reference renderOwn(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings,
                     const fs::path& file, const ReferenceHooks& hooks) {
   const ReferenceChoice choice = classifyPaths(scene).reference;
@@ -73,8 +77,8 @@ Reference renderOwn(const Scene& scene, const CampaignScene& entry, const Campai
     goal.seconds = kReferenceEffort * entry.effort.seconds;
   }
   Reference made = renderReference(scene, render, choice.reason, goal, file, hooks);
-  // The file keeps fewer bits of the halves' difference. Processes that go on later measure against it, so this one
-  // does.
+  // The file keeps fewer bits of the halves' difference. Other processes measure against the file, so this process
+  // reads it too.
   return fs::is_regular_file(file) ? readReference(file) : made;
 }
 
@@ -91,6 +95,7 @@ Reference sceneReference(const Scene& scene, const CampaignScene& entry, const C
   const fs::path file = settings.out / referenceFile(entry.name);
   const GivenReference given = givenReference(scene, entry, settings);
   if (given.reference) {
+    // A copy of the file keeps every bit and all attributes.
     writeFileAtomically(file.string(), readFileBytes(given.file.string()));
     return *given.reference;
   }

@@ -16,6 +16,7 @@ namespace {
 using Bytes = std::span<const unsigned char>;
 using Json = nlohmann::ordered_json;
 
+// kMagic marks checkpoints of all versions, kFormat those of this one.
 constexpr std::string_view kMagic = "wavecrest checkpoint ", kFormat = "wavecrest checkpoint 1\n";
 constexpr const char* kIntact = "expected one as `render --checkpoint` left it";
 
@@ -27,14 +28,16 @@ Bytes bytesOf(const T& number) {
   return {reinterpret_cast<const unsigned char*>(&number), sizeof(number)};
 }
 
-// Of some bytes more; begins with 0.
+// CRC-32 of all bytes so far and these. before: the sum so far, 0 at first.
 uint32_t checksum(uint32_t before, Bytes bytes) {
   return bytes.empty() ? before : static_cast<uint32_t>(crc32_z(before, bytes.data(), bytes.size()));
 }
 
-// Photons are merged in an order that follows from the waves of light paths.
+// Whether the image's bits depend on how light paths are cut into waves. They do where the method merges, because
+// photons are merged in an order that follows from the waves.
 bool dependsOnWaves(const RenderSettings& settings) { return strategiesOf(settings.method).merge; }
 
+// The settings of Markov chains that decide the image.
 Json chainIdentity(const MetropolisSettings& chains) {
   return {{"mlt", enumeratorName(kMetropolisVariantNames, chains.variant)},
           {"chains", chains.chains},
@@ -45,7 +48,7 @@ Json chainIdentity(const MetropolisSettings& chains) {
           {"direct_pass", chains.directPass}};
 }
 
-// A value as it is said to people.
+// A value for messages, strings without their quotes.
 std::string wordOf(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
 }  // namespace
@@ -54,6 +57,7 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
   const RenderStatistics statistics = session.statistics();
   const FilmArea& film = session.film().area();
   const PathLimits limits = withinDepthOfMethod(settings).limits;
+  // Settings of every method, as the session uses them.
   Json identity = {{"version", kVersion},
                    {"commit", kCommit},
                    {"method", std::string(toString(settings.method))},
@@ -69,6 +73,7 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                    {"specialization", enumeratorName(kSpecializationNames, statistics.specialization)},
                    {"max_depth", limits.maxDepth},
                    {"rr_depth", limits.rouletteDepth}};
+  // Settings that matter only for some scenes and methods.
   if (!scene.instances.empty()) identity["instances"] = enumeratorName(kInstancingNames, settings.instancing);
   if (dependsOnWaves(settings)) {
     identity.update({{"radius", settings.radius},
@@ -91,10 +96,12 @@ void writeCheckpoint(const std::string& file, const Scene& scene, const RenderSe
   const std::string text = header.dump();
   AtomicFile out(file);
   uint32_t sum = 0;
+  // The checksum covers every byte that is written before it.
   const auto write = [&](Bytes bytes) {
     sum = checksum(sum, bytes);
     out.write(bytes);
   };
+  // Format, header, state and checksum.
   write(bytesOf(kFormat));
   write(bytesOf(uint64_t{text.size()}));
   write(bytesOf(std::string_view(text)));
@@ -110,8 +117,10 @@ Checkpoint::Checkpoint(const std::string& file) : file_(file), bytes_(readFileBy
   const auto startsWith = [&](std::string_view text) {
     return all.size() >= text.size() && std::memcmp(all.data(), text.data(), text.size()) == 0;
   };
+  // The format.
   if (!startsWith(kMagic)) fail("is no checkpoint", kIntact);
   if (!startsWith(kFormat)) fail("is damaged, or a checkpoint of another version", kIntact);
+  // Sizes are checked before they are used, then the checksum of everything.
   constexpr size_t kFrame = kFormat.size() + sizeof(uint64_t), kSum = sizeof(uint32_t);
   uint64_t headerBytes = 0;
   uint32_t sum = 0;
@@ -123,6 +132,7 @@ Checkpoint::Checkpoint(const std::string& file) : file_(file), bytes_(readFileBy
       sum != checksum(0, all.first(all.size() - kSum))) {
     fail("is damaged or cut short", kIntact);
   }
+  // The header. The state stays as bytes until a session is there to take it.
   const Bytes header = all.subspan(kFrame, headerBytes);
   state_ = all.subspan(kFrame + headerBytes, all.size() - kFrame - kSum - headerBytes);
   try {
@@ -143,7 +153,8 @@ void Checkpoint::cutAlike(RenderSettings& settings) const {
   if (dependsOnWaves(settings)) settings.piecesForThreads = cut_.value("threads", settings.threads);
 }
 
-// What differs is said in the order of renderIdentity: the method before its settings, the size before the hash.
+// Throws with the first difference in the order of renderIdentity: the method before its settings, the size before the
+// hash.
 void Checkpoint::requireSame(const Json& wanted) const {
   for (const auto& [key, value] : wanted.items()) {
     const auto found = render_.find(key);

@@ -15,6 +15,7 @@ namespace {
 
 using nlohmann::json;
 
+// The words of claims.json for the kinds of conditions.
 constexpr std::array<std::pair<std::string_view, ConditionKind>, 12> kKinds{{{"better", ConditionKind::better},
                                                                              {"faster", ConditionKind::faster},
                                                                              {"good", ConditionKind::good},
@@ -28,18 +29,21 @@ constexpr std::array<std::pair<std::string_view, ConditionKind>, 12> kKinds{{{"b
                                                                              {"stalls", ConditionKind::stalls},
                                                                              {"biased", ConditionKind::biased}}};
 
+// The kind of a condition. `id` names the claim in the texts of errors.
 ConditionKind parseKind(const std::string& id, const std::string& word) {
   const auto found = std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& kind) { return kind.first == word; });
   if (found == kKinds.end()) throw ClaimListError("claim " + id + ": unknown kind '" + word + "'");
   return found->second;
 }
 
+// Throws for a key that is not known, so that a misspelt one is not passed over.
 void requireKeys(const std::string& id, const json& object, const std::set<std::string>& known) {
   for (const auto& [key, value] : object.items()) {
     if (!known.contains(key)) throw ClaimListError(fmt::format("claim {}: unknown key '{}'", id, key));
   }
 }
 
+// One condition. Keys that its kind does not use may be absent.
 Condition parseCondition(const std::string& id, const json& object) {
   requireKeys(id, object, {"kind", "metrics", "methods", "than", "factor", "score", "slope", "share", "control"});
   Condition condition;
@@ -55,6 +59,7 @@ Condition parseCondition(const std::string& id, const json& object) {
   return condition;
 }
 
+// What a campaign must have. An absent key needs nothing.
 ClaimNeeds parseNeeds(const std::string& id, const json& object) {
   requireKeys(id, object, {"light_paths", "paths"});
   return {.lightPaths = object.value("light_paths", 0.0), .paths = object.value("paths", 0.0)};
@@ -67,6 +72,7 @@ std::vector<Claim> parseClaims(std::string_view text) {
   std::set<std::string> ids;
   try {
     for (const json& object : json::parse(text)) {
+      // The claim itself. at() throws where a key that every claim has is absent.
       Claim claim{.id = object.at("id"),
                   .scene = object.at("scene"),
                   .statement = object.at("statement"),
@@ -75,6 +81,7 @@ std::vector<Claim> parseClaims(std::string_view text) {
       requireKeys(claim.id, object,
                   {"id", "scene", "statement", "source", "explanation", "all", "needs", "scenes", "at_least"});
       if (!ids.insert(claim.id).second) throw ClaimListError("claim " + claim.id + ": a second one of this id");
+      // Its conditions and needs, and the scenes of a general claim.
       for (const json& condition : object.at("all")) claim.conditions.push_back(parseCondition(claim.id, condition));
       if (object.contains("needs")) claim.needs = parseNeeds(claim.id, object.at("needs"));
       if (object.contains("scenes")) {
@@ -85,12 +92,14 @@ std::vector<Claim> parseClaims(std::string_view text) {
       claims.push_back(std::move(claim));
     }
   } catch (const json::exception& error) {
+    // Errors of syntax, of types and of absent keys.
     throw ClaimListError(std::string("list of claims: ") + error.what());
   }
   return claims;
 }
 
 const std::vector<Claim>& studyClaims() {
+  // Parsed at the first call.
   static const std::vector<Claim> claims = parseClaims(kClaimsJson);
   return claims;
 }

@@ -14,8 +14,10 @@ namespace {
 
 using nlohmann::json;
 
+// Whether a method merges paths with photons within a radius.
 bool merges(const std::string& method) { return method == "ppm" || method == "bpm" || method == "vcm"; }
 
+// All methods that the conditions of a claim name.
 std::set<std::string> methodsOf(const Claim& claim) {
   std::set<std::string> methods;
   for (const Condition& condition : claim.conditions) {
@@ -25,8 +27,8 @@ std::set<std::string> methodsOf(const Claim& claim) {
   return methods;
 }
 
-// Light paths that a search of the first iteration can meet, as a share of the study's: N_L r^2 over its own. Nothing
-// where the run does not say.
+// The light paths that a photon search of the first iteration can meet, as a share of the study's: N_L r^2 here over
+// N_L r^2 there. Nothing where the run does not say.
 std::optional<double> lightPathShare(const json& stats) {
   const double iterations = stats.value("iterations", 0.0), paths = stats.value("light_paths", 0.0);
   if (!(iterations > 0)) return std::nullopt;
@@ -61,6 +63,7 @@ std::optional<double> leastShare(const SceneLosses& scene, const std::string& me
 
 std::string unmetNeed(const Claim& claim, const SceneLosses& scene) {
   for (const std::string& method : methodsOf(claim)) {
+    // Light paths: only merging methods search for photons.
     if (claim.needs.lightPaths > 0 && merges(method)) {
       const std::optional<double> share = leastShare(scene, method, lightPathShare);
       if (share && *share < claim.needs.lightPaths) {
@@ -68,6 +71,7 @@ std::string unmetNeed(const Claim& claim, const SceneLosses& scene) {
                            claim.needs.lightPaths);
       }
     }
+    // Paths per pixel by the end of the run.
     if (claim.needs.paths > 0) {
       const auto ofScene = [&](const json& stats) { return pathShare(stats, scene.name()); };
       const std::optional<double> share = leastShare(scene, method, ofScene);

@@ -12,6 +12,7 @@ namespace {
 
 using V = ClaimVerdict;
 
+// All conditions of a claim on one scene. A need that the campaign does not meet overrides their verdict.
 Judgement judgeOnScene(const Claim& claim, const std::string& name, const CampaignResults& results) {
   const SceneLosses scene(name, results);
   Judgement all;
@@ -26,6 +27,7 @@ Judgement judgeOnScene(const Claim& claim, const std::string& name, const Campai
 // A claim about many scenes: how many of them it holds in.
 Judgement judgeOverScenes(const Claim& claim, const CampaignResults& results) {
   Judgement all;
+  // Judge the claim on each of its scenes and count the verdicts.
   size_t holding = 0, failing = 0, open = 0, unjudged = 0;
   for (const std::string& name : claim.scenes) {
     Judgement own{.verdict = V::notJudged, .figure = "not in this campaign", .evidence = {}};
@@ -39,6 +41,8 @@ Judgement judgeOverScenes(const Claim& claim, const CampaignResults& results) {
   }
   all.figure =
       fmt::format("in {} of {} scenes, not in {}; needs {}", holding, claim.scenes.size(), failing, claim.atLeast);
+  // The claim fails if even all undecided and unjudged scenes would be too few. It is not judged if the undecided ones
+  // alone would be too few, but the unjudged ones could make up the number.
   if (holding >= claim.atLeast) {
     all.verdict = V::holds;
   } else if (holding + open + unjudged < claim.atLeast) {
@@ -81,9 +85,11 @@ ClaimRecord judgeClaim(const Claim& claim, const CampaignResults& results) {
 
 std::vector<ClaimRecord> judgeStudyClaims(const CampaignResults& results) {
   std::vector<ClaimRecord> records;
+  // This key tells that iterations were counted. Claims are about equal time.
   if (results.campaign.contains("spp")) return records;
   for (const Claim& claim : studyClaims()) {
     const auto present = [&](const std::string& scene) { return results.findScene(scene) != nullptr; };
+    // A claim is judged if the campaign has its scene, or one of its scenes.
     const bool concerned =
         claim.isGeneral() ? std::any_of(claim.scenes.begin(), claim.scenes.end(), present) : present(claim.scene);
     if (concerned) records.push_back(judgeClaim(claim, results));

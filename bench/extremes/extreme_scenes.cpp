@@ -15,6 +15,7 @@ uint32_t addMaterial(Scene& scene, const Material& material) {
   scene.materials.push_back(material);
   return static_cast<uint32_t>(scene.materials.size() - 1);
 }
+// A diffuse material that reflects `albedo` of every colour.
 uint32_t addGrey(Scene& scene, double albedo) {
   Material material;
   material.kind = Diffuse{{{albedo, albedo, albedo}}};
@@ -34,6 +35,7 @@ void addLight(Scene& scene, double radiance) {
   emitter.kind = AreaEmitter{{{radiance, radiance, radiance}}, static_cast<uint32_t>(scene.shapes.size() - 1)};
   scene.emitters.push_back(emitter);
 }
+// The same radiance from all directions.
 void addSky(Scene& scene, double radiance) {
   Emitter emitter;
   emitter.kind = ConstantEmitter{{radiance, radiance, radiance}};
@@ -42,6 +44,7 @@ void addSky(Scene& scene, double radiance) {
 
 // Looks along -z from `eye`, +y up.
 void setCamera(Scene& scene, const Double3& eye, double fov) {
+  // A camera looks along its +z and has +x to the left: both axes are turned around.
   scene.sensor.toWorld = {{{-1, 0, 0, eye[0]}, {0, 1, 0, eye[1]}, {0, 0, -1, eye[2]}, {0, 0, 0, 1}}};
   scene.sensor.fovX = fov;
   scene.film.width = scene.film.height = kExtremeSide;
@@ -53,6 +56,7 @@ void setParallelCamera(Scene& scene, const Double3& direction, const Double3& up
   scene.sensor.kind = Sensor::Kind::orthographic;
   const Double3 axis = normalized(direction), left = normalized(cross(up, axis)), above = cross(axis, left);
   const Double3 eye = axis * -distance;
+  // An orthographic film reaches from -1 to 1, so the columns of the matrix are its half sides.
   for (size_t i = 0; i < 3; ++i) {
     scene.sensor.toWorld[i] = {left[i] * halfWidth, above[i] * halfHeight, axis[i], eye[i]};
   }
@@ -75,12 +79,14 @@ Scene lampBox(const BoxOptions& options) {
   Scene scene;
   const uint32_t white = addGrey(scene, 0.6), dark = addGrey(scene, 0.3);
   const double size = options.size;
+  // The room, and the sphere on its floor.
   for (const Rectangle& wall : walls(size, options.center)) addShape(scene, wall, white);
   if (options.sphere) {
     addShape(scene,
              Sphere{.center = options.center + Double3{0.3, -0.6, -0.3} * size, .radius = 0.4 * size, .toWorld = kUnit},
              dark);
   }
+  // The lamp. Radiance grows as area shrinks, so the power does not change.
   const double half = options.lampSide / 2, ratio = 0.5 / options.lampSide;
   addShape(scene,
            Rectangle{.corner = options.center + Double3{-half, 0.9, -half} * size,
@@ -95,6 +101,7 @@ Scene lampBox(const BoxOptions& options) {
 Scene shiningRoom(double albedo, double fov) {
   Scene scene;
   const uint32_t material = addGrey(scene, albedo);
+  // The radiance L is the same everywhere: L = 1 + albedo L.
   for (const Rectangle& wall : walls(1, {})) {
     addShape(scene, wall, material);
     addLight(scene, 1);
@@ -105,6 +112,7 @@ Scene shiningRoom(double albedo, double fov) {
 
 Scene besideBrightRoom(double albedo, double ratio) {
   Scene scene = shiningRoom(albedo);
+  // The second room is closed as well, so none of its light reaches the first.
   for (const Rectangle& wall : walls(1, {5, 0, 0})) {
     addShape(scene, wall, 0);
     addLight(scene, ratio);
@@ -120,6 +128,7 @@ Scene closeToWall(double albedo, double distance) {
 
 Scene roomCorner(double albedo, double fov) {
   Scene scene = shiningRoom(albedo, fov);
+  // From the centre towards the corner at (1, 1, 1).
   const Double3 axis = normalized({1, 1, 1}), left = normalized(cross({0, 1, 0}, axis)), up = cross(axis, left);
   for (size_t i = 0; i < 3; ++i) scene.sensor.toWorld[i] = {left[i], up[i], axis[i], 0};
   return scene;
@@ -152,6 +161,7 @@ Scene nestedGlass(uint32_t shells) {
   Scene scene;
   for (uint32_t i = 0; i < shells; ++i) {
     Material glass;
+    // The index of a sphere is 0.1 above the index of the sphere around it.
     glass.kind = Dielectric{.intIor = 1.2 + 0.1 * i, .extIor = i == 0 ? 1.0 : 1.1 + 0.1 * i};
     addShape(scene, Sphere{.radius = 1 - 0.7 * i / shells, .toWorld = kUnit}, addMaterial(scene, glass));
   }
@@ -182,6 +192,7 @@ Scene grazedFloor(double angle) {
   Scene scene;
   addShape(scene, Rectangle{.corner = {-1, -1, 0}, .edgeU = {2, 0, 0}, .edgeV = {0, 2, 0}}, addGrey(scene, 0.5));
   addSky(scene, 1);
+  // The picture's height shrinks with the sine of the angle, so that the picture covers the same part of the floor.
   setParallelCamera(scene, {0, std::cos(angle), -std::sin(angle)}, {0, 0, 1}, 0.5, 0.5 * std::sin(angle), 3);
   return scene;
 }
@@ -190,6 +201,7 @@ Scene sliverFloor(double aspect) {
   constexpr uint32_t kSlivers = 64;
   Scene scene;
   const uint32_t material = addGrey(scene, 0.5);
+  // A strip of narrow triangles of height 1.
   const double width = 1 / aspect;
   Mesh mesh;
   for (uint32_t i = 0; i <= kSlivers; ++i) {
@@ -206,6 +218,7 @@ Scene sliverFloor(double aspect) {
   addShape(scene, mesh, material);
   addShape(scene, mesh, material);  // in the same plane
   addSky(scene, 1);
+  // The floor reaches beyond the picture on all sides.
   setParallelCamera(scene, {0, 0, -1}, {0, 1, 0}, 0.4 * kSlivers * width, 0.4, 1);
   return scene;
 }
@@ -218,6 +231,7 @@ Scene hotSky(double brightness) {
   bitmap->height = 8;
   bitmap->channels = 3;
   bitmap->pixels.assign(size_t{3} * 16 * 8, 0.0f);
+  // The texel in column 5 and row 3.
   for (size_t c = 0; c < 3; ++c) bitmap->pixels[3 * (3 * 16 + 5) + c] = static_cast<float>(brightness);
   Emitter emitter;
   emitter.kind = EnvmapEmitter{.bitmap = bitmap, .scale = 1, .toWorld = kUnit};

@@ -12,6 +12,7 @@ namespace {
 // Errors of either sign, which no logarithmic axis could show.
 Plot plotOf(const SweepResult& result) {
   const Sweep& sweep = *result.sweep;
+  // Values that span more than two decades, or fall towards zero, are on a logarithmic axis.
   const bool logarithmic =
       sweep.values.back() / sweep.values.front() > 100 || sweep.values.front() > sweep.values.back();
   Plot plot;
@@ -19,17 +20,20 @@ Plot plotOf(const SweepResult& result) {
   plot.xLabel = sweep.xLabel;
   plot.xScale = logarithmic ? AxisScale::kLogarithmic : AxisScale::kLinear;
   plot.yScale = AxisScale::kLinear;
+  // A line where there is no error.
   plot.target = 0;
   for (const SweepRow& row : result.rows) {
     const std::string method(toString(row.method));
     const bool doubled = row.precision == Precision::doubled;
     const std::string label = method + (doubled ? " double" : "");
+    // Rows of a method and precision follow each other, so another label begins another curve.
     if (plot.curves.empty() || plot.curves.back().label != label) {
       plot.curves.push_back({.label = label,
                              .cssClass = "m-" + method + (doubled ? " variant-1" : " variant-0"),
                              .mark = methodStyle(method).mark,
                              .points = {}});
     }
+    // The band is one standard error to either side.
     plot.curves.back().points.push_back(
         {.x = row.value,
          .y = row.error,
@@ -41,6 +45,7 @@ Plot plotOf(const SweepResult& result) {
   return plot;
 }
 
+// All rows of a sweep, with the samples that were lost, as an HTML table.
 std::string tableOf(const SweepResult& result) {
   std::string html =
       "<details><summary>All rows</summary><div class=\"scroll\"><table><thead><tr><th>Method<th>Precision"
@@ -57,6 +62,7 @@ std::string tableOf(const SweepResult& result) {
   return html + "</tbody></table></div></details>";
 }
 
+// Bound, plot and table of a sweep, and which methods have no rows.
 std::string sectionOf(const SweepResult& result) {
   const Sweep& sweep = *result.sweep;
   std::string html = fmt::format("<section id=\"{}\"><h2>{}</h2>\n", escapeHtml(sweep.name), escapeHtml(sweep.title));

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kStandardErrors = 6;  // |t| of 7 degrees of freedom: a false alarm in 2000 rows, and seeds are fixed
 
+// Settings of one render: paths of any length, and fewer chains and bootstraps than by default.
 RenderSettings settingsOf(const Sweep& sweep, double value, Method method, Precision precision, uint32_t threads) {
   RenderSettings settings;
   settings.method = method;
@@ -23,6 +24,7 @@ RenderSettings settingsOf(const Sweep& sweep, double value, Method method, Preci
   return settings;
 }
 
+// All values of a sweep, or the first and the last.
 std::vector<double> valuesOf(const Sweep& sweep, bool endsOnly) {
   if (!endsOnly || sweep.values.size() <= 2) return sweep.values;
   return {sweep.values.front(), sweep.values.back()};
@@ -47,23 +49,27 @@ void addRows(const Sweep& sweep, Method method, Precision precision, const Sweep
                         effort.seeds);
   };
   const auto measure = [&](double value) { return measureBy(value, method, precision); };
+  // A sweep with neither a known answer nor another method compares its rows with the baseline value.
   std::optional<SeedValues> base;
   if (!sweep.truth && !sweep.against) base = measure(sweep.baseline);
   for (const double value : valuesOf(sweep, effort.endsOnly)) {
     const SeedValues seeds = measure(value);
     SweepRow row{.value = value, .method = method, .precision = precision, .losses = seeds.losses, .failure = {}};
     if (base) {
+      // The same seeds at the baseline value: noise that both share cancels.
       const double expected = seedEstimateOf(base->means).mean;
       const SeedEstimate difference =
           seedEstimateOf(differences(seeds, sweep.scale(value) / sweep.scale(sweep.baseline), *base));
       row.error = difference.mean / expected;
       row.standardError = difference.error / std::abs(expected);
     } else if (sweep.against) {
+      // Another method in double, with noise of its own.
       const SeedEstimate expected = seedEstimateOf(measureBy(value, *sweep.against, Precision::doubled).means);
       const SeedEstimate estimate = seedEstimateOf(seeds.means);
       row.error = estimate.mean / expected.mean - 1;
       row.standardError = std::hypot(estimate.error, expected.error) / expected.mean;
     } else {
+      // A known answer.
       const double expected = sweep.truth(value);
       const SeedEstimate estimate = seedEstimateOf(seeds.means);
       row.error = estimate.mean / expected - 1;

@@ -11,20 +11,24 @@ namespace {
 
 const std::vector<Method> kEveryMethod{Method::pt,  Method::lt,  Method::bpt, Method::mlt,
                                        Method::ppm, Method::bpm, Method::vcm};
+// All methods but those that merge alone.
 const std::vector<Method> kUnbiased{Method::pt, Method::lt, Method::bpt, Method::mlt, Method::vcm};
 constexpr const char* kNoPhotonsAlone = "ppm, bpm: a disc of photons reaches beyond the edges of walls, a bias of 3 %";
 
+// A metal that absorbs nothing.
 Material conductor(double alpha, Distribution distribution) {
   Material material;
   material.kind = Conductor{.perfectMirror = true, .alpha = {alpha}, .distribution = distribution};
   return material;
 }
+// Glass in air. alpha 0 is smooth.
 Material glass(double ior, double alpha = 0, bool thin = false) {
   Material material;
   material.kind = Dielectric{.intIor = ior, .extIor = 1, .alpha = {alpha}, .thin = thin};
   return material;
 }
 
+// The same number of samples per pixel for all values.
 std::function<uint64_t(double)> samples(uint64_t count) {
   return [count](double) { return count; };
 }
@@ -32,6 +36,7 @@ std::function<uint64_t(double)> samples(uint64_t count) {
 // ---- size, place and precision of geometry --------------------------------------------------------------------------
 
 void addGeometry(std::vector<Sweep>& out) {
+  // Intersectors round differently, so each has its own sweeps of scale and place.
   for (const Accel accel : {Accel::small, Accel::bvh, Accel::embree}) {
     const std::string name(kAccelNames[static_cast<size_t>(accel)]);
     const auto adjust = [accel](double, RenderSettings& settings) { settings.accel = accel; };
@@ -78,9 +83,11 @@ void addGeometry(std::vector<Sweep>& out) {
                  .boundSource = "albedo times the sky's radiance, exactly; rounding of 24 bits",
                  .methods = {Method::pt, Method::bpt, Method::vcm},
                  .leftOut = "lt, ppm, bpm, mlt: few light paths from all of the sky reach so small a floor",
-                 // The narrowest floor ends 2e-5 beside the picture. A merge that reached further would be too dark.
+                 // The narrowest floor ends 6e-6 beside the picture, and the radius is 5e-6 there. A merge that reached
+                 // beyond the floor would be too dark.
                  .adjust = [](double, RenderSettings& settings) { settings.radius = 1e-5; },
                  .everyRun = true});
+  // Near a corner, vertices on different walls are close to each other.
   out.push_back({.name = "corner",
                  .title = "The corner of a shining room, seen through a small field of view",
                  .xLabel = "field of view in degrees",
@@ -108,6 +115,7 @@ void addGeometry(std::vector<Sweep>& out) {
 // ---- surfaces -------------------------------------------------------------------------------------------------------
 
 void addSurfaces(std::vector<Sweep>& out) {
+  // At index 1 glass is air. Float can hardly tell 1 + 1e-7 from 1.
   out.push_back(
       {.name = "ior",
        .title = "A smooth glass sphere under the sky",
@@ -121,6 +129,8 @@ void addSurfaces(std::vector<Sweep>& out) {
        .leftOut = "lt: makes no path from glass to the eye; mlt: at index 20 few of its paths leave the glass",
        .samples = samples(64),
        .everyRun = true});
+  // Rough boundaries closer to index 1 than 1e-4 (kIndexMatched) are compiled as if they were that far away. Some
+  // values are closer, others are not.
   out.push_back({.name = "ior-rough",
                  .title = "A rough glass sphere under the sky, close to index-matched",
                  .xLabel = "index of refraction",
@@ -132,6 +142,7 @@ void addSurfaces(std::vector<Sweep>& out) {
                  .methods = {Method::pt, Method::bpt, Method::mlt, Method::vcm},
                  .leftOut = "lt, ppm, bpm: light from all of the sky meets a small sphere too rarely",
                  .samples = samples(64)});
+  // Below an alpha of 1e-3 (kSmallestAlpha) a surface is compiled as smooth. Some values are below, others above.
   for (const Distribution distribution : {Distribution::ggx, Distribution::beckmann}) {
     const std::string name = distribution == Distribution::ggx ? "ggx" : "beckmann";
     out.push_back({.name = "roughness-" + name,
@@ -146,6 +157,7 @@ void addSurfaces(std::vector<Sweep>& out) {
                    .leftOut = "lt, ppm, bpm: light from all of the sky meets a small sphere too rarely",
                    .samples = samples(64)});
   }
+  // Along the normal the sines of all directions are 0.
   out.push_back({.name = "axes",
                  .title = "Squares seen along their normal: a mirror, thin glass, polished metal",
                  .xLabel = "1 mirror, 2 thin glass, 3 metal of alpha 0.002",
@@ -171,6 +183,7 @@ void addSurfaces(std::vector<Sweep>& out) {
                  .methods = {Method::pt, Method::bpt, Method::ppm, Method::bpm, Method::vcm},
                  .leftOut = "lt: makes no path from glass to the eye; mlt: its row is that of ior",
                  .samples = samples(64)});
+  // A path straight through all spheres crosses two boundaries of each.
   out.push_back({.name = "nested",
                  .title = "Glass spheres within glass spheres under the sky",
                  .xLabel = "spheres",
@@ -182,6 +195,7 @@ void addSurfaces(std::vector<Sweep>& out) {
                  .methods = {Method::pt, Method::bpt, Method::ppm, Method::bpm, Method::vcm},
                  .leftOut = "lt: makes no path from glass to the eye; mlt: its walks end at 64 edges",
                  .samples = samples(64)});
+  // Paths grow to hundreds of vertices and the image is noisy, so a larger standard error is accepted.
   out.push_back({.name = "albedo",
                  .title = "A closed shining room",
                  .xLabel = "1 - albedo",
@@ -214,6 +228,7 @@ void addLights(std::vector<Sweep>& out) {
                        settings.radius = 0.05;  // a lamp's rays move by its size, and must stay within most discs
                        settings.lightPaths = 4096;
                      }});
+  // The lamp's radiance grows as the square of its radius shrinks (litFloor).
   out.push_back({.name = "sphere-light-size",
                  .title = "A floor under a spherical lamp of constant power, straight above",
                  .xLabel = "radius at distance 2",
@@ -225,6 +240,7 @@ void addLights(std::vector<Sweep>& out) {
                  .methods = {Method::pt, Method::bpt, Method::vcm},
                  .leftOut = "lt, ppm, bpm, mlt: few light paths reach the part that is seen",
                  .everyRun = true});
+  // The light's intensity grows with the square of its distance (litFloor).
   out.push_back({.name = "light-distance",
                  .title = "A floor under a point light at constant irradiance",
                  .xLabel = "distance in half sides of the floor",
@@ -235,6 +251,7 @@ void addLights(std::vector<Sweep>& out) {
                  .boundSource = "intensity over squared distance; off the foot by squared size over distance",
                  .methods = {Method::pt, Method::bpt, Method::vcm, Method::mlt},
                  .leftOut = "lt, ppm, bpm: next to none of the light's paths reach the floor"});
+  // Rows are divided by their value, so all must be equal.
   out.push_back({.name = "brightness",
                  .title = "A box with a lamp of this radiance",
                  .xLabel = "radiance",
@@ -244,6 +261,8 @@ void addLights(std::vector<Sweep>& out) {
                  .bound = 2e-6,
                  .boundSource = "the same seeds at 1: all is linear in radiance, so rounding alone differs",
                  .methods = kEveryMethod});
+  // At large ratios the other room has nearly all of the power. A choice of lights by power alone would hardly ever
+  // pick a light in view.
   out.push_back({.name = "brightness-ratio",
                  .title = "A shining room beside another, out of sight, whose walls emit this much more",
                  .xLabel = "ratio",
@@ -255,6 +274,7 @@ void addLights(std::vector<Sweep>& out) {
                  .methods = {Method::pt, Method::lt, Method::bpt},
                  .leftOut = "vcm, ppm, bpm: a bias of 3 %; mlt: its bootstrap sees the camera's room alone",
                  .samples = samples(64)});
+  // All light comes from one of the 128 texels of the sky.
   out.push_back({.name = "hot-texel",
                  .title = "A sphere under a sky that is black but for one texel",
                  .xLabel = "radiance of the texel",
@@ -281,6 +301,7 @@ void addRenders(std::vector<Sweep>& out) {
                        Scene scene = shiningRoom(0.5, 1);
                        scene.film.width = x == 3 ? 4096 : 1;
                        scene.film.height = x == 2 ? 4096 : 1;
+                       // The field of view is that of one pixel, and the column is 4096 pixels high.
                        if (x == 2) scene.sensor.fovX = 0.01;
                        return scene;
                      },
@@ -290,6 +311,7 @@ void addRenders(std::vector<Sweep>& out) {
                  .methods = {Method::pt, Method::bpt},
                  .leftOut = "others: few light paths reach what so narrow a film sees",
                  .samples = [](double x) { return x == 1 ? uint64_t{1} << 14 : uint64_t{16}; }});
+  // At albedo 0 every sample is 1, so the sum over samples is all that can go wrong.
   out.push_back({.name = "samples",
                  .title = "Samples of one pixel that are all alike",
                  .xLabel = "samples",
@@ -306,6 +328,8 @@ void addRenders(std::vector<Sweep>& out) {
                  .methods = {Method::pt},
                  .leftOut = "others: sum into the same film",
                  .samples = [](double x) { return static_cast<uint64_t>(x); }});
+  // At alpha 0 the radius shrinks fastest, at 1 not at all. The smallest values are below kSmallestRadius, which the
+  // renderer uses instead of a smaller radius.
   for (const double alpha : {0.0, 0.75, 1.0}) {
     out.push_back({.name = fmt::format("merge-radius-alpha-{:g}", alpha),
                    .title = fmt::format("A box with a lamp by merging, the radius shrinking by alpha {:g}", alpha),
@@ -337,6 +361,7 @@ void addRenders(std::vector<Sweep>& out) {
                  .adjust =
                      [](double x, RenderSettings& settings) {
                        settings.radius = x;
+                       // The reference by path tracing gets the same call, and has no light paths.
                        if (settings.method != Method::pt) settings.lightPaths = 4096;
                      },
                  .samples = samples(32)});

@@ -24,6 +24,7 @@ Json metricsJson() {
   return metrics;
 }
 
+// The event that describes the campaign. Every event is an object with one key, which names its kind.
 Json campaignJson(const CampaignSettings& settings) {
   Json scenes = Json::array(), methods = Json::array();
   for (const CampaignScene& scene : settings.scenes) scenes.push_back(scene.name);
@@ -45,6 +46,7 @@ Json campaignJson(const CampaignSettings& settings) {
 
 CampaignView::CampaignView(const HostPort& address, const CampaignSettings& settings)
     : server_(address, campaignViewPage()) {
+  // Readers get all events in order, so the page learns of the campaign before any run.
   server_.publish(campaignJson(settings).dump());
 }
 
@@ -53,6 +55,7 @@ void CampaignView::showEarlier(const CampaignResults& results) {
 }
 
 void CampaignView::showPlan(const CampaignPlan& plan) {
+  // The time left is that of runs and of references that are to be rendered.
   server_.publish(Json{{"plan",
                         {{"runs", plan.runs},
                          {"done", plan.done},
@@ -62,6 +65,7 @@ void CampaignView::showPlan(const CampaignPlan& plan) {
 }
 
 void CampaignView::publishRun(const RunRecord& run) {
+  // The points of the run's curves, with all metrics. JSON has no NaN: a value that was not measured is null.
   Json points = Json::array();
   for (const SnapshotRecord& snapshot : run.snapshots) {
     Json values = Json::object();
@@ -79,6 +83,7 @@ void CampaignView::publishRun(const RunRecord& run) {
 }
 
 void CampaignView::showRun(const RunRecord& run, const CampaignProgress& progress) {
+  // The page adds the run to its curves, then shows what is left.
   publishRun(run);
   server_.publish(
       Json{{"progress", {{"done", progress.done}, {"total", progress.total}, {"seconds_left", progress.secondsLeft}}}}

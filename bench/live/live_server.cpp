@@ -20,6 +20,7 @@ constexpr int kMostReaders = 12, kThreads = 16;
 constexpr auto kHeartbeat = std::chrono::seconds(5);  // tells whether a reader is still there
 constexpr auto kFarewell = std::chrono::seconds(2);   // for readers to take the end
 
+// 128 random bits in hexadecimal digits.
 std::string newToken() {
   std::random_device random;  // the system's
   std::string token;
@@ -27,7 +28,7 @@ std::string newToken() {
   return token;
 }
 
-// Takes as long for a token that is nearly right as for any other.
+// Whether two tokens are equal, in a time that does not tell where they differ.
 bool isSame(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -35,6 +36,7 @@ bool isSame(const std::string& a, const std::string& b) {
   return difference == 0;
 }
 
+// Width and height as 32-bit numbers, then all values as 16-bit floats. Large values are clamped to the largest half.
 std::string encodeImage(const Image& image) {
   const uint32_t sides[2] = {image.width, image.height};
   std::string bytes(sizeof sides + image.pixels.size() * sizeof(half), '\0');
@@ -62,6 +64,7 @@ LiveServer::LiveServer(const HostPort& address, std::string page)
   server_->new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   server_->set_keep_alive_max_count(1);  // or ending would wait for connections that are kept for later
   server_->set_tcp_nodelay(true);
+  // Bind before the thread starts, so that an error reaches the caller. Port 0 takes any that is free.
   HostPort bound = address;
   if (bound.port == 0) {
     bound.port = server_->bind_to_any_port(bound.host);
@@ -75,6 +78,7 @@ LiveServer::LiveServer(const HostPort& address, std::string page)
 
 LiveServer::~LiveServer() {
   {
+    // Tell readers of the end. Wait up to kFarewell until they have left and the last image was fetched.
     std::unique_lock<std::mutex> lock(mutex_);
     over_ = true;
     changed_.notify_all();
@@ -101,11 +105,14 @@ void LiveServer::setImage(std::shared_ptr<const Image> image) {
 
 bool LiveServer::sendEvents(size_t& next, httplib::DataSink& sink) {
   std::unique_lock<std::mutex> lock(mutex_);
+  // Wait for news. Without any, a comment is sent, which fails once the reader is gone.
   changed_.wait_for(lock, kHeartbeat, [&] { return over_ || next < events_.size(); });
+  // Format all new events. A reader that connects again names the last id that it got.
   std::string text;
   for (; next < events_.size(); ++next) text += fmt::format("id: {}\ndata: {}\n\n", next, events_[next]);
   const bool end = over_;
   lock.unlock();
+  // In an event stream a line that begins with a colon is a comment. Writing holds no lock.
   if (text.empty()) text = ": still there\n\n";
   if (end) text += "event: end\ndata: {}\n\n";
   if (!sink.write(text.data(), text.size())) return false;
@@ -115,11 +122,13 @@ bool LiveServer::sendEvents(size_t& next, httplib::DataSink& sink) {
 
 std::string LiveServer::encodedImage() {
   std::unique_lock<std::mutex> lock(mutex_);
+  // Encode without the lock, so that nobody who publishes has to wait.
   const std::shared_ptr<const Image> image = image_;
   lock.unlock();
   if (!image) return {};
   std::string bytes = encodeImage(*image);
   lock.lock();
+  // The destructor waits for this.
   sentImage_ = image;
   changed_.notify_all();
   return bytes;
@@ -128,18 +137,21 @@ std::string LiveServer::encodedImage() {
 void LiveServer::addRoutes() {
   using httplib::Request;
   using httplib::Response;
+  // The page may load nothing from elsewhere, and its address with the token is passed on to nobody.
   server_->set_default_headers({{"Cache-Control", "no-store"},
                                 {"Referrer-Policy", "no-referrer"},
                                 {"X-Content-Type-Options", "nosniff"},
                                 {"Content-Security-Policy",
                                  "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
                                  "connect-src 'self'; img-src 'self' data:; frame-ancestors 'none'"}});
+  // No request is answered without the token.
   server_->set_pre_routing_handler([this](const Request& request, Response& response) {
     if (isSame(request.get_param_value("token"), token_)) return httplib::Server::HandlerResponse::Unhandled;
     response.status = 403;
     response.set_content("This address lacks its token; expected the one that wavecrest printed.\n", "text/plain");
     return httplib::Server::HandlerResponse::Handled;
   });
+  // The page, the newest image and the stream of events.
   server_->Get("/", [this](const Request&, Response& response) { response.set_content(page_, "text/html"); });
   server_->Get("/image", [this](const Request&, Response& response) {
     const std::string bytes = encodedImage();

@@ -42,6 +42,7 @@ class TevViewer::Connection {
   }
 
  private:
+  // Throws if the stream has failed, also by a timeout.
   void check(const char* step) {
     if (!stream_) throw std::runtime_error(std::string(step) + ": " + stream_.error().message());
   }
@@ -51,6 +52,7 @@ class TevViewer::Connection {
 TevViewer::TevViewer(HostPort address, std::string name, std::function<void(const std::string&)> warn)
     : address_(std::move(address)), name_(std::move(name)), warn_(std::move(warn)) {
   thread_ = std::thread([this] {
+    // An error ends the thread with a warning. The render goes on.
     try {
       run();
     } catch (const std::exception& error) {
@@ -78,6 +80,7 @@ void TevViewer::take(std::shared_ptr<const Look> look) {
 
 void TevViewer::showFile(const std::string& file) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  // tev may run in another folder, so the path is made absolute.
   file_ = std::filesystem::absolute(file).string();
 }
 
@@ -86,18 +89,20 @@ void TevViewer::run() {
   bool created = false;
   for (;;) {
     std::unique_lock<std::mutex> lock(mutex_);
+    // Wait for a look or the end, and take what there is.
     changed_.wait(lock, [this] { return over_ || look_ != nullptr; });
     const std::shared_ptr<const Look> look = std::exchange(look_, nullptr);
     const std::string file = over_ ? file_ : "";
     lock.unlock();
 
+    // Send the look. The first one tells the size of the image to create.
     if (look) {
       if (!created) connection.send(tev::createImage(name_, look->image.width, look->image.height));
       created = true;
       connection.send(name_, look->image);
       continue;  // another may have come meanwhile
     }
-    // The end. An image without a file stays in tev.
+    // The end. An image without a file stays in tev, and a tev on another machine could not read the file.
     if (file.empty() || !isLoopback(address_.host)) return;
     connection.send(tev::openImage(file));
     if (created) connection.send(tev::closeImage(name_));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLookInterval = 1;  // seconds, at least
 
-// Whichever comes first.
+// The smaller of two limits. An empty value is no limit.
 template <class T>
 std::optional<T> earlier(std::optional<T> a, std::optional<T> b) {
   return a && b ? std::min(*a, *b) : a ? a : b;
@@ -55,23 +55,27 @@ void WatchedSession::takeLook(std::vector<float> film, bool last) {
            .error = error_,
            .errorIterations = errorIterations_,
            .last = last}));
-  // The next one waits until all looks so far are a small part of the time.
+  // The next look comes once all looking so far takes at most half of the share kMostLooking.
   nextLook_ = std::max(session_->progressSeconds() + kLookInterval, lookingSeconds_ / (0.5 * kMostLooking));
 }
 
 std::optional<uint64_t> WatchedSession::nextSlice() const {
   if (!errorKnowable_) return std::nullopt;
+  // Before slices begin, the film is wanted after one iteration, whose time decides how long slices are.
   return slices_ ? slices_->nextIterations() : 1;
 }
 
 void WatchedSession::beginSlices() {
   whileWaiting([&] { takeLook(session_->film().resolve(), false); });
+  // Looking so far tells what a copy of the film costs. Slices are so long that they take at most half of the share
+  // kMostLooking.
   const double seconds = std::max(session_->progressSeconds(), 1e-6);
   const double rare = std::ceil(lookingSeconds_ / (0.5 * kMostLooking * seconds));
   slices_.emplace(std::bit_ceil(static_cast<uint64_t>(std::clamp(rare, 1.0, 1e9))));
 }
 
 void WatchedSession::addSlice(uint64_t iterations) {
+  // If slices have more than one iteration, the film after the first one is not used.
   if (!slices_) beginSlices();
   if (slices_->nextIterations() != iterations) return;
   whileWaiting([&] { slices_->add(blocks_.take(session_->film().resolve())); });
@@ -81,6 +85,7 @@ void WatchedSession::addSlice(uint64_t iterations) {
 void WatchedSession::estimateError() {
   if (!slices_ || errorIterations_ == slicesUntil_) return;
   const std::optional<FilmError> now = estimateFilmError(slices_->slices(), BlockSample::kWidth);
+  // Where slices are too uneven to tell, the last estimate stays.
   if (!now) return;
   error_ = now;
   errorIterations_ = slicesUntil_;
@@ -96,11 +101,13 @@ void WatchedSession::renderUntil(std::optional<uint64_t> iterations, std::option
 
 void WatchedSession::renderWatched(std::optional<uint64_t> iterations, std::optional<double> seconds) {
   for (;;) {
+    // Render up to the nearest limit: of the caller, of the next slice, or of the next look.
     const std::optional<uint64_t> slice = nextSlice();
     const double due = nextLook_;
     session_->renderUntil(earlier(iterations, slice), earlier(seconds, std::optional(due)));
     if (session_->interrupted()) return;
 
+    // Find out which limit ended it. A look changes nextLook_, so `due` keeps its value.
     const uint64_t done = session_->statistics().iterations;
     const bool sliceReached = slice && done == *slice, allDone = iterations && done >= *iterations;
     // Otherwise the time ended it: chains may end a moment before theirs, where another step does not fit in.

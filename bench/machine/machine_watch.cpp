@@ -20,6 +20,7 @@ double nowSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// CPU seconds of this process, in user and in kernel mode.
 double ownSeconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -29,6 +30,7 @@ double ownSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+// CPU seconds of the whole machine; nothing where /proc/stat does not tell.
 std::optional<CpuTimes> cpuTimes() {
   return parseProcStat(systemFile("/proc/stat"), static_cast<double>(sysconf(_SC_CLK_TCK)));
 }
@@ -51,16 +53,20 @@ MachineState MachineWatch::state() const {
                      .stolenCores = std::nullopt,
                      .slowestMhz = slowest_,
                      .fastestMhz = fastest_};
+  // Without /proc/stat only time and clock rates are known.
   const std::optional<CpuTimes> times = cpuTimes();
   if (!times || !timesBegin_ || state.seconds <= 0) return state;
+  // Busy time includes all programs, also this one.
   const double busy = times->busy - timesBegin_->busy, own = ownSeconds() - ownBegin_;
   // A kernel that keeps no such count leaves zeros, although at least this process was busy.
   if (busy <= 0) return state;
+  // CPU seconds over wall seconds are cores. The kernel counts in ticks, so a difference may be below zero.
   state.othersCores = std::max((busy - own) / state.seconds, 0.0);
   state.stolenCores = (times->steal - timesBegin_->steal) / state.seconds;
   return state;
 }
 
+// A sentence for each figure beyond its limit.
 std::vector<std::string> doubtsAbout(const MachineState& state) {
   std::vector<std::string> doubts;
   if (state.othersCores && *state.othersCores > kQuietCores) {

@@ -16,7 +16,9 @@ struct Node {
   std::vector<uint32_t> cpus;
 };
 
+// The nodes of these hardware threads, by ascending number.
 std::vector<Node> nodesOf(std::vector<HardwareThread> usable) {
+  // Sorting makes the hardware threads of a core neighbours. A rank is the place of a hardware thread within a core.
   std::sort(usable.begin(), usable.end(), [](const HardwareThread& a, const HardwareThread& b) {
     return std::pair(a.core, a.cpu) < std::pair(b.core, b.cpu);
   });
@@ -29,6 +31,7 @@ std::vector<Node> nodesOf(std::vector<HardwareThread> usable) {
     rank = i > 0 && usable[i].core == usable[i - 1].core ? rank + 1 : 0;
     byNode[usable[i].node].push_back({rank, usable[i].core, usable[i].cpu});
   }
+  // The hardware threads of a node are sorted by rank, and by core within a rank.
   std::vector<Node> nodes;
   for (auto& [number, ranked] : byNode) {
     std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.rank < b.rank; });
@@ -60,6 +63,7 @@ PlacementPlan placeThreads(std::vector<HardwareThread> usable, uint32_t threads)
   Placement placement;
   for (const Node& node : nodes) placement.nodes.push_back(node.number);
   std::vector<size_t> taken(nodes.size(), 0);
+  // room(node): how many hardware threads of a node may be taken.
   const auto deal = [&](const auto& room) {
     for (bool any = true; any && placement.cpus.size() < threads;) {
       any = false;
@@ -70,6 +74,7 @@ PlacementPlan placeThreads(std::vector<HardwareThread> usable, uint32_t threads)
       }
     }
   };
+  // First a hardware thread of each core, then the rest.
   deal([](const Node& node) { return node.cores; });
   deal([](const Node& node) { return node.cpus.size(); });
   return {std::move(placement), {}};

@@ -15,6 +15,7 @@ constexpr double kFirstSeconds = 1e-2;
 // Signs of the four parts in each of the three independent samples of their mean's noise.
 constexpr std::array<std::array<int, 4>, 3> kContrasts{{{1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}}};
 
+// A quarter of the sum of the parts with these signs: their mean, or a sample of the mean's noise.
 Image combined(const Pilot& pilot, const std::array<int, 4>& signs) {
   Image image = pilot.parts[0];
   for (size_t i = 0; i < image.pixels.size(); ++i) {
@@ -50,6 +51,7 @@ Image significantBias(const Image& mean, const Image& reference, const std::arra
                       const Image& referenceNoise) {
   Image bias = mean;
   forEachBlock(mean, [&](const std::vector<size_t>& samples) {
+    // Difference of the sums over the block, and the variance that noise gives it.
     double difference = 0, variance = 0;
     for (const size_t i : samples) {
       difference += static_cast<double>(mean.pixels[i]) - static_cast<double>(reference.pixels[i]);
@@ -69,6 +71,7 @@ class Future {
   Future(const PreparedReference& reference, const Pilot& pilot, const Image& bias, const Image& noise)
       : reference_(reference), pilot_(pilot), bias_(bias), noise_(noise) {}
 
+  // SSIM after so many seconds: noise falls with the root of time, bias with its own power.
   double ssimAt(double seconds) const {
     const double noise = std::sqrt(pilot_.seconds / seconds);
     const double bias = std::pow(pilot_.seconds / seconds, pilot_.biasExponent);
@@ -80,6 +83,7 @@ class Future {
     return reference_.ssim().compare(test.codes).mean;
   }
 
+  // Seconds until the target, by bisection, as SSIM grows with time; nothing beyond kLongestSeconds.
   std::optional<double> secondsUntil(double target) const {
     double low = std::log(kFirstSeconds), high = std::log(kLongestSeconds);
     if (ssimAt(kLongestSeconds) < target) return std::nullopt;
@@ -100,16 +104,19 @@ class Future {
 
 Prediction predict(const PreparedReference& reference, const Image& referenceNoise, const Pilot& pilot,
                    double targetSsim) {
+  // Mean, noise and bias of the pilot.
   const Image truth = linearLight(reference.image().file);
   const Image mean = combined(pilot, {1, 1, 1, 1});
   std::array<Image, 3> noises;
   for (size_t i = 0; i < noises.size(); ++i) noises[i] = combined(pilot, kContrasts[i]);
   const Image bias = significantBias(mean, truth, noises, referenceNoise);
 
+  // SSIM of the pilot, and what is left of bias after kLongestSeconds.
   Prediction result;
   const ComparedImage now = reference.prepareTest("pilot", {mean, Encoding::linear, {}});
   result.ssimNow = reference.ssim().compare(now.codes).mean;
   result.ssimLimit = Future(reference, pilot, bias, noises[0]).ssimAt(kLongestSeconds);
+  // Seconds until the target with each sample of the noise. The target must be reached with every sample.
   double sum = 0, squares = 0;
   for (const Image& noise : noises) {
     const std::optional<double> seconds = Future(reference, pilot, bias, noise).secondsUntil(targetSsim);
@@ -120,6 +127,7 @@ Prediction predict(const PreparedReference& reference, const Image& referenceNoi
   // Student's t with two degrees of freedom, over the logarithms of three times.
   constexpr double kStudent = 4.303;
   static_assert(kIntervalLevel == 0.95);
+  // deviation is the standard error of the mean of three logarithms.
   const double middle = sum / 3, deviation = std::sqrt(std::max(squares / 3 - middle * middle, 0.0) / 2);
   result.seconds = std::exp(middle);
   result.interval = {std::exp(middle - kStudent * deviation), std::exp(middle + kStudent * deviation)};

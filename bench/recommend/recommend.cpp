@@ -19,6 +19,7 @@ constexpr double kReferencePart = 0.4, kPilotPart = 0.35;
 // Unlike any that a user picks; the reference's differ, or its own method would find its own noise in it.
 constexpr uint64_t kReferenceSeed = 0x7265666572656e63, kPilotSeed = 0x70696c6f74706963;
 
+// Seconds that a session has rendered, by this clock.
 double secondsBy(PilotClock clock, const Session& session, uint32_t threads) {
   const RenderStatistics statistics = session.statistics();
   return clock == PilotClock::wall ? statistics.renderSeconds : statistics.cpuSeconds / threads;
@@ -34,6 +35,7 @@ double renderBy(PilotClock clock, Session& session, uint32_t threads, double sec
   return secondsBy(clock, session, threads);
 }
 
+// Four renders with seeds from firstSeed on, each for a quarter of the seconds.
 Pilot renderPilot(const Scene& scene, RenderSettings settings, uint64_t firstSeed, double seconds, PilotClock clock) {
   Pilot pilot;
   for (size_t part = 0; part < pilot.parts.size(); ++part) {
@@ -60,6 +62,7 @@ PilotReference referenceOf(const Pilot& pilot) {
   return reference;
 }
 
+// SSIM of the reference with noise added, against the reference itself.
 double ssimWithNoise(const PreparedReference& reference, const Image& noise) {
   Image image = linearLight(reference.image().file);
   for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += noise.pixels[i];
@@ -67,6 +70,7 @@ double ssimWithNoise(const PreparedReference& reference, const Image& noise) {
   return reference.ssim().compare(test.codes).mean;
 }
 
+// Methods that reach the target come first, by time; the others follow, by their limit.
 bool sooner(const RecommendRow& a, const RecommendRow& b) {
   if (a.prediction.seconds && b.prediction.seconds) return *a.prediction.seconds < *b.prediction.seconds;
   if (a.prediction.seconds || b.prediction.seconds) return a.prediction.seconds.has_value();
@@ -79,6 +83,7 @@ std::string duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+// The answer in words, with a doubt where the reference is too noisy for the target.
 void addParagraph(TextLines& text, const Recommendation& all) {
   const RecommendRow* best = all.best();
   if (best == nullptr) {
@@ -109,6 +114,7 @@ const RecommendRow* Recommendation::best() const {
 
 Recommendation recommend(const Scene& scene, const RenderSettings& settings, const RecommendRequest& request) {
   Recommendation result{.scene = scene.name, .targetSsim = request.targetSsim, .rows = {}};
+  // The reference, by the method that `inspect` names, and its own noise.
   RenderSettings own = settings;
   own.method = result.referenceMethod = classifyPaths(scene).reference.method;
   const PilotReference halves =
@@ -121,6 +127,7 @@ Recommendation recommend(const Scene& scene, const RenderSettings& settings, con
     row.pilotSeconds = pilot.seconds;
     row.prediction = predict(reference, halves.noise, pilot, request.targetSsim);
   };
+  // A short pilot of each method.
   for (const Method method : request.methods) {
     RecommendRow& row = result.rows.emplace_back();
     row.method = method;
@@ -131,6 +138,7 @@ Recommendation recommend(const Scene& scene, const RenderSettings& settings, con
     }
   }
   std::stable_sort(result.rows.begin(), result.rows.end(), sooner);
+  // A longer pilot of the method that is first. The prediction may change, and the order with it.
   if (!result.rows.empty() && result.rows.front().refusal.empty()) {
     predictRow(result.rows.front(), (1 - kReferencePart - kPilotPart) * request.seconds);
     std::stable_sort(result.rows.begin(), result.rows.end(), sooner);
@@ -144,6 +152,7 @@ std::string toText(const Recommendation& all) {
   line(text, "\n{:<7} {:>10} {:>21} {:>9} {:>7} {:>9}", "method", "time", "interval", "SSIM now", "limit", "pilot s");
   for (const RecommendRow& row : all.rows) {
     const Prediction& p = row.prediction;
+    // A method that was refused has the reason in place of figures.
     if (!row.refusal.empty()) {
       line(text, "{:<7} {}", toString(row.method), row.refusal);
       continue;
@@ -159,6 +168,7 @@ std::string toText(const Recommendation& all) {
 
 nlohmann::ordered_json toJson(const Recommendation& all) {
   using Json = nlohmann::ordered_json;
+  // null stands for a method that does not reach the target.
   const auto secondsJson = [](const Prediction& p) { return p.seconds ? Json(*p.seconds) : Json(); };
   const auto intervalJson = [](const Prediction& p) {
     return p.seconds ? Json({p.interval.low, p.interval.high}) : Json();

@@ -22,6 +22,7 @@ struct Group {
   std::vector<std::string> scenes;  // each with its figure
 };
 
+// "a, b or c". `last` is the word before the last item.
 std::string joined(const std::vector<std::string>& words, const char* last) {
   std::string text;
   for (size_t i = 0; i < words.size(); ++i) {
@@ -31,8 +32,10 @@ std::string joined(const std::vector<std::string>& words, const char* last) {
   return text;
 }
 
+// The paragraph for a metric that has a target. Scenes with a single series are left out: nothing is compared there.
 std::string renderMetric(const ConvergenceReport& report, size_t index) {
   const ReportMetric& metric = report.metrics[index];
+  // Group scenes by their answer.
   std::vector<Group> groups;
   for (size_t i = 0; i < report.scenes.size(); ++i) {
     const ReportScene& scene = report.scenes[i];
@@ -50,6 +53,7 @@ std::string renderMetric(const ConvergenceReport& report, size_t index) {
   std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
     return a.reached != b.reached ? a.reached : a.scenes.size() > b.scenes.size();
   });
+  // Write the groups as parts of one sentence.
   std::string html = fmt::format("<p class=\"answer\">First to {} {}: ", escapeHtml(metric.name), *metric.target);
   bool first = true;
   for (const Group& group : groups) {
@@ -69,6 +73,7 @@ std::string renderMetric(const ConvergenceReport& report, size_t index) {
 }  // namespace
 
 SceneAnswer answerFor(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex) {
+  // Order series: those that reach the target by time, then the others by their score at the end.
   struct Candidate {
     const ReportSeries* series;
     std::optional<TargetTime> time;
@@ -83,6 +88,7 @@ SceneAnswer answerFor(const ReportScene& scene, const ReportMetric& metric, size
     if (a.time) return a.time->seconds < b.time->seconds;
     return isBetter(metric, a.value, b.value);
   });
+  // The first one is the answer, or came closest.
   SceneAnswer answer;
   if (all.empty()) return answer;
   const Candidate& first = all.front();
@@ -90,6 +96,7 @@ SceneAnswer answerFor(const ReportScene& scene, const ReportMetric& metric, size
   answer.reached = first.time.has_value();
   answer.figure = first.time ? formatTime(*first.time) : formatSignificant(first.value);
   if (!first.time || isClearlyFastest(scene, *first.series, metric, metricIndex, *metric.target)) return answer;
+  // Noise leaves the order of the fastest open: add the methods whose times are level with the first.
   for (size_t i = 1; i < all.size(); ++i) {
     if (all[i].time && all[i].time->seconds <= kLevel * first.time->seconds) {
       answer.methods.push_back(all[i].series->label);

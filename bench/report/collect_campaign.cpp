@@ -39,11 +39,13 @@ std::vector<const Metric*> measuredMetrics(const CampaignResults& results) {
   return metrics;
 }
 
+// The value under a key; NaN if it was not measured.
 double valueOf(const MetricValues& values, const std::string& key) {
   const auto found = values.find(key);
   return found == values.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
 }
 
+// One snapshot: the scores of the metrics shown, and all other scores as further ones.
 ReportPoint pointOf(const SnapshotRecord& snapshot, const std::vector<ReportMetric>& metrics) {
   ReportPoint point{.seconds = snapshot.renderSeconds, .iterations = snapshot.iterations, .values = {}};
   for (const ReportMetric& metric : metrics) point.values.push_back(valueOf(snapshot.values, metric.key));
@@ -80,6 +82,7 @@ std::vector<ReportBias> biasOf(const CampaignResults& results, const Group& grou
   return biases;
 }
 
+// One series from the runs of one scene and method.
 ReportSeries seriesOf(const CampaignResults& results, const Group& group, const std::vector<ReportMetric>& metrics) {
   ReportSeries series;
   series.method = series.label = group[0]->method;
@@ -90,10 +93,11 @@ ReportSeries seriesOf(const CampaignResults& results, const Group& group, const 
     series.runs.push_back(std::move(shown));
     for (const StageRecord& stage : run->stages)
       addStage(series.stages, {.name = stage.name, .items = stage.items, .seconds = stage.seconds});
-    // Stats that are no object tell nothing; the measurements are what counts.
+    // Stats that are not a JSON object are skipped: the report needs only the measurements.
     nlohmann::json object = nlohmann::json::parse(run->stats, nullptr, false);
     if (object.is_object()) stats.push_back(std::move(object));
   }
+  // Pointers are taken once the vector of stats no longer grows.
   std::vector<const nlohmann::json*> objects;
   objects.reserve(stats.size());
   for (const nlohmann::json& object : stats) objects.push_back(&object);
@@ -102,7 +106,7 @@ ReportSeries seriesOf(const CampaignResults& results, const Group& group, const 
   return series;
 }
 
-// In the order of the first run of each.
+// The finished runs of a scene by method, in the order of the first run of each method.
 std::vector<Group> groupByMethod(const CampaignResults& results, const std::string& scene) {
   std::vector<Group> groups;
   for (const RunRecord& run : results.runs) {
@@ -138,6 +142,7 @@ fs::path lastImage(const Group& group) {
   return {};
 }
 
+// Adds the methods that cannot render the scene, each once with its reason.
 void addRefusals(ReportScene& scene, const CampaignResults& results) {
   for (const RunRecord& run : results.runs) {
     if (run.scene != scene.name || run.state != RunState::refused) continue;
@@ -173,26 +178,31 @@ std::optional<double> bestRelmse(const CampaignResults& results, const std::stri
   return best;
 }
 
+// One scene with its series, and with its images as far as the files exist. Adds remarks to the report.
 ReportScene collectScene(const CampaignResults& results, const SceneRecord& record, ConvergenceReport& report) {
   ReportScene scene;
   scene.name = record.name;
   scene.width = record.width;
   scene.height = record.height;
   scene.referenceOrigin = fs::path(record.referenceFile).filename().string();
+  // Noise floors of the metrics shown.
   for (const ReportMetric& metric : report.metrics) {
     const double floor = valueOf(record.noiseFloors, metric.key);
     scene.noiseFloors.push_back(std::isfinite(floor) ? std::optional(floor) : std::nullopt);
   }
+  // One series for each method.
   std::vector<fs::path> lastImages;
   for (const Group& group : groupByMethod(results, record.name)) {
     scene.series.push_back(seriesOf(results, group, report.metrics));
     lastImages.push_back(lastImage(group));
   }
   scene.pathClasses = pathClassesOf(record);
+  // Warn where the noise of the reference is too large to measure against.
   for (const std::string& floor : unmetFloors(record.noiseFloors, bestRelmse(results, record.name))) {
     report.remarks.push_back(fmt::format("{}: the reference is noisy: {}.", record.name, floor));
   }
   addRefusals(scene, results);
+  // Measurements come from the results file. Pictures need the image files.
   if (!fs::is_regular_file(record.referenceFile)) {
     report.remarks.push_back(fmt::format("{}: no pictures, as {} is not there.", record.name, record.referenceFile));
     return scene;
@@ -211,8 +221,8 @@ std::string profileOf(const CampaignResults& results) {
   return profile != results.campaign.end() ? profile->second : "";
 }
 
-// With what bench/claims says about it today: explanations are written once the results of the standard profile are
-// known, and speak of those.
+// A stored claim with its source and explanation, which are in bench/claims and not in results files. Explanations
+// speak of the results of the standard profile.
 ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile) {
   ReportClaim shown{.scene = record.scene,
                     .statement = record.statement,
@@ -223,6 +233,7 @@ ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile) {
   if (claim == nullptr) return shown;
   shown.id = claim->id;
   shown.source = claim->source;
+  // An explanation is shown where the claim does not hold or is undecided.
   const bool open =
       record.verdict == toString(ClaimVerdict::fails) || record.verdict == toString(ClaimVerdict::undecided);
   if (claim->explanation.empty() || !open) return shown;

@@ -21,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Keys of the stats that describe program and machine.
 constexpr const char* kEnvironmentKeys[] = {"version", "commit", "cpu", "isa", "threads"};
 
 struct SceneReference {
@@ -32,17 +33,19 @@ struct SceneReference {
 constexpr const char* kHashKey = "wavecrest:scene_hash";
 constexpr const char* kFloorPrefix = "wavecrest:noise_floor.";
 
+// A value of the metadata; empty if the image does not have it.
 std::string attribute(const ImageFile& image, const std::string& key) {
   const auto entry = image.metadata.find(key);
   return entry == image.metadata.end() ? "" : entry->second;
 }
 
+// Throws if an image is of another scene than the runs. An empty hash is unknown and agrees with any.
 void requireHash(const fs::path& file, const std::string& found, const std::string& ofRuns) {
   if (found.empty() || ofRuns.empty() || found == ofRuns) return;
   throw ResultsError(fmt::format("{}: is of scene_hash {}; expected {} as the renders", file.string(), found, ofRuns));
 }
 
-// A whole reference says that it is one: it has halves, and a scene.
+// Throws unless the metadata have the scene hash and the relative error that `wavecrest reference` writes.
 void requireReference(const fs::path& file, const ImageFile& image) {
   const bool said = !attribute(image, kHashKey).empty() && !attribute(image, "wavecrest:relative_error").empty();
   if (said) return;
@@ -52,7 +55,7 @@ void requireReference(const fs::path& file, const ImageFile& image) {
                   file.string()));
 }
 
-// Two renders are independent unless they have one seed.
+// Throws if both halves name the same seed: then their errors are not independent.
 void requireIndependent(const fs::path& second, const ImageFile& a, const ImageFile& b) {
   const std::string seed = attribute(a, "wavecrest:seed");
   if (seed.empty() || seed != attribute(b, "wavecrest:seed")) return;
@@ -60,7 +63,7 @@ void requireIndependent(const fs::path& second, const ImageFile& a, const ImageF
       fmt::format("{}: has the seed {} of the other half; expected another seed", second.string(), seed));
 }
 
-// The noise floors that a whole reference stores.
+// Reads the noise floors that a whole reference stores. A floor that is absent or not finite stays empty.
 void readFloors(const fs::path& file, const ImageFile& image, std::vector<std::optional<double>>& floors) {
   const std::vector<const Metric*> metrics = reportedMetrics();
   for (size_t m = 0; m < metrics.size(); ++m) {
@@ -75,7 +78,8 @@ void readFloors(const fs::path& file, const ImageFile& image, std::vector<std::o
   }
 }
 
-// Mean of two halves, and from their difference the noise that is left in it, by every metric.
+// The reference of a scene with the noise floor of each reported metric. Throws ResultsError if the file or the halves
+// are not fit to be one.
 SceneReference readReference(const fs::path& folder, const std::string& scene, const std::string& hashOfRuns) {
   const std::vector<fs::path> files = findReference(folder, scene);
   const std::vector<const Metric*> metrics = reportedMetrics();
@@ -83,6 +87,8 @@ SceneReference readReference(const fs::path& folder, const std::string& scene, c
   ImageFile mean = readImage(files[0].string());
   std::string origin = files[0].filename().string();
   requireHash(files[0], attribute(mean, kHashKey), hashOfRuns);
+  // A file of `wavecrest reference` is the mean already and stores the floors. Two halves are averaged, and their
+  // difference gives the floors.
   if (files.size() == 1) {
     requireReference(files[0], mean);
     readFloors(files[0], mean, floors);
@@ -92,6 +98,7 @@ SceneReference readReference(const fs::path& folder, const std::string& scene, c
     const ComparedImage second = first.prepareTest(files[1].string(), readImage(files[1].string()));
     requireHash(files[1], attribute(second.file, kHashKey), hashOfRuns);
     requireIndependent(files[1], mean, second.file);
+    // Measure the floors first: `a` is the buffer that the mean overwrites.
     const Image &a = mean.image, &b = second.file.image;
     for (const NoiseFloor& floor : noiseFloors(a, b, metricList())) {
       for (size_t m = 0; m < metrics.size(); ++m) {
@@ -104,6 +111,7 @@ SceneReference readReference(const fs::path& folder, const std::string& scene, c
   return {PreparedReference(files[0].string(), std::move(mean)), std::move(floors), std::move(origin)};
 }
 
+// Measures one snapshot. A metric that needs a larger image gets NaN; scores besides the main one go into `further`.
 ReportPoint measure(const SnapshotFile& snapshot, const PreparedReference& reference) {
   ReportPoint point{.seconds = snapshot.seconds, .iterations = snapshot.iterations, .values = {}};
   const std::string path = snapshot.image.string();
@@ -122,6 +130,7 @@ ReportPoint measure(const SnapshotFile& snapshot, const PreparedReference& refer
   return point;
 }
 
+// Adds the stages of one run. Entries of another form than render --stats writes are skipped.
 void addStages(std::vector<ReportStage>& sums, const nlohmann::json& stats) {
   const auto stages = stats.find("stages");
   if (stages == stats.end() || !stages->is_array()) return;
@@ -135,6 +144,7 @@ void addStages(std::vector<ReportStage>& sums, const nlohmann::json& stats) {
   }
 }
 
+// Measures all runs of a group and sums up what they cost.
 ReportSeries collectSeries(const std::vector<const RunFile*>& runs, const std::string& label,
                            const PreparedReference& reference) {
   ReportSeries series;
@@ -152,7 +162,7 @@ ReportSeries collectSeries(const std::vector<const RunFile*>& runs, const std::s
   return series;
 }
 
-// Runs of one scene that differ by the seed only, in order of first appearance.
+// Groups the runs of one scene by method, sampler and precision, in order of first appearance.
 std::vector<std::vector<const RunFile*>> groupBySettings(const std::vector<const RunFile*>& runs) {
   std::vector<std::vector<const RunFile*>> groups;
   for (const RunFile* run : runs) {
@@ -184,14 +194,17 @@ std::string seriesLabel(const std::vector<std::vector<const RunFile*>>& groups, 
   return label;
 }
 
+// One scene with all its runs, of which there is at least one.
 ReportScene collectScene(const fs::path& folder, const std::string& name, const std::vector<const RunFile*>& runs) {
   ReportScene scene;
   scene.name = name;
+  // The reference has to be of the scene that the first run rendered.
   const SceneReference reference = readReference(folder, name, runs.front()->sceneHash);
   scene.width = reference.image.image().codes.width;
   scene.height = reference.image.image().codes.height;
   scene.referenceOrigin = reference.origin;
   scene.noiseFloors = reference.noiseFloors;
+  // Each series shows the last image of its first run.
   std::vector<fs::path> lastImages;
   const auto groups = groupBySettings(runs);
   for (const auto& group : groups) {
@@ -206,6 +219,7 @@ ReportScene collectScene(const fs::path& folder, const std::string& name, const 
 
 ConvergenceReport collectRenders(const fs::path& folder) {
   const std::vector<RunFile> files = readRuns(folder);
+  // List the scenes in order of first appearance.
   std::vector<const nlohmann::json*> stats;
   std::vector<std::string> scenes;
   for (const RunFile& file : files) {
@@ -213,6 +227,7 @@ ConvergenceReport collectRenders(const fs::path& folder) {
     if (std::find(scenes.begin(), scenes.end(), file.scene) == scenes.end()) scenes.push_back(file.scene);
   }
 
+  // Describe the page, then collect scene by scene.
   ConvergenceReport report;
   report.title =
       scenes.size() == 1 ? "Convergence of " + scenes[0] : fmt::format("Convergence on {} scenes", scenes.size());

@@ -20,6 +20,7 @@ std::string field(std::string_view text) {
   return quoted + '"';
 }
 
+// The shortest text that reads back as the same number; empty where there is none.
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 }  // namespace
@@ -28,10 +29,12 @@ std::string measurementsAsCsv(const ConvergenceReport& report) {
   std::string csv = "scene,method,series,seed,snapshot,seconds,iterations,metric,value\n";
   for (const ReportScene& scene : report.scenes) {
     for (const ReportSeries& series : scene.series) {
+      // The fields that all lines of a series begin with.
       const std::string start = fmt::format("{},{},{}", field(scene.name), field(series.method), field(series.label));
       for (const ReportRun& run : series.runs) {
         for (size_t k = 0; k < run.points.size(); ++k) {
           const ReportPoint& point = run.points[k];
+          // A line for each metric of the report, then one for each further score.
           const auto add = [&](const std::string& metric, double value) {
             append(csv, "{},{},{},{},{},{},{}\n", start, run.seed, k, number(point.seconds), point.iterations,
                    field(metric), number(value));
@@ -62,12 +65,15 @@ std::string summaryAsCsv(const ConvergenceReport& report) {
     for (const ReportSeries& series : scene.series) {
       for (size_t m = 0; m < report.metrics.size(); ++m) {
         const ReportMetric& metric = report.metrics[m];
+        // The score at the end, its extremes over seeds and the noise floor.
         const Range range = finalRange(series, m);
         const bool hasFloor = m < scene.noiseFloors.size() && scene.noiseFloors[m];
         append(csv, "{},{},{},{},{},{},{},{},{}", field(scene.name), field(series.method), field(series.label),
                series.runs.size(), field(metric.key), number(finalValue(series, m)), number(range.low),
                number(range.high), hasFloor ? number(*scene.noiseFloors[m]) : "");
+        // "yes" where the series is the best beyond noise, else empty.
         append(csv, ",{}", isClearlyBest(scene, series, metric, m) ? "yes" : "");
+        // The time to the target. These columns stay empty for a metric without one.
         if (metric.target) {
           const std::optional<TargetTime> time = timeToReach(series, metric, m, *metric.target);
           append(csv, ",{},{},{},{}\n", number(*metric.target), time ? number(time->seconds) : "",

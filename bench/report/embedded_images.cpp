@@ -8,7 +8,8 @@
 namespace wavecrest {
 namespace {
 
-// From the best to the smallest. Below a quarter of the size a picture shows nothing any more.
+// Each entry is a JPEG quality (0: PNG) and a divisor of both sides. The list goes from the best pictures to the
+// smallest files. It ends at a quarter of width and height, as smaller pictures show nothing.
 constexpr std::array<ImageCoding, 9> kCodings = {{
     {0, 1},
     {92, 1},
@@ -21,6 +22,7 @@ constexpr std::array<ImageCoding, 9> kCodings = {{
     {60, 4},
 }};
 
+// All images that a page shows: references, final images and error maps. Images without pixels are left out.
 std::vector<const ReportImage*> imagesOf(const ConvergenceReport& report) {
   std::vector<const ReportImage*> images;
   const auto add = [&](const ReportImage& image) {
@@ -55,14 +57,16 @@ std::string base64(std::span<const uint8_t> bytes) {
 EmbeddedImages::EmbeddedImages(const ConvergenceReport& report, size_t budget) {
   const std::vector<const ReportImage*> images = imagesOf(report);
   for (const ImageCoding& coding : kCodings) {
+    // The last coding has no limit, so a page always has its images.
     const bool last = coding == kCodings.back();
     if (encodeAll(images, coding, last ? std::numeric_limits<size_t>::max() : budget)) return;
   }
 }
 
-// False, as soon as it is known, if the images exceed the budget.
+// Encodes all images with one coding. Stops and returns false once their URIs are longer than the budget.
 bool EmbeddedImages::encodeAll(const std::vector<const ReportImage*>& images, const ImageCoding& coding,
                                size_t budget) {
+  // Discard the URIs of an earlier coding.
   uris_.clear();
   coding_ = coding;
   size_t used = 0;
@@ -78,6 +82,7 @@ bool EmbeddedImages::encodeAll(const std::vector<const ReportImage*>& images, co
 
 const std::string& EmbeddedImages::uri(const ReportImage& image) const {
   static const std::string none;
+  // An image that was not encoded has an empty URI.
   const auto found = uris_.find(&image);
   return found == uris_.end() ? none : found->second;
 }

@@ -18,9 +18,10 @@
 namespace wavecrest {
 namespace {
 
-// What a mail or a wiki still takes. Pictures get what the text leaves of it.
+// A size that mail and wikis still accept. Images get the part that the text leaves.
 constexpr size_t kPageBytes = 7'600'000;
 
+// Throws unless a vector that is parallel to the metrics has one entry for each.
 void requireMetricCount(const ConvergenceReport& report, size_t count, const std::string& where) {
   if (count != report.metrics.size()) {
     throw std::invalid_argument(
@@ -28,6 +29,7 @@ void requireMetricCount(const ConvergenceReport& report, size_t count, const std
   }
 }
 
+// Throws std::invalid_argument unless all sections can index the data safely.
 void validate(const ConvergenceReport& report) {
   if (report.metrics.empty()) throw std::invalid_argument("report: no metric; expected at least one");
   for (const ReportScene& scene : report.scenes) {
@@ -41,6 +43,7 @@ void validate(const ConvergenceReport& report) {
   }
 }
 
+// Facts of the machine and the campaign, as a table of names and values.
 std::string renderEnvironment(const ConvergenceReport& report) {
   std::string html = "<section id=\"environment\"><h2>Environment</h2><table class=\"pairs\"><tbody>";
   for (const NamedValue& entry : report.environment) {
@@ -62,6 +65,7 @@ std::string renderRemarks(const ConvergenceReport& report, const EmbeddedImages&
       remarks.size(), html);
 }
 
+// Title, legend of methods, answers and remarks.
 std::string renderHeader(const ConvergenceReport& report, const EmbeddedImages& images) {
   std::string html = fmt::format("<header><h1>{}</h1>\n<p class=\"methods\">", escapeHtml(report.title));
   for (const std::string& method : methodsOf(report)) {
@@ -80,6 +84,7 @@ std::string renderContents(const ConvergenceReport& report) {
   return html + "<a href=\"#environment\">Environment</a></nav>\n";
 }
 
+// The whole document. A single scene needs no summary.
 std::string assemble(const ConvergenceReport& report, const EmbeddedImages& images) {
   const bool several = report.scenes.size() > 1;
   std::string html = pageHead(report.title);
@@ -93,6 +98,7 @@ std::string assemble(const ConvergenceReport& report, const EmbeddedImages& imag
   html += renderClaims(report);
   for (size_t i = 0; i < report.scenes.size(); ++i) html += renderScene(report, i, images);
   html += renderEnvironment(report);
+  // The page is complete without the script, which only adds interaction.
   append(html, "</main>\n<script>\n{}</script>\n</body></html>\n", kReportJs);
   return html;
 }
@@ -101,6 +107,7 @@ std::string assemble(const ConvergenceReport& report, const EmbeddedImages& imag
 
 std::string renderReport(const ConvergenceReport& report) {
   validate(report);
+  // The page is assembled twice: once without images to learn the size of its text, then with images in the rest.
   const size_t text = assemble(report, EmbeddedImages()).size();
   const EmbeddedImages images(report, kPageBytes - std::min(kPageBytes, text));
   return assemble(report, images);

@@ -13,6 +13,7 @@
 namespace wavecrest {
 namespace {
 
+// A PNG file of 8-bit RGB, by the simplified interface of libpng.
 std::vector<uint8_t> encodePng(const ReportImage& image) {
   png_image header = {};
   header.version = PNG_IMAGE_VERSION;
@@ -32,17 +33,20 @@ std::vector<uint8_t> encodePng(const ReportImage& image) {
   return bytes;
 }
 
+// Memory that libjpeg allocates by malloc. The caller frees it.
 struct JpegOutput {
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
 };
 
-// Plain data only: false and errors.message on failure.
+// Writes a JPEG file into `output`. On failure returns false with the reason in errors.message. An error of libjpeg
+// jumps out of this frame by longjmp, so it holds no object with a destructor.
 bool compress(JpegErrors& errors, jpeg_compress_struct& info, const ReportImage& image, int quality,
               JpegOutput& output) {
   if (setjmp(errors.returnPoint) != 0) return false;
   jpeg_create_compress(&info);
   jpeg_mem_dest(&info, &output.bytes, &output.size);
+  // Describe the pixels and the coding.
   info.image_width = image.width;
   info.image_height = image.height;
   info.input_components = 3;
@@ -53,6 +57,7 @@ bool compress(JpegErrors& errors, jpeg_compress_struct& info, const ReportImage&
   // No subsampling of colour: single coloured pixels are what a reader looks for.
   for (int component = 0; component < 3; ++component)
     info.comp_info[component].h_samp_factor = info.comp_info[component].v_samp_factor = 1;
+  // Write row by row.
   jpeg_start_compress(&info, TRUE);
   while (info.next_scanline < info.image_height) {
     // libjpeg takes no const; it only reads.
@@ -70,6 +75,7 @@ std::vector<uint8_t> encodeJpeg(const ReportImage& image, int quality) {
   JpegOutput output;
   const bool done = compress(errors, info, image, quality, output);
   jpeg_destroy_compress(&info);
+  // libjpeg may leave memory behind after a failure too.
   const std::unique_ptr<unsigned char, decltype(&std::free)> owner(output.bytes, &std::free);
   if (!done) throw std::runtime_error(fmt::format("report image '{}': {}", image.label, errors.message));
   return {output.bytes, output.bytes + output.size};
@@ -86,6 +92,7 @@ ReportImage reduced(const ReportImage& image, uint32_t factor) {
   small.rgb.reserve(size_t{3} * small.width * small.height);
   for (uint32_t y = 0; y < small.height; ++y) {
     for (uint32_t x = 0; x < small.width; ++x) {
+      // Blocks at the right and lower edges may have fewer pixels.
       const uint32_t right = std::min(image.width, (x + 1) * factor), bottom = std::min(image.height, (y + 1) * factor);
       const uint32_t count = (right - x * factor) * (bottom - y * factor);
       for (size_t c = 0; c < 3; ++c) {
@@ -93,6 +100,7 @@ ReportImage reduced(const ReportImage& image, uint32_t factor) {
         for (uint32_t row = y * factor; row < bottom; ++row)
           for (uint32_t column = x * factor; column < right; ++column)
             sum += image.rgb[3 * (size_t{row} * image.width + column) + c];
+        // Half of the count makes the division round to nearest.
         small.rgb.push_back(static_cast<uint8_t>((sum + count / 2) / count));
       }
     }

@@ -11,12 +11,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+// Part of the file names of references. Their stats files are not runs.
 constexpr const char* kReferenceMark = ".reference";
 
 [[noreturn]] void fail(const fs::path& file, const std::string& wrong, const std::string& expected) {
   throw ResultsError(fmt::format("{}: {}; expected {}", file.string(), wrong, expected));
 }
 
+// The JSON of a stats file. Throws ResultsError if the file cannot be read or parsed.
 json parseFile(const fs::path& path) {
   std::ifstream file(path);
   if (!file) fail(path, "cannot be read", "a stats file");
@@ -27,6 +29,7 @@ json parseFile(const fs::path& path) {
   }
 }
 
+// A value of the stats. Throws ResultsError if the key is absent or has another type.
 template <class Value>
 Value require(const fs::path& path, const json& object, const char* key) {
   const auto entry = object.find(key);
@@ -38,8 +41,8 @@ Value require(const fs::path& path, const json& object, const char* key) {
   }
 }
 
-// Snapshot files are named as the renderer saw them; the folder may have been moved since. Only the folder itself is
-// looked into: an absolute name may by now be that of another render's image.
+// Finds the image of a snapshot. The stats name it as the renderer saw it, and the folder may have been moved since.
+// Only the folder itself is searched: an absolute name may belong to the image of another render.
 fs::path locate(const fs::path& stats, const std::string& name) {
   const fs::path file(name);
   for (const fs::path& candidate : {file.is_relative() ? file : file.filename(), file.filename()}) {
@@ -49,6 +52,7 @@ fs::path locate(const fs::path& stats, const std::string& name) {
   fail(stats, fmt::format("snapshot '{}' does not exist", name), "an image beside this file");
 }
 
+// The snapshots that the stats list and the final image, in order of iterations. Throws ResultsError if there is none.
 std::vector<SnapshotFile> readSnapshots(const fs::path& path, const json& stats) {
   std::vector<SnapshotFile> snapshots;
   for (const json& entry : require<json>(path, stats, "snapshots")) {
@@ -70,6 +74,7 @@ std::vector<SnapshotFile> readSnapshots(const fs::path& path, const json& stats)
   return snapshots;
 }
 
+// One run from its stats file. Throws ResultsError if a key is absent or an image does not exist.
 RunFile readRun(const fs::path& path) {
   RunFile run;
   run.path = path;
@@ -89,6 +94,7 @@ RunFile readRun(const fs::path& path) {
 
 std::vector<RunFile> readRuns(const fs::path& folder) {
   if (!fs::is_directory(folder)) fail(folder, "is not a folder", "one with the results of render");
+  // Collect stats files. A folder lists files in any order, so they are sorted by name.
   std::vector<fs::path> paths;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
@@ -105,6 +111,7 @@ std::vector<RunFile> readRuns(const fs::path& folder) {
 }
 
 std::vector<fs::path> findReference(const fs::path& folder, const std::string& scene) {
+  // A whole reference is preferred to two halves.
   const fs::path whole = folder / (scene + kReferenceMark + ".exr");
   if (fs::is_regular_file(whole)) return {whole};
   const fs::path first = folder / (scene + kReferenceMark + ".1.exr");

@@ -23,6 +23,7 @@ std::vector<const ReportSeries*> ranked(const ConvergenceReport& report, const R
   return order;
 }
 
+// The head of a row: colour and label of a series.
 std::string methodCell(const ReportSeries& series) {
   return fmt::format("<th><i class=\"swatch m-{}\"></i>{}", escapeHtml(series.method), escapeHtml(series.label));
 }
@@ -35,6 +36,7 @@ std::string targetCell(const ReportScene& scene, const ReportSeries& series, con
   return fmt::format("<td class=\"n{}\">{}", fastest ? " best" : "", time ? formatTime(*time) : "–");
 }
 
+// The columns, in the order in which renderResults writes cells.
 std::string resultHead(const ConvergenceReport& report) {
   std::string html = "<thead><tr><th>method<th class=\"n\">seeds<th class=\"n\">time<th class=\"n\">iterations";
   for (const ReportMetric& metric : report.metrics) append(html, "<th class=\"n\">{}", escapeHtml(metric.name));
@@ -46,6 +48,7 @@ std::string resultHead(const ConvergenceReport& report) {
 
 // A bar of stage shares and, below it, the figures: nanoseconds an item tell which kernel to look at.
 std::string renderStagesOf(const ReportSeries& series) {
+  // Shares are of the seconds of all stages together.
   const double total = std::accumulate(series.stages.begin(), series.stages.end(), 0.0,
                                        [](double sum, const ReportStage& stage) { return sum + stage.seconds; });
   if (!(total > 0)) return "";
@@ -53,8 +56,10 @@ std::string renderStagesOf(const ReportSeries& series) {
   for (size_t i = 0; i < series.stages.size(); ++i) {
     const ReportStage& stage = series.stages[i];
     const double share = 100 * stage.seconds / total;
+    // ns per item; a dash for a stage that does not count items.
     const std::string perItem =
         stage.items > 0 ? formatSignificant(1e9 * stage.seconds / static_cast<double>(stage.items)) : "–";
+    // The style sheet has eight colours. A bar segment and its row share one.
     append(bar, "<i class=\"s{}\" style=\"width:{:.2f}%\" title=\"{} {:.1f} %\"></i>", i % 8, share,
            escapeHtml(stage.name), share);
     append(rows,
@@ -76,16 +81,19 @@ std::string renderStagesOf(const ReportSeries& series) {
 std::string renderResults(const ConvergenceReport& report, const ReportScene& scene) {
   std::string html = "<div class=\"scroll\"><table>" + resultHead(report) + "<tbody>";
   for (const ReportSeries* series : ranked(report, scene)) {
+    // Iterations are those of the first run. Time and scores are means over runs.
     const ReportRun& run = series->runs.front();
     const ReportPoint last = run.points.empty() ? ReportPoint{} : run.points.back();
     append(html, "<tr>{}<td class=\"n\">{}<td class=\"n\">{}", methodCell(*series), series->runs.size(),
            formatSeconds(finalSeconds(*series)));
     append(html, "<td class=\"n\">{}", formatCount(static_cast<double>(last.iterations)));
+    // One column for each metric.
     for (size_t m = 0; m < report.metrics.size(); ++m) {
       const double value = finalValue(*series, m);
       const bool best = isClearlyBest(scene, *series, report.metrics[m], m);
       append(html, "<td class=\"n{}\">{}", best ? " best" : "", std::isnan(value) ? "–" : formatSignificant(value));
     }
+    // One column for each metric with a target.
     for (size_t m = 0; m < report.metrics.size(); ++m) {
       if (report.metrics[m].target) html += targetCell(scene, *series, report.metrics[m], m);
     }
@@ -93,6 +101,7 @@ std::string renderResults(const ConvergenceReport& report, const ReportScene& sc
            formatSeconds(series->cpuSeconds));
   }
   html += "</tbody></table></div>\n";
+  // Methods that cannot render the scene stand below the table.
   for (const NamedValue& refusal : scene.refusals)
     append(html, "<p class=\"facts\"><b>{}</b> was refused: {}</p>\n", escapeHtml(refusal.name),
            escapeHtml(refusal.value));
@@ -103,6 +112,7 @@ std::string renderBias(const ReportScene& scene) {
   std::string rows;
   for (const ReportSeries& series : scene.series) {
     if (series.bias.empty()) continue;
+    // The table shows the last snapshot, the plot of bias shows all of them.
     const ReportBias& last = series.bias.back();
     const double share = 100 * last.bias2 / last.meanSquareError;
     append(rows,
@@ -124,6 +134,7 @@ std::string renderPathClasses(const ReportScene& scene) {
   std::string html =
       "<h3>Which paths a method can find</h3><div class=\"scroll\"><table class=\"classes\"><thead><tr>"
       "<th>light path";
+  // The first row names the columns. All rows list the same methods in the same order.
   for (const NamedValue& verdict : scene.pathClasses.front().verdicts)
     append(html, "<th><i class=\"swatch m-{0}\"></i>{0}", escapeHtml(verdict.name));
   html += "</thead><tbody>";

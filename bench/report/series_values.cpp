@@ -11,10 +11,12 @@
 namespace wavecrest {
 
 std::vector<CurvePoint> meanCurve(const ReportSeries& series, size_t metric) {
+  // Runs may have different numbers of snapshots. The curve is as long as the longest run.
   size_t longest = 0;
   for (const ReportRun& run : series.runs) longest = std::max(longest, run.points.size());
   std::vector<CurvePoint> curve;
   for (size_t k = 0; k < longest; ++k) {
+    // Average the k-th snapshots of all runs that have a finite value there.
     CurvePoint point{.low = std::numeric_limits<double>::infinity(), .high = -std::numeric_limits<double>::infinity()};
     double count = 0;
     for (const ReportRun& run : series.runs) {
@@ -37,6 +39,7 @@ std::vector<CurvePoint> meanCurve(const ReportSeries& series, size_t metric) {
 }
 
 double finalValue(const ReportSeries& series, size_t metric) {
+  // A run that ends with NaN makes the mean NaN.
   double sum = 0, count = 0;
   for (const ReportRun& run : series.runs) {
     if (run.points.empty()) continue;
@@ -47,6 +50,7 @@ double finalValue(const ReportSeries& series, size_t metric) {
 }
 
 Range finalRange(const ReportSeries& series, size_t metric) {
+  // fmin and fmax pass over NaN, so the range is NaN only if no run ends with a number.
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   Range range{kNone, kNone};
   for (const ReportRun& run : series.runs) {
@@ -68,6 +72,7 @@ double finalSeconds(const ReportSeries& series) {
 }
 
 bool isBetter(const ReportMetric& metric, double a, double b) {
+  // Any number is better than NaN. NaN is not better than NaN.
   if (std::isnan(a) || std::isnan(b)) return std::isnan(b) && !std::isnan(a);
   return metric.higherIsBetter ? a > b : a < b;
 }
@@ -83,11 +88,14 @@ double bestFinalValue(const ReportScene& scene, const ReportMetric& metric, size
 
 std::optional<TargetTime> timeToReach(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
                                       double target) {
+  // Find the first point that is as good as the target.
   const std::vector<CurvePoint> curve = meanCurve(series, metricIndex);
   const auto reached = std::find_if(curve.begin(), curve.end(),
                                     [&](const CurvePoint& point) { return !isBetter(metric, target, point.mean); });
   if (reached == curve.end()) return std::nullopt;
+  // The first snapshot is good enough already: its time is an upper bound.
   if (reached == curve.begin()) return TargetTime{.seconds = reached->seconds, .atMost = true};
+  // Interpolate the score linearly over log time. At time 0 there is no logarithm: take time itself.
   const CurvePoint& before = *(reached - 1);
   const double part = (target - before.mean) / (reached->mean - before.mean);
   if (!(before.seconds > 0)) return TargetTime{.seconds = before.seconds + part * (reached->seconds - before.seconds)};
@@ -98,13 +106,15 @@ std::string formatTime(const TargetTime& time) { return (time.atMost ? "≤ " : 
 
 namespace {
 
-// Whether the numbers of a lie below those of b beyond noise.
+// Whether the mean of a lies below the mean of b beyond noise, by the 95 % band of their difference. A single value has
+// no band, so the answer is no.
 bool isClearlyLess(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() < 2 || b.size() < 2) return false;
   const Band band = differenceBand(b, a);
   return band.mean - band.halfWidth > 0;
 }
 
+// The finite values of a metric at the ends of the runs, with the sign such that less is better.
 std::vector<double> finalValues(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex) {
   std::vector<double> values;
   for (const ReportRun& run : series.runs) {
@@ -115,12 +125,13 @@ std::vector<double> finalValues(const ReportSeries& series, const ReportMetric& 
   return values;
 }
 
-// Logarithms of the times of each seed, its end where it does not get there.
+// The logarithm of the time that each seed takes to the target. A seed that does not reach it counts with its end.
 std::vector<double> logTimes(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
                              double target) {
   std::vector<double> times;
   for (const ReportRun& run : series.runs) {
     if (run.points.empty()) continue;
+    // In a series of this run alone the mean curve is the curve of the run.
     const ReportSeries alone{.runs = {run}};
     const std::optional<TargetTime> time = timeToReach(alone, metric, metricIndex, target);
     times.push_back(std::log(std::max(time ? time->seconds : run.points.back().seconds, 1e-9)));
@@ -128,6 +139,7 @@ std::vector<double> logTimes(const ReportSeries& series, const ReportMetric& met
   return times;
 }
 
+// Whether a series is better than every other one of its scene. A series without competitors is not.
 template <class Better>
 bool isAheadOfAll(const ReportScene& scene, const ReportSeries& series, Better better) {
   return scene.series.size() > 1 &&
@@ -142,6 +154,7 @@ bool isClearlyBest(const ReportScene& scene, const ReportSeries& series, const R
   const std::vector<double> own = finalValues(series, metric, metricIndex);
   return isAheadOfAll(scene, series, [&](const ReportSeries& other) {
     const std::vector<double> values = finalValues(other, metric, metricIndex);
+    // A series without any value loses to one that has values.
     return values.empty() ? !own.empty() : isClearlyLess(own, values);
   });
 }
@@ -152,6 +165,7 @@ bool isClearlyFastest(const ReportScene& scene, const ReportSeries& series, cons
   const std::vector<double> own = logTimes(series, metric, metricIndex, target);
   return isAheadOfAll(scene, series, [&](const ReportSeries& other) {
     const std::optional<TargetTime> time = timeToReach(other, metric, metricIndex, target);
+    // A series that never gets there loses. One whose time is only an upper bound may have been faster than that.
     return !time || (!time->atMost && isClearlyLess(own, logTimes(other, metric, metricIndex, target)));
   });
 }

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// One heat map: a number for each scene and method, how far it is behind the best of its row in 0..1, and its text.
+// One heat map, a table of scenes x methods. `value` is the number of a cell, and `text` is what the cell shows.
+// `behind` is the distance from the best of the row: 0 at the best, 1 or more for the full tint.
 struct HeatMap {
   std::string name, explanation;
   std::function<double(const ReportScene&, const ReportSeries&)> value;
@@ -26,9 +27,11 @@ struct HeatMap {
   bool higherIsBetter = false;
 };
 
+// The text of a cell in metric maps.
 std::string significant(const ReportSeries&, double value) { return formatSignificant(value); }
 
-// Logarithmic metrics count in factors of two, four of which are the full shade; others by the distance to the best.
+// Scores at the ends of the runs. The tint of a logarithmic metric grows with the factor between score and best, up to
+// a factor of 16. The tint of any other metric grows with the difference, up to half of the best.
 HeatMap metricMap(const ReportMetric& metric, size_t index) {
   return {
       .name = metric.name,
@@ -46,6 +49,7 @@ HeatMap metricMap(const ReportMetric& metric, size_t index) {
       .higherIsBetter = metric.higherIsBetter};
 }
 
+// Render times until a metric reaches its target, NaN where it never does. The tint is full at 16 times the fastest.
 HeatMap targetMap(const ReportMetric& metric, size_t index) {
   return {
       .name = fmt::format("time to {} {}", metric.name, *metric.target),
@@ -64,7 +68,9 @@ HeatMap targetMap(const ReportMetric& metric, size_t index) {
       .higherIsBetter = false};
 }
 
+// The cells of one scene, one for each method. A method without a number gets a dash.
 std::string renderRow(const HeatMap& map, const ReportScene& scene, const std::vector<std::string>& methods) {
+  // Find the values of the row and the best of them. isBetter only asks the metric for its direction.
   ReportMetric order;
   order.higherIsBetter = map.higherIsBetter;
   std::vector<double> values;
@@ -74,6 +80,7 @@ std::string renderRow(const HeatMap& map, const ReportScene& scene, const std::v
     values.push_back(series ? map.value(scene, *series) : kNan);
     if (isBetter(order, values.back(), best)) best = values.back();
   }
+  // Write the cells.
   std::string html;
   for (size_t i = 0; i < methods.size(); ++i) {
     const double value = values[i];
@@ -90,6 +97,7 @@ std::string renderRow(const HeatMap& map, const ReportScene& scene, const std::v
   return html;
 }
 
+// One map as a figure: a row for each scene, a column for each method.
 std::string renderHeatMap(const ConvergenceReport& report, const HeatMap& map) {
   const std::vector<std::string> methods = methodsOf(report);
   std::string html = fmt::format(
@@ -115,11 +123,13 @@ struct Standing {
   double meanRank = kNan;      // over metrics
 };
 
+// Ranks count from 1. Methods with equal scores share the better rank.
 Standing standingOf(const ConvergenceReport& report, const std::string& method) {
   Standing standing{.method = method, .ranks = {}, .factor = {}};
   double total = 0, counted = 0;
   for (size_t m = 0; m < report.metrics.size(); ++m) {
     const ReportMetric& metric = report.metrics[m];
+    // Sum ranks and logarithms over the scenes that the method was run on.
     double rankSum = 0, logSum = 0, scenes = 0;
     for (const ReportScene& scene : report.scenes) {
       const ReportSeries* series = seriesOf(scene, method);
@@ -133,6 +143,7 @@ Standing standingOf(const ConvergenceReport& report, const std::string& method) 
       standing.wins += m == 0 && better == 0 ? 1 : 0;
       ++scenes;
     }
+    // Take means. Ratios of scores only make sense for logarithmic metrics.
     standing.ranks.push_back(scenes > 0 ? rankSum / scenes : kNan);
     standing.factor.push_back(scenes > 0 && metric.logarithmic ? std::exp(logSum / scenes) : kNan);
     if (scenes > 0) {
@@ -144,18 +155,21 @@ Standing standingOf(const ConvergenceReport& report, const std::string& method) 
   return standing;
 }
 
+// Three significant digits with a unit; a dash where there is no number.
 std::string numberCell(double value, const char* unit) {
   if (!std::isfinite(value)) return "<td class=\"n\">–";
   return fmt::format("<td class=\"n\">{}{}", formatSignificant(value), unit);
 }
 
+// The CSS class for the text of a verdict.
 std::string verdictClass(const std::string& verdict) {
   if (verdict == "holds") return "holds";
   if (verdict == "not judged") return "unjudged";
   return verdict == "undecided" ? "undecided" : "fails";
 }
 
-// A row: what decides in a line, the rest behind a click.
+// A table row: scene, statement, verdict and the figure that decides. Explanation and evidence are folded behind a
+// click.
 std::string renderClaim(const ReportClaim& claim) {
   std::string html = fmt::format("<tr><th>{}<td>{}", escapeHtml(claim.scene), escapeHtml(claim.statement));
   if (!claim.source.empty()) append(html, "<small class=\"source\">{}</small>", escapeHtml(claim.source));
@@ -181,15 +195,18 @@ std::string renderHeatMaps(const ConvergenceReport& report) {
 }
 
 std::string renderRanking(const ConvergenceReport& report) {
+  // Order methods by mean rank. Methods without any score come last.
   std::vector<Standing> standings;
   for (const std::string& method : methodsOf(report)) standings.push_back(standingOf(report, method));
   std::stable_sort(standings.begin(), standings.end(), [](const Standing& a, const Standing& b) {
     return std::isnan(b.meanRank) ? !std::isnan(a.meanRank) : a.meanRank < b.meanRank;
   });
+  // Write the head: mean rank, rank by each metric, wins and mean ratio by the first metric.
   const ReportMetric& first = report.metrics.front();
   std::string html = "<h3>Ranking</h3><div class=\"scroll\"><table><thead><tr><th>method<th class=\"n\">mean rank";
   for (const ReportMetric& metric : report.metrics) append(html, "<th class=\"n\">by {}", escapeHtml(metric.name));
   append(html, "<th class=\"n\">first by {0}<th class=\"n\">{0} over best</thead><tbody>", escapeHtml(first.name));
+  // Write a row for each method.
   for (const Standing& standing : standings) {
     append(html, "<tr><th><i class=\"swatch m-{0}\"></i>{0} <small>{1}</small>", escapeHtml(standing.method),
            escapeHtml(methodStyle(standing.method).name));
@@ -206,6 +223,7 @@ std::string renderRanking(const ConvergenceReport& report) {
 
 std::string renderClaims(const ConvergenceReport& report) {
   if (report.claims.empty()) return "";
+  // Sum up the verdicts in a sentence.
   const auto count = [&](const char* verdict) {
     return std::count_if(report.claims.begin(), report.claims.end(),
                          [&](const ReportClaim& claim) { return claim.verdict == verdict; });

@@ -22,6 +22,8 @@ constexpr double kLabelSpacing = 15;
 constexpr double kTitleHeight = 26;  // above the plot in a file
 constexpr size_t kDensePoints = 24;  // from here on marks shrink to dots
 
+// Maps values to user units of the SVG, in which y grows downwards: the plot area reaches from `left` to `right` and
+// from kTop down to kBottom.
 struct Frame {
   Axis x, y;
   double left, right;
@@ -29,6 +31,7 @@ struct Frame {
   double pixelY(double value) const { return kBottom - y.position(value) * (kBottom - kTop); }
 };
 
+// Whether an axis can show a value at all.
 bool showable(AxisScale scale, double value) {
   return std::isfinite(value) && (scale == AxisScale::kLinear || value > 0);
 }
@@ -40,6 +43,7 @@ std::vector<PlotCurve> showableCurves(const Plot& plot) {
     std::erase_if(curve.points, [&](const PlotPoint& point) {
       return !showable(plot.xScale, point.x) || !showable(plot.yScale, point.y);
     });
+    // A band is dropped where the axis cannot show one of its ends.
     for (PlotPoint& point : curve.points) {
       if (!showable(plot.yScale, point.low) || !showable(plot.yScale, point.high)) point.low = point.high = point.y;
     }
@@ -51,6 +55,7 @@ std::vector<PlotCurve> showableCurves(const Plot& plot) {
 // The left margin takes the longest label of the axis.
 double leftMargin(const Axis& axis) {
   constexpr double kLetter = 9;
+  // Bytes 10xxxxxx continue a character of UTF-8.
   size_t longest = 0;  // in characters of UTF-8
   for (const AxisTick& tick : axis.ticks()) {
     const auto begins = [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0) != 0x80; };
@@ -66,7 +71,9 @@ double labelWidth(const std::string& label) {
   return width;
 }
 
+// Axes around all curves with their bands, and margins that take all labels.
 Frame frameAround(const Plot& plot, const std::vector<PlotCurve>& curves) {
+  // Find the range of the data.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double left = kInfinity, right = -kInfinity, low = kInfinity, high = -kInfinity;
   for (const PlotCurve& curve : curves) {
@@ -77,6 +84,7 @@ Frame frameAround(const Plot& plot, const std::vector<PlotCurve>& curves) {
       high = std::max({high, point.y, point.high});
     }
   }
+  // The floor line extends the range. The target line does not.
   if (plot.floor && showable(plot.yScale, plot.floor->y)) {
     low = std::min(low, plot.floor->y);
     high = std::max(high, plot.floor->y);
@@ -89,7 +97,9 @@ Frame frameAround(const Plot& plot, const std::vector<PlotCurve>& curves) {
   return {Axis(plot.xScale, left, right), y, leftMargin(y), kWidth - std::clamp(margin, kLeastMargin, kGreatestMargin)};
 }
 
+// Grid lines, tick labels, axis lines and the label of the x axis.
 void drawGrid(std::string& svg, const Plot& plot, const Frame& frame) {
+  // Vertical lines, with labels below.
   for (const AxisTick& tick : frame.x.ticks()) {
     const double x = frame.pixelX(tick.value);
     append(svg, "<line class=\"{}\" x1=\"{:.1f}\" y1=\"{}\" x2=\"{:.1f}\" y2=\"{}\"/>",
@@ -99,6 +109,7 @@ void drawGrid(std::string& svg, const Plot& plot, const Frame& frame) {
              tick.label);
     }
   }
+  // Horizontal lines, with labels at the left.
   for (const AxisTick& tick : frame.y.ticks()) {
     const double y = frame.pixelY(tick.value);
     append(svg, "<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>",
@@ -108,11 +119,13 @@ void drawGrid(std::string& svg, const Plot& plot, const Frame& frame) {
              y + 4, tick.label);
     }
   }
+  // The two axes and the name of the x axis.
   append(svg, "<path class=\"axis\" d=\"M{:.1f} {}V{}H{:.1f}\"/>", frame.left, kTop, kBottom, frame.right);
   append(svg, "<text class=\"axis-label\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
          0.5 * (frame.left + frame.right), kHeight - 8, escapeHtml(plot.xLabel));
 }
 
+// A horizontal line across the plot, unless it lies outside the y axis.
 void drawLine(std::string& svg, const PlotLine& line, const char* cssClass, AxisScale scale, const Frame& frame) {
   if (!showable(scale, line.y) || frame.y.position(line.y) < 0 || frame.y.position(line.y) > 1) return;
   const double y = frame.pixelY(line.y);
@@ -124,16 +137,18 @@ void drawLine(std::string& svg, const PlotLine& line, const char* cssClass, Axis
          y - kTop < 18 ? y + 14 : y - 5, escapeHtml(line.label));
 }
 
-// A straight line on two logarithmic axes, a little above the curve that ends lowest, cut off at the lower edge.
+// Draws y ~ x^slope as a straight line on two logarithmic axes, a little above the curve that ends lowest.
 void drawGuide(std::string& svg, const Plot& plot, const Frame& frame, const std::vector<PlotCurve>& curves) {
   constexpr double kAbove = 1.7;
   if (!plot.guideSlope || plot.xScale != AxisScale::kLogarithmic || plot.yScale != AxisScale::kLogarithmic) return;
   const auto& lowest = *std::min_element(curves.begin(), curves.end(), [](const PlotCurve& a, const PlotCurve& b) {
     return a.points.back().y < b.points.back().y;
   });
+  // The line passes above the end of that curve by the factor kAbove.
   const PlotPoint& anchor = lowest.points.back();
   const auto guide = [&](double x) { return kAbove * anchor.y * std::pow(x / anchor.x, *plot.guideSlope); };
   const auto inverse = [&](double y) { return anchor.x * std::pow(y / (kAbove * anchor.y), 1 / *plot.guideSlope); };
+  // It spans that curve in x, as far as the y axis reaches. The cuts assume a negative slope.
   double first = lowest.points.front().x, last = anchor.x;
   if (guide(first) > frame.y.high()) first = inverse(frame.y.high());
   if (guide(last) < frame.y.low()) last = inverse(frame.y.low());
@@ -145,6 +160,7 @@ void drawGuide(std::string& svg, const Plot& plot, const Frame& frame, const std
          frame.pixelY(guide(labelX)) - 6, escapeHtml(plot.guideLabel));
 }
 
+// SVG path data of a mark centred at (x, y). Its half width is about r user units.
 std::string markPath(CurveMark mark, double x, double y, double r) {
   switch (mark) {
     case CurveMark::kSquare:
@@ -167,10 +183,12 @@ std::string markPath(CurveMark mark, double x, double y, double r) {
   return fmt::format("M{:.1f} {:.1f}a{} {} 0 1 0 {} 0a{} {} 0 1 0 {} 0z", x - r, y, r, r, 2 * r, r, r, -2 * r);
 }
 
+// The area between the low and high ends of all points. A curve without any band gets none.
 void drawBand(std::string& svg, const PlotCurve& curve, const Frame& frame) {
   const bool visible = std::any_of(curve.points.begin(), curve.points.end(),
                                    [](const PlotPoint& point) { return point.low < point.high; });
   if (!visible) return;
+  // Go forward along the upper edge and back along the lower one.
   svg += "<path class=\"band\" d=\"";
   char command = 'M';
   for (const PlotPoint& point : curve.points) {
@@ -227,10 +245,12 @@ void drawEndLabels(std::string& svg, const std::vector<PlotCurve>& curves, const
   }
 }
 
-// A style sheet with the values of its first block in place of its variables.
+// A style sheet with the values of its first block in place of its variables. Drawing programs that open the file do
+// not know CSS variables.
 std::string withoutVariables(std::string_view css) {
   std::string result(css);
   const std::string block = result.substr(0, result.find('}'));
+  // Replace every use of each variable that the block declares.
   size_t end = 0;  // of a declaration, which is `--name: value;`
   for (size_t begin = block.find("--"); begin != std::string::npos; begin = block.find("--", end)) {
     const size_t colon = block.find(": ", begin);
@@ -240,6 +260,7 @@ std::string withoutVariables(std::string_view css) {
     for (size_t at = result.find(use); at != std::string::npos; at = result.find(use, at))
       result.replace(at, use.size(), value);
   }
+  // Leave out the block itself.
   return result.substr(result.find('}') + 1);
 }
 
@@ -253,6 +274,7 @@ std::string drawPlot(const Plot& plot) {
            kWidth / 2, kHeight / 2);
     return svg;
   }
+  // Later elements cover earlier ones, so grid and lines lie below the curves.
   const Frame frame = frameAround(plot, curves);
   drawGrid(svg, plot, frame);
   if (plot.target) drawLine(svg, {*plot.target, ""}, "target", plot.yScale, frame);
@@ -278,6 +300,7 @@ std::string renderPlot(const Plot& plot) {
 }
 
 std::string renderPlotFile(const Plot& plot) {
+  // The title stands above y = 0, so the view box begins at a negative y.
   const double height = kHeight + kTitleHeight;
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" viewBox=\"0 {} {} {}\" width=\"{}\" height=\"{}\">\n"

@@ -18,6 +18,7 @@ Database::Database(const std::filesystem::path& path, OpenFor purpose) : path_(p
   sqlite3_busy_timeout(handle, kBusyMilliseconds);
 }
 
+// Runs one or several SQL statements. Rows that they give are ignored.
 void Database::execute(const std::string& sql) {
   if (sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) {
     fail("an intact results file of a campaign");
@@ -35,6 +36,7 @@ Statement::Statement(Database& database, std::string_view sql) : database_(datab
   handle_.reset(handle);
 }
 
+// SQLITE_ROW is a row, SQLITE_DONE the end of the rows. Everything else is an error.
 bool Statement::step() {
   const int status = sqlite3_step(handle_.get());
   if (status == SQLITE_ROW) return true;
@@ -43,6 +45,7 @@ bool Statement::step() {
 }
 
 std::string Statement::text(int column) const {
+  // A column with NULL reads as an empty text.
   const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(handle_.get(), column));
   return bytes == nullptr ? std::string() : std::string(bytes);
 }
@@ -53,14 +56,17 @@ double Statement::real(int column) const {
 }
 
 void Statement::bindOne(int place, std::string_view value) {
+  // SQLITE_TRANSIENT makes SQLite copy the text, which may not live until the next step.
   check(sqlite3_bind_text(handle_.get(), place, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT));
 }
 
+// SQLite itself turns a NaN into NULL.
 void Statement::bindOne(int place, double value) { check(sqlite3_bind_double(handle_.get(), place, value)); }
 
 void Statement::bindInteger(int place, int64_t value) { check(sqlite3_bind_int64(handle_.get(), place, value)); }
 
 void Statement::check(int status) const {
+  // A violated constraint and a lock that timed out end here as well, in SQLite's own words.
   if (status != SQLITE_OK) database_.fail("an intact results file of a campaign");
 }
 

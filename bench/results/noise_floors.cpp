@@ -6,6 +6,8 @@ namespace wavecrest {
 
 std::vector<std::string> unmetFloors(const MetricValues& noiseFloors, std::optional<double> bestRelmse) {
   std::vector<std::string> unmet;
+  // SSIM has a fixed scale, so its floor has a fixed limit. The scale of relMSE depends on the scene, so its floor is
+  // compared with the best run.
   const auto ssim = noiseFloors.find("ssim"), relmse = noiseFloors.find("relmse");
   if (ssim != noiseFloors.end() && ssim->second < kLeastSsimFloor) {
     unmet.push_back(fmt::format("SSIM of a perfect image is {:.4g}, below {:g}", ssim->second, kLeastSsimFloor));

@@ -12,6 +12,7 @@ namespace fs = std::filesystem;
 
 // ---- one file -------------------------------------------------------------------------------------------------------
 
+// A path that is relative to the folder of the results file, resolved. An empty path stays empty.
 std::string resolved(const fs::path& results, const std::string& file) {
   return file.empty() ? file : (results.parent_path() / file).lexically_normal().string();
 }
@@ -23,6 +24,7 @@ std::map<std::string, std::string> readCampaign(Database& database) {
   return values;
 }
 
+// Scenes in the order in which they were added, with noise floors and path classes.
 std::vector<SceneRecord> readScenes(Database& database) {
   std::vector<SceneRecord> scenes;
   Statement row(database, "SELECT name, scene_hash, reference_file, width, height FROM scene ORDER BY rowid");
@@ -43,6 +45,7 @@ std::vector<SceneRecord> readScenes(Database& database) {
   return scenes;
 }
 
+// Reads the stages and the measured snapshots of the run with this id.
 void readSnapshots(Database& database, int64_t id, RunRecord& run) {
   Statement stage(database, "SELECT name, items, seconds FROM stage WHERE run = ? ORDER BY position");
   stage.bind(id);
@@ -50,6 +53,7 @@ void readSnapshots(Database& database, int64_t id, RunRecord& run) {
   Statement row(database,
                 "SELECT number, render_seconds, iterations, file FROM snapshot WHERE run = ? ORDER BY number");
   Statement value(database, "SELECT metric, value FROM measurement WHERE run = ? AND number = ?");
+  // Read the snapshots, each with its measurements.
   row.bind(id);
   while (row.step()) {
     SnapshotRecord snapshot{.number = row.small(0),
@@ -62,6 +66,7 @@ void readSnapshots(Database& database, int64_t id, RunRecord& run) {
   }
 }
 
+// Runs by scene in the order of scenes, then in the order in which they were added.
 std::vector<RunRecord> readRuns(Database& database) {
   std::vector<RunRecord> runs;
   Statement row(
@@ -100,6 +105,7 @@ std::vector<BiasRecord> readBiases(Database& database) {
 
 std::vector<ClaimRecord> readClaims(Database& database) {
   std::vector<ClaimRecord> claims;
+  // Files of the oldest version have no figures. An empty text stands for them.
   const std::string figure = hasClaimFigures(database) ? "figure" : "''";
   Statement row(database, "SELECT id, scene, statement, verdict, " + figure + ", evidence FROM claim ORDER BY rowid");
   while (row.step()) {
@@ -119,10 +125,12 @@ std::vector<ClaimRecord> readClaims(Database& database) {
 const std::set<std::string_view> kEnvironmentKeys{"commit", "cpu",     "host",    "isa",
                                                   "shard",  "started", "version", "threads"};
 
+// Throws for a file that is no part of the campaign in the first file.
 [[noreturn]] void fail(const fs::path& path, const std::string& wrong, const fs::path& first) {
   throw ResultsFileError(path.string() + ": " + wrong + "; expected another part of the campaign in " + first.string());
 }
 
+// Settings must agree. Facts of the environment may differ; then all distinct values are listed.
 void mergeCampaign(CampaignResults& all, const CampaignResults& part, const fs::path& path, const fs::path& first) {
   for (const auto& [key, value] : part.campaign) {
     const auto [known, added] = all.campaign.try_emplace(key, value);
@@ -136,6 +144,7 @@ void mergeCampaign(CampaignResults& all, const CampaignResults& part, const fs::
   }
 }
 
+// Adds scenes that are new. A known one must have the same content, size and reference.
 void mergeScenes(CampaignResults& all, const CampaignResults& part, const fs::path& path, const fs::path& first) {
   for (const SceneRecord& scene : part.scenes) {
     const SceneRecord* known = all.findScene(scene.name);
@@ -144,11 +153,13 @@ void mergeScenes(CampaignResults& all, const CampaignResults& part, const fs::pa
     } else if (known->hash != scene.hash || known->width != scene.width || known->height != scene.height) {
       fail(path, "its scene " + scene.name + " is another", first);
     } else if (known->noiseFloors != scene.noiseFloors) {
+      // References are compared by their noise floors, as the file paths may differ.
       fail(path, "its reference of " + scene.name + " is another", first);
     }
   }
 }
 
+// Adds runs, which must be new, and the biases.
 void mergeRuns(CampaignResults& all, const CampaignResults& part, const fs::path& path, const fs::path& first) {
   for (const RunRecord& run : part.runs) {
     if (all.findRun(run.scene, run.method, run.seed) != nullptr) {
@@ -159,7 +170,8 @@ void mergeRuns(CampaignResults& all, const CampaignResults& part, const fs::path
   all.biases.insert(all.biases.end(), part.biases.begin(), part.biases.end());
 }
 
-// As one campaign would have them: scenes by name, as no part need know them all; runs of a scene together.
+// Orders the merged records. No part needs to know all scenes, so their common order is unknown: they go by name. The
+// runs of a scene go together.
 void sortParts(CampaignResults& all) {
   std::sort(all.scenes.begin(), all.scenes.end(),
             [](const SceneRecord& a, const SceneRecord& b) { return a.name < b.name; });
@@ -170,7 +182,7 @@ void sortParts(CampaignResults& all) {
   });
 }
 
-// results.1-of-4.sqlite, ...
+// The results files of shards in a folder, by name: results.1-of-4.sqlite, ...
 std::vector<fs::path> shardFiles(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -187,6 +199,7 @@ std::vector<fs::path> shardFiles(const fs::path& folder) {
 
 CampaignResults readResults(const fs::path& path) {
   const fs::path file = fs::is_directory(path) ? path / kResultsFile : path;
+  // A folder without a results file may have those of shards.
   if (fs::is_directory(path) && !fs::exists(file)) {
     if (const std::vector<fs::path> shards = shardFiles(path); !shards.empty()) return readResults(shards);
   }
@@ -210,6 +223,7 @@ CampaignResults readResults(std::span<const fs::path> paths) {
   if (paths.empty()) throw std::invalid_argument("readResults: no file");
   CampaignResults all = readResults(paths.front());
   if (paths.size() == 1) return all;
+  // The first part takes in the others. Each part could judge only its own runs, so verdicts are dropped.
   all.claims.clear();
   for (const fs::path& path : paths.subspan(1)) {
     const CampaignResults part = readResults(path);

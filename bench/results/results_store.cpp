@@ -5,6 +5,7 @@
 namespace wavecrest {
 namespace {
 
+// Inserts the snapshots of a run with their measurements. The caller holds the transaction.
 void putSnapshots(Database& database, int64_t run, const std::vector<SnapshotRecord>& snapshots) {
   Statement row(database, "INSERT INTO snapshot VALUES(?, ?, ?, ?, ?)");
   Statement value(database, "INSERT INTO measurement VALUES(?, ?, ?, ?)");
@@ -14,6 +15,8 @@ void putSnapshots(Database& database, int64_t run, const std::vector<SnapshotRec
   }
 }
 
+// Inserts a run with its stages and snapshots. The caller holds the transaction. Fails by the table's UNIQUE constraint
+// if the run is there already.
 void insertRun(Database& database, const RunRecord& run) {
   Statement(database, "INSERT INTO run(scene, method, seed, state, reason, stats) VALUES(?, ?, ?, ?, ?, ?)")
       .bind(run.scene, run.method, run.seed, toString(run.state), run.reason, run.stats)
@@ -32,7 +35,8 @@ ResultsStore::ResultsStore(const std::filesystem::path& path) : database_(path, 
   createSchema(database_);
 }
 
-// Does nothing while somebody reads; then the journal stays, and is as good.
+// Leaves WAL mode, so that no journal stays beside the file. SQLite refuses while another process reads; then the
+// journal stays, and the results are as good.
 ResultsStore::~ResultsStore() {
   sqlite3_exec(database_.handle(), "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
 }
@@ -45,6 +49,7 @@ void ResultsStore::putCampaign(const std::map<std::string, std::string>& values)
 }
 
 void ResultsStore::addEnvironment(const std::map<std::string, std::string>& values) {
+  // Append each value to the list that is stored under its key.
   std::map<std::string, std::string> lists;
   Statement known(database_, "SELECT value FROM campaign WHERE key = ?");
   for (const auto& [key, value] : values) {
@@ -56,11 +61,13 @@ void ResultsStore::addEnvironment(const std::map<std::string, std::string>& valu
 
 void ResultsStore::putScene(const SceneRecord& scene) {
   Transaction transaction(database_);
+  // An update in place keeps the rowid, which is the order of scenes.
   Statement(database_,
             "INSERT INTO scene VALUES(?1, ?2, ?3, ?4, ?5) ON CONFLICT(name) DO UPDATE "
             "SET scene_hash = ?2, reference_file = ?3, width = ?4, height = ?5")
       .bind(scene.name, scene.hash, scene.referenceFile, scene.width, scene.height)
       .run();
+  // Replace noise floors and path classes as a whole.
   Statement(database_, "DELETE FROM noise_floor WHERE scene = ?").bind(scene.name).run();
   Statement floor(database_, "INSERT INTO noise_floor VALUES(?, ?, ?)");
   for (const auto& [metric, value] : scene.noiseFloors) floor.bind(scene.name, metric, value).run();
@@ -79,8 +86,10 @@ void ResultsStore::putRun(const RunRecord& run) {
 }
 
 void ResultsStore::replaceRun(const RunRecord& run) {
+  // Restricts a deletion to the rows of this run.
   constexpr const char* kThisRun = " WHERE run IN (SELECT id FROM run WHERE scene = ? AND method = ? AND seed = ?)";
   Transaction transaction(database_);
+  // Foreign keys ask for this order: rows go before the rows that they refer to.
   for (const char* table : {"measurement", "snapshot", "stage"}) {
     Statement(database_, std::string("DELETE FROM ") + table + kThisRun).bind(run.scene, run.method, run.seed).run();
   }

@@ -28,12 +28,14 @@ double simulate(uint32_t threads, Take&& take, End&& end) {
   double now = 0;
   uint64_t begun = 0;
   for (;;) {
+    // Every free thread begins a task, while there are ready ones.
     while (running.size() < threads) {
       const std::optional<std::pair<Task, double>> taken = take();
       if (!taken) break;
       running.push({now + taken->second, begun++, taken->first});
     }
     if (running.empty()) return now;
+    // The clock goes on to the next end of a task, which may make others ready.
     now = running.top().end;
     end(running.top().task);
     running.pop();
@@ -49,6 +51,7 @@ double overSteps(const TaskGraph& graph, uint32_t times, Figure&& figure) {
     if (step.goesOn) {
       seconds += figure(step, times);
     } else {
+      // The first and the last step come once. Any other step is repeated, with its barrier.
       const bool once = i == 0 || i + 1 == graph.steps.size();
       seconds += (once ? 1 : times) * figure(step, 1);
     }
@@ -73,6 +76,7 @@ double scheduledChains(const TaskStep& step, uint32_t threads, uint32_t times) {
         return std::pair(chain, tasks[done[chain]++ % tasks.size()]);
       },
       [&](size_t chain) {
+        // The chain waits for its next turn behind all others.
         if (done[chain] < times * step.chains[chain].size()) ready.push_back(chain);
       });
 }
@@ -80,8 +84,10 @@ double scheduledChains(const TaskStep& step, uint32_t threads, uint32_t times) {
 // The iterations come `times` times.
 double scheduledIterations(const TaskStep& step, uint32_t threads, uint32_t times) {
   const Schedule& schedule = *step.schedule;
+  // The place of each phase's first task in the recorded times of an iteration.
   std::vector<size_t> firstOfPhase(schedule.tasks.size());
   std::exclusive_scan(schedule.tasks.begin(), schedule.tasks.end(), firstOfPhase.begin(), size_t{0});
+  // Iterations beyond the recorded ones take as long as the recorded ones, in the same order.
   const uint64_t recorded = step.chains.size();
   ScheduleState state(schedule, 0);
   const auto mayBegin = [end = times * recorded](uint64_t iteration, size_t) { return iteration < end; };
@@ -100,6 +106,7 @@ double scheduledStep(const TaskStep& step, uint32_t threads, uint32_t times) {
   return step.schedule ? scheduledIterations(step, threads, times) : scheduledChains(step, threads, times);
 }
 
+// Seconds of the longest sequence of tasks in a step that wait for each other.
 double longestChain(const TaskStep& step, uint32_t times) {
   // As if there were a thread for each task.
   if (step.schedule) return scheduledIterations(step, std::numeric_limits<uint32_t>::max(), times);

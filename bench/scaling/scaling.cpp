@@ -25,6 +25,7 @@ constexpr size_t kMostScheduledTasks =
 // Parts of the time.
 constexpr double kMeasuredPart = 0.5, kProcessPart = 0.2, kRecordedPart = 0.3;
 
+// from, 2 from, 4 from, ... below `most`, and `most` itself; nothing if `most` is below `from`.
 std::vector<uint32_t> powersOfTwo(uint32_t from, uint32_t most) {
   std::vector<uint32_t> counts;
   for (uint32_t n = from; n < most; n *= 2) counts.push_back(n);
@@ -46,9 +47,11 @@ class RecordedRender {
     const Slice slice = slices_.render();
     const TaskGraph graph = recorder.graph();
     tasks_ = taskCount(graph);
+    // The slice is repeated until every thread has work for kPredictedSeconds, within the limit of tasks.
     const auto most = static_cast<double>(std::max<size_t>(kMostScheduledTasks / tasks_, 1));
     const double wanted = std::ceil(kPredictedSeconds * threads_ / workOf(graph));
     const auto times = static_cast<uint32_t>(std::clamp(wanted, 1.0, most));
+    // Predicted rate of the repeated slice.
     rates_.push_back(static_cast<double>(slice.paths) * times / scheduledSeconds(graph, threads_, times));
     parallelisms_.push_back(workOf(graph, times) / spanOf(graph, times));
     longest_ = longestTask(graph);
@@ -65,6 +68,7 @@ class RecordedRender {
   }
 
  private:
+  // Work for one thread, in pieces as for cutFor threads.
   static RenderSettings cutSettings(RenderSettings settings, uint32_t cutFor) {
     settings.threads = 1;
     settings.piecesForThreads = cutFor;
@@ -90,6 +94,7 @@ ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& fi
   result.width = area.width;
   result.height = area.height;
 
+  // A session for each number of threads that is measured.
   const std::vector<uint32_t> measured = powersOfTwo(1, settings.threads);
   std::vector<std::unique_ptr<Session>> sessions;
   for (const uint32_t threads : measured) {
@@ -97,24 +102,28 @@ ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& fi
     own.threads = threads;
     sessions.push_back(Session::create(scene, own));
   }
+  // A recorded render for each number of threads that is predicted.
   const std::vector<uint32_t> predicted = powersOfTwo(2, kMostPredictedThreads);
   const double recordedSlice = kRecordedPart * seconds / static_cast<double>(predicted.size() * (kMostRounds + 1));
   std::vector<RecordedRender> recorded;
   recorded.reserve(predicted.size());
   for (const uint32_t threads : predicted) recorded.emplace_back(scene, settings, threads, recordedSlice);
 
+  // Each round measures a slice of every session and records a slice of every recorded render.
   MachineWatch watch;
   const TurnPlan plan{.seconds = kMeasuredPart * seconds, .fewestRounds = kFewestRounds, .mostRounds = kMostRounds};
   const std::vector<std::vector<Slice>> slices = renderInTurn(sessions, plan, [&] {
     for (RecordedRender& render : recorded) render.record();
     watch.look();
   });
+  // Predicted speedups are over the measured rate of one thread in the same round.
   const auto ratesOf = [](const std::vector<Slice>& all) {
     return valuesOf(all, [](const Slice& slice) { return slice.pathsPerSecond(); });
   };
   const std::vector<double> oneThread = ratesOf(slices.front());
   for (const RecordedRender& render : recorded) result.predicted.push_back(render.result(oneThread));
 
+  // Processes render as many iterations as one thread does in their part of the time.
   const double oneRate = median(oneThread),
                processSeconds = kProcessPart * seconds / static_cast<double>(measured.size());
   const ChildRequest request{
@@ -125,6 +134,7 @@ ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& fi
           1, static_cast<uint64_t>(processSeconds * oneRate / static_cast<double>(area.pixels.size()))),
       .more = {},
       .imageFile = {}};
+  // Measured speedups of threads, and of as many processes.
   double oneProcess = 0;
   for (size_t i = 0; i < measured.size(); ++i) {
     std::vector<double> rates = ratesOf(slices[i]), speedups = rates;

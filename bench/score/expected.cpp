@@ -12,12 +12,15 @@
 namespace wavecrest {
 namespace {
 
+// The end of a key SIZE/GROUP/SCENE/METHOD.
 std::string entryKey(const ScoreEntry& entry) { return fmt::format("{}/{}", entry.scene, toString(entry.method)); }
 
+// The beginning of a key SIZE/GROUP/SCENE/METHOD, with the slash after the group.
 std::string groupKey(ScoreSize size, const std::string& group) {
   return fmt::format("{}/{}/", kScoreSizeNames[static_cast<size_t>(size)], group);
 }
 
+// Throws ScoreFileError for anything but sixteen hexadecimal digits.
 uint64_t parseHash(const std::string& text) {
   uint64_t hash = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
@@ -30,22 +33,26 @@ uint64_t parseHash(const std::string& text) {
 }  // namespace
 
 uint64_t hashImage(std::span<const float> samples) {
+  // Offset basis and prime of FNV-1a with 64 bits. A step takes the 32 bits of a sample instead of one byte.
   uint64_t hash = 0xcbf29ce484222325u;
   for (const float sample : samples) hash = (hash ^ std::bit_cast<uint32_t>(sample)) * 0x100000001b3u;
   return hash;
 }
 
 std::string hashGroup(Isa isa) {
+  // A build has all specialised sets of float or none, so one set tells.
   const bool specialized = isCompiled(Precision::floating, Specialization::diffuse);
   return std::string(toString(isa)) + (specialized ? "" : "-general");
 }
 
 ImageHashes ImageHashes::parse(const nlohmann::json& file) {
+  // Another version of the workload renders other images.
   if (!file.is_object() || file.value("score_version", 0) != kScoreVersion || !file.contains("images")) {
     throw ScoreFileError(fmt::format("has no hashes of score version {}", kScoreVersion));
   }
   ImageHashes all;
   try {
+    // The file nests sizes, groups, scenes and methods. The map has one key for all four.
     for (const auto& [size, groups] : file.at("images").items()) {
       for (const auto& [group, scenes] : groups.items()) {
         for (const auto& [scene, methods] : scenes.items()) {
@@ -67,6 +74,7 @@ nlohmann::ordered_json ImageHashes::toJson() const {
   nlohmann::ordered_json images = nlohmann::ordered_json::object();
   for (const auto& [key, hash] : hashes_) {
     nlohmann::ordered_json* place = &images;
+    // Each part of the key between slashes is a level of the nested objects.
     for (size_t begin = 0; begin <= key.size();) {
       const size_t end = std::min(key.find('/', begin), key.size());
       place = &(*place)[key.substr(begin, end - begin)];
@@ -88,6 +96,7 @@ void ImageHashes::set(ScoreSize size, const std::string& group, const ScoreEntry
 
 bool ImageHashes::has(ScoreSize size, const std::string& group) const {
   const std::string key = groupKey(size, group);
+  // The map is sorted: keys with this beginning follow the place where the beginning alone would stand.
   const auto found = hashes_.lower_bound(key);
   return found != hashes_.end() && found->first.starts_with(key);
 }
@@ -95,6 +104,7 @@ bool ImageHashes::has(ScoreSize size, const std::string& group) const {
 double ReferenceMachine::rateOf(const ScoreEntry& entry) const { return rates.at(entryKey(entry)); }
 
 const ReferenceMachine& referenceMachine() {
+  // Parsed once, at the first call.
   static const ReferenceMachine machine = [] {
     const nlohmann::json file = nlohmann::json::parse(kReferenceMachineJson);
     ReferenceMachine reference{.name = file.at("machine"), .rates = {}};

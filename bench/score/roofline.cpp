@@ -73,10 +73,13 @@ double bestRate(double work, Run&& run) {
   return best;
 }
 
+// Bytes per second of a triad over three columns that have about this many bytes together.
 double triadRate(const PeakLoops& loops, size_t bytes) {
+  // Whole blocks of 64 floats, a multiple of the lanes of every instruction set.
   const size_t count = std::max<size_t>(bytes / (3 * sizeof(float)) / 64 * 64, 64);
   const MemoryBlock memory(3 * count * sizeof(float), 64);
   auto* const a = reinterpret_cast<float*>(memory.get());
+  // The block comes uninitialised. Filling also touches every page before the timing begins.
   std::fill(a, a + 3 * count, 1.0f);
   return bestRate(3.0 * sizeof(float) * static_cast<double>(count),
                   [&] { loops.triad(a, a + count, 0.5f, a + 2 * count, count); });
@@ -92,8 +95,10 @@ enum Queue : uint32_t {
   kVertexRows = 32,
   kRadiance = 64
 };
+// The queues that describe a vertex of a path.
 constexpr uint32_t kVertex = kRays | kHits | kSurfaces | kPaths;
 
+// The queues that a stage reads and writes, as bits of Queue.
 struct Traffic {
   StageId stage;
   uint32_t reads, writes;
@@ -116,6 +121,7 @@ constexpr Traffic kTraffic[] = {
     {StageId::merge, kVertex | kVertexRows, kRadiance},
 };
 
+// Bytes of a record in a queue, without columns that scene and method do not need.
 template <class S>
 size_t bytesOf(Columns<S>& queue) {
   return queue.bytesPerItem();
@@ -126,9 +132,12 @@ size_t bytesOf(Columns<S>& queue) {
 Ceilings measureCeilings(Isa isa) {
   const PeakLoops& loops = peakLoopsOf(isa);
   const Topology& topology = machineRecord().topology;
+  // Where the cache size is unknown, the second cache is taken to have half a megabyte.
   const size_t l2 = topology.l2Bytes != 0 ? topology.l2Bytes : kMegabyte / 2;
+  // Four times the third cache, which cannot keep that much. The limits serve unknown and very large caches.
   const size_t beyond = std::clamp<size_t>(4 * topology.l3Bytes, 64 * kMegabyte, 512 * kMegabyte);
   constexpr size_t kRounds = 10000;
+  // Keeps the compiler from dropping the loop.
   volatile float sink = 0;
   return {.cacheBytesPerSecond = triadRate(loops, l2 / 2),
           .memoryBytesPerSecond = triadRate(loops, beyond),
@@ -138,6 +147,7 @@ Ceilings measureCeilings(Isa isa) {
 
 StageTraffic::StageTraffic(const Scene& scene, const RenderSettings& settings) {
   const RenderPlan<float> plan = planRender<float>(scene, settings);
+  // Bytes per record do not depend on the capacity, so a small wave is enough.
   Wave<float> wave(kColumnPadding, plan.needs);
   rays_ = bytesOf(wave.rays);
   hits_ = bytesOf(wave.hits);
@@ -162,6 +172,7 @@ std::optional<size_t> StageTraffic::bytesPerItem(std::string_view row) const {
   if (found == nullptr) return std::nullopt;
   const auto sum = [this](uint32_t queues) {
     size_t bytes = 0;
+    // In the order of the bits of Queue.
     const size_t each[] = {rays_, hits_, surfaces_, paths_, shadowRays_, vertexRows_, radiance_};
     for (size_t i = 0; i < std::size(each); ++i) bytes += (queues >> i & 1) != 0 ? each[i] : 0;
     return bytes;

@@ -40,6 +40,7 @@ Image reduced(const Image& film, uint32_t width) {
   return small;
 }
 
+// Time, samples and relMSE of the render so far.
 QualityAtTime qualityNow(const Session& session, const Image& reference) {
   const RenderStatistics now = session.statistics();
   return {.seconds = now.renderSeconds,
@@ -56,22 +57,27 @@ void renderOnThreads(const Scene& scene, const RenderSettings& settings, const I
   for (uint64_t done = 1; done <= kScoreSlices; ++done) {
     rates.push_back(slices.render().pathsPerSecond());
     if (done == 1) row.hash = hashImage(session->film().resolve());
+    // After slices 1, 2, 4 and 8.
     if ((done & (done - 1)) == 0) row.quality.push_back(qualityNow(*session, reference));
   }
   row.pathsPerSecond = estimateMedian(rates);
 }
 
+// Renders slices on one thread, for the speed of a core and the cost of each stage.
 void renderOnOneThread(const Scene& scene, RenderSettings settings, StageEventCounter& events, ScoreRow& row) {
   settings.threads = 1;
   settings.measureStages = true;
   const auto session = Session::create(scene, settings);
   SliceRenderer renderer(*session, row.entry.iterations / kScoreSlices);
+  // The first slice warms caches up; neither its time nor its events are used.
   renderer.render();
   events.take();
+  // Speed of the later slices.
   std::vector<Slice> slices;
   for (uint64_t i = 0; i < kThreadSlices; ++i) slices.push_back(renderer.render());
   row.pathsPerCpuSecond = estimateMedian(valuesOf(slices, [](const Slice& s) { return s.pathsPerCpuSecond(); }));
   row.facts = session->statistics();
+  // Stages: shares of time, bytes of columns, and hardware events per item.
   const StageTraffic traffic(scene, settings);
   const std::map<std::string, StageEvents> counted = events.take();
   double paths = 0;
@@ -82,6 +88,7 @@ void renderOnOneThread(const Scene& scene, RenderSettings settings, StageEventCo
     stage.bytesPerItem = traffic.bytesPerItem(share.name);
     const auto found = counted.find(share.name);
     if (found == counted.end() || share.itemsPerPath == 0) continue;
+    // Events are sums over all slices, so the divisor is the number of items in all slices.
     for (size_t i = 0; i < kStageEvents; ++i) {
       stage.eventsPerItem[i] = static_cast<double>(found->second[i]) / (share.itemsPerPath * paths);
     }
@@ -95,10 +102,13 @@ ScoreRow measureRow(const ScoreRequest& request, const ScoreEntry& entry, const 
   const Image reference = readImage(request.references / (entry.scene + ".exr")).image;
   ScoreRow row;
   row.entry = entry;
+  // All threads: speed, quality over time, and the image that validates the row.
   renderOnThreads(scene, settings, reference, row);
   const std::optional<uint64_t> expected = hashes.find(request.size, hashGroup(request.isa), entry);
   if (expected) row.validity = *expected == row.hash ? Validity::right : Validity::wrong;
+  // One thread.
   renderOnOneThread(scene, settings, events, row);
+  // As many processes as threads, on one thread each, for one slice.
   const ChildRequest child{.scene = request.sceneFile(entry.scene),
                            .method = std::string(toString(entry.method)),
                            .size = fmt::format("{}x{}", entry.width, entry.height),
@@ -106,12 +116,14 @@ ScoreRow measureRow(const ScoreRequest& request, const ScoreEntry& entry, const 
                            .more = {"--isa", std::string(toString(request.isa))},
                            .imageFile = {}};
   row.processesPathsPerSecond = rateOfProcesses(request.threads, child);
+  // Both scores are relative to one thread of the reference machine, which has 100.
   const double rate = referenceMachine().rateOf(entry);
   row.score = 100 * row.pathsPerSecond.value / rate;
   row.coreScore = 100 * row.pathsPerCpuSecond.value / rate;
   return row;
 }
 
+// Geometric mean of a figure over the rows of a method, or of all methods; 0 without rows.
 double geometricMean(const std::vector<ScoreRow>& rows, std::optional<Method> method, double ScoreRow::*figure) {
   double sum = 0, count = 0;
   for (const ScoreRow& row : rows) {

@@ -21,6 +21,7 @@ struct StageSum {
   void add(const ScoredStage& stage) {
     const StageShare& s = stage.share;
     items += s.itemsPerPath;
+    // Lanes per path: the sums of items and of lanes give the lane use over all scenes.
     if (s.laneUse && *s.laneUse > 0) slots += s.itemsPerPath / *s.laneUse;
     ns += s.nsPerPath.value;
     share += s.share.value;
@@ -29,6 +30,7 @@ struct StageSum {
   }
 };
 
+// The stages of a method, in the order of their first row. scenes: on how many scenes the method was measured.
 std::vector<StageSum> stagesOf(const ScoreResult& result, Method method, size_t& scenes) {
   std::vector<StageSum> sums;
   scenes = 0;
@@ -49,6 +51,7 @@ std::vector<StageSum> stagesOf(const ScoreResult& result, Method method, size_t&
   return sums;
 }
 
+// The table of a method's stages: means over scenes, per path or per item.
 void addStages(TextLines& text, const ScoreResult& result, Method method) {
   size_t scenes = 0;
   const std::vector<StageSum> sums = stagesOf(result, method, scenes);
@@ -60,6 +63,7 @@ void addStages(TextLines& text, const ScoreResult& result, Method method) {
     if (sum.items == 0) continue;
     const double ns = sum.ns / sum.items;
     const std::string lanes = sum.slots > 0 ? fmt::format("{:.0f} %", 100 * sum.items / sum.slots) : "";
+    // Empty for stages without a known contract, and where events are not counted.
     std::string bytes, bandwidth, counts;
     if (sum.bytes > 0) {
       bytes = fmt::format("{:.0f}", sum.bytes / sum.items);
@@ -76,6 +80,7 @@ void addStages(TextLines& text, const ScoreResult& result, Method method) {
 
 }  // namespace
 
+// One line under scoreHeading, with relMSE and time after the last slice.
 std::string toText(const ScoreRow& row) {
   const auto rate = [](const Estimate& e) {
     return fmt::format("{:.3f} +-{:.3f}", 1e-6 * e.value, 1e-6 * e.interval.halfWidth());
@@ -96,7 +101,9 @@ std::string scoreHeading(const ScoreRequest& request) {
 
 std::string toText(const ScoreResult& result) {
   TextLines text;
+  // The stages of every method.
   for (const MethodEntry& entry : kMethods) addStages(text, result, entry.method);
+  // What a core can do at best, and how to read the columns.
   const Ceilings& peak = result.ceilings;
   line(text, "\n  one thread: {:.0f} GB/s from the second cache, {:.1f} GB/s from memory, {:.0f} G operations/s",
        1e-9 * peak.cacheBytesPerSecond, 1e-9 * peak.memoryBytesPerSecond, 1e-9 * peak.operationsPerSecond);
@@ -107,6 +114,7 @@ std::string toText(const ScoreResult& result) {
     line(text, "  cycles, instructions and cache misses are not counted here ({})", result.eventsRefusal);
   }
   line(text, "");
+  // Doubts, and the scores of methods and of all.
   for (const std::string& doubt : result.doubts()) line(text, "  doubt: {}", doubt);
   for (const MethodEntry& entry : kMethods) {
     if (result.score(entry.method) == 0) continue;

@@ -32,6 +32,7 @@ Interval bootstrapMedian(std::span<const double> values, double level) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     return {*low, *high};
   }
+  // A fixed seed. The remainder of 64 bits by a small count is as good as uniform.
   std::mt19937_64 random(values.size());
   std::vector<double> medians(kResamples), sample(values.size());
   for (double& middle : medians) {
@@ -49,6 +50,7 @@ Estimate estimateMedian(std::span<const double> values) {
 Estimate estimateMedianOfVisits(std::span<const std::vector<double>> visits, double level) {
   assert(!visits.empty());
   if (visits.size() == 1) return estimateMedian(visits.front());
+  // The medians of the visits, in ascending order.
   std::vector<double> medians;
   for (const std::vector<double>& values : visits) medians.push_back(median(values));
   std::sort(medians.begin(), medians.end());
@@ -56,6 +58,7 @@ Estimate estimateMedianOfVisits(std::span<const std::vector<double>> visits, dou
   // level allows.
   const size_t n = medians.size();
   size_t outside = 0;
+  // term: C(n, k) / 2^n for k = outside; tail: the sum of terms up to k.
   double term = std::ldexp(1.0, -static_cast<int>(n)), tail = term;
   while (2 * (outside + 1) < n) {
     term *= static_cast<double>(n - outside) / static_cast<double>(outside + 1);

@@ -16,6 +16,7 @@ std::vector<size_t> doubledRanks(std::span<const double> values) {
   for (size_t first = 0; first < order.size();) {
     size_t end = first + 1;
     while (end < order.size() && values[order[end]] == values[order[first]]) ++end;
+    // The mean rank of first + 1 to end, doubled.
     for (size_t i = first; i < end; ++i) ranks[order[i]] = first + end + 1;
     first = end;
   }
@@ -37,6 +38,7 @@ std::vector<double> sumsOfChoices(const std::vector<size_t>& ranks, size_t n) {
   std::vector<std::vector<double>> ways(n + 1, std::vector<double>(most + 1));
   ways[0][0] = 1;
   for (const size_t rank : ranks) {
+    // Downwards, so that no choice has the same value twice.
     for (size_t k = n; k-- > 0;) {
       for (size_t s = most - rank + 1; s-- > 0;) ways[k + 1][s + rank] += ways[k][s];
     }
@@ -52,6 +54,7 @@ double normalTwoSided(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0))
 }  // namespace
 
 double signedRankProbability(std::span<const double> differences) {
+  // Sizes and signs, without differences of 0.
   std::vector<double> sizes;
   std::vector<bool> positive;
   for (const double difference : differences) {
@@ -67,6 +70,7 @@ double signedRankProbability(std::span<const double> differences) {
   size_t reached = 0, positiveSum = 0;
   for (size_t i = 0; i < ranks.size(); ++i) {
     reached += ranks[i];
+    // Downwards: smaller sums do not have this rank yet.
     for (size_t s = reached + 1; s-- > 0;) {
       distribution[s] = 0.5 * (distribution[s] + (s >= ranks[i] ? distribution[s - ranks[i]] : 0));
     }
@@ -98,6 +102,7 @@ std::vector<double> holm(std::span<const double> probabilities) {
   std::iota(order.begin(), order.end(), size_t{0});
   std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return probabilities[a] < probabilities[b]; });
   std::vector<double> corrected(probabilities.size());
+  // From the smallest probability on: times the number of tests that are left, and never below the one before.
   double largest = 0;
   for (size_t i = 0; i < order.size(); ++i) {
     largest = std::max(largest, static_cast<double>(order.size() - i) * probabilities[order[i]]);

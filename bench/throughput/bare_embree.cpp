@@ -19,6 +19,7 @@ using Segments = Packet<kEmbreePacket>::Ray;
 
 constexpr size_t kRepeats = 3;  // of each timing; the median counts
 
+// Rays of one kind over all waves and depths, and the CPU time of each intersector for them.
 struct Total {
   uint64_t rays = 0;
   double bare = 0, embreeStage = 0, usedStage = 0;  // seconds
@@ -42,6 +43,8 @@ double secondsOf(Prepare&& prepare, Run&& run) {
   return median(std::move(seconds));
 }
 
+// Traces waves as the render does, and times three intersectors on the rays of each intersection stage right before it
+// runs: bare Embree, our stage on Embree, and the stage of this render.
 class Comparison {
  public:
   Comparison(const Scene& scene, const RenderSettings& settings)
@@ -49,9 +52,11 @@ class Comparison {
         embree_(scene, onEmbree(settings)),
         wave_(used_.makeWave()),
         scratch_(used_.makeWave()) {
+    // All stages run in the context of used_, so its scene needs Embree's scene as well.
     used_.plan().scene->view.embree = scene_ = embree_.plan().scene->view.embree;
   }
 
+  // Adds the rays of a wave, of all depths.
   void addWave(size_t index) {
     used_.trace(wave_, used_.waveFromAllOver(index), [&](std::string_view stage, uint32_t depth, Wave<float>& wave) {
       if (stage == "extend") addExtend(depth, wave);
@@ -69,6 +74,7 @@ class Comparison {
     return settings;
   }
 
+  // CPU time of a stage on a copy of the wave. Making the copy is not timed.
   double stageSeconds(Stage<float> stage, uint32_t depth, const Wave<float>& wave) {
     const StageContext<float> context = used_.context(depth);
     return secondsOf([&] { scratch_.copyFrom(wave); }, [&] { stage(context, scratch_); });
@@ -78,9 +84,11 @@ class Comparison {
   template <class Record, class Fill, class Call>
   double bareSeconds(std::vector<Record>& packets, size_t count, Fill&& fill, Call&& call) {
     packets.resize((count + kEmbreePacket - 1) / kEmbreePacket);
+    // All packets but the last are full.
     alignas(64) int all[kEmbreePacket], last[kEmbreePacket];
     setValid(kEmbreePacket, all);
     setValid(count - (packets.size() - 1) * kEmbreePacket, last);
+    // Embree writes its results into the packets, so each repetition fills all packets anew. Filling is not timed.
     return secondsOf(
         [&] {
           for (size_t i = 0; i < packets.size(); ++i) fill(packets[i], i * kEmbreePacket);
@@ -97,6 +105,7 @@ class Comparison {
     closest_.bare += bareSeconds(
         rayHits_, wave.rays.size,
         [&](RayHits& packet, size_t first) {
+          // Rays have no end.
           setSegment(std::numeric_limits<float>::infinity(), packet.ray);
           copyRays<float>(wave.rays, first, packet.ray);
           setNoHit(packet);
@@ -114,6 +123,7 @@ class Comparison {
     anyHit_.bare += bareSeconds(
         segments_, wave.shadowRays.size,
         [&](Segments& packet, size_t first) {
+          // A shadow ray's direction spans its segment. Hits count in [0, 1).
           setSegment(std::nextafter(1.0f, 0.0f), packet);
           copyRays<float>(wave.shadowRays, first, packet);
         },
@@ -124,6 +134,7 @@ class Comparison {
     anyHit_.usedStage += stageSeconds(stageNamed("occlude"), depth, wave);
   }
 
+  // The camera pass' stage of this name, on the intersector that renders the scene.
   Stage<float> stageNamed(std::string_view name) {
     for (const StageCall<float>& stage : used_.plan().pipeline.cameraPass.perDepth) {
       if (stage.name == name) return stage.run;
@@ -144,9 +155,11 @@ class Comparison {
 std::optional<BareEmbree> measureBareEmbree(const Scene& scene, const RenderSettings& settings, double seconds) {
   RenderSettings own = settings;
   own.precision = Precision::floating;
+  // The floating-point mode of a render.
   const FlushToZero flushToZero;
   Comparison comparison(scene, own);
   if (!comparison.possible()) return std::nullopt;
+  // Waves from all over the film, until the time is over.
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
   size_t wave = 0;

@@ -18,6 +18,7 @@ void add(Json& object, const std::string& name, const Estimate& estimate, double
   object[name + "_interval"] = {scale * estimate.interval.low, scale * estimate.interval.high};
 }
 
+// All slices of one thread count, each with the number of its visit.
 Json slicesJson(const VisitSlices& visits) {
   Json rows = Json::array();
   for (size_t visit = 0; visit < visits.size(); ++visit) {
@@ -29,6 +30,7 @@ Json slicesJson(const VisitSlices& visits) {
   return rows;
 }
 
+// What else the machine did meanwhile. null: this system does not tell.
 Json stateJson(const MachineState& state) {
   const auto orNull = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
   return {{"seconds", state.seconds},
@@ -38,6 +40,7 @@ Json stateJson(const MachineState& state) {
           {"fastest_mhz", state.fastestMhz}};
 }
 
+// lane_use is null for stages that do not work in blocks.
 Json stageJson(const StageShare& stage) {
   Json row = {{"name", stage.name}, {"items_per_path", stage.itemsPerPath}};
   add(row, "seconds_per_item", stage.nsPerItem, 1e-9);
@@ -47,6 +50,7 @@ Json stageJson(const StageShare& stage) {
   return row;
 }
 
+// One thread count. `bench --compare` reads its slices.
 Json scalingJson(const ScalingRow& row) {
   Json json = {{"threads", row.threads}};
   add(json, "paths_per_second", row.pathsPerSecond);
@@ -56,6 +60,7 @@ Json scalingJson(const ScalingRow& row) {
   return json;
 }
 
+// Speed of one method, its stages, its growth with threads, and reasons for doubt.
 Json speedJson(const Speed& speed) {
   Json json = {{"isa", std::string(toString(speed.facts.isa))},
                {"specialization", enumeratorName(kSpecializationNames, speed.facts.specialization)},
@@ -76,6 +81,7 @@ Json speedJson(const Speed& speed) {
   return json;
 }
 
+// Rays per second on one core.
 Json ratesJson(const RayRates& rates) {
   return {{"rays", rates.rays},
           {"bare_rays_per_second", rates.bare},
@@ -83,6 +89,7 @@ Json ratesJson(const RayRates& rates) {
           {"used_stage_rays_per_second", rates.usedStage}};
 }
 
+// Differences are relative to the image of double precision.
 Json policiesJson(const PolicyTable& table) {
   Json rows = Json::array();
   for (const PolicyRow& row : table.rows) {
@@ -98,6 +105,7 @@ Json policiesJson(const PolicyTable& table) {
   return {{"iterations", table.iterations}, {"rows", rows}};
 }
 
+// relMSE over time, for each method and sampler.
 Json errorsJson(const std::vector<ErrorRow>& errors) {
   Json rows = Json::array();
   for (const ErrorRow& row : errors) {
@@ -122,6 +130,7 @@ Json toJson(const SceneResult& result) {
   Json methods = Json::array();
   for (const MethodResult& row : result.methods) {
     Json method = speedJson(row.speed);
+    // Methods with light paths or chains are not compared with bare Embree.
     if (row.bareEmbree) {
       const BareEmbree& embree = *row.bareEmbree;
       method["bare_embree"] = {{"closest", ratesJson(embree.closest)},
@@ -130,6 +139,7 @@ Json toJson(const SceneResult& result) {
                                {"render_ratio", row.speed.raysPerCpuSecond.value / embree.raysPerSecond()}};
     }
     method["policies"] = policiesJson(row.policies);
+    // Objects keep the order of insertion: the method's name is to come first.
     Json entry = {{"method", std::string(toString(row.method))}};
     entry.update(method);
     methods.push_back(entry);

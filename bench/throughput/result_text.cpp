@@ -15,10 +15,12 @@ double millions(double perSecond) { return perSecond * 1e-6; }
 std::string rate(const Estimate& estimate, int digits = 3) {
   return fmt::format("{:.{}f} +-{:.1f}%", millions(estimate.value), digits, 100 * estimate.relativeError());
 }
+// A share in percent. The half width of the interval is in percentage points.
 std::string percent(const Estimate& estimate) {
   return fmt::format("{:.1f}% +-{:.1f}", 100 * estimate.value, 100 * estimate.interval.halfWidth());
 }
 
+// Work and time of the stages on one thread. The last line is the time outside all stages.
 void addStages(Text& text, const Speed& speed) {
   line(text, "\n  {:<18} {:>10} {:>9} {:>7} {:>9} {:>14} {:>9}", "stage", "items/path", "ns/item", "+-%", "ns/path",
        "share", "lane use");
@@ -28,10 +30,12 @@ void addStages(Text& text, const Speed& speed) {
          stage.nsPerItem.value, 100 * stage.nsPerItem.relativeError(), stage.nsPerPath.value, percent(stage.share),
          laneUse);
   }
+  // Nanoseconds per path: the share of the CPU time of a path.
   line(text, "  {:<18} {:>10} {:>9} {:>7} {:>9.2f} {:>14}", "film, rest", "", "", "",
        1e9 * speed.restShare.value / speed.pathsPerCpuSecond.value, percent(speed.restShare));
 }
 
+// Rates, doubts, stages, and growth with threads.
 void addSpeed(Text& text, const Speed& speed, uint32_t threads) {
   const VisitSlices& visits = speed.scaling.front().slices;
   line(text, "  {} M paths/s on {} thread{}, {} per core; {:.2f} rays/path, {} M rays/s, {} per core",
@@ -52,6 +56,7 @@ void addSpeed(Text& text, const Speed& speed, uint32_t threads) {
   }
 }
 
+// Rays per second of one core. The last line compares all rays of the render, shading included, with Embree alone.
 void addBareEmbree(Text& text, const BareEmbree& embree, const Speed& speed) {
   line(text, "\n  {:<12} {:>12} {:>12} {:>8} {:>12} {:>8}", "M rays/s core", "bare Embree", "Embree stage", "ratio",
        "stage used", "ratio");
@@ -67,6 +72,7 @@ void addBareEmbree(Text& text, const BareEmbree& embree, const Speed& speed) {
        "", millions(speed.raysPerCpuSecond.value), speed.raysPerCpuSecond.value / embree.raysPerSecond());
 }
 
+// Differences are relative to the image of double precision.
 void addPolicies(Text& text, const PolicyTable& table) {
   line(text, "\n  precision policies and instruction sets; differences after {} iterations of the same random numbers",
        table.iterations);
@@ -79,6 +85,7 @@ void addPolicies(Text& text, const PolicyTable& table) {
   }
 }
 
+// relMSE over time. The efficiency is that of the last point.
 void addErrors(Text& text, const SceneResult& result) {
   line(text, "\n  relMSE at equal time (reference: {:.2g} s, its own noise {:.1e}, subtracted)",
        result.reference.seconds, result.reference.noise);

@@ -7,6 +7,7 @@ namespace {
 
 constexpr size_t kMostRounds = 5;  // of a visit
 
+// 1, 2, 4, ... below `most`, and `most` itself.
 std::vector<uint32_t> threadCounts(uint32_t most) {
   std::vector<uint32_t> counts;
   for (uint32_t n = 1; n < most; n *= 2) counts.push_back(n);
@@ -14,6 +15,7 @@ std::vector<uint32_t> threadCounts(uint32_t most) {
   return counts;
 }
 
+// Median and interval over visits of the figure that projection(slice) returns.
 template <class Projection>
 Estimate estimateOf(const VisitSlices& slices, Projection&& projection) {
   std::vector<std::vector<double>> visits;
@@ -41,6 +43,7 @@ Estimate scaled(Estimate estimate, double factor) {
   return {estimate.value * factor, {estimate.interval.low * factor, estimate.interval.high * factor}};
 }
 
+// Share of a slice's time outside all stages: film and schedule.
 double restIn(const Slice& slice) {
   double rest = 1;
   for (size_t i = 0; i < slice.stages.size(); ++i) rest -= shareIn(slice, i);
@@ -64,6 +67,7 @@ std::vector<StageShare> stageShares(const VisitSlices& slices) {
   for (size_t i = 0; i < rows.size(); ++i) {
     StageShare& share = shares.emplace_back();
     share.name = rows[i].name;
+    // Counts have no noise from the machine, so they are summed over all slices.
     double items = 0, laneSlots = 0, paths = 0;
     for (const Slice& slice : allSlices(slices)) {
       items += static_cast<double>(slice.stages[i].items);
@@ -72,6 +76,7 @@ std::vector<StageShare> stageShares(const VisitSlices& slices) {
     }
     share.itemsPerPath = items / paths;
     if (laneSlots != 0) share.laneUse = items / laneSlots;
+    // Times are medians. A stage's CPU time per path is its share of the slice's CPU time per path.
     share.share = estimateOf(slices, [i](const Slice& s) { return shareIn(s, i); });
     share.nsPerPath = estimateOf(slices, [i](const Slice& s) { return 1e9 * shareIn(s, i) / s.pathsPerCpuSecond(); });
     if (items > 0) share.nsPerItem = scaled(share.nsPerPath, 1 / share.itemsPerPath);
@@ -95,6 +100,7 @@ std::vector<std::unique_ptr<Session>> SpeedMeasurement::makeSessions() const {
 }
 
 void SpeedMeasurement::visit(double seconds) {
+  // Sessions of this visit, and slices of as many iterations as the first visit found.
   const auto sessions = makeSessions();
   std::vector<SliceRenderer> renderers;
   const bool first = iterations_.empty();
@@ -107,6 +113,7 @@ void SpeedMeasurement::visit(double seconds) {
       renderers.back().render();  // fills caches, starts threads; chains bootstrap
     }
   }
+  // Slices of all thread counts in turn.
   auto slices = renderInTurn(renderers, {.seconds = seconds, .fewestRounds = 1, .mostRounds = kMostRounds},
                              [&] { watch_.look(); });
   for (size_t i = 0; i < slices.size(); ++i) slices_[i].push_back(std::move(slices[i]));
@@ -114,6 +121,7 @@ void SpeedMeasurement::visit(double seconds) {
 }
 
 Speed SpeedMeasurement::speed() const {
+  // Thread counts ascend: the first is one thread, the last is all threads.
   const VisitSlices &one = slices_.front(), &all = slices_.back();
   Speed speed{.pathsPerSecond = estimateOf(all, wallRate),
               .raysPerSecond = estimateOf(all, [](const Slice& s) { return s.rays() / s.seconds; }),
@@ -124,6 +132,7 @@ Speed SpeedMeasurement::speed() const {
               .scaling = {},
               .facts = facts_,
               .machine = watch_.state()};
+  // Rays per path: a ratio of counts over all slices.
   double rays = 0, paths = 0;
   for (const Slice& slice : allSlices(one)) {
     rays += slice.rays();
@@ -131,6 +140,7 @@ Speed SpeedMeasurement::speed() const {
   }
   speed.raysPerPath = rays / paths;
   speed.bytesPerPath = speed.facts.bytesPerPath;
+  // Each thread count against one thread.
   for (size_t i = 0; i < threads_.size(); ++i) {
     speed.scaling.push_back({.threads = threads_[i],
                              .pathsPerSecond = estimateOf(slices_[i], wallRate),

@@ -5,6 +5,7 @@ namespace {
 
 constexpr double kMostOvershoot = 1.25;  // of a slice's paths over those asked for
 
+// What a session did between two of its statistics. A slice keeps only the ray counters.
 Slice difference(const RenderStatistics& after, const RenderStatistics& before) {
   Slice slice;
   slice.seconds = after.renderSeconds - before.renderSeconds;
@@ -27,6 +28,8 @@ void SliceRenderer::fill(double sliceSeconds) {
   render();
   for (;; iterations_ *= 2) {
     const Slice slice = render();
+    // A whole iteration is one path per pixel. Chains render whole steps of many mutations: a slice that is too short
+    // has no paths, or many more than were asked for.
     const double asked = static_cast<double>(iterations_ * session_.film().area().pixels.size());
     const bool even = slice.paths > 0 && static_cast<double>(slice.paths) <= kMostOvershoot * asked;
     if (even && slice.seconds >= 0.5 * sliceSeconds) return;
@@ -35,6 +38,7 @@ void SliceRenderer::fill(double sliceSeconds) {
 
 Slice SliceRenderer::render() {
   const RenderStatistics before = session_.statistics();
+  // renderUntil counts iterations from the beginning of the session.
   done_ += iterations_;
   session_.renderUntil(done_, std::nullopt);
   return difference(session_.statistics(), before);
@@ -47,6 +51,7 @@ std::vector<std::vector<Slice>> renderInTurn(std::span<SliceRenderer> renderers,
   for (size_t round = 0; round < plan.mostRounds; ++round) {
     if (round >= plan.fewestRounds && spent >= plan.seconds) break;
     for (size_t k = 0; k < renderers.size(); ++k) {
+      // Forwards in even rounds, backwards in odd ones.
       const size_t i = round % 2 == 0 ? k : renderers.size() - 1 - k;
       slices[i].push_back(renderers[i].render());
       spent += slices[i].back().seconds;

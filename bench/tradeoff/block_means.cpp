@@ -9,6 +9,7 @@
 namespace wavecrest {
 namespace {
 
+// A difference relative to the reference, with its probability by Student's test.
 // Values that are equal to the bit have no variance and no bias.
 Bias biasOf(const MeanEstimate& difference, double reference) {
   Bias bias;
@@ -18,6 +19,7 @@ Bias biasOf(const MeanEstimate& difference, double reference) {
   bias.standardError = error / std::abs(reference);
   if (difference.mean == 0) return bias;
   const int degrees = std::max(static_cast<int>(difference.degreesOfFreedom), 1);
+  // A difference without any variance cannot be chance.
   bias.probability = error == 0 ? 0 : studentTail(difference.mean / error, degrees);
   return bias;
 }
@@ -39,6 +41,7 @@ BlockComparison overBlocks(size_t count, Compare&& compare) {
     const Bias bias = compare(i);
     if (i == 0 || bias.probability < result.worstBlock.probability) result.worstBlock = bias;
   }
+  // The smallest of so many probabilities is corrected for their number (Bonferroni).
   result.worstBlock.probability = std::min(1.0, static_cast<double>(blocks) * result.worstBlock.probability);
   return result;
 }
@@ -48,8 +51,10 @@ BlockComparison overBlocks(size_t count, Compare&& compare) {
 BlockMeans blockMeans(std::span<const float> film, uint32_t width) {
   const PixelBlocks blocks = PixelBlocks::of(film.size(), width);
   BlockMeans means(blocks.count() + 1, 0.0);
+  // Blocks at the right and lower edges may have fewer samples.
   std::vector<double> samples(means.size(), 0.0);
   for (size_t i = 0; i < film.size(); ++i) {
+    // Each sample counts for its block and for the whole image.
     for (const size_t block : {blocks.ofSample(i), blocks.count()}) {
       means[block] += film[i];
       ++samples[block];

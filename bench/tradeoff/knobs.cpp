@@ -14,6 +14,7 @@
 namespace wavecrest {
 namespace {
 
+// Collects variants of the baseline. The reference that add() returns is valid until the next add().
 class Variants {
  public:
   explicit Variants(const RenderSettings& base) : base_(base) {}
@@ -29,6 +30,7 @@ class Variants {
   std::vector<Variant> all_;
 };
 
+// What leaves the paths as they are but for rounding: precision, instruction set, kernels, size of waves.
 void addArithmetic(Variants& variants, const RenderSettings& base) {
   variants.add("--precision", "double", true).precision = Precision::doubled;
   for (const Isa isa : availableIsas()) {
@@ -40,6 +42,7 @@ void addArithmetic(Variants& variants, const RenderSettings& base) {
   }
 }
 
+// Intersectors, which find the same hits but for rounding.
 void addTracing(Variants& variants) {
   for (const Accel accel : {Accel::small, Accel::bvh, Accel::embree}) {
     variants.add("--accel", enumeratorName(kAccelNames, accel), true).accel = accel;
@@ -50,6 +53,7 @@ void addTracing(Variants& variants) {
   fastEmbree.precision = Precision::fast;
 }
 
+// What changes the paths of every method. A depth limit is varied downwards only.
 void addPaths(Variants& variants, const RenderSettings& base) {
   for (const uint32_t depth : {4u, 8u, 16u}) {
     if (depth < base.limits.maxDepth) variants.add("--max-depth", std::to_string(depth)).limits.maxDepth = depth;
@@ -59,6 +63,7 @@ void addPaths(Variants& variants, const RenderSettings& base) {
       variants.add("--rr-depth", std::to_string(depth)).limits.rouletteDepth = depth;
     }
   }
+  // Chains draw their own numbers.
   if (base.method != Method::mlt) {
     const SamplerKind other = base.sampler == SamplerKind::sobol ? SamplerKind::independent : SamplerKind::sobol;
     variants.add("--sampler", toString(other)).sampler = other;
@@ -70,6 +75,7 @@ void addFilter(Variants& variants, const RenderSettings& base) {
   variants.add("--filter-mode", enumeratorName(kFilterModeNames, other)).filterMode = other;
 }
 
+// What decides the bias and noise of merging. Light paths are multiples of one per pixel.
 void addMerging(Variants& variants, const RenderSettings& base, uint64_t pixels) {
   for (const double factor : {0.25, 4.0}) {
     variants.add("--radius", fmt::format("{:g}", factor * base.radius)).radius = factor * base.radius;
@@ -86,12 +92,14 @@ bool isSmall(const Scene& scene, const RenderSettings& settings) {
   return compileScene<float>(scene, settings.accel)->accel() == Accel::small;
 }
 
+// Shares of the brightness below which connections play roulette; 0 turns the roulette off.
 void addConnections(Variants& variants) {
   for (const double part : {0.0, 0.05, 0.8}) {
     variants.add("--connection-roulette", fmt::format("{:g}", part)).connectionRoulette = part;
   }
 }
 
+// Variant, number of chains, and the separate pass for direct light.
 void addChains(Variants& variants, const RenderSettings& base) {
   for (size_t i = 0; i < kMetropolisVariantNames.size(); ++i) {
     const auto variant = static_cast<MetropolisVariant>(i);
@@ -108,10 +116,12 @@ void addChains(Variants& variants, const RenderSettings& base) {
 
 std::vector<Variant> variantsOf(const Scene& scene, const RenderSettings& base) {
   Variants variants(base);
+  // chooseVariants expects the baseline first and double precision second.
   variants.add("baseline", enumeratorName(kPrecisionNames, base.precision), true);
   addArithmetic(variants, base);
   addTracing(variants);
   addPaths(variants, base);
+  // A box filter is the same in both modes.
   if (scene.film.filter != ReconstructionFilter::box) addFilter(variants, base);
   if (strategiesOf(base.method).merge) addMerging(variants, base, filmArea(scene.film).pixels.size());
   if (hasConnectionRoulette(base.method) && !isSmall(scene, base)) addConnections(variants);

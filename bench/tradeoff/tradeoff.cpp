@@ -22,6 +22,7 @@ constexpr uint64_t kFirstReferenceSeed = 0x7472616465;  // unlike any that a use
 
 using Film = std::vector<float>;
 
+// One render of a setting with one seed. bytes: memory of the whole render.
 struct OneRender {
   Film film;
   double cpuSeconds = 0, paths = 0;
@@ -30,6 +31,7 @@ struct OneRender {
   Accel accel{};
 };
 
+// Renders until so many iterations or seconds. Energy is that of rendering alone, without building the scene.
 OneRender render(const Scene& scene, const RenderSettings& settings, std::optional<uint64_t> iterations,
                  std::optional<double> seconds) {
   const auto session = Session::create(scene, settings);
@@ -43,6 +45,7 @@ OneRender render(const Scene& scene, const RenderSettings& settings, std::option
                  .bytes = statistics.memory.total(),
                  .joules = {},
                  .accel = statistics.accel};
+  // The counter wraps around now and then. The energy of a render with a wrap is unknown.
   if (energy && energyAfter && *energyAfter > *energy) done.joules = *energyAfter - *energy;
   return done;
 }
@@ -82,6 +85,8 @@ struct Measured {
 
   void add(OneRender&& one, const TradeReference& reference, uint32_t width) {
     if (!previous.empty()) {
+      // The mean square difference of two seeds' images is twice the variance of one image. The difference is added to
+      // the reference, so that the reference's brightness weighs the errors of all settings.
       Film moved = reference.mean;
       for (size_t i = 0; i < moved.size(); ++i) moved[i] += one.film[i] - previous[i];
       const double error = relativeFilmError(reference.mean, moved, width);
@@ -106,6 +111,7 @@ Estimate ratioTo(const std::vector<double>& base, const std::vector<double>& own
 }
 
 // Variance times time, seed by seed.
+// The first seed has no variance, so variance i belongs to the time of seed i + 1.
 std::vector<double> costs(const Measured& measured) {
   std::vector<double> values = measured.variance;
   for (size_t i = 0; i < values.size(); ++i) values[i] *= measured.cpuSeconds[i + 1];
@@ -120,14 +126,17 @@ TradeRow rowOf(const Variant& variant, const Measured& own, const Measured& base
   row.refusal = own.refusal;
   row.samePaths = variant.samePaths;
   if (!own.refusal.empty()) return row;
+  // Speed, energy and memory.
   double cpu = 0;
   for (const double seconds : own.cpuSeconds) cpu += seconds;
   row.pathsPerCpuSecond = own.paths / cpu;
   if (own.joules) row.joulesPerPath = *own.joules / own.paths;
   row.bytes = own.bytes;
   row.speed = ratioTo(base.cpuSeconds, own.cpuSeconds);
+  // Noise. Variance falls as 1 / time, so a relative error of 0.01 takes cost / 0.01^2 seconds.
   row.efficiency = ratioTo(costs(base), costs(own));
   row.secondsToPercent = median(costs(own)) / (0.01 * 0.01);
+  // Bias: seed by seed against double where the paths are the same, otherwise against the reference.
   const BlockComparison compared =
       variant.samePaths ? comparePaired(own.blocks, doubled.blocks) : compareIndependent(own.blocks, reference.parts);
   row.mean = compared.mean;

@@ -12,6 +12,7 @@ constexpr double kWorthNaming = 1.05;  // efficiency over the baseline's
 constexpr double kMostBias = 0.02;     // of the mean: beyond, an image is another image, not a faster one
 constexpr size_t kMostNamed = 3;
 
+// The setting as on the command line.
 std::string nameOf(const TradeRow& row) { return row.value.empty() ? row.knob : row.knob + " " + row.value; }
 
 std::string times(const Estimate& estimate) {
@@ -22,6 +23,7 @@ std::string percent(const Bias& bias) {
   return fmt::format("{:+.2g} +-{:.1g} %", 100 * bias.value, 100 * bias.standardError);
 }
 
+// The bias that was found, or else an upper limit: the measured difference and three standard errors.
 std::string biasInWords(const TradeRow& row) {
   if (row.biased) {
     return fmt::format("bias {:+.2g} %, in a block {:+.2g} %", 100 * row.mean.value, 100 * row.worstBlock.value);
@@ -33,6 +35,7 @@ std::string biasInWords(const TradeRow& row) {
 }  // namespace
 
 std::string adviceOf(const TradeResult& result) {
+  // Settings whose whole interval of efficiency is worth naming, and whose bias is not too large.
   std::vector<const TradeRow*> gains;
   for (const TradeRow& row : result.rows) {
     const bool acceptable = !row.biased || std::abs(row.mean.value) <= kMostBias;
@@ -40,6 +43,7 @@ std::string adviceOf(const TradeResult& result) {
   }
   const std::string where = fmt::format("{}, {}: ", result.scene, toString(result.method));
   if (gains.empty()) return where + "nothing here is worth more than its cost; the defaults are as good as any.";
+  // The most efficient ones in a sentence.
   std::sort(gains.begin(), gains.end(),
             [](const TradeRow* a, const TradeRow* b) { return a->efficiency.value > b->efficiency.value; });
   if (gains.size() > kMostNamed) gains.resize(kMostNamed);
@@ -58,6 +62,7 @@ std::string toText(const TradeResult& result) {
   for (const std::string& doubt : doubtsAbout(result.machine)) line(text, "  doubt: {}", doubt);
   line(text, "  {:<28} {:>9} {:>13} {:>13} {:>10} {:>19} {:>19} {:>8}  {}", "setting", "M paths/s", "speed",
        "efficiency", "s to 1 %", "bias of the mean", "worst block", "MB", "");
+  // A line for each setting. A setting that was refused has the reason in place of figures.
   for (const TradeRow& row : result.rows) {
     if (!row.refusal.empty()) {
       line(text, "  {:<28} {}", nameOf(row), row.refusal);
@@ -67,6 +72,7 @@ std::string toText(const TradeResult& result) {
          1e-6 * row.pathsPerCpuSecond, times(row.speed), times(row.efficiency), row.secondsToPercent, percent(row.mean),
          percent(row.worstBlock), 1e-6 * static_cast<double>(row.bytes), row.biased ? "biased" : "");
   }
+  // Energy is in the JSON only. The table says where it is unknown.
   const bool energy = std::any_of(result.rows.begin(), result.rows.end(),
                                   [](const TradeRow& row) { return row.joulesPerPath.has_value(); });
   if (!energy) line(text, "  energy: this machine does not tell (powercap)");

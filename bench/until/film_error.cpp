@@ -80,6 +80,7 @@ double squaredCrossProduct(const Products& products) {
   const auto others = static_cast<double>(count - 2);
   for (size_t a = 0; a < count; ++a) {
     for (size_t b = a + 1; b < count; ++b) {
+      // Mean of u over all other slices, and squared distances from the mean.
       double mean = 0, square = 0;
       for (size_t c = 0; c < count; ++c) {
         if (c != a && c != b) mean += (products(a, c) - products(b, c)) / others;
@@ -112,6 +113,7 @@ std::optional<FilmError> estimateFilmError(std::span<const std::vector<float>> s
   const auto count = static_cast<double>(slices.size()), pairs = count * (count - 1);
   double squaredError = 0;  // V
   for (size_t k = 0; k < slices.size(); ++k) squaredError += products(k, k) / pairs;
+  // U is the mean of pairs / 2 different products <d_j, d_k>, which are uncorrelated.
   const double deviation = std::sqrt(2 / pairs * squaredCrossProduct(products)) / squaredError;  // of U / V
   if (!(deviation <= kMostDeviation)) return std::nullopt;
   // Of the products of K slices, K (K - 3) / 2 are free of their mean. The root halves the logarithm's deviation.
@@ -131,6 +133,7 @@ void FilmSlices::add(std::vector<float> film) {
   }
   film_ = std::move(film);
   if (slices_.size() < 2 * kFewestSlices) return;
+  // Neighbours are joined: half as many slices of twice the iterations.
   for (size_t k = 0; k < kFewestSlices; ++k) {
     for (size_t i = 0; i < film_.size(); ++i) {
       slices_[k][i] = 0.5f * (slices_[2 * k][i] + slices_[2 * k + 1][i]);

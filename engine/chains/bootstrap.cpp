@@ -10,7 +10,9 @@
 namespace wavecrest {
 namespace {
 
+// The least number of samples of any length.
 constexpr uint32_t kFewestSamples = 32;
+// Samples whose targets one task adds up.
 constexpr size_t kBlockSamples = 2048;
 // Chains whose starts one task finds.
 constexpr uint32_t kBlockChains = 1024;
@@ -33,6 +35,7 @@ BootstrapPlan plainBootstrap(uint32_t samples) {
 BootstrapPlan bootstrapByLength(uint32_t samples, uint32_t minLength, uint32_t maxLength) {
   BootstrapPlan plan;
   if (minLength > maxLength) return plan;
+  // Numbers of samples fall by kLengthRatio from length to length, and add up to about `samples`.
   const double norm = (1 - kLengthRatio) / (1 - std::pow(kLengthRatio, maxLength - minLength + 1));
   for (uint32_t length = minLength; length <= maxLength; ++length) {
     const double wanted = samples * norm * std::pow(kLengthRatio, length - minLength);
@@ -54,6 +57,7 @@ std::vector<BlockSums> sumsOf(const BootstrapPlan& plan, const std::vector<float
       sums.largest = std::max(sums.largest, targets[i]);
       if (targets[i] > 0) sums.lastLit = i;
     }
+    // Deviations take a second pass: a difference of the sums would lose its digits where targets are nearly equal.
     const double mean = sums.sum / static_cast<double>(end - begin);
     for (size_t i = begin; i < end; ++i) {
       const double difference = static_cast<double>(targets[i]) - mean;
@@ -66,6 +70,7 @@ std::vector<BlockSums> sumsOf(const BootstrapPlan& plan, const std::vector<float
 
 Brightness brightnessOf(const BootstrapPlan& plan, const std::vector<BlockSums>& blocks) {
   Brightness out;
+  // b is the sum of the means of all lengths. The means are independent, so their variances add up.
   double largest = 0, variance = 0;
   for (size_t block = 0; block < blocks.size();) {
     // The blocks of one length together (Chan, Golub, LeVeque 1979).
@@ -96,6 +101,7 @@ Brightness brightnessOf(const LargeStepSums& samples) {
     const auto count = static_cast<double>(samples.count[length]);
     const double mean = samples.sum[length] / count;
     out.mean += mean;
+    // Rounding may leave this difference below zero.
     if (count > 1) variance += std::max(samples.squares[length] / count - mean * mean, 0.0) / (count - 1);
   }
   out.standardError = std::sqrt(variance);
@@ -104,8 +110,10 @@ Brightness brightnessOf(const LargeStepSums& samples) {
 
 Brightness pooled(const Brightness& a, const Brightness& b) {
   const double va = a.standardError * a.standardError, vb = b.standardError * b.standardError;
+  // An estimate whose standard error is zero or no number is left out.
   if (!(va > 0)) return b;
   if (!(vb > 0)) return a;
+  // Weights are the reciprocals of the variances.
   Brightness out;
   out.mean = (a.mean * vb + b.mean * va) / (va + vb);
   out.standardError = std::sqrt(va * vb / (va + vb));
@@ -122,6 +130,7 @@ std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<
     if (blocks[block].sum > 0) lastLit = block;
   }
   assert(before.back() > 0);
+  // Each task finds the starts of kBlockChains chains.
   std::vector<uint32_t> out(chains);
   forEach((chains + kBlockChains - 1) / kBlockChains, [&](size_t task) {
     const auto first = static_cast<uint32_t>(task) * kBlockChains, end = std::min(first + kBlockChains, chains);
@@ -129,6 +138,8 @@ std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<
     double reached = 0;
     for (uint32_t chain = first; chain < end; ++chain) {
       const double goal = (chain + offset) / chains * before.back();
+      // Find the block that holds the goal. A chain in the same block as the chain before goes on from that chain's
+      // sample.
       const auto after = std::upper_bound(before.begin(), before.end() - 1, goal);
       const size_t holding = std::min(static_cast<size_t>(after - before.begin() - 1), lastLit);
       if (chain == first || holding != block) {
@@ -137,6 +148,7 @@ std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<
         reached = before[block];
       }
       const double share = plan.share[plan.blocks[block]];
+      // Add up weights in the block until the sum passes the goal.
       const auto weight = [&] { return share * static_cast<double>(targets[sample]); };
       while (sample < blocks[block].lastLit && reached + weight() <= goal) {
         reached += weight();

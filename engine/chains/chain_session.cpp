@@ -113,6 +113,7 @@ uint64_t ChainSession<S>::stepsFor(uint64_t iterations) const {
   return (iterations * film_.area().pixels.size() + chains - 1) / chains;
 }
 
+// Traces the bootstrap samples of one wave, and keeps the target of each.
 template <class S>
 void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   const FlushToZero flushToZero;
@@ -121,11 +122,14 @@ void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   // All steps are large, so no current numbers are kept.
   ChainState state(count, {});
   state.samples.values = nullptr;
+  // Bootstrap walks draw the same blocks of numbers as the walks of chains.
   const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
   std::copy_n(kept.blocks, 2, state.samples.blocks);
   state.multiplexed = plan_.pipeline.lightPass.has_value();
   state.samples.stream = Stream::bootstrap;
+  // A probability above one: every step is large.
   state.samples.largeStep = 2;
+  // The random numbers of a sample follow from its index and the epoch.
   for (size_t i = 0; i < count; ++i) {
     state.columns.source[i] = static_cast<uint32_t>(first + i);
     state.columns.length[i] = epochs_.plan().length[first + i];
@@ -139,6 +143,7 @@ void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   for (size_t i = 0; i < count; ++i) targets[first + i] = state.columns.target[i];
 }
 
+// Traces what is left of an epoch's bootstrap. Waves that an earlier call has traced are kept.
 template <class S>
 bool ChainSession<S>::bootstrap(uint64_t epoch, const Stop& stop) {
   forEach(bootstrapped_.size(), [&](size_t wave) {
@@ -149,10 +154,12 @@ bool ChainSession<S>::bootstrap(uint64_t epoch, const Stop& stop) {
   return std::find(bootstrapped_.begin(), bootstrapped_.end(), 0) == bootstrapped_.end();
 }
 
+// Ends the epoch before, if there is one, and starts all chains from new bootstrap samples.
 template <class S>
 bool ChainSession<S>::beginEpoch(uint64_t epoch, const Stop& stop) {
   if (!bootstrap(epoch, stop)) return false;
   std::fill(bootstrapped_.begin(), bootstrapped_.end(), 0);  // the next epoch has samples of its own
+  // Add what chains owe from the epoch before, and list the chains that are stuck at the end of it.
   if (epoch != 0) {
     addPending();
     chains_->listStuck(stuck_);
@@ -162,6 +169,7 @@ bool ChainSession<S>::beginEpoch(uint64_t epoch, const Stop& stop) {
     chains_->clear();
     return true;
   }
+  // Chains start from samples in proportion to their targets.
   const std::vector<uint32_t> starts = startSamples(epochs_.plan(), epochs_.targets, targets,
                                                     settings_.metropolis.chains, startOffset(settings_.seed, epoch));
   forEach(chains_->size(),
@@ -169,6 +177,7 @@ bool ChainSession<S>::beginEpoch(uint64_t epoch, const Stop& stop) {
   return true;
 }
 
+// All chains take `steps` steps, from step_ on. Waves take turns of kTurnSteps steps.
 template <class S>
 void ChainSession<S>::advance(uint64_t steps) {
   std::vector<uint64_t> done(chains_->size(), 0);
@@ -242,6 +251,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
   {
     const RenderClock::Running clock(clock_);
     const WorkerLimit limit(settings_.threads);
+    // Set the limits of this call, in steps and in seconds.
     const uint64_t restart = epochSteps(settings_.metropolis, epochs_.targets.size());
     const uint64_t goal = iterations ? stepsFor(*iterations) : std::numeric_limits<uint64_t>::max();
     constexpr double kEndless = std::numeric_limits<double>::infinity();
@@ -249,9 +259,12 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
     const Stop stop = [&] { return (seconds && clock.look() >= *seconds) || this->interrupted(); };
     arena_.execute([&] {
       while (!stop()) {
+        // Bring direct light up to the mutations so far.
         if (direct() && !traceDirect(stop)) return;
         if (step_ >= goal) return;
+        // All chains start anew at the first step of an epoch.
         if (epochs_.count() <= step_ / restart && !beginEpoch(step_ / restart, stop)) return;
+        // Run a round of steps, which ends with the epoch at the latest. Steps of an epoch without light count too.
         const double before = clock.look();
         const uint64_t steps = stepsInTime(std::min(restart - step_ % restart, goal - step_), end - before);
         if (steps == 0) return;
@@ -270,6 +283,7 @@ RenderStatistics ChainSession<S>::statistics() const {
   RenderStatistics out = this->plannedStatistics();
   out.iterations = mutations() / film_.area().pixels.size();
   out.paths = mutations();
+  // Make the rows of the stages, and add up what all workers have counted.
   for (std::string& name : stageNames(plan_.pipeline)) out.stages.push_back({std::move(name)});
   for (const auto& worker : workers_) {
     out.counters += worker->counters;
@@ -285,6 +299,7 @@ RenderStatistics ChainSession<S>::statistics() const {
     for (const auto& worker : workers_) addTallies({worker->directTally}, out.stages.size() - 1, out.stages);
   }
   earlier_.addTo(out);
+  // Add the statistics that only chains have.
   ChainStatistics& chains = out.chains.emplace();
   chains.mutations = mutations();
   chains.directPaths = film_.allSamples();  // which are those of the direct pass alone
@@ -332,6 +347,7 @@ void ChainSession<S>::restore(StateReader& in) {
   step_ = in.value<uint64_t>();
   stuck_ = in.list<StuckChain>();
   epochs_.restore(in);
+  // Without an epoch that found light there is no scale, and chains splat nothing.
   const bool lit = epochs_.count() != 0 && !epochs_.dark();
   chains_->restore(in, lit ? epochs_.scale() : 1);
   in.finish();

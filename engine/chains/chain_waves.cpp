@@ -19,14 +19,17 @@ uint32_t keptColumns(const ChainSamples& samples, const ChainState::Kept& kept) 
 template <class S>
 ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
     : plan_(plan), settings_(settings), area_(area), layout_(settings) {
+  // Make memory for all chains, wave by wave.
   const ChainState::Kept kept = keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth);
   for (size_t wave = 0; wave < size(); ++wave) {
     states_.emplace_back(layout_.chainsOf(wave), kept).multiplexed = plan.pipeline.lightPass.has_value();
     if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan.pathLaws.law().maxEdges, plan.needs);
   }
+  // A column keeps one block: four numbers, each in a row of its own.
   if (!states_.empty()) sampleRows_ = size_t{4} * keptColumns(states_.front().samples, kept);
 }
 
+// Group g is in wave g % size(), at lane g / size() * groupSize() (ChainLayout::chainAt).
 template <class S>
 template <class Visit>
 void ChainWaves<S>::forEachGroup(Visit&& visit) const {
@@ -57,6 +60,7 @@ void ChainWaves<S>::start(size_t wave, uint64_t epoch, const BootstrapPlan& boot
   }
   state.splatFactor = static_cast<float>(splatFactor);
   state.samples.stream = Stream::bootstrap;
+  // A probability above one: every step is large.
   state.samples.largeStep = 2;
   StageContext<S> context = chainContext(plan_, settings_, area_);
   context.sampler.iteration = epoch;
@@ -89,6 +93,7 @@ void ChainWaves<S>::advance(size_t wave, uint64_t first, uint64_t steps, ChainWo
   ChainState& state = states_[wave];
   StageContext<S> context = chainContext(plan_, settings_, area_);
   for (uint64_t step = first; step < first + steps; ++step) {
+    // Random numbers follow from the step and the chain.
     context.sampler.iteration = step;
     worker.trace(context, state, layout_.chainsOf(wave), settings_.measureStages, pathsOf(wave));
     worker.decide(context, state, settings_.measureStages);
@@ -101,7 +106,9 @@ void ChainWaves<S>::addPending(std::vector<PendingSplat>& splats) const {
     const ChainState& state = states_[wave];
     const Chains& chains = state.columns;
     for (size_t i = first; i < first + count; ++i) {
+      // A chain that is nowhere owes nothing.
       if (!(chains.target[i] > 0)) continue;
+      // `weight` is the number of expected visits that are not on the film yet.
       const double visits = static_cast<double>(chains.weight[i]) * static_cast<double>(state.splatFactor);
       splats.push_back({chains.pixel[i],
                         {visits * static_cast<double>(chains.red[i]), visits * static_cast<double>(chains.green[i]),
@@ -116,12 +123,14 @@ void ChainWaves<S>::listStuck(std::vector<StuckChain>& list) const {
     const Chains& chains = states_[wave].columns;
     for (size_t i = first; i < first + count; ++i) {
       if (chains.rejections[i] < kStuckRejections) continue;
+      // Paths of pssmlt have no fixed length: vertices that draw numbers are counted instead.
       const uint32_t edges = inPathSpace()               ? paths_[wave].headers.edges[i]
                              : states_[wave].multiplexed ? chains.length[i]
                                                          : chains.cameraVertices[i];
       list.push_back({static_cast<uint32_t>(layout_.chainAt(wave, i)), chains.rejections[i], edges, chains.pixel[i]});
     }
   });
+  // The sort is stable, so that the list does not depend on how chains lie in waves.
   std::stable_sort(list.begin(), list.end(),
                    [](const StuckChain& a, const StuckChain& b) { return a.rejections > b.rejections; });
   if (list.size() > kListedStuckChains) list.resize(kListedStuckChains);
@@ -166,9 +175,11 @@ std::vector<typename ChainWaves<S>::Row> ChainWaves<S>::rowsOf(size_t wave, uint
   const auto columnsOf = [](const auto& columns) {
     return const_cast<std::decay_t<decltype(columns)>&>(columns).all();
   };
+  // Calls visit for each column that is not dropped.
   const auto forEachColumn = [&](const auto& columns, auto visit) {
     std::apply([&](auto&... column) { ((column.needed() ? visit(column) : void()), ...); }, columnsOf(columns));
   };
+  // The rows are columns of the chains, then numbers that chains keep, then paths.
   const ChainState& state = states_[wave];
   forEachColumn(state.columns, [&](auto& column) { add(&column[0]); });
   for (size_t row = 0; row < sampleRows_; ++row) add(state.samples.values + row * state.samples.stride);
@@ -185,8 +196,10 @@ std::vector<typename ChainWaves<S>::Row> ChainWaves<S>::rowsOf(size_t wave, uint
 template <class S>
 void ChainWaves<S>::save(StateWriter& out) const {
   static_assert(sizeof(ChainCounters) == (2 * kMutationKinds + 4) * sizeof(uint64_t), "padding would be written");
+  // Counts are sums over all waves.
   out.value(counters());
   out.value(largeSteps());
+  // Write row by row over all waves, so that the state does not depend on how chains lie in waves.
   const uint32_t vertices = pathVertices();
   out.value(vertices);
   std::vector<std::vector<Row>> rows;
@@ -204,6 +217,7 @@ void ChainWaves<S>::restore(StateReader& in, double splatFactor) {
   // Of all waves together; which of them has counted does not matter.
   states_.front().counters = in.value<ChainCounters>();
   states_.front().largeSteps = in.value<LargeStepSums>();
+  // The saved paths must fit the memory of the chains.
   const auto vertices = in.value<uint32_t>();
   if (vertices == 0 || (inPathSpace() && vertices > plan_.pathLaws.law().maxEdges + 1)) {
     throw StateError("its paths are too long");
@@ -216,6 +230,7 @@ void ChainWaves<S>::restore(StateReader& in, double splatFactor) {
       in.items(of.items + first * of.bytes, count * of.bytes);
     });
   }
+  // Check the pixels, which are indices into the film. Set what follows from the settings and the epoch.
   for (size_t wave = 0; wave < size(); ++wave) {
     ChainState& state = states_[wave];
     const uint32_t* const pixels = state.columns.pixel;

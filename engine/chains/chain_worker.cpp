@@ -8,6 +8,7 @@
 namespace wavecrest {
 namespace {
 
+// The pass of a walk, which the pipeline must have.
 template <class S>
 const Pass<S>& passOf(const Pipeline<S>& pipeline, Walk walk) {
   return walk == Walk::camera ? pipeline.cameraPass : *pipeline.lightPass;
@@ -39,6 +40,7 @@ ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, SplatFil
       splats_(films, plan.stages->addSplats, capacity) {
   lanesArena_ = Arena(lightLanes_.bytes(capacity));
   lightLanes_.bind(lanesArena_, capacity);
+  // Make memory for proposed paths, or for ends of walks that are joined.
   if (pipeline_.chains->inPathSpace) {
     paths_.emplace(capacity, law_.maxEdges, plan.needs);
     paths_->law = &law_;
@@ -49,10 +51,12 @@ ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, SplatFil
   tallies.resize(stageNames(pipeline_).size());
 }
 
+// Lists the lanes whose light walk has something to be joined with. Returns how many there are.
 template <class S>
 size_t ChainWorker<S>::chooseLightLanes(const Chains& chains, size_t count) {
   size_t chosen = 0;
   for (uint32_t lane = 0; lane < count; ++lane) {
+    // A lane stays in the list only if the count moves on.
     lightLanes_[chosen] = lane;
     chosen += chains.lightGranted[lane] != 0 ? 1 : 0;
   }
@@ -61,8 +65,8 @@ size_t ChainWorker<S>::chooseLightLanes(const Chains& chains, size_t count) {
   return chosen;
 }
 
-// A walk of the proposals. Multiplexed chains join ends: the light walk begins in the lanes that the camera's has left
-// something to join in, and what the camera walk's own joins have left behind is gone.
+// A walk of the proposals. The light walk of multiplexed chains begins only in lanes where it can be joined with
+// something. Ends of the camera walk that join a light have been joined by then, and are cleared.
 template <class S>
 void ChainWorker<S>::walkPaths(Walk walk, StageContext<S>& context, size_t count, StageTally* tally) {
   if (ends_ && walk == Walk::light) {
@@ -74,12 +78,14 @@ void ChainWorker<S>::walkPaths(Walk walk, StageContext<S>& context, size_t count
   wave_.pathCount = count;
   context.walk = Walk::camera;
   if (ends_ && walk == Walk::light) {
+    // Vertices where light walks have ended become light vertices, all of one depth.
     light_.clear();
     light_.beginDepth(ends_->lightAtVertex.rays.size);
     context.light = &light_;
   }
 }
 
+// Runs the stages of a phase on the wave, or on the ends of walks that the phase names.
 template <class S>
 void ChainWorker<S>::runOnce(const OnceCalls<S>& calls, StageContext<S>& context, StageTally* tally) {
   Wave<S>* wave = &wave_;
@@ -99,17 +105,20 @@ void ChainWorker<S>::runOnce(const OnceCalls<S>& calls, StageContext<S>& context
 template <class S>
 void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t count, bool measure,
                            PathStore<S>* paths) {
+  // Each chain gets one path, made of the chain's random numbers.
   context.chains = &chains;
   context.sampler.chain = &chains.samples;
   context.counters = &counters;
   wave_.firstPath = 0;
   wave_.pathCount = count;
+  // In path space, the worker holds the proposed paths, which keep parts of the chains' paths.
   if (paths_) {
     assert(paths == nullptr || paths->stride() == paths_->proposed.stride());
     paths_->current = paths;
     context.paths = &*paths_;
     context.limits.maxDepth = law_.maxEdges + 1;  // arrive lets no path go on at the last vertex
   }
+  // No walk has come to its end yet.
   if (ends_) {
     context.ends = &*ends_;
     for (Wave<S>* ends : {&ends_->atOrigin, &ends_->cameraAtVertex, &ends_->lightAtVertex}) {
@@ -117,6 +126,7 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
       ends->setVertices(0, 0);
     }
   }
+  // Run phase by phase. Each phase has the next rows of the tallies.
   StageTally* tally = measure ? tallies.data() : nullptr;
   for (const auto& phase : pipeline_.chains->trace) {
     const Walk* const walk = std::get_if<Walk>(&phase);
@@ -140,6 +150,7 @@ void ChainWorker<S>::decide(StageContext<S> context, ChainState& chains, bool me
   context.counters = &counters;
   if (paths_) context.paths = &*paths_;
   const std::vector<StageCall<S>>& stages = pipeline_.chains->decide;
+  // These stages have the last rows of the tallies. Their times include the drain of splats.
   StageTally* tally = measure ? tallies.data() + (tallies.size() - stages.size()) : nullptr;
   for (const StageCall<S>& stage : stages) {
     const uint64_t begin = readTicks();
@@ -156,8 +167,10 @@ void ChainWorker<S>::decide(StageContext<S> context, ChainState& chains, bool me
 template <class S>
 void ChainWorker<S>::traceDirect(StageContext<S> context, const FilmArea& area, size_t first, size_t count) {
   const Pass<S>& pass = *pipeline_.chains->directPass;
+  // Paths begin in the film's pixels and end after kDirectLength edges.
   context.pixels = area.pixels.data();
   context.limits.maxDepth = std::min(context.limits.maxDepth, kDirectLength);
+  // Path tracing needs none of the constants that misSettings adds.
   context.mis = pass.strategies;
   context.counters = &counters;
   wave_.firstPath = first;
@@ -174,6 +187,7 @@ std::vector<std::string> stageNames(const Pipeline<S>& pipeline) {
   const auto add = [&](const std::vector<StageCall<S>>& calls) {
     for (const StageCall<S>& call : calls) names.push_back(call.name);
   };
+  // The order is that in which trace and decide fill the tallies.
   for (const auto& phase : pipeline.chains->trace) {
     if (const Walk* walk = std::get_if<Walk>(&phase)) {
       const Pass<S>& pass = passOf(pipeline, *walk);

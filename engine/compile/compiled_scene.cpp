@@ -30,11 +30,13 @@ uint32_t sceneFeatures(const Scene& scene, bool keeps) {
     }
   }
   for (const Emitter& emitter : scene.emitters) {
+    // Lights beyond area, point and constant ones.
     if (std::holds_alternative<SpotEmitter>(emitter.kind) || std::holds_alternative<ProjectorEmitter>(emitter.kind) ||
         std::holds_alternative<DirectionalEmitter>(emitter.kind) ||
         std::holds_alternative<EnvmapEmitter>(emitter.kind) || std::holds_alternative<SunskyEmitter>(emitter.kind)) {
       features |= kRareLights;
     }
+    // Textures of lights.
     const auto* area = std::get_if<AreaEmitter>(&emitter.kind);
     if (area != nullptr && area->radiance.texture != kNone) features |= kTextures;
     const auto* spot = std::get_if<SpotEmitter>(&emitter.kind);
@@ -53,13 +55,15 @@ bool hasTangents(const Scene& scene) {
 
 CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const Double3& origin) {
   CameraView camera;
+  // The film: its size in pixels, and half its extents in camera space, at z = 1 unless rays are parallel.
   camera.width = film.width;
   camera.height = film.height;
   camera.parallel = sensor.kind == Sensor::Kind::orthographic;
   // An orthographic film reaches from -1 to 1.
   const double halfWidth = camera.parallel ? 1 : std::tan(sensor.fovX * std::numbers::pi / 360);
   const double halfHeight = halfWidth * film.height / film.width;
-  // Mitsuba's camera looks along +z with +x to the left of the image, so raster x runs against x.
+  // The origin and the corner of the picture. Mitsuba's camera looks along +z with +x to the left of the image, so
+  // raster x runs against x. Parallel rays begin on the near clip.
   if (camera.parallel) {
     assign(camera.origin, transformPoint(sensor.toWorld, {halfWidth, halfHeight, sensor.nearClip}) - origin);
     assign(camera.corner, {0, 0, 0});
@@ -70,12 +74,14 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const D
     assign(camera.corner,
            transformVector(sensor.toWorld, {halfWidth * (1 - 2 * shiftX), halfHeight * (1 - 2 * shiftY), 1}));
   }
+  // The steps of a pixel, and what projecting onto the film needs.
   assign(camera.du, transformVector(sensor.toWorld, {-2 * halfWidth / film.width, 0, 0}));
   assign(camera.dv, transformVector(sensor.toWorld, {0, -2 * halfHeight / film.height, 0}));
   assign(camera.axis, normalized(transformVector(sensor.toWorld, {0, 0, 1})));
   camera.planeDepth = dot(vec(camera.corner), vec(camera.axis));
   camera.inverseDu2 = 1 / dot(vec(camera.du), vec(camera.du));
   camera.inverseDv2 = 1 / dot(vec(camera.dv), vec(camera.dv));
+  // Lens and filter.
   camera.lensRadius = sensor.apertureRadius;
   camera.focusDistance = sensor.focusDistance;
   switch (film.filter) {
@@ -96,13 +102,14 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const D
 
 namespace {
 
-// The bounding box of what lies before the near clip and within the picture.
+// Bounding box of the space before the near clip and within the picture: of the pyramid from the lens to the near clip.
 struct NearBox {
   Double3 low, high;
 
   NearBox(const CameraView& camera, double nearClip) {
     const Double3 origin = vec(camera.origin);
     low = high = origin;
+    // A Gaussian is cut at 4.5 deviations (filterRadius in camera_lanes.h).
     const double around = 1 + 4.5 * camera.filterScale;  // pixels; filters reach over the picture's border
     for (const double x : {-around, camera.width + around}) {
       for (const double y : {-around, camera.height + around}) {
@@ -114,12 +121,14 @@ struct NearBox {
         }
       }
     }
+    // Rays start anywhere on the lens; the rest covers rounding.
     const double margin = camera.lensRadius + nearClip * 1e-3;
     for (size_t i = 0; i < 3; ++i) {
       low[i] -= margin;
       high[i] += margin;
     }
   }
+  // Faces count with their bounding box, spheres with their surface.
   bool touches(const PrimitiveRecord<double>& primitive) const {
     if (static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere) return touchesSphere(primitive);
     const BoundingSphere bounds = boundPrimitives(std::span<const PrimitiveRecord<double>>(&primitive, 1));
@@ -133,7 +142,8 @@ struct NearBox {
   }
 
  private:
-  // A camera within a sphere is not near its surface: the box reaches in or out of it only if it does both.
+  // Whether the box meets the surface of a sphere: its nearest point is inside and its farthest point outside. A box
+  // within a sphere does not.
   bool touchesSphere(const PrimitiveRecord<double>& sphere) const {
     double nearest2 = 0, farthest2 = 0;
     for (size_t i = 0; i < 3; ++i) {
@@ -150,7 +160,8 @@ struct NearBox {
 // Rays are intersected in single precision, which holds numbers from 1e-38 to 3e38, and intersectors square lengths.
 constexpr double kLargestExtent = 1e18, kSmallestSphere = 1e-18;
 
-// radius: of the scene, or of a group in its space if that is larger.
+// Throws SceneError where the scene is too large, or a sphere too small. radius: of the scene, or of a group in its
+// space if that is larger; refused as well if it is not a number.
 void checkRange(const Scene& scene, double radius) {
   if (!(radius <= kLargestExtent)) {
     throw SceneError(SourceLocation{scene.name},
@@ -167,6 +178,7 @@ void checkRange(const Scene& scene, double radius) {
 }  // namespace
 
 void setClips(const Sensor& sensor, const SceneGeometry& geometry, CameraView& camera) {
+  // Near clip: set if a primitive may lie before it. Instances are tested by their boxes first.
   const PrimitiveList& primitives = geometry.world();
   // An orthographic camera's rays begin at the near clip anyway.
   if (!camera.parallel) {
@@ -184,11 +196,13 @@ void setClips(const Sensor& sensor, const SceneGeometry& geometry, CameraView& c
     }
     if (touched) camera.nearClip = sensor.nearClip;
   }
+  // Far clip: set if the farthest corner of the scene's box lies beyond it.
   const BoundingSphere bounds = geometry.bounds<double>();
   double farthest = 0;
   for (size_t i = 0; i < 3; ++i) {
     farthest += ((camera.axis[i] > 0 ? bounds.high[i] : bounds.low[i]) - camera.origin[i]) * camera.axis[i];
   }
+  // Parallel rays begin at the near clip, from where their far clip is measured.
   const double farClip = camera.parallel ? sensor.farClip - sensor.nearClip : sensor.farClip;
   if (farthest > farClip) camera.farClip = farClip;
 }
@@ -199,6 +213,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   auto compiled = std::make_unique<CompiledScene<S>>();
   const bool keeps = keepsInstances(scene, accel, instancing);
   const uint32_t features = sceneFeatures(scene, keeps);
+  // Geometry, relative to the kernels' origin.
   SceneGeometry geometry(scene, (features & kTextures) != 0, keeps);
   if (geometry.counts().total() == 0) {
     const SourceLocation where = scene.shapes.empty() ? SourceLocation{scene.name} : scene.shapes.front().source;
@@ -231,6 +246,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
         std::make_unique<Bvh>(world.source(), geometry.groups(), geometry.instances(), view.camera.origin, parallelFor);
     view.bvh = &compiled->bvh->view();
   }
+  // Records of primitives and instances. Embree is built from the former.
   auto& primitives = compiled->primitives = geometry.compile<S>();
   compiled->instances = geometry.compileInstances<S>();
   if (accel == Accel::embree) {
@@ -240,6 +256,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
     view.embree = compiled->embree->handle();
   }
 
+  // Lights, materials and textures.
   compiled->lights = compileLights(scene, bounds, primitives, origin);
   if (scene.materials.size() > kMaxMaterials) {
     throw SceneError(SourceLocation{scene.name}, "more than " + std::to_string(kMaxMaterials) + " materials");
@@ -254,6 +271,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   compiled->textures = compileTextures(scene);
   bindLightTextures(scene, primitives, compiled->lights, compiled->textures);
 
+  // The view: pointers into all of these, and what kernels decide by.
   view.primitives = primitives.records.data();
   view.primitiveCount = static_cast<uint32_t>(primitives.records.size());
   if constexpr (sizeof(S) == sizeof(float)) {
@@ -269,7 +287,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   view.materialCount = static_cast<uint32_t>(compiled->materials.size());
   view.bsdfKinds = 0;
   for (const MaterialRecord& material : compiled->materials) view.bsdfKinds |= 1u << material.kind;
-  // Without the feature no shape has one.
+  // Without kCompoundBsdfs no shape has a compound BSDF, though the scene may list one.
   if (compiled->compounds.empty()) view.bsdfKinds &= ~kCompoundKinds;
   compiled->materialTable = tabulate<MaterialTable>(std::span<const MaterialRecord>(compiled->materials));
   view.materialTable = compiled->materialTable.get();

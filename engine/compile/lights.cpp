@@ -13,8 +13,8 @@
 namespace wavecrest {
 namespace {
 
-// Share of the light picks that goes to all emitters alike. What an emitter gives to a place depends on much more than
-// its power: a lamp above a table gives as much as the sky above it, with a thousandth of the sky's power.
+// Share of the light picks that goes to all emitters alike. An emitter's power says little about what reaches one
+// place: a lamp above a table may give it as much as the sky does, with a thousandth of the sky's power.
 constexpr double kEvenShare = 0.5;
 
 template <class S>
@@ -22,6 +22,7 @@ Double3 widenedRecord(const S (&a)[3]) {
   return {a[0], a[1], a[2]};
 }
 
+// Surface area; the radius of a sphere is e1[0].
 template <class S>
 double areaOf(const PrimitiveRecord<S>& primitive) {
   if (static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere) {
@@ -31,6 +32,7 @@ double areaOf(const PrimitiveRecord<S>& primitive) {
   return static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::quad ? parallelogram : parallelogram / 2;
 }
 
+// The light of one emitting primitive, without its pick and texture.
 template <class S>
 LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radiance) {
   LightRecord<S> light{};
@@ -40,6 +42,8 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radianc
   std::copy(std::begin(primitive.normal), std::end(primitive.normal), light.normal);
   assign(light.radiance, radiance);
   light.inverseArea = static_cast<S>(1 / areaOf(primitive));
+  // Bound on a sampled point's error along its normal: kOffsetGamma times the magnitudes that are added on each axis,
+  // summed over the axes (offset.h).
   Double3 extent{};
   const bool sphere = static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere;
   for (size_t i = 0; i < 3; ++i) {
@@ -70,6 +74,7 @@ class LightCollector {
   LightCollector(const Scene& scene, const BoundingSphere& bounds, const Double3& origin)
       : scene_(scene), bounds_(bounds), origin_(origin) {}
 
+  // One light for each primitive of an emitting shape. The power is the flux of a one-sided diffuse emitter.
   void addPrimitives(Primitives<S>& primitives) {
     for (size_t i = 0; i < primitives.shapeOf.size(); ++i) {
       const uint32_t shape = primitives.shapeOf[i];
@@ -79,7 +84,7 @@ class LightCollector {
       primitives.records[i].light = static_cast<uint32_t>(lights_.records.size());
       LightRecord<S> light = areaLight(primitives.records[i], radiance);
       light.texture = std::get<AreaEmitter>(emitter.kind).radiance.texture;
-      // A texture only scales the power that picks go by; any positive value keeps the estimate right.
+      // A textured light is picked as if its radiance were 1. The estimate is unbiased for any positive pick.
       if (light.texture != kNone) assign(light.radiance, {1, 1, 1});
       const double brightness = light.texture == kNone ? luminance(radiance) : 1.0;
       emitter_ = shape;
@@ -87,6 +92,7 @@ class LightCollector {
     }
   }
 
+  // The lights without a shape. Area emitters are in the list as well and add nothing here.
   void addOthers() {
     emitter_ = static_cast<uint32_t>(scene_.shapes.size());
     for (const Emitter& emitter : scene_.emitters) {
@@ -96,21 +102,26 @@ class LightCollector {
     }
   }
 
+  // From powers to picks.
   Lights<S> finish() {
+    // Power and number of records of each emitter.
     std::vector<double> power(lights_.emitters, 0), records(lights_.emitters, 0);
     for (size_t i = 0; i < power_.size(); ++i) {
       power[lights_.emitterOf[i]] += power_[i];
       ++records[lights_.emitterOf[i]];
     }
+    // Each record's share of its emitter. The records of a black emitter share evenly.
     for (size_t i = 0; i < power_.size(); ++i) {
       const uint32_t emitter = lights_.emitterOf[i];
       lights_.withinEmitter.push_back(power[emitter] > 0 ? power_[i] / power[emitter] : 1 / records[emitter]);
     }
+    // The emitters' shares of all picks.
     if (lights_.emitters != 0) setPicks(lights_, evenedShares(power, kEvenShare));
     return std::move(lights_);
   }
 
  private:
+  // Adds a record of the emitter that `emitter_` names.
   void add(const LightRecord<S>& light, double power) {
     lights_.records.push_back(light);
     power_.push_back(power);
@@ -120,6 +131,7 @@ class LightCollector {
   }
 
   void visit(const AreaEmitter&) {}  // by primitive
+  // The visitors below add a light each. The power is the luminance of the flux.
   void visit(const PointEmitter& point) {
     LightRecord<S> light = blank();
     assign(light.p0, point.position - origin_);
@@ -143,11 +155,13 @@ class LightCollector {
       assign(light.e1, pictureAxis(spot.toWorld, 0, half));
       assign(light.e2, pictureAxis(spot.toWorld, 1, half));
     }
+    // The flux as if full intensity ended halfway, in cosine, between the beam and the cutoff.
     add(light, 2 * std::numbers::pi * (1 - (cosTotal + cosFalloff) / 2) * luminance(spot.intensity));
   }
   void visit(const ProjectorEmitter& projector) {
     LightRecord<S> light = blank();
     const Matrix4& m = projector.toWorld;
+    // Half the width and height of the picture on the plane at distance 1. Its irradiance there is `radiance`.
     const double halfWidth = std::tan(projector.fovX * std::numbers::pi / 360),
                  halfHeight = halfWidth / projector.aspect;
     const double area = 4 * halfWidth * halfHeight;
@@ -155,7 +169,7 @@ class LightCollector {
     const Rgb irradiance = textured ? Rgb{1, 1, 1} : projector.irradiance.value;
     assign(light.p0, Double3{m[0][3], m[1][3], m[2][3]} - origin_);
     assign(light.normal, normalized(column(m, 2)));
-    // As a camera's picture: x grows to the left, y upwards.
+    // As in a camera, x points to the left of the picture and y up; u points right and v down.
     assign(light.e1, -1.0 * pictureAxis(m, 0, halfWidth));
     assign(light.e2, -1.0 * pictureAxis(m, 1, halfHeight));
     assign(light.radiance, (std::numbers::pi * projector.scale) * irradiance);
@@ -169,6 +183,7 @@ class LightCollector {
     assign(light.normal, directional.direction);
     assign(light.radiance, directional.irradiance);
     light.kind = static_cast<uint32_t>(LightKind::directional);
+    // The flux through the scene's box: perpendicular irradiance times the box's projected area.
     double area = 0;
     for (size_t axis = 0; axis < 3; ++axis) area += std::abs(directional.direction[axis]) * faceArea(axis);
     add(light, area * luminance(directional.irradiance));
@@ -182,6 +197,7 @@ class LightCollector {
   void visit(const EnvmapEmitter& envmap) {
     LightRecord<S> light = blank();
     light.kind = static_cast<uint32_t>(LightKind::envmap);
+    // The alias table keeps columns and rows in kTexelBits each.
     if (envmap.bitmap->width > kMostTexelsAcross || envmap.bitmap->height > kMostTexelsAcross) {
       throw SceneError(location_, "environment map of more than " + std::to_string(kMostTexelsAcross) +
                                       " columns or rows; expected a smaller one");
@@ -207,17 +223,19 @@ class LightCollector {
     const double across = (faceArea(0) + faceArea(1) + faceArea(2)) / 2;
     add(light, std::numbers::pi * across * meanLuminance);
   }
-  // Of the box that light from far away enters by, across an axis.
+  // Area of a face, across an axis, of the box that light from far away enters by.
   double faceArea(size_t axis) const {
     return 4 * bounds_.halfExtent((axis + 1) % 3) * bounds_.halfExtent((axis + 2) % 3);
   }
   static Double3 column(const Matrix4& m, size_t i) { return {m[0][i], m[1][i], m[2][i]}; }
-  // What gives -1 and 1 at the sides of a light's picture, which is on the plane at distance 1 along its z axis and
-  // 2 `half` wide along its axis i.
+  // Vector whose product with a point of the plane at distance 1 along z is -1 and 1 at the sides of a picture that is
+  // 2 `half` wide along axis i. Scales of the transform cancel, since pictures are defined in its space; its columns
+  // are perpendicular.
   static Double3 pictureAxis(const Matrix4& toWorld, size_t i, double half) {
     const Double3 axis = column(toWorld, i);
     return (length(column(toWorld, 2)) / (dot(axis, axis) * half)) * axis;
   }
+  // A light without a texture; the caller sets the kind.
   static LightRecord<S> blank() {
     LightRecord<S> light{};
     light.texture = kNoIndex;
@@ -238,7 +256,8 @@ class LightCollector {
 
 namespace {
 
-// toUv after the affine map of a primitive's (u, v) to the texture coordinates at its corners.
+// Makes toUv start from a primitive's own (u, v): first the affine map to the texture coordinates at the corners, uv[0]
+// + u (uv[1] - uv[0]) + v (uv[2] - uv[0]), then the old toUv.
 template <class S>
 void composeWithCorners(const PrimitiveRecord<S>& primitive, const RecordArray<AttributeRecord>& attributes,
                         float (&toUv)[6]) {
@@ -265,6 +284,7 @@ void bindLightTextures(const Scene& scene, const Primitives<S>& primitives, Ligh
                        "textured radiance on a sphere is not supported; expected a rectangle, a disk or a mesh");
     }
     uint32_t& texture = lights.records[primitive.light].texture;
+    // A copy, since push_back may move the records.
     TextureRecord record = textures.records[texture];
     composeWithCorners(primitive, primitives.attributes, record.toUv);
     texture = static_cast<uint32_t>(textures.records.size());
@@ -303,6 +323,7 @@ std::vector<double> evenedShares(const std::vector<double>& weights, double even
   const auto count = static_cast<double>(weights.size());
   const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
   std::vector<double> shares;
+  // Weights that are all 0 count as equal.
   for (const double weight : weights) {
     const double own = total > 0 ? weight / total : 1 / count;
     shares.push_back((1 - even) * own + even / count);
@@ -313,6 +334,7 @@ std::vector<double> evenedShares(const std::vector<double>& weights, double even
 std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights) {
   const size_t count = weights.size();
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  // Scale the weights to a mean of 1, and tell those below 1 from the others.
   std::vector<double> scaled(count);
   std::vector<uint32_t> small, large;
   for (size_t i = 0; i < count; ++i) {
@@ -321,6 +343,7 @@ std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights) {
   }
   std::vector<AliasEntry> table(count);
   for (size_t i = 0; i < count; ++i) table[i] = {1.0f, static_cast<uint32_t>(i)};
+  // A large entry fills what a small one leaves of its slot, and keeps the rest.
   while (!small.empty() && !large.empty()) {
     const uint32_t less = small.back(), more = large.back();
     small.pop_back();

@@ -12,13 +12,12 @@
 namespace wavecrest {
 namespace {
 
-// Half vectors between directions that a rough boundary hardly bends apart are differences of nearly equal numbers.
+// Where a rough boundary hardly bends light, the half vector of a refraction is a difference of nearly equal numbers.
 // Index ratios closer to 1 than this are compiled as if they were this far from it, which moves no direction by more
-// than about as much. What a rough boundary lets pass does not tend to 1 with its index ratio, for facets keep
-// shadowing each other.
+// than about as much. Even at a ratio of 1 the boundary differs from none: its facets still shadow each other.
 constexpr double kIndexMatched = 1e-4;
 
-// Scales of Mitsuba 0.6's phong: colours that add up to more than 1 are brought down to this sum.
+// Mitsuba 0.6 scales the colours of a phong whose sum is above 1 in a channel down to this sum.
 constexpr double kPhongEnergy = 0.99;
 
 template <class... Functions>
@@ -30,8 +29,10 @@ Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that l
 
 // ---- which kernel ---------------------------------------------------------------------------------------------------
 
+// Whether lobes of this roughness are compiled as deltas. A textured roughness never is.
 bool isSmooth(const TexturedFloat& alpha) { return alpha.texture == kNone && alpha.value < kSmallestAlpha; }
 
+// Interior over exterior index; of a rough boundary kept kIndexMatched away from 1.
 double relativeIor(const Dielectric& dielectric) {
   const double ratio = dielectric.intIor / dielectric.extIor;
   if (dielectric.thin || (isSmooth(dielectric.alpha) && !dielectric.alphaV) || std::abs(ratio - 1) >= kIndexMatched)
@@ -39,6 +40,7 @@ double relativeIor(const Dielectric& dielectric) {
   return ratio < 1 ? 1 - kIndexMatched : 1 + kIndexMatched;
 }
 
+// The kernel of a BSDF, by its roughness, distribution and anisotropy.
 BsdfKind kindOf(const Diffuse&) { return BsdfKind::diffuse; }
 BsdfKind kindOf(const Conductor& conductor) {
   if (conductor.alphaV) {
@@ -69,7 +71,7 @@ BsdfKind kindOf(const Principled& principled) {
 uint32_t lobesOf(BsdfKind kind);
 BsdfKind kindOf(const Material& material, const Scene& scene);
 
-// The lobes of a blend's parts.
+// The lobes of all parts of a blend together: kHasDelta and kHasFinite.
 uint32_t lobesOf(const Blend& blend, const Scene& scene) {
   uint32_t lobes = 0;
   for (const uint32_t part : blend.materials) {
@@ -86,6 +88,7 @@ BsdfKind kindOf(const Material& material, const Scene& scene) {
                     material.kind);
 }
 
+// Feature bits of the kernels that have a BSDF.
 uint32_t featureOf(BsdfKind kind) {
   if ((bitOf(kind) & kCompoundKinds) != 0) return kCompoundBsdfs | kLayeredBsdfs | kSpecularBsdfs;
   switch (kind) {
@@ -100,6 +103,7 @@ uint32_t featureOf(BsdfKind kind) {
   }
 }
 
+// The lobes of a BSDF itself: kHasDelta and kHasFinite.
 uint32_t lobesOf(BsdfKind kind) {
   switch (kind) {
     case BsdfKind::conductor:
@@ -116,6 +120,7 @@ uint32_t lobesOf(BsdfKind kind) {
 
 // ---- means of textured values ---------------------------------------------------------------------------------------
 
+// Mean over the texels of a bitmap, or of a checkerboard's two colours.
 Rgb mean(const Texture& texture) {
   if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {
     Rgb sum{};
@@ -140,6 +145,7 @@ double average(const Rgb& colour) { return (colour[0] + colour[1] + colour[2]) /
 
 // ---- fields ---------------------------------------------------------------------------------------------------------
 
+// Fills a slot that may be textured: with the constant, or with 1 and the texture's index.
 void assignTextured(float (&out)[3], uint32_t& texture, const TexturedRgb& colour) {
   assign(out, colour.texture == kNone ? colour.value : Rgb{1, 1, 1});
   texture = colour.texture;
@@ -159,6 +165,7 @@ class Compiler {
   }
 
   void operator()(const Conductor& conductor) {
+    // A real index of 0 makes Fresnel's factor 1 at all angles.
     assign(record_.eta, conductor.perfectMirror ? Rgb{0, 0, 0} : conductor.eta);
     assign(record_.k, conductor.perfectMirror ? Rgb{1, 1, 1} : conductor.k);
     assignTextured(record_.specular, record_.specularTexture, conductor.specularReflectance);
@@ -187,9 +194,11 @@ class Compiler {
     assignTextured(record_.specular, record_.specularTexture, plastic.specularReflectance);
     assignTextured(record_.alpha, record_.alphaTexture, plastic.alpha);
     if (plastic.nonlinear) record_.flags |= kNonlinear;
+    // How often the specular lobe is sampled.
     const double diffuse = average(mean(plastic.diffuseReflectance, scene_));
     const double specular = average(mean(plastic.specularReflectance, scene_));
     record_.specularPick = specularShare(specular, diffuse);
+    // What the boundary reflects of diffuse light from inside, and the table of what it lets pass.
     if (isSmooth(plastic.alpha)) {
       record_.internalDiffuse = static_cast<float>(diffuseFresnelReflectance(1 / eta));
     } else {
@@ -204,6 +213,7 @@ class Compiler {
     assignTextured(record_.specular, record_.specularTexture, phong.specularReflectance);
     record_.alpha = static_cast<float>(phong.exponent);
     const Rgb diffuse = mean(phong.diffuseReflectance, scene_), specular = mean(phong.specularReflectance, scene_);
+    // Mitsuba's limit on the sum of both colours, by their means where they are textured.
     double brightest = 0;
     for (size_t i = 0; i < 3; ++i) brightest = std::max(brightest, diffuse[i] + specular[i]);
     if (brightest > 1) {
@@ -215,7 +225,7 @@ class Compiler {
   }
 
  private:
-  // A black material reflects nothing either way.
+  // Share of the samples that the specular lobe gets. That of a black material does not matter.
   static float specularShare(double specular, double diffuse) {
     return specular + diffuse > 0 ? static_cast<float>(specular / (specular + diffuse)) : 0.5f;
   }
@@ -226,6 +236,7 @@ class Compiler {
 
 bool hasNormalMap(const Material& material) { return material.bumpTexture != kNone || material.normalTexture != kNone; }
 
+// Flags of how a material looks from behind, and of how its bump or normal map is applied.
 uint32_t sidesOf(const Material& material) {
   if (!hasNormalMap(material)) return material.twoSided ? uint32_t{kTwoSided} : 0u;
   const NormalMapping& mapping = material.normalMapping;
@@ -239,6 +250,7 @@ uint32_t sidesOf(const Material& material) {
 }  // namespace
 
 bool isTextured(const Material& material, const Scene& scene) {
+  // Whether any of these values has a texture, and the same of a roughness across dp/du.
   const auto textured = [](const auto&... values) { return ((values.texture != kNone) || ...); };
   const auto across = [&](const auto& bsdf) { return bsdf.alphaV && textured(*bsdf.alphaV); };
   const auto part = [&](uint32_t index) { return isTextured(scene.materials[index], scene); };
@@ -285,6 +297,7 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
   MaterialRecord record{};
   const BsdfKind kind = kindOf(material, scene);
   record.kind = static_cast<uint32_t>(kind);
+  // Flags, and no textures yet.
   record.flags = lobesOf(kind);
   record.flags |= sidesOf(material);
   for (uint32_t* texture : {&record.reflectanceTexture, &record.specularTexture, &record.transmittanceTexture,
@@ -294,19 +307,23 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
   record.normalTexture = material.normalTexture;
   record.bumpTexture = material.bumpTexture;
   record.bumpScale = static_cast<float>(material.bumpScale);
+  // Opacity: what passes straight through is a delta lobe.
   record.opacity = 1;
   if (material.opacity) {
     assignTextured(record.opacity, record.opacityTexture, *material.opacity);
     if (record.opacity < 1 || record.opacityTexture != kNone) record.flags |= kHasDelta;
   }
+  // The fields of this kind of BSDF.
   std::visit(Compiler(record, scene), material.kind);
   return record;
 }
 
 CompoundRecord compileCompound(const Material& material) {
   CompoundRecord record{};
+  // No textures yet.
   record.weightTexture = kNone;
   std::ranges::fill(record.texture, kNone);
+  // Fills the slot of a parameter.
   const auto parameter = [&](CompoundParameter name, const TexturedFloat& value) {
     const auto k = static_cast<size_t>(name);
     assignTextured(record.value[k], record.texture[k], value);
@@ -353,11 +370,14 @@ double diffuseFresnelReflectance(double eta) {
   double sum = 0;
   for (int i = 0; i < kSteps; ++i) {
     const double t = (i + 0.5) / kSteps;
+    // The cosine of incidence, that of refraction, and Fresnel's amplitudes for both polarisations.
     const double c = kink + (1 - kink) * t * t;
     const double cosT = std::sqrt(std::max(0.0, 1 - (1 - c * c) / (eta * eta)));
     const double rs = (c - eta * cosT) / (c + eta * cosT), rp = (eta * c - cosT) / (eta * c + cosT);
+    // F times the weight 2 c and dc/dt.
     sum += 0.5 * (rs * rs + rp * rp) * 2 * c * 2 * t * (1 - kink);
   }
+  // Below the kink F is 1, and the integral of 2 c is the square of the kink.
   return kink * kink + sum / kSteps;
 }
 

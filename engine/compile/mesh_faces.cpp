@@ -27,6 +27,7 @@ bool formParallelogram(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c, uin
       if (std::abs(mesh.uvs[d][i] + mesh.uvs[a][i] - mesh.uvs[b][i] - mesh.uvs[c][i]) > 1e-5f) return false;
     }
   }
+  // Vertex normals have to be the face's: the record of a quad has only three of them.
   if (!mesh.normals.empty()) {
     const Double3 face = normalized(cross(e1, e2));
     for (const uint32_t vertex : {a, b, c, d}) {
@@ -44,11 +45,14 @@ std::vector<uint32_t> weldedVertices(const Mesh& mesh) {
   return welded;
 }
 
+// Whether the cross product of two edges is not zero, in double.
 bool hasArea(const Mesh& mesh, const FaceCorners& corners) {
   const Double3 p0 = position(mesh, corners[0]);
   return length(cross(position(mesh, corners[1]) - p0, position(mesh, corners[2]) - p0)) > 0;
 }
 
+// Quads of pairs of triangles that form parallelograms, then the triangles that are left. A triangle takes its partner
+// among the earlier ones, across its first edge that has one.
 MeshFaces pairFaces(const Mesh& mesh) {
   MeshFaces faces;
   const auto count = static_cast<uint32_t>(mesh.triangles.size());
@@ -57,6 +61,7 @@ MeshFaces pairFaces(const Mesh& mesh) {
   std::vector<bool> used(count, false);
   for (uint32_t i = 0; i < count; ++i) {
     const auto& t = mesh.triangles[i];
+    // Look for a partner across each edge, which the partner has in the opposite direction.
     for (uint32_t k = 0; k < 3 && !used[i]; ++k) {
       const uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];  // edge b-c opposite a
       const auto twin = open.find({welded[c], welded[b]});
@@ -66,6 +71,7 @@ MeshFaces pairFaces(const Mesh& mesh) {
       used[i] = used[other] = true;
       faces.quads.push_back({a, b, c});
     }
+    // Without a partner, offer the edges to later triangles.
     for (uint32_t k = 0; k < 3 && !used[i]; ++k) {
       open[{welded[t[(k + 1) % 3]], welded[t[(k + 2) % 3]]}] = 3 * i + k;
     }
@@ -86,6 +92,7 @@ MeshFaces facesOf(const Mesh& mesh, const ParallelFor& parallelFor) {
     std::erase_if(faces.triangles, [&](uint32_t i) { return !hasArea(mesh, mesh.triangles[i]); });
     return faces;
   }
+  // A large mesh keeps its own list of triangles, unless one of them has no area.
   std::atomic<bool> complete{true};
   forEachRange(parallelFor, mesh.triangles.size(), [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

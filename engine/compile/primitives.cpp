@@ -22,7 +22,9 @@ void setFace(PrimitiveRecord<S>& record, const Double3& p0, const Double3& e1, c
   assign(record.normal, normal);
 }
 
-// placed: uniform, or nullptr. The normal is on the same side of a mirrored copy.
+// A sphere's record: e1 is the radius, the side of the normal (+1 outward, -1 inward) and the sense in which phi turns;
+// e2 is the polar axis, `normal` the direction where phi is 0. placed: uniform, or nullptr; a mirrored copy keeps the
+// side of its normal.
 template <class S>
 void setSphere(PrimitiveRecord<S>& record, const Sphere& sphere, const Affine* placed, const Double3& origin) {
   const auto axis = [&](size_t j) {
@@ -41,18 +43,20 @@ void setSphere(PrimitiveRecord<S>& record, const Sphere& sphere, const Affine* p
 // so that what is interpolated between vertices is what the transform makes of the group's interpolated normal; their
 // lengths are at most 1.
 Float3 placedNormal(const Affine& placed, const Float3& normal) {
+  // The Frobenius norm of the inverse bounds how much it lengthens a vector.
   double most = 0;
   for (const Double3& row : placed.inverse) most += dot(row, row);
   const Double3 there = placed.normal(widened(normal)) * (1 / std::sqrt(most));
   return {static_cast<float>(there[0]), static_cast<float>(there[1]), static_cast<float>(there[2])};
 }
-// In the group's space, of a face's normal in the world.
+// The unit normal in the group's space of a face whose normal in the world is n.
 Double3 groupNormal(const Affine& placed, const Double3& n) {
   const Double3* const rows = placed.linear;
   return normalized(rows[0] * n[0] + rows[1] * n[1] + rows[2] * n[2]);
 }
 
-// Texture coordinates whose dp/du is Mitsuba's without any: the first axis of Duff's frame of the face's normal.
+// Texture coordinates that make dp/du the first axis of Duff's frame around the face's normal, as Mitsuba has it for
+// meshes without texture coordinates.
 void setFaceTangents(AttributeRecord& attributes, const Mesh& mesh, const FaceCorners& corners, const Double3& n) {
   const double sign = std::copysign(1.0, n[2]), a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
   const Double3 s{1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]}, t{b, sign + n[1] * n[1] * a, -n[1]};
@@ -65,7 +69,7 @@ void setFaceTangents(AttributeRecord& attributes, const Mesh& mesh, const FaceCo
 
 }  // namespace
 
-// The least and the greatest coordinates of what was included.
+// The box around what was included.
 struct PrimitiveExtent {
   static constexpr double kFar = std::numeric_limits<double>::infinity();
   Double3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
@@ -91,6 +95,7 @@ struct PrimitiveExtent {
         include(axis, p + r.e1[0]);
         continue;
       }
+      // The corners of a face; a quad has a fourth.
       const double u = p + r.e1[axis], v = p + r.e2[axis];
       for (const double x : {p, u, v, quad ? u + v - p : p}) include(axis, x);
     }
@@ -112,12 +117,14 @@ BoundingSphere boundingSphere(const Double3& low, const Double3& high) {
 PrimitiveList::PrimitiveList(const Scene& scene, bool textured, const ParallelFor& parallelFor, const Double3& origin,
                              PrimitiveChoice choice)
     : scene_(scene), textured_(textured), parallelFor_(parallelFor), origin_(origin) {
+  // The shapes of the chosen group, or those of no group for the world.
   std::vector<std::vector<uint32_t>> members(scene.groups.size());
   for (uint32_t i = 0; i < scene.shapes.size(); ++i) {
     const uint32_t group = scene.shapes[i].group;
     if (group == choice.group) addShape(i, nullptr);
     if (group != kNone) members[group].push_back(i);
   }
+  // A copy of each group's shapes for every instance.
   if (choice.group == kNone && choice.copies) {
     for (const Instance& instance : scene.instances) {
       const Affine& placed = placements_.emplace_back(instance.toWorld);
@@ -127,6 +134,8 @@ PrimitiveList::PrimitiveList(const Scene& scene, bool textured, const ParallelFo
   orderRuns();
 }
 
+// Adds the runs of one shape: a rectangle or sphere is one primitive, any other shape the quads and triangles of a
+// mesh.
 void PrimitiveList::addShape(uint32_t shape, const Affine* placed) {
   const auto& kind = scene_.shapes[shape].kind;
   Run run{.shape = shape,
@@ -142,6 +151,7 @@ void PrimitiveList::addShape(uint32_t shape, const Affine* placed) {
     run.kind = std::holds_alternative<Sphere>(kind) ? PrimitiveKind::sphere : PrimitiveKind::quad;
     return addRun(run, 1);
   }
+  // Copies of a shape share its mesh.
   auto known = surfaces_.find(shape);
   if (known == surfaces_.end()) {
     known = surfaces_.emplace(shape, surfaceOf(scene_.shapes[shape], placed != nullptr)).first;
@@ -155,7 +165,8 @@ void PrimitiveList::addShape(uint32_t shape, const Affine* placed) {
   addRun(run, run.faces->triangleCount(*run.mesh));
 }
 
-// Tessellations are moved before their vertices are rounded to float, but not those that a copy moves anyway.
+// The mesh of a shape that is not a rectangle or sphere, and its faces. Disks and cylinders are moved to the origin in
+// double, before their vertices are rounded to float. Those of copies are not: their place comes from the instance.
 PrimitiveList::Surface PrimitiveList::surfaceOf(const Shape& shape, bool copied) {
   Surface surface;
   const Double3 origin = copied ? Double3{} : origin_;
@@ -177,6 +188,8 @@ PrimitiveList::Surface PrimitiveList::surfaceOf(const Shape& shape, bool copied)
   return surface;
 }
 
+// Appends a run of `count` primitives, if there are any. A firstAttribute of 0 only says that they have attributes;
+// orderRuns numbers them.
 void PrimitiveList::addRun(Run run, size_t count) {
   if (count == 0) return;
   const bool smooth = run.mesh != nullptr && !run.mesh->normals.empty();
@@ -186,7 +199,7 @@ void PrimitiveList::addRun(Run run, size_t count) {
   runs_.push_back(run);
 }
 
-// Quads, then triangles, then spheres.
+// Sorts the runs into quads, triangles and spheres, and numbers their primitives and attributes.
 void PrimitiveList::orderRuns() {
   std::stable_sort(runs_.begin(), runs_.end(), [](const Run& a, const Run& b) {
     const auto place = [](const Run& run) {
@@ -213,13 +226,15 @@ void PrimitiveList::orderRuns() {
   }
 }
 
+// The run of a primitive: the last run that begins at or before the index.
 const PrimitiveList::Run& PrimitiveList::runOf(size_t index) const {
   const auto after = std::upper_bound(runs_.begin(), runs_.end(), index,
                                       [](size_t wanted, const Run& run) { return wanted < run.first; });
   return *(after - 1);
 }
 
-// A mirrored copy's second and third change places, so that its normal stays on its side.
+// The vertices of a face in the mesh. The second and third of a mirrored copy are swapped, so that its normal stays on
+// its side.
 FaceCorners PrimitiveList::cornersOf(const Run& run, size_t index) const {
   const size_t i = index - run.first;
   FaceCorners corners = run.kind == PrimitiveKind::quad ? run.faces->quads[i] : run.faces->triangle(*run.mesh, i);
@@ -227,7 +242,7 @@ FaceCorners PrimitiveList::cornersOf(const Run& run, size_t index) const {
   return corners;
 }
 
-// Rounded to float where it is, so that the faces around a copy's vertex agree on it.
+// Position of a vertex. That of a copy is rounded to float, so that all faces around the vertex agree on it.
 Double3 PrimitiveList::cornerOf(const Run& run, uint32_t vertex) const {
   const Double3 p = widened(run.mesh->positions[vertex]);
   if (run.placed == nullptr) return p;
@@ -236,6 +251,7 @@ Double3 PrimitiveList::cornerOf(const Run& run, uint32_t vertex) const {
   return there;
 }
 
+// The rectangle of a run in its place. A mirrored copy has edgeU reversed, so that its normal stays on its side.
 Rectangle PrimitiveList::rectangleOf(const Run& run) const {
   Rectangle r = std::get<Rectangle>(scene_.shapes[run.shape].kind);
   if (run.placed == nullptr) return r;
@@ -250,6 +266,7 @@ Rectangle PrimitiveList::rectangleOf(const Run& run) const {
   return r;
 }
 
+// The record of a primitive of the run. All is computed in double and rounded to S by the setters.
 template <class S>
 PrimitiveRecord<S> PrimitiveList::geometry(const Run& run, size_t index) const {
   PrimitiveRecord<S> record;
@@ -277,7 +294,8 @@ PrimitiveRecord<S> PrimitiveList::geometry(size_t index) const {
 template PrimitiveRecord<float> PrimitiveList::geometry(size_t) const;
 template PrimitiveRecord<double> PrimitiveList::geometry(size_t) const;
 
-// Whether tangents without texture coordinates are asked for, and texture coordinates are not.
+// Whether a run has Mitsuba's default tangents: its material is anisotropic but not textured, and its mesh has no
+// texture coordinates.
 bool PrimitiveList::usesFaceTangents(const Run& run) const {
   const uint32_t material = scene_.shapes[run.shape].material;
   return run.mesh != nullptr && run.mesh->uvs.empty() && material != kNone &&
@@ -286,6 +304,7 @@ bool PrimitiveList::usesFaceTangents(const Run& run) const {
 
 template <class S>
 AttributeRecord PrimitiveList::attribute(const Run& run, size_t index, const PrimitiveRecord<S>& record) const {
+  // Without texture coordinates of its own a face has its (u, v), and a mirrored rectangle (1 - u, v).
   AttributeRecord attributes{};
   constexpr Float2 kDefaultUv[3] = {{0, 0}, {1, 0}, {0, 1}}, kMirroredUv[3] = {{1, 0}, {0, 0}, {1, 1}};
   const Float2* uvs = kDefaultUv;
@@ -307,6 +326,8 @@ AttributeRecord PrimitiveList::attribute(const Run& run, size_t index, const Pri
     uvs = ofMesh;
   }
   for (size_t k = 0; k < 3; ++k) std::ranges::copy(uvs[k], attributes.uv[k]);
+  // Nothing reads these coordinates as such: others replace them that give the default tangents. Normal and positions
+  // are both in the space of the mesh.
   if (usesFaceTangents(run)) {
     Double3 normal{record.normal[0], record.normal[1], record.normal[2]};
     if (run.placed != nullptr) normal = groupNormal(*run.placed, normal);
@@ -326,6 +347,7 @@ template <class S>
 BoundingSphere PrimitiveList::bounds() const {
   PrimitiveExtent all;
   for (const Run& run : runs_) {
+    // Each range has an extent of its own, so that threads share nothing.
     std::vector<PrimitiveExtent> parts(rangesOf(run.count));
     forEachRange(parallelFor_, run.count, [&](size_t begin, size_t end) {
       PrimitiveExtent& part = parts[rangesOf(begin)];
@@ -350,6 +372,7 @@ void PrimitiveList::compile(Primitives<S>& out, size_t firstRecord, size_t first
       }
     });
   }
+  // Lists are compiled in the order of their records, so the shapes of this list come behind those of others.
   const bool emits = std::ranges::any_of(scene_.shapes, [](const Shape& shape) { return shape.emitter != kNone; });
   if (!emits) return;
   for (const Run& run : runs_) {

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
+// A box that grows by what it includes; empty at first, with low above high.
 struct Extent {
   Double3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
 
@@ -45,14 +46,17 @@ Extent extentOf(const PrimitiveRecord<double>& record) {
   return {.low = vec(bounds.low), .high = vec(bounds.high)};
 }
 
-// Boxes around the primitives whose centres are in the same cell of a grid.
+// Boxes that together hold all primitives: one around those whose centres are in the same cell of a grid over the
+// bounds. They give an instance a closer box than the corners of the bounds would.
 std::vector<Box> outlineOf(const PrimitiveList& primitives, const BoundingSphere& bounds) {
+  // Cells along each axis.
   constexpr size_t kCells = 8;
   std::map<size_t, Extent> cells;
   for (size_t i = 0; i < primitives.counts().total(); ++i) {
     const Extent extent = extentOf(primitives.geometry<double>(i));
     size_t cell = 0;
     for (size_t axis = 0; axis < 3; ++axis) {
+      // The centre's cell along this axis; the first one where the bounds are flat.
       const double size = bounds.high[axis] - bounds.low[axis];
       const double place = ((extent.low[axis] + extent.high[axis]) / 2 - bounds.low[axis]) / size * kCells;
       cell = cell * kCells + static_cast<size_t>(size > 0 ? std::clamp(place, 0.0, kCells - 1.0) : 0);
@@ -81,6 +85,7 @@ void assignRows(double (&out)[3][3], const Double3 (&rows)[3]) {
 
 }  // namespace
 
+// Groups are compiled once, in their own space. moveTo does the world and the places of instances.
 SceneGeometry::SceneGeometry(const Scene& scene, bool textured, bool keeps)
     : scene_(scene), textured_(textured), keeps_(keeps) {
   if (keeps) {
@@ -91,15 +96,18 @@ SceneGeometry::SceneGeometry(const Scene& scene, bool textured, bool keeps)
 
 void SceneGeometry::addGroup(uint32_t index) {
   const PrimitiveChoice choice{.group = index, .copies = false};
+  // A first list finds the group's bounds; a second has its primitives about their centre.
   auto list = std::make_unique<PrimitiveList>(scene_, textured_, parallelFor, Double3{}, choice);
   groupOf_.push_back(kNone);
   if (list->counts().total() == 0) return;
   groupOf_.back() = static_cast<uint32_t>(groups_.size());
   Group& group = groups_.emplace_back();
-  // Vertices keep to float, and those that meet still do: they move by the same float.
+  // The centre is rounded to float: its difference from a float vertex is exact in double, so vertices that meet still
+  // do.
   const BoundingSphere there = list->bounds<double>();
   for (size_t axis = 0; axis < 3; ++axis) group.origin[axis] = static_cast<float>(there.center[axis]);
   list = std::make_unique<PrimitiveList>(scene_, textured_, parallelFor, group.origin, choice);
+  // The radius is that of a sphere about the group's origin, which is the centre of the box but for rounding.
   const BoundingSphere bounds = list->bounds<double>();
   group.radius = bounds.radius + length(vec(bounds.center));
   group.outline = outlineOf(*list, bounds);
@@ -112,20 +120,23 @@ void SceneGeometry::moveTo(const Double3& origin) {
   if (keeps_) placeInstances(origin);
 }
 
+// Makes an entry of instances_ for each instance of a group that has primitives, relative to the world's origin.
 void SceneGeometry::placeInstances(const Double3& origin) {
   instances_.clear();
   for (const Instance& instance : scene_.instances) {
     if (groupOf_[instance.group] == kNone) continue;
     const Group& group = groups_[groupOf_[instance.group]];
     const Affine toWorld(instance.toWorld);
+    // The transform between group and world.
     BvhInstance& placed = instances_.emplace_back();
     placed.group = groupOf_[instance.group];
     assignRows(placed.toWorld, toWorld.linear);
     assignRows(placed.toObject, toWorld.inverse);
-    // Every precision has the place that rays have.
+    // Rounded to float, in which rays pass into the group, so that every precision has the same place.
     Double3 place = toWorld.point(group.origin) - origin;
     for (double& coordinate : place) coordinate = static_cast<float>(coordinate);
     assign(placed.place, place);
+    // The box of the instance in the world.
     Extent extent;
     for (const Box& box : group.outline) {
       forCorners(vec(box.low), vec(box.high), [&](const Double3& p) { extent.include(toWorld.vector(p) + place); });
@@ -136,6 +147,7 @@ void SceneGeometry::placeInstances(const Double3& origin) {
 
 bool SceneGeometry::anyInInstance(const BvhInstance& instance,
                                   const std::function<bool(const Double3&, const Double3&)>& test) const {
+  // Tests the box of each primitive in the world; that of a sphere is the box around its box.
   const PrimitiveList& list = *groups_[instance.group].primitives;
   std::atomic<bool> found{false};
   forEachRange(parallelFor, list.counts().total(), [&](size_t begin, size_t end) {
@@ -175,6 +187,7 @@ PrimitiveCounts SceneGeometry::counts() const {
 template <class S>
 BoundingSphere SceneGeometry::bounds() const {
   Extent all;
+  // The box around the world's primitives and the boxes of instances.
   if (world_->counts().total() != 0) {
     const BoundingSphere world = world_->bounds<S>();
     if (instances_.empty()) return world;
@@ -196,6 +209,7 @@ double SceneGeometry::groupExtent() const {
 
 template <class S>
 Primitives<S> SceneGeometry::compile() const {
+  // The lists in the order of their records.
   std::vector<const PrimitiveList*> lists{world_.get()};
   for (const Group& group : groups_) lists.push_back(group.primitives.get());
   size_t records = 0, attributes = 0;
@@ -203,6 +217,7 @@ Primitives<S> SceneGeometry::compile() const {
     records += list->counts().total();
     attributes += list->attributes();
   }
+  // Room for all, then each list's records behind those of the one before.
   Primitives<S> out;
   out.counts = counts();
   out.records = RecordArray<PrimitiveRecord<S>>(records);
@@ -235,6 +250,7 @@ template RecordArray<InstanceRecord<float>> SceneGeometry::compileInstances() co
 template RecordArray<InstanceRecord<double>> SceneGeometry::compileInstances() const;
 
 std::vector<BvhGroup> SceneGeometry::groups() const {
+  // A group's records follow those of the world and of the groups before it.
   std::vector<BvhGroup> groups;
   size_t first = world_->counts().total();
   for (const Group& group : groups_) {

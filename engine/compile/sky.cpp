@@ -15,7 +15,8 @@ namespace {
 // the sky changes within half a degree, and rows of 0.35 degrees left it 0.5 % too dark there.
 constexpr uint32_t kWidth = 512, kHeight = 2049, kHorizon = kHeight / 2;
 
-// The entry of a table of values at 1, 2, ..., `size` that comes before `at`, and how far from there to the next.
+// A place between two entries of a table at 0, 1, ..., size - 1: the entry before `at`, and the share of the entry
+// after. Beyond the table, the place is at its end.
 struct Place {
   size_t index;
   double share;
@@ -52,6 +53,7 @@ SkyCoefficients coefficientsOf(double turbidity, double albedo, double sunElevat
 
 // Hosek and Wilkie 2012, equations 8 and 9.
 double radianceOf(const SkyCoefficients& sky, double cosTheta, double sunAngle) {
+  // The data set stores the factor of the root, I in the paper, before the parameter of the glow, H.
   const auto& [a, b, c, d, e, f, g, h, i] = sky.shape;
   const double cosine = std::cos(sunAngle), cosine2 = cosine * cosine;
   const double glow = (1 + cosine2) / std::pow(1 + i * i - 2 * i * cosine, 1.5);
@@ -61,16 +63,19 @@ double radianceOf(const SkyCoefficients& sky, double cosTheta, double sunAngle) 
   return std::max(gradient * around * sky.radiance / kSkyUnit, 0.0);
 }
 
-// Rows from the zenith to the horizon; the one below repeats the horizon, whose texels are interpolated with it.
+// The sky without the sun, in the frame of the map. Rows go from the zenith to the horizon; the row below repeats the
+// horizon, because interpolation between rows reaches it. All others below are black.
 std::shared_ptr<const Bitmap> bakeSky(const SunskyEmitter& emitter, double sunElevation, const Double3& sun) {
   auto bitmap = std::make_shared<Bitmap>();
   bitmap->width = kWidth;
   bitmap->height = kHeight;
   bitmap->pixels.resize(size_t{3} * kWidth * kHeight);
+  // Coefficients of the channels.
   std::array<SkyCoefficients, 3> channels{};
   for (size_t c = 0; c < 3; ++c) {
     channels[c] = coefficientsOf(emitter.turbidity, emitter.albedo[c], sunElevation, c);
   }
+  // Radiance of each texel. The angle from the sun comes from a chord, which is accurate close to the sun.
   for (uint32_t row = 0; row <= kHorizon; ++row) {
     const double theta = std::numbers::pi * row / (kHeight - 1);
     const double sinTheta = std::sin(theta), cosTheta = row == kHorizon ? 0 : std::cos(theta);
@@ -89,11 +94,13 @@ std::shared_ptr<const Bitmap> bakeSky(const SunskyEmitter& emitter, double sunEl
   return bitmap;
 }
 
-// The disc, and the share of samples that it gets: that of its light, within bounds.
+// Adds the sun's disc, and the share of samples that goes to it: that of its light, but at least a tenth for each of
+// sun and sky, and all for the sun without a sky.
 void addSun(const SunskyEmitter& emitter, const Double3& towardsSun, double sunElevation, Environment& out) {
   const Rgb irradiance = emitter.sunScale * sunIrradiance(emitter.turbidity, sunElevation);
   const double ofSky = 4 * std::numbers::pi * out.meanLuminance, ofSun = luminance(irradiance);
   if (!(ofSun > 0)) return;
+  // Half the chord from the disc's middle to its rim. The solid angle, 2 pi (1 - cos), is pi times the squared chord.
   const double halfChord = std::sin(0.25 * emitter.sunAperture * std::numbers::pi / 180);
   EnvironmentView& view = out.view;
   view.sunChord2 = 4 * halfChord * halfChord;
@@ -116,6 +123,7 @@ Rgb skyRadiance(double turbidity, const Rgb& albedo, double sunElevation, double
 }
 
 Rgb sunIrradiance(double turbidity, double sunElevation) {
+  // Bilinear in turbidity and elevation, whose columns are 3 degrees apart from 2 degrees on.
   const Place row = placeIn(kSkyTurbidities, turbidity - 1);
   const Place column = placeIn(kSunElevations, (sunElevation * 180 / std::numbers::pi - 2) / 3);
   Rgb out{};
@@ -140,6 +148,7 @@ Environment compileSky(const SunskyEmitter& emitter) {
   map.toWorld[3] = {0, 0, 0, 1};
   const Double3 sun = emitter.sunDirection, local{dot(sun, x), dot(sun, up), dot(sun, z)};
   const double elevation = std::asin(std::clamp(local[1], -1.0, 1.0));
+  // A sun below the horizon: one black texel.
   if (elevation < 0) {
     map.bitmap = std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .pixels = {0, 0, 0}});
     return compileEnvironment(map);

@@ -8,6 +8,7 @@
 namespace wavecrest {
 namespace {
 
+// Segments of a full turn.
 constexpr uint32_t kSegments = 256;
 // Rings of a disc, and parts of a cylinder along its axis. Triangles as long as the whole shape and as narrow as a
 // segment have boxes that overlap by far: closest hits in four times as many shorter ones take three quarters of the
@@ -22,7 +23,8 @@ Float3 rounded(const Double3& p) {
 
 Mesh tessellated(const Disk& disk) {
   Mesh mesh;
-  // A sector has corners of its own: where sectors meet, in the centre above all, the angle is another one in each.
+  // Sectors share no vertices: at the centre each has its own angle v, and at the seam v is 1 on one side and 0 on the
+  // other.
   const auto add = [&](uint32_t ring, uint32_t segment) {
     const double r = static_cast<double>(ring) / kRings, angle = 2 * std::numbers::pi * segment / kSegments;
     mesh.positions.push_back(
@@ -36,6 +38,7 @@ Mesh tessellated(const Disk& disk) {
       const auto outer = static_cast<uint32_t>(mesh.positions.size());
       add(ring, sector);
       add(ring, sector + 1);
+      // A triangle at the centre, then quads whose inner vertices are outer - 2 and outer - 1.
       if (ring == 1) {
         mesh.triangles.push_back({centre, outer, outer + 1});
       } else {
@@ -52,6 +55,7 @@ Mesh tessellated(const Cylinder& cylinder) {
   const Double3 axis = cylinder.p1 - cylinder.p0, x = cylinder.phi0, y = cylinder.phi90;
   const bool mirrored = dot(cross(x, y), axis) < 0;
   const double side = cylinder.flipNormals ? -1 : 1;
+  // Columns of kParts + 1 vertices. The last column is in the place of the first, with u = 1.
   for (uint32_t i = 0; i <= kSegments; ++i) {
     const double angle = 2 * std::numbers::pi * i / kSegments;
     const Double3 n = x * std::cos(angle) + y * std::sin(angle);
@@ -62,6 +66,8 @@ Mesh tessellated(const Cylinder& cylinder) {
       mesh.uvs.push_back({static_cast<float>(i) / kSegments, static_cast<float>(along)});
     }
   }
+  // Two triangles between neighbouring columns, wound to face along the normals. Where the axes are mirrored, phi runs
+  // clockwise.
   for (uint32_t i = 0; i < kSegments; ++i) {
     for (uint32_t k = 0; k < kParts; ++k) {
       const uint32_t a = i * (kParts + 1) + k, b = a + 1, c = a + kParts + 1, d = c + 1;

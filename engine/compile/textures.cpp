@@ -11,6 +11,7 @@
 namespace wavecrest {
 namespace {
 
+// Appends the texels as RGB times `scale`; a single channel is repeated.
 void appendRgb(const Bitmap& bitmap, double scale, std::vector<float>& out) {
   const size_t pixels = size_t{bitmap.width} * bitmap.height;
   out.reserve(out.size() + 3 * pixels);
@@ -31,14 +32,17 @@ double luminanceAt(const std::vector<float>& texels, uint32_t width, uint32_t co
 
 Textures compileTextures(const Scene& scene) {
   Textures out;
+  // Where the texels of each bitmap begin in out.texels.
   std::map<const Bitmap*, uint32_t> offsets;
   for (const Texture& texture : scene.textures) {
     TextureRecord& record = out.records.emplace_back();
+    // The columns of u, v and 1 of the matrix.
     for (size_t row = 0; row < 2; ++row) {
       record.toUv[3 * row] = static_cast<float>(texture.toUv[row][0]);
       record.toUv[3 * row + 1] = static_cast<float>(texture.toUv[row][1]);
       record.toUv[3 * row + 2] = static_cast<float>(texture.toUv[row][3]);
     }
+    // A checkerboard has no texels.
     if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {
       record.kind = static_cast<uint32_t>(TextureKind::checkerboard);
       assign(record.color0, checkerboard->color0);
@@ -53,6 +57,7 @@ Textures compileTextures(const Scene& scene) {
     record.wrap = static_cast<uint32_t>(bitmap.wrap == Wrap::repeat   ? WrapMode::repeat
                                         : bitmap.wrap == Wrap::mirror ? WrapMode::mirror
                                                                       : WrapMode::clamp);
+    // The texels, unless a texture before has stored the same bitmap.
     const auto [place, added] = offsets.try_emplace(bitmap.bitmap.get(), static_cast<uint32_t>(out.texels.size()));
     if (added) appendRgb(*bitmap.bitmap, 1, out.texels);
     record.offset = place->second;
@@ -65,6 +70,7 @@ Environment compileEnvironment(const EnvmapEmitter& emitter) {
   const uint32_t width = emitter.bitmap->width, height = emitter.bitmap->height;
   appendRgb(*emitter.bitmap, emitter.scale, out.texels);
 
+  // Weight of a texel: mean luminance of the 3 x 3 texels around, times sin(theta) for its solid angle.
   std::vector<double> weights(size_t{width} * height);
   double total = 0, solidAngle = 0;
   for (uint32_t row = 0; row < height; ++row) {
@@ -88,10 +94,12 @@ Environment compileEnvironment(const EnvmapEmitter& emitter) {
     std::fill(weights.begin(), weights.end(), 1.0);
     total = static_cast<double>(weights.size());
   }
+  // The alias table and the probabilities. Kernels take columns and rows, so the table names those.
   out.table = makeAliasTable(weights);
   for (AliasEntry& entry : out.table) entry.other = entry.other % width | entry.other / width << kTexelBits;
   for (const double weight : weights) out.probability.push_back(static_cast<float>(weight / total));
 
+  // The view, and the rotation to the map's frame.
   out.view = {.texels = out.texels.data(),
               .probability = out.probability.data(),
               .table = out.table.data(),

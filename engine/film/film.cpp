@@ -12,6 +12,7 @@ namespace wavecrest {
 Film::Film(FilmArea area) : area_(std::move(area)), sums_(3 * area_.pixels.size()), samples_(area_.pixels.size()) {}
 
 void Film::spreadBy(const CameraView& camera) {
+  // Sums of tiles take the place of sums of pixels.
   spread_.emplace(camera, area_);
   sums_ = std::vector<double>();  // gives the memory back, which = {} does not
 }
@@ -21,6 +22,7 @@ uint64_t Film::add(const Wave<S>& wave) {
   uint64_t nonFinite = 0;
   for (size_t i = 0; i < wave.pathCount; ++i) {
     const double r = wave.radiance.red[i], g = wave.radiance.green[i], b = wave.radiance.blue[i];
+    // The lanes of a pixel's iterations lie side by side.
     const size_t pixel = wave.firstPath + (i >> wave.iterationBits);
     ++samples_[pixel];
     if (!std::isfinite(r + g + b)) {
@@ -38,6 +40,7 @@ template uint64_t Film::add(const Wave<double>&);
 
 template <class S>
 uint64_t Film::spread(const Wave<S>& wave, std::span<const FilterPlace> places, SpreadSamples<S> spreadSamples) {
+  // Every pixel gets one sample of each iteration in the wave.
   const size_t pixels = wave.pathCount >> wave.iterationBits;
   for (size_t i = 0; i < pixels; ++i) samples_[wave.firstPath + i] += uint64_t{1} << wave.iterationBits;
   return spread_->add(wave, places, spreadSamples);
@@ -47,6 +50,7 @@ template uint64_t Film::spread(const Wave<double>&, std::span<const FilterPlace>
 
 std::vector<float> Film::resolve() const {
   std::vector<float> image(3 * size_t{area_.width} * area_.height, 0.0f);
+  // Spread samples and pending splats become images in double, row by row.
   std::vector<double> spread;
   if (spread_) spread = spread_->resolve(samples_);
   std::vector<double> pending;
@@ -54,16 +58,20 @@ std::vector<float> Film::resolve() const {
   for (const PendingSplat& splat : pending_) {
     for (size_t c = 0; c < 3; ++c) pending[3 * size_t{splat.pixel} + c] += splat.rgb[c];
   }
+  // Pixels are in wave order, the image is row by row.
   for (size_t i = 0; i < area_.pixels.size(); ++i) {
+    // x and y count from the corner of the rendered rectangle.
     const uint32_t x = (area_.pixels[i] & 0xffffu) - area_.x0, y = (area_.pixels[i] >> 16) - area_.y0;
     const size_t pixel = 3 * (size_t{y} * area_.width + x);
     for (size_t c = 0; c < 3; ++c) {
+      // Take the mean of the pixel's samples.
       double value = 0;
       if (spread_) {
         value = spread[pixel + c];
       } else if (samples_[i] != 0) {
         value = sums_[3 * i + c] / static_cast<double>(samples_[i]);
       }
+      // Add the splats of all films and those that chains owe. splatFactor_ turns the sum into radiance.
       double splats = splats_ ? splats_->total(pixel + c) / splats_->scale() : 0;
       if (!pending.empty()) splats += pending[pixel + c];
       value += splats * splatFactor_;
@@ -74,6 +82,7 @@ std::vector<float> Film::resolve() const {
 }
 
 size_t Film::imageBytesFor(size_t pixels, bool spreads, bool pending) {
+  // The image is in float. While it is made there are up to two more images in double.
   return 3 * pixels * (sizeof(float) + sizeof(double) * (size_t{spreads} + size_t{pending}));
 }
 
@@ -83,6 +92,7 @@ uint64_t Film::allSamples() const { return std::accumulate(samples_.begin(), sam
 
 std::vector<PixelRun> Film::runsBelow(uint64_t samples, size_t most) const {
   std::vector<PixelRun> runs;
+  // A film that spreads has runs of whole tiles. All pixels of a tile have the same number of samples.
   if (spread_) {
     for (size_t tile = 0; tile + 1 < area_.tiles.size(); ++tile) {
       const size_t begin = area_.tiles[tile], count = area_.tiles[tile + 1] - begin;
@@ -96,6 +106,7 @@ std::vector<PixelRun> Film::runsBelow(uint64_t samples, size_t most) const {
     }
     return runs;
   }
+  // Other films have runs of any neighbours in wave order.
   for (size_t begin = 0; begin < samples_.size();) {
     size_t end = begin + 1;
     while (end < samples_.size() && end - begin < most && samples_[end] == samples_[begin]) ++end;
@@ -111,6 +122,7 @@ size_t Film::bytes() const {
 }
 
 void Film::save(StateWriter& out) const {
+  // The order is sums of tiles or of pixels, numbers of samples, splats. restore() reads the same order.
   out.value(uint64_t{area_.pixels.size()});
   if (spread_) {
     spread_->save(out);

@@ -19,6 +19,7 @@ uint64_t* zeros(size_t count) {
   return words;
 }
 
+// Returns the logarithm of the number of pixels in a region. A shared film has at most kRegions regions.
 uint32_t bitsOfRegions(size_t pixels, size_t threads) {
   if (threads <= kSplatFilms) return 63;  // all pixels
   return static_cast<uint32_t>(std::bit_width((std::max<size_t>(pixels, 1) - 1) / kRegions));
@@ -52,6 +53,7 @@ __int128 SplatFilms::sum(size_t channel) const {
 
 void SplatFilms::save(StateWriter& out) const {
   out.value(scale_);
+  // Write the sums over all films, which do not depend on the number of films.
   for (size_t channel = 0; channel < 3 * pixels_; ++channel) out.value(sum(channel));
 }
 
@@ -67,6 +69,7 @@ void SplatFilms::restore(StateReader& in) {
 }
 
 size_t SplatFilms::bytesFor(size_t pixels, size_t threads) {
+  // Each pixel has low and high halves of three channels.
   return std::min(threads, kSplatFilms) * pixels * 6 * sizeof(uint64_t);
 }
 
@@ -84,8 +87,11 @@ template <class S>
 void SplatWriter<S>::sort(const Splats<S>& splats) {
   const uint32_t bits = films_.regionBits();
   std::fill(begins_.begin(), begins_.end(), 0);
+  // Count the splats of region r at begins_[r + 1].
   for (size_t i = 0; i < splats.size; ++i) ++begins_[(splats.pixel[i] >> bits) + 1];
+  // The counts of all regions before r add up to the begin of r.
   for (size_t region = 1; region < begins_.size(); ++region) begins_[region] += begins_[region - 1];
+  // Move each splat to its region.
   for (size_t i = 0; i < splats.size; ++i) {
     const uint32_t out = begins_[splats.pixel[i] >> bits]++;
     sorted_.red[out] = splats.red[i];
@@ -107,6 +113,7 @@ void SplatWriter<S>::drain(Splats<S>& splats, StageCounters& counters) {
     splats.size = 0;
     return;
   }
+  // Add to a shared film region by region, each under its own lock.
   sort(splats);
   for (size_t region = 0; region + 1 < begins_.size(); ++region) {
     if (begins_[region] == begins_[region + 1]) continue;

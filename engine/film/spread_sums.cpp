@@ -41,6 +41,7 @@ SpreadSums::SpreadSums(const CameraView& camera, const FilmArea& area)
       rowSize_(kFilmTile + 2 * margin_),
       planeSize_(rowSize_ * rowSize_) {
   assert(canSpread(camera));
+  // Find the corner of each tile, and the place of each pixel within its tile.
   const auto xOf = [&](size_t pixel) { return (area.pixels[pixel] & 0xffffu) - area.x0; };
   const auto yOf = [&](size_t pixel) { return (area.pixels[pixel] >> 16) - area.y0; };
   for (size_t i = 0; i + 1 < area.tiles.size(); ++i) {
@@ -51,6 +52,7 @@ SpreadSums::SpreadSums(const CameraView& camera, const FilmArea& area)
       place_.push_back(static_cast<uint8_t>(y * kFilmTile + x));
     }
   }
+  // Each tile has three planes. Kernels may write a block of lanes beyond the last plane.
   sums_.resize(3 * planeSize_ * tiles_.size() + kTileSumsSlack);
 }
 
@@ -66,10 +68,12 @@ double SpreadSums::filterAt(double distance) const {
 }
 
 SpreadAxis SpreadSums::axis(double place, uint32_t corner, uint32_t size) const {
+  // The taps are the pixels around the one that is nearest to the sample.
   const double fromCentre = place - 0.5;
   const int nearest = static_cast<int>(std::floor(fromCentre + 0.5)), reach = static_cast<int>(reach_);
   SpreadAxis axis;
   axis.taps = 2 * reach_ + 1;
+  // `first` is where the first tap of the tile's first pixel lies in the tile's sums.
   axis.first = static_cast<uint32_t>(static_cast<int>(margin_) + nearest - reach);
   for (int tap = 0; tap < static_cast<int>(axis.taps); ++tap) {
     axis.weight[tap] = static_cast<float>(filterAt(fromCentre - (nearest - reach + tap)));
@@ -92,11 +96,13 @@ template <class S>
 uint64_t SpreadSums::add(const Wave<S>& wave, std::span<const FilterPlace> places, SpreadSamples<S> spreadSamples) {
   const size_t pixels = wave.pathCount >> wave.iterationBits;
   assert(places.size() == size_t{1} << wave.iterationBits);
+  // Find the wave's first tile. A wave begins with a whole tile.
   const auto first = std::lower_bound(tiles_.begin(), tiles_.end(), wave.firstPath,
                                       [](const Tile& tile, size_t pixel) { return tile.firstPixel < pixel; });
   uint64_t nonFinite = 0;
   for (auto tile = first; tile != tiles_.end() && tile->firstPixel < wave.firstPath + pixels; ++tile) {
     const size_t lane = (tile->firstPixel - wave.firstPath) << wave.iterationBits;
+    // Add one iteration after the other. Samples of an iteration lie places.size() lanes apart.
     for (size_t i = 0; i < places.size(); ++i) {
       const TileSamples<S> samples{.red = wave.radiance.red + lane + i,
                                    .green = wave.radiance.green + lane + i,
@@ -115,6 +121,7 @@ template uint64_t SpreadSums::add(const Wave<double>&, std::span<const FilterPla
 
 std::vector<double> SpreadSums::resolve(std::span<const uint64_t> samples) const {
   std::vector<double> image(3 * size_t{width_} * height_);
+  // Sums of neighbouring tiles overlap by the margins. Each tile's sums are divided by that tile's number of samples.
   for (size_t i = 0; i < tiles_.size(); ++i) {
     const Tile& tile = tiles_[i];
     const auto count = static_cast<double>(samples[tile.firstPixel]);

@@ -10,6 +10,7 @@ namespace wavecrest {
 
 namespace {
 
+// Column j of the linear part, which is the image of axis j.
 Double3 column(const Matrix4& m, size_t j) { return {m[0][j], m[1][j], m[2][j]}; }
 
 // Whether the lengths of two vectors agree and the vectors are perpendicular, to within float rounding of the file.
@@ -54,6 +55,7 @@ Geometry readDisk(LoadContext& context, Parameters& parameters, const Matrix4& t
   }
   const bool mirrored = determinant3(toWorld) < 0;
   if (mirrored != parameters.boolean("flip_normals", false)) {
+    // As for the rectangle: one axis is reversed, so that the front is on the right side.
     disk.axisV = -1 * disk.axisV;
     disk.mirrored = true;
   }
@@ -64,6 +66,7 @@ Geometry readSphere(LoadContext& context, Parameters& parameters, const Matrix4&
   const Double3 center = parameters.vector("center").value_or(Double3{0, 0, 0});
   const double radius = parameters.positiveReal("radius", 1);
   const Double3 x = column(toWorld, 0), y = column(toWorld, 1), z = column(toWorld, 2);
+  // The image must be a sphere.
   if (!isUniform(x, y) || !isUniform(x, z) || !isUniform(y, z)) {
     context.unsupported(parameters.locationOf("to_world"),
                         "sphere scaled differently along its axes; expected a uniform scale (or a mesh)");
@@ -92,6 +95,7 @@ CylinderFrame frameOf(const Matrix4& toWorld, const Double3& p0, const Double3& 
 
 }  // namespace
 
+// Assumes that the image is a circular cylinder, which readCylinder checks.
 Cylinder placeCylinder(const Matrix4& toWorld, const Double3& p0, const Double3& p1, double radius, bool flipNormals) {
   const CylinderFrame frame = frameOf(toWorld, p0, p1);
   const bool mirrored = determinant3(toWorld) < 0;
@@ -110,6 +114,7 @@ Geometry readCylinder(LoadContext& context, Parameters& parameters, const Matrix
   if (!(length(p1 - p0) > 0) || !std::isfinite(length(p1 - p0))) {
     throw LoadError(parameters.locationOf("p1"), "cylinder has no length; expected p0 and p1 to differ");
   }
+  // The image must be a circular cylinder: u and v have one length, and both are perpendicular to the axis w.
   const auto [u, v, w] = frameOf(toWorld, p0, p1);
   constexpr double kTolerance = 1e-4;
   const bool straight = std::abs(dot(u, w)) <= kTolerance * length(u) * length(w) &&
@@ -129,6 +134,7 @@ Geometry readCube(LoadContext& context, Parameters& parameters, const Matrix4& t
       {{-1, -1, 1}, {-1, 1, 1}, {-1, 1, -1}, {-1, -1, -1}}, {{1, 1, -1}, {1, -1, -1}, {-1, -1, -1}, {-1, 1, -1}}};
   static constexpr Float2 kUvs[4] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
   TriangleSoup soup;
+  // Two triangles for each face.
   for (uint32_t face = 0; face < 6; ++face) {
     for (size_t i = 0; i < 4; ++i) {
       const auto& c = kCorners[face][i];

@@ -19,7 +19,8 @@ void refuse(LoadContext& context, const XmlElement& part, const std::string& wha
 
 bool hasMap(const Material& material) { return material.bumpTexture != kNone || material.normalTexture != kNone; }
 
-// The material of a part that is no blend, read if it is not yet. Leniently without what a part cannot have.
+// The index of the material of a part that is no blend. With --lenient an inner blend is replaced by its first part,
+// and a bump or normal map is removed.
 uint32_t singlePartOf(LoadContext& context, const XmlElement& element) {
   const uint32_t index = materialOf(context, element);
   if (const auto* inner = std::get_if<Blend>(&context.scene.materials[index].kind)) {
@@ -30,6 +31,7 @@ uint32_t singlePartOf(LoadContext& context, const XmlElement& element) {
   }
   if (!hasMap(context.scene.materials[index])) return index;
   refuse(context, element, "a bump or normal map within a blend is not supported; expected it around the blend");
+  // Remove the map from a copy, as the material may also be used outside of a blend.
   Material plain = context.scene.materials[index];
   plain.bumpTexture = plain.normalTexture = kNone;
   context.scene.materials.push_back(std::move(plain));
@@ -40,7 +42,8 @@ bool isBlend(const XmlElement& element) {
   return element.get("type") == "blendbsdf" || element.get("type") == "mixturebsdf";
 }
 
-// Adds a part of a blend of constant weights; a blend among them by its own parts, so that it is no material itself.
+// Adds a part to a blend of constant weights. If the part is such a blend itself, adds its parts instead, with the
+// products of the weights.
 void addPart(LoadContext& context, const XmlElement& element, double weight, Blend& blend) {
   Material inner;
   if (isBlend(element)) {
@@ -58,6 +61,7 @@ void addPart(LoadContext& context, const XmlElement& element, double weight, Ble
   blend.weights.push_back(weight);
 }
 
+// The weights of a mixture: at least 0, and small enough that no sum overflows.
 std::vector<double> readWeights(Parameters& parameters) {
   const std::string text = parameters.requiredString("weights");
   std::vector<double> weights = parseReals(text, parameters.locationOf("weights"));
@@ -77,6 +81,7 @@ void readBlend(LoadContext& context, Parameters& parameters, Material& material)
                                                " objects <bsdf>; expected exactly 2");
   }
   Blend blend;
+  // The second BSDF has the weight, and the first has 1 minus the weight.
   if (weight.texture == kNone) {
     const double second = std::clamp(weight.value, 0.0, 1.0);
     addPart(context, *parts[0], 1 - second, blend);
@@ -96,7 +101,7 @@ void readMixture(LoadContext& context, Parameters& parameters, Material& materia
                                                " objects <bsdf> and " + std::to_string(weights.size()) +
                                                " weights; expected as many of both");
   }
-  // As Mitsuba 0.6 does.
+  // As in Mitsuba 0.6, weights of more than 1 together are scaled. If they are less, the rest of the light is absorbed.
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   if (sum > 1) {
     context.note(parameters.locationOf("weights"), "weights of more than 1 together", "scaled to 1");

@@ -7,12 +7,14 @@ namespace wavecrest {
 
 namespace {
 
+// The fields of the file header (14 bytes) and the info header (at least 40 bytes) that decoding needs.
 struct BmpLayout {
   uint32_t dataOffset = 0, headerSize = 0, compression = 0, colorsUsed = 0;
   int32_t width = 0, height = 0;  // a negative height: the top row comes first
   uint16_t bitsPerPixel = 0;
 };
 
+// The number at byte `at`, on a little-endian machine. The caller has checked that the file is long enough.
 template <class T>
 T littleEndian(std::span<const char> bytes, size_t at) {
   T value;
@@ -20,6 +22,7 @@ T littleEndian(std::span<const char> bytes, size_t at) {
   return value;
 }
 
+// Reads and checks the headers. ImageError if the file is no BMP, or of a kind that decodeBmp cannot decode.
 BmpLayout readLayout(const std::string& path, std::span<const char> bytes) {
   constexpr size_t kFileHeader = 14, kInfoHeader = 40;
   if (bytes.size() < kFileHeader + kInfoHeader || bytes[0] != 'B' || bytes[1] != 'M') {
@@ -32,6 +35,7 @@ BmpLayout readLayout(const std::string& path, std::span<const char> bytes) {
                          .width = littleEndian<int32_t>(bytes, 18),
                          .height = littleEndian<int32_t>(bytes, 22),
                          .bitsPerPixel = littleEndian<uint16_t>(bytes, 28)};
+  // Pixels of 8 bits are indices into the palette; pixels of 24 and 32 bits are colours.
   const bool palette = layout.bitsPerPixel == 8, direct = layout.bitsPerPixel == 24 || layout.bitsPerPixel == 32;
   // 3: masks, which are blue, green, red, alpha in every file of 32 bits that programs write.
   const bool plain = layout.compression == 0 || (layout.compression == 3 && layout.bitsPerPixel == 32);
@@ -48,6 +52,7 @@ BmpLayout readLayout(const std::string& path, std::span<const char> bytes) {
 
 ImageFile decodeBmp(const std::string& path, std::span<const char> bytes) {
   const BmpLayout layout = readLayout(path, bytes);
+  // Check the image size against the file. Rows are padded to multiples of 4 bytes.
   const uint64_t width = layout.width > 0 ? static_cast<uint64_t>(layout.width) : 0;
   const uint64_t height = static_cast<uint64_t>(std::llabs(layout.height));
   const uint64_t pixelBytes = layout.bitsPerPixel / 8u, rowBytes = (width * pixelBytes + 3) / 4 * 4;
@@ -58,6 +63,7 @@ ImageFile decodeBmp(const std::string& path, std::span<const char> bytes) {
                          std::to_string(bytes.size()) + " bytes",
                      "expected an intact file");
   }
+  // The palette follows the headers, with 4 bytes per colour. A count of 0 stands for 256 colours.
   const uint64_t paletteAt = uint64_t{14} + layout.headerSize;
   const uint64_t colors = layout.bitsPerPixel != 8 ? 0 : layout.colorsUsed != 0 ? layout.colorsUsed : 256;
   if (paletteAt + 4 * colors > bytes.size() || colors > 256) {
@@ -69,6 +75,7 @@ ImageFile decodeBmp(const std::string& path, std::span<const char> bytes) {
   file.image.width = static_cast<uint32_t>(width);
   file.image.height = static_cast<uint32_t>(height);
   file.image.pixels.reserve(3 * width * height);
+  // Decode the pixels from the top row down. The file has the bottom row first, unless its height is negative.
   for (uint64_t y = 0; y < height; ++y) {
     const uint64_t row = layout.height > 0 ? height - 1 - y : y;
     for (uint64_t x = 0; x < width; ++x) {
@@ -80,6 +87,7 @@ ImageFile decodeBmp(const std::string& path, std::span<const char> bytes) {
         }
         at = paletteAt + uint64_t{4} * index;
       }
+      // The bytes are blue, green and red; a fourth byte is ignored.
       for (const uint64_t channel : {2, 1, 0}) {
         file.image.pixels.push_back(static_cast<float>(static_cast<unsigned char>(bytes[at + channel])) / 255.0f);
       }

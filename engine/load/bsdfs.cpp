@@ -13,6 +13,7 @@ namespace wavecrest {
 
 namespace {
 
+// The microfacet distribution, which is Beckmann by default.
 Distribution readDistribution(Parameters& parameters) {
   const std::string name = toLower(parameters.string("distribution", "beckmann"));
   parameters.ignore({"sample_visible"});  // how to sample, not what
@@ -22,11 +23,12 @@ Distribution readDistribution(Parameters& parameters) {
                   "unknown distribution " + inQuotes(name) + "; expected beckmann or ggx");
 }
 
-// Of a microfacet distribution: along dp/du, and across if that differs.
+// Roughness of a microfacet distribution: `alpha` along dp/du, and `alphaV` across it if it differs.
 struct Roughness {
   TexturedFloat alpha;
   std::optional<TexturedFloat> alphaV;
 };
+// Reads `alpha`, or `alpha_u` and `alpha_v`. If the two are equal, the result is isotropic.
 Roughness readRoughness(LoadContext& context, Parameters& parameters) {
   constexpr double kSmallest = 1e-4;  // Mitsuba's, below which its microfacet model is not evaluated
   const auto read = [&](const char* name) {
@@ -34,6 +36,7 @@ Roughness readRoughness(LoadContext& context, Parameters& parameters) {
     if (alpha.texture == kNone) alpha.value = std::max(alpha.value, kSmallest);
     return alpha;
   };
+  // alpha_u and alpha_v come together, and exclude alpha.
   const bool hasU = parameters.has("alpha_u"), hasV = parameters.has("alpha_v");
   if (hasU != hasV) {
     throw LoadError(parameters.locationOf(hasU ? "alpha_u" : "alpha_v"),
@@ -50,7 +53,7 @@ Roughness readRoughness(LoadContext& context, Parameters& parameters) {
   return roughness;
 }
 
-// Where there is no anisotropy.
+// The roughness of a BSDF that cannot be anisotropic. LoadError if alpha_u and alpha_v differ.
 TexturedFloat readAlpha(LoadContext& context, Parameters& parameters) {
   const Roughness roughness = readRoughness(context, parameters);
   if (roughness.alphaV) {
@@ -59,16 +62,19 @@ TexturedFloat readAlpha(LoadContext& context, Parameters& parameters) {
   return roughness.alpha;
 }
 
+// An index of refraction for each channel: a real one, or a part of a complex one.
 Rgb readIndexColor(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
   const XmlElement* element = parameters.element(name);
   if (!element) return {fallback, fallback, fallback};
   return readColor(context, *element, ColorRole::refraction);
 }
 
+// The parameters that `conductor` and `roughconductor` share.
 Conductor readAnyConductor(LoadContext& context, Parameters& parameters) {
   Conductor conductor;
   const std::string material = parameters.string("material", "none");
   const bool hasEta = parameters.has("eta"), hasK = parameters.has("k");
+  // The complex index of refraction: that of a named metal, or eta and k.
   if (material != "none") {
     if (hasEta || hasK) {
       throw LoadError(parameters.locationOf(hasEta ? "eta" : "k"),
@@ -89,6 +95,7 @@ Conductor readAnyConductor(LoadContext& context, Parameters& parameters) {
   }
   if (parameters.has("ext_eta")) {  // of version 0.6, where eta and k are those of the metal in a vacuum
     const double outside = parameters.ior("ext_eta", "air");
+    // Fresnel's equations need the index relative to that of the outside.
     conductor.eta = (1 / outside) * conductor.eta;
     conductor.k = (1 / outside) * conductor.k;
   }
@@ -96,6 +103,7 @@ Conductor readAnyConductor(LoadContext& context, Parameters& parameters) {
   return conductor;
 }
 
+// The parameters that `dielectric`, `thindielectric` and `roughdielectric` share.
 Dielectric readAnyDielectric(LoadContext& context, Parameters& parameters) {
   Dielectric dielectric;
   dielectric.intIor = parameters.ior("int_ior", "bk7");
@@ -105,6 +113,7 @@ Dielectric readAnyDielectric(LoadContext& context, Parameters& parameters) {
   return dielectric;
 }
 
+// The parameters that `plastic` and `roughplastic` share.
 Plastic readAnyPlastic(LoadContext& context, Parameters& parameters) {
   Plastic plastic;
   plastic.intIor = parameters.ior("int_ior", "polypropylene");
@@ -115,7 +124,7 @@ Plastic readAnyPlastic(LoadContext& context, Parameters& parameters) {
   return plastic;
 }
 
-// Whether any light goes through, by opacity too.
+// Whether light passes through the surface, by its BSDF or because of its opacity.
 bool transmits(const Material& material, const Scene& scene) {
   if (material.opacity || std::holds_alternative<Dielectric>(material.kind)) return true;
   if (const auto* principled = std::get_if<Principled>(&material.kind)) {
@@ -126,6 +135,7 @@ bool transmits(const Material& material, const Scene& scene) {
          std::ranges::any_of(blend->materials, [&](uint32_t part) { return transmits(scene.materials[part], scene); });
 }
 
+// For adapters that a material can have only once.
 [[noreturn]] void failTwice(const Parameters& parameters) {
   throw LoadError(parameters.location(), parameters.describe() + " is nested in another one; expected it once");
 }
@@ -176,6 +186,7 @@ void readRoughPlastic(LoadContext& context, Parameters& parameters, Material& ma
   Plastic plastic = readAnyPlastic(context, parameters);
   plastic.distribution = readDistribution(parameters);
   plastic.alpha = readAlpha(context, parameters);
+  // As in Mitsuba, where roughplastic takes only a number.
   if (plastic.alpha.texture != kNone) {
     throw LoadError(parameters.locationOf("alpha"), "alpha of roughplastic is a texture; expected one number");
   }
@@ -190,7 +201,7 @@ void readPhong(LoadContext& context, Parameters& parameters, Material& material)
 
 namespace {
 
-// What both principled BSDFs have.
+// The parameters that `principled` and `principledthin` share.
 Principled readAnyPrincipled(LoadContext& context, Parameters& parameters) {
   const auto number = [&](const char* name, double fallback) {
     return readTexturedFloat(context, parameters, name, fallback);
@@ -215,6 +226,7 @@ void readPrincipled(LoadContext& context, Parameters& parameters, Material& mate
   principled.clearcoat = readTexturedFloat(context, parameters, "clearcoat", 0);
   principled.clearcoatGloss = readTexturedFloat(context, parameters, "clearcoat_gloss", 0);
   const bool transmits = principled.specTrans.texture != kNone || principled.specTrans.value != 0;
+  // The index of refraction, given as `eta` or by `specular`. It must not be 1 if light is transmitted.
   if (parameters.has("eta") && parameters.has("specular")) {
     throw LoadError(parameters.locationOf("specular"), "specular stands beside eta; expected one of the two");
   }
@@ -227,8 +239,10 @@ void readPrincipled(LoadContext& context, Parameters& parameters, Material& mate
       throw LoadError(parameters.locationOf("specular"), "specular is outside of its range; expected 0 to 1");
     }
     if (transmits && specular == 0) specular = 1e-3;
+    // The solution of ((eta - 1) / (eta + 1))^2 = 0.08 specular. The left side is the reflectance at normal incidence.
     principled.eta = 2 / (1 - std::sqrt(0.08 * specular)) - 1;
   }
+  // These only guide sampling.
   parameters.ignore({"diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"});
   material.kind = principled;
 }
@@ -242,13 +256,16 @@ void readPrincipledThin(LoadContext& context, Parameters& parameters, Material& 
     throw LoadError(parameters.locationOf("eta"), "eta is not a constant above 0; expected one number");
   }
   principled.eta = eta.value;
+  // These only guide sampling.
   parameters.ignore({"diffuse_reflectance_sampling_rate", "specular_reflectance_sampling_rate",
                      "specular_transmittance_sampling_rate", "diffuse_transmittance_sampling_rate"});
   material.kind = principled;
 }
 
+// The adapters below read the nested BSDF into `material`, and then set what they add to it.
 void readTwoSided(LoadContext& context, Parameters& parameters, Material& material) {
   const std::vector<const XmlElement*> sides = parameters.objects("bsdf");
+  // One BSDF for both sides; a file may also refer to it twice.
   if (sides.size() == 2 && sides[0] != sides[1]) {
     context.unsupported(parameters.location(),
                         "two different BSDFs on the two sides are not supported; expected one nested BSDF");
@@ -258,13 +275,14 @@ void readTwoSided(LoadContext& context, Parameters& parameters, Material& materi
   }
   if (material.twoSided) failTwice(parameters);
   readBsdf(context, *sides.front(), material);
+  // Mitsuba refuses these too.
   if (transmits(material, context.scene)) {
     throw LoadError(parameters.location(), "twosided around a BSDF that transmits; expected one that only reflects");
   }
   material.twoSided = true;
 }
 
-// A surface that is not there.
+// A surface that does not change light: any BSDF with an opacity of 0.
 void readNull(LoadContext&, Parameters&, Material& material) {
   material.kind = Diffuse{};
   material.opacity = TexturedFloat{0};
@@ -273,6 +291,7 @@ void readNull(LoadContext&, Parameters&, Material& material) {
 void readMask(LoadContext& context, Parameters& parameters, Material& material) {
   const TexturedFloat opacity = readTexturedFloat(context, parameters, "opacity", 0.5);
   readBsdf(context, parameters.onlyObject("bsdf"), material);
+  // Opacities of nested masks multiply. This works only for numbers, as a material has one texture for its opacity.
   if (!material.opacity) {
     material.opacity = opacity;
   } else if (material.opacity->texture == kNone && opacity.texture == kNone) {
@@ -282,7 +301,7 @@ void readMask(LoadContext& context, Parameters& parameters, Material& material) 
   }
 }
 
-// What bump and normal maps have in common; the nested BSDF has been read.
+// Reads the parameters that `bumpmap` and `normalmap` share. The nested BSDF must be in `material` already.
 void readNormalMapping(Parameters& parameters, Material& material) {
   if (material.bumpTexture != kNone || material.normalTexture != kNone) failTwice(parameters);
   material.normalMapping = {.flipInvalidNormals = parameters.boolean("flip_invalid_normals", true),
@@ -291,6 +310,7 @@ void readNormalMapping(Parameters& parameters, Material& material) {
 }
 
 void readBumpMap(LoadContext& context, Parameters& parameters, Material& material) {
+  // Heights are numbers, so a coloured bitmap is replaced by its luminance.
   const uint32_t texture = scalarTextureOf(context, textureOf(context, parameters.onlyObject("texture")));
   const double scale = parameters.real("scale", 1);
   readBsdf(context, parameters.onlyObject("bsdf"), material);

@@ -33,6 +33,7 @@ Rgb uniformSpectrum(double value, ColorRole role) {
 
 Rgb readSrgb(std::string_view text, const SourceLocation& where);
 
+// One number (grey), three linear numbers, or "#rrggbb", which is gamma-encoded.
 Rgb readRgb(std::string_view text, const SourceLocation& where) {
   if (!text.empty() && text[0] == '#') return readSrgb(text, where);
   const std::vector<double> values = parseReals(text, where);
@@ -41,6 +42,7 @@ Rgb readRgb(std::string_view text, const SourceLocation& where) {
   throw LoadError(where, std::to_string(values.size()) + " numbers in <rgb>; expected 1 or 3");
 }
 
+// The value of a digit in lower case; -1 if it is no digit.
 int hexDigit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -64,13 +66,14 @@ Rgb readSrgb(std::string_view text, const SourceLocation& where) {
   return linear;
 }
 
-// "wavelength:value, …" lists.
+// One value, or pairs "wavelength:value, …" in nm. Three numbers are an RGB colour.
 Rgb readSpectrum(std::string_view text, const SourceLocation& where, ColorRole role) {
   const std::vector<std::string_view> tokens = splitTokens(text);
   if (tokens.size() == 1 && tokens[0].find(':') == std::string_view::npos) {
     return uniformSpectrum(parseReal(tokens[0], where), role);
   }
   if (tokens.size() == 3 && text.find(':') == std::string_view::npos) return readRgb(text, where);  // of version 0.6
+  // Split the pairs. Interpolation needs increasing wavelengths.
   std::vector<double> wavelengths, values;
   for (const std::string_view token : tokens) {
     const size_t colon = token.find(':');
@@ -114,6 +117,7 @@ Rgb readSpectrumObject(LoadContext& context, const XmlElement& object, ColorRole
 
 }  // namespace
 
+// The sRGB transfer function (IEC 61966-2-1).
 double srgbToLinear(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
@@ -122,6 +126,7 @@ Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> v
   // Mitsuba's quadrature: 1000 samples over the CIE range, both ends included.
   constexpr int kSteps = 1000;
   Rgb xyz{0, 0, 0};
+  // Samples and wavelengths both increase, so the search for an interval continues at the previous one.
   size_t interval = 0;
   for (int i = 0; i < kSteps; ++i) {
     const double w = kCieFirst + (kCieLast - kCieFirst) * i / (kSteps - 1);
@@ -129,10 +134,12 @@ Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> v
     while (interval + 2 < wavelengths.size() && wavelengths[interval + 1] <= w) ++interval;
     const double t = (w - wavelengths[interval]) / (wavelengths[interval + 1] - wavelengths[interval]);
     double value = (1 - t) * values[interval] + t * values[interval + 1];
+    // Everything but emission is seen under D65.
     if (role != ColorRole::emission) value *= cieD65(w);
     const std::array<double, 3> observer = cie1931(w);
     for (size_t c = 0; c < 3; ++c) xyz[c] += observer[c] * value;
   }
+  // Convert to RGB. Like Mitsuba, divide the range by the number of samples, not by that of the intervals.
   const double step = (kCieLast - kCieFirst) / kSteps;
   Rgb rgb = xyzToRgb(scaled(step, xyz));
   // Colours outside the gamut are clamped.
@@ -152,6 +159,7 @@ Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role) {
   }
   checkAttributes(element, {"name", "value"});
   if (!value) throw LoadError(where, "<" + element.tag + "> has no value; expected the attribute value");
+  // Convert the value by its tag.
   if (element.tag == "rgb")
     color = readRgb(*value, where);
   else if (element.tag == "srgb")
@@ -160,6 +168,7 @@ Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role) {
     color = readSpectrum(*value, where, role);
   else
     color = grey(parseReal(*value, where));
+  // Check the range that the role allows.
   constexpr double kSlightlyBelow = -0.1;
   for (double& channel : color) {
     if (role == ColorRole::refraction && channel < 0 && channel >= kSlightlyBelow) {

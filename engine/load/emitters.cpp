@@ -17,6 +17,7 @@ void ignoreCommonParameters(Parameters& parameters) { parameters.ignore({"sampli
 
 Matrix4 readToWorld(Parameters& parameters) { return parameters.transform("to_world").value_or(identityMatrix()); }
 
+// `v` at unit length. LoadError at the parameter `name` if `v` has no direction.
 Double3 unitDirection(const Parameters& parameters, const Double3& v, std::string_view name) {
   const double size = length(v);
   if (!(size > 0) || !std::isfinite(size)) {
@@ -26,6 +27,7 @@ Double3 unitDirection(const Parameters& parameters, const Double3& v, std::strin
   return (1 / size) * v;
 }
 
+// Whether the light surrounds the scene.
 bool isInfinite(const EmitterKind& kind) {
   return std::holds_alternative<ConstantEmitter>(kind) || std::holds_alternative<EnvmapEmitter>(kind) ||
          std::holds_alternative<SunskyEmitter>(kind);
@@ -40,12 +42,14 @@ void addEmitter(LoadContext& context, const XmlElement& emitter) {
     throw LoadError(emitter.location(),
                     "area light outside of a shape; expected it as a child of the shape that emits, or a <ref> there");
   }
+  // Read the light.
   const EmitterPlugin* plugin = findPlugin(context, emitterPlugins(), emitter, "left out");
   if (!plugin) return;
   Parameters parameters(context, emitter);
   EmitterKind kind = plugin->read(context, parameters);
   ignoreCommonParameters(parameters);
   parameters.finish();
+  // Only one light may surround the scene. A sun and a sky of the same day become one light.
   if (isInfinite(kind)) {
     for (Emitter& other : context.scene.emitters) {
       if (joinSunAndSky(other.kind, kind)) return;
@@ -66,6 +70,7 @@ AreaEmitter readAreaEmitter(LoadContext& context, const XmlElement& emitter, uin
   Parameters parameters(context, emitter);
   AreaEmitter light{.radiance = readTexturedEmission(context, parameters, "radiance"), .shape = shape};
   ignoreCommonParameters(parameters);
+  // The light is where its shape is.
   if (parameters.has("to_world")) {
     throw LoadError(parameters.locationOf("to_world"), "area light has a to_world; expected it on the shape");
   }
@@ -74,6 +79,7 @@ AreaEmitter readAreaEmitter(LoadContext& context, const XmlElement& emitter, uin
 }
 
 EmitterKind readPoint(LoadContext& context, Parameters& parameters) {
+  // `position`, or the image of the origin.
   const std::optional<Double3> position = parameters.vector("position");
   const std::optional<Matrix4> toWorld = parameters.transform("to_world");
   if (position && toWorld) {
@@ -85,10 +91,12 @@ EmitterKind readPoint(LoadContext& context, Parameters& parameters) {
 }
 
 EmitterKind readSpot(LoadContext& context, Parameters& parameters) {
+  // In its own space the light is at the origin and shines along +z.
   SpotEmitter spot{.toWorld = readToWorld(parameters)};
   spot.position = transformPoint(spot.toWorld, {0, 0, 0});
   spot.direction = unitDirection(parameters, transformVector(spot.toWorld, {0, 0, 1}), "to_world");
   spot.intensity = readConstantEmission(context, parameters, "intensity");
+  // Half angles in degrees. The intensity falls off between beam_width and cutoff_angle.
   spot.cutoffAngle = parameters.positiveReal("cutoff_angle", 20);
   spot.beamWidth = parameters.real("beam_width", 0.75 * spot.cutoffAngle);
   if (spot.cutoffAngle > 90) {
@@ -98,6 +106,7 @@ EmitterKind readSpot(LoadContext& context, Parameters& parameters) {
     throw LoadError(parameters.locationOf("beam_width"), "beam_width is not below the cutoff_angle; expected 0 to " +
                                                              std::to_string(spot.cutoffAngle) + " degrees");
   }
+  // The light projects the texture as a picture: to_world may scale it, but not shear it.
   if (const XmlElement* texture = parameters.element("texture")) {
     checkPerpendicular(spot.toWorld, "the spot light", parameters.locationOf("to_world"));
     spot.texture = textureOf(context, *texture);
@@ -125,12 +134,14 @@ EmitterKind readProjector(LoadContext& context, Parameters& parameters) {
     throw LoadError(parameters.locationOf("scale"), "scale of the projector is negative; expected 0 or more");
   }
   checkRigid(projector.toWorld, "the projector", parameters.locationOf("to_world"));
+  // The field of view refers to the sides of the picture.
   projector.aspect = aspectOf(context, projector.irradiance);
   projector.fovX = readHorizontalFov(parameters, projector.aspect);
   return projector;
 }
 
 EmitterKind readDirectional(LoadContext& context, Parameters& parameters) {
+  // `direction`, or the image of +z.
   const std::optional<Double3> direction = parameters.vector("direction");
   const std::optional<Matrix4> toWorld = parameters.transform("to_world");
   if (direction && toWorld) {
@@ -150,6 +161,7 @@ EmitterKind readConstant(LoadContext& context, Parameters& parameters) {
 EmitterKind readEnvmap(LoadContext& context, Parameters& parameters) {
   const std::string filename = parameters.requiredString("filename");
   const SourceLocation where = parameters.locationOf("filename");
+  // 8- and 16-bit images are decoded to linear light (raw is false).
   EnvmapEmitter light{.bitmap = readBitmap(context, context.resolvePath(filename, parameters.object()), false, where),
                       .scale = parameters.real("scale", 1),
                       .toWorld = readToWorld(parameters)};

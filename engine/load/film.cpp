@@ -13,12 +13,14 @@ constexpr int64_t kLargestSide = 32768;
 constexpr int64_t kMostPixels = int64_t{1} << 28;
 constexpr double kWidestFilter = 32;  // pixels
 
+// `stddev` is in pixels.
 void setGaussian(FilmSettings& film, double stddev) {
   film.filter = ReconstructionFilter::gaussian;
   film.gaussianStddev = stddev;
   film.filterRadius = 4 * stddev;  // where Mitsuba cuts it off
 }
 
+// Reads the crop window in pixels. It stays 0 x 0, which stands for the whole film, if the file gives none.
 void readCrop(Parameters& parameters, FilmSettings& film) {
   const auto pixels = [&](std::string_view name, int64_t fallback) {
     return static_cast<uint32_t>(parameters.integer(name, fallback, 0, kLargestSide));
@@ -36,6 +38,7 @@ void readCrop(Parameters& parameters, FilmSettings& film) {
   }
 }
 
+// Returns `radius`, in pixels. LoadError at the parameter `name` if it is above kWidestFilter.
 double checkedRadius(const Parameters& parameters, std::string_view name, double radius) {
   if (radius <= kWidestFilter) return radius;
   throw LoadError(parameters.locationOf(name), "reconstruction filter is wider than " +
@@ -62,8 +65,10 @@ void readGaussianFilter(Parameters& parameters, FilmSettings& film) {
 
 void readFilm(LoadContext& context, const XmlElement* element) {
   FilmSettings& film = context.scene.film;
+  // Mitsuba's default filter.
   setGaussian(film, 0.5);
   if (element) {
+    // All kinds of film are read as hdrfilm.
     const std::string_view type = element->get("type");
     if (type == "ldrfilm" || type == "tiledhdrfilm" || type == "mfilm") {
       context.note(element->location(), "film " + inQuotes(type), "read as hdrfilm; the command line names the files");
@@ -71,6 +76,7 @@ void readFilm(LoadContext& context, const XmlElement* element) {
       context.unsupported(element->location(), "film " + inQuotes(type) + " is not supported; expected hdrfilm");
     }
     Parameters parameters(context, *element);
+    // Size and crop window.
     film.width = static_cast<uint32_t>(parameters.integer("width", 768, 1, kLargestSide));
     film.height = static_cast<uint32_t>(parameters.integer("height", 576, 1, kLargestSide));
     readCrop(parameters, film);
@@ -79,6 +85,7 @@ void readFilm(LoadContext& context, const XmlElement* element) {
                        "high_quality_edges", "attach_log", "variable", "digits", "has_alpha"});
     parameters.leaveOut({"gamma", "exposure", "tonemap_method", "key", "burn"},
                         "left out: images are written linear, or with the sRGB curve");
+    // At most one reconstruction filter. Kinds with negative lobes are replaced by a gaussian.
     const std::vector<const XmlElement*> filters = parameters.objects("rfilter");
     if (filters.size() > 1) throw LoadError(filters[1]->location(), "film has two rfilters; expected at most one");
     if (!filters.empty()) {
@@ -94,6 +101,7 @@ void readFilm(LoadContext& context, const XmlElement* element) {
     }
     parameters.finish();
   }
+  // A size from the command line replaces that of the file. One side of 0 follows from the aspect ratio of the file.
   if (context.options.filmSize) {
     const double aspect = static_cast<double>(film.width) / film.height;
     const auto [width, height] = *context.options.filmSize;
@@ -102,6 +110,7 @@ void readFilm(LoadContext& context, const XmlElement* element) {
     film.height = height != 0 ? height : rounded(width / aspect);
     film.cropX = film.cropY = film.cropWidth = film.cropHeight = 0;
   }
+  // Check the final size.
   if (film.width == 0 || film.height == 0 || int64_t{film.width} * film.height > kMostPixels) {
     throw LoadError(element ? element->location() : context.document.scene.location(),
                     "film of " + std::to_string(film.width) + " x " + std::to_string(film.height) +
@@ -110,6 +119,7 @@ void readFilm(LoadContext& context, const XmlElement* element) {
 }
 
 void readSampler(LoadContext& context, const XmlElement* element) {
+  // Mitsuba's default.
   context.scene.defaults.sampleCount = 4;
   if (!element) return;
   constexpr int64_t kMost = 1'000'000'000;

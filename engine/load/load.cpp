@@ -29,12 +29,14 @@ void checkUnusedDefinition(LoadContext& context, const XmlElement& element) {
     if (context.textures.contains(&element)) return;
     textureOf(context, element);
   }
+  // Remove what was read, and forget its indices.
   context.scene.materials.resize(materials);
   context.scene.textures.resize(textures);
   std::erase_if(context.materials, [&](const auto& entry) { return entry.second >= materials; });
   std::erase_if(context.textures, [&](const auto& entry) { return entry.second >= textures; });
 }
 
+// Reads the first sensor. Further sensors are left out with a note.
 void readSensors(LoadContext& context, const std::vector<const XmlElement*>& sensors) {
   if (sensors.empty()) {
     throw LoadError(context.document.scene.location(), "scene has no sensor; expected a <sensor type=\"perspective\">");
@@ -56,22 +58,26 @@ void checkHiddenEmitters(LoadContext& context) {
   }
 }
 
+// Reads all objects of the file into context.scene, and checks that none is left over.
 void readScene(LoadContext& context) {
   Parameters parameters(context, context.document.scene);
+  // Integrator and camera.
   const std::vector<const XmlElement*> integrators = parameters.objects("integrator");
   if (integrators.size() > 1) {
     throw LoadError(integrators[1]->location(), "scene has a second integrator; expected at most one");
   }
   if (!integrators.empty()) readIntegrator(context, *integrators.front());
   readSensors(context, parameters.objects("sensor"));
+  // Shapes come before lights: an area light at the top level of the file must belong to a shape.
   const std::vector<const XmlElement*> shapes = parameters.objects("shape");
   context.meshesAhead->read(context, shapes);
   for (const XmlElement* shape : shapes) addShape(context, *shape);
   for (const XmlElement* emitter : parameters.objects("emitter")) addEmitter(context, *emitter);
   if (context.scene.defaults.hideEmitters) checkHiddenEmitters(context);
+  // Check the definitions that nothing refers to.
   for (const XmlElement* bsdf : parameters.objects("bsdf")) checkUnusedDefinition(context, *bsdf);
   for (const XmlElement* texture : parameters.objects("texture")) checkUnusedDefinition(context, *texture);
-  // Definitions that the sensor refers to, or nobody does.
+  // Mark these as used, so that finish() accepts them: the sensor reads the ones it refers to.
   for (const std::string_view tag : {"sampler", "film", "rfilter"}) parameters.objects(tag);
   parameters.finish();
   if (context.scene.shapes.empty()) {
@@ -83,13 +89,16 @@ void readScene(LoadContext& context) {
 
 Scene loadScene(const std::filesystem::path& xml, const LoadOptions& options) {
   try {
+    // Parse the XML.
     const std::unique_ptr<XmlDocument> document = readXmlDocument(xml, options);
+    // Convert it to a scene.
     LoadContext context{.options = options, .document = *document, .scene = {}};
     context.meshesAhead = std::make_shared<MeshesAhead>();
     context.scene.name = xml == kStandardInput ? "stdin" : xml.stem().string();
     context.scene.files.assign(document->files.begin(), document->files.end());
     context.scene.warnings = document->warnings;
     readScene(context);
+    // The hash is taken before simplification, so that it does not depend on keepAll.
     context.scene.hash = hashScene(context.scene);
     if (!options.keepAll) simplifyScene(context.scene);
     return std::move(context.scene);

@@ -8,7 +8,7 @@ namespace wavecrest {
 
 namespace {
 
-// Walks what a shape refers to, each object once.
+// Finds the mesh attribute that the materials and the light of a shape use. Visits each object once.
 class AttributeSearch {
  public:
   explicit AttributeSearch(const LoadContext& context) : context_(context) {}
@@ -18,14 +18,18 @@ class AttributeSearch {
     if (element.tag == "texture" && element.get("type") == "mesh_attribute") {
       add(element);
     } else if (element.tag == "texture" && !otherTexture_ && element.get("type") != "rawconstant") {
+      // Every other texture than a rawconstant needs the texture coordinates of the file.
       otherTexture_ = &element;
     }
     for (const XmlElement& child : element.children) {
+      // Follow only what may contain or refer to a texture of the shape.
       const bool belongs =
           child.tag == "ref" || child.tag == "bsdf" || child.tag == "texture" || child.tag == "emitter";
       if (belongs) visit(context_.resolve(child));
     }
   }
+  // The name of the attribute; empty if there is none. LoadError if the shape has another texture too: baking replaces
+  // the texture coordinates of the mesh.
   std::string found() const {
     if (!name_.empty() && otherTexture_) {
       throw LoadError(otherTexture_->location(), "texture " + inQuotes(otherTexture_->get("type")) +
@@ -36,6 +40,7 @@ class AttributeSearch {
   }
 
  private:
+  // Takes the name from a mesh_attribute texture. LoadError if the shape has an attribute of another name.
   void add(const XmlElement& texture) {
     for (const XmlElement& child : texture.children) {
       if (child.get("name") != "name") continue;
@@ -61,9 +66,11 @@ int MeshAttribute::channelOf(std::string_view property, bool ofFaces) const {
   if (name.empty() || ofFaces != perFace() || underscore == std::string::npos) return -1;
   const std::string_view own = std::string_view(name).substr(underscore + 1);
   constexpr std::string_view kColors = "rgb";
+  // The properties r, g and b are the channels of the attribute "color".
   if (own == "color" && property.size() == 1 && kColors.find(property) != std::string_view::npos) {
     return static_cast<int>(kColors.find(property));
   }
+  // Other attributes have properties with the number of the channel at the end: NAME_0, NAME_1 and NAME_2.
   const bool matches = property.size() == own.size() + 2 && property.starts_with(own) && property[own.size()] == '_' &&
                        property.back() >= '0' && property.back() <= '2';
   return matches ? property.back() - '0' : -1;
@@ -76,6 +83,7 @@ std::string meshAttributeOf(LoadContext& context, const XmlElement& shape) {
 }
 
 std::shared_ptr<const Bitmap> bakeMeshAttribute(const MeshAttribute& attribute, Mesh& mesh) {
+  // Arrange the cells, one for each triangle, in a grid that is about square.
   const size_t count = mesh.triangles.size();
   const auto columns = static_cast<size_t>(std::ceil(std::sqrt(static_cast<double>(std::max<size_t>(count, 1)))));
   const size_t rows = std::max<size_t>(1, (count + columns - 1) / columns), channels = attribute.channels;
@@ -83,9 +91,11 @@ std::shared_ptr<const Bitmap> bakeMeshAttribute(const MeshAttribute& attribute, 
                                                 .height = static_cast<uint32_t>(2 * rows),
                                                 .channels = static_cast<uint32_t>(channels),
                                                 .pixels = std::vector<float>(4 * columns * rows * channels)});
+  // Fill the cells, and give each triangle three vertices of its own.
   Mesh split;
   for (size_t i = 0; i < count; ++i) {
     const std::array<uint32_t, 3> corners = mesh.triangles[i];
+    // The top left texel of the cell.
     const size_t x = 2 * (i % columns), y = 2 * (i / columns);
     for (size_t c = 0; c < channels; ++c) {
       const auto valueAt = [&](size_t k) {
@@ -99,6 +109,7 @@ std::shared_ptr<const Bitmap> bakeMeshAttribute(const MeshAttribute& attribute, 
       texel(0, 1) = valueAt(2);
       texel(1, 1) = valueAt(1) + valueAt(2) - valueAt(0);
     }
+    // The corners have the centres of the texels (0, 0), (1, 0) and (0, 1) as texture coordinates.
     for (size_t k = 0; k < 3; ++k) {
       split.positions.push_back(mesh.positions[corners[k]]);
       if (!mesh.normals.empty()) split.normals.push_back(mesh.normals[corners[k]]);
@@ -118,6 +129,7 @@ MeshAttribute unbakedAttribute(const Bitmap& bitmap, size_t triangles) {
   MeshAttribute attribute{.name = channels == 3 ? "vertex_color" : "vertex_value", .channels = channels, .values = {}};
   attribute.values.reserve(3 * triangles * channels);
   for (size_t i = 0; i < triangles; ++i) {
+    // The top left texel of the cell, its right and its lower neighbour hold the values of the corners.
     const size_t corner = (2 * (i / columns) * bitmap.width + 2 * (i % columns));
     for (const size_t texel : {corner, corner + 1, corner + bitmap.width}) {
       const auto value = bitmap.pixels.begin() + static_cast<ptrdiff_t>(texel * channels);
@@ -137,7 +149,7 @@ Texture readMeshAttribute(LoadContext& context, Parameters& parameters) {
   std::shared_ptr<const Bitmap> bitmap = context.attributeBitmap;
   const bool ofMesh = bitmap != nullptr;
   if (!ofMesh) {
-    // A definition that no mesh uses.
+    // Outside of a mesh there is no attribute, and the texture is black.
     bitmap = std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .channels = 3, .pixels = {0, 0, 0}});
   } else if (scale != 1) {
     auto scaled = std::make_shared<Bitmap>(*bitmap);

@@ -13,6 +13,7 @@ Float3 toFloat(const Double3& v) {
 }
 bool isFinite(const Float3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
+// Transforms positions to world space. LoadError if one leaves the range of float.
 void placePositions(std::vector<Float3>& positions, const Matrix4& toWorld, const SourceLocation& where) {
   if (isIdentity(toWorld)) return;
   for (Float3& p : positions) {
@@ -31,11 +32,13 @@ bool hasArea(const Double3& e1, const Double3& e2) {
   return length(cross(e1, e2)) > kResidue * longest2;
 }
 
+// Removes triangles without area, and their values of a per-face attribute. Returns how many were removed.
 uint64_t dropTrianglesWithoutArea(Mesh& mesh, MeshAttribute& attribute) {
   const auto hasNone = [&](const std::array<uint32_t, 3>& t) {
     const Double3 a = toDouble(mesh.positions[t[0]]);
     return !hasArea(toDouble(mesh.positions[t[1]]) - a, toDouble(mesh.positions[t[2]]) - a);
   };
+  // Move the values of the remaining triangles to the front, in the order that erase_if keeps.
   if (attribute.perFace()) {
     size_t kept = 0;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -89,7 +92,7 @@ Float3 placedNormal(const Matrix4& normalMatrix, const Float3& normal) {
 
 namespace {
 
-// For the vertices whose normal is zero.
+// Replaces normals that are zero by smooth normals.
 void fillMissingNormals(Mesh& mesh) {
   const std::vector<Float3> smooth = smoothNormals(mesh);
   for (size_t i = 0; i < smooth.size(); ++i) {
@@ -125,8 +128,10 @@ Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& pla
             .normals = std::move(soup.normals),
             .uvs = std::move(soup.uvs),
             .triangles = std::move(soup.triangles)};
+  // Move the mesh to world space. Triangles without area have no normal there and are dropped.
   placePositions(mesh.positions, placement.toWorld, where);
   context.scene.droppedTriangles += dropTrianglesWithoutArea(mesh, soup.attribute);
+  // Take no normals, those of the file, or smooth ones. A normal of zero is missing and is replaced.
   if (placement.faceNormals) {
     mesh.normals.clear();
   } else if (!mesh.normals.empty()) {
@@ -138,6 +143,7 @@ Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& pla
     mesh.normals.assign(mesh.positions.size(), Float3{0, 0, 0});
     fillMissingNormals(mesh);
   }
+  // Turn the mesh around if asked, and bake its attribute into a bitmap.
   if (placement.flipNormals) turnAround(mesh);
   if (!soup.attribute.values.empty()) context.attributeBitmap = bakeMeshAttribute(soup.attribute, mesh);
   return mesh;

@@ -11,6 +11,7 @@ namespace wavecrest {
 
 namespace {
 
+// The parameters that all meshes have. max_smooth_angle has no meaning for a mesh without vertex normals.
 MeshPlacement readPlacement(Parameters& parameters, const Matrix4& toWorld) {
   const MeshPlacement placement{.toWorld = toWorld,
                                 .faceNormals = parameters.boolean("face_normals", false),
@@ -22,6 +23,7 @@ MeshPlacement readPlacement(Parameters& parameters, const Matrix4& toWorld) {
   return placement;
 }
 
+// A mesh from a file that has only this mesh, without attributes. The file may have been read ahead.
 Geometry readMeshShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
   const MeshPlacement placement = readPlacement(parameters, toWorld);
   const MeshFile file = meshFileOf(context, parameters);
@@ -42,10 +44,12 @@ MeshFile meshFileOf(const LoadContext& context, Parameters& parameters) {
                                                : MeshFile::Kind::ply,
                 .path = {},
                 .where = {}};
+  // As in Mitsuba, the v of obj files is flipped by default.
   file.flipTexCoords = parameters.boolean("flip_tex_coords", file.kind == MeshFile::Kind::obj);
   if (file.kind == MeshFile::Kind::serialized) {
     file.index = static_cast<uint32_t>(parameters.integer("shape_index", 0, 0, kMostMeshes));
   }
+  // Errors about the file are reported at the line that names it.
   const std::string filename = parameters.requiredString("filename");
   file.where = parameters.locationOf("filename");
   file.path = context.findFile(filename, parameters.object());
@@ -57,6 +61,7 @@ TriangleSoup readMeshFile(const MeshFile& file) {
                                           : readPly(file.path, file.flipTexCoords, file.where);
 }
 
+// Files of meshes with an attribute are not read ahead.
 Geometry readPlyShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
   if (context.meshAttribute.empty()) return readMeshShape(context, parameters, toWorld);
   const MeshPlacement placement = readPlacement(parameters, toWorld);
@@ -74,6 +79,7 @@ Geometry readSerializedShape(LoadContext& context, Parameters& parameters, const
   MeshPlacement placement = readPlacement(parameters, toWorld);
   const MeshFile file = meshFileOf(context, parameters);
   context.listFile(file.path);
+  // Take the mesh that was read ahead, or read it from the archive.
   std::optional<SerializedMesh> mesh = context.meshesAhead->take(parameters.object());
   if (!mesh) {
     const std::string path = file.path.string();
@@ -82,6 +88,7 @@ Geometry readSerializedShape(LoadContext& context, Parameters& parameters, const
     if (!archive) archive = std::make_shared<const std::vector<char>>(readInputFile(path, file.where));
     mesh = readSerialized(*archive, path, file.index);
   }
+  // The file can ask for facets too. Its texture coordinates are flipped here, as readSerialized does not do it.
   placement.faceNormals = placement.faceNormals || mesh->faceNormals;
   if (file.flipTexCoords) {
     for (Float2& uv : mesh->soup.uvs) uv[1] = 1 - uv[1];

@@ -12,7 +12,7 @@
 namespace wavecrest {
 namespace {
 
-// A file of several meshes, which every one of them waits for.
+// A serialized file, which holds several meshes. It is read once, before the meshes are read out of it.
 struct Archive {
   std::string path;
   SourceLocation where;
@@ -20,12 +20,14 @@ struct Archive {
   std::exception_ptr error;
 };
 
+// The reading of one mesh. Any thread may call `read`.
 struct Job {
   const XmlElement* shape;
   std::function<SerializedMesh()> read;
 };
 
-// What building the shape will ask for. Throws LoadError where it will.
+// The job for a shape. Throws the LoadError that building the shape will throw.
+// A job refers to its entry of `archives`, whose address a std::map keeps.
 Job jobOf(LoadContext& context, const XmlElement& shape, std::map<std::string, Archive>& archives) {
   Parameters parameters(context, shape);
   const MeshFile file = meshFileOf(context, parameters);
@@ -41,6 +43,7 @@ Job jobOf(LoadContext& context, const XmlElement& shape, std::map<std::string, A
 }  // namespace
 
 void MeshesAhead::read(LoadContext& context, const std::vector<const XmlElement*>& shapes) {
+  // Collect the jobs.
   std::map<std::string, Archive> archives;
   std::vector<Job> jobs;
   for (const XmlElement* shape : shapes) {
@@ -49,16 +52,19 @@ void MeshesAhead::read(LoadContext& context, const std::vector<const XmlElement*
     try {
       if (!meshAttributeOf(context, *shape).empty()) continue;  // it changes what is read
       jobs.push_back(jobOf(context, *shape, archives));
+      // Make the entry before threads start, so that they do not change the map.
       results_[shape];
     } catch (const LoadError&) {
       continue;  // building it will throw it again
     }
   }
+  // One file alone gains nothing from threads.
   if (jobs.size() < 2) {
     for (const Job& job : jobs) results_.erase(job.shape);
     return;
   }
 
+  // Read the archives, then all meshes. An error is kept until the shape is built.
   std::vector<Archive*> files;
   files.reserve(archives.size());
   for (auto& [path, archive] : archives) files.push_back(&archive);

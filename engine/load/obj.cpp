@@ -28,11 +28,13 @@ struct CornerHash {
   size_t operator()(const Corner& c) const { return mix(mix((uint64_t{c.position} << 32) + c.uv) + c.normal); }
 };
 
+// Reads a file line by line. A face can refer only to positions, normals and coordinates above it.
 class ObjReader {
  public:
   ObjReader(TextScanner scanner, bool flipTexCoords) : scanner_(scanner), flipTexCoords_(flipTexCoords) {}
 
   TriangleSoup read() {
+    // Numbers that follow on a line, such as the colour of a vertex, are skipped with the rest of the line.
     while (!scanner_.atEnd()) {
       scanner_.skipBlanks();
       if (scanner_.takeWord("v")) {
@@ -52,6 +54,7 @@ class ObjReader {
   }
 
  private:
+  // The next N numbers of the line.
   template <size_t N>
   std::array<float, N> readVector() {
     std::array<float, N> vector{};
@@ -73,6 +76,7 @@ class ObjReader {
     return static_cast<uint32_t>(index > 0 ? index - 1 : index + size);
   }
 
+  // A corner in one of the forms v, v/vt, v//vn and v/vt/vn.
   Corner readCorner() {
     Corner corner;
     corner.position = readIndex(positions_.size(), "vertex");
@@ -84,6 +88,7 @@ class ObjReader {
     corner.normal = readIndexHere(normals_.size(), "normal");
     return corner;
   }
+  // The index right after a slash. readIndex alone would skip white space and take the number of the next corner.
   uint32_t readIndexHere(size_t count, const char* what) {
     const char c = scanner_.peek();
     if (c == ' ' || c == '\t' || c == '\r' || c == '\n')
@@ -91,7 +96,9 @@ class ObjReader {
     return readIndex(count, what);
   }
 
+  // Cuts a polygon into a fan of triangles around its first corner.
   void readFace() {
+    // The first corner of the face and its two latest ones.
     uint32_t fan[3] = {};
     size_t corners = 0;
     for (; !scanner_.atLineEnd(); ++corners) {
@@ -107,6 +114,7 @@ class ObjReader {
     if (corners < 3) scanner_.fail("face has " + std::to_string(corners) + " corners; expected at least 3");
   }
 
+  // The index of the vertex for a corner. Equal corners share one vertex.
   uint32_t vertexOf(const Corner& corner) {
     const auto [entry, inserted] = vertices_.try_emplace(corner, static_cast<uint32_t>(corners_.size()));
     if (inserted) corners_.push_back(corner);
@@ -115,6 +123,7 @@ class ObjReader {
     return entry->second;
   }
 
+  // Makes a vertex of each distinct corner. There are normals and texture coordinates if any corner has them.
   TriangleSoup assemble() {
     TriangleSoup soup;
     soup.triangles = std::move(triangles_);
@@ -141,6 +150,7 @@ class ObjReader {
 
 TriangleSoup readObj(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where) {
   std::vector<char> bytes = readInputFile(path, where);
+  // TextScanner stops at newlines only.
   bytes.push_back('\n');
   const std::string file = path.string();
   return ObjReader(TextScanner({bytes.data(), bytes.size()}, file), flipTexCoords).read();

@@ -12,11 +12,14 @@ namespace wavecrest {
 
 namespace {
 
+// Tags of values. A <spectrum> with a type is an object instead.
 constexpr std::array<std::string_view, 11> kValueTags = {"boolean",  "integer", "float", "string", "point",    "vector",
                                                          "spectrum", "rgb",     "srgb",  "color",  "transform"};
 
+// A tag as files write it, for messages.
 std::string article(std::string_view tag) { return "<" + std::string(tag) + ">"; }
 
+// A value has a name, and only a <transform> has children.
 void checkValueElement(const XmlElement& element) {
   if (element.get("name").empty()) {
     throw LoadError(element.location(), article(element.tag) + " has no name; expected the name of a parameter");
@@ -32,6 +35,7 @@ void checkValueElement(const XmlElement& element) {
 Parameters::Parameters(LoadContext& context, const XmlElement& object) : context_(context), object_(object) {
   checkAttributes(object, {"type", "id", "name", "version"});
   std::set<std::string_view> names;
+  // Children are values, objects and <ref>s. An <alias> stands in the table of ids already. All else is unknown.
   for (const XmlElement& child : object.children) {
     const bool isValue =
         !child.isObject() && std::find(kValueTags.begin(), kValueTags.end(), child.tag) != kValueTags.end();
@@ -45,15 +49,18 @@ Parameters::Parameters(LoadContext& context, const XmlElement& object) : context
       continue;
     }
     if (child.tag == "ref") checkAttributes(child, {"id", "name"});
+    // No two children have the same name, but any number of objects may have none.
     const std::string_view name = child.get("name");
     if (!name.empty() && !names.insert(name).second) {
       throw LoadError(child.location(),
                       "parameter " + inQuotes(name) + " of " + describe() + " is given twice; expected it once");
     }
+    // References are followed here, so that an unknown id is an error whether or not a reader asks for the child.
     children_.push_back({.site = &child, .target = &context.resolve(child), .name = name});
   }
 }
 
+// Marks the child of that name as used and returns it; null if there is none. finish() lists the name as a known one.
 Parameters::Child* Parameters::take(std::string_view name) {
   if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.emplace_back(name);
   for (Child& child : children_) {
@@ -64,6 +71,7 @@ Parameters::Child* Parameters::take(std::string_view name) {
   return nullptr;
 }
 
+// This marks the parameter as used, so a reader that asks must also read it or refuse it.
 bool Parameters::has(std::string_view name) { return take(name) != nullptr; }
 
 const XmlElement* Parameters::element(std::string_view name) {
@@ -71,9 +79,11 @@ const XmlElement* Parameters::element(std::string_view name) {
   return child ? child->target : nullptr;
 }
 
+// Null if the parameter is absent. LoadError if its tag is not one of `tags`.
 const std::string* Parameters::valueOf(std::string_view name, std::initializer_list<std::string_view> tags) {
   const Child* child = take(name);
   if (!child) return nullptr;
+  // Values have no ids, so a <ref> in place of one is refused by its tag.
   const XmlElement& element = *child->site;
   if (std::find(tags.begin(), tags.end(), element.tag) == tags.end()) {
     std::string expected;
@@ -87,6 +97,7 @@ const std::string* Parameters::valueOf(std::string_view name, std::initializer_l
   return value;
 }
 
+// A whole number may be written as an <integer>.
 double Parameters::real(std::string_view name, double fallback) {
   const std::string* value = valueOf(name, {"float", "integer"});
   return value ? parseReal(*value, locationOf(name)) : fallback;
@@ -105,6 +116,7 @@ double Parameters::positiveReal(std::string_view name, double fallback) {
   return value;
 }
 
+// The range from `lowest` to `highest` includes both ends.
 int64_t Parameters::integer(std::string_view name, int64_t fallback, int64_t lowest, int64_t highest) {
   const std::string* text = valueOf(name, {"integer"});
   if (!text) return fallback;
@@ -126,6 +138,7 @@ std::string Parameters::string(std::string_view name, std::string_view fallback)
   return value ? *value : std::string(fallback);
 }
 
+// An empty string counts as absent.
 std::string Parameters::requiredString(std::string_view name) {
   std::string value = string(name, "");
   if (value.empty()) {
@@ -134,6 +147,7 @@ std::string Parameters::requiredString(std::string_view name) {
   return value;
 }
 
+// <point> and <vector> are interchangeable here.
 std::optional<Double3> Parameters::vector(std::string_view name) {
   const Child* child = take(name);
   if (!child) return std::nullopt;
@@ -145,6 +159,7 @@ std::optional<Double3> Parameters::vector(std::string_view name) {
   return readVectorAttributes(*child->site, 0);
 }
 
+// An absent transform is not the identity: some readers allow another parameter in its place.
 std::optional<Matrix4> Parameters::transform(std::string_view name) {
   const Child* child = take(name);
   if (!child) return std::nullopt;
@@ -157,15 +172,18 @@ std::optional<Matrix4> Parameters::transform(std::string_view name) {
 
 double Parameters::ior(std::string_view name, std::string_view fallback) {
   const Child* child = take(name);
+  // A number. The fallback of 1 is not used, since the child exists.
   if (child && child->site->tag != "string") {
     return positiveReal(name, 1);
   }
+  // The name of a substance, or the default substance.
   const std::string substance = string(name, fallback);
   if (const std::optional<double> value = findIor(substance)) return *value;
   throw LoadError(locationOf(name),
                   "unknown substance " + inQuotes(substance) + "; expected a number or one of " + listIorNames());
 }
 
+// Nested objects are found by their tag alone, since their names are free.
 std::vector<const XmlElement*> Parameters::objects(std::string_view tag) {
   std::vector<const XmlElement*> found;
   for (Child& child : children_) {
@@ -195,6 +213,7 @@ void Parameters::leaveOut(std::initializer_list<std::string_view> names, const s
   }
 }
 
+// Objects without a name are listed by their tag.
 std::string Parameters::takeOthers() {
   std::string names;
   for (Child& child : children_) {
@@ -205,15 +224,18 @@ std::string Parameters::takeOthers() {
   return names;
 }
 
+// The first child that is left over is an error. With --lenient there is a warning for each.
 void Parameters::finish() {
   for (const Child& child : children_) {
     if (child.used) continue;
+    // Participating media have a message of their own.
     if (child.target->tag == "medium" || child.target->tag == "phase" || child.target->tag == "volume") {
       context_.unsupported(child.site->location(),
                            article(child.target->tag) + " in " + describe() +
                                ": light transport in media is not supported; expected surfaces only");
       continue;
     }
+    // For anything else, the message lists the names that the reader has asked for.
     std::string list;
     for (const std::string& name : known_) list += (list.empty() ? "" : ", ") + name;
     if (list.empty()) list = "no parameters";

@@ -19,6 +19,7 @@ struct FieldOfView {
 double toRadians(double degrees) { return degrees * (std::numbers::pi / 180); }
 double toDegrees(double radians) { return radians * (180 / std::numbers::pi); }
 
+// `fov` along `fov_axis`, or `focal_length`. LoadError if both are given.
 FieldOfView readFieldOfView(Parameters& parameters) {
   FieldOfView fov{.axis = toLower(parameters.string("fov_axis", "x")), .where = parameters.location()};
   const bool hasFov = parameters.has("fov"), hasFocalLength = parameters.has("focal_length");
@@ -41,7 +42,9 @@ FieldOfView readFieldOfView(Parameters& parameters) {
   return fov;
 }
 
+// The field of view in degrees along the x axis of a picture. `aspect` is width over height.
 double horizontalFov(const FieldOfView& fov, double aspect) {
+  // Which side is smaller depends on the picture.
   std::string axis = fov.axis;
   if (axis == "smaller") axis = aspect > 1 ? "y" : "x";
   if (axis == "larger") axis = aspect > 1 ? "x" : "y";
@@ -49,9 +52,11 @@ double horizontalFov(const FieldOfView& fov, double aspect) {
     throw LoadError(fov.where,
                     "field of view is " + std::to_string(fov.degrees) + "; expected degrees between 0 and 180");
   }
+  // Half of the picture along the axis, at distance 1 from the pinhole.
   const double halfSize = std::tan(0.5 * toRadians(fov.degrees));
   if (axis == "x") return fov.degrees;
   if (axis == "y") return 2 * toDegrees(std::atan(halfSize * aspect));
+  // A picture of width w has a diagonal of w sqrt(1 + 1 / aspect^2).
   if (axis == "diagonal") return 2 * toDegrees(std::atan(halfSize / std::sqrt(1 + 1 / (aspect * aspect))));
   throw LoadError(fov.where, "unknown fov_axis " + inQuotes(axis) + "; expected x, y, diagonal, smaller or larger");
 }
@@ -63,6 +68,7 @@ double readHorizontalFov(Parameters& parameters, double aspect) {
 }
 
 void checkRigid(const Matrix4& m, std::string_view whose, const SourceLocation& where) {
+  // The rows of a rotation are orthonormal. The tolerance leaves room for rounded numbers in the file.
   constexpr double kTolerance = 1e-3;
   for (size_t i = 0; i < 3; ++i) {
     for (size_t j = i; j < 3; ++j) {
@@ -77,6 +83,7 @@ void checkRigid(const Matrix4& m, std::string_view whose, const SourceLocation& 
 }
 
 void checkPerpendicular(const Matrix4& m, std::string_view whose, const SourceLocation& where) {
+  // The columns are the images of the axes: none may be zero, and any two must be perpendicular.
   constexpr double kTolerance = 1e-6;
   const auto product = [&](size_t i, size_t j) { return m[0][i] * m[0][j] + m[1][i] * m[1][j] + m[2][i] * m[2][j]; };
   for (size_t i = 0; i < 3; ++i) {

@@ -11,6 +11,7 @@
 namespace wavecrest {
 
 std::string outOfScope(const XmlElement& object) {
+  // Plugins of Mitsuba that need something wavecrest lacks altogether, and the words for it.
   struct Subject {
     std::string_view tag, type, about;
   };
@@ -34,6 +35,7 @@ std::string outOfScope(const XmlElement& object) {
   return {};
 }
 
+// `phong`, `mixturebsdf`, `coating` and `roughcoating` are of Mitsuba 0.6.
 std::span<const BsdfPlugin> bsdfPlugins() {
   static constexpr BsdfPlugin kPlugins[] = {{"diffuse", &readDiffuse},
                                             {"conductor", &readConductor},
@@ -58,6 +60,7 @@ std::span<const BsdfPlugin> bsdfPlugins() {
   return kPlugins;
 }
 
+// `scale` is of Mitsuba 0.6.
 std::span<const TexturePlugin> texturePlugins() {
   static constexpr TexturePlugin kPlugins[] = {{"bitmap", &readBitmapTexture},
                                                {"checkerboard", &readCheckerboard},
@@ -76,6 +79,7 @@ std::span<const ShapePlugin> shapePlugins() {
   return kPlugins;
 }
 
+// `sky` and `sun` are of Mitsuba 0.5 and 0.6.
 std::span<const EmitterPlugin> emitterPlugins() {
   static constexpr EmitterPlugin kPlugins[] = {{"point", &readPoint},         {"spot", &readSpot},
                                                {"projector", &readProjector}, {"directional", &readDirectional},
@@ -85,12 +89,14 @@ std::span<const EmitterPlugin> emitterPlugins() {
   return kPlugins;
 }
 
+// The first one stands in for unknown sensors with --lenient.
 std::span<const SensorPlugin> sensorPlugins() {
   static constexpr SensorPlugin kPlugins[] = {
       {"perspective", &readPerspective}, {"thinlens", &readThinLens}, {"orthographic", &readOrthographic}};
   return kPlugins;
 }
 
+// readFilm replaces `mitchell`, `catmullrom` and `lanczos` by a gaussian.
 std::span<const FilterPlugin> filterPlugins() {
   static constexpr FilterPlugin kPlugins[] = {
       {"box", &readBoxFilter}, {"tent", &readTentFilter}, {"gaussian", &readGaussianFilter}};

@@ -13,6 +13,7 @@ namespace wavecrest {
 
 namespace {
 
+// Values of a text body. Each value is a decimal number, whatever type the header gives.
 class AsciiSource {
  public:
   explicit AsciiSource(const TextScanner& scanner) : scanner_(scanner) {}
@@ -43,7 +44,8 @@ T byteSwapped(T value) {
   return value;
 }
 
-// Errors are placed at the first line of the body: binary data has no lines.
+// Values of a binary body, in the types that the header gives. Errors are reported at the first line of the body:
+// binary data has no lines.
 class BinarySource {
  public:
   BinarySource(std::string_view body, bool swap, SourceLocation where)
@@ -51,6 +53,7 @@ class BinarySource {
 
   float real(PlyType type) { return static_cast<float>(value(type)); }
   int64_t integer(PlyType type) {
+    // All integer types of PLY are exact in double.
     const double number = value(type);
     if (number != std::floor(number) || std::abs(number) > 1e15) fail("index is not whole; expected an integer type");
     return static_cast<int64_t>(number);
@@ -64,6 +67,7 @@ class BinarySource {
   [[noreturn]] void fail(const std::string& message) const { throw LoadError(where_, message); }
 
  private:
+  // The next value, which has type T in the file.
   template <class T>
   double read() {
     T value;
@@ -72,6 +76,7 @@ class BinarySource {
     at_ += sizeof(T);
     return static_cast<double>(swap_ ? byteSwapped(value) : value);
   }
+  // The next value, of a type that the header gives.
   double value(PlyType type) {
     switch (type) {
       case PlyType::int8:
@@ -99,9 +104,11 @@ class BinarySource {
   SourceLocation where_;
 };
 
-// Where a vertex property goes in a row: position, normal, texture coordinates, what nobody wants, attribute.
+// A row holds the properties of one vertex. Slots 0 to 2 are the position, 3 to 5 the normal, 6 and 7 the texture
+// coordinates, and 9 to 11 the attribute. All properties that are not needed share slot 8.
 constexpr int kNormalSlot = 3, kUvSlot = 6, kNoSlot = 8, kAttributeSlot = 9, kRowSlots = 12;
 
+// The slot of a property, by the names that PLY files commonly use.
 int slotOf(const PlyProperty& property) {
   struct Entry {
     std::string_view name;
@@ -126,7 +133,8 @@ int attributeChannel(const MeshAttribute& attribute, const PlyProperty& property
   return property.isList || !isReal ? -1 : attribute.channelOf(property.name, ofFaces);
 }
 
-// Counts the channels that an element has of the attribute: 1 or 3 make one.
+// Sets attribute.channels: 3 if all three channels are present, 1 if only some are but the first is among them. Without
+// the first channel there is no attribute, and it stays 0.
 void startAttribute(const PlyElement& element, bool ofFaces, MeshAttribute& attribute) {
   bool present[3] = {};
   for (const PlyProperty& property : element.properties) {
@@ -138,6 +146,7 @@ void startAttribute(const PlyElement& element, bool ofFaces, MeshAttribute& attr
   attribute.values.reserve(element.count * attribute.channels);
 }
 
+// Adds the attribute of one vertex or triangle. `values` holds soup.attribute.channels numbers.
 template <class Source>
 void appendAttribute(const Source& source, const float* values, TriangleSoup& soup) {
   if (!isFinite(values, static_cast<int>(soup.attribute.channels))) {
@@ -146,8 +155,10 @@ void appendAttribute(const Source& source, const float* values, TriangleSoup& so
   soup.attribute.values.insert(soup.attribute.values.end(), values, values + soup.attribute.channels);
 }
 
+// Reads the element "vertex": positions, and what there is of normals, texture coordinates and a vertex attribute.
 template <class Source>
 void readVertices(Source& source, const PlyElement& element, const SourceLocation& where, TriangleSoup& soup) {
+  // Find the slot of each property.
   std::vector<int> slots;
   bool present[kRowSlots] = {};
   startAttribute(element, false, soup.attribute);
@@ -159,10 +170,12 @@ void readVertices(Source& source, const PlyElement& element, const SourceLocatio
   if (!present[0] || !present[1] || !present[2]) {
     throw LoadError({where.file, element.line}, "PLY vertices lack a coordinate; expected the properties x, y and z");
   }
+  // Normals and texture coordinates are used only if all their components are present.
   const bool hasNormals = present[3] && present[4] && present[5], hasUvs = present[6] && present[7];
   soup.positions.reserve(element.count);
   if (hasNormals) soup.normals.reserve(element.count);
   if (hasUvs) soup.uvs.reserve(element.count);
+  // Read the rows. A property that is a list is skipped.
   float row[kRowSlots] = {};
   for (uint64_t i = 0; i < element.count; ++i) {
     for (size_t j = 0; j < slots.size(); ++j) {
@@ -193,6 +206,7 @@ void readVertices(Source& source, const PlyElement& element, const SourceLocatio
   }
 }
 
+// Reads the indices of one face and cuts it into a fan of triangles around its first corner.
 template <class Source>
 void readPolygon(Source& source, const PlyProperty& property, uint64_t vertexCount, TriangleSoup& soup) {
   const int64_t corners = source.integer(property.countType);
@@ -200,6 +214,7 @@ void readPolygon(Source& source, const PlyProperty& property, uint64_t vertexCou
   if (!source.canHold(property.type, static_cast<uint64_t>(corners))) {
     source.fail("face has " + std::to_string(corners) + " corners but the file ends; expected the announced elements");
   }
+  // The first corner of the face and its two latest ones.
   uint32_t fan[3] = {};
   for (int64_t i = 0; i < corners; ++i) {
     const int64_t index = source.integer(property.type);
@@ -214,16 +229,19 @@ void readPolygon(Source& source, const PlyProperty& property, uint64_t vertexCou
   }
 }
 
+// Reads the element "face". All triangles of a face have its attribute.
 template <class Source>
 void readFaces(Source& source, const PlyElement& element, uint64_t vertexCount, const SourceLocation& where,
                TriangleSoup& soup) {
   const auto isIndices = [](const PlyProperty& property) {
     return property.isList && (property.name == "vertex_indices" || property.name == "vertex_index");
   };
+  // One list gives the corners of a face.
   if (std::count_if(element.properties.begin(), element.properties.end(), isIndices) != 1) {
     throw LoadError({where.file, element.line},
                     "PLY faces have no vertices; expected one list property vertex_indices or vertex_index");
   }
+  // Read the rows. The attribute may stand behind the corners, so triangles get it at the end of the row.
   soup.triangles.reserve(element.count);
   startAttribute(element, true, soup.attribute);
   const bool hasAttribute = soup.attribute.channels != 0 && soup.attribute.perFace();
@@ -248,6 +266,7 @@ void readFaces(Source& source, const PlyElement& element, uint64_t vertexCount, 
   }
 }
 
+// Skips the rows of an element that is not needed.
 template <class Source>
 void skipElement(Source& source, const PlyElement& element) {
   if (element.properties.empty()) return;
@@ -260,6 +279,7 @@ void skipElement(Source& source, const PlyElement& element) {
   }
 }
 
+// Reads the elements in the order of the header. Faces must come after the vertices that they refer to.
 template <class Source>
 TriangleSoup readBody(Source source, const PlyHeader& header, const std::string& file, const std::string& attribute) {
   TriangleSoup soup;
@@ -268,6 +288,7 @@ TriangleSoup readBody(Source source, const PlyHeader& header, const std::string&
   uint64_t vertexCount = 0;
   int vertexElements = 0, faceElements = 0;
   for (const PlyElement& element : header.elements) {
+    // A second element of the same name is left unread, since it is an error in any case.
     if (element.name == "vertex") {
       vertexCount = element.count;
       if (++vertexElements == 1) readVertices(source, element, where, soup);
@@ -291,6 +312,7 @@ TriangleSoup readPly(const std::filesystem::path& path, bool flipTexCoords, cons
                      const std::string& attribute) {
   std::vector<char> bytes = readInputFile(path, where);
   const size_t size = bytes.size();
+  // Text must end with a newline: TextScanner and readPlyHeader stop there.
   bytes.push_back('\n');
   const std::string file = path.string();
   const std::string_view text(bytes.data(), bytes.size());
@@ -300,6 +322,7 @@ TriangleSoup readPly(const std::filesystem::path& path, bool flipTexCoords, cons
     soup = readBody(AsciiSource(TextScanner(text.substr(header.bodyOffset), file, header.bodyLine)), header, file,
                     attribute);
   } else {
+    // A binary body ends where the file does, before the added newline.
     static_assert(std::endian::native == std::endian::little);
     const std::string_view body = text.substr(0, size).substr(std::min(size, header.bodyOffset));
     soup =

@@ -9,6 +9,7 @@ namespace wavecrest {
 
 namespace {
 
+// PLY files name a type after C (uchar) or by its size (uint8). Nothing if the name is unknown.
 std::optional<PlyType> findType(std::string_view name) {
   struct Entry {
     std::string_view name;
@@ -32,6 +33,7 @@ PlyType parseType(std::string_view name, const SourceLocation& where) {
   throw LoadError(where, "unknown PLY type " + inQuotes(name) + "; expected for example float, double, uchar or int");
 }
 
+// From the words of a line "format ENCODING 1.0".
 PlyFormat parseFormat(const std::vector<std::string_view>& words, const SourceLocation& where) {
   if (words.size() == 3 && words[2] == "1.0") {
     if (words[1] == "ascii") return PlyFormat::ascii;
@@ -41,6 +43,7 @@ PlyFormat parseFormat(const std::vector<std::string_view>& words, const SourceLo
   throw LoadError(where, "unknown PLY format; expected ascii, binary_little_endian or binary_big_endian, version 1.0");
 }
 
+// From the words of a line "element NAME COUNT". Its properties follow on lines of their own.
 PlyElement parseElement(const std::vector<std::string_view>& words, const SourceLocation& where) {
   if (words.size() != 3) throw LoadError(where, "bad PLY element line; expected \"element NAME COUNT\"");
   const int64_t count = parseInteger(words[2], where);
@@ -50,6 +53,7 @@ PlyElement parseElement(const std::vector<std::string_view>& words, const Source
   return {.name = std::string(words[1]), .count = static_cast<uint64_t>(count), .properties = {}, .line = where.line};
 }
 
+// From the words of a line "property TYPE NAME" or "property list COUNT_TYPE ITEM_TYPE NAME".
 PlyProperty parseProperty(const std::vector<std::string_view>& words, const SourceLocation& where) {
   if (words.size() == 3) return {.name = std::string(words[2]), .type = parseType(words[1], where)};
   if (words.size() != 5 || words[1] != "list") {
@@ -72,7 +76,9 @@ uint64_t smallestRow(const PlyElement& element, PlyFormat format) {
   return bytes;
 }
 
+// Throws if the file is too short for the announced rows, before a reader reserves memory for them.
 void checkCounts(const PlyHeader& header, size_t fileSize, std::string_view file) {
+  // Counts below 2^32 and at most 10,000 properties of at most 8 bytes cannot overflow 64 bits.
   uint64_t needed = header.bodyOffset;
   for (const PlyElement& element : header.elements) {
     needed += smallestRow(element, header.format) * element.count;
@@ -105,6 +111,7 @@ size_t byteSize(PlyType type) {
 }
 
 PlyHeader readPlyHeader(std::string_view text, std::string_view file) {
+  // Bounds the work on a file whose header does not end.
   constexpr int kLongestHeader = 10'000;  // lines
   PlyHeader header;
   bool hasFormat = false;
@@ -114,13 +121,16 @@ PlyHeader readPlyHeader(std::string_view text, std::string_view file) {
     if (begin >= text.size() || where.line > kLongestHeader) {
       throw LoadError(where, "PLY header does not end; expected the line \"end_header\"");
     }
+    // Take the next line; where.line is its number.
     const size_t end = text.find('\n', begin);
     const std::vector<std::string_view> words = splitTokens(text.substr(begin, end - begin), " \t\r");
     begin = end + 1;
+    // The first line is the magic word.
     if (where.line == 1) {
       if (words.size() != 1 || words[0] != "ply") throw LoadError(where, "not a PLY file; expected \"ply\" as line 1");
       continue;
     }
+    // The others declare the content. A property belongs to the last element above it.
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "format") {
       header.format = parseFormat(words, where);
@@ -139,6 +149,7 @@ PlyHeader readPlyHeader(std::string_view text, std::string_view file) {
                                  "; expected format, comment, element, property or end_header");
     }
   }
+  // Check the header as a whole.
   if (!hasFormat) throw LoadError(where, "PLY header has no format; expected a line \"format … 1.0\"");
   checkCounts(header, text.size(), file);
   return header;

@@ -20,6 +20,7 @@ class Hasher {
   void operator()(const T& value) {
     add(value);
   }
+  // The hash of all words so far.
   uint64_t value() const {
     uint64_t x = state_;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -33,6 +34,7 @@ class Hasher {
   }
 
  private:
+  // Numbers enter by their bits, so 0 and -0 have different hashes.
   void add(double v) { word(std::bit_cast<uint64_t>(v)); }
   void add(float v) { word(std::bit_cast<uint32_t>(v)); }
   void add(uint32_t v) { word(v); }
@@ -46,6 +48,7 @@ class Hasher {
   void add(const std::array<T, N>& values) {
     for (const T& v : values) add(v);
   }
+  // Containers enter their size or kind first, so that different structures do not give the same words.
   template <class T>
   void add(const std::vector<T>& values) {
     word(values.size());
@@ -62,6 +65,7 @@ class Hasher {
     std::visit([this](const auto& alternative) { add(alternative); }, v);
   }
 
+  // Textures. A bitmap enters by its pixels, whatever file they are from.
   void add(const Bitmap& b) { all(b.width, b.height, b.channels, b.pixels); }
   void add(const BitmapTexture& t) { all(*t.bitmap, t.filter, t.wrap); }
   void add(const CheckerboardTexture& t) { all(t.color0, t.color1); }
@@ -69,6 +73,7 @@ class Hasher {
   void add(const TexturedRgb& t) { all(t.value, t.texture); }
   void add(const TexturedFloat& t) { all(t.value, t.texture); }
 
+  // Materials.
   void add(const Diffuse& m) { all(m.reflectance); }
   void add(const Conductor& m) {
     all(m.eta, m.k, m.perfectMirror, m.specularReflectance, m.alpha, m.distribution);
@@ -91,11 +96,13 @@ class Hasher {
     all(m.materials, std::vector<float>(m.weights.begin(), m.weights.end()), m.weightTexture);
   }
   void add(const NormalMapping& m) { all(m.flipInvalidNormals, m.shadowing, m.aroundTwoSided); }
+  // How a map is applied has no effect without a map.
   void add(const Material& m) {
     all(m.kind, m.twoSided, m.opacity, m.bumpTexture, m.bumpScale, m.normalTexture);
     if (m.bumpTexture != kNone || m.normalTexture != kNone) add(m.normalMapping);
   }
 
+  // Shapes. hashScene adds the groups.
   void add(const Mesh& s) { all(s.positions, s.normals, s.uvs, s.triangles); }
   void add(const Rectangle& s) { all(s.corner, s.edgeU, s.edgeV, s.mirrored); }
   void add(const Disk& s) { all(s.center, s.axisU, s.axisV, s.mirrored); }
@@ -103,6 +110,7 @@ class Hasher {
   void add(const Cylinder& s) { all(s.p0, s.p1, s.radius, s.flipNormals, s.phi0, s.phi90); }
   void add(const Shape& s) { all(s.kind, s.material, s.emitter); }
 
+  // Lights.
   void add(const AreaEmitter& e) { all(e.radiance, e.shape); }
   void add(const PointEmitter& e) { all(e.position, e.intensity); }
   void add(const SpotEmitter& e) {
@@ -117,6 +125,7 @@ class Hasher {
   void add(const EnvmapEmitter& e) { all(*e.bitmap, e.scale, e.toWorld); }
   void add(const Emitter& e) { all(e.kind); }
 
+  // Camera, film, and what the file asks of the renderer.
   void add(const Sensor& s) {
     all(s.kind, s.toWorld, s.fovX, s.nearClip, s.farClip, s.apertureRadius, s.focusDistance, s.principalPointOffset);
   }
@@ -133,6 +142,7 @@ class Hasher {
 uint64_t hashScene(const Scene& scene) {
   Hasher hasher;
   hasher.all(scene.textures, scene.materials, scene.shapes, scene.emitters, scene.sensor, scene.film, scene.defaults);
+  // Groups change an image only through instances.
   if (!scene.instances.empty()) {
     for (const Shape& shape : scene.shapes) hasher.word(shape.group);
     for (const Instance& instance : scene.instances) hasher.all(instance.group, instance.toWorld);

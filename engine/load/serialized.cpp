@@ -18,6 +18,7 @@ namespace wavecrest {
 
 namespace {
 
+// Bits of the flags of a mesh.
 enum SerializedFlag : uint32_t {
   kHasNormals = 0x1,
   kHasTexCoords = 0x2,
@@ -28,6 +29,7 @@ enum SerializedFlag : uint32_t {
 
 constexpr uint64_t kMostDeflateShrinks = 1032;  // the highest ratio that deflate can reach
 
+// Inflates the zlib stream of a mesh piece by piece, into memory of the caller.
 class DeflatedStream {
  public:
   DeflatedStream(std::span<const char> bytes, const SourceLocation& where) : left_(bytes), where_(where) {
@@ -37,6 +39,7 @@ class DeflatedStream {
   DeflatedStream(const DeflatedStream&) = delete;
   DeflatedStream& operator=(const DeflatedStream&) = delete;
 
+  // Inflates exactly `bytes` bytes. LoadError if the stream is damaged or ends early.
   void read(void* out, size_t bytes) {
     // zlib counts in 32 bits: hand it slices.
     constexpr size_t kSlice = std::numeric_limits<uInt>::max() / 2;
@@ -73,6 +76,7 @@ class DeflatedStream {
   const SourceLocation& where_;
 };
 
+// The little-endian number at byte `at`. The caller has checked that the file is long enough.
 template <class T>
 T valueAt(std::span<const char> bytes, size_t at) {
   T result;
@@ -80,6 +84,7 @@ T valueAt(std::span<const char> bytes, size_t at) {
   return result;
 }
 
+// The version of the mesh at `offset`. LoadError if there is no mesh, or one of another version than 3 and 4.
 uint16_t readHeader(std::span<const char> file, uint64_t offset, const SourceLocation& where) {
   constexpr uint16_t kMagic = 0x041c;
   if (offset > file.size() || file.size() - offset < 4 || valueAt<uint16_t>(file, offset) != kMagic) {
@@ -126,6 +131,7 @@ bool allFinite(const std::array<float, N>& v) {
   return std::all_of(v.begin(), v.end(), [](float x) { return std::isfinite(x); });
 }
 
+// LoadError for coordinates that are not finite and indices that are out of range.
 void checkMesh(TriangleSoup& soup, const DeflatedStream& stream) {
   for (size_t i = 0; i < soup.positions.size(); ++i) {
     if (!allFinite(soup.positions[i])) {
@@ -154,21 +160,25 @@ void checkMesh(TriangleSoup& soup, const DeflatedStream& stream) {
 
 SerializedMesh readSerialized(std::span<const char> file, const std::string& name, uint32_t index) {
   const SourceLocation where{name, 0};
+  // Find the mesh. The version of the first mesh gives the size of the entries of the table.
   const uint64_t offset = offsetOfMesh(file, readHeader(file, 0, where), index, where);
   const uint16_t version = readHeader(file, offset, where);
   const std::span<const char> compressed = file.subspan(offset + 4);
   DeflatedStream stream(compressed, where);
+  // Read the flags, and skip the name that version 4 has.
   const auto flags = stream.value<uint32_t>();
   if (version == 4) {
     while (stream.value<char>() != 0) {
     }
   }
+  // Refuse counts that no stream of this size can hold, before memory is allocated for them.
   const auto vertices = stream.value<uint64_t>(), triangles = stream.value<uint64_t>();
   const uint64_t most = kMostDeflateShrinks * compressed.size();
   if (vertices > most / sizeof(Float3) || triangles > most / sizeof(Float3)) {
     stream.fail("mesh announces " + std::to_string(vertices) + " vertices and " + std::to_string(triangles) +
                 " triangles in " + std::to_string(compressed.size()) + " bytes; expected fewer");
   }
+  // Read the arrays. Colours are not used, but they must be inflated to get to the indices behind them.
   const bool isDouble = (flags & kDoublePrecision) != 0;
   SerializedMesh mesh{.soup = {}, .faceNormals = (flags & kFaceNormals) != 0};
   TriangleSoup& soup = mesh.soup;

@@ -16,6 +16,7 @@ namespace {
 // Parameters that only guide how Mitsuba samples.
 void ignoreCommonParameters(Parameters& parameters) { parameters.ignore({"silhouette_sampling_weight"}); }
 
+// The object of the given tag within the shape; null if there is none. LoadError if there are several.
 const XmlElement* singleChild(Parameters& parameters, std::string_view tag) {
   const std::vector<const XmlElement*> found = parameters.objects(tag);
   if (found.size() > 1) {
@@ -25,7 +26,9 @@ const XmlElement* singleChild(Parameters& parameters, std::string_view tag) {
   return found.empty() ? nullptr : found.front();
 }
 
-// Materials with an attribute of a mesh are that mesh's own: for the lifetime of this, others are forgotten.
+// A material that reads a mesh attribute refers to the bitmap of one mesh, so other meshes cannot share it. If the
+// shape has an attribute, the context has empty tables of materials and textures while this object lives, and gets its
+// old tables back afterwards.
 class OwnMaterials {
  public:
   explicit OwnMaterials(LoadContext& context) : context_(context.attributeBitmap ? &context : nullptr) { exchange(); }
@@ -47,6 +50,7 @@ class OwnMaterials {
   std::map<const XmlElement*, uint32_t> materials_, textures_;
 };
 
+// Adds the light of a shape. `shapeIndex` is the index that the shape will have in the scene.
 void attachAreaLight(LoadContext& context, const XmlElement& element, uint32_t shapeIndex, Shape& shape) {
   context.areaLights.insert(&element);
   shape.emitter = static_cast<uint32_t>(context.scene.emitters.size());
@@ -57,9 +61,11 @@ void attachAreaLight(LoadContext& context, const XmlElement& element, uint32_t s
 // The index of a group in the scene; at its first instance its shapes are read.
 uint32_t groupOf(LoadContext& context, const XmlElement& group) {
   if (const auto known = context.groups.find(&group); known != context.groups.end()) return known->second;
+  // Register the group.
   const auto index = static_cast<uint32_t>(context.scene.groups.size());
   context.groups[&group] = index;
   context.scene.groups.push_back({.id = std::string(group.get("id")), .source = group.location()});
+  // Read its shapes. addShape takes the group from the context.
   Parameters members(context, group);
   const std::vector<const XmlElement*> shapes = members.objects("shape");
   members.finish();
@@ -70,6 +76,7 @@ uint32_t groupOf(LoadContext& context, const XmlElement& group) {
   return index;
 }
 
+// Adds an instance of a shapegroup, whose to_world must have an inverse.
 void addInstance(LoadContext& context, const XmlElement& element, Parameters& parameters) {
   if (context.shapeGroup != kNone) {
     throw LoadError(parameters.location(), "instance inside a shapegroup; expected only plain shapes in a shapegroup");
@@ -102,6 +109,7 @@ void addShape(LoadContext& context, const XmlElement& element) {
   const ShapePlugin* plugin = findPlugin(context, shapePlugins(), element, "left out");
   if (!plugin) return;
 
+  // Read the geometry. If a material or the light asks for a mesh attribute, the reader bakes it.
   const Matrix4 own = parameters.transform("to_world").value_or(identityMatrix());
   Shape shape;
   shape.id = element.get("id");
@@ -113,12 +121,14 @@ void addShape(LoadContext& context, const XmlElement& element) {
     throw LoadError(element.location(), parameters.describe() + " has no attribute " + inQuotes(context.meshAttribute) +
                                             "; expected a ply mesh with that attribute");
   }
+  // Find the material and the light among the children.
   const OwnMaterials ownMaterials(context);
   const XmlElement* bsdf = singleChild(parameters, "bsdf");
   const XmlElement* light = singleChild(parameters, "emitter");
   ignoreCommonParameters(parameters);
   parameters.finish();
 
+  // A shape needs a positive and finite area. Without it a light is an error, and any other shape is unsupported.
   const double area = surfaceArea(shape.kind);
   if (!(area > 0) || !std::isfinite(area)) {
     const std::string message = parameters.describe() + (light ? ", a light," : "") +
@@ -130,6 +140,7 @@ void addShape(LoadContext& context, const XmlElement& element) {
   if (context.shapeGroup != kNone && light) {
     throw LoadError(light->location(), "light inside a shapegroup; expected instances without lights");
   }
+  // Add the shape, with its material and its light.
   shape.material = bsdf ? materialOf(context, *bsdf) : defaultMaterial(context, light != nullptr);
   if (light) attachAreaLight(context, *light, static_cast<uint32_t>(context.scene.shapes.size()), shape);
   shape.group = context.shapeGroup;
@@ -138,6 +149,7 @@ void addShape(LoadContext& context, const XmlElement& element) {
 
 namespace {
 
+// Surface area of each kind of shape, in the space of the shape's coordinates.
 struct Area {
   double operator()(const Mesh& mesh) const {
     double sum = 0;

@@ -11,6 +11,7 @@ namespace {
 
 // ---- meshes ---------------------------------------------------------------------------------------------------------
 
+// Whether each vertex normal is that of all faces around the vertex.
 bool isFlat(const Mesh& mesh) {
   return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const std::array<uint32_t, 3>& corners) {
     const Double3 p0 = widened(mesh.positions[corners[0]]);
@@ -33,6 +34,7 @@ std::optional<Rgb> onlyColour(const Texture& texture) {
   }
   const auto* bitmapTexture = std::get_if<BitmapTexture>(&texture.kind);
   if (bitmapTexture == nullptr) return std::nullopt;
+  // Compare each pixel with the first one.
   const Bitmap& bitmap = *bitmapTexture->bitmap;
   const size_t channels = bitmap.channels;
   for (size_t i = channels; i < bitmap.pixels.size(); ++i) {
@@ -44,6 +46,7 @@ std::optional<Rgb> onlyColour(const Texture& texture) {
   return colour;
 }
 
+// Replaces textures of one colour by that colour, with a function for each kind of value and each kind of BSDF.
 class Simplifier {
  public:
   explicit Simplifier(const Scene& scene) {
@@ -53,7 +56,7 @@ class Simplifier {
   void operator()(TexturedRgb& value) const {
     if (const auto colour = colourOf(value.texture)) value = {*colour, kNone};
   }
-  // Of a grey texture alone: how a coloured one becomes a number is the texture kernel's business.
+  // Only a grey colour is replaced: the texture kernel decides how any other becomes a number.
   void operator()(TexturedFloat& value) const {
     const auto colour = colourOf(value.texture);
     if (colour && (*colour)[0] == (*colour)[1] && (*colour)[0] == (*colour)[2]) value = {(*colour)[0], kNone};
@@ -86,7 +89,7 @@ class Simplifier {
       (*this)(*value);
     }
   }
-  // Without parts of no weight.
+  // A weight texture of one value becomes two constant weights. Parts of weight 0 are removed, but one part stays.
   void operator()(Blend& blend) const {
     if (blend.weightTexture != kNone) {
       TexturedFloat weight{0, blend.weightTexture};
@@ -102,16 +105,18 @@ class Simplifier {
       blend.weights.erase(blend.weights.begin() + static_cast<ptrdiff_t>(i));
     }
   }
-  // Of other kinds of materials nothing is known here.
+  // Any other kind of BSDF stays as it is.
   template <class Kind>
   void operator()(Kind&) const {}
 
+  // The BSDF, and the adapters around it.
   void operator()(Material& material) const {
     std::visit([this](auto& kind) { (*this)(kind); }, material.kind);
     if (material.opacity) {
       (*this)(*material.opacity);
       if (material.opacity->texture == kNone && material.opacity->value >= 1) material.opacity.reset();
     }
+    // A bump map of one height has no slope, and (0.5, 0.5, 1) encodes the unchanged normal.
     if (colourOf(material.bumpTexture)) material.bumpTexture = kNone;
     if (const auto normal = colourOf(material.normalTexture)) {
       if (*normal == Rgb{0.5, 0.5, 1}) material.normalTexture = kNone;
@@ -119,6 +124,7 @@ class Simplifier {
   }
 
  private:
+  // Two roughnesses that are equal after their simplification make the BSDF isotropic.
   template <class Rough>
   void simplifyRoughness(Rough& bsdf) const {
     (*this)(bsdf.alpha);
@@ -132,7 +138,8 @@ class Simplifier {
   std::vector<std::optional<Rgb>> colours_;
 };
 
-// A blend of one BSDF with weight 1 is that BSDF, in the blend's own adapters. What both have adapters around stays.
+// A blend of one BSDF with weight 1 becomes that BSDF, in the adapters of both. It stays a blend if one material cannot
+// have the adapters of both.
 void unwrapBlend(Material& material, const Scene& scene) {
   const auto* blend = std::get_if<Blend>(&material.kind);
   if (blend == nullptr || blend->weightTexture != kNone || blend->materials.size() != 1 || blend->weights[0] != 1) {
@@ -151,16 +158,19 @@ void unwrapBlend(Material& material, const Scene& scene) {
 }  // namespace
 
 void simplifyScene(Scene& scene) {
+  // Faceted meshes need no normals.
   for (Shape& shape : scene.shapes) {
     Mesh* const mesh = std::get_if<Mesh>(&shape.kind);
     if (mesh != nullptr && !mesh->normals.empty() && isFlat(*mesh)) mesh->normals = {};
   }
+  // Materials.
   const Simplifier simplify(scene);
-  // Parts of blends come before them.
+  // The parts of a blend have lower indices, so they are simplified before it.
   for (Material& material : scene.materials) {
     simplify(material);
     unwrapBlend(material, scene);
   }
+  // Lights.
   for (Emitter& emitter : scene.emitters) {
     if (auto* area = std::get_if<AreaEmitter>(&emitter.kind)) simplify(area->radiance);
     if (auto* projector = std::get_if<ProjectorEmitter>(&emitter.kind)) simplify(projector->irradiance);

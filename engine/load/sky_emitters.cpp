@@ -22,6 +22,7 @@ int readWhole(Parameters& parameters, std::string_view name, int fallback, int l
   return static_cast<int>(parameters.integer(name, fallback, lowest, highest));
 }
 
+// What is absent keeps the defaults of PlaceAndTime.
 PlaceAndTime readPlaceAndTime(Parameters& parameters) {
   PlaceAndTime at;
   at.latitude = parameters.real("latitude", at.latitude);
@@ -38,6 +39,7 @@ PlaceAndTime readPlaceAndTime(Parameters& parameters) {
 
 // Unit, towards the sun, in the world.
 Double3 readSunDirection(Parameters& parameters, const Matrix4& toWorld, bool legacy) {
+  // A direction excludes a place and a time.
   if (const std::optional<Double3> direction = parameters.vector("sun_direction")) {
     for (const char* name : {"latitude", "longitude", "timezone", "year", "month", "day", "hour", "minute", "second"}) {
       if (!parameters.has(name)) continue;
@@ -50,6 +52,7 @@ Double3 readSunDirection(Parameters& parameters, const Matrix4& toWorld, bool le
     }
     return normalized(*direction);
   }
+  // The direction at a place and time: x points north and y east, before they are turned to the axes of the sky.
   const SunPosition sun = sunPosition(readPlaceAndTime(parameters));
   const double sine = std::sin(sun.zenithAngle), height = std::cos(sun.zenithAngle);
   const double x = std::cos(sun.azimuth) * sine, y = std::sin(sun.azimuth) * sine;
@@ -87,11 +90,13 @@ EmitterKind readSunsky(LoadContext& context, Parameters& parameters) {
     throw LoadError(parameters.locationOf("turbidity"),
                     "turbidity is " + std::to_string(sky.turbidity) + "; expected 1 to 10");
   }
+  // Factors of sky and sun. A `sun` has no sky, and a `sky` has no sun.
   const double scale = readScale(parameters, "scale", 1);
   if (type != "sun") sky.skyScale = readScale(parameters, "sky_scale", scale);
   if (type != "sky") sky.sunScale = readScale(parameters, "sun_scale", scale);
   if (type == "sun") sky.skyScale = 0;
   if (type == "sky") sky.sunScale = 0;
+  // The disc of the sun.
   sky.sunAperture = parameters.positiveReal("sun_aperture", kSunAperture);
   if (sky.sunAperture >= 180) {
     throw LoadError(parameters.locationOf("sun_aperture"), "sun_aperture is not below 180; expected degrees");
@@ -99,8 +104,9 @@ EmitterKind readSunsky(LoadContext& context, Parameters& parameters) {
   if (parameters.boolean("complex_sun", false)) {
     context.note(parameters.locationOf("complex_sun"), "complex_sun", "the sun's disc is evenly bright");
   }
+  // Versions 0.5 and 0.6 give the radius of the sun as a factor, and their zenith is along y.
   if (legacy) {
-    // Smaller than can be told from a point.
+    // The aperture must be above 0. A sun of this size already looks like a point.
     constexpr double kSmallest = 0.02;
     sky.sunAperture = std::clamp(kSunAperture * readScale(parameters, "sun_radius_scale", 1), kSmallest, 90.0);
     for (size_t i = 0; i < 3; ++i) {  // z up instead of y
@@ -120,11 +126,14 @@ EmitterKind readSunsky(LoadContext& context, Parameters& parameters) {
 bool joinSunAndSky(EmitterKind& first, const EmitterKind& second) {
   auto* const a = std::get_if<SunskyEmitter>(&first);
   const auto* const b = std::get_if<SunskyEmitter>(&second);
+  // The same direction, to within 0.26 degrees.
   if (a == nullptr || b == nullptr || dot(a->sunDirection, b->sunDirection) < 0.99999) return false;
   if (a->turbidity != b->turbidity) return false;
+  // Exactly one of the two has a sun only, and the other has a sky only.
   const bool firstIsSun = a->skyScale == 0 && b->sunScale == 0, secondIsSun = a->sunScale == 0 && b->skyScale == 0;
   if (firstIsSun == secondIsSun) return false;
   const SunskyEmitter &sun = firstIsSun ? *a : *b, &sky = firstIsSun ? *b : *a;
+  // The sky gets the sun.
   SunskyEmitter both = sky;
   both.sunScale = sun.sunScale;
   both.sunAperture = sun.sunAperture;

@@ -10,7 +10,7 @@ namespace wavecrest {
 
 namespace {
 
-// to_uv acts on (u, v) only.
+// to_uv as an affine map of (u, v). Its entries for a third coordinate are dropped.
 Matrix4 readToUv(Parameters& parameters) {
   const Matrix4 m = parameters.transform("to_uv").value_or(identityMatrix());
   Matrix4 uv = identityMatrix();
@@ -28,6 +28,7 @@ Rgb readColorOr(LoadContext& context, Parameters& parameters, std::string_view n
   return readColor(context, *element, isNumber ? ColorRole::unbounded : ColorRole::reflectance);
 }
 
+// The filter of a bitmap. `trilinear` and `ewa` are read as bilinear, with a note.
 Filter readFilter(LoadContext& context, Parameters& parameters) {
   parameters.ignore({"max_anisotropy"});
   const std::string name = toLower(parameters.string("filter_type", "bilinear"));
@@ -41,6 +42,7 @@ Filter readFilter(LoadContext& context, Parameters& parameters) {
   return Filter::bilinear;
 }
 
+// The wrap mode in the given parameter. Borders of 0 or 1 are read as clamp, with a note.
 Wrap readWrap(LoadContext& context, Parameters& parameters, std::string_view parameter) {
   const std::string name = toLower(parameters.string(parameter, "repeat"));
   if (name == "repeat") return Wrap::repeat;
@@ -54,7 +56,7 @@ Wrap readWrap(LoadContext& context, Parameters& parameters, std::string_view par
                   "unknown " + std::string(parameter) + " " + inQuotes(name) + "; expected repeat, mirror or clamp");
 }
 
-// Version 0.6 has a mode for each axis.
+// `wrap_mode`, or both modes of version 0.6, which has one for each axis.
 Wrap readWrapOfAxes(LoadContext& context, Parameters& parameters) {
   if (!parameters.has("wrap_mode_u") && !parameters.has("wrap_mode_v")) {
     return readWrap(context, parameters, "wrap_mode");
@@ -80,6 +82,7 @@ bool readRaw(LoadContext& context, Parameters& parameters) {
   return raw;
 }
 
+// A channel of a bitmap of three channels, as a bitmap of one channel.
 std::shared_ptr<const Bitmap> oneChannel(const Bitmap& colors, size_t channel) {
   auto grey =
       std::make_shared<Bitmap>(Bitmap{.width = colors.width, .height = colors.height, .channels = 1, .pixels = {}});
@@ -87,6 +90,7 @@ std::shared_ptr<const Bitmap> oneChannel(const Bitmap& colors, size_t channel) {
   return grey;
 }
 
+// The channel of the bitmap that the parameter `channel` names; the whole bitmap if it is absent.
 std::shared_ptr<const Bitmap> readChannel(Parameters& parameters, const std::shared_ptr<const Bitmap>& bitmap) {
   const std::string name = parameters.string("channel", "");
   if (name.empty() || bitmap->channels == 1) return bitmap;
@@ -114,6 +118,7 @@ Texture readBitmapTexture(LoadContext& context, Parameters& parameters) {
       .bitmap = nullptr, .filter = readFilter(context, parameters), .wrap = readWrapOfAxes(context, parameters)};
   const bool raw = readRaw(context, parameters);
   parameters.ignore({"format", "accel", "cache"});  // how Mitsuba stores it
+  // Read the file, and take one channel of it if asked.
   const std::string filename = parameters.requiredString("filename");
   texture.bitmap =
       readBitmap(context, context.resolvePath(filename, parameters.object()), raw, parameters.locationOf("filename"));
@@ -123,12 +128,14 @@ Texture readBitmapTexture(LoadContext& context, Parameters& parameters) {
 
 Texture readRawConstant(LoadContext& context, Parameters& parameters) {
   const Rgb value = readRawValue(context, parameters);
+  // A constant is a bitmap of one pixel.
   auto bitmap = std::make_shared<Bitmap>(Bitmap{.width = 1, .height = 1, .channels = 3, .pixels = {}});
   for (const double channel : value) bitmap->pixels.push_back(static_cast<float>(channel));
   return {.kind = BitmapTexture{.bitmap = std::move(bitmap), .filter = Filter::nearest}, .toUv = identityMatrix()};
 }
 
 Texture readScaleTexture(LoadContext& context, Parameters& parameters) {
+  // The factor is a number or a colour, in one of two parameters.
   const std::string_view name = parameters.has("value") ? "value" : "scale";
   const XmlElement* factor = parameters.element(name);
   const Rgb scale = factor ? readColor(context, *factor, ColorRole::unbounded) : Rgb{1, 1, 1};
@@ -141,6 +148,7 @@ Texture readScaleTexture(LoadContext& context, Parameters& parameters) {
     }
     return texture;
   }
+  // Scale a copy, as other textures may share the bitmap. Grey times grey stays grey.
   auto& bitmap = std::get<BitmapTexture>(texture.kind).bitmap;
   const bool grey = bitmap->channels == 1 && scale[0] == scale[1] && scale[0] == scale[2];
   Bitmap scaled{.width = bitmap->width, .height = bitmap->height, .channels = grey ? 1u : 3u, .pixels = {}};

@@ -6,6 +6,7 @@ namespace wavecrest {
 
 namespace {
 
+// Decodes one file. Each access to a byte is checked against the end of the file.
 class TgaReader {
  public:
   TgaReader(const std::string& path, std::span<const char> bytes) : path_(path), bytes_(bytes) {}
@@ -29,11 +30,13 @@ class TgaReader {
     if (at >= bytes_.size()) fail("file ends early");
     return static_cast<unsigned char>(bytes_[at]);
   }
+  // 16 bits, little-endian.
   size_t word(size_t at) const { return byte(at) + 256 * byte(at + 1); }
 
   // Bytes: 0 length of the id, 1 palette, 2 kind (8 more: run lengths), 3 palette's first, 5 length and 7 bits, 12
   // width, 14 height, 16 bits, 17 flags (0x20: top row first, 0x10: rightmost pixel first).
   void readHeader() {
+    // The kind of pixels: 1 is a palette, 2 true colour, 3 grey.
     const size_t kind = byte(2);
     runs_ = (kind & 8) != 0;
     const size_t plainKind = kind & ~size_t{8};
@@ -47,6 +50,7 @@ class TgaReader {
       throw ImageError(path_, "TGA of kind " + std::to_string(kind) + " and " + std::to_string(pixelBits) + " bits",
                        "expected grey of 8 bits, or a palette or true colour of 24 or 32 bits");
     }
+    // Sizes and positions. The id and the palette stand between the header of 18 bytes and the pixels.
     pixelBytes_ = pixelBits / 8;
     colorBytes_ = colorBits / 8;
     flags_ = byte(17);
@@ -64,7 +68,7 @@ class TgaReader {
     }
   }
 
-  // Where the colour of the pixel at `at` stands.
+  // The position of the colour of the pixel at position `at`: the pixel itself, or an entry of the palette.
   size_t colorAt(size_t at) const {
     if (!palette_) return at;
     const size_t index = byte(at);
@@ -72,22 +76,26 @@ class TgaReader {
     return paletteAt_ + (index - paletteFirst_) * colorBytes_;
   }
 
+  // Decodes the pixels in the order of the file. `out` has the top row first.
   void readPixels(std::vector<float>& out) {
     size_t left = 0;       // pixels of the current packet
-    bool repeats = false;  // which are all the same
+    bool repeats = false;  // whether they all have one value
     for (size_t i = 0; i < width_ * height_; ++i) {
       if (runs_ && left == 0) {
+        // The packet's first byte: a bit that says whether it is a run, and the number of pixels less 1.
         const size_t packet = byte(at_++);
         left = 1 + (packet & 127);
         repeats = (packet & 128) != 0;
       }
       const size_t color = colorAt(at_);
+      // Find the place of the pixel. Its colour is stored as blue, green, red.
       const size_t column = i % width_, row = i / width_;
       const size_t x = (flags_ & 0x10) != 0 ? width_ - 1 - column : column;
       const size_t y = (flags_ & 0x20) != 0 ? row : height_ - 1 - row;
       for (size_t c = 0; c < 3; ++c) {
         out[3 * (y * width_ + x) + c] = static_cast<float>(byte(color + (colorBytes_ == 1 ? 0 : 2 - c))) / 255.0f;
       }
+      // Within a run, the next pixel is read from the same position.
       if (runs_) --left;
       if (!runs_ || !repeats || left == 0) at_ += pixelBytes_;
     }

@@ -20,6 +20,7 @@ void checkAttributes(const XmlElement& element, std::initializer_list<std::strin
 Double3 readVectorAttributes(const XmlElement& element, double fallback) {
   const SourceLocation where = element.location();
   const std::string* const xyz[3] = {element.find("x"), element.find("y"), element.find("z")};
+  // The attribute `value` has one number for all components, or three.
   if (const std::string* value = element.find("value")) {
     if (xyz[0] || xyz[1] || xyz[2]) {
       throw LoadError(where, "<" + element.tag + "> has both value and x, y, z; expected one of the two");
@@ -39,6 +40,7 @@ Double3 readVectorAttributes(const XmlElement& element, double fallback) {
 
 namespace {
 
+// A rotation by `angle` degrees about the axis x, y, z, which need not have unit length.
 Matrix4 readRotate(LoadContext& context, const XmlElement& element) {
   checkAttributes(element, {"angle", "x", "y", "z", "value"});
   const std::string* angle = element.find("angle");
@@ -47,6 +49,7 @@ Matrix4 readRotate(LoadContext& context, const XmlElement& element) {
   if (!(length(axis) > 0) || !std::isfinite(length(axis))) {
     throw LoadError(element.location(), "rotation axis has no direction; expected x, y, z not all zero");
   }
+  // A unit axis that the file rounds to a few digits deserves no note.
   constexpr double kRoundedDigits = 1e-3;
   if (std::abs(length(axis) - 1) > kRoundedDigits) {
     context.note(element.location(), "rotation about an axis of another length than 1",
@@ -55,6 +58,7 @@ Matrix4 readRotate(LoadContext& context, const XmlElement& element) {
   return rotation(axis, parseReal(*angle, element.location()));
 }
 
+// See lookAt in matrix.h. Without `up`, the camera may have any rotation about its axis.
 Matrix4 readLookAt(const XmlElement& element) {
   checkAttributes(element, {"origin", "target", "up"});
   const SourceLocation where = element.location();
@@ -70,6 +74,7 @@ Matrix4 readLookAt(const XmlElement& element) {
     const double sign = std::copysign(1.0, d[2]), a = -1 / (sign + d[2]), b = d[0] * d[1] * a;
     upward = {1 + sign * d[0] * d[0] * a, sign * b, -sign * d[0]};
   }
+  // The entries are not finite if `target` equals `origin`, or if `up` is along the view.
   const Matrix4 m = lookAt(from, to, upward);
   if (!isFinite(m)) {
     throw LoadError(where, "degenerate <" + element.tag + ">; expected target unlike origin and up not along the view");
@@ -77,6 +82,7 @@ Matrix4 readLookAt(const XmlElement& element) {
   return m;
 }
 
+// 16 numbers, or 9 that are the linear part.
 Matrix4 readMatrix(const XmlElement& element) {
   checkAttributes(element, {"value"});
   const SourceLocation where = element.location();
@@ -84,17 +90,20 @@ Matrix4 readMatrix(const XmlElement& element) {
   if (values.size() != 16 && values.size() != 9) {
     throw LoadError(where, std::to_string(values.size()) + " numbers in <matrix>; expected 16 or 9, row by row");
   }
+  // With 9 numbers, the rest is that of the identity.
   const size_t n = values.size() == 16 ? 4 : 3;
   Matrix4 m = identityMatrix();
   for (size_t i = 0; i < n; ++i) {
     for (size_t j = 0; j < n; ++j) m[i][j] = values[i * n + j];
   }
+  // Transforms of points in this loader assume an affine matrix.
   if (m[3] != std::array<double, 4>{0, 0, 0, 1}) {
     throw LoadError(where, "<matrix> is projective; expected a last row of 0 0 0 1");
   }
   return m;
 }
 
+// The matrix of one child of <transform>.
 Matrix4 readOperation(LoadContext& context, const XmlElement& element) {
   if (element.tag == "translate") {
     checkAttributes(element, {"x", "y", "z", "value"});
@@ -116,6 +125,7 @@ Matrix4 readOperation(LoadContext& context, const XmlElement& element) {
 Matrix4 readTransform(LoadContext& context, const XmlElement& transform) {
   checkAttributes(transform, {"name"});
   Matrix4 m = identityMatrix();
+  // Multiply from the left: the first operation of the file is the first to be applied.
   for (const XmlElement& operation : transform.children) m = multiply(readOperation(context, operation), m);
   if (!isFinite(m)) throw LoadError(transform.location(), "transform overflows; expected finite entries");
   return m;

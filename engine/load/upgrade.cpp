@@ -7,6 +7,7 @@ namespace wavecrest {
 
 namespace {
 
+// A tag of an old version, and its name in Mitsuba 3.
 struct Rename {
   std::string_view from, to;
 };
@@ -36,12 +37,14 @@ void upgradeElement(XmlElement& element) {
     if (element.tag == rename.from) element.tag = rename.to;
   }
   for (auto& [name, value] : element.attributes) {
+    // The name of a <default> is that of a variable, not that of a parameter.
     if (name == "name" && element.tag != "default") value = camelToUnderscore(value);
   }
 }
 
 void upgradeChildren(XmlElement& element) {
   if (!element.isObject()) return;
+  // Take out the four values. Those that are absent leave the texture coordinates as they are.
   std::string offset[2] = {"0", "0"}, scale[2] = {"1", "1"};
   bool any = false;
   XmlElement transform;
@@ -53,11 +56,13 @@ void upgradeChildren(XmlElement& element) {
       if (!isOffset && !isScale) continue;
       (isOffset ? offset : scale)[axis] = child.get("value");
       any = true;
+      // An error in the transform is reported at the last of the values.
       transform.line = child.line;
       return true;
     }
     return false;
   });
+  // The reflectance of `diffuse` had a longer name.
   if (element.tag == "bsdf" && element.get("type") == "diffuse") {
     for (XmlElement& child : element.children) {
       for (auto& [name, value] : child.attributes) {

@@ -7,6 +7,7 @@ namespace wavecrest {
 
 namespace {
 
+// The text without white space at its ends.
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kSpace = " \t\r\n";
   const size_t first = text.find_first_not_of(kSpace);
@@ -24,14 +25,17 @@ std::string_view withoutPlus(std::string_view text) {
 
 double parseReal(std::string_view text, const SourceLocation& where) {
   const std::string_view digits = withoutPlus(trimmed(text));
+  // Unlike strtod, std::from_chars does not depend on the locale.
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range) {
     throw LoadError(where, "number " + inQuotes(text) + " is out of range; expected a double");
   }
+  // The number must be the whole text.
   if (error != std::errc{} || end != digits.data() + digits.size()) {
     throw LoadError(where, "bad number " + inQuotes(text) + "; expected a decimal number");
   }
+  // std::from_chars accepts "inf" and "nan".
   if (!std::isfinite(value)) {
     throw LoadError(where, "number " + inQuotes(text) + " is not finite; expected a finite number");
   }
@@ -52,6 +56,7 @@ int64_t parseInteger(std::string_view text, const SourceLocation& where) {
 }
 
 bool parseBoolean(std::string_view text, const SourceLocation& where) {
+  // As in Mitsuba, letter case does not matter.
   const std::string lower = toLower(text);
   if (lower == "true") return true;
   if (lower == "false") return false;
@@ -75,6 +80,7 @@ Double3 parseTriple(std::string_view text, const SourceLocation& where) {
 std::vector<std::string_view> splitTokens(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> tokens;
   for (size_t begin = 0; (begin = text.find_first_not_of(separators, begin)) != std::string_view::npos;) {
+    // At the last token, find_first_of returns npos, the largest size_t.
     const size_t end = std::min(text.size(), text.find_first_of(separators, begin));
     tokens.push_back(text.substr(begin, end - begin));
     begin = end;
@@ -82,6 +88,7 @@ std::vector<std::string_view> splitTokens(std::string_view text, std::string_vie
   return tokens;
 }
 
+// Changes ASCII letters only, and so keeps UTF-8 intact.
 std::string toLower(std::string_view text) {
   std::string lower(text);
   for (char& c : lower) {
@@ -93,6 +100,7 @@ std::string toLower(std::string_view text) {
 std::string inQuotes(std::string_view text) {
   constexpr size_t kLongest = 60;
   std::string result = "\"";
+  // Replace control characters. The test c >= 0 keeps bytes of UTF-8, which are negative where char is signed.
   for (const char c : text.substr(0, kLongest)) result += (c >= 0 && c < ' ') || c == 127 ? '?' : c;
   return result + (text.size() > kLongest ? "…\"" : "\"");
 }

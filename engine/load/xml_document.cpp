@@ -21,6 +21,7 @@ constexpr int kDeepestNesting = 64, kDeepestInclude = 15;
 constexpr size_t kMostElements = 1'000'000, kMostAttributes = 16;
 constexpr size_t kLargestXml = 32 << 20;
 
+// Tags of plugins. A <spectrum> is a plugin only if it has a type; XmlElement::isObject checks that.
 constexpr std::array<std::string_view, 14> kObjectTags = {"scene",  "bsdf",    "emitter", "film",    "integrator",
                                                           "medium", "phase",   "rfilter", "sensor",  "sampler",
                                                           "shape",  "texture", "volume",  "spectrum"};
@@ -33,6 +34,7 @@ class LineIndex {
       if (text[i] == '\n') newlines_.push_back(i);
     }
   }
+  // The 1-based line; 0 for a negative offset, by which pugixml says that it knows none.
   int lineOf(ptrdiff_t offset) const {
     if (offset < 0) return 0;
     const auto before = std::lower_bound(newlines_.begin(), newlines_.end(), static_cast<size_t>(offset));
@@ -43,6 +45,7 @@ class LineIndex {
   std::vector<size_t> newlines_;
 };
 
+// Converts files to elements. Holds what all files of a scene share: variables, open includes and counts for limits.
 class XmlReader {
  public:
   XmlReader(const LoadOptions& options, XmlDocument& document) : variables_(options.defines), document_(document) {}
@@ -51,6 +54,7 @@ class XmlReader {
   const Variables& variables() const { return variables_; }
 
  private:
+  // The file that elements are being read from.
   struct OpenFile {
     std::filesystem::path path;
     const std::string* name;
@@ -77,7 +81,9 @@ std::optional<double> majorVersion(const std::string& text) {
   return std::floor(std::strtod(text.c_str(), nullptr));
 }
 
+// The root element of a file with everything below it. `namedAt` is blamed if the file cannot be read.
 XmlElement XmlReader::readFile(const std::filesystem::path& path, const SourceLocation& namedAt) {
+  // Read the file. Only the scene file itself can be standard input; an included "-" is a file of that name.
   const bool fromStandardInput = openFiles_.empty() && path == kStandardInput;
   const std::vector<char> text =
       fromStandardInput ? readStandardInput(kLargestXml) : readInputFile(path, namedAt, kLargestXml);
@@ -89,12 +95,14 @@ XmlElement XmlReader::readFile(const std::filesystem::path& path, const SourceLo
   const LineIndex lines(text);
   OpenFile file{.path = path, .name = &document_.files.back(), .lines = &lines, .legacy = false};
 
+  // Parse the XML.
   pugi::xml_document xml;
   const pugi::xml_parse_result parsed = xml.load_buffer(text.data(), text.size());
   if (!parsed) {
     throw LoadError({*file.name, std::max(1, lines.lineOf(parsed.offset))},
                     std::string("malformed XML: ") + parsed.description() + "; expected a Mitsuba scene file");
   }
+  // Check the version, which decides whether names are upgraded.
   const pugi::xml_node root = xml.document_element();
   const SourceLocation rootAt{*file.name, lines.lineOf(root.offset_debug())};
   const pugi::xml_attribute version = root.attribute("version");
@@ -107,17 +115,20 @@ XmlElement XmlReader::readFile(const std::filesystem::path& path, const SourceLo
     throw LoadError(rootAt, std::string("version \"") + version.value() + "\" is not supported; expected 0.5.0 to 3.x");
   }
   file.legacy = *major < 2;
+  // Convert the tree. openFiles_ holds the chain of includes, which readInclude searches for cycles.
   openFiles_.push_back(path);
   XmlElement element = readElement(file, root, 1);
   openFiles_.pop_back();
   return element;
 }
 
+// An element with its children. Variables are replaced and names of old versions are upgraded.
 XmlElement XmlReader::readElement(const OpenFile& file, const pugi::xml_node& node, int depth) {
   XmlElement element;
   element.file = file.name;
   element.line = file.lines->lineOf(node.offset_debug());
   element.tag = node.name();
+  // Stop hostile input.
   if (depth > kDeepestNesting) {
     throw LoadError(element.location(),
                     "elements nest deeper than " + std::to_string(kDeepestNesting) + "; expected a flatter scene");
@@ -126,6 +137,7 @@ XmlElement XmlReader::readElement(const OpenFile& file, const pugi::xml_node& no
     throw LoadError(element.location(),
                     "more than " + std::to_string(kMostElements) + " elements; expected meshes to be in mesh files");
   }
+  // Copy the attributes, each of which may be given once.
   for (const pugi::xml_attribute& attribute : node.attributes()) {
     if (element.attributes.size() >= kMostAttributes) {
       throw LoadError(element.location(), "<" + element.tag + "> has more than " + std::to_string(kMostAttributes) +
@@ -137,6 +149,7 @@ XmlElement XmlReader::readElement(const OpenFile& file, const pugi::xml_node& no
     }
     element.attributes.emplace_back(attribute.name(), variables_.substitute(attribute.value(), element.location()));
   }
+  // Upgrade the element itself, then read the children, then upgrade what spans several children.
   element.legacy = file.legacy;
   if (file.legacy) upgradeElement(element);
   readChildren(file, node, depth, element);
@@ -144,6 +157,8 @@ XmlElement XmlReader::readElement(const OpenFile& file, const pugi::xml_node& no
   return element;
 }
 
+// Appends the children of `node` to `parent`. <default>, <path> and <include> act at once and leave no element.
+// A variable is defined for the elements after its <default>.
 void XmlReader::readChildren(const OpenFile& file, const pugi::xml_node& node, int depth, XmlElement& parent) {
   for (const pugi::xml_node& child : node.children()) {
     if (child.type() != pugi::node_element) continue;  // comments and stray text, as in Mitsuba
@@ -182,6 +197,7 @@ void XmlReader::readInclude(const OpenFile& file, const XmlElement& include, Xml
     throw LoadError(include.location(), "includes nest deeper than " + std::to_string(kDeepestInclude) +
                                             "; expected a flatter set of files");
   }
+  // Refuse a file that is open already: it would include itself without end.
   const std::filesystem::path path = includedPath(file.path, filename);
   for (const std::filesystem::path& open : openFiles_) {
     std::error_code error;
@@ -190,6 +206,7 @@ void XmlReader::readInclude(const OpenFile& file, const XmlElement& include, Xml
                       "\"" + path.string() + "\" includes itself; expected includes without a cycle");
     }
   }
+  // Read the file and put its content in place of the <include>.
   XmlElement root = readFile(path, include.location());
   if (root.tag == "scene") {
     for (XmlElement& child : root.children) parent.children.push_back(std::move(child));
@@ -200,6 +217,7 @@ void XmlReader::readInclude(const OpenFile& file, const XmlElement& include, Xml
   }
 }
 
+// Enters the objects that have an id into the table of ids. LoadError if two objects have the same id.
 void collectIds(const XmlElement& element, XmlDocument& document) {
   if (element.isObject()) {
     if (const std::string* id = element.find("id"); id && !id->empty()) {
@@ -256,11 +274,13 @@ std::unique_ptr<XmlDocument> readXmlDocument(const std::filesystem::path& path, 
   if (document->scene.tag != "scene") {
     throw LoadError(document->scene.location(), "root element is <" + document->scene.tag + ">; expected <scene>");
   }
+  // A definition that the scene does not use is probably misspelt.
   if (const std::string unused = reader.variables().unusedDefines(); !unused.empty()) {
     const std::string message = "the scene does not use " + unused + "; expected names of its variables";
     if (!options.lenient) throw LoadError({path.string(), 0}, message);
     document->warnings.push_back(message);
   }
+  // The tree is complete, so its elements have their final addresses: fill the table of ids.
   collectIds(document->scene, *document);
   collectAliases(document->scene, *document);
   return document;

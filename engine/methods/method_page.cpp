@@ -19,7 +19,8 @@ void forEachStage(const MethodPage& page, const Visit& visit) {
   }
 }
 
-// A camera walk that shows only what delta lobes, or nothing, lie before shares no path with the light walk.
+// Whether the camera walk goes on from its first vertex only by delta lobes. Then no path of it is also one of the
+// light walk.
 bool showsSpecularViewsOnly(const WalkPhase& camera) { return camera.first.has(StageId::scatterSpecular); }
 
 }  // namespace
@@ -49,6 +50,7 @@ bool MethodPage::hasPhotonMap() const {
 
 PathStrategies strategiesOf(const MethodPage& page) {
   const WalkPhase* const camera = page.walk(Walk::camera);
+  // The stage `arrive` adds the emission that a path meets.
   return {.emission = camera != nullptr && camera->steps.has(StageId::arrive),
           .nextEvent = page.has(StageId::nextEvent),
           .connect = page.has(StageId::connectVertices),
@@ -60,13 +62,15 @@ PathStrategies strategiesOf(const MethodPage& page) {
 }
 
 MisSettings weightsOf(const MethodPage& page, Walk walk) {
+  // Which strategies make the paths of this walk.
   const PathStrategies all = strategiesOf(page);
   const bool alone = all.specularViewsOnly;  // each walk makes its own paths
   const bool ofCamera = !alone || walk == Walk::camera, ofLight = !alone || walk == Walk::light;
   // Chains in path space weigh whole paths: their walks know no strategies.
   const bool recorded = page.has(StageId::recordPathVertices);
-  // A camera path that goes on by delta lobes alone meets no light that next event estimation could have sampled.
-  // Merging without next event estimation makes every path that has a vertex to merge at; emission makes the others.
+  // Emission is weighted only where another strategy makes the same paths. With mergeAtFirstVertex, camera paths go on
+  // by delta lobes alone and meet no light that next event estimation could have sampled. Merging without next event
+  // estimation makes all paths that have a vertex to merge at, and emission makes the others.
   const bool mergingAlone = all.merge && !all.nextEvent;
   MisSettings weights;
   weights.emission = ofCamera && all.emission && !mergingAlone && !all.mergeAtFirstVertex && !recorded;
@@ -89,6 +93,7 @@ bool isBidirectional(const MethodPage& page) {
 std::string rowName(const MethodPage& page, Walk walk, bool first, StageId stage, StageId before) {
   const std::string_view title = infoOf(stage).title;
   std::string name(title);
+  // The stage's title, and what makes it unique: the connections, the first depth, the light walk.
   if (stage == StageId::occlude && before == StageId::connectVertices) return name + " connection";
   if (first && page.walk(walk)->steps.has(stage)) name += " first";
   bool onCamera = false;

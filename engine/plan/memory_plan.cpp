@@ -34,10 +34,13 @@ struct Pilot {
   int64_t splats = 0, exponents = 0;
 };
 
+// Walks the first light paths of iteration 0: kPilotLightPaths, or all `lightPaths` if there are fewer. Splats are
+// counted and reach no film.
 template <class S>
 Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
                      size_t lightPaths) {
   const FlushToZero flushToZero;
+  // A wave, a light store and a context, as a worker has them.
   Wave<S> wave(settings.waveSize, plan.needs);
   LightStore<S> store(settings.waveSize, plan.needs, plan.lightUse);
   StageCounters counters;
@@ -51,6 +54,7 @@ Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, 
   context.film = area.window();
   context.counters = &counters;
   Pilot pilot;
+  // The drain counts splats by the exponent of their largest channel.
   const SplatDrain<S> drain = [&](Splats<S>& splats) {
     for (size_t i = 0; i < splats.size; ++i) {
       const auto value = static_cast<double>(std::max({splats.red[i], splats.green[i], splats.blue[i]}));
@@ -60,6 +64,7 @@ Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, 
     }
     splats.size = 0;
   };
+  // Walk one wave after the other. All waves use the same store.
   const size_t wanted = std::min(kPilotLightPaths, lightPaths);
   while (pilot.paths < wanted) {
     wave.firstPath = pilot.paths;
@@ -72,6 +77,7 @@ Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, 
   return pilot;
 }
 
+// Adds up what a render will hold, part by part. run() is called once.
 template <class S>
 class Planner {
  public:
@@ -85,6 +91,7 @@ class Planner {
   MemoryPlan run() {
     const size_t pixels = area_.pixels.size();
     MemoryUse& use = memory_.use;
+    // Count scene, waves, film and image, which every method has.
     use.scene = sceneBytes(*plan_.scene);
     memory_.bytesPerPath = Wave<S>(1, plan_.needs).bytesPerPath();
     use.waves = settings_.threads * waveBytes(memory_.bytesPerPath, settings_.waveSize);
@@ -92,12 +99,14 @@ class Planner {
     use.film += spreadsSamples(plan_, settings_) ? SpreadSums::bytesFor(plan_.scene->view.camera, area_)
                                                  : pixels * 3 * sizeof(double);
     use.image = Film::imageBytesFor(pixels, spreadsSamples(plan_, settings_), plan_.pipeline.chains.has_value());
+    // Count splats, and what chains or light paths hold.
     if (plan_.pipeline.splats()) use.splats = SplatFilms::bytesFor(pixels, settings_.threads);
     if (plan_.pipeline.chains) {
       addChains();
     } else if (plan_.pipeline.lightPass) {
       addLightPaths(static_cast<size_t>(settings_.lightPaths.value_or(pixels)));
     }
+    // Methods with a photon map have fitted their light paths to the budget. Other methods have nothing to leave out.
     if (settings_.memoryBytes && use.total() > *settings_.memoryBytes) refuse(use.total());
     return memory_;
   }
@@ -122,10 +131,12 @@ class Planner {
       if (pathSpace) use.chains += PathStore<S>::bytesFor(settings_.waveSize, edges, plan_.needs);
     }
   }
+  // Counts light vertices and photons, as the pilot foresees them. asked: light paths of an iteration.
   void addLightPaths(size_t asked) {
     pilot_ = walkLightPaths(plan_, settings_, area_, asked);
     // Where the pilot has no splat, those of the render are rare, and any unit of theirs is fine enough.
     const int64_t exponent = pilot_.splats == 0 ? 0 : pilot_.exponents / pilot_.splats;
+    // A splat of the pilot's mean exponent has about 2^kSplatUnitBits units.
     memory_.splatScale = std::ldexp(1.0, kSplatUnitBits - static_cast<int>(exponent));
     const double spread = pilot_.paths < asked ? kSpread : 1;
     memory_.verticesPerWave = static_cast<size_t>(spread * static_cast<double>(pilot_.room));
@@ -157,6 +168,7 @@ class Planner {
   void fitLightPaths(size_t budget) {
     const size_t fixed = memory_.use.total();
     const auto needed = [&](size_t paths) { return fixed + vertexBytes(paths) + photonBytes(paths); };
+    // One wave of light paths is the least. More light paths never need less memory, so bisection finds the most.
     size_t most = memory_.lightPaths, fits = std::min<size_t>(settings_.waveSize, most);
     if (needed(fits) > budget) refuse(needed(fits));
     while (fits < most) {
@@ -189,6 +201,8 @@ class Planner {
 size_t lightStores(const RenderSettings& settings, size_t pixels, size_t waves) {
   constexpr size_t kAheadPerThread = 4, kMostAhead = 4;  // at most a fourth of the waves
   const size_t atOnce = iterationsAtOnce(settings, pixels);
+  // Further stores let idle threads trace light paths of the next iteration. One thread, or several iterations at once,
+  // need none.
   if (atOnce > 1 || settings.cutForThreads() == 1) return atOnce * waves;
   return waves + std::min<size_t>(piecesOf(waves, kMostAhead), kAheadPerThread * settings.cutForThreads());
 }

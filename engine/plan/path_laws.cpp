@@ -18,6 +18,7 @@ double deletionWeight(uint32_t edges) {
 }  // namespace
 
 PathLaws::PathLaws(uint32_t minEdges, uint32_t maxEdges) : minEdges_(minEdges), maxEdges_(maxEdges) {
+  // Make the tables of deletions, one length after the other.
   deletionShare_.resize(size_t{maxEdges + 1} * (maxEdges + 3), 0.0f);
   firstDeletion_.resize(maxEdges + 2, 0);
   for (uint32_t edges = 0; edges <= maxEdges; ++edges) {
@@ -25,6 +26,7 @@ PathLaws::PathLaws(uint32_t minEdges, uint32_t maxEdges) : minEdges_(minEdges), 
     addDeletions(edges);
   }
   firstDeletion_[maxEdges + 1] = static_cast<uint32_t>(ranges_.size());
+  // Lengths of paths that are made anew follow a geometric law from minEdges on. The table is cumulative.
   double sum = 0;
   std::vector<double> upTo(maxEdges + 1, 0);
   for (uint32_t edges = 0; edges <= maxEdges; ++edges) {
@@ -38,6 +40,7 @@ PathLaws::PathLaws(uint32_t minEdges, uint32_t maxEdges) : minEdges_(minEdges), 
 // to a light's point that is made anew, l = -1 and m = k + 1 do as much.
 void PathLaws::addDeletions(uint32_t edges) {
   if (edges < 2) return;
+  // List the ranges as l + 1 and m, and count those that delete m - l edges.
   std::vector<uint32_t> kept;
   std::vector<uint32_t> counts(edges + 3, 0);
   for (uint32_t lightKept = 0; lightKept <= edges; ++lightKept) {
@@ -48,6 +51,7 @@ void PathLaws::addDeletions(uint32_t edges) {
       ++counts[eyeFrom + 1 - lightKept];
     }
   }
+  // Ranges that delete the same number of edges share the preference for that number evenly.
   double sum = 0;
   for (uint32_t deleted = 1; deleted <= edges + 2; ++deleted) sum += counts[deleted] != 0 ? deletionWeight(deleted) : 0;
   std::vector<double> weights;
@@ -57,6 +61,7 @@ void PathLaws::addDeletions(uint32_t edges) {
     deletionShare_[size_t{edges} * (maxEdges_ + 3) + deleted] = static_cast<float>(share);
     weights.push_back(share);
   }
+  // Entries of the alias table name each other relative to the first deletion of this length.
   const std::vector<AliasEntry> table = makeAliasTable(weights);
   deletions_.insert(deletions_.end(), table.begin(), table.end());
   ranges_.insert(ranges_.end(), kept.begin(), kept.end());

@@ -41,6 +41,7 @@ Moment readBothClocks() {
 }  // namespace
 
 double secondsPerTick() {
+  // Measured once for the process, over 20 ms.
   static const double value = [] {
     const Moment begin = readBothClocks();
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -54,6 +55,7 @@ double secondsPerTick() {
 
 namespace {
 
+// How many records of the wave a stage of this kind is about to read.
 template <class S>
 size_t itemsOf(const Wave<S>& wave, StageItems items) {
   switch (items) {
@@ -69,12 +71,15 @@ size_t itemsOf(const Wave<S>& wave, StageItems items) {
   return 0;
 }
 
+// Turns the steps and phases of a page into calls of compiled kernels.
 template <class S>
 class Caller {
  public:
   Caller(const MethodPage& page, const Stages<S>& stages, const Intersector<S>& intersector)
       : page_(page), stages_(stages), intersector_(intersector) {}
 
+  // The call of one stage. first: the step is of the list for depth 1. before: the stage in front of it, or the stage
+  // itself if there is none. The name of the row depends on both.
   StageCall<S> call(Walk walk, bool first, Step step, StageId before) const {
     const StageInfo& info = infoOf(step.stage);
     StageCall<S> call{rowName(page_, walk, first, step.stage, before),
@@ -83,6 +88,7 @@ class Caller {
                       info.single ? 1 : stages_.lanes,
                       step.repeat,
                       step.repeat == Repeat::untilJoined && info.items != StageItems::shadowRays};
+    // The scene decides which kernels stand for extend and occlude.
     if (step.stage == StageId::extend || step.stage == StageId::occlude) {
       call.run = step.stage == StageId::extend ? intersector_.extend : intersector_.occlude;
       call.lanes = intersector_.lanes;
@@ -106,6 +112,7 @@ class Caller {
     for (const StageId stage : phase.stages) steps.push_back({stage});
     return calls(phase.walk, false, steps);
   }
+  // The pass of a walk. Only connections to the camera make splats.
   Pass<S> pass(const WalkPhase& walk) const {
     return {.walk = walk.walk,
             .strategies = weightsOf(page_, walk.walk),
@@ -116,6 +123,7 @@ class Caller {
   }
 
  private:
+  // StageCall::items is a plain function pointer, so each kind of item has its own function.
   static size_t (*items(StageItems kind))(const Wave<S>&) {
     switch (kind) {
       case StageItems::beginning:
@@ -135,6 +143,7 @@ class Caller {
   const Intersector<S>& intersector_;
 };
 
+// The phases of a method with chains. The phase that begins with acceptMutations decides, all others trace.
 template <class S>
 ChainCalls<S> chainCalls(const MethodPage& page, const Caller<S>& caller) {
   ChainCalls<S> chains;
@@ -174,6 +183,7 @@ Pipeline<S> makePipeline(const MethodPage& page, const Stages<S>& stages, const 
   if (page.hasChains()) {
     pipeline.chains = chainCalls(page, caller);
     if (!page.directLight.empty()) {
+      // Direct light is a page of its own: chains change neither the weights nor the names of its stages.
       const MethodPage direct{{page.directLight.front()}};
       pipeline.chains->directPass = Caller<S>(direct, stages, intersector).pass(page.directLight.front());
     }
@@ -189,15 +199,18 @@ template Pipeline<double> makePipeline(const MethodPage&, const Stages<double>&,
 
 namespace {
 
+// Runs a stage. Adds items, lanes and ticks to the tally, if there is one.
 template <class S>
 void timeStage(const StageCall<S>& stage, const StageContext<S>& context, Wave<S>& wave, StageTally* tally) {
   if (tally == nullptr) {
     stage.run(context, wave);
     return;
   }
+  // Items are counted first, because the stage changes the sizes of the queues.
   const size_t items = stage.countedOnce && context.repetition != 0 ? 0 : stage.items(wave);
   tally->items += items;
   tally->laneSlots += (items + stage.lanes - 1) / stage.lanes * stage.lanes;
+  // The observer's own time stays outside of the measured ticks.
   StageObserver* const observer = stageObserver.load(std::memory_order_relaxed);
   if (observer != nullptr) observer->begin();
   const uint64_t begin = readTicks();
@@ -229,6 +242,7 @@ void runDepth(const std::vector<StageCall<S>>& stages, StageContext<S>& context,
       ++i;
       continue;
     }
+    // Neighbouring stages with untilJoined repeat together until no pair of vertices is left to join.
     size_t end = i;
     while (end < stages.size() && stages[end].repeat == Repeat::untilJoined) ++end;
     context.repetition = 0;
@@ -246,11 +260,13 @@ void runDepth(const std::vector<StageCall<S>>& stages, StageContext<S>& context,
 template <class S>
 void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, StageTally* tally,
              const SplatDrain<S>& drain) {
+  // Begin without light vertices and without splats.
   context.walk = pass.walk;
   context.depth = 0;
   const bool storing = pass.walk == Walk::light && context.light != nullptr;
   if (storing) context.light->clear();
   wave.splats.size = 0;
+  // Empties the queue of splats. The drain has the last row of the tally.
   const auto drainSplats = [&] {
     const uint64_t begin = readTicks();
     const size_t items = wave.splats.size;
@@ -261,10 +277,14 @@ void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, Stage
     row.items += items;
     row.laneSlots += items;
   };
+  // Generate the paths.
   runStage(pass.generate, context, wave, tally);
+  // Rows of the tally follow each other: generate, stages of depth 1, stages of all other depths, the drain.
   StageTally* const first = tally == nullptr ? nullptr : tally + 1;
   StageTally* const rest = tally == nullptr ? nullptr : first + pass.firstDepth.size();
+  // Go depth by depth until no path is left.
   for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {
+    // Each live path may leave one light vertex.
     if (storing) context.light->beginDepth(wave.rays.size);
     if (context.depth == 1 && !pass.firstDepth.empty()) {
       runDepth(pass.firstDepth, context, wave, first);

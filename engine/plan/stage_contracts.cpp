@@ -10,6 +10,7 @@
 namespace wavecrest {
 namespace {
 
+// How far the squared length of a unit vector may be from one.
 constexpr double kUnitTolerance = 1e-4;
 
 template <class S>
@@ -18,7 +19,7 @@ bool isUnit(S x, S y, S z) {
   return std::abs(length2 - 1) < kUnitTolerance;
 }
 
-// Counts, and the pointers behind them.
+// Whether all columns of a queue that are not dropped have aligned memory, and the items fit there.
 template <class Queue>
 bool hasMemory(const Queue& queue) {
   // all() has one form, for writing.
@@ -32,20 +33,25 @@ bool hasMemory(const Queue& queue) {
   return all && queue.size <= queue.capacity();
 }
 
+// Checks what holds before and after every stage. This function and those below return what should hold and does not,
+// or nothing.
 template <class S>
 std::string_view brokenQueues(const StageContext<S>& context, const Wave<S>& wave) {
   if (context.scene == nullptr || context.counters == nullptr) return "a scene and counters";
+  // Queues must fit their memory.
   if (!hasMemory(wave.rays) || !hasMemory(wave.paths)) return "rays and paths within their memory";
   if (!hasMemory(wave.hits) || !hasMemory(wave.surfaces)) return "hits and surfaces within their memory";
   if (!hasMemory(wave.shadowRays)) return "shadow rays within their memory";
   if (!hasMemory(wave.pairs) || !hasMemory(wave.sortedPairs)) return "pairs within their memory";
   if (!hasMemory(wave.vertexRows) || !hasMemory(wave.radiance)) return "rows and radiance within their memory";
+  // Counts must agree with each other.
   if (wave.pathCount > wave.rays.capacity()) return "no more paths than lanes";
   if (wave.rays.size != wave.paths.size) return "a state for each ray";
   if (context.light != nullptr && !hasMemory(context.light->vertices)) return "light vertices within their memory";
   return {};
 }
 
+// Checks the live paths and their rays after every stage.
 template <class S>
 std::string_view brokenPaths(const Wave<S>& wave) {
   for (size_t i = 0; i < wave.paths.size; ++i) {
@@ -54,6 +60,7 @@ std::string_view brokenPaths(const Wave<S>& wave) {
     if (paths.lane[i] >= wave.rays.capacity()) return "lanes of the wave";
     if (!isUnit<S>(rays.directionX[i], rays.directionY[i], rays.directionZ[i])) return "unit directions";
     if (!std::isfinite(rays.originX[i] + rays.originY[i] + rays.originZ[i])) return "finite origins";
+    // NaN fails every comparison, hence the negated tests.
     for (const S value : {paths.throughputR[i], paths.throughputG[i], paths.throughputB[i]}) {
       if (!(value >= 0)) return "throughputs from 0";
     }
@@ -64,6 +71,7 @@ std::string_view brokenPaths(const Wave<S>& wave) {
   return {};
 }
 
+// Checks the hits after extend.
 template <class S>
 std::string_view brokenHits(const SceneView<S>& scene, const Wave<S>& wave) {
   if (wave.hits.size != wave.rays.size) return "a hit for each ray";
@@ -96,6 +104,8 @@ std::string_view brokenVertices(const SceneView<S>& scene, const Wave<S>& wave) 
   return {};
 }
 
+// Checks shadow rays after connections and next events. Targets are lanes of the wave, or pixels where light walks
+// splat.
 template <class S>
 std::string_view brokenShadowRays(const StageContext<S>& context, const Wave<S>& wave) {
   const auto& shadow = wave.shadowRays;
@@ -129,6 +139,7 @@ std::string_view brokenLinks(const LightStore<S>& light) {
   return {};
 }
 
+// Reports a broken contract and ends the program. when: "before" or "after".
 void refuse(std::string_view stage, const char* when, std::string_view what) {
   std::fprintf(stderr, "wavecrest: contract of stage '%.*s' broken %s it: expected %.*s\n",
                static_cast<int>(stage.size()), stage.data(), when, static_cast<int>(what.size()), what.data());
@@ -139,6 +150,7 @@ void refuse(std::string_view stage, const char* when, std::string_view what) {
 
 template <class S>
 std::string_view brokenContract(std::string_view stage, const StageContext<S>& context, const Wave<S>& wave) {
+  // Queues and paths are checked after every stage. The stage's name decides what else is checked.
   if (const auto broken = brokenQueues(context, wave); !broken.empty()) return broken;
   if (const auto broken = brokenPaths(wave); !broken.empty()) return broken;
   if (stage.starts_with("extend")) return brokenHits(*context.scene, wave);

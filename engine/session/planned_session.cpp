@@ -9,6 +9,7 @@ PlannedSession<S>::PlannedSession(const Scene& scene, const RenderSettings& sett
     : arena_(static_cast<int>(settings.threads)),
       film_(filmArea(scene.film)),
       settings_(withPieces(settings, scene.film, film_.area().pixels.size())) {
+  // All threads read what is built here, so new pages are spread over the nodes.
   const auto begin = Clock::now();
   const WorkerLimit limit(settings_.threads);
   const SpreadMemory spread(settings_.placement);
@@ -24,12 +25,14 @@ void PlannedSession<S>::finishBuilding(const std::function<void()>& rest) {
   const WorkerLimit limit(settings_.threads);
   const SpreadMemory spread(settings_.placement);
   rest();
+  // Threads are bound last. New memory of a bound thread is on the thread's own node.
   pins_.emplace(arena_, settings_.placement);
   buildSeconds_ += secondsSince(begin);
 }
 
 template <class S>
 RenderStatistics PlannedSession<S>::plannedStatistics() const {
+  // Times and choices of the plan, then the memory that does not depend on the schedule.
   RenderStatistics out;
   out.buildSeconds = buildSeconds_;
   out.renderSeconds = clock_.seconds();
@@ -38,6 +41,7 @@ RenderStatistics PlannedSession<S>::plannedStatistics() const {
   out.isa = plan_.isa;
   out.specialization = plan_.specialization;
   out.accel = plan_.accel();
+  // Filters that cannot be spread are sampled, whatever the settings say.
   out.filterMode = film_.spreads() ? FilterMode::spread : FilterMode::sample;
   out.memory.scene = sceneBytes(*plan_.scene);
   out.memory.film = film_.bytes();
@@ -47,6 +51,7 @@ RenderStatistics PlannedSession<S>::plannedStatistics() const {
 
 template <class S>
 void PlannedSession<S>::goOnFromEarlier(uint64_t progressPaths) {
+  // Render seconds of earlier sessions are wall seconds (WorkDone::of).
   clock_.goOnFrom(earlier_.renderSeconds, earlier_.cpuSeconds);
   progressPaths_.store(progressPaths, std::memory_order_relaxed);
 }

@@ -34,10 +34,12 @@ SnapshotSchedule::Due SnapshotSchedule::due(unsigned number) const {
       unsigned last = 0;  // at a time of a fixed ratio
       while (logarithmicTime(last + 1) - logarithmicTime(last) <= interval_) ++last;
       if (number <= last) return {.seconds = logarithmicTime(number), .iterations = std::nullopt};
+      // The number of multiples of the interval up to the last snapshot of a fixed ratio.
       const double before = std::floor(logarithmicTime(last) / interval_);
       return {.seconds = interval_ * (before + number - last), .iterations = std::nullopt};
     }
     case Kind::doubling:
+      // Bounded, because a shift by 64 or more is undefined.
       return {.seconds = std::nullopt, .iterations = uint64_t{1} << std::min(number, 63u)};
   }
   return {};
@@ -57,8 +59,10 @@ unsigned renderWithSnapshots(Session& session, const RenderSettings& settings, c
                              const std::function<bool()>& goesOn, unsigned first) {
   for (unsigned number = first;; ++number) {
     const SnapshotSchedule::Due due = schedule.due(number);
+    // The limits of the render may end it before this snapshot is due.
     const bool inTime = due.seconds && (!settings.seconds || *due.seconds <= *settings.seconds);
     const bool inIterations = due.iterations && (!settings.iterations || *due.iterations <= *settings.iterations);
+    // Render to the snapshot or to the end. After an interrupt the caller decides whether to go on.
     for (;;) {
       session.renderUntil(earlier(settings.iterations, due.iterations), earlier(settings.seconds, due.seconds));
       if (!session.interrupted()) break;

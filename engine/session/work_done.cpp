@@ -4,6 +4,8 @@
 
 namespace wavecrest {
 
+// renderSeconds is wall time, because a session that goes on for another one counts by the wall clock
+// (RenderSettings::clock).
 WorkDone WorkDone::of(const RenderStatistics& statistics) {
   return {.paths = statistics.paths,
           .lightPaths = statistics.lightPaths,
@@ -20,6 +22,7 @@ void WorkDone::save(StateWriter& out) const {
   out.value(counters);
   out.value(renderSeconds);
   out.value(cpuSeconds);
+  // Names of stages follow from the plan and are not saved.
   out.value(uint64_t{stages.size()});
   for (const RenderStatistics::StageRow& row : stages) {
     out.value(row.items);
@@ -34,6 +37,7 @@ void WorkDone::restore(StateReader& in, std::vector<RenderStatistics::StageRow> 
   counters = in.value<StageCounters>();
   renderSeconds = in.value<double>();
   cpuSeconds = in.value<double>();
+  // The names are those of this session's rows.
   stages = std::move(rows);
   in.expect(stages.size(), "stages");
   for (RenderStatistics::StageRow& row : stages) {
@@ -47,6 +51,7 @@ void WorkDone::addTo(RenderStatistics& statistics) const {
   statistics.paths += paths;
   statistics.lightPaths += lightPaths;
   statistics.counters += counters;
+  // Without an earlier session there are no stages to add.
   for (size_t i = 0; i < stages.size(); ++i) {
     statistics.stages[i].items += stages[i].items;
     statistics.stages[i].laneSlots += stages[i].laneSlots;

@@ -22,6 +22,7 @@ void forEach(size_t count, const std::function<void(size_t)>& body) {
     const TaskRecorder::Task recorded(step, i);
     body(i);
   };
+  // With this partitioner each i is a task of its own.
   oneapi::tbb::parallel_for(size_t{0}, count, task, oneapi::tbb::simple_partitioner());
   order.wait();
 }
@@ -41,6 +42,7 @@ class Turns {
     for (size_t i = 0; i < count; ++i) queue_.push(i);
   }
 
+  // Returns 0 to runTasks: no further worker has to be started for the turns that are left.
   size_t next(std::optional<Task>& task) {
     if (task && task->again) queue_.push(task->i);
     task.reset();
@@ -49,6 +51,7 @@ class Turns {
   }
   void run(Task& task) {
     const TaskRecorder::Task recorded(recorded_, task.i);
+    // The turns of one i follow each other, which ThreadSanitizer cannot see.
     observe(&tokens_[task.i]);
     task.again = turn_(task.i);
     publish(&tokens_[task.i]);
@@ -65,6 +68,7 @@ class Turns {
 
 void takeTurns(size_t count, size_t threads, const std::function<bool(size_t)>& turn) {
   Turns turns(count, turn);
+  // Workers beyond the number of turns would find the queue empty.
   runTasks(turns, std::min(count, threads));
 }
 

@@ -20,9 +20,11 @@ bool ScheduleState::isOver(uint64_t iteration, size_t phase) const {
 }
 
 size_t ScheduleState::readyOf(uint64_t iteration, size_t phase, size_t taken) const {
+  // The phase before must be over. Each wait that is not met yet lets fewer tasks begin.
   if (phase > 0 && !isOver(iteration, phase - 1)) return 0;
   size_t most = schedule_.tasks[phase];
   for (const ScheduleWait& wait : schedule_.waits) {
+    // Iterations before the first one under way are over.
     if (wait.phase != phase || iteration < first_ + wait.earlier || isOver(iteration - wait.earlier, wait.on)) continue;
     const Phase* const on = phaseOf(iteration - wait.earlier, wait.on);
     most = std::min(most, wait.sameTask && on != nullptr ? on->first : wait.ahead);
@@ -34,11 +36,13 @@ std::optional<ScheduledTask> ScheduleState::take(const MayBegin& mayBegin) {
   const auto takeOf = [this](uint64_t place, size_t phase) {
     return ScheduledTask{first_ + place, phase, begun_[place][phase].taken++};
   };
+  // Look for a task in the iterations under way, the oldest first.
   for (size_t place = 0; place < begun_.size(); ++place) {
     for (size_t phase = 0; phase < schedule_.tasks.size(); ++phase) {
       if (readyOf(first_ + place, phase, begun_[place][phase].taken) != 0) return takeOf(place, phase);
     }
   }
+  // Without such a task, begin the next iteration if that is allowed.
   const uint64_t next = first_ + begun_.size();
   if (readyOf(next, 0, 0) == 0 || !mayBegin(next, begun_.size())) return std::nullopt;
   Iteration& begun = begun_.emplace_back(schedule_.tasks.size());
@@ -51,7 +55,9 @@ void ScheduleState::end(const ScheduledTask& task) {
   Phase& phase = begun_[task.iteration - first_][task.phase];
   ++phase.over;
   phase.isOver[task.index] = true;
+  // Tasks end in any order. All tasks before `first` are over.
   while (phase.first < phase.isOver.size() && phase.isOver[phase.first]) ++phase.first;
+  // Drop the oldest iterations whose last phase is over.
   while (!begun_.empty() && begun_.front().back().over == schedule_.tasks.back()) {
     begun_.pop_front();
     ++first_;
@@ -59,6 +65,7 @@ void ScheduleState::end(const ScheduledTask& task) {
 }
 
 size_t ScheduleState::ready() const {
+  // Count tasks of the next iteration, then tasks of the iterations under way.
   size_t count = readyOf(first_ + begun_.size(), 0, 0);
   for (size_t place = 0; place < begun_.size(); ++place) {
     for (size_t phase = 0; phase < schedule_.tasks.size(); ++phase) {

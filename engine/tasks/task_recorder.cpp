@@ -7,6 +7,7 @@
 namespace wavecrest {
 namespace {
 
+// The one recorder that lives, or nullptr.
 TaskRecorder* currentRecorder = nullptr;
 
 double between(TaskRecorder::Clock::time_point begin, TaskRecorder::Clock::time_point end) {
@@ -32,12 +33,14 @@ void divideRest(TaskStep& step, double seconds) {
 TaskRecorder::TaskRecorder() : end_(Clock::now()) { currentRecorder = this; }
 TaskRecorder::~TaskRecorder() { currentRecorder = nullptr; }
 
+// A step of one task: what ran on the calling thread since the latest step.
 void TaskRecorder::addSerial(Clock::time_point until) {
   graph_.steps.push_back({.chains = {{between(end_, until)}}});
   end_ = until;
 }
 
 TaskGraph TaskRecorder::graph() {
+  // The time since the latest step counts as a step too.
   addSerial(Clock::now());
   return graph_;
 }
@@ -45,6 +48,7 @@ TaskGraph TaskRecorder::graph() {
 TaskRecorder::Step::Step(size_t chains, bool goesOn)
     : recorder_(currentRecorder != nullptr && !currentRecorder->within_ ? currentRecorder : nullptr) {
   if (recorder_ == nullptr) return;
+  // The step begins here. The time before it is a serial step.
   tasks_ = {.chains = std::vector<std::vector<double>>(chains), .goesOn = goesOn};
   begin_ = Clock::now();
   recorder_->addSerial(begin_);
@@ -55,6 +59,7 @@ TaskRecorder::Step::~Step() {
   if (recorder_ == nullptr) return;
   recorder_->end_ = Clock::now();
   recorder_->within_ = false;
+  // Tasks share the time that none of them has measured.
   divideRest(tasks_, between(begin_, recorder_->end_));
   recorder_->graph_.steps.push_back(std::move(tasks_));
 }
@@ -66,6 +71,7 @@ TaskRecorder::Iterations::Iterations(const Schedule& schedule, uint64_t firstIte
 
 void TaskRecorder::Iterations::add(const ScheduledTask& task, double seconds) {
   if (!records()) return;
+  // Tasks end in any order. Iteration, phase and index say where a task's time belongs.
   const std::vector<size_t>& phases = step_.tasks_.schedule->tasks;
   std::vector<std::vector<double>>& iterations = step_.tasks_.chains;
   while (iterations.size() <= task.iteration - first_) iterations.emplace_back(step_.tasks_.schedule->taskCount());

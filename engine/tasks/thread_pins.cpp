@@ -23,6 +23,7 @@ bool setMemoryPolicy(int mode, const std::vector<unsigned long>& nodes = {}) {
 }  // namespace
 
 bool bindThread(uint32_t cpu) {
+  // A cpu_set_t has room for CPU_SETSIZE hardware threads.
   if (cpu >= CPU_SETSIZE) return false;
   cpu_set_t mask;
   CPU_ZERO(&mask);
@@ -47,6 +48,7 @@ void ThreadPins::unbind(Before& before) {
 }
 
 void ThreadPins::on_scheduler_entry(bool) {
+  // The thread's slot in the arena decides where the thread is bound.
   const auto slot = static_cast<size_t>(oneapi::tbb::this_task_arena::current_thread_index());
   if (slot >= placement_.cpus.size()) return;
   Before& before = before_[slot];
@@ -63,6 +65,7 @@ void ThreadPins::on_scheduler_exit(bool) {
 
 SpreadMemory::SpreadMemory(const Placement& placement) {
   if (placement.nodes.size() < 2) return;
+  // The mask has a bit for each node.
   std::vector<unsigned long> mask;
   for (const uint32_t node : placement.nodes) {
     mask.resize(std::max(mask.size(), node / kBitsPerWord + 1));

@@ -15,6 +15,7 @@ PhotonIterations<S>::PhotonIterations(const RenderPlan<S>& plan, const MemoryPla
   for (size_t i = 0; i < count; ++i) {
     stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan.needs, plan.lightUse));
     LightStore<S>& store = *stores_.back();
+    // All stores lie in one arena and take equal parts of it.
     if (i == 0) memory_ = Arena(count * store.arenaBytes(memory.verticesPerWave));
     store.reserve(memory.verticesPerWave, memory_);
   }
@@ -26,7 +27,9 @@ Schedule PhotonIterations<S>::schedule(size_t cameraPieces) const {
   Schedule schedule{.tasks = {lightWaves_, 1}, .waits = {}};
   for (const auto& step : buildSteps_) schedule.tasks.push_back(step.tasks);
   schedule.tasks.push_back(cameraPieces);
-  // Camera passes read the stores and the map of their iteration. A pixel's samples are added in order.
+  // Light waves of all iterations take the stores in turn. The first `ahead` waves of iteration i reuse stores of
+  // iteration i - atOnce - 1, and the other waves reuse stores of iteration i - atOnce. Camera passes read the stores
+  // and the map of their iteration. A pixel's samples are added in order.
   const size_t atOnce = slots_.size(), camera = cameraPhase();
   schedule.waits = {
       {.phase = kLightPhase, .on = camera, .earlier = atOnce, .ahead = stores_.size() - atOnce * lightWaves_},
@@ -39,10 +42,13 @@ Schedule PhotonIterations<S>::schedule(size_t cameraPieces) const {
 template <class S>
 void PhotonIterations<S>::buildMap(const ScheduledTask& task, const PhotonGrid<S>& grid, const Placement& placement) {
   Slot& slot = slots_[task.iteration % slots_.size()];
+  // All steps after the first belong to the map itself.
   if (task.phase != kMapPhase) {
     (slot.map.*buildSteps_[task.phase - kMapPhase - 1].run)(task.index);
     return;
   }
+  // The first step binds the map to the stores of the iteration and makes the tables. All threads read the tables, so
+  // their pages are spread over the nodes.
   for (size_t wave = 0; wave < lightWaves_; ++wave) slot.stores[wave] = &storeOf(task.iteration, wave);
   const SpreadMemory spread(placement);
   slot.map.prepare(slot.stores, grid);

@@ -11,11 +11,13 @@ template <class S>
 std::vector<double> tracePilotPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
                                     size_t places, PilotLight light) {
   const FlushToZero flushToZero;
+  // Make the pass of path tracing, whatever the plan's method is.
   const Pass<S> pass =
       makePipeline(pageOf(Method::pt, {}), *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass;
   MisSettings strategies = pass.strategies;
   SceneView<S> view = plan.scene->view;
   if (light != PilotLight::weighted) strategies.emission = strategies.nextEvent = false;  // nothing shares a path
+  // Without lights in the list, next events add nothing.
   if (light == PilotLight::byChance) view.lightCount = 0;
   // Each place is a run of pixels in the order of waves, which is a small tile.
   const size_t pathsPerPlace = kPilotPaths / places;
@@ -24,6 +26,7 @@ std::vector<double> tracePilotPaths(const RenderPlan<S>& plan, const RenderSetti
     const size_t first = place * area.pixels.size() / places;
     for (size_t i = 0; i < pathsPerPlace; ++i) pixels.push_back(area.pixels[(first + i) % area.pixels.size()]);
   }
+  // All paths are in one wave. The complement of the seed gives random numbers that the render does not use.
   StageCounters counters;
   StageContext<S> context{.scene = &view,
                           .pixels = pixels.data(),
@@ -35,6 +38,7 @@ std::vector<double> tracePilotPaths(const RenderPlan<S>& plan, const RenderSetti
   Wave<S> wave(static_cast<uint32_t>(pixels.size()), plan.needs);
   wave.pathCount = pixels.size();
   runPass(pass, context, wave, nullptr);
+  // Keep the brightest channel of each path.
   std::vector<double> brightness(pixels.size(), 0);
   for (size_t i = 0; i < pixels.size(); ++i) {
     const double value = std::max({wave.radiance.red[i], wave.radiance.green[i], wave.radiance.blue[i]});

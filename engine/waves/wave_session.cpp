@@ -91,6 +91,7 @@ template <class S>
 WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings) : Base(scene, settings) {
   this->finishBuilding([&] {
     const size_t pixels = film_.area().pixels.size();
+    // Path tracing picks its lights by what they give in view (METHODS 2.3).
     if (!plan_.pipeline.lightPass) arena_.execute([&] { pickLightsByView(plan_, settings_, film_.area()); });
     if (plan_.pipeline.splats()) film_.makeSplats(settings_.threads, memory_.splatScale);
     // A piece of camera paths is a wave; where waves take several iterations at once, as many pixels as give all
@@ -106,6 +107,7 @@ WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings) 
   });
 }
 
+// Returns the calling thread's worker, and makes it at the thread's first wave.
 template <class S>
 typename WaveSession<S>::Worker& WaveSession<S>::worker() {
   std::unique_ptr<Worker>& mine = workers_.local();
@@ -117,6 +119,7 @@ template <class S>
 void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker) {
   const FlushToZero flushToZero;
   const FilmArea& area = film_.area();
+  // Weights and the merging radius are those of the iteration.
   const MisSettings mis =
       misSettings(pass.strategies, settings_, plan_.scene->view.radius, memory_.lightPaths, iteration);
   StageContext<S> context{.scene = &plan_.scene->view,
@@ -132,6 +135,7 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
                           .sharedPlace = film_.spreads(),
                           .counters = &worker.counters};
   auto& tallies = pass.walk == Walk::light ? worker.lightTallies : worker.cameraTallies;
+  // Splats go from the wave's queue to the films through the worker's writer.
   SplatDrain<S> drain;
   if (pass.splats) drain = [&](Splats<S>& splats) { worker.splats->drain(splats, worker.counters); };
   runPass(pass, context, worker.wave, settings_.measureStages ? tallies.data() : nullptr, drain);
@@ -155,10 +159,13 @@ void WaveSession<S>::traceLightWave(size_t waveIndex, uint64_t iteration, Worker
 
 template <class S>
 LightStore<S>* WaveSession<S>::partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker) {
+  // Without a photon map, the worker holds the light vertices of the wave that it traces.
   if (!plan_.pipeline.photonMap) return &worker.light;
   if (!plan_.pipeline.cameraPass.strategies.connect) return nullptr;
   const std::span<LightStore<S>* const> stores = photons_.mappedStores(iteration);
   const size_t first = pieces_[waveIndex], count = pieces_[waveIndex + 1] - first;
+  // The store of the light wave with this index will do if it has the light paths of exactly these pixels. Otherwise
+  // the light vertices are collected from several stores.
   const bool sameCut = waveIndex < stores.size() && first == waveIndex * settings_.waveSize &&
                        count == itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
   if (sameCut && memory_.lightPaths == film_.area().pixels.size()) return stores[waveIndex];
@@ -170,6 +177,7 @@ LightStore<S>* WaveSession<S>::partnersOf(size_t waveIndex, uint64_t iteration, 
 template <class S>
 uint32_t WaveSession<S>::iterationBits(uint64_t next) const {
   const auto log2 = [](uint64_t n) { return static_cast<uint32_t>(std::bit_width(std::max<uint64_t>(n, 1))) - 1; };
+  // The sampler wants the first of n iterations at once to be a multiple of n. The last one must not pass the end.
   return std::min({mostIterationBits(), static_cast<uint32_t>(std::countr_zero(next)),
                    log2(next - settings_.firstIteration), log2(endIteration_ - next)});
 }
@@ -191,17 +199,21 @@ template <class S>
 void WaveSession<S>::traceCameraWave(size_t waveIndex, Worker& worker) {
   CameraProgress& progress = camera_[waveIndex];
   const size_t first = pieces_[waveIndex], pixels = pieces_[waveIndex + 1] - first;
+  // All pixels of a piece take the same number of iterations at once. The first pixel decides on the number.
   if (progress.pixels == 0) progress.iterationBits = iterationBits(progress.next);
+  // Trace as many pixels as fill a wave, up to the end of the piece.
   const size_t some = film_.area().pixelsFrom(first + progress.pixels, pixels - progress.pixels,
                                               settings_.waveSize >> progress.iterationBits, film_.spreads());
   traceCamera(first + progress.pixels, some, progress.next, progress.iterationBits,
               partnersOf(waveIndex, progress.next, worker), worker);
+  // After the last pixel, the piece goes on with the next iterations.
   progress.pixels += some;
   if (progress.pixels < pixels) return;
   progress.next += uint64_t{1} << progress.iterationBits;
   progress.pixels = 0;
 }
 
+// A turn is a light walk, where the method has one, and a camera walk of the same pixels.
 template <class S>
 void WaveSession<S>::renderWaves(const Finished& finished) {
   takeTurns(camera_.size(), settings_.threads, [&](size_t wave) {
@@ -228,6 +240,7 @@ void WaveSession<S>::buildPhotonMap(const ScheduledTask& task, Worker& worker) {
   const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
                                       memory_.lightPaths, task.iteration);
   const uint64_t begin = readTicks();
+  // All tasks of a map share one row of the statistics. The map's photons are counted once.
   photons_.buildMap(task, photonGrid(mis.radius), settings_.placement);
   worker.photonTally.ticks += readTicks() - begin;
   if (task.phase == PhotonIterations<S>::kMapPhase) worker.photonTally.items += photons_.mapOf(task.iteration)->size;
@@ -242,10 +255,12 @@ void WaveSession<S>::renderPhases(const Finished& finished, double end) {
   const auto mayBegin = [&](uint64_t iteration, size_t underWay) {
     if (finished(iteration)) return false;
     if (underWay == 0 || end == std::numeric_limits<double>::infinity()) return true;
+    // An iteration takes the mean time of the iterations that this call has finished.
     const auto done = static_cast<double>(iteration - underWay - first);
     if (done > 0) iterationSeconds_ = (clock_.shown() - before) / done;
     return iterationSeconds_ > 0 && clock_.shown() + static_cast<double>(underWay) * iterationSeconds_ < end;
   };
+  // Hand out the tasks of all phases.
   const Schedule schedule = photons_.schedule(camera_.size());
   runSchedule(schedule, first, settings_.threads, mayBegin, [&](const ScheduledTask& task) {
     if (task.phase == PhotonIterations<S>::kLightPhase) {
@@ -296,6 +311,7 @@ void WaveSession<S>::renderUntil(std::optional<uint64_t> iterations, std::option
       return (seconds && now >= *seconds) || this->interrupted();
     };
     arena_.execute([&] {
+      // The limit for roulette of connections is measured once in a session.
       if (!rouletteBelow_) rouletteBelow_ = connectionRouletteLimit(plan_, settings_, film_.area());
       if (!level_) levelPixels(finished);
       if (!level_) return;
@@ -314,9 +330,11 @@ RenderStatistics WaveSession<S>::statistics() const {
   RenderStatistics out = this->plannedStatistics();
   out.iterations = film_.minSamples();
   if (plan_.pipeline.splats()) out.memory.splats = film_.splats().bytes();
+  // Make the rows of the light pass, then those of the camera pass.
   if (plan_.pipeline.lightPass) addRows(*plan_.pipeline.lightPass, out.stages);
   const size_t cameraRow = out.stages.size();
   addRows(plan_.pipeline.cameraPass, out.stages);
+  // Add up what all workers have counted.
   for (const auto& worker : workers_) {
     out.paths += worker->paths;
     out.lightPaths += worker->lightPaths;
@@ -327,6 +345,7 @@ RenderStatistics WaveSession<S>::statistics() const {
     addTallies(worker->lightTallies, 0, out.stages);
     addTallies(worker->cameraTallies, cameraRow, out.stages);
   }
+  // The photon map is the last row.
   if (plan_.pipeline.photonMap) {
     out.stages.push_back({"photon map"});
     for (const auto& worker : workers_) addTallies({worker->photonTally}, out.stages.size() - 1, out.stages);
@@ -350,6 +369,7 @@ void WaveSession<S>::restore(StateReader& in) {
   film_.restore(in);
   earlier_.restore(in, statistics().stages);
   in.finish();
+  // The next renderUntil levels pixels that have fewer samples than others.
   const uint64_t done = film_.maxSamples();
   level_ = film_.minSamples() == done;
   if (!level_ && plan_.pipeline.photonMap) throw StateError("it ends within an iteration");

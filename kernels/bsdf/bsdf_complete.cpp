@@ -25,6 +25,7 @@ WAVECREST_INLINE Mask isAmong(UInt kind, uint32_t kinds) {
 
 constexpr uint32_t kSingleKinds = kCompoundKinds & ~kBlendKinds;
 
+// f and densities with opacity, of lanes that are no blends: of compound kinds here, of the others by evalGeneral.
 template <class P>
 WAVECREST_NOINLINE BsdfValue<typename P::Real> evalSingle(const CompoundInput<P>& input, Mask active,
                                                           const Vec3<typename P::Real>& wi,
@@ -45,6 +46,7 @@ WAVECREST_NOINLINE BsdfValue<typename P::Real> evalSingle(const CompoundInput<P>
   return select(compound, scaled(own, input.opacity()), value);
 }
 
+// The same for samples.
 template <class P>
 WAVECREST_NOINLINE BsdfSample<typename P::Real> sampleSingle(const CompoundInput<P>& input, Mask active,
                                                              const Vec3<typename P::Real>& wi, const Uniform4& u) {
@@ -73,6 +75,8 @@ WAVECREST_NOINLINE BsdfSample<typename P::Real> sampleSingle(const CompoundInput
 
 // ---- blends ---------------------------------------------------------------------------------------------------------
 
+// The parts of blends and their weights, in `lanes`. Parts are counted from 0. Lanes may have different numbers of
+// parts.
 template <class P>
 struct Blend {
   using Real = typename P::Real;
@@ -141,6 +145,7 @@ WAVECREST_NOINLINE BsdfValue<typename P::Real> evalParts(const Blend<P>& blend, 
   return {sum.f, sum.pdf * inverse, sum.pdfReverse * inverse};
 }
 
+// Lanes in which some part of positive weight has a delta lobe.
 template <class P>
 WAVECREST_NOINLINE Mask blendHasDelta(const Blend<P>& blend) {
   Mask delta = noLanes();
@@ -151,6 +156,7 @@ WAVECREST_NOINLINE Mask blendHasDelta(const Blend<P>& blend) {
   return delta;
 }
 
+// A sample of blends without their opacity: takes one part by its weight and samples that.
 template <class P>
 WAVECREST_NOINLINE BsdfSample<typename P::Real> sampleParts(const Blend<P>& blend, const Vec3<typename P::Real>& wi,
                                                             const Uniform4& u) {
@@ -197,9 +203,9 @@ WAVECREST_NOINLINE BsdfSample<typename P::Real> sampleParts(const Blend<P>& blen
   const Mask finite = andNot(taken, delta);
   if (input.lobes == Lobes::specularOnly || none(finite)) return sample;
 
-  // Another direction may come from any part, if the one that was taken has made one at all: rough dielectrics fail
-  // where they reflect to the far side or refract to the near one, and a black part fails less often than its weight
-  // is zero.
+  // A direction of another lobe may come from any part, so f and densities are those of the whole blend. The direction
+  // counts if the part that was taken did make it: a rough dielectric fails where it reflects to the far side or
+  // refracts to the near one. A weight of zero is no sign of failure, for a black part has it always.
   const Real sides = wi.z * sample.wo.z;
   const Mask bent = (sample.etaRatio > Real(1)) | (sample.etaRatio < Real(1));
   const Mask sheet = isAmong(part.input.kind, bitOf(BsdfKind::principledThin));
@@ -219,10 +225,12 @@ template <class P>
 BsdfValue<typename P::Real> evalComplete(const CompoundInput<P>& input, Mask active, const Vec3<typename P::Real>& wi,
                                          const Vec3<typename P::Real>& wo) {
   using Real = typename P::Real;
+  // The scene may have no compound BSDFs at all, and the block no blends.
   if ((input.kinds & kCompoundKinds) == 0) return evalGeneral<P>(input, active, wi, wo);
   const Mask blends = active & isAmong(input.kind, input.kinds & kBlendKinds);
   if (none(blends)) return evalSingle(input, active, wi, wo);
   Real own;
+  // kMostParts is no part: `own` is not used.
   const BsdfValue<Real> blended = evalParts(Blend<P>(input, blends), wi, wo, UInt(kMostParts), own);
   return select(blends, scaled(blended, input.opacity()), evalSingle(input, andNot(active, blends), wi, wo));
 }

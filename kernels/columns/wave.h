@@ -13,7 +13,9 @@ struct ColumnNeeds {
   bool tangents = true;
   bool instances = true;
   bool rouletteScale = true;
+  // What methods with light paths need: dVC, dVM and the light of paths, pairs, vertex rows.
   bool connections = true;
+  // Room to sort vertices by their BSDFs, where not all are diffuse (kernels/shade/vertex_order_lanes.h).
   bool bsdfOrder = true;
   bool splats = true;
 };
@@ -26,6 +28,7 @@ struct Vertices {
   Surfaces<S> surfaces;
   PathStates<S> paths;
 
+  // Drops the columns that are not needed. The others have no memory until they are bound.
   explicit Vertices(const ColumnNeeds& needs) {
     if (!needs.shadingNormals) {
       for (Column<S>* column : {&surfaces.shadingX, &surfaces.shadingY, &surfaces.shadingZ}) column->drop();
@@ -77,10 +80,12 @@ struct Wave : Vertices<S> {
   uint32_t iterationBits = 0;
 
   Wave(size_t capacity, const ColumnNeeds& needs) : Vertices<S>(needs), aside(needs) {
+    // The vertices aside have only the columns that PathVertexLanes moves.
     aside.hits.u.drop();
     aside.hits.v.drop();
     aside.hits.instance.drop();
     aside.paths.light.drop();
+    // Queues that this scene and method do not use.
     if (!needs.connections || !needs.bsdfOrder) sortedPairs.drop();
     if (!needs.bsdfOrder) aside.forEachQueue([](auto& queue) { queue.drop(); });
     if (!needs.splats) splats.drop();
@@ -88,6 +93,7 @@ struct Wave : Vertices<S> {
       pairs.drop();
       vertexRows.row.drop();
     }
+    // All columns lie in one block of memory.
     size_t bytes = 0;
     forEachQueue([&](auto& queue) { bytes += queue.bytes(capacity); });
     arena_ = Arena(bytes);
@@ -122,6 +128,7 @@ struct Wave : Vertices<S> {
     vertexRows.size = 0;
   }
 
+  // Memory of one path in all columns that are needed.
   size_t bytesPerPath() {
     size_t bytes = 0;
     forEachQueue([&](auto& queue) { bytes += queue.bytesPerItem(); });
@@ -129,6 +136,7 @@ struct Wave : Vertices<S> {
   }
 
  private:
+  // Calls function(queue) for each queue of the wave, always in the same order, on which copyFrom relies.
   template <class Function>
   void forEachQueue(Function&& function) {
     Vertices<S>::forEachQueue(function);

@@ -32,7 +32,9 @@ WAVECREST_INLINE UInt pickLight(const SceneView<S>& scene, Float entry, Float ke
 
 namespace {
 
-// The part of a sphere light that the receiver sees: uniform in the cone it fills, uniform over its area from inside.
+// A point of a sphere light: uniform in the cone of directions that the sphere fills, or uniform over its area for
+// receivers inside of it or almost on it. normal: outward. outside: lanes that sampled the cone. coneHeight: 1 - cos of
+// its half angle.
 template <class P>
 WAVECREST_INLINE void sampleSphere(const LightLanes<typename P::Real>& light, Vec3<typename P::Real> receiver,
                                    typename P::Real u, typename P::Real v, Vec3<typename P::Real>& point,
@@ -61,18 +63,21 @@ WAVECREST_INLINE void sampleSphere(const LightLanes<typename P::Real>& light, Ve
 
 }  // namespace
 
-// Spot lights, projectors, directional and environment lights, in the lanes that have them.
+// Spot lights, projectors, directional and environment lights, in the lanes that have them. Densities are those of
+// METHODS 2.2, without the choice of the light. more: four numbers for the environment map.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE void addRareLights(const SceneView<typename P::Storage>& scene,
                                     const LightLanes<typename P::Real>& light, Vec3<typename P::Real> receiver,
                                     const Uniform4& more, LightSample<typename P::Real>& sample) {
   using Real = typename P::Real;
+  // The end of a segment towards an infinite light: outside of the bounding sphere for every receiver in it.
   const auto far = [&](Vec3<Real> direction)
                        WAVECREST_LAMBDA { return mulAdd(direction, Real(3 * scene.radius), receiver); };
 
   const Mask beam = isBeam(light.kind);
   if (any(beam)) {
-    // Its edges are the picture's, none that a point was to be sampled on.
+    // e1 and e2 of a beam are axes of its picture, so the point that sampleLight took from them means nothing: a beam
+    // is at p0. The formal density d^2 turns intensity into irradiance.
     const Vec3<Real> segment = light.p0 - receiver;
     const Real beamDist2 = length2(segment);
     const Real inverseDistance = reciprocalSqrt(max(beamDist2, Real(1e-37f)));
@@ -109,6 +114,8 @@ WAVECREST_INLINE void addRareLights(const SceneView<typename P::Storage>& scene,
   }
 }
 
+// A sample of the light `index` of each lane for a receiver. uniform.c and .d choose the place, while .a and .b have
+// picked the light; more: four numbers for an environment map. The sample's densities are those of METHODS 2.2.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typename P::Storage>& scene, UInt index,
                                                            Vec3<typename P::Real> receiver, const Uniform4& uniform,
@@ -120,7 +127,8 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   sample.radiance = light.radiance;
   const Real pick = light.pick;
 
-  // Quads and triangles: uniform over the area. A triangle folds the square's far half back.
+  // Quads and triangles: uniform over the area. A triangle folds the square's far half back. Lanes of other lights get
+  // numbers that are replaced below.
   const Mask triangle = light.kind == lightKind(LightKind::triangle);
   const Mask fold = triangle & (u + v > Real(1));
   u = select(fold, Real(1) - u, u);
@@ -129,6 +137,7 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   Vec3<Real> normal = light.normal;
   Real pdfA = light.inverseArea;
 
+  // Spheres. cone: lanes that are sampled by solid angle.
   Mask cone = noLanes();
   Real coneHeight(1);
   if constexpr (has(kFeatures, kCurvedShapes)) {
@@ -147,6 +156,8 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   const Real dist2 = length2(segment);
   const Real inverseDistance = reciprocalSqrt(max(dist2, Real(1e-37f)));
   sample.direction = segment * inverseDistance;
+  // Area lights: the density per area becomes one per solid angle at the receiver. A sample on a light that faces away
+  // is not valid.
   const Real n0 = -dot(sample.direction, normal);
   sample.pdf = pdfA * dist2 * reciprocal(max(n0, Real(1e-12f)));
   sample.valid = n0 > Real(0);
@@ -175,11 +186,13 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
     const Real emission = Real(kInvPi / 4) * reciprocal(projectedArea<Real>(scene, direction));
     sample.emissionPdf = select(constant, emission, sample.emissionPdf);
   }
+  // Textures of area lights. Those of beams are part of beamFactor.
   if constexpr (has(kFeatures, kTextures)) {
     sample.radiance = sample.radiance *
                       to<Real>(textureFactor(scene.textures, scene.texels, light.texture, to<Float>(u), to<Float>(v)));
   }
   if constexpr (has(kFeatures, kRareLights)) addRareLights<P, kFeatures>(scene, light, receiver, more, sample);
+  // Both densities include the choice of the light.
   sample.pdf = sample.pdf * pick;
   sample.emissionPdf = sample.emissionPdf * pick;
   return sample;

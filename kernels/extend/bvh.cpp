@@ -36,11 +36,15 @@ size_t stackNeed(const BranchTree& tree, const Branch& branch) {
 void layBoxes(const Box* boxes, size_t count, double margin, BvhNode& node) {
   const Box all = unionOf(boxes, count);
   for (size_t axis = 0; axis < 3; ++axis) {
+    // The grid begins one rounding below the lowest widened box.
     const double lowest = std::max(all.low[axis] - margin, double{std::numeric_limits<float>::lowest()});
     const double corner = node.corner[axis] = std::nextafter(static_cast<float>(lowest), -kInfinity);
+    // The step is the least power of two whose 255 steps span all boxes, so its product with a byte is exact. The lower
+    // limit on the extent keeps the step a normal number.
     const double extent = std::max(all.high[axis] + margin - corner, double{std::numeric_limits<float>::min()} * kGrid);
     const double scale = std::exp2(std::ceil(std::log2(extent / kGrid)));
     node.scale[axis] = static_cast<float>(scale);
+    // Boxes are rounded outwards to the grid. Absent children get low above high, which no ray meets.
     for (size_t i = 0; i < kBvhWidth; ++i) {
       const bool present = i < count;
       const double low = present ? std::floor((boxes[i].low[axis] - margin - corner) / scale) : kGrid;
@@ -51,7 +55,8 @@ void layBoxes(const Box* boxes, size_t count, double margin, BvhNode& node) {
   }
 }
 
-// A hierarchy of one kind of leaf on its way into the arena.
+// A hierarchy of one kind of leaf before it is laid out. The kind BvhEntry::end stands for instances: each of them is a
+// leaf.
 struct Part {
   BranchTree tree;
   BvhEntry leaf;
@@ -79,7 +84,8 @@ struct Part {
   }
 };
 
-// The hierarchies over one level's primitives, or those of a group, before they are laid out.
+// The hierarchies over the primitives of the world, or of a group, before they are laid out: one for faces, one for
+// spheres. In the world one for instances may be added.
 struct Level {
   LeafMaker leaves;
   std::vector<Part> parts;
@@ -93,7 +99,7 @@ struct Level {
     for (const Part& part : parts) boxes.push_back(part.tree.bounds);
     return unionOf(boxes.data(), boxes.size());
   }
-  // With one that joins the parts.
+  // Room for all nodes of the parts, and for one that joins the parts.
   size_t nodes() const {
     size_t count = 1;
     for (const Part& part : parts) count += part.tree.nodes.size();
@@ -125,6 +131,7 @@ class Layout {
   uint32_t add(const Level& level, double margin) {
     margin_ = margin;
     leaves_ = &level.leaves;
+    // A single hierarchy needs no node above it.
     if (level.parts.size() == 1) return add(level.parts.front());
     uint32_t references[kBvhWidth];
     Box boxes[kBvhWidth];
@@ -139,6 +146,8 @@ class Layout {
  private:
   // The reference of a hierarchy.
   uint32_t add(const Part& part) {
+    // First every node and leaf gets its place, in one thread, so that the layout does not depend on threads. Then the
+    // contents are written in parallel.
     nodes_.clear();
     ends_.clear();
     const uint32_t root = reserve(part, part.tree.root);
@@ -161,6 +170,7 @@ class Layout {
     return reference;
   }
 
+  // A node, or a leaf, that has its place and is not written yet.
   struct PlacedNode {
     uint32_t from, reference;      // index among the tree's nodes
     uint32_t children[kBvhWidth];  // references
@@ -175,6 +185,8 @@ class Layout {
     nextNode_ += sizeof(BvhNode);
     return makeReference(BvhEntry::node, at);
   }
+  // Takes the place of a node or leaf and returns the reference to it. Instances have fixed places and are written by
+  // write().
   uint32_t reserve(const Part& part, const Branch& branch) {
     if (!branch.isLeaf()) return takeNode();
     if (part.leaf == BvhEntry::end) return referenceOf(part.ids[branch.at]);
@@ -184,6 +196,8 @@ class Layout {
     ends_.push_back({branch, reference});
     return reference;
   }
+  // Takes places for everything below a node, depth first. The children of a node are reserved together before any
+  // grandchild, so they lie side by side.
   void lay(const Part& part, const Branch& branch, uint32_t reference) {
     const BranchNode& from = part.tree.nodes[branch.at];
     PlacedNode placed{.from = branch.at, .reference = reference, .children = {}};
@@ -248,6 +262,7 @@ Pieces piecesOf(std::span<const BvhInstance> instances, const double (&eye)[3]) 
   return pieces;
 }
 
+// The instance as walkers read it, rounded to float. root: reference of its group's hierarchy.
 InstanceLeaf leafOf(const BvhInstance& instance, size_t index, double radius, uint32_t root) {
   InstanceLeaf leaf{.place = {},
                     .toObject = {},
@@ -265,6 +280,7 @@ InstanceLeaf leafOf(const BvhInstance& instance, size_t index, double radius, ui
 
 Bvh::Bvh(const PrimitiveSource& primitives, std::span<const BvhGroup> groups, std::span<const BvhInstance> instances,
          const double (&eye)[3], const ParallelFor& parallelFor) {
+  // Build the hierarchies of the world and of each group, and count what they need.
   Level top(primitives, parallelFor);
   Pieces placed = piecesOf(instances, eye);
   if (!placed.empty()) top.parts.emplace_back(placed, BvhEntry::end, parallelFor);
@@ -274,10 +290,12 @@ Bvh::Bvh(const PrimitiveSource& primitives, std::span<const BvhGroup> groups, st
     const Level& level = inGroups.emplace_back(group.primitives, parallelFor);
     nodes += level.nodes();
     leafBytes += level.leafBytes();
+    // 1: the reference kBvhLeave, which waits below those of the group.
     stackInGroups = std::max(stackInGroups, 1 + level.stack());
   }
 
-  // One reference for the end, a whole node written at once, and what comes from a packet.
+  // Check the limits. On its stack a ray also needs one reference for the end, room for a whole node that is written at
+  // once, and the entries that a packet leaves to it.
   if (top.stack() + stackInGroups + 1 + kBvhWidth + kMostLoneEntries > kBvhStack) {
     throw std::runtime_error("the hierarchy is too deep");
   }
@@ -286,6 +304,7 @@ Bvh::Bvh(const PrimitiveSource& primitives, std::span<const BvhGroup> groups, st
   arena_ = MemoryBlock(used, sizeof(BvhNode));
   nodes_ = nodes;
 
+  // Lay out the world, then the groups, then the instances, which refer to the roots of their groups.
   Layout layout(arena_.get(), nodes, instances.size(), parallelFor);
   view_.arena = arena_.get();
   view_.root = layout.add(top, marginFor(top.bounds(), eye));

@@ -10,12 +10,13 @@ namespace {
 
 constexpr size_t kBins = 32;
 constexpr size_t kLargeRange = size_t{1} << 16;  // ranges above are split by several threads
-constexpr size_t kSampleStride = 8;              // every which piece of a large range stands for all
-// Nodes this deep have so few bins left to choose from that their pieces are halved: a ray's stack has a limit.
+constexpr size_t kSampleStride = 8;              // of a large range findSplit counts every eighth piece
+// From this depth on pieces are halved by count, which bounds the depth of the tree: a ray's stack has a limit.
 constexpr size_t kMostDepth = 24;
 
 // Four numbers at once, of which three count. A type of the compiler's, which every instruction set has.
 using Four = float __attribute__((vector_size(16)));
+// Reads one word past the three coordinates of a Piece. The fourth number is never used.
 Four loadFour(const float* from) {
   Four value;
   std::memcpy(&value, from, sizeof value);
@@ -24,6 +25,7 @@ Four loadFour(const float* from) {
 Four least(Four a, Four b) { return a < b ? a : b; }
 Four most(Four a, Four b) { return a > b ? a : b; }
 
+// A box that grows. It begins empty.
 struct Bounds {
   static constexpr float kFar = std::numeric_limits<float>::infinity();
   Four low{kFar, kFar, kFar, kFar}, high{-kFar, -kFar, -kFar, -kFar};
@@ -65,12 +67,14 @@ class BinScale {
   BinScale(const Range& range, size_t bins) : low_(range.centers.low), last_(static_cast<int>(bins) - 1) {
     const Four extent = range.centers.high - range.centers.low;
     for (size_t axis = 0; axis < 3; ++axis) {
-      // 0 where the centres do not differ, so that nothing is split there.
+      // A little less than bins / extent, so that the greatest centre falls into the last bin. 0 where the centres do
+      // not differ: no split is looked for along such an axis.
       const float scale = static_cast<float>(bins) * 0.9999f / extent[axis];
       scale_[axis] = extent[axis] > 0 && scale < std::numeric_limits<float>::max() ? scale : 0;
     }
   }
   bool splits(size_t axis) const { return scale_[axis] > 0; }
+  // The bin of a piece. Like Range::centers, centres are times two.
   size_t operator()(const Piece& piece, size_t axis) const {
     return static_cast<size_t>(
         std::clamp(static_cast<int>((piece.low[axis] + piece.high[axis] - low_[axis]) * scale_[axis]), 0, last_));
@@ -81,10 +85,12 @@ class BinScale {
   int last_;
 };
 
+// For each axis and bin, the box and the number of the pieces whose centres fall into it.
 struct Bins {
   Bounds bounds[3][kBins];
   uint32_t counts[3][kBins]{};
 
+  // Counts every piece whose distance from `begin` is a multiple of the stride.
   void add(const Piece* begin, const Piece* end, size_t stride, const BinScale& scale) {
     const auto count = static_cast<size_t>(end - begin);
     for (size_t i = 0; i < count; i += stride) {
@@ -119,6 +125,7 @@ Split bestSplit(const Bins& bins, size_t count, const BinScale& scale, size_t le
   Split best;
   for (size_t axis = 0; axis < 3; ++axis) {
     if (!scale.splits(axis)) continue;
+    // From the last bin downwards: the cost of the bins from i on, for every i.
     float costAbove[kBins];
     Bounds above;
     uint32_t piecesAbove = 0;
@@ -127,6 +134,7 @@ Split bestSplit(const Bins& bins, size_t count, const BinScale& scale, size_t le
       piecesAbove += bins.counts[axis][i];
       costAbove[i] = above.area() * static_cast<float>(leavesFor(piecesAbove));
     }
+    // From the first bin upwards: the cost of the bins below i, and with the other side the cost of the split.
     const uint32_t all = piecesAbove + bins.counts[axis][0];
     Bounds below;
     uint32_t pieces = 0;
@@ -153,6 +161,7 @@ class Builder {
   }
   // Appends the node of a range, which is no leaf, and all below it. Returns the node's index.
   uint32_t build(const Range& range, size_t depth, std::vector<BranchNode>& out) const {
+    // Split the child of the largest surface until there are eight children, or all of them are leaves.
     Range children[kBvhWidth] = {range};
     size_t count = 1;
     while (count < kBvhWidth) {
@@ -167,6 +176,7 @@ class Builder {
       children[count++] = second;
     }
 
+    // Append the node. The indices of its child nodes are set when these are built.
     const auto index = static_cast<uint32_t>(out.size());
     BranchNode node;
     node.count = static_cast<uint32_t>(count);
@@ -175,6 +185,7 @@ class Builder {
       node.child[i] = {children[i].begin, children[i].size() <= leafSize_ ? children[i].size() : 0};
     }
     out.push_back(node);
+    // Build the subtrees.
     if (range.size() > kLargeRange) {
       buildApart(index, children, count, depth + 1, out);
     } else {
@@ -193,6 +204,7 @@ class Builder {
     parallelFor_(count, [&](size_t i) {
       if (!out[node].child[i].isLeaf()) build(children[i], depth, parts[i]);
     });
+    // Append the subtrees in the order of the children, and shift the indices in them.
     for (size_t i = 0; i < count; ++i) {
       if (parts[i].empty()) continue;
       const auto first = static_cast<uint32_t>(out.size());
@@ -205,6 +217,7 @@ class Builder {
     }
   }
 
+  // Finds both boxes of a range from its pieces.
   void measure(Range& range) const {
     std::vector<Range> parts(range.size() / kLargeRange + 1);
     parallelFor_(parts.size(), [&](size_t i) {
@@ -214,6 +227,7 @@ class Builder {
     for (const Range& part : parts) range.add(part);
   }
 
+  // Two ranges in place of one that is too large for a leaf. Both have pieces.
   std::pair<Range, Range> split(const Range& range, size_t depth) const {
     const size_t bins = std::min<size_t>(kBins, 4 + range.size() / 8);
     const BinScale scale(range, bins);
@@ -240,7 +254,7 @@ class Builder {
     return bestSplit(all, bins, scale, leafSize_);
   }
 
-  // Puts the pieces for which isBelow holds before the others.
+  // Puts the pieces for which isBelow holds before the others, in place, and measures both sides on the way.
   template <class IsBelow>
   std::pair<Range, Range> partition(const Range& range, const IsBelow& isBelow) const {
     Range below{.begin = range.begin, .end = 0, .all = {}, .centers = {}},

@@ -20,7 +20,8 @@ WAVECREST_INLINE Vec3<FloatGroup<kCount>> loadPoints(const float (&a)[3][kCount]
 constexpr float kFarthest = std::numeric_limits<float>::max();
 // The end of a shadow ray: just short of 1, as nothing at the segment's end may block it.
 constexpr float kShadowEnd = 0x1.fffffep-1f;
-// Where in BvhNode::bounds the planes are through which rays enter that go in the direction d: 0, or 3 rows on.
+// Offset in BvhNode::bounds from the low planes of an axis to those by which a ray enters whose direction is d there:
+// 0, or the 3 rows to the high planes.
 WAVECREST_INLINE uint32_t nearPlanes(float d) { return std::signbit(d) ? 3 * kBvhWidth : 0; }
 
 // The axis of the greatest part of a direction.
@@ -29,7 +30,7 @@ WAVECREST_INLINE uint32_t greatestAxis(float x, float y, float z) {
   return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
 }
 
-// kAnyHit: whatever lies before the ray's end ends the walk.
+// A single ray. kAnyHit: of a shadow ray, whose walk ends with any hit before the ray's end.
 template <bool kAnyHit>
 struct alignas(64) BvhRay {
   static constexpr size_t kUnderWay = 32;
@@ -44,6 +45,7 @@ struct alignas(64) BvhRay {
   uint32_t index, at, waiting;
   uint32_t stack[kBvhStack];
 
+  // ray: the index by which the caller knows it. end: the distance beyond which no hit counts.
   WAVECREST_INLINE void begin(size_t ray, float ox, float oy, float oz, float dx, float dy, float dz, float end) {
     index = static_cast<uint32_t>(ray);
     id = kMiss;
@@ -52,6 +54,8 @@ struct alignas(64) BvhRay {
     const float o[3] = {ox, oy, oz}, d[3] = {dx, dy, dz};
     aim(o, d);
   }
+  // Sets the origin, the direction and all that follows from them. The hit so far and the stack stay: a ray is aimed
+  // anew on its way into an instance and back.
   WAVECREST_INLINE void aim(const float (&o)[3], const float (&d)[3]) {
     for (size_t axis = 0; axis < 3; ++axis) {
       const float size = std::abs(d[axis]);
@@ -69,6 +73,7 @@ struct alignas(64) BvhRay {
   WAVECREST_INLINE void visit(const BvhNode& node) {
     using Group = FloatGroup<kBvhWidth>;
     Group enter(0.0f), leave(t);
+    // Along each axis the plane of byte b is met at b * step + first. All children are tested at once.
     for (size_t axis = 0; axis < 3; ++axis) {
       const Group step(node.scale[axis] * inverse[axis]);
       const Group first((node.corner[axis] - origin[axis]) * inverse[axis]);
@@ -82,6 +87,7 @@ struct alignas(64) BvhRay {
     waiting += static_cast<uint32_t>(kAnyHit ? appendWhere(met, children, top)
                                              : appendByFallingKey(met, enter, children, top));
   }
+  // Tests all triangles of the leaf at once. Only the kept hit's weights are divided by their sum.
   WAVECREST_INLINE void visit(const FaceLeaf& faces) {
     using Group = FloatGroup<kLeafSize>;
     const auto corner = [&](size_t k) HWY_ATTR {
@@ -115,8 +121,8 @@ struct alignas(64) BvhRay {
   }
 
  private:
-  // The nearest of a leaf's hits. Of equally near ones that of the lowest id counts, so that a hit does not depend on
-  // the order of visits. coordinates(slot): sets those of the hit.
+  // Takes the nearest of a leaf's hits if it is nearer than t. Of equally near hits the one of the lowest id is kept,
+  // so that the result does not depend on the order of visits. coordinates(slot): sets those of the hit.
   template <class Coordinates>
   WAVECREST_INLINE void keep(MaskGroup<kLeafSize> met, FloatGroup<kLeafSize> distance, const uint32_t* ids,
                              const Coordinates& coordinates) {
@@ -124,6 +130,7 @@ struct alignas(64) BvhRay {
     met = met & (distance > Group(0.0f)) & (distance <= Group(t));
     if (!any(met)) return;
     if constexpr (kAnyHit) {
+      // Any id says that the ray is blocked. Only the end is left on the stack.
       id = ids[0];
       blocker = at;
       waiting = 1;
@@ -156,6 +163,7 @@ struct BvhPacket {
   uint32_t index, at, waiting;
   uint32_t stack[kBvhStack];
 
+  // first: the index of the first ray; the others follow it.
   WAVECREST_INLINE void begin(size_t first, Vec3<Float> o, Vec3<Float> d) {
     index = static_cast<uint32_t>(first);
     end = kFarthest;
@@ -164,6 +172,7 @@ struct BvhPacket {
     id = UInt(kMiss);
     aim(o, d);
   }
+  // As BvhRay::aim, for all rays of the packet.
   WAVECREST_INLINE void aim(Vec3<Float> o, Vec3<Float> d) {
     origin = o;
     direction = d;
@@ -202,10 +211,14 @@ struct BvhPacket {
   template <bool kInOrder, class Take>
   WAVECREST_INLINE void forEachChild(const BvhNode& node, const Take& take) const {
     using Group = FloatGroup<kBvhWidth>;
+    // The bytes of all planes as numbers, in the layout of BvhNode::bounds.
     HWY_ALIGN float planes[6 * kBvhWidth];
     for (size_t row = 0; row < 6; ++row) {
       store(loadBytes<kBvhWidth>(node.bounds[row]), planes + row * kBvhWidth);
     }
+    // All children against the whole packet, in interval arithmetic: the least distance at which any ray enters, and
+    // the greatest at which any ray leaves. Both ends of the interval of 1 / direction are tried. Along an axis where
+    // rays go both ways the slack is infinite, so that axis excludes no child.
     Group enter(0.0f), leave(end);
     for (size_t axis = 0; axis < 3; ++axis) {
       const float scale = node.scale[axis], corner = node.corner[axis];
@@ -222,6 +235,7 @@ struct BvhPacket {
       leave = min(max(leave0, leave1) + Group(slack[axis]), leave);
     }
     const auto met = (enter <= leave) & (loadGroup<kBvhWidth>(node.children) != kBvhEnd);
+    // Then each child that was met against every ray by itself.
     uint32_t slots[kBvhWidth];
     const auto all = loadGroup<kBvhWidth>(kLaneNumbers);
     const size_t count = kInOrder ? appendByFallingKey(met, enter, all, slots) : appendWhere(met, all, slots);
@@ -263,9 +277,12 @@ struct BvhPacket {
     return {select(alongX, a.y, select(alongY, a.z, a.x)), select(alongX, a.z, select(alongY, a.x, a.y)),
             select(alongX, a.x, select(alongY, a.y, a.z))};
   }
+  // Sets what the packet keeps of one axis: intervals, slack and the rows of near planes. Returns 1 / d, with
+  // directions of zero as tiny ones.
   WAVECREST_INLINE Float bound(size_t axis, Float o, Float d) {
     const Float inverted = copySign(Float(1) / max(abs(d), Float(kLeastDirection)), d);
     const float least = leastLane(inverted), most = greatestLane(inverted);
+    // All rays go backward if the greatest inverse is negative, all go forward if the least is positive.
     const bool backward = std::signbit(most), forward = !std::signbit(least);
     inverses[0][axis] = least;
     inverses[1][axis] = most;
@@ -293,12 +310,14 @@ struct BvhPacket {
     clip(2, step.z, first.z);
     return enter <= leave;
   }
+  // Calls test(slot, id) for each primitive of a leaf, whose other slots repeat the last one.
   template <class Test>
   static WAVECREST_INLINE void forEachSlot(const uint32_t* ids, const Test& test) {
     for (size_t slot = 0; slot < kLeafSize && (slot == 0 || ids[slot] != ids[slot - 1]); ++slot) {
       test(slot, UInt(ids[slot]));
     }
   }
+  // As BvhRay::keep: takes nearer hits, and of equally near ones that of the lowest id.
   WAVECREST_INLINE void keep(Mask met, Float distance, Float a, Float b, UInt face) {
     const Mask closer = met & ((distance < t) | ((distance == t) & (face < id)));
     t = select(closer, distance, t);

@@ -14,8 +14,10 @@
 namespace wavecrest {
 namespace {
 
+// Ids of the geometries, which are also indices into SceneView::firstPrimitive.
 constexpr unsigned kQuads = 0, kTriangles = 1, kSpheres = 2;
 
+// Adds all quads, or all triangles, as one geometry. Every face has vertices of its own, in buffers that Embree owns.
 template <class S>
 void addFaces(RTCDevice device, RTCScene scene, const PrimitiveRecord<S>* records, uint32_t count, bool quads,
               unsigned id) {
@@ -38,11 +40,13 @@ void addFaces(RTCDevice device, RTCScene scene, const PrimitiveRecord<S>* record
       *indices++ = i * corners + k;
     }
   }
+  // The scene keeps the geometry. The reference held here is given up.
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
 }
 
+// Adds all spheres as one geometry of points with radii.
 template <class S>
 void addSpheres(RTCDevice device, RTCScene scene, const PrimitiveRecord<S>* records, uint32_t count) {
   if (count == 0) return;
@@ -68,17 +72,20 @@ EmbreeScene::EmbreeScene(const PrimitiveRecord<S>* records, uint32_t quads, uint
   if (device == nullptr) {
     throw std::runtime_error("Embree: no device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
   }
+  // Embree reports what it allocates, and with a minus sign what it frees. True lets it go on.
   const auto countBytes = [](void* counter, ssize_t bytes, bool) {
     static_cast<std::atomic<int64_t>*>(counter)->fetch_add(bytes);
     return true;
   };
   rtcSetDeviceMemoryMonitorFunction(device, countBytes, &bytes_);
+  // Fill the scene and build its hierarchy.
   RTCScene scene = rtcNewScene(device);
   if (watertight) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   addFaces(device, scene, records, quads, true, kQuads);
   addFaces(device, scene, records + quads, triangles, false, kTriangles);
   addSpheres(device, scene, records + quads + triangles, spheres);
   rtcCommitScene(scene);
+  // Any of the calls above may have failed: the device keeps the first error.
   const RTCError error = rtcGetDeviceError(device);
   if (error != RTC_ERROR_NONE) {
     rtcReleaseScene(scene);
@@ -91,6 +98,7 @@ EmbreeScene::EmbreeScene(const PrimitiveRecord<S>* records, uint32_t quads, uint
 template EmbreeScene::EmbreeScene(const PrimitiveRecord<float>*, uint32_t, uint32_t, uint32_t, bool);
 template EmbreeScene::EmbreeScene(const PrimitiveRecord<double>*, uint32_t, uint32_t, uint32_t, bool);
 
+// Releases the scene before the device that it belongs to.
 EmbreeScene::~EmbreeScene() {
   rtcReleaseScene(static_cast<RTCScene>(scene_));
   rtcReleaseDevice(static_cast<RTCDevice>(device_));
@@ -106,15 +114,19 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
   wave.hits.size = 0;
   wave.hits.claim(count);
 
+  // Rays from the eye are coherent.
   Query query(context.walk == Walk::camera && context.depth == 1);
   alignas(64) int valid[kWidth];
   typename Packet<kWidth>::RayHit packet;
   for (size_t i = 0; i < count; i += kWidth) {
+    // Trace one packet.
     setValid(count - i, valid);
     setSegment(std::numeric_limits<float>::infinity(), packet.ray);
     copyRays<S>(rays, i, packet.ray);
     setNoHit(packet);
     query(Packet<kWidth>::intersect, valid, scene, packet);
+    // Make hits of what it met, as extend_small.cpp does: coordinates are kept off the edges, and a sphere has the
+    // distance for u.
     for (size_t k = 0; k < kWidth; ++k) {
       const unsigned geometry = packet.hit.geomID[k];
       const bool hit = geometry != RTC_INVALID_GEOMETRY_ID;
@@ -129,6 +141,7 @@ void extendEmbree(const StageContext<S>& context, Wave<S>& wave) {
       wave.hits.u[i + k] = u;
       wave.hits.v[i + k] = v;
     }
+    // Ask for the records of these primitives, and for what the records of the packet before lead to.
     for (size_t k = 0; k < kWidth; ++k) {
       if (wave.hits.primitive[i + k] != kMiss) prefetchPrimitive(*context.scene, wave.hits.primitive[i + k]);
     }
@@ -152,6 +165,7 @@ void occludeEmbree(const StageContext<S>& context, Wave<S>& wave) {
     setSegment(std::nextafter(1.0f, 0.0f), packet);
     copyRays<float>(shadow, i, packet);
     query(Packet<kWidth>::occluded, valid, scene, packet);
+    // Add what is not blocked, in the order of the rays: to lanes, or on light walks to the splats.
     for (size_t k = 0; k < std::min(kWidth, count - i); ++k) {
       if (packet.tfar[k] < 0) continue;  // -infinity: blocked
       if (context.contributesToLanes()) {

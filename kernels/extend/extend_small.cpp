@@ -10,8 +10,9 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Closest hits of one block. Only the nearest can be wrong: what is not met is far from the edge, and so is what lies
-// behind the nearest without a doubt.
+// The closest hits of one block: the taker of intersectAll. A plane is missed only by rays that pass outside of its
+// edges beyond doubt, so no hit is lost. The nearest hit may be one too many, which its limit tells. What lies behind a
+// hit without doubt does not matter.
 struct Closest {
   Float t;
   UInt primitive;
@@ -37,8 +38,10 @@ struct Found {
 // Computed once for the closest hit, from the point, instead of being kept for each candidate.
 WAVECREST_INLINE Found coordinatesOf(const SmallSceneView& scene, const Closest& best, Vec3<Float> origin,
                                      Vec3<Float> direction) {
+  // A scene of spheres alone has no faces to read coordinates from.
   if (scene.firstSphere == 0) return {{best.t, Float(0)}, noLanes()};
   const Vec3<Float> point = mulAdd(direction, best.t, origin);
+  // Lanes that met no face read the maps of the last face; nothing uses the result.
   const RecordLanes<FaceCoordinates> face(scene.coordinates, min(best.primitive, UInt(scene.firstSphere - 1)));
   const auto along = [&](const FourColumns<Float>& row) WAVECREST_LAMBDA {
     return mulAdd(row.a, point.x, mulAdd(row.b, point.y, mulAdd(row.c, point.z, row.d)));
@@ -53,6 +56,8 @@ WAVECREST_INLINE Found coordinatesOf(const SmallSceneView& scene, const Closest&
     edge = select(triangle, max(Float(1) - min(u, v), u + v), edge);
     at = insideEdges(u, v, triangle);
   }
+  // PlaneHit::edge is inside up to 1, with an error of up to limit - 1. Boxes and solids have a limit of 0 and are
+  // never in doubt.
   const Mask doubtful = isFace & (edge + best.limit > Float(2));
   if (scene.sphereCount == 0) return {at, doubtful};
   return {{select(isFace, at.u, best.t), zeroUnless(isFace, at.v)}, doubtful};
@@ -64,6 +69,7 @@ WAVECREST_NOINLINE void decideByLeaves(const SmallSceneView& scene, const Rays<S
                                        Hits& hits) {
   HWY_ALIGN uint32_t places[kLanes], id[kLanes] = {};
   HWY_ALIGN float second[kLanes] = {}, third[kLanes] = {};
+  // Trace the rays against all leaves, packed to the front.
   const size_t count = countTrue(doubtful);
   store(compress(laneIndex(), doubtful), places);
   for (size_t k = 0; k < count; ++k) {
@@ -77,6 +83,7 @@ WAVECREST_NOINLINE void decideByLeaves(const SmallSceneView& scene, const Rays<S
     second[k] = ray.second;
     third[k] = ray.third;
   }
+  // Make coordinates of the weights, all rays at once, and put the hits in their places.
   const HitCoordinates<Float> found = coordinatesInFace(load(id), load(second), load(third));
   storeUnaligned(found.u, second);
   storeUnaligned(found.v, third);
@@ -101,6 +108,7 @@ void extendSmall(const StageContext<typename P::Storage>& context, Wave<typename
   for (size_t i = 0; i < count; i += kLanes) {
     const Vec3<Float> origin = to<Float>(loadVec3(rays.originX, rays.originY, rays.originZ, i));
     const Vec3<Float> direction = to<Float>(loadVec3(rays.directionX, rays.directionY, rays.directionZ, i));
+    // Find the closest hit of each ray and its coordinates. Rays whose hit is in doubt are decided anew.
     Closest best{Float(3.0e38f), UInt(kMiss), Float(0)};
     intersectAll(scene, origin, direction, best);
     const Found found = coordinatesOf(scene, best, origin, direction);

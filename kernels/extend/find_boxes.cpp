@@ -9,6 +9,7 @@
 namespace wavecrest {
 namespace {
 
+// A parallelogram by its centre and two edges.
 struct Quad {
   D3 center, e1, e2;
 };
@@ -17,6 +18,7 @@ Quad quadOf(const PrimitiveRecord<double>& record) {
   return {vec(record.p0) + (e1 + e2) * 0.5, e1, e2};
 }
 
+// Whether two edges are the same or opposite vectors, coordinate by coordinate.
 bool parallel(const D3& a, const D3& b, double tolerance) {
   return largest(a - b) <= tolerance || largest(a + b) <= tolerance;
 }
@@ -30,9 +32,11 @@ bool coincide(const Quad& a, const Quad& b, double tolerance) {
 struct Parallelepiped {
   D3 center, edge[3];
 
+  // The face across edge[axis], at its beginning (side 0) or its end (side 1).
   Quad face(size_t axis, size_t side) const {
     return {center + edge[axis] * (side == 0 ? -0.5 : 0.5), edge[(axis + 1) % 3], edge[(axis + 2) % 3]};
   }
+  // kSameCorner, relative to a bound on the coordinates of all corners.
   double tolerance() const {
     return kSameCorner * (largest(center) + (largest(edge[0]) + largest(edge[1]) + largest(edge[2])) / 2);
   }
@@ -43,6 +47,7 @@ std::vector<Edge> edgesOf(const Quad& quad) {
   return {{corner, quad.e1}, {corner, quad.e2}, {corner + quad.e1, quad.e2}, {corner + quad.e2, quad.e1}};
 }
 
+// Takes each quad in turn for the base of a box. A quad that has become a face of one is in no other.
 class BoxFinder {
  public:
   BoxFinder(const PrimitiveRecord<double>* faces, size_t quads, size_t triangles) : free_(quads, true) {
@@ -70,8 +75,11 @@ class BoxFinder {
       if (i == base || !free_[i]) continue;
       for (const auto& [shared, across] : {std::pair{bottom.e1, bottom.e2}, std::pair{bottom.e2, bottom.e1}}) {
         for (const double side : {-1.0, 1.0}) {
+          // If quad i stands on the edge of the base at this side of `across`, its centre is that of the base plus
+          // (side * across + up) / 2.
           const D3 up = (quads_[i].center - bottom.center) * 2 - across * side;
           const Parallelepiped shape{bottom.center + up * 0.5, {bottom.e1, bottom.e2, up}};
+          // Quad i stands there if its other edge is `up`.
           if (!coincide(quads_[i], {quads_[i].center, shared, up}, shape.tolerance())) continue;
           if (const std::optional<FoundBox> box = boxOf(shape)) return box;
         }
@@ -80,11 +88,13 @@ class BoxFinder {
     return std::nullopt;
   }
 
+  // The box of this shape, if free quads are all of its faces, or all but one.
   std::optional<FoundBox> boxOf(const Parallelepiped& shape) const {
     FoundBox box{};
     size_t missing = 0;
     Quad openSide{};
     for (size_t axis = 0; axis < 3; ++axis) {
+      // The normal goes along the edge, so that side 1 is the high one.
       const D3 across = cross(shape.edge[(axis + 1) % 3], shape.edge[(axis + 2) % 3]);
       const double volume = dot(across, shape.edge[axis]);
       if (volume == 0) return std::nullopt;
@@ -96,11 +106,13 @@ class BoxFinder {
           if (++missing > 1) return std::nullopt;
           openSide = face;
         }
+        // The plane goes through the centre of the quad that is there. All corners of that quad have to lie in it.
         double& bound = side == 0 ? box.low[axis] : box.high[axis];
         bound = dot(box.normal[axis], quad == kNoIndex ? face.center : quads_[quad].center);
         if (quad != kNoIndex && !liesIn(quads_[quad], box.normal[axis], bound)) return std::nullopt;
       }
     }
+    // An open side is moved to high[2]. Nothing else may meet its rim.
     if (missing == 0) return box;
     turnOpenSide(box);
     if (somethingMeets(edgesOf(openSide), box, 2 * shape.tolerance())) return std::nullopt;
@@ -117,6 +129,7 @@ class BoxFinder {
     return false;
   }
 
+  // The first free quad with the corners of this face, or kNoIndex.
   uint32_t freeQuadAt(const Quad& face, double tolerance) const {
     for (size_t i = 0; i < quads_.size(); ++i) {
       if (free_[i] && coincide(quads_[i], face, tolerance)) return static_cast<uint32_t>(i);
@@ -124,6 +137,7 @@ class BoxFinder {
     return kNoIndex;
   }
 
+  // Whether all corners of the quad lie in the plane normal . p = bound, up to flatnessAt.
   static bool liesIn(const Quad& quad, const D3& normal, double bound) {
     for (const double u : {-0.5, 0.5}) {
       for (const double v : {-0.5, 0.5}) {
@@ -134,7 +148,7 @@ class BoxFinder {
     return true;
   }
 
-  // Makes the missing face that at high[2].
+  // Reverses a normal or exchanges two axes where needed, so that the missing face is at high[2].
   static void turnOpenSide(FoundBox& box) {
     for (size_t axis = 0; axis < 3; ++axis) {
       auto& pair = box.quad[axis];

@@ -12,8 +12,8 @@ namespace wavecrest {
 namespace {
 
 constexpr size_t kLeastFaces = 4;  // fewer cost as much as the planes that close them
-// Normals at an angle below a thousandth are parallel. Where such planes are not one, rounding would decide far from
-// their edge which of them a ray meets: then the faces are no solid.
+// Normals at an angle below a thousandth are parallel. Two such faces must lie in one plane, or the faces are no solid:
+// rounding would decide far from their edge which of them a ray meets.
 constexpr double kParallel = 1 - 5e-7;
 
 // A face's corners, in order around it, as indices of welded points.
@@ -21,11 +21,13 @@ using Loop = std::vector<uint32_t>;
 using Key = std::pair<uint32_t, uint32_t>;  // an edge: its ends, the smaller index first
 Key keyOf(uint32_t a, uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
+// Welds corners, collects faces that are connected by shared edges, and tests whether each such body is convex.
 class SolidFinder {
  public:
   SolidFinder(const PrimitiveRecord<double>* faces, size_t quads, size_t triangles, const std::vector<bool>& taken)
       : count_(quads + triangles), taken_(taken) {
     for (size_t i = 0; i < count_; ++i) edges_.push_back(edgesOf(faces[i]));
+    // The largest coordinate, from which the tolerance of welding follows. addLoop welds.
     for (size_t i = 0; i < count_; ++i) {
       for (const Edge& edge : edges_[i])
         reach_ = std::max({reach_, largest(edge.from), largest(edge.from + edge.along)});
@@ -48,6 +50,7 @@ class SolidFinder {
  private:
   double tolerance() const { return kSameCorner * reach_; }
 
+  // The index of the point. Points within the tolerance of an earlier one share its index.
   uint32_t weld(const D3& point) {
     for (uint32_t i = 0; i < points_.size(); ++i) {
       if (largest(points_[i] - point) <= tolerance()) return i;
@@ -55,6 +58,7 @@ class SolidFinder {
     points_.push_back(point);
     return static_cast<uint32_t>(points_.size() - 1);
   }
+  // Appends the corners of a face to loops_. A face that is not taken is also listed at each of its edges.
   void addLoop(const PrimitiveRecord<double>& face, bool quad) {
     const D3 p = vec(face.p0), a = p + vec(face.e1), b = p + vec(face.e2);
     Loop& loop = loops_.emplace_back();
@@ -65,13 +69,14 @@ class SolidFinder {
     if (taken_[face32]) return;
     for (size_t k = 0; k < loop.size(); ++k) facesAt_[keyOf(loop[k], loop[(k + 1) % loop.size()])].push_back(face32);
   }
+  // Calls function(key) for each edge of a face.
   template <class Function>
   void forEachKey(uint32_t face, Function function) const {
     const Loop& loop = loops_[face];
     for (size_t k = 0; k < loop.size(); ++k) function(keyOf(loop[k], loop[(k + 1) % loop.size()]));
   }
 
-  // The faces that a walk across shared edges leads to; they count as seen.
+  // The faces that are connected to `start` by shared edges, `start` included. All of them are marked as seen.
   std::vector<uint32_t> connectedTo(uint32_t start, std::vector<bool>& seen) const {
     std::vector<uint32_t> body{start};
     seen[start] = true;
@@ -103,10 +108,12 @@ class SolidFinder {
       });
       if (!simple) return std::nullopt;
     }
+    // A point inside, if the body is convex: the mean of its corners. Normals are turned away from it.
     D3 middle{};
     for (const uint32_t corner : corners)
       middle = middle + points_[corner] * (1.0 / static_cast<double>(corners.size()));
 
+    // The planes of all faces, then those that close the open sides.
     FoundSolid solid{{}, std::numeric_limits<double>::infinity()};
     for (const uint32_t face : body) {
       if (!addFace(face, middle, solid.planes)) return std::nullopt;
@@ -114,8 +121,9 @@ class SolidFinder {
     if (!addOpenSides(std::move(rims), middle, solid.planes)) return std::nullopt;
     if (!solid.planes.empty() && somethingMeetsRims(body)) return std::nullopt;
 
-    // Convex: all corners on the inner side of all planes, and none is all of the solid.
+    // Convex: all corners are on the inner side of all planes. The thickness is the least extent across a plane.
     for (const SolidPlane& plane : solid.planes) {
+      // The depth of the corner that is farthest from the plane.
       double depth = 0;
       for (const uint32_t corner : corners) {
         const double inside = plane.distance - dot(plane.normal, points_[corner]);
@@ -128,7 +136,8 @@ class SolidFinder {
     return solid;
   }
 
-  // A plane through points around `loop`, turned away from the middle.
+  // The plane of a loop of points, with its normal turned away from the middle. The normal is that of the loop's area,
+  // the sum over a fan of triangles. It is NaN for a loop without area.
   SolidPlane planeOf(const Loop& loop, const D3& middle) const {
     const D3& base = points_[loop[0]];
     D3 area{};
@@ -143,6 +152,7 @@ class SolidFinder {
     }
     return plane;
   }
+  // Whether all corners of the loop lie in the plane, up to flatnessAt and the allowance.
   bool liesIn(const Loop& loop, const SolidPlane& plane, double allowance) const {
     return std::all_of(loop.begin(), loop.end(), [&](uint32_t corner) {
       const D3& p = points_[corner];
@@ -150,7 +160,8 @@ class SolidFinder {
     });
   }
 
-  // Adds the face's plane, or the face to a plane that has one beside it.
+  // Adds the plane of a face. If a parallel plane is there already, the face becomes its second one. False if the faces
+  // are no solid.
   bool addFace(uint32_t face, const D3& middle, std::vector<SolidPlane>& planes) const {
     SolidPlane plane = planeOf(loops_[face], middle);
     if (!(length(plane.normal) > 0.5) || !liesIn(loops_[face], plane, 0)) return false;
@@ -170,6 +181,7 @@ class SolidFinder {
       if (std::find(faces.begin(), faces.end(), plane.face) != faces.end()) shared = key;
     });
     if (!shared) return false;
+    // The separator goes through the shared edge, at right angles to the plane, and points to the second face.
     const D3& from = points_[shared->first];
     D3 across = cross(plane.normal, points_[shared->second] - from);
     D3 beyond{};
@@ -181,12 +193,15 @@ class SolidFinder {
     return true;
   }
 
-  // Planes that close the openings, each a loop of rim edges.
+  // Adds a plane for each open side, which is a loop of rim edges. rims: of each corner on a rim, its neighbours there.
+  // False if the faces are no solid.
   bool addOpenSides(std::map<uint32_t, Loop> rims, const D3& middle, std::vector<SolidPlane>& planes) const {
+    // Where two rims meet in a corner, their loops cannot be told apart.
     for (const auto& [corner, neighbours] : rims) {
       if (neighbours.size() != 2) return false;
     }
     while (!rims.empty()) {
+      // Walk along the rim until it closes.
       Loop loop{rims.begin()->first};
       for (uint32_t from = kNoIndex, at = loop[0];;) {
         const Loop& neighbours = rims.at(at);
@@ -208,7 +223,7 @@ class SolidFinder {
     return true;
   }
 
-  // Whether an edge of any other face lies along one that a face of the body has alone.
+  // Whether an edge of any other face lies along a rim, an edge that only one face of the body has.
   bool somethingMeetsRims(const std::vector<uint32_t>& body) const {
     std::vector<Edge> rims;
     for (const uint32_t face : body) {

@@ -10,18 +10,21 @@ namespace {
 
 constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
+// All quads of the source in one array, as CornerWeld takes them.
 std::vector<PrimitiveRecord<double>> quadsOf(const PrimitiveSource& primitives) {
   std::vector<PrimitiveRecord<double>> quads(primitives.quads.count);
   for (size_t i = 0; i < quads.size(); ++i) quads[i] = primitives.at(primitives.quads.first + i);
   return quads;
 }
 
+// The ids of FaceLeaf and SphereLeaf: the index of the primitive, with the FaceKind in the upper two bits.
 FaceKind faceKindOf(uint32_t id) { return static_cast<FaceKind>(id >> kFaceKindShift); }
 
 uint32_t makeId(size_t primitive, FaceKind kind) {
   return static_cast<uint32_t>(primitive) | static_cast<uint32_t>(kind) << kFaceKindShift;
 }
 
+// A triangle with its box. The corners are in float already, so the box is exact.
 Piece pieceOf(uint32_t id, const std::array<Corner, 3>& corners) {
   Piece piece{.low = {}, .id = id, .high = {}, .unused = 0};
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -30,6 +33,7 @@ Piece pieceOf(uint32_t id, const std::array<Corner, 3>& corners) {
   }
   return piece;
 }
+// A sphere (centre p0, radius e1.x) with its box, rounded outwards.
 Piece pieceOf(uint32_t id, const PrimitiveRecord<double>& sphere) {
   Piece piece{.low = {}, .id = id, .high = {}, .unused = 0};
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -41,6 +45,7 @@ Piece pieceOf(uint32_t id, const PrimitiveRecord<double>& sphere) {
 
 }  // namespace
 
+// count: at least 1.
 Box unionOf(const Box* boxes, size_t count) {
   Box all = boxes[0];
   for (size_t i = 1; i < count; ++i) {
@@ -52,6 +57,7 @@ Box unionOf(const Box* boxes, size_t count) {
   return all;
 }
 
+// Only corners of quads become points of the weld. Corners of all faces are moved to these points (corner_weld.h).
 LeafMaker::LeafMaker(PrimitiveSource primitives, const ParallelFor& parallelFor)
     : primitives_(std::move(primitives)),
       weld_(quadsOf(primitives_)),
@@ -60,10 +66,12 @@ LeafMaker::LeafMaker(PrimitiveSource primitives, const ParallelFor& parallelFor)
   const auto [firstQuad, quads] = primitives_.quads;
   const auto [firstTriangle, triangles] = primitives_.triangles;
   const auto [firstSphere, spheres] = primitives_.spheres;
+  // Boxes are made from the welded corners, which are the corners that leaves hold.
   const auto piece = [this](size_t primitive, FaceKind kind) {
     const uint32_t id = makeId(primitive, kind);
     return pieceOf(id, cornersOf(id));
   };
+  // Two pieces for each quad come first in `faces_`, then the triangles. Spheres have pieces of their own.
   forEachRange(parallelFor, quads, [&, first = firstQuad](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       faces_.begin()[2 * i] = piece(first + i, FaceKind::lowerHalf);
@@ -81,8 +89,11 @@ LeafMaker::LeafMaker(PrimitiveSource primitives, const ParallelFor& parallelFor)
   });
 }
 
+// The welded corners of a triangle, or of one half of a quad. Their order fits coordinatesInFace (face_coordinates.h),
+// which makes (u, v) from the weights of the second and third corner.
 LeafMaker::Triangle LeafMaker::cornersOf(uint32_t id) const {
   const PrimitiveRecord<double> record = primitives_.at(id & kFacePrimitiveMask);
+  // A quad is cut along its diagonal from (0, 0) to (1, 1).
   const auto at = [&](double u, double v) { return weld_(cornerAt(record, u, v)); };
   if (faceKindOf(id) == FaceKind::lowerHalf) return {at(0, 0), at(1, 0), at(1, 1)};
   if (faceKindOf(id) == FaceKind::upperHalf) return {at(0, 0), at(1, 1), at(0, 1)};
@@ -94,6 +105,7 @@ FaceLeaf LeafMaker::faceLeaf(const uint32_t* ids, size_t count) const {
   for (size_t slot = 0; slot < kLeafSize; ++slot) {
     const size_t from = std::min(slot, count - 1);
     leaf.id[slot] = ids[from];
+    // Slots past the last piece repeat it.
     if (from < slot) {
       for (auto& corner : leaf.corner) {
         for (auto& axis : corner) axis[slot] = axis[from];

@@ -25,10 +25,11 @@ struct Batch {
   HWY_ALIGN float visible[LoneEntries::kRays];
 };
 
-// What rays have left to visit goes to batch.alone.
+// Walks the batch in packets. Entries that rays have to visit alone go to batch.alone.
 template <class S>
 WAVECREST_INLINE void walkTogether(const BvhView& bvh, const ShadowRays<S>& rays, LastBlockers& blockers,
                                    Batch& batch) {
+  // The end of a packet's first ray stands for the ends of all its rays.
   const auto blockerOf = [&](size_t i) HWY_ATTR -> uint32_t& {
     return blockers.towards(rays.originX[i] + rays.directionX[i], rays.originY[i] + rays.directionY[i],
                             rays.originZ[i] + rays.directionZ[i]);
@@ -56,16 +57,18 @@ WAVECREST_INLINE void walkTogether(const BvhView& bvh, const ShadowRays<S>& rays
       });
 }
 
-// The rays that packets have left, from where they left them.
+// Finishes the rays that packets have left, each from the entries that were left to it.
 template <class S>
 WAVECREST_INLINE void finishAlone(const BvhView& bvh, const ShadowRays<S>& rays, Batch& batch) {
   size_t next = 0;
   walkBvh<BvhRay<true>>(
       bvh,
       [&](BvhRay<true>& ray) HWY_ATTR {
+        // Blocked rays are done, and so are rays without entries of their own.
         while (next < batch.count && (batch.visible[next] == 0 || batch.alone.count[next] == 0)) ++next;
         if (next >= batch.count) return false;
         beginShadowRay(ray, next, rays, batch.first + next);
+        // The walk begins at the last entry instead of the root. The others wait on the stack, above the end.
         const uint32_t* const entries = batch.alone.entry[next];
         const uint32_t last = batch.alone.count[next] - 1;
         std::copy_n(entries, last, ray.stack + 1);

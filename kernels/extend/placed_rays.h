@@ -42,10 +42,13 @@ struct GroupRay {
       };
       return Vec3<Number>{product(row(0), v), product(row(1), v), product(row(2), v)};
     };
+    // The ray in the group's space. The error of its origin grows with the distance to the group.
     const Vec3<Number> from =
         inGroup({o.x - Number(leaf.place[0]), o.y - Number(leaf.place[1]), o.z - Number(leaf.place[2])});
     direction = inGroup(d);
     const Number error = (sizeOf(from.x) + sizeOf(from.y) + sizeOf(from.z)) * Number(kPassageError);
+    // Where it passes the centre of the sphere. The half width of [enter, leave] is that of a ray through the centre,
+    // which bounds every chord.
     const Number length2 = product(direction, direction);
     const Number nearest = Number(0.0f) - product(from, direction) / length2;
     const auto at = [&](Number t) HWY_ATTR {
@@ -57,11 +60,13 @@ struct GroupRay {
     const Number half = (reach + error) / rootOf(length2);
     enter = nearest - half;
     leave = nearest + half;
+    // The ray starts where it enters the sphere, or at its own origin if that lies within.
     shift = greater(enter, Number(0.0f));
     origin = at(shift);
   }
 };
 
+// A BvhRay that passes into instances. origin and direction are those in the space where the ray is.
 template <bool kAnyHit>
 struct PlacedRayOf : BvhRay<kAnyHit> {
   using Base = BvhRay<kAnyHit>;
@@ -74,6 +79,7 @@ struct PlacedRayOf : BvhRay<kAnyHit> {
     std::copy_n(Base::direction, 3, worldDirection_);
     instance = kNoIndex;
   }
+  // Passes into the group. False, and nothing is changed, if the ray cannot meet the group between its origin and t.
   WAVECREST_INLINE bool enter(const InstanceLeaf& leaf) {
     const GroupRay<float> ray(leaf, {worldOrigin_[0], worldOrigin_[1], worldOrigin_[2]},
                               {worldDirection_[0], worldDirection_[1], worldDirection_[2]});
@@ -89,6 +95,8 @@ struct PlacedRayOf : BvhRay<kAnyHit> {
     Base::aim(o, d);
     return true;
   }
+  // Comes back to the world with the nearer of two hits: that in the group, or that from before. Of equally near ones
+  // the lower id wins, then the lower index of the instance.
   WAVECREST_INLINE void leave() {
     Base::aim(worldOrigin_, worldDirection_);
     const float there = t + shift_;
@@ -116,6 +124,7 @@ struct PlacedRayOf : BvhRay<kAnyHit> {
 };
 using PlacedRay = PlacedRayOf<false>;
 
+// A BvhPacket that passes into instances as PlacedRayOf does. Rays of a packet pass together.
 struct PlacedPacket : BvhPacket {
   UInt instance;
 
@@ -136,6 +145,7 @@ struct PlacedPacket : BvhPacket {
     // Rays that miss the group go along with one that does not, and end before they begin.
     t = select(meets, min(t - shift_ + t * Float(kPassageError), Float(kFarthest)), Float(-1));
     end = greatestLane(t);
+    // Rays that miss repeat the first ray that meets the group, so they widen none of the packet's intervals.
     const float lanes = leastLane(select(meets, toFloat(laneIndex()), Float(static_cast<float>(kLanes - 1))));
     const auto guide = static_cast<size_t>(lanes);
     const auto guided = [&](Float a) HWY_ATTR {

@@ -20,6 +20,7 @@ constexpr double kDoubtUnits = 64;
 // rounding of the largest coordinate, which at this many thicknesses is 0.1 % of its width. Thinner ones stay quads.
 constexpr double kMostThicknesses = 4096;
 
+// reach: the largest coordinate of points that rays start from (rayReach).
 bool isThickEnough(const FoundBox& box, double reach) {
   for (size_t axis = 0; axis < 3; ++axis) {
     if ((box.high[axis] - box.low[axis]) * kMostThicknesses < reach) return false;
@@ -57,6 +58,7 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, 
     return static_cast<uint32_t>(
         std::count_if(primitives, primitives + count, [kind](const auto& p) { return kindOf(p) == kind; }));
   };
+  // Primitives are sorted by kind: quads, triangles, spheres.
   view_.firstTriangle = ofKind(PrimitiveKind::quad);
   const uint32_t triangles = ofKind(PrimitiveKind::triangle);
   view_.firstSphere = view_.firstTriangle + triangles;
@@ -97,11 +99,13 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, 
     addPlane(primitives[i], i, reach);
     ++(i < view_.firstTriangle ? view_.quadCount : view_.triangleCount);
   }
+  // All spheres.
   for (size_t i = view_.firstSphere; i < count; ++i) {
     SphereForm& sphere = spheres_.emplace_back();
     assign(sphere.center, vec(primitives[i].p0));
     sphere.radius = static_cast<float>(primitives[i].e1[0]);
   }
+  // The view, now that the arrays no longer grow.
   view_.boxes = boxes_.data();
   view_.solids = solids_.data();
   view_.sides = sides_.data();
@@ -113,6 +117,7 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, 
 }
 
 void SmallScene::addLeaves(LeafMaker& leaves) {
+  // Four pieces to a leaf, in the order of the primitives.
   const auto pack = [](const Pieces& pieces, const auto& addLeaf) {
     std::vector<uint32_t> ids;
     for (const Piece& piece : pieces) ids.push_back(piece.id);
@@ -153,6 +158,7 @@ void SmallScene::addSolid(const FoundSolid& solid) {
       side.other = plane.other;
     }
   };
+  // The order of sides is that of SolidForm.
   add(form.single, [](const SolidPlane& plane) { return !plane.open() && !plane.shared(); });
   add(form.shared, [](const SolidPlane& plane) { return plane.shared(); });
   add(form.open, [](const SolidPlane& plane) { return plane.open(); });
@@ -161,12 +167,14 @@ void SmallScene::addSolid(const FoundSolid& solid) {
 void SmallScene::addPlane(const PrimitiveRecord<double>& primitive, uint32_t index, double reach) {
   const D3 n = vec(primitive.normal);
   const bool quad = kindOf(primitive) == PrimitiveKind::quad;
+  // The two maps of PlaneForm: 2 u - 1 and 2 v - 1 of a quad, 1 - u and 1 - v of a triangle.
   DualBasis basis = dualBasis(primitive);
   if (quad) {
     basis = {basis.u * 2, basis.v * 2, basis.uOffset * 2 - 1, basis.vOffset * 2 - 1};
   } else {
     basis = {basis.u * -1, basis.v * -1, 1 - basis.uOffset, 1 - basis.vOffset};
   }
+  // The steepest map bounds what an error of the point does to PlaneHit::edge. For triangles 2 - u - v is a third map.
   const double steepest = std::max({length(basis.u), length(basis.v), quad ? 0 : length(basis.u + basis.v)});
   PlaneLimits& limits = limits_.emplace_back();
   limits.primitive = index;

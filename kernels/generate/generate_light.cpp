@@ -56,6 +56,8 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromConstant(const SceneView<t
           {area, inverseEmission, Real(0)}};
 }
 
+// Quads, triangles and spheres: uniform over the area, then cosine-distributed around the normal there. Lanes of other
+// lights get numbers that the caller replaces.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE EmittedRay<typename P::Real> emitFromArea(const SceneView<typename P::Storage>& scene,
                                                            const LightLanes<typename P::Real>& light, const Uniform4& u,
@@ -76,6 +78,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromArea(const SceneView<typen
       point = select(sphere, mulAdd(outward, light.radius, light.p0), point);
     }
   }
+  // The flux pi A L / pick is the throughput: n_0 cancels against the density of the direction.
   const Vec3<Real> local = cosineHemisphere<Real>(to<Real>(u.b), to<Real>(u.c));
   const Vec3<Real> direction = Frame<Real>::fromNormal(normal).toWorld(local);
   const Real area = reciprocal(light.inverseArea);
@@ -103,6 +106,8 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromBeam(const SceneView<typen
   Vec3<Real> direction = Frame<Real>::fromNormal(light.normal).toWorld(uniformCone<Real>(b, c, height));
   const Mask projector = light.kind == lightKind(LightKind::projector);
   if (any(projector)) {
+    // From a place in [0, 1] to a vector in the picture's plane from its middle, whose product with the axis is between
+    // -1 and 1.
     const auto edge = [&](Vec3<Real> axis, Real place) WAVECREST_LAMBDA {
       return axis * (mulAdd(place, two, -one) / max(length2(axis), Real(1e-30f)));
     };
@@ -115,6 +120,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromBeam(const SceneView<typen
           {inversePdf, Real(0), Real(0)}};
 }
 
+// Directional lights: the direction is given, only the point of entry is sampled.
 template <class P>
 WAVECREST_INLINE EmittedRay<typename P::Real> emitDirectional(const SceneView<typename P::Storage>& scene,
                                                               const LightLanes<typename P::Real>& light,
@@ -128,6 +134,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitDirectional(const SceneView<ty
           {area, Real(0), Real(0)}};
 }
 
+// Environment maps: the direction that next event estimation would sample, reversed. more: its four numbers.
 template <class P>
 WAVECREST_INLINE EmittedRay<typename P::Real> emitFromMap(const SceneView<typename P::Storage>& scene,
                                                           const LightLanes<typename P::Real>& light, const Uniform4& v,
@@ -165,6 +172,7 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
   paths.claim(count);
 
   for (size_t i = 0; i < count; i += kLanes) {
+    // Choose a light.
     UInt lane = laneIndex(static_cast<uint32_t>(i));
     if (context.lanes != nullptr) lane = load(context.lanes + i);
     const UInt path = pathOf(context, wave, lane);
@@ -172,6 +180,7 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
     const UInt picked = pickLight(scene, u.a, u.d);
     const LightLanes<Real> light = loadLight(scene, picked);
 
+    // Sample its emission, by each kind that some lane has.
     EmittedRay<Real> ray = emitFromArea<P, kFeatures>(scene, light, u, v);
     const Mask point = light.kind == lightKind(LightKind::point);
     if (any(point)) ray = select(point, emitFromPoint<P>(light, u), ray);
@@ -187,6 +196,7 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
       if (any(map)) ray = select(map, emitFromMap<P>(scene, light, v, draw(context, path, Block::environment)), ray);
     }
 
+    // Strategies that are switched off put 0 into the sums (METHODS 5.3).
     const Real zero(0);
     if (!context.mis.nextEvent) ray.mis.dVCM = zero;
     if (!context.mis.emission) ray.mis.dVC = zero;
@@ -195,6 +205,7 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
     storeVec3(ray.direction, rays.directionX, rays.directionY, rays.directionZ, i);
     storeVec3(ray.throughput, paths.throughputR, paths.throughputG, paths.throughputB, i);
     storeMis<kFeatures>(ray.mis, paths, i);
+    // Russian roulette compares throughputs with the first one (METHODS 1.5).
     store(Real(1) / max(maxComponent(ray.throughput), Real(1e-30f)), paths.rouletteScale, i);
     store(lane, paths.lane, i);
     store(picked, paths.light, i);

@@ -22,6 +22,7 @@ struct TwoWayScattering {
   Real eyePdf, lightPdf, eyeChoice, lightChoice;
 };
 
+// event: PathEvent of the vertex, which says by what lobe the path goes on. shading: with wi towards the eye.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE TwoWayScattering<typename P::Real> scatteringOf(const ShadingLanes<P, kFeatures>& shading, Mask active,
                                                                  Vec3<typename P::Real> towardsLight, UInt event) {
@@ -34,6 +35,8 @@ WAVECREST_INLINE TwoWayScattering<typename P::Real> scatteringOf(const ShadingLa
   if constexpr (!onlyDiffuse(kFeatures)) {
     const Mask delta = active & (event != eventCode(PathEvent::scattered));
     if (any(delta)) {
+      // A delta lobe cannot be evaluated: it is sampled once more, by the number that leads to it. Both densities are
+      // divided by the squared index on the light's side, for etaRatio is eta_wi / eta_wo.
       const Uniform4 u{numberOfEvent<P, kFeatures>(shading.bsdf, event), Float(0), Float(0), Float(0)};
       const auto sample = shading.sampled(delta, u);
       const Mask found = active & (eventOf<P, kFeatures>(shading.bsdf, shading.wi, sample, u.a) == event);
@@ -65,12 +68,14 @@ class Rows {
 
   // Row r, a surface, in the lanes of m: its scattering and the densities of its neighbours made from it.
   WAVECREST_INLINE void evaluate(UInt r, Mask m) const {
+    // The neighbours are row r - 1 on the light's side and row r + 1 on the eye's.
     const UInt one(1u), at = r * stride_ + lane_, behind = at - stride_, ahead = at + stride_;
     const Vec3<Real> x = positionAt(v_, at), towardsEye = positionAt(v_, ahead) - x;
     Vec3<Real> towardsLight = positionAt(v_, behind) - x;
     Real dist2 = max(length2(towardsLight), Real(1e-37f));
     towardsLight = towardsLight * reciprocalSqrt(dist2);
     Real lightCosine = abs(dot(towardsLight, normalAt(v_, behind)));
+    // x_0 may be a direction, or have no surface: lightEdge knows direction, distance and cosine of the first edge.
     const Mask first = m & (r == one);
     LightEdge<Real> edge{};
     if (any(first)) {
@@ -80,14 +85,18 @@ class Rows {
       dist2 = select(first, edge.dist2, dist2);
       lightCosine = select(first, edge.n0, lightCosine);
     }
+    // Scattering between the two directions.
     const Real eyeDist2 = max(length2(towardsEye), Real(1e-37f));
     const Vec3<Real> back = towardsEye * reciprocalSqrt(eyeDist2);
     const auto shading = pathShading<P, kFeatures>(*context_.scene, v_, at, back, Walk::camera);
     auto scattering = scatteringOf<P, kFeatures>(shading, m, towardsLight, gather(v_.event, at));
 
+    // Densities per area of the neighbours: `eye` of the one on the light's side, `light` of the other.
     const Real toArea = lightCosine / dist2;
     Real eye = scattering.eyePdf * toArea;
     if (any(first)) {
+      // The step of x_1 ends at the light: f c L n_0 / (d^2 light[0]). No eye walk meets a delta light. The densities
+      // of x_0 and x_1 from the light's side are those of emission.
       const Vec3<Real> radiance = gatherVec3(headers_.lightR, headers_.lightG, headers_.lightB, lane_);
       const Vec3<Real> emitted = radiance * edge.beam * (eye / max(edge.position, Real(1e-37f)));
       scattering.step = select(first, scattering.step * emitted, scattering.step);
@@ -103,7 +112,8 @@ class Rows {
     storeWhere(scattering.lightPdf * abs(dot(back, normalAt(v_, ahead))) / eyeDist2, m, v_.light, ahead);
   }
 
-  // The row before a new lens; a light that the lens sees has no other strategy, and no vertex that scatters.
+  // The density, from a new lens, of the row next to it. In a path of one edge that row is x_0: the lens sees the
+  // light, nothing scatters, and no other strategy makes the path.
   WAVECREST_INLINE void evaluateLens(Mask m) const {
     const UInt one(1u), last = select(m, edges_ - one, UInt(0u)), at = last * stride_ + lane_;
     const Vec3<Real> lens = positionAt(v_, at + stride_), x = positionAt(v_, at);
@@ -153,6 +163,8 @@ void evaluatePaths(const StageContext<typename P::Storage>& context, Wave<typena
   for (size_t i = 0; i < paths.laneCount; i += kLanes) {
     const Mask active = firstLanes(paths.laneCount - i);
     const UInt lane = load(paths.lanes, i);
+    // Rows with a new neighbour: from the last one that the light's side keeps to the first one that the eye's side
+    // keeps.
     const UInt kept = gather(plans.lightKept, lane), eyeTo = gather(plans.eyeTo, lane);
     const UInt edges = gather(paths.proposed.headers.edges, lane);
     const Rows<P, kFeatures> rows(context, lane);

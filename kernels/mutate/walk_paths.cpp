@@ -16,7 +16,8 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Appends a ray; the sums of the MIS recursion are not used.
+// Appends the rays of the lanes in m from `out` on; where they end. With a throughput of 1 and MIS sums of 0, arrive
+// adds the unweighted radiance of a light that a walk meets.
 template <uint32_t kFeatures, class S, class Real>
 WAVECREST_INLINE size_t appendRay(Wave<S>& wave, Mask m, Vec3<Real> origin, Vec3<Real> direction, UInt lane,
                                   size_t out) {
@@ -53,6 +54,7 @@ WAVECREST_NOINLINE Raster<S> newRaster(const StageContext<S>& context, UInt lane
   Float x = mulAdd(u.a, Float(static_cast<float>(area.width)), left),
         y = mulAdd(u.b, Float(static_cast<float>(area.height)), top);
   if (any(near)) {
+    // The logarithm of the offset is uniform, up to the radius of a circle that has the share kLensShare of the film.
     const double pixels = static_cast<double>(film.width) * film.height;
     const double ratio = std::max(std::sqrt(kLensShare * pixels * kInvPi) / kLensSmallest, 2.0);
     const Float offset = logarithmic(Float(static_cast<float>(kLensSmallest)), std::log(ratio), u.a);
@@ -63,7 +65,8 @@ WAVECREST_NOINLINE Raster<S> newRaster(const StageContext<S>& context, UInt lane
   return {x, y, isWithin(area, x, y)};
 }
 
-// The direction in which a walk leaves a row it comes to from the neighbour at `before`, and the row's event.
+// The direction in which a walk leaves a row, and the event there. shading: the row's surface, with wi towards where
+// the walk comes from.
 template <class P, uint32_t kFeatures>
 WAVECREST_NOINLINE WalkStep<typename P::Real> leave(const StageContext<typename P::Storage>& context,
                                                     const ShadingLanes<P, kFeatures>& shading, Mask active, UInt lane,
@@ -75,6 +78,7 @@ WAVECREST_NOINLINE WalkStep<typename P::Real> leave(const StageContext<typename 
   const Uniform4 u = draw(context, lane, Block::scatter);
   const Mask perturbed = active & isPerturbation(gather(paths.plans.kind, lane));
   const bool perturbs = paths.current != nullptr && any(perturbed);
+  // Perturbations take the delta lobe that the current path took at this row. Other mutations sample the BSDF.
   UInt event = zero;
   Mask same = noLanes();
   const UInt stride(static_cast<uint32_t>(paths.proposed.stride()));
@@ -86,7 +90,8 @@ WAVECREST_NOINLINE WalkStep<typename P::Real> leave(const StageContext<typename 
   const Mask turns = andNot(perturbed, same);
   if (!perturbs || none(turns)) return step;
 
-  // From a row that is no delta: the current path's direction, turned.
+  // From a row that is no delta: the current path's direction, turned by an angle. chooseAngles has drawn the angle of
+  // caustic perturbations.
   const auto& v = paths.current->vertices;
   const UInt at = select(turns, row, one), next = camera ? at - one : at + one;
   const Vec3<Real> current = normalize(positionAt(v, next * stride + lane) - positionAt(v, at * stride + lane));
@@ -110,6 +115,7 @@ WAVECREST_NOINLINE size_t leaveKept(const StageContext<typename P::Storage>& con
   const UInt row = originRow(paths, context.walk, lane);
   // A light's own point has no neighbour behind it: its direction is turned, never sampled.
   const Mask surface = m & (camera ? allLanes() : !(row == zero));
+  // wi: towards the neighbour that the walk would have come from, which the proposal keeps too.
   const UInt at = select(surface, row, one), behind = camera ? at + one : at - one;
   const Vec3<Real> position = positionAt(v, at * stride + lane);
   Vec3<Real> wi = positionAt(v, behind * stride + lane);
@@ -125,6 +131,7 @@ WAVECREST_NOINLINE size_t leaveKept(const StageContext<typename P::Storage>& con
   Vec3<Real> from = shading.position, normal = shading.normal;
   Real offset = shading.offset;
   const Mask ofLight = andNot(m, surface);
+  // x_0 stays, and the direction to x_1 is turned.
   if (any(ofLight)) {
     const auto& current = paths.current->vertices;
     const Vec3<Real> x0 = positionAt(v, lane);
@@ -137,6 +144,7 @@ WAVECREST_NOINLINE size_t leaveKept(const StageContext<typename P::Storage>& con
     step.direction = select(ofLight, turned(towards, theta, to<Real>(u.c)), step.direction);
     step.alive = ofLight | step.alive;
   }
+  // joinPaths writes the event to the row, once both walks have reached their ends.
   storeWhere(step.event, surface, camera ? paths.plans.eyeEvent : paths.plans.lightEvent, lane);
   const Vec3<Real> origin = offsetOrigin(from, normal, offset, step.direction);
   return appendRay<kFeatures>(wave, step.alive & m, origin, step.direction, lane, out);
@@ -171,6 +179,7 @@ WAVECREST_NOINLINE void recordLights(const StageContext<typename P::Storage>& co
     const LightLanes<Real> light = loadLight(scene, index);
     const Vec3<Real> origin = loadVec3(wave.rays.originX, wave.rays.originY, wave.rays.originZ, i);
     const Vec3<Real> direction = loadVec3(wave.rays.directionX, wave.rays.directionY, wave.rays.directionZ, i);
+    // The vertex x_0: a position, or the direction towards an infinite light.
     Vec3<Real> normal = light.normal;
     if constexpr (has(kFeatures, kCurvedShapes)) {
       const Mask sphere = light.kind == lightKind(LightKind::sphere);
@@ -182,6 +191,7 @@ WAVECREST_NOINLINE void recordLights(const StageContext<typename P::Storage>& co
     const auto edge = lightEdge<P, kFeatures>(scene, index, x0, normal, origin + direction);
     const Vec3<Real> throughput = loadVec3(wave.paths.throughputR, wave.paths.throughputG, wave.paths.throughputB, i);
     Vec3<Real> radiance = throughput * (edge.position * edge.firstEdge / max(edge.n0, Real(1e-20f)));
+    // Headers hold the radiance of a beam without its beamFactor.
     if constexpr (has(kFeatures, kRareLights)) {
       radiance = select(isBeam(light.kind), light.radiance, radiance);
     }
@@ -211,6 +221,7 @@ void beginEyeWalks(const StageContext<typename P::Storage>& context, Wave<typena
   wave.rays.claim(count);
   wave.paths.claim(count);
   wave.radiance.claim(count);
+  // No lane has met a light yet.
   for (typename P::Storage* column :
        {static_cast<typename P::Storage*>(wave.radiance.red), static_cast<typename P::Storage*>(wave.radiance.green),
         static_cast<typename P::Storage*>(wave.radiance.blue)}) {
@@ -256,7 +267,8 @@ void beginLightWalks(const StageContext<typename P::Storage>& context, Wave<type
   auto& paths = *context.paths;
   const PathPlans& plans = paths.plans;
   const size_t count = wave.pathCount;
-  // Lanes that begin on a light, those with rays first; `lanes` is scratch here.
+  // Lanes whose light walk begins at a new x_0, if the eye's walk has reached its end. Those whose walk goes on to x_1
+  // come first. `lanes` is scratch here.
   uint32_t* const lanes = paths.lanes;
   size_t fresh = 0, traced = 0;
   for (const bool withRays : {true, false}) {
@@ -269,6 +281,7 @@ void beginLightWalks(const StageContext<typename P::Storage>& context, Wave<type
     if (withRays) traced = fresh;
   }
   std::fill_n(lanes + fresh, kColumnPadding, 0u);
+  // Sample emission for all of them and keep x_0. The rays of walks that end at x_0 are dropped.
   StageContext<typename P::Storage> onLights = context;
   onLights.lanes = lanes;
   wave.pathCount = fresh;
@@ -280,6 +293,7 @@ void beginLightWalks(const StageContext<typename P::Storage>& context, Wave<type
   wave.rays.claim(count);
   wave.paths.claim(count);
 
+  // Then the walks that begin at a row that the proposal keeps.
   const UInt zero(0u);
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
@@ -307,6 +321,7 @@ void walkPaths(const StageContext<typename P::Storage>& context, Wave<typename P
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
     const UInt lane = select(active, load(wave.paths.lane, i), zero);
+    // Walks that have as many edges as planned end here, without a ray.
     const Mask goesOn = active & (UInt(context.depth) < gather(edges, lane));
     if (none(goesOn)) continue;
     auto shading = loadShading<P, kFeatures>(*context.scene, wave, active, i);

@@ -54,6 +54,7 @@ struct ShadingLanes {
         wiCosine(dot(vertex.wi, vertex.normal)),
         bsdf(input) {}
 
+  // Between the world and the frame that wi is in: a turned surface flips z.
   WAVECREST_INLINE Vec3<Real> toLocal(Vec3<Real> v) const {
     const Vec3<Real> local = frame.toLocal(v);
     return {local.x, local.y, local.z * side};
@@ -72,8 +73,9 @@ struct ShadingLanes {
     return out;
   }
 
-  // A direction to go on. wo is in this frame; the weight of a light walk is such that METHODS 3.9 with this frame's
-  // cosines makes it f c(omega_l) / pdf with those that count.
+  // A direction to go on. wo is in this frame. On a light walk scatter multiplies the weight by quotients of cosines
+  // (METHODS 3.9), which it takes from this frame. The weights of mapped lanes are such that the product has the
+  // cosines to the normal that f is taken with.
   WAVECREST_INLINE BsdfSample<Real> sampled(Mask active, const Uniform4& u) const {
     if constexpr (has(kFeatures, kNormalMaps)) {
       if (map.present) return bsdf.walk == Walk::camera ? sampledFromEye(active, u) : sampledFromLight(active, u);
@@ -101,7 +103,7 @@ struct ShadingLanes {
     view.wi.z = view.wi.z * view.side;
     return view;
   }
-  // The BSDF for lanes that are seen from another frame.
+  // The BSDF with the direction of dp/du in the other view's frame, in the lanes of `other`.
   WAVECREST_INLINE decltype(auto) bsdfIn([[maybe_unused]] Mask other, [[maybe_unused]] const View& view) const {
     if constexpr (has(kFeatures, kCompoundBsdfs)) {
       BsdfInputOf<P, kFeatures> input = bsdf;
@@ -115,17 +117,23 @@ struct ShadingLanes {
       return (bsdf);
     }
   }
-  // seesThis: the eye faces the normal of this frame.
+  // The factor by which a map changes f between wi and `direction`. seesThis: lanes where the eye faces the normal of
+  // this frame, not its mirror image.
   WAVECREST_INLINE Real lightFactor(Mask seesThis, Vec3<Real> direction) const {
     const Vec3<Real> seen = select(seesThis, frame.n, map.otherOf(frame.n));
     return bsdf.walk == Walk::camera ? map.lightFactor(seen, direction, map.wi)
                                      : map.lightFactor(seen, map.wi, direction);
   }
 
+  // Turns `out`, which is scattering at this frame's normal, into that of a map with two normals, in mapped lanes
+  // (METHODS 1.2). f is taken with the normal that the eye faces. The density of a light walk, pdf or pdfReverse, is
+  // the mixture of those with either normal.
   WAVECREST_INLINE void applyMap(Mask active, Vec3<Real> direction, Scattering<Real>& out) const {
     const Mask mapped = active & map.lanes;
     if (none(mapped)) return;
     const bool camera = bsdf.walk == Walk::camera;
+    // share: the probability that a light walk draws this frame's normal. both: lanes that need the other normal as
+    // well.
     const Real one(1), share = map.lightShare(frame.n, camera ? direction : map.wi);
     const Mask seesThis = camera ? mapped : mapped & map.sees(direction, frame.n);
     const Mask both = andNot(mapped, seesThis & (share >= one));
@@ -153,10 +161,13 @@ struct ShadingLanes {
     return sample.specular & (sample.wo.x == -wi.x) & (sample.wo.y == -wi.y) & (sample.wo.z == -wi.z);
   }
 
+  // A camera walk samples with this frame's normal, which is the one that the eye faces.
   WAVECREST_INLINE BsdfSample<Real> sampledFromEye(Mask active, const Uniform4& u) const {
     BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, wi, u);
     const Mask mapped = andNot(active & map.lanes, passes(sample, wi));
     if (none(mapped)) return sample;
+    // The reverse walk comes from a light. Through a delta lobe it takes this way only if it draws this normal; other
+    // lobes have the density of the mixture.
     const Vec3<Real> direction = toWorld(sample.wo);
     const Mask finite = andNot(mapped, sample.specular);
     const Real back = sample.pdfReverse * map.lightShare(frame.n, direction);
@@ -166,15 +177,18 @@ struct ShadingLanes {
     return sample;
   }
 
+  // A light walk draws one of the two normals and samples with it.
   WAVECREST_INLINE BsdfSample<Real> sampledFromLight(Mask active, const Uniform4& u) const {
     const Real one(1), tiny(1e-12f);
+    // Draw the normal by u.b.
     const View other = otherView();
     const Real share = select(map.lanes, map.lightShare(frame.n, map.wi), one);
     const Mask drawsOther = active & (to<Real>(u.b) >= share);
     const Real drawn = select(drawsOther, one - share, share);
-    // What is left of u.b goes into the direction.
+    // What is left of u.b chooses the direction.
     const Float rest = toFloat(select(drawsOther, to<Real>(u.b) - share, to<Real>(u.b)) / drawn);
     const Uniform4 numbers{u.a, min(max(rest, Float(0)), Float(0x1.fffffep-1f)), u.c, u.d};
+    // Sample in the frame of the drawn normal. wo is the result in this frame.
     const Vec3<Real> from = select(drawsOther, other.wi, wi);
     BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdfIn(drawsOther, other), active, from, numbers);
     const Mask mapped = andNot(active & map.lanes, passes(sample, from));
@@ -190,6 +204,8 @@ struct ShadingLanes {
     sample.pdfReverse = select(delta, sample.pdfReverse * turn, sample.pdfReverse);
     sample.pdf = select(delta, sample.pdf * drawn, sample.pdf);
 
+    // Other lobes: either normal may have led to this direction, so weight and densities come from scattering(). The
+    // quotient of cosines to this frame undoes that of scatter.
     const Mask finite = andNot(mapped, sample.specular);
     if (any(finite)) {
       const Scattering<Real> all = scattering(finite, direction);
@@ -208,6 +224,7 @@ WAVECREST_INLINE UInt materialOf(const SceneView<S>& scene, UInt primitive) {
   return primitivesOf(scene, primitive)(scene.primitives->material);
 }
 
+// The vertex in its shading frame, with its material, textures and map, turned towards wi where it is two-sided.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P::Storage>& scene,
                                                       const VertexLanes<typename P::Real>& vertex) {
@@ -224,6 +241,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
                .wi = vertex.wi,
                .base = vertex.baseNormal,
                .mapped = vertex.shadingNormal};
+      // Of the two normals of a map the frame has the one that wi faces.
       s.frame = Frame<Real>::fromNormal(select(s.map.lanes, s.map.normalFor(vertex.wi), vertex.shadingNormal));
       s.wi = s.frame.toLocal(vertex.wi);
     }
@@ -235,6 +253,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
     s.bsdf.u = vertex.u;
     s.bsdf.v = vertex.v;
     if (scene.tangents) {
+      // dp/du from its angle about the base normal.
       const auto base = Frame<Real>::fromNormal(scene.normalMaps ? vertex.baseNormal : vertex.shadingNormal);
       const auto angle = sinCos(to<Real>(vertex.tangent));
       s.tangent = mulAdd(base.s, angle.cos, base.t * angle.sin);

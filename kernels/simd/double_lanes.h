@@ -42,6 +42,7 @@ template <class Function, class... V>
 WAVECREST_INLINE void forEachPart(Function function, Parts<V>... a) {
   function(a.part[0]...);
 }
+// Where each part begins among the lanes.
 constexpr Parts<size_t> kFirstLanes{{0}};
 #else
 template <class V>
@@ -62,6 +63,7 @@ WAVECREST_INLINE void forEachPart(Function function, Parts<V>... a) {
   function(a.part[0]...);
   function(a.part[1]...);
 }
+// Where each part begins among the lanes.
 constexpr Parts<size_t> kFirstLanes{{0, kPartLanes}};
 #endif
 
@@ -91,6 +93,7 @@ WAVECREST_INLINE Mask joinMask(Parts<hn::Mask<DoubleTag>> m) {
   return {hn::RebindMask(FloatTag(), hn::MaskFromVec(join(UIntTag(), lanes)))};
 }
 
+// Operations of one, two and three Doubles, lane by lane. Comparisons give the masks of 32-bit lanes.
 #define WAVECREST_DOUBLE_BINARY(NAME, OP)                                                    \
   WAVECREST_INLINE Double NAME(Double a, Double b) {                                         \
     return mapParts([](auto x, auto y) WAVECREST_LAMBDA { return hn::OP(x, y); }, a.v, b.v); \
@@ -138,6 +141,7 @@ WAVECREST_INLINE Double select(Mask m, Double yes, Double no) {
 }
 WAVECREST_INLINE Double zeroUnless(Mask m, Double a) { return select(m, a, Double(0.0)); }
 
+// To Double exactly, to Float rounded.
 WAVECREST_INLINE Double toDouble(Float a) {
   return mapParts([](auto half) WAVECREST_LAMBDA { return hn::PromoteTo(DoubleTag(), half); }, split(a.v));
 }
@@ -147,6 +151,7 @@ WAVECREST_INLINE Float toFloat(Double a) {
 }
 WAVECREST_INLINE Float toFloat(Float a) { return a; }
 
+// p of the aligned forms: a multiple of the size of a register.
 WAVECREST_INLINE Double load(const double* p) {
   return mapParts([p](size_t first) WAVECREST_LAMBDA { return hn::Load(DoubleTag(), p + first); }, kFirstLanes);
 }
@@ -165,6 +170,7 @@ WAVECREST_INLINE void storeTruncated(Double a, int64_t* p) {
                   WAVECREST_LAMBDA { hn::Store(hn::ConvertTo(LongTag(), x), LongTag(), p + first); },
               a.v, kFirstLanes);
 }
+// index: in units of doubles.
 WAVECREST_INLINE Double gather(const double* base, UInt index) {
   return mapParts([base](auto half)
                       WAVECREST_LAMBDA { return hn::GatherIndex(DoubleTag(), base, hn::PromoteTo(LongTag(), half)); },
@@ -190,6 +196,7 @@ inline WAVECREST_NOINLINE Double compress(Double a, Mask m) {
   return load(out);
 }
 
+// Lane i is lane order[i] of a; order: below kLanes.
 inline WAVECREST_NOINLINE Double inOrder(Double a, UInt order) {
   HWY_ALIGN double in[kLanes];
   HWY_ALIGN double out[kLanes];

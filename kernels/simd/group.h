@@ -8,6 +8,7 @@
 
 WAVECREST_SIMD_BEGIN
 
+// How the values lie in registers: kParts of them, of kWidth lanes each. kCount: a power of two.
 template <size_t kCount>
 struct GroupShape {
   static constexpr size_t kWidth = std::min(kCount, kLanes), kParts = kCount / kWidth;
@@ -15,6 +16,7 @@ struct GroupShape {
   using UIntTag = hn::Rebind<uint32_t, FloatTag>;
 };
 
+// Groups of masks, floats and 32-bit integers of the same count: masks of comparisons fit all of them.
 template <size_t kCount>
 struct MaskGroup {
   using Shape = GroupShape<kCount>;
@@ -35,6 +37,7 @@ struct UIntGroup {
   hn::Vec<typename Shape::UIntTag> part[Shape::kParts];
 };
 
+// Functions of two groups, value by value.
 #define WAVECREST_GROUP_OPERATION(NAME, RESULT, OPERAND, HIGHWAY)                                        \
   template <size_t kCount>                                                                               \
   WAVECREST_INLINE RESULT<kCount> NAME(OPERAND<kCount> a, OPERAND<kCount> b) {                           \
@@ -92,6 +95,7 @@ WAVECREST_INLINE FloatGroup<kCount> select(MaskGroup<kCount> m, FloatGroup<kCoun
   }
   return no;
 }
+// Each value against the same number.
 template <size_t kCount>
 WAVECREST_INLINE MaskGroup<kCount> operator!=(UIntGroup<kCount> a, uint32_t b) {
   using Shape = GroupShape<kCount>;
@@ -166,6 +170,7 @@ WAVECREST_INLINE Least leastOf(FloatGroup<kCount> a) {
     const auto least = hn::MinOfLanes(tag, a.part[0]);
     return {hn::GetLane(least), hn::FindKnownFirstTrue(tag, hn::Eq(a.part[0], least))};
   } else {
+    // The group takes several registers.
     HWY_ALIGN float values[kCount];
     store(a, values);
     const size_t index = static_cast<size_t>(std::min_element(values, values + kCount) - values);
@@ -180,14 +185,15 @@ WAVECREST_INLINE size_t appendWhere(MaskGroup<kCount> m, UIntGroup<kCount> items
   const typename Shape::UIntTag tag;
   size_t count = 0;
   for (size_t i = 0; i < Shape::kParts; ++i) {
+    // The next register overwrites what this one writes behind its items.
     hn::StoreU(moveToFront(tag, items.part[i], hn::RebindMask(tag, m.part[i])), tag, out + count);
     count += hn::CountTrue(typename Shape::FloatTag(), m.part[i]);
   }
   return count;
 }
 
-// The same for eight items in order of falling keys, so that the least is last. Keys are not negative; the lowest three
-// bits of their mantissas do not count, and equal keys come in order of place.
+// The same for eight items in order of falling keys, so that the least is last. Keys are not negative, so their bits
+// are in the order of their values. The lowest three bits are ignored, and equal keys come in order of place.
 WAVECREST_INLINE size_t appendByFallingKey(MaskGroup<8> m, FloatGroup<8> keys, UIntGroup<8> items, uint32_t* out) {
   using Shape = GroupShape<8>;
   const typename Shape::UIntTag tag;
@@ -203,6 +209,8 @@ WAVECREST_INLINE size_t appendByFallingKey(MaskGroup<8> m, FloatGroup<8> keys, U
                             WAVECREST_LAMBDA { v = hn::IfThenElse(upper, hn::Max(v, w), hn::Min(v, w)); };
   const auto laneHasBit = [&](uint32_t bit) WAVECREST_LAMBDA { return hn::TestBit(place, hn::Set(tag, bit)); };
   const auto odd = laneHasBit(1), upperPair = laneHasBit(2), upperHalf = laneHasBit(4);
+  // Runs of two, four and eight values are sorted one after the other. The first exchange for a run compares each value
+  // with its mirror image in the run.
   exchange(hn::Shuffle2301(v), odd);
   exchange(hn::Shuffle0123(v), upperPair);
   exchange(hn::Shuffle2301(v), odd);
@@ -223,6 +231,8 @@ WAVECREST_INLINE size_t appendByFallingKey(MaskGroup<8> m, FloatGroup<8> keys, U
     hn::Store(hn::IfThenElse(known, key, hn::Set(tag, kAbsent)), tag, sortable + i * Shape::kWidth);
     hn::Store(items.part[i], tag, all + i * Shape::kWidth);
   }
+  // Insertion sort of the items that are present. An entry is the complemented key with the place in its low bits,
+  // above the item.
   for (uint32_t i = 0; i < 8; ++i) {
     if (sortable[i] == kAbsent) continue;
     const uint64_t entry = (uint64_t{sortable[i] | i} << 32) | all[i];

@@ -33,6 +33,7 @@ WAVECREST_INLINE Vec3<Real> bumped(const TextureRecord* textures, const float* t
   const Float step(kStep);
   const Real hu = to<Real>((height(u + step, v) - height(u - step, v)) * Float(0.5f / kStep)) * scale;
   const Real hv = to<Real>((height(u, v + step) - height(u, v - step)) * Float(0.5f / kStep)) * scale;
+  // The tangents of p + h n: along the normal they have the slope of h and nothing else.
   const Vec3<Real> du = mulAdd(normal, hu - dot(normal, tangents.dpDu), tangents.dpDu);
   const Vec3<Real> dv = mulAdd(normal, hv - dot(normal, tangents.dpDv), tangents.dpDv);
   const Vec3<Real> across = cross(du, dv);
@@ -45,6 +46,7 @@ WAVECREST_INLINE Vec3<Real> bumped(const TextureRecord* textures, const float* t
 template <class Real>
 WAVECREST_INLINE Vec3<Real> mapped(const TextureRecord* textures, const float* texels, UInt id, Float u, Float v,
                                    Vec3<Real> normal, const Tangents<Real>& tangents) {
+  // From colours in [0, 1] to coordinates in [-1, 1].
   const Vec3<Real> local =
       to<Real>(evalTexture(textures, texels, id, u, v)) * Real(2) - Vec3<Real>{Real(1), Real(1), Real(1)};
   const Vec3<Real> s = normalize(mulAdd(normal, -dot(normal, tangents.dpDu), tangents.dpDu));
@@ -64,10 +66,12 @@ WAVECREST_INLINE void mapSphere(const PrimitiveRecord<typename P::Storage>& fiel
                                 Vec3<typename P::Real> normal, Interpolated<typename P::Real>& out,
                                 Tangents<typename P::Real>& tangents) {
   using Real = typename P::Real;
+  // x, y, z: the outward direction in the sphere's own frame.
   const Vec3<Real> e1 = at(fields.e1), axis = at(fields.e2), phi0 = at(fields.normal);
   const Vec3<Real> outward = normal * e1.y, phi90 = cross(axis, phi0) * e1.z;
   const Real x = dot(outward, phi0), y = dot(outward, phi90), z = min(max(dot(outward, axis), Real(-1)), Real(1));
   const Real turn = atan2(y, x) * Real(kInvPi / 2);
+  // The sine of the angle from the axis, bounded so that nothing is divided by 0 at the poles.
   const Real sine = sqrt(max(Real(1) - z * z, Real(1e-12f)));
   const Vec3<Real> outOfAxis = (phi0 * x + phi90 * y) * (Real(1) / sine);
   out.u = select(sphere, to<Float>(turn - floor(turn)), out.u);
@@ -78,7 +82,8 @@ WAVECREST_INLINE void mapSphere(const PrimitiveRecord<typename P::Storage>& fiel
 
 }  // namespace
 
-// surface: in the space of the primitive's group. geometric: its normal in the world, where all results are.
+// Shading normal, texture coordinates and tangent at a surface point, in the world. surface: in the space of the
+// primitive's group. geometric: its normal in the world.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<typename P::Storage>& scene,
                                                             const PrimitiveLanes<typename P::Storage>& at, Mask hit,
@@ -86,6 +91,7 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
                                                             Vec3<typename P::Real> geometric,
                                                             const InstanceLanes<P, kFeatures>& instance) {
   using Real = typename P::Real;
+  // A primitive without attributes has its own normal, and its own (u, v) as texture coordinates.
   Interpolated<Real> out{surface.normal, surface.normal, to<Float>(surface.u), to<Float>(surface.v), Float(0)};
   const UInt index = at(scene.primitives->attributes);
   const Mask attributed = andNot(hit, index == UInt(kNoIndex));
@@ -95,6 +101,8 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
   if (scene.attributes != nullptr && any(attributed)) {
     const AttributeRecord& fields = *scene.attributes;
     const RecordLanes<AttributeRecord> corner(scene.attributes, select(attributed, index, UInt(0u)));
+    // Normals and texture coordinates of the corners (0, 0), (1, 0) and (0, 1), interpolated. In the far half of a quad
+    // b0 is negative.
     const Vec3<Real> smooth = to<Real>(corner(fields.normal[0])) * b0 + to<Real>(corner(fields.normal[1])) * b1 +
                               to<Real>(corner(fields.normal[2])) * b2;
     const Mask smoothed = attributed & (corner(fields.hasNormals) == UInt(1u)) & (length2(smooth) > Real(1e-12f));
@@ -124,6 +132,7 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
   }
 
   if constexpr (has(kFeatures, kInstances)) {
+    // From the group to the world.
     out.normal = instance.normalToWorld(out.normal);
     tangents = {instance.vectorToWorld(tangents.dpDu), instance.vectorToWorld(tangents.dpDv)};
   }
@@ -135,6 +144,7 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
     }
   }
   if (has(kFeatures, kNormalMaps) && scene.normalMaps) {
+    // Bump and normal maps change the normal; `base` stays as it is.
     const MaterialLanes material(scene, at(scene.primitives->material));
     const UInt bumpMap = material(scene.materials->bumpTexture), normalMap = material(scene.materials->normalTexture);
     const Mask bump = andNot(hit, bumpMap == UInt(kNoIndex)), map = andNot(hit, normalMap == UInt(kNoIndex));

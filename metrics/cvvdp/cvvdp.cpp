@@ -24,6 +24,7 @@ Planes makePlanes(PlaneSize size) {
   return {Plane(size.width, size.height), Plane(size.width, size.height), Plane(size.width, size.height)};
 }
 
+// Row y of the three opponent planes, to write or to read.
 template <class PlanesType>
 auto rowsOf(PlanesType& planes, size_t y) {
   return std::array{planes[0].row(y), planes[1].row(y), planes[2].row(y)};
@@ -70,6 +71,7 @@ const float* blurredRow(const MetricKernels& kernels, const Plane& plane, size_t
   const size_t width = plane.width(), height = plane.height();
   if (std::min(width, height) <= kMaskBlurRadius) return plane.row(y);
   static const auto kWeights = blurWeights();
+  // Scratch: a row filtered down the columns, with borders, and the result of each channel.
   constexpr size_t kBorder = kPlaneLanes;
   float* down = scratchRow(0, roundUpToLanes(width) + 2 * kBorder) + kBorder;
   float* across = scratchRow(1 + channel, roundUpToLanes(width));
@@ -84,9 +86,11 @@ const float* blurredRow(const MetricKernels& kernels, const Plane& plane, size_t
                          .out = outputs,
                          .width = width});
   };
+  // Down the columns.
   for (size_t tap = 0; tap < sources.size(); ++tap)
     sources[tap] = plane.row(vdp::mirroredIndex(static_cast<std::ptrdiff_t>(y + tap) - kMaskBlurRadius, height));
   filter(down);
+  // Reflect the row at both ends, then filter along it.
   for (size_t i = 1; i <= kMaskBlurRadius; ++i) {
     down[-static_cast<std::ptrdiff_t>(i)] = down[i];
     down[width - 1 + i] = down[width - 1 - i];
@@ -154,6 +158,7 @@ PreparedCvvdp::State::State(const Image8& reference, Isa isa) : kernels(metricKe
       for (size_t code = 0; code < 256; ++code)
         codeOpponents[channel][o][code] = static_cast<float>(matrix[o][channel] * displayed(srgbDecodeTable()[code]));
 
+  // Bands and the sizes of their planes.
   const std::vector<double> frequencies = bandFrequencies(reference.width, reference.height);
   PlaneSize size{reference.width, reference.height};
   for (size_t b = 0; b + 1 < frequencies.size(); ++b) {
@@ -161,6 +166,7 @@ PreparedCvvdp::State::State(const Image8& reference, Isa isa) : kernels(metricKe
     halvings.emplace_back(size);
     size = halvings.back().coarse();
   }
+  // The reference's Gaussian pyramid. What bands and base need of it is kept.
   std::vector<Planes> levels;
   for (const Band& band : bands) levels.push_back(makePlanes(band.size));
   levels.push_back(makePlanes(size));
@@ -192,7 +198,7 @@ void PreparedCvvdp::State::makeLevels(const Image8& image, std::vector<Planes>& 
   }
 }
 
-// What the level after `level` shows of it.
+// Row y of the level after `level`, expanded to the size of `level`. The rows are scratch of the thread.
 CvvdpChannels<const float*> PreparedCvvdp::State::expandedRows(const Planes& coarse, size_t level, size_t y) const {
   const size_t floats = halvings[level].scratchFloats();
   CvvdpChannels<const float*> rows{};
@@ -209,6 +215,7 @@ void PreparedCvvdp::State::prepareBand(size_t b, const std::vector<Planes>& leve
   std::array<SensitivityCurve, kOpponents> curves{};
   for (size_t o = 0; o < kOpponents; ++o) curves[o] = sensitivityCurve(o, frequency);
   tbb::parallel_for(size_t{0}, bands[b].size.height, [&](size_t y) {
+    // The next level is the local background: its achromatic channel divides all three differences.
     const auto coarse = expandedRows(levels[b + 1], b, y);
     for (size_t x = 0; x < bands[b].size.width; ++x) {
       const double background = std::max(double{coarse[0][x]}, kLeastBackground);
@@ -222,6 +229,7 @@ void PreparedCvvdp::State::prepareBand(size_t b, const std::vector<Planes>& leve
   });
 }
 
+// A work space from the pool, or a new one when all are in use.
 std::unique_ptr<Workspace> PreparedCvvdp::State::takeWorkspace() const {
   {
     const std::lock_guard lock(poolMutex);
@@ -244,6 +252,7 @@ std::unique_ptr<Workspace> PreparedCvvdp::State::takeWorkspace() const {
 // Pooled visible differences of one band.
 std::array<double, kOpponents> PreparedCvvdp::State::poolBand(size_t b, Workspace& workspace, bool withMap) const {
   const Band& band = bands[b];
+  // Contrast of the test image, and mutual contrast. All rows come first, as the blur reads neighbouring rows.
   Planes &test = workspace.test[b], &mutual = workspace.mutual[b];
   tbb::parallel_for(size_t{0}, band.size.height, [&](size_t y) {
     kernels.cvvdpContrastRow({.fine = readRows(workspace.levels[b], y),
@@ -257,6 +266,7 @@ std::array<double, kOpponents> PreparedCvvdp::State::poolBand(size_t b, Workspac
                               .mutual = rowsOf(mutual, y)});
   });
 
+  // Differences, masked by the blurred mutual contrast.
   CvvdpDifferenceRow settings{};
   settings.width = band.size.width;
   settings.offset = static_cast<float>(kPowerOffset);
@@ -278,6 +288,7 @@ std::array<double, kOpponents> PreparedCvvdp::State::poolBand(size_t b, Workspac
     rows[y] = kernels.cvvdpDifferenceRow(row);
   });
 
+  // Rows are added in order, so the result does not depend on the number of threads.
   std::array<double, kOpponents> pooled{};
   for (const auto& row : rows)
     for (size_t o = 0; o < kOpponents; ++o) pooled[o] += row[o];
@@ -307,6 +318,7 @@ std::array<double, kOpponents> PreparedCvvdp::State::poolBase(Workspace& workspa
 
 // The pyramid put together again from the differences, all channels in one.
 std::vector<float> PreparedCvvdp::State::differenceMap(Workspace& workspace) const {
+  // The 4-norm over the channels of each sample, without the gain of the band.
   std::vector<Plane> pyramid;
   for (size_t b = 0; b < workspace.differences.size(); ++b) {
     const Planes& differences = workspace.differences[b];
@@ -323,6 +335,7 @@ std::vector<float> PreparedCvvdp::State::differenceMap(Workspace& workspace) con
       }
     }
   }
+  // From coarse to fine: each band plus the expanded sum of all coarser ones.
   for (size_t b = bands.size(); b-- > 0;) {
     const size_t floats = halvings[b].scratchFloats();
     for (size_t y = 0; y < pyramid[b].height(); ++y) {
@@ -332,6 +345,7 @@ std::vector<float> PreparedCvvdp::State::differenceMap(Workspace& workspace) con
       for (size_t x = 0; x < pyramid[b].width(); ++x) row[x] += expanded[x];
     }
   }
+  // 10 - JOD of each pixel, over 10.
   std::vector<float> map;
   for (size_t y = 0; y < pyramid[0].height(); ++y)
     for (size_t x = 0; x < pyramid[0].width(); ++x)
@@ -347,10 +361,12 @@ PreparedCvvdp& PreparedCvvdp::operator=(PreparedCvvdp&&) noexcept = default;
 CvvdpResult PreparedCvvdp::compare(const Image8& test, bool withMap) const {
   std::unique_ptr<Workspace> taken = state_->takeWorkspace();
   Workspace& workspace = *taken;
+  // Planes of differences are made when a map is first asked for.
   if (withMap && workspace.differences.empty())
     for (const Planes& level : workspace.levels)
       workspace.differences.push_back(makePlanes({level[0].width(), level[0].height()}));
 
+  // The test image's pyramid, then the pooled differences of each band and of the base.
   state_->makeLevels(test, workspace.levels);
   CvvdpResult result;
   for (size_t b = 0; b < state_->bands.size(); ++b) result.bands.push_back(state_->poolBand(b, workspace, withMap));
@@ -369,6 +385,7 @@ CvvdpResult PreparedCvvdp::compare(const Image8& test, bool withMap) const {
   result.jod = 10 - justObjectionableDifferences(kImageIntegration * offsetPower(channels, 1 / kChannelExponent));
   if (withMap) result.map = state_->differenceMap(workspace);
 
+  // The work space goes back to the pool.
   const std::lock_guard lock(state_->poolMutex);
   state_->pool.push_back(std::move(taken));
   return result;

@@ -8,7 +8,8 @@ namespace wavecrest::cvvdp {
 namespace {
 
 constexpr std::array<float, 5> kFilter{0.05f, 0.25f, 0.4f, 0.25f, 0.05f};
-// The filter doubled, as every second sample of the plane that it doubles is zero: for even and for odd rows.
+// Expansion puts a zero after every sample, so all taps are doubled. Even rows meet samples at taps 0, 2 and 4, odd
+// rows at taps 1 and 3.
 constexpr std::array<float, 3> kEvenRows{0.1f, 0.8f, 0.1f};
 constexpr std::array<float, 2> kOddRows{0.5f, 0.5f};
 
@@ -20,6 +21,7 @@ size_t repeatedMirror(std::ptrdiff_t index, size_t length) {
   return static_cast<size_t>(index);
 }
 
+// The sum of rows of one width times their weights.
 void weightedRow(const MetricKernels& kernels, std::span<const float* const> rows, std::span<const float> weights,
                  float* out, size_t width) {
   const float* weightList[] = {weights.data()};
@@ -37,6 +39,7 @@ void weightedRow(const MetricKernels& kernels, std::span<const float* const> row
 Halving::Columns::Columns(size_t tapCount, size_t width)
     : taps(tapCount), stride(roundUpToLanes(width)), indices(taps * stride), weights(taps * stride) {}
 
+// Adds a weight to a tap. Reflected taps fall on taps inside the row, which then have both weights.
 void Halving::Columns::set(size_t tap, size_t column, size_t index, double weight) {
   indices[tap * stride + column] = static_cast<uint32_t>(index);
   weights[tap * stride + column] += static_cast<float>(weight);
@@ -48,6 +51,7 @@ GatheredSum Halving::Columns::job(const float* in, float* out) const {
 
 Halving::Halving(PlaneSize fine) : fine_(fine), reducing_(reducingColumns(fine)), expanding_(expandingColumns(fine)) {}
 
+// Five taps along the row for each column of the half size.
 Halving::Columns Halving::reducingColumns(PlaneSize fine) {
   const size_t width = fine.width, outputs = (width + 1) / 2;
   Columns columns(kFilter.size(), outputs);
@@ -72,6 +76,7 @@ Halving::Columns Halving::reducingColumns(PlaneSize fine) {
   return columns;
 }
 
+// Three taps for even columns, two for odd ones. Columns beyond the edge are the edge column.
 Halving::Columns Halving::expandingColumns(PlaneSize fine) {
   const size_t coarseWidth = (fine.width + 1) / 2;
   Columns columns(kEvenRows.size(), fine.width);
@@ -89,6 +94,7 @@ Halving::Columns Halving::expandingColumns(PlaneSize fine) {
   return columns;
 }
 
+// Down the columns into scratch, then along the row.
 void Halving::reduceRow(const MetricKernels& kernels, const Plane& fine, size_t y, float* scratch, float* out) const {
   std::array<const float*, kFilter.size()> rows{};
   for (size_t tap = 0; tap < rows.size(); ++tap)
@@ -97,6 +103,7 @@ void Halving::reduceRow(const MetricKernels& kernels, const Plane& fine, size_t 
   kernels.gatheredSum(reducing_.job(scratch, out));
 }
 
+// Down the columns into scratch, then along the row. Rows beyond the edge are the edge row.
 void Halving::expandRow(const MetricKernels& kernels, const Plane& coarse, size_t y, float* scratch, float* out) const {
   const size_t middle = y / 2, below = std::min(middle + 1, coarse.height() - 1);
   if (y % 2 == 0) {

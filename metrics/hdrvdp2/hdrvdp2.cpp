@@ -50,6 +50,7 @@ class RowResizer {
   }
 
  private:
+  // The list of source rows stays with the thread.
   static std::vector<const float*>& rowList() {
     thread_local std::vector<const float*> sources;
     return sources;
@@ -57,6 +58,7 @@ class RowResizer {
   ResizeTable vertical_, horizontal_;
 };
 
+// What one comparison writes: the analysis of the test image, full-size maps of both images, and mutual masks.
 struct Workspace {
   Analysis test;
   Analyzer::Workspace analysis;
@@ -94,6 +96,7 @@ PreparedHdrVdp2::State::State(const Image8& referenceImage, Isa chosenIsa)
       image(referenceImage),
       analyzer(referenceImage.width, referenceImage.height, chosenIsa),
       reference(analyzer.makeAnalysis()) {
+  // Settings of each band. Sensitivity is tabulated over log10 of the luminance, from -5 to 5.
   const auto& sizes = analyzer.pyramid().bandSizes();
   for (size_t b = 0; b < sizes.size(); ++b) {
     vdp::BandSettings band;
@@ -109,14 +112,17 @@ PreparedHdrVdp2::State::State(const Image8& referenceImage, Isa chosenIsa)
       band.sensitivity.push_back(static_cast<float>(s));
     }
     settings.push_back(std::move(band));
+    // Resampling to this band. The first and the last band have no neighbour on one side and never read that resizer.
     fromFull.emplace_back(sizes.front(), sizes[b]);
     fromFiner.emplace_back(sizes[b > 0 ? b - 1 : b], sizes[b]);
     fromCoarser.emplace_back(sizes[b + 1 < sizes.size() ? b + 1 : b], sizes[b]);
   }
+  // The reference is analysed once. The mean of its base band pads the base bands of all test images too.
   auto workspace = analyzer.makeWorkspace();
   analyzer.analyze(image, std::nullopt, reference, workspace);
 }
 
+// A work space from the pool, or a new one when all are in use.
 std::unique_ptr<vdp::Workspace> PreparedHdrVdp2::State::takeWorkspace() const {
   {
     const std::lock_guard lock(poolMutex);
@@ -149,6 +155,7 @@ void PreparedHdrVdp2::State::compareImages(const Image8& test, vdp::Workspace& w
   });
 }
 
+// The mutual mask m of every band and orientation. Rows beyond the band are null, and count as zero.
 void PreparedHdrVdp2::State::makeMutualMasks(vdp::Workspace& workspace) const {
   for (size_t b = 0; b < settings.size(); ++b) {
     const size_t width = settings[b].size.width, height = settings[b].size.height;
@@ -178,12 +185,14 @@ PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolRow(size_t b, siz
   const MetricKernels& kernels = metricKernels(isa);
   const vdp::BandSettings& band = settings[b];
   const size_t width = band.size.width, rowFloats = roundUpToLanes(image.width) + kPlaneLanes;
+  // Seven rows of scratch in one buffer of the thread.
   thread_local AlignedArray<float> buffer;
   if (buffer.size() < 7 * rowFloats) buffer = AlignedArray<float>(7 * rowFloats);
   std::array<float*, 7> rows{};
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = buffer.data() + i * rowFloats;
   const auto [scratch, logLuminance, mask, toQ, toMinusTwoP, finer, coarser] = rows;
 
+  // Sensitivity S at the luminance of this row's samples, as S^q and S^(-2p).
   kernels.sensitivityRow({.logLuminance = fromFull[b].row(kernels, workspace.logLuminance, y, scratch, logLuminance),
                           .table = band.sensitivity.data(),
                           .width = width,
@@ -192,6 +201,8 @@ PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolRow(size_t b, siz
                           .toQ = toQ,
                           .toMinusTwoP = toMinusTwoP});
 
+  // Constants of masking. k_self and k_xo include n_b^-q, which divides the band's own masks. The neighbours' masks are
+  // divided by n_b / 2 and 2 n_b before their power is taken.
   const double withinScale = std::pow(double{band.scale}, -vdp::kMaskExponent);
   DifferenceRow row{};
   row.pixelMask = fromFull[b].row(kernels, workspace.pixelMask, y, scratch, mask);
@@ -208,6 +219,7 @@ PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolRow(size_t b, siz
   row.kXn = static_cast<float>(vdp::kScaleMasking);
   for (size_t o = 0; o < band.orientations; ++o) row.siblings[o] = workspace.masks[b].planes[o].row(y);
 
+  // Sums of the orientations, one after the other.
   BandErrors sums{};
   for (size_t o = 0; o < band.orientations; ++o) {
     // A neighbour with a single orientation serves all of ours; the base band masks no other band.
@@ -225,6 +237,7 @@ PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolRow(size_t b, siz
   return sums;
 }
 
+// E of each orientation of a band. Row sums are added in order.
 PreparedHdrVdp2::State::BandErrors PreparedHdrVdp2::State::poolBand(size_t b, const vdp::Workspace& workspace,
                                                                     std::vector<vdp::Band>* differences) const {
   const auto [width, height] = settings[b].size;
@@ -273,6 +286,7 @@ PreparedHdrVdp2& PreparedHdrVdp2::operator=(PreparedHdrVdp2&&) noexcept = defaul
 
 HdrVdp2Result PreparedHdrVdp2::compare(const Image8& test, bool withProbability,
                                        std::vector<HdrVdp2Band>* bands) const {
+  // Analysis of the test image and the mutual masks, which all bands need.
   auto workspace = state_->takeWorkspace();
   state_->compareImages(test, *workspace);
   state_->makeMutualMasks(*workspace);
@@ -280,6 +294,7 @@ HdrVdp2Result PreparedHdrVdp2::compare(const Image8& test, bool withProbability,
   HdrVdp2Result result;
   std::vector<vdp::Band> differences;
   if (withProbability) differences = state_->analyzer.pyramid().makeBands();
+  // Q: the mean over bands and orientations of the weighted logarithms of E.
   size_t count = 0;
   for (size_t b = 0; b < state_->settings.size(); ++b) {
     const vdp::BandSettings& band = state_->settings[b];
@@ -292,6 +307,7 @@ HdrVdp2Result PreparedHdrVdp2::compare(const Image8& test, bool withProbability,
   result.q /= static_cast<double>(count);
   result.qMos = vdp::meanOpinionScore(result.q);
   if (withProbability) result.probability = state_->detectionProbability(differences);
+  // The work space goes back to the pool.
   const std::lock_guard lock(state_->poolMutex);
   state_->pool.push_back(std::move(workspace));
   return result;

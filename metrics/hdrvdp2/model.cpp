@@ -28,7 +28,8 @@ double rodSensitivity(double c) {
   return std::pow(10.0, 1.1414) * std::exp(-fall);
 }
 
-// Integral over the logarithm of luminance, by the trapezoidal rule.
+// kSensitivity times the integral of a sensitivity over the natural logarithm of luminance, by the trapezoidal rule.
+// logLight is log10 of the luminance.
 std::vector<double> integrate(std::span<const double> logLight, std::span<const double> sensitivity) {
   std::vector<double> integral(logLight.size(), 0.0);
   for (size_t i = 1; i < integral.size(); ++i) {
@@ -43,6 +44,7 @@ std::vector<double> integrate(std::span<const double> logLight, std::span<const 
 double displayLight(uint8_t code) { return 99 * srgbDecodeTable()[code] + 1; }
 
 double opticalTransfer(double rho) {
+  // A sum of exponentials, whose weights sum to 1.
   constexpr std::array kWeights{0.4248385963012903, 0.5724351039364803, 0.00016757623916493702, 0.0025587235230643303};
   constexpr std::array kWidths{0.028, 0.37, 37.0, 360.0};  // degrees
   double sum = 0;
@@ -51,6 +53,7 @@ double opticalTransfer(double rho) {
 }
 
 ResponseTables makeResponseTables() {
+  // Sensitivity of rods, and of cones as what rods leave of the joint sensitivity.
   std::vector<double> logLight(kVdpLightNodes), light(kVdpLightNodes), cones(kVdpLightNodes), rods(kVdpLightNodes);
   for (size_t i = 0; i < kVdpLightNodes; ++i) {
     logLight[i] = -5 + 10 * static_cast<double>(i) / (kVdpLightNodes - 1);
@@ -67,6 +70,8 @@ ResponseTables makeResponseTables() {
 
 double contrastSensitivity(double frequency, double luminance) {
   if (frequency == 0) return 0;
+  // Parameters at six adapting luminances, interpolated over the logarithm of luminance. p1 and p2 shape the fall
+  // towards high frequencies, p3 the fall towards low ones. p4 scales the whole.
   static const std::array kLogLuminance{std::log10(0.002), std::log10(0.02), std::log10(0.2),
                                         std::log10(2.0),   std::log10(20.0), std::log10(150.0)};
   constexpr std::array kP1{0.991265, 0.800889, 0.476505, 0.405782, 0.334278, 0.394533};
@@ -81,6 +86,7 @@ double contrastSensitivity(double frequency, double luminance) {
 }
 
 double bandWeight(double frequency) {
+  // Weights at seven band frequencies, linear in between and constant outside.
   constexpr std::array kFrequency{0.2344, 0.4688, 0.9375, 1.875, 3.75, 7.5, 15.0};
   constexpr std::array kWeight{0.0002, 0.0003, 0.0003, 0.0398, 0.2690, 0.2142, 0.2832};
   return interpolate(kFrequency, kWeight, frequency);

@@ -8,6 +8,7 @@
 namespace wavecrest::vdp {
 namespace {
 
+// Levels are made while both sides are at least as long as the low-pass kernel.
 constexpr size_t kSmallestLevel = 17;
 
 }  // namespace
@@ -23,6 +24,7 @@ SteerablePyramid::SteerablePyramid(size_t width, size_t height, Isa isa) : isa_(
   }
 }
 
+// One plane in the first and the last band, one for each orientation in the others.
 std::vector<Band> SteerablePyramid::makeBands() const {
   std::vector<Band> bands(bandSizes_.size());
   for (size_t b = 0; b < bands.size(); ++b) {
@@ -44,6 +46,7 @@ SteerablePyramid::Workspace SteerablePyramid::makeWorkspace() const {
   return workspace;
 }
 
+// The high-pass residual and the first low-pass of the image, both at full size.
 void SteerablePyramid::filterInput(const Plane& input, Plane& highPass, Plane& lowPass) const {
   static const auto highTaps = toFloat(steerable::kHighPass);
   static const auto lowTaps = toFloat(steerable::kFirstLowPass);
@@ -58,6 +61,7 @@ void SteerablePyramid::filterInput(const Plane& input, Plane& highPass, Plane& l
   });
 }
 
+// The oriented bands of one level. All four filters share their source rows, so one call of the kernel applies them.
 void SteerablePyramid::filterLevel(const Plane& in, Band& band) const {
   static const std::array taps{toFloat(steerable::kBands[0]), toFloat(steerable::kBands[1]),
                                toFloat(steerable::kBands[2]), toFloat(steerable::kBands[3])};
@@ -74,8 +78,8 @@ void SteerablePyramid::filterLevel(const Plane& in, Band& band) const {
   });
 }
 
-// Low-pass filter and subsampling in one: taps on even columns read the plane of even columns, and so on, so that
-// neighbouring outputs read neighbouring samples.
+// Low-pass filter and subsampling in one. Taps on even columns read the plane of even columns, others that of odd
+// columns. So neighbouring outputs read neighbouring samples.
 void SteerablePyramid::subsample(const Plane& even, const Plane& odd, size_t inputHeight, Plane& out) const {
   static const auto taps = toFloat(steerable::kLowPass);
   constexpr size_t kSize = steerable::kLowPassSize;
@@ -98,10 +102,12 @@ void SteerablePyramid::subsample(const Plane& even, const Plane& odd, size_t inp
 }
 
 void SteerablePyramid::decompose(Plane& input, std::vector<Band>& bands, Workspace& workspace) const {
+  // Residual and first low-pass.
   forEachRow(input.height(), [&](size_t y) { mirrorBorders(input, y, kInputBorder); });
   // Without levels the first low-pass is the base itself.
   filterInput(input, bands[0].planes[0], levels_ > 0 ? workspace.lowPass[0] : bands.back().planes[0]);
   for (size_t level = 0; level < levels_; ++level) {
+    // Split the low-pass of this level into its even and odd columns, borders included.
     Plane& in = workspace.lowPass[level];
     Plane& even = workspace.even[level];
     Plane& odd = workspace.odd[level];
@@ -115,6 +121,7 @@ void SteerablePyramid::decompose(Plane& input, std::vector<Band>& bands, Workspa
         oddRow[x] = row[2 * x + 1];
       }
     });
+    // The oriented bands of this level, then the low-pass of the next. The last low-pass is the base.
     filterLevel(in, bands[level + 1]);
     subsample(even, odd, in.height(), level + 1 < levels_ ? workspace.lowPass[level + 1] : bands.back().planes[0]);
   }

@@ -36,10 +36,12 @@ class Descriptor {
   throw ImageError(path, std::string("cannot be read: ") + std::strerror(error), "expected a readable file");
 }
 
+// step names what failed: "writing", "renaming".
 [[noreturn]] void failWriting(const std::string& path, const char* step, int error) {
   throw ImageError(path, std::string(step) + " failed: " + std::strerror(error), "expected a writable place");
 }
 
+// Every temporary name contains this, after the target's name.
 constexpr const char* kTemporary = ".tmp.";
 
 // Unique among the processes and threads that may write beside each other.
@@ -62,6 +64,7 @@ bool isSpecial(const std::string& target) {
   return ::stat(target.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
+// A descriptor of a new file. An existing file of that name is an error. path is for the message.
 int createTemporary(const std::string& path, const std::string& temporary) {
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0) failWriting(path, "creating the file", errno);
@@ -79,6 +82,7 @@ bool writeAll(int file, std::span<const unsigned char> bytes) {
   return true;
 }
 
+// Removes those files of a folder whose names chooses(name) accepts. What cannot be read or removed is left.
 template <class Chooses>
 void removeFiles(const fs::path& folder, Chooses chooses) {
   std::error_code ignored;
@@ -90,6 +94,7 @@ void removeFiles(const fs::path& folder, Chooses chooses) {
 
 }  // namespace
 
+// The file is read up to the size that it has when it is opened.
 std::vector<unsigned char> readFileBytes(const std::string& path) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) failReading(path, errno);
@@ -111,22 +116,26 @@ std::vector<unsigned char> readFileBytes(const std::string& path) {
 
 void checkWritable(const std::string& path) {
   const std::string target = targetOf(path);
+  // The folder must exist, and the target must not be a folder.
   const fs::path folder = fs::path(target).parent_path();
   std::error_code ignored;
   if (!folder.empty() && !fs::is_directory(folder, ignored)) {
     throw ImageError(path, "there is no folder '" + folder.string() + "'", "expected one that exists");
   }
   if (fs::is_directory(target, ignored)) throw ImageError(path, "is a folder", "expected a file name");
+  // Devices and pipes must be writable themselves.
   if (isSpecial(target)) {
     if (::access(target.c_str(), W_OK) != 0) failWriting(path, "opening", errno);
     return;
   }
+  // Whether the folder takes new files shows only when one is made.
   const std::string temporary = temporaryName(target);
   const Descriptor file(createTemporary(path, temporary));
   ::unlink(temporary.c_str());
 }
 
 AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(targetOf(path)) {
+  // A device or pipe has no temporary file.
   if (isSpecial(target_)) {
     descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) failWriting(path, "opening", errno);
@@ -151,6 +160,7 @@ void AtomicFile::seek(uint64_t position) {
 }
 
 void AtomicFile::commit() {
+  // The bytes reach the device before the name does, so a crash in between leaves the old file.
   if (temporary_.empty()) return;
   if (::fsync(descriptor_) != 0) failWriting(path_, "flushing", errno);
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0) failWriting(path_, "renaming", errno);
@@ -168,6 +178,7 @@ void writeFileAtomically(const std::string& path, std::string_view text) {
 }
 
 void removeTemporaries(const std::string& path) {
+  // The folder of a bare file name is the current one, which only the absolute path names.
   const fs::path target = fs::absolute(targetOf(path));
   const std::string begin = target.filename().string() + kTemporary;
   removeFiles(target.parent_path(), [&](const std::string& name) { return name.starts_with(begin); });

@@ -12,6 +12,7 @@
 namespace wavecrest {
 namespace {
 
+// How files of one extension are read.
 struct Format {
   std::string_view extension;
   ImageFile (*decode)(const std::string& path, codecs::Bytes bytes);
@@ -25,8 +26,10 @@ constexpr std::array kFormats{
     Format{".png", codecs::decodePng},
 };
 
+// The extension in lower case with its dot, or nothing.
 std::string extensionOf(const std::string& path) {
   const size_t dot = path.find_last_of("./");
+  // A dot before the last slash belongs to a folder.
   if (dot == std::string::npos || path[dot] == '/') return {};
   std::string extension = path.substr(dot);
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -53,6 +56,7 @@ constexpr std::array kWriters{
                       const WriteProgress&) { writePng(path, image); }},
 };
 
+// The writer for a path's extension. Throws ImageError where there is none.
 const Writer& writerOf(const std::string& path) {
   const std::string extension = extensionOf(path);
   for (const Writer& writer : kWriters) {
@@ -77,6 +81,7 @@ Image readExrLayer(const std::string& path, const std::string& layer) {
 void writePng(const std::string& path, const Image& linear) { writePng(path, encodeSrgb8(linear)); }
 
 void checkImageTarget(const std::string& path) {
+  // Only the error of an unknown extension matters here.
   writerOf(path);
   checkWritable(path);
 }
@@ -90,6 +95,7 @@ namespace codecs {
 void checkSize(const std::string& path, uint64_t width, uint64_t height, uint64_t leastBytes, uint64_t fileBytes) {
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   if (width == 0 || height == 0) throw ImageError(path, "empty image (" + size + ")", "expected at least one pixel");
+  // A product of the two sides might overflow.
   if (height > kMaxPixels / width) {
     throw ImageError(path, "image of " + size + " pixels",
                      "expected at most " + std::to_string(kMaxPixels) + " pixels");
@@ -109,6 +115,7 @@ std::string quoted(const std::string& text) {
 }
 
 std::string HeaderReader::line() {
+  // A damaged file without newlines must not become one long line.
   constexpr size_t kLongest = 4096;
   std::string text;
   while (!atEnd() && text.size() < kLongest) {
@@ -122,6 +129,7 @@ std::string HeaderReader::line() {
 std::string HeaderReader::token() {
   std::string text;
   while (!atEnd() && std::isspace(bytes_[position_])) ++position_;
+  // Tokens of valid headers are short, so a longer one is cut.
   while (!atEnd() && text.size() < 64) {
     const unsigned char c = bytes_[position_++];
     if (std::isspace(c)) break;

@@ -13,6 +13,7 @@ namespace wavecrest {
 namespace codecs {
 namespace {
 
+// Width or height from the header, below 2^32. Zero is left to checkSize.
 uint64_t parseExtent(const std::string& path, const std::string& text) {
   uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -22,6 +23,7 @@ uint64_t parseExtent(const std::string& path, const std::string& text) {
   return value;
 }
 
+// The number of the header's third line, not zero.
 double parseScale(const std::string& path, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -31,6 +33,7 @@ double parseScale(const std::string& path, const std::string& text) {
   return value;
 }
 
+// The float in four bytes of the given order.
 float floatAt(const unsigned char* bytes, bool littleEndian) {
   uint32_t bits = 0;
   std::memcpy(&bits, bytes, sizeof bits);
@@ -41,6 +44,7 @@ float floatAt(const unsigned char* bytes, bool littleEndian) {
 }  // namespace
 
 ImageFile decodePfm(const std::string& path, Bytes bytes) {
+  // Header: kind, size, byte order.
   HeaderReader header(bytes);
   const std::string magic = header.token();
   if (magic != "PF" && magic != "Pf") throw ImageError(path, "not a PFM file", "expected it to start with PF or Pf");
@@ -48,10 +52,12 @@ ImageFile decodePfm(const std::string& path, Bytes bytes) {
   const uint64_t height = parseExtent(path, header.token());
   const bool littleEndian = parseScale(path, header.token()) < 0;
   const uint64_t fileChannels = magic == "PF" ? 3 : 1;
+  // The first check bounds the size, so that the byte count of the second cannot overflow.
   checkSize(path, width, height, 0, 0);
   const Bytes data = header.rest();
   checkSize(path, width, height, width * height * fileChannels * sizeof(float), data.size());
 
+  // The file's last row is the image's first. Grey is replicated to three channels.
   ImageFile file;
   file.image = {static_cast<uint32_t>(width), static_cast<uint32_t>(height), 3, {}};
   file.image.pixels.resize(width * height * 3);
@@ -71,6 +77,7 @@ void writePfm(const std::string& path, const Image& image) {
   const std::string header = std::string(image.channels == 1 ? "Pf" : "PF") + "\n" + std::to_string(image.width) + " " +
                              std::to_string(image.height) + "\n-1.0\n";
   const size_t rowBytes = size_t{image.width} * image.channels * sizeof(float);
+  // The header, then the rows from the bottom up.
   std::vector<unsigned char> bytes(header.size() + rowBytes * image.height);
   std::memcpy(bytes.data(), header.data(), header.size());
   static_assert(std::endian::native == std::endian::little, "rows are copied as they are in memory");

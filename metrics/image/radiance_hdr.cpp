@@ -21,8 +21,10 @@ struct RadianceHeader {
   double exposure = 1;  // product of all EXPOSURE= lines: pixel values have been multiplied by it
 };
 
+// The header up to the pixels. Throws ImageError for pixels that are not RGBE, and for other orientations.
 RadianceHeader readHeader(const std::string& path, HeaderReader& reader) {
   if (reader.line().rfind("#?", 0) != 0) throw ImageError(path, "does not start with '#?'", kExpected);
+  // Text lines up to an empty one. Lines other than FORMAT= and EXPOSURE= are skipped.
   RadianceHeader header;
   for (;;) {
     if (reader.atEnd()) throw ImageError(path, "header has no end", kExpected);
@@ -38,6 +40,7 @@ RadianceHeader readHeader(const std::string& path, HeaderReader& reader) {
       header.exposure *= factor;
     }
   }
+  // The resolution line.
   std::istringstream resolution(reader.line());
   std::string yAxis, xAxis;
   int64_t height = 0, width = 0;
@@ -55,8 +58,10 @@ class ScanLines {
 
   using Pixel = std::array<unsigned char, 4>;
 
+  // The next scan line, valid until the next call.
   const std::vector<Pixel>& next() {
     const size_t width = line_.size();
+    // A scan line in the new encoding begins with 2, 2 and its width in two bytes. Only widths 8 to 32767 may have it.
     const bool newEncoding = width >= 8 && width < 32768 && remaining() >= 4 && at(0) == 2 && at(1) == 2 &&
                              (size_t{at(2)} << 8 | at(3)) == width;
     if (newEncoding) {
@@ -128,6 +133,7 @@ ImageFile decodeHdr(const std::string& path, Bytes bytes) {
   ImageFile file;
   file.image = {static_cast<uint32_t>(header.width), static_cast<uint32_t>(header.height), 3, {}};
   file.image.pixels.reserve(header.width * header.height * 3);
+  // Decode line by line. Dividing by the exposure restores the light before it was scaled.
   ScanLines lines(path, reader.rest(), header.width);
   for (uint64_t y = 0; y < header.height; ++y) {
     for (const auto& [r, g, b, e] : lines.next()) {

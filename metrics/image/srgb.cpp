@@ -41,6 +41,7 @@ const CodeTables& codeTables() {
       t.lowerBound[static_cast<size_t>(c)] = bound;
     }
     for (size_t cell = 0; cell <= kCells; ++cell) {
+      // The last code whose lower bound is not above the cell's lower end.
       float value = static_cast<float>(cell) / kCells;
       auto next = std::upper_bound(t.lowerBound.begin(), t.lowerBound.end(), value);
       t.codeOfCell[cell] = static_cast<uint8_t>(next - t.lowerBound.begin() - 1);
@@ -50,9 +51,11 @@ const CodeTables& codeTables() {
   return tables;
 }
 
+// The code of one linear value; values outside 0..1 are clamped.
 uint8_t lookUp(const CodeTables& tables, float linear) {
   if (!(linear > 0)) return 0;  // also NaN
   if (linear >= 1) return 255;
+  // The cell's lower end has this code or a lower one, so the walk goes upwards.
   size_t code = tables.codeOfCell[static_cast<size_t>(linear * kCells)];
   while (code < 255 && tables.lowerBound[code + 1] <= linear) ++code;
   return static_cast<uint8_t>(code);

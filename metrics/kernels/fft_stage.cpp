@@ -32,7 +32,7 @@ WAVECREST_INLINE void storeElement(Complex a, float* p, Parts parts) {
   store(a.im, p + parts.im);
 }
 
-// The small transforms in place.
+// The transform of kRadix elements in place: a_k becomes the sum over j of a_j e^(-2 pi i j k / kRadix).
 template <size_t kRadix>
 struct Dft;
 template <>
@@ -46,6 +46,7 @@ struct Dft<2> {
 template <>
 struct Dft<3> {
   static WAVECREST_INLINE void apply(Complex (&a)[3]) {
+    // The cosine and the sine of 120 degrees are -1/2 and 0.866.
     const Complex sum = a[1] + a[2], turned = Float(0.866025404f) * timesMinusI(a[1] - a[2]);
     const Complex middle = a[0] - Float(0.5f) * sum;
     a[0] = a[0] + sum;
@@ -67,6 +68,7 @@ struct Dft<4> {
 template <>
 struct Dft<5> {
   static WAVECREST_INLINE void apply(Complex (&a)[5]) {
+    // Cosines and sines of 72 and 144 degrees.
     const Float c1(0.309016994f), c2(-0.809016994f), s1(0.951056516f), s2(0.587785252f);
     const Complex sum1 = a[1] + a[4], sum2 = a[2] + a[3];
     const Complex turned1 = timesMinusI(a[1] - a[4]), turned2 = timesMinusI(a[2] - a[3]);
@@ -80,10 +82,12 @@ struct Dft<5> {
   }
 };
 
+// One stage of a radix that has a transform of its own. fft_stage.h explains p, q, j, k, m and stride.
 template <size_t kRadix>
 void radixStage(const FftStage& stage, const float* in, float* out, Parts parts) {
   const size_t inStep = stage.stride * stage.m * kFftElement, outStep = stage.stride * kFftElement;
   for (size_t p = 0; p < stage.m; ++p) {
+    // The twiddles w^(p k) are the same for all q and all lanes.
     Complex twiddle[kRadix];
     for (size_t k = 1; k < kRadix; ++k) {
       const float* w = stage.twiddles.data() + 2 * (p * (kRadix - 1) + k - 1);
@@ -93,6 +97,7 @@ void radixStage(const FftStage& stage, const float* in, float* out, Parts parts)
     float* target = out + stage.stride * kRadix * p * kFftElement;
     for (size_t q = 0; q < stage.stride; ++q, source += kFftElement, target += kFftElement) {
       for (size_t lane = 0; lane < kFftBatch; lane += kLanes) {
+        // Elements p + m j are transformed over j, multiplied by their twiddles and stored as elements radix p + k.
         Complex a[kRadix];
         for (size_t j = 0; j < kRadix; ++j) a[j] = loadElement(source + j * inStep + lane, parts);
         Dft<kRadix>::apply(a);
@@ -113,6 +118,7 @@ void anyRadixStage(const FftStage& stage, const float* in, float* out, Parts par
       float* target = out + (q + stage.stride * radix * p) * kFftElement;
       for (size_t lane = 0; lane < kFftBatch; lane += kLanes) {
         for (size_t k = 0; k < radix; ++k) {
+          // The sum over j of the elements times e^(-2 pi i j k / radix), then the twiddle.
           Complex sum = loadElement(source + lane, parts);
           for (size_t j = 1; j < radix; ++j) {
             const float* root = stage.roots.data() + 2 * (j * k % radix);
@@ -129,6 +135,7 @@ void anyRadixStage(const FftStage& stage, const float* in, float* out, Parts par
   }
 }
 
+// The inverse transform is the forward one with real and imaginary parts exchanged before and after.
 Parts partsOf(FftDirection direction) {
   return direction == FftDirection::forward ? Parts{0, kFftBatch} : Parts{kFftBatch, 0};
 }
@@ -163,6 +170,7 @@ void multiplyElements(const float* in, const float* factors, float* out, size_t 
 
 void multiplyGain(float* batch, const float* gain, size_t length) {
   for (size_t k = 0; k < length; ++k) {
+    // Elements above length / 2 are negative frequencies, where the gain is that of the positive ones.
     const float* row = gain + (k <= length / 2 ? k : length - k) * kFftBatch;
     float* element = batch + k * kFftElement;
     for (size_t lane = 0; lane < kFftBatch; lane += kLanes) {

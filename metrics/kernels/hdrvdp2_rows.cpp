@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kLog10Of2 = 0.301029996f;
 
-// Tables cover log10 of the light from -5 to 5.
+// Linear interpolation in a table of kNodes values over log10 of the light, which is from -5 to 5.
 template <size_t kNodes>
 WAVECREST_INLINE Float interpolate(const float* table, Float logLight) {
   const Float position = (logLight + Float(5.0f)) * Float((kNodes - 1) / 10.0f);
@@ -20,6 +20,7 @@ WAVECREST_INLINE Float interpolate(const float* table, Float logLight) {
   return mulAdd(position - node, high - low, low);
 }
 
+// log10 of light that is clamped to the range of the tables.
 WAVECREST_INLINE Float log10OfLight(Float light) {
   return Float(kLog10Of2) * log2(min(max(light, Float(1e-5f)), Float(1e5f)));
 }
@@ -46,6 +47,7 @@ void logMeanRow(const LogMeanRow& row) {
 void sensitivityRow(const SensitivityRow& row) {
   for (size_t x = 0; x < row.width; x += kLanes) {
     const Float logLuminance = min(max(loadUnaligned(row.logLuminance + x), Float(-5.0f)), Float(5.0f));
+    // Both powers share one logarithm.
     const Float log2S = log2(interpolate<kVdpSensitivityNodes>(row.table, logLuminance));
     storeUnaligned(exp2(Float(row.q) * log2S), row.toQ + x);
     storeUnaligned(exp2(Float(-row.twoP) * log2S), row.toMinusTwoP + x);
@@ -62,6 +64,7 @@ void mutualMaskRow(const MutualMaskRow& row) {
     }
     storeUnaligned(zeroUnless(firstLanes(row.width - x), sum), row.scratch + x);
   }
+  // The samples on either side of the row count as zero.
   row.scratch[-1] = 0;
   row.scratch[row.width] = 0;
   // Across.
@@ -75,24 +78,27 @@ void mutualMaskRow(const MutualMaskRow& row) {
 double differenceRow(const DifferenceRow& row) {
   Float total(0.0f);
   for (size_t x = 0; x < row.width; x += kLanes) {
+    // The masks: of this orientation, of all orientations of the band, and of the neighbouring bands.
     const Float self = loadUnaligned(row.self + x);
     Float all(0.0f);
     for (const float* sibling : row.siblings) {
       if (sibling) all = all + loadUnaligned(sibling + x);
     }
     Float neighbours(0.0f);
+    // Cubic resampling may fall below zero, where powers are not defined.
     if (row.finer) neighbours = Float(row.finerScale) * max(loadUnaligned(row.finer + x), Float(0.0f));
     if (row.coarser) {
       const Float coarser = max(loadUnaligned(row.coarser + x), Float(0.0f));
       neighbours = mulAdd(Float(row.coarserScale), coarser, neighbours);
     }
+    // N_mask, with the common factor N^-q = S^q outside the sum.
     const Float q(row.q);
     Float mask = Float(row.kSelf) * pow(self, q);
     mask = mulAdd(Float(row.kXo), pow(max(all - self, Float(0.0f)), q), mask);
     mask = mulAdd(Float(row.kXn), pow(neighbours, q), mask);
     mask = Float(row.scale) * loadUnaligned(row.sensitivityToQ + x) * mask;
 
-    // D^2 rather than D: only squares are pooled.
+    // D^2 = n_b^2 |d / n_b|^2p / (N^2p + N_mask^2). Only squares are pooled; the map alone needs D.
     const Float difference = loadUnaligned(row.test + x) - loadUnaligned(row.reference + x);
     const Float excitation = pow(abs(difference) * Float(1.0f / row.scale), Float(row.twoP));
     const Float noise = mulAdd(mask, mask, loadUnaligned(row.sensitivityToMinusTwoP + x));
@@ -101,6 +107,7 @@ double differenceRow(const DifferenceRow& row) {
     const Float pixelMask = loadUnaligned(row.pixelMask + x);
     total = total + zeroUnless(firstLanes(row.width - x), visible * pixelMask * pixelMask);
   }
+  // The lanes are added in double.
   float lanes[kLanes];
   storeUnaligned(total, lanes);
   double sum = 0;

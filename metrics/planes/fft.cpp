@@ -39,9 +39,11 @@ void append(std::vector<float>& list, std::complex<double> z) {
 FftPlan::FftPlan(size_t length, Isa isa) : isa_(isa), length_(length) {
   if (length <= 1) return;
   makeStages();
+  // Without stages, the length has a prime factor that is too large.
   if (stages_.empty()) makeChirp();
 }
 
+// One stage for each factor. `remaining` is the length of its sub-transforms.
 void FftPlan::makeStages() {
   size_t remaining = length_, stride = 1;
   for (size_t radix : factorize(length_)) {
@@ -60,6 +62,7 @@ void FftPlan::makeStages() {
 void FftPlan::makeChirp() {
   inner_ = std::make_unique<FftPlan>(std::bit_ceil(2 * length_ - 1), isa_);
   const size_t n = inner_->length();
+  // The conjugate chirp, even about element 0 of the cyclic convolution. One lane of the batch is enough.
   AlignedArray<float> batch(n * kFftElement), work(inner_->workFloats());
   for (size_t k = 0; k < length_; ++k) {
     // k^2 modulo 2 length keeps the angle exact; k < 2^20, so the square fits.
@@ -70,6 +73,7 @@ void FftPlan::makeChirp() {
       batch.data()[at * kFftElement + kFftBatch] = static_cast<float>(-c.imag());
     }
   }
+  // The spectrum includes the scale of the inverse inner transform.
   inner_->transform(batch.data(), work.data(), FftDirection::forward);
   for (size_t k = 0; k < n; ++k) {
     const float* element = batch.data() + k * kFftElement;
@@ -93,10 +97,13 @@ float* FftPlan::runStages(float* data, float* other, FftDirection direction) con
 
 void FftPlan::transform(float* data, float* work, FftDirection direction) const {
   if (!inner_) {
+    // Stages alternate between the two buffers, so the result may be in either.
     const float* result = runStages(data, work, direction);
     if (result != data) std::memcpy(data, result, length_ * kFftElement * sizeof(float));
     return;
   }
+  // Bluestein: multiply by the chirp, convolve with its conjugate, multiply by the chirp. For the inverse, every step
+  // exchanges real and imaginary parts.
   const MetricKernels& kernels = metricKernels(isa_);
   const size_t n = inner_->length();
   float* padded = work;

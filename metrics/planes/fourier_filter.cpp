@@ -51,6 +51,7 @@ FourierGain FourierFilter::sampleGain(double samplesPerDegree, const std::functi
     for (size_t ky = 0; ky <= height_; ++ky) {
       for (size_t lane = 0; lane < kLanes; ++lane) {
         const size_t kx = group * kLanes + lane;
+        // Columns beyond w fill up the last group. Their gain stays zero.
         if (kx > width_) continue;
         const double fx = static_cast<double>(kx) * samplesPerDegree / w2;
         const double fy = static_cast<double>(ky) * samplesPerDegree / h2;
@@ -75,6 +76,7 @@ void FourierFilter::transformRows(const FourierFilterJob& job, size_t batch, flo
   float* data = threadBuffer(0, length * kFftElement);
   float* work = threadBuffer(1, rows_.workFloats());
   std::fill(data, data + length * kFftElement, 0.0f);
+  // Rows into lanes, less the constant. The rest of each row of the torus is zero.
   const auto pad = static_cast<float>(job.pad);
   for (size_t x0 = 0; x0 < width_; x0 += kLanes) {
     const size_t xEnd = std::min(x0 + kLanes, width_);
@@ -119,6 +121,7 @@ void FourierFilter::filterColumns(const FourierGain& gain, size_t group, float* 
   const size_t length = 2 * height_, used = height_ * kFftElement;
   float* data = threadBuffer(0, length * kFftElement);
   float* work = threadBuffer(1, columns_.workFloats());
+  // The lower half of the torus is zero on the way in, and is not needed on the way out.
   float* columns = spectrum + group * used;
   std::memcpy(data, columns, used * sizeof(float));
   std::fill(data + used, data + length * kFftElement, 0.0f);
@@ -163,6 +166,7 @@ void FourierFilter::restoreRows(const FourierFilterJob& job, double constant, si
     }
   }
   rows_.transform(data, work, FftDirection::inverse);
+  // The left half of each row goes back to the plane, with the constant added.
   const auto offset = static_cast<float>(constant);
   for (size_t x0 = 0; x0 < width_; x0 += kLanes) {
     const size_t xEnd = std::min(x0 + kLanes, width_);
@@ -175,6 +179,7 @@ void FourierFilter::restoreRows(const FourierFilterJob& job, double constant, si
 }
 
 void FourierFilter::apply(const FourierGain& gain, std::span<const FourierFilterJob> jobs, Spectra& spectra) const {
+  // Rows forward; columns forward, gain and back; rows back. Tasks are independent within each of the three.
   const size_t batches = (height_ + kRowsPerBatch - 1) / kRowsPerBatch, groups = groupsOf(width_);
   tbb::parallel_for(size_t{0}, jobs.size() * batches, [&](size_t task) {
     transformRows(jobs[task / batches], task % batches, spectra[task / batches].data());
