@@ -17,7 +17,7 @@ using V = ClaimVerdict;
 constexpr double kNearFloor = 2;      // times the loss that the reference's noise alone gives
 constexpr size_t kBiasSnapshots = 3;  // that must agree on a share of bias
 
-// How far a verdict weighs in a conjunction.
+// The weight of a verdict in a conjunction, where the heaviest verdict decides.
 int weightOf(V verdict) {
   switch (verdict) {
     case V::fails:
@@ -39,7 +39,7 @@ struct Comparison {
   std::string text = {};
 };
 
-// Whether a value lies above a limit.
+// Whether a value lies above a limit; undecided if the limit is within the band of the value.
 Comparison above(const Band& band, double limit, std::string text) {
   const double margin = band.mean - limit;
   const V verdict = margin >= band.halfWidth ? V::holds : margin < -band.halfWidth ? V::fails : V::undecided;
@@ -49,15 +49,17 @@ Comparison below(const Band& band, double limit, std::string text) {
   return above({-band.mean, band.halfWidth}, -limit, std::move(text));
 }
 
+// The name of a metric in print.
 std::string nameOf(const std::string& metric) {
   if (metric == "ssim") return "SSIM";
   if (metric == "q_mos") return "Q_MOS";
   return metric == "rmse" ? "RMSE" : metric;
 }
 
+// The geometric mean of numbers whose logarithms are given.
 double meanOfLog(std::span<const double> values) { return std::exp(meanBand(values).mean); }
 
-// The comparisons of one condition, and what they come to.
+// Judges one condition on one scene: makes its comparisons and keeps the one that decides.
 class Judge {
  public:
   Judge(const Condition& condition, const SceneLosses& scene) : condition_(condition), scene_(scene) {}
@@ -65,6 +67,7 @@ class Judge {
   Judgement judge() {
     for (const std::string& method : condition_.methods) requireMeasured(scene_, method);
     for (const std::string& method : condition_.than) requireMeasured(scene_, method);
+    // Bias and slopes have measurements of their own. Every other kind compares the condition's metrics.
     if (condition_.kind == ConditionKind::biased) {
       biased();
     } else if (condition_.kind == ConditionKind::stalls) {
@@ -81,13 +84,15 @@ class Judge {
  private:
   // ---- what is collected --------------------------------------------------------------------------------------------
 
+  // Adds a text to the evidence, unless it is there already.
   void note(const std::string& text) {
     if (result_.evidence.find(text) == std::string::npos) {
       result_.evidence += (result_.evidence.empty() ? "" : "; ") + text;
     }
   }
 
-  // The verdict that weighs most stands, with the comparison that is clearest where it fails, closest where it holds.
+  // Keeps the comparison with the heaviest verdict. Among equal verdicts it keeps the one with the smallest margin: the
+  // clearest failure, or the closest success.
   void add(const Comparison& comparison) {
     const bool heavier = !any_ || weightOf(comparison.verdict) > weightOf(result_.verdict);
     const bool same = any_ && comparison.verdict == result_.verdict;
@@ -98,6 +103,8 @@ class Judge {
     margin_ = comparison.margin;
   }
 
+  // Without values of a method the condition cannot be judged, unless another comparison fails. A margin of -infinity
+  // puts this text before those of other comparisons that were not judged.
   void requireMeasured(const SceneLosses& scene, const std::string& method) {
     const std::string gap = scene.missing(method);
     if (gap.empty()) return;
@@ -106,6 +113,7 @@ class Judge {
   }
   bool measured(const std::string& method) const { return scene_.missing(method).empty(); }
 
+  // Adds the scores of all methods, with their bands, and the noise floor to the evidence.
   void showValues(const std::string& metric) {
     std::vector<std::string> methods = condition_.methods;
     for (const std::string& method : condition_.than) {
@@ -127,6 +135,7 @@ class Judge {
 
   // ---- comparisons --------------------------------------------------------------------------------------------------
 
+  // Whether a mean loss is mostly the noise of the reference.
   bool nearFloor(const std::string& metric, std::span<const double> logLosses) const {
     const std::optional<double> floor = scene_.floorLoss(metric);
     return floor && meanOfLog(logLosses) <= kNearFloor * *floor;
@@ -149,6 +158,7 @@ class Judge {
     }
     return result;
   }
+  // The comparison of the opposite question: a verdict that is decided turns round.
   static Comparison negated(Comparison c) {
     c.margin = -c.margin;
     if (c.verdict == V::holds || c.verdict == V::fails) c.verdict = c.verdict == V::holds ? V::fails : V::holds;
@@ -159,9 +169,11 @@ class Judge {
   Comparison faster(const std::string& metric, const std::string& a, const std::string& b) const {
     const std::vector<double> lossesA = scene_.logLosses(a, metric), lossesB = scene_.logLosses(b, metric);
     if (lossesA.empty() || lossesB.empty()) return {V::notJudged, 0, nameOf(metric) + " was not measured"};
+    // The larger final loss is the best one that both reach.
     const double loss = std::max(meanOfLog(lossesA), meanOfLog(lossesB));
     const std::vector<double> timesA = scene_.logTimes(a, metric, loss), timesB = scene_.logTimes(b, metric, loss);
-    // Error of unbiased methods falls with the root of time: a spread of losses is twice that of times.
+    // Error of unbiased methods falls with the root of time, so a logarithm of time varies twice as much as that of a
+    // loss. Single seeds therefore get twice the band of losses.
     Band band = differenceBand(timesB, timesA);
     if (timesA.size() == 1 || timesB.size() == 1)
       band.halfWidth = 2 * lossDifference(metric, lossesA, lossesB).halfWidth;
@@ -176,6 +188,7 @@ class Judge {
     return result;
   }
 
+  // Adds a comparison of each of `methods` with each of `than`.
   void forPairs(const std::function<Comparison(const std::string&, const std::string&)>& compare) {
     for (const std::string& a : condition_.methods) {
       for (const std::string& b : condition_.than) {
@@ -197,11 +210,12 @@ class Judge {
   static Comparison worst(const std::vector<Comparison>& all) {
     return *std::max_element(all.begin(), all.end(), isClearer);
   }
-  // It holds where more than half of them do.
+  // The comparison in the middle. It holds where more than half of all do.
   static Comparison middle(std::vector<Comparison> all) {
     std::sort(all.begin(), all.end(), isClearer);
     return all[all.size() / 2];
   }
+  // Compares `a` with every other method of `than` that was measured.
   std::vector<Comparison> againstAll(const std::string& a,
                                      const std::function<Comparison(const std::string&)>& compare) const {
     std::vector<Comparison> all;
@@ -211,6 +225,7 @@ class Judge {
     return all;
   }
 
+  // Puts each kind of condition in terms of losses, times or scores (ConditionKind).
   void judgeMetric(const std::string& metric) {
     switch (condition_.kind) {
       case ConditionKind::better:
@@ -238,6 +253,7 @@ class Judge {
     }
   }
 
+  // poor: the loss is larger than most others by the factor. behind: it is larger than at least one other.
   void poorOrBehind(const std::string& metric) {
     const bool poor = condition_.kind == ConditionKind::poor;
     for (const std::string& method : condition_.methods) {
@@ -249,6 +265,7 @@ class Judge {
     }
   }
 
+  // Each method is as good as its worst comparison. The best of the methods decides.
   void leads(const std::string& metric) {
     std::vector<Comparison> candidates;
     for (const std::string& method : condition_.methods) {
@@ -261,6 +278,7 @@ class Judge {
     if (!candidates.empty()) add(best(candidates));
   }
 
+  // Compares every pair both ways: neither loss may exceed the other by the factor.
   void equal(const std::string& metric) {
     for (const std::string& a : condition_.methods) {
       for (const std::string& b : condition_.methods) {
@@ -272,6 +290,7 @@ class Judge {
   // Whether `a` is further behind `b` here than in the control, by the factor.
   Comparison worseHere(const std::string& metric, const std::string& a, const std::string& b) {
     const SceneLosses control(condition_.control, scene_.results());
+    // The logarithm of the ratio of losses in a scene.
     const auto behind = [&](const SceneLosses& scene) -> std::optional<Band> {
       const std::vector<double> lossesA = scene.logLosses(a, metric), lossesB = scene.logLosses(b, metric);
       if (lossesA.empty() || lossesB.empty()) return std::nullopt;
@@ -279,17 +298,23 @@ class Judge {
     };
     const std::optional<Band> here = behind(scene_), there = behind(control);
     if (!here || !there) return {V::notJudged, 0, "the control, " + condition_.control + ", was not measured"};
+    // The two scenes are independent, so half widths add as squares.
     const Band band{here->mean - there->mean, std::hypot(here->halfWidth, there->halfWidth)};
     return above(band, std::log(condition_.factor),
                  fmt::format("{} loss of {} over {}: {:.2g} here, {:.2g} in {}", nameOf(metric), a, b,
                              std::exp(here->mean), std::exp(there->mean), condition_.control));
   }
 
+  // Compares scores themselves with the limit: at least for reaches, below for misses.
   void threshold(const std::string& metric) {
     const bool reaches = condition_.kind == ConditionKind::reaches;
     for (const std::string& method : condition_.methods) {
+      if (!measured(method)) continue;
       const std::vector<double> values = scene_.scores(method, metric);
-      if (values.empty()) continue;
+      if (values.empty()) {
+        add({V::notJudged, 0, fmt::format("{} of {} was not measured", nameOf(metric), method)});
+        continue;
+      }
       const Band band = scoreBand(metric, values);
       const std::string text =
           fmt::format("{} of {} is {:.3g}, limit {:g}", nameOf(metric), method, band.mean, condition_.score);
@@ -299,6 +324,7 @@ class Judge {
 
   // A control that stalls as well shows that something else holds the errors up, such as a biased reference.
   void stalls() {
+    // The error of every control has to fall faster than the limit.
     std::string controls;
     for (const std::string& method : condition_.than) {
       const std::vector<double> slopes = scene_.errorSlopes(method);
@@ -309,6 +335,7 @@ class Judge {
       if (below(band, condition_.slope, "").verdict == V::holds) continue;
       add({V::notJudged, 0, fmt::format("the control, {}, may stall as well: slope {:.2f}", method, band.mean)});
     }
+    // A method stalls if its slope is above the limit.
     for (const std::string& method : condition_.methods) {
       if (!measured(method)) continue;
       const std::vector<double> slopes = scene_.errorSlopes(method);
@@ -324,11 +351,14 @@ class Judge {
     }
   }
 
+  // Compares the share of squared bias in the mean square error with the limit, at the last snapshots. They have to
+  // agree.
   void biased() {
     for (const std::string& method : condition_.methods) {
+      // Shares in order of snapshots.
       std::vector<double> shares;
       for (const BiasRecord& bias : scene_.results().biases) {
-        if (bias.scene == scene_.name() && bias.method == method) {
+        if (bias.scene == scene_.name() && bias.method == SceneLosses::rowOf(method)) {
           shares.push_back(bias.biasSquared / bias.meanSquareError);
         }
       }
@@ -337,10 +367,12 @@ class Judge {
         if (measured(method)) add({V::notJudged, 0, "bias of " + method + " was not measured: it takes two seeds"});
         continue;
       }
+      // The share has to reach the limit at all of these snapshots, or at none.
       const auto reached = std::count_if(shares.begin(), shares.end(), [&](double s) { return s >= condition_.share; });
       const V verdict = reached == static_cast<std::ptrdiff_t>(shares.size()) ? V::holds
                         : reached == 0                                        ? V::fails
                                                                               : V::undecided;
+      // The last snapshot gives the figure.
       const std::string text = fmt::format("bias^2 of {} is {:.1f} % of its mean square error, limit {:g} %", method,
                                            100 * shares.back(), 100 * condition_.share);
       note(text);

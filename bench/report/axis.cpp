@@ -12,6 +12,7 @@ namespace {
 constexpr double kRoom = 0.04;         // empty share at each end
 constexpr double kLeastDecades = 0.8;  // a span that holds at least two of the values 1, 2, 5
 
+// A value in axis coordinates: its log10 on a logarithmic axis, else itself.
 double toAxis(AxisScale scale, double value) { return scale == AxisScale::kLogarithmic ? std::log10(value) : value; }
 
 // The step 1, 2 or 5 times a power of ten that cuts the span into about five pieces.
@@ -19,11 +20,13 @@ double niceStep(double span) {
   const double raw = span / 5;
   const double power = std::pow(10, std::floor(std::log10(raw)));
   for (const double factor : {1.0, 2.0, 5.0}) {
+    // The factor 0.999 forgives rounding in the power.
     if (factor * power >= raw * 0.999) return factor * power;
   }
   return 10 * power;
 }
 
+// An exponent in Unicode superscript digits.
 std::string superscript(int exponent) {
   static const char* const kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string text = exponent < 0 ? "⁻" : "";
@@ -36,6 +39,7 @@ std::string superscript(int exponent) {
 Axis::Axis(AxisScale scale, double low, double high)
     : scale_(scale), start_(toAxis(scale, low)), end_(toAxis(scale, high)) {
   assert(std::isfinite(start_) && std::isfinite(end_) && start_ <= end_);
+  // Widen a short span around its centre until it is readable, then add room at both ends.
   const double leastSpan = scale == AxisScale::kLogarithmic ? kLeastDecades : std::max(1e-3, 1e-3 * std::abs(end_));
   if (end_ - start_ < leastSpan) {
     const double centre = 0.5 * (start_ + end_);
@@ -59,6 +63,7 @@ std::vector<AxisTick> Axis::ticks() const {
 
 std::vector<AxisTick> Axis::linearTicks() const {
   std::vector<AxisTick> ticks;
+  // Multiples of the step, as adding it up would gather rounding errors.
   const double step = niceStep(end_ - start_);
   for (double k = std::ceil(start_ / step); k * step <= end_; ++k) ticks.push_back({k * step, tickLabel(k * step)});
   return ticks;
@@ -83,7 +88,8 @@ std::vector<AxisTick> Axis::logarithmicTicks() const {
 }
 
 std::string tickLabel(double value) {
-  if (value == 0 || std::abs(value) < 1e-12) return "0";
+  if (value == 0) return "0";
+  // The 1e-9 keeps exact powers of ten from rounding into the decade below.
   const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-9));
   if (exponent >= -4 && exponent <= 4) return fmt::format("{:.10g}", value);
   const double mantissa = value / std::pow(10.0, exponent);

@@ -16,16 +16,19 @@ constexpr size_t kMostPoints = 40;
 
 constexpr const char* kTimeLabel = "render time in seconds";
 
-// The curve itself if it is short, else points of it at even distances in the logarithm of time, both ends among them.
+// The curve itself if it is short. Otherwise points of it at even distances in the logarithm of time, with both ends.
 template <class Point>
 std::vector<Point> thinned(const std::vector<Point>& curve) {
   if (curve.size() <= kMostPoints) return curve;
   std::vector<Point> kept{curve.front()};
+  // A first snapshot may be at time 0, which has no logarithm: times below a microsecond count as one.
   const double start = std::log(std::max(curve.front().seconds, 1e-6));
   const double step = (std::log(std::max(curve.back().seconds, 1e-6)) - start) / (kMostPoints - 1);
+  if (!(step > 0)) return {curve.front(), curve.back()};
   double next = start + step;
   for (size_t i = 1; i + 1 < curve.size(); ++i) {
     const double at = std::log(std::max(curve[i].seconds, 1e-6));
+    // Keep the first point at or after each of the even times.
     if (at < next) continue;
     kept.push_back(curve[i]);
     while (next <= at) next += step;
@@ -34,6 +37,7 @@ std::vector<Point> thinned(const std::vector<Point>& curve) {
   return kept;
 }
 
+// A curve in the style of its series, still without points.
 PlotCurve emptyCurve(const ReportScene& scene, const ReportSeries& series) {
   return {.label = series.label,
           .cssClass = seriesClass(scene, series),
@@ -41,13 +45,16 @@ PlotCurve emptyCurve(const ReportScene& scene, const ReportSeries& series) {
           .points = {}};
 }
 
+// The law of the guide line, error ~ t^slope, in print.
 std::string guideLabel(double slope) {
   if (slope == -0.5) return "1/√t";
   return slope == -1 ? "1/t" : fmt::format("t^{}", slope);
 }
 
+// A metric over render time: for each series the mean over seeds, with the extremes over seeds as its band.
 ScenePlot metricPlot(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex) {
   ScenePlot result{.key = metric.key, .heading = metric.name, .explanation = metric.explanation, .plot = {}};
+  // Set up the axes, the noise floor, the target and the guide.
   Plot& plot = result.plot;
   plot.title = metric.name + " over render time, " + scene.name;
   plot.xLabel = kTimeLabel;
@@ -57,6 +64,7 @@ ScenePlot metricPlot(const ReportScene& scene, const ReportMetric& metric, size_
   if (metric.target) result.explanation += fmt::format("; line at {}", *metric.target);
   plot.guideSlope = metric.idealSlope;
   if (metric.idealSlope) plot.guideLabel = guideLabel(*metric.idealSlope);
+  // Add a curve for each series.
   for (const ReportSeries& series : scene.series) {
     PlotCurve curve = emptyCurve(scene, series);
     for (const CurvePoint& point : thinned(meanCurve(series, metricIndex))) {
@@ -102,6 +110,7 @@ ScenePlot biasPlot(const ReportScene& scene) {
 }  // namespace
 
 std::string seriesClass(const ReportScene& scene, const ReportSeries& series) {
+  // Count the series of the same method before this one: the first has solid lines.
   int earlier = 0;
   for (const ReportSeries& other : scene.series) {
     if (&other == &series) break;

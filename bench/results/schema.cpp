@@ -3,6 +3,8 @@
 namespace wavecrest {
 namespace {
 
+// All tables but `claim`, which older files have in another form. NULL in a column of metric values stands for NaN.
+// Tables with a rowid are read in the order of insertion.
 constexpr const char* kTables = R"(
 CREATE TABLE campaign(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE scene(
@@ -73,7 +75,8 @@ CREATE TABLE claim(
   evidence TEXT NOT NULL);
 )";
 
-// Version 1 had claims without a figure, and none that was not judged.
+// Claims of version 1 have no figure, and their verdict is never "not judged". The table is set aside, and its rows are
+// copied into a new one.
 constexpr const char* kOlderClaims = R"(
 ALTER TABLE claim RENAME TO older_claim;
 )";
@@ -82,12 +85,19 @@ INSERT INTO claim SELECT id, scene, statement, verdict, '', evidence FROM older_
 DROP TABLE older_claim;
 )";
 
+// The version of the schema. SQLite gives 0 for a file in which none was set.
 int64_t versionOf(Database& database) {
   Statement version(database, "PRAGMA user_version");
   version.step();
   return version.integer(0);
 }
 
+bool hasTables(Database& database) {
+  Statement tables(database, "SELECT count(*) FROM sqlite_master");
+  return tables.step() && tables.integer(0) != 0;
+}
+
+// Throws for a version that is neither current nor the oldest.
 [[noreturn]] void failVersion(const Database& database, int64_t version) {
   throw ResultsFileError(database.path().string() + ": has results of version " + std::to_string(version) +
                          "; expected version " + std::to_string(kResultsVersion) + " or " +
@@ -98,13 +108,18 @@ int64_t versionOf(Database& database) {
 
 void createSchema(Database& database) {
   const std::string setVersion = "PRAGMA user_version = " + std::to_string(kResultsVersion);
+  // The journal mode stays in the file, so a database of another program is refused before it is set.
+  const int64_t before = versionOf(database);
+  if (before != 0 && before != kOldestResultsVersion && before != kResultsVersion) failVersion(database, before);
+  if (before == 0 && hasTables(database)) failVersion(database, before);
   // One writer, readers beside it, and a file that is whole after a power cut.
   database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
+  // Read the version inside the transaction, so that two processes cannot both make the tables.
   Transaction transaction(database);
   const int64_t version = versionOf(database);
   if (version == 0) {
-    Statement tables(database, "SELECT count(*) FROM sqlite_master");
-    if (tables.step() && tables.integer(0) != 0) failVersion(database, version);  // a database of somebody else
+    // Version 0: a new file, or a file of another program, which has tables.
+    if (hasTables(database)) failVersion(database, version);
     database.execute(std::string(kTables) + kClaimTable + setVersion);
   } else if (version == kOldestResultsVersion) {
     database.execute(std::string(kOlderClaims) + kClaimTable + kMoveClaims + setVersion);

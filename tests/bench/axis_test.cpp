@@ -67,6 +67,7 @@ TEST(TickLabel, writesFarValuesAsPowers) {
   EXPECT_EQ(tickLabel(1e-6), "10⁻⁶");
   EXPECT_EQ(tickLabel(2e7), "2·10⁷");
   EXPECT_EQ(tickLabel(1e12), "10¹²");
+  EXPECT_EQ(tickLabel(1e-20), "10⁻²⁰");
 }
 
 }  // namespace

@@ -196,6 +196,10 @@ TEST(JudgeClaims, reachesAndMisses) {
   EXPECT_EQ(below.verdict(misses), kHolds);
   EXPECT_EQ(near.verdict(reaches), kUndecided);
   EXPECT_EQ(near.verdict(misses), kUndecided);
+  // Runs without this metric, as of an image that is too small for it.
+  const MadeUp other = MadeUp().with("pt", "rmse", {1, 1.1});
+  EXPECT_EQ(other.verdict(reaches), kNotJudged);
+  EXPECT_EQ(other.judge(reaches).figure, "SSIM of pt was not measured");
 }
 
 TEST(JudgeClaims, stalls) {
@@ -224,6 +228,9 @@ TEST(JudgeClaims, biased) {
   EXPECT_EQ(made({0.9, 0.01, -0.01, 0.02}).verdict(biased), kFails);
   EXPECT_EQ(made({0.3, 0.01, 0.3}).verdict(biased), kUndecided);
   EXPECT_EQ(made({}).verdict(biased), kNotJudged);
+  biased.methods = {"mlt"};
+  const MadeUp both = MadeUp().with("mlt-pathspace", "rmse", {1, 1.1}).bias("mlt-pathspace", {0.5}).bias("mlt", {0});
+  EXPECT_EQ(both.verdict(biased), kHolds) << "the study's mlt is that of path space";
 }
 
 // As in a campaign of the study's own protocol.

@@ -207,8 +207,15 @@ TEST(ReadResults, otherFilesAreRefused) {
     Database newer(folder.path("newer.sqlite"), OpenFor::writing);
     newer.execute("PRAGMA user_version = 99");
   }
+  const auto journalMode = [&] {
+    Database newer(folder.path("newer.sqlite"), OpenFor::reading);
+    Statement mode(newer, "PRAGMA journal_mode");
+    mode.step();
+    return mode.text(0);
+  };
   EXPECT_THROW(readResults(folder.path("newer.sqlite")), ResultsFileError);
   EXPECT_THROW(ResultsStore(folder.path("newer.sqlite")), ResultsFileError);
+  EXPECT_EQ(journalMode(), "delete") << "what is refused stays as it was";
 }
 
 // A shard with one run.
