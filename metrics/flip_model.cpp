@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
 
 #include "metrics/kernels/metric_kernels.h"
 
@@ -32,6 +33,7 @@ Matrix3 relativeXyzFromRgb() {
   return m;
 }
 
+// Inverse of a matrix from its minors. Cyclic indices give each minor its sign.
 Matrix3 inverse(const Matrix3& m) {
   const auto minor = [&](size_t r, size_t c) {
     const size_t r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
@@ -50,11 +52,16 @@ std::array<float, 9> toFloat(const Matrix3& m) {
   return result;
 }
 
+// The function f of CIELAB: a cube root with a linear part near black.
 double labCurve(double t) {
   constexpr double kDelta = 6.0 / 29;
   return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4.0 / 29;
 }
 
+// Taps that one weighted sum adds up: blue-yellow is a sum of two filters.
+constexpr size_t kMostSources = 256;
+
+// Lightness, a and b of linear RGB. The Hunt adjustment multiplies a and b by 0.01 times the lightness.
 std::array<double, 3> huntLab(double red, double green, double blue) {
   const Matrix3 m = relativeXyzFromRgb();
   const auto curve = [&](size_t row) { return labCurve(m[row] * red + m[row + 1] * green + m[row + 2] * blue); };
@@ -64,12 +71,14 @@ std::array<double, 3> huntLab(double red, double green, double blue) {
 
 // The greatest difference in the gamut: between the green and the blue primary.
 double largestColourDifference() {
+  // The HyAB distance: absolute difference of lightness plus Euclidean distance of (a, b).
   const auto green = huntLab(0, 1, 0), blue = huntLab(0, 0, 1);
   return std::abs(green[0] - blue[0]) + std::hypot(green[1] - blue[1], green[2] - blue[2]);
 }
 
 std::vector<float> toFloat(const std::vector<double>& taps) { return {taps.begin(), taps.end()}; }
 
+// Samples of function(i) at i = -radius .. radius.
 template <class Function>
 std::vector<double> sampleTaps(size_t radius, Function function) {
   std::vector<double> taps;
@@ -85,6 +94,7 @@ double sum(const std::vector<double>& values) { return std::accumulate(values.be
 constexpr double kAchromaticB = 0.0047, kRedGreenB = 0.0053;
 constexpr double kBlueYellowA1 = 34.1, kBlueYellowB1 = 0.04, kBlueYellowA2 = 13.5, kBlueYellowB2 = 0.025;
 
+// Taps exp(-pi^2 x^2 / b) of one Gaussian, without its factor.
 std::vector<double> sensitivityTaps(size_t radius, double pixelsPerDegree, double b) {
   return sampleTaps(radius, [&](double i) {
     const double x = i / pixelsPerDegree;
@@ -106,13 +116,18 @@ void scale(std::vector<double>& taps, double factor) {
 }  // namespace
 
 FlipModel::FlipModel(double pixelsPerDegree, Isa isa) : isa_(isa) {
-  // The filter of widest support sets the radius of the colour filters; features have their own.
+  // The widest Gaussian sets the radius of the colour filters, at three standard deviations: exp(-pi^2 x^2 / b) has the
+  // standard deviation sqrt(b / (2 pi^2)). Features are 0.082 degrees wide, two standard deviations.
   const double deviation = std::sqrt(kBlueYellowB1 / (2 * std::numbers::pi * std::numbers::pi)) * pixelsPerDegree;
   const double featureDeviation = 0.5 * 0.082 * pixelsPerDegree;
   const auto colourRadius = static_cast<size_t>(std::ceil(3 * deviation));
   const auto featureRadius = static_cast<size_t>(std::ceil(3 * featureDeviation));
   radius_ = std::max(colourRadius, featureRadius);
+  if (2 * (2 * radius_ + 1) > kMostSources) {
+    throw std::invalid_argument("FlipModel: too many pixels per degree; expected filters of at most 127 taps");
+  }
 
+  // Keeps a filter twice, for columns and for rows. The filter's factor goes to the row taps.
   const auto set = [&](Tap tap, size_t radius, std::vector<double> taps, double acrossFactor) {
     // Shorter filters are widened by zeros so that all share their sources.
     std::vector<double> widened(2 * radius_ + 1, 0.0);
@@ -121,6 +136,7 @@ FlipModel::FlipModel(double pixelsPerDegree, Isa isa) : isa_(isa) {
     scale(widened, acrossFactor);
     across_[tap] = toFloat(widened);
   };
+  // Achromatic and red-green are one Gaussian each, normalised by itself.
   for (const auto& [tap, b] : {std::pair{kAchromatic, kAchromaticB}, {kRedGreen, kRedGreenB}}) {
     auto taps = sensitivityTaps(colourRadius, pixelsPerDegree, b);
     scale(taps, 1 / sum(taps));
@@ -148,12 +164,14 @@ FlipModel::FlipModel(double pixelsPerDegree, Isa isa) : isa_(isa) {
   for (const auto& [tap, taps] : {std::pair{kGaussian, smooth}, {kEdge, edge}, {kPoint, point}})
     set(tap, featureRadius, taps, 1.0 / 116);
 
+  // What the kernels need: colour conversions, and the greatest colour difference raised to its exponent.
   const Matrix3 xyzFromRgb = relativeXyzFromRgb();
   xyzFromRgb_ = toFloat(xyzFromRgb);
   rgbFromXyz_ = toFloat(inverse(xyzFromRgb));
   colourMaximum_ = static_cast<float>(std::pow(largestColourDifference(), double{kFlipColourExponent}));
 }
 
+// Y, Cx and Cz are CIELAB without its cube root.
 std::array<float, 3> FlipModel::opponent(double red, double green, double blue) {
   static const Matrix3 m = relativeXyzFromRgb();
   const double x = m[0] * red + m[1] * green + m[2] * blue, y = m[3] * red + m[4] * green + m[5] * blue,
@@ -161,7 +179,7 @@ std::array<float, 3> FlipModel::opponent(double red, double green, double blue) 
   return {static_cast<float>(116 * y - 16), static_cast<float>(500 * (x - y)), static_cast<float>(200 * (y - z))};
 }
 
-// Rows of one task: filtered down with room to extend them, and across.
+// Rows of one task: filtered down the columns, with borders for the taps across; filtered both ways; features.
 struct FlipModel::RowBuffers {
   RowBuffers(size_t width, size_t radius)
       : down(width, kTapSets, radius), across(width, kTapSets), features(width, 5) {}
@@ -172,7 +190,7 @@ void FlipModel::analyzeRow(const Opponents& image, size_t y, const std::array<fl
                            RowBuffers& buffers) const {
   const MetricKernels& kernels = metricKernels(isa_);
   const size_t width = image[0].width(), taps = 2 * radius_ + 1;
-  std::array<const float*, 256> sources{};
+  std::array<const float*, kMostSources> sources{};
 
   // Down the columns; rows beyond the image repeat its edge.
   const auto filterDown = [&](const Plane& channel, std::initializer_list<Tap> filters) {
@@ -193,17 +211,18 @@ void FlipModel::analyzeRow(const Opponents& image, size_t y, const std::array<fl
   filterDown(image[0], {kAchromatic, kGaussian, kEdge, kPoint});
   filterDown(image[1], {kRedGreen});
   filterDown(image[2], {kBlueYellow1, kBlueYellow2});
+  // Each filtered row is continued by its edge samples.
   for (size_t filter = 0; filter < kTapSets; ++filter) {
     float* row = buffers.down.row(filter);
     std::fill(row - radius_, row, row[0]);
     std::fill(row + width, row + width + radius_, row[width - 1]);
   }
 
-  // Across the rows; several terms are added up.
+  // Across the rows. A result is the sum of its terms. Each term filters one of the rows that were filtered down.
   struct Term {
     Tap row, filter;
   };
-  std::array<float, 256> weights{};
+  std::array<float, kMostSources> weights{};
   const auto filterAcross = [&](size_t target, std::initializer_list<Term> terms) {
     size_t count = 0;
     for (const Term& term : terms) {
@@ -225,6 +244,7 @@ void FlipModel::analyzeRow(const Opponents& image, size_t y, const std::array<fl
   const float* pointX = filterAcross(5, {{kGaussian, kPoint}});
   const float* pointY = filterAcross(6, {{kPoint, kGaussian}});
 
+  // Pointwise: colours to Hunt-adjusted CIELAB, derivatives to magnitudes of edges and points.
   kernels.flipAppearanceRow({.y = filteredY,
                              .cx = filteredCx,
                              .cz = filteredCz,
@@ -239,12 +259,14 @@ void FlipModel::analyzeRow(const Opponents& image, size_t y, const std::array<fl
 
 namespace {
 
+// Calls function(begin, end) for blocks of rows, in parallel.
 template <class Function>
 void forEachRowBlock(size_t rows, Function function) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, rows, 16),
                     [&](const tbb::blocked_range<size_t>& range) { function(range.begin(), range.end()); });
 }
 
+// Row y of the five features of an image.
 template <class PlaneArray>
 FlipRow featureRow(const PlaneArray& planes, size_t y) {
   return {planes[0].row(y), planes[1].row(y), planes[2].row(y), planes[3].row(y), planes[4].row(y)};
@@ -267,6 +289,7 @@ FlipModel::Features FlipModel::analyze(const Opponents& image) const {
 }
 
 void FlipModel::compare(const Features& reference, const Opponents& test, Plane& map) const {
+  // Features of the test image are made row by row and compared at once; no plane of them is stored.
   const size_t width = map.width();
   forEachRowBlock(map.height(), [&](size_t begin, size_t end) {
     RowBuffers buffers(width, radius_);

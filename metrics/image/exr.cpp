@@ -29,6 +29,7 @@ namespace {
 
 // ---- streams over memory --------------------------------------------------------------------------------------------
 
+// The bytes of an EXR file as OpenEXR reads them. A read past the end throws std::runtime_error.
 class MemoryInput : public Imf::IStream {
  public:
   MemoryInput(const std::string& path, codecs::Bytes bytes) : Imf::IStream(path.c_str()), bytes_(bytes) {}
@@ -48,8 +49,8 @@ class MemoryInput : public Imf::IStream {
   uint64_t position_ = 0;
 };
 
-// A file that OpenEXR writes from the front to the back, but for the table of its blocks, which it fills in last. What
-// takes bytes in order only gets them all at the end.
+// The file that OpenEXR writes. Its bytes come in order except for the table of blocks, which OpenEXR fills in last.
+// Devices and pipes take bytes in order only, so they receive the whole file in commit().
 class FileOutput : public Imf::OStream {
  public:
   static constexpr size_t kBuffer = size_t{1} << 22;
@@ -64,9 +65,10 @@ class FileOutput : public Imf::OStream {
   }
   uint64_t tellp() override { return position_; }
   void seekp(uint64_t position) override {
+    // Waiting bytes are contiguous, so they are written before the position changes.
     if (file_.isSeekable()) {
       flush();
-      file_.seek(position);
+      kept([&] { file_.seek(position); });
       begin_ = position;
     }
     position_ = position;
@@ -78,13 +80,18 @@ class FileOutput : public Imf::OStream {
   }
 
  private:
-  void flush() {
+  // Calls f. An error is thrown, and kept for commit() as well: OpenEXR's destructors drop errors.
+  template <class F>
+  void kept(F f) {
     try {
-      file_.write(waiting_);
+      f();
     } catch (...) {
       failure_ = std::current_exception();
       throw;
     }
+  }
+  void flush() {
+    kept([&] { file_.write(waiting_); });
     begin_ += waiting_.size();
     waiting_.clear();
   }
@@ -130,6 +137,7 @@ std::vector<std::string> channelsOfLayer(const Imf::ChannelList& channels, const
   return {};
 }
 
+// The first 16 channel names of a file, for error messages.
 std::string listChannels(const Imf::ChannelList& channels) {
   std::string list;
   int count = 0;
@@ -140,7 +148,9 @@ std::string listChannels(const Imf::ChannelList& channels) {
   return list.empty() ? "none" : list;
 }
 
+// The pixels of a layer, always with three channels. An empty name is the main image.
 Image readLayer(const std::string& path, Imf::InputFile& input, uint64_t fileBytes, const std::string& layer) {
+  // The layer's channels, each with one sample per pixel.
   const Imf::ChannelList& channels = input.header().channels();
   const std::vector<std::string> names = channelsOfLayer(channels, layer);
   if (names.empty()) {
@@ -153,13 +163,16 @@ Image readLayer(const std::string& path, Imf::InputFile& input, uint64_t fileByt
       throw ImageError(path, "EXR channel " + name + " is subsampled", "expected a sample for every pixel");
   }
 
+  // In 64 bits, as the corners of a damaged window may be further apart than an int can tell.
   const Imath::Box2i window = input.header().dataWindow();
   const auto width = static_cast<uint64_t>(int64_t{window.max.x} - window.min.x + 1);
   const auto height = static_cast<uint64_t>(int64_t{window.max.y} - window.min.y + 1);
-  // ZIP shrinks at most about 1000 times, the run-length and wavelet coders less than 4096.
+  // A sample has at least two bytes. ZIP shrinks at most about 1000 times, the run-length and wavelet coders less than
+  // 4096.
   codecs::checkSize(path, width, height, 0, 0);
   codecs::checkSize(path, width, height, width * height * 2 * names.size() / 4096, fileBytes);
 
+  // OpenEXR converts every sample type to float, and interleaves the channels through the strides.
   Image image{static_cast<uint32_t>(width), static_cast<uint32_t>(height), 3, {}};
   image.pixels.resize(width * height * 3);
   Imf::FrameBuffer frame;
@@ -178,6 +191,7 @@ Image readLayer(const std::string& path, Imf::InputFile& input, uint64_t fileByt
   return image;
 }
 
+// The string attributes of a header by name.
 Metadata stringAttributes(const Imf::Header& header) {
   Metadata metadata;
   for (auto it = header.begin(); it != header.end(); ++it) {
@@ -188,6 +202,7 @@ Metadata stringAttributes(const Imf::Header& header) {
   return metadata;
 }
 
+// One layer of a file in memory. Errors of OpenEXR become ImageErrors.
 ImageFile readLayerAndMetadata(const std::string& path, codecs::Bytes bytes, const std::string& layer) {
   try {
     setLimitsOnce();
@@ -208,10 +223,12 @@ ImageFile readLayerAndMetadata(const std::string& path, codecs::Bytes bytes, con
 
 constexpr int kBlockRows = 16;  // of ZIP_COMPRESSION
 
-// Of each thread between two reports of progress: threads wait for each other at the end.
+// Rows that each thread compresses between two reports of progress. Threads wait for each other before a report, so
+// reports must not be frequent.
 constexpr int kRowsAtOnce = 16 * kBlockRows;
 
-// What a file takes its samples from: the images themselves, or halves made of them, which live as long as this does.
+// Gives OpenEXR the samples of a file: the images' own floats, or halves made of them. The halves live as long as this
+// object.
 class ChannelSource {
  public:
   ChannelSource(const std::string& path, ExrSamples samples) : path_(path), samples_(samples) {}
@@ -226,6 +243,7 @@ class ChannelSource {
   }
 
  private:
+  // Declares the channels of one image in the header, and tells OpenEXR where their samples are.
   template <class Sample>
   static void addChannels(Imf::Header& header, Imf::FrameBuffer& frame, Sample* samples, Imf::PixelType type,
                           const Image& image, const std::string& prefix) {
@@ -239,6 +257,7 @@ class ChannelSource {
     }
   }
 
+  // An image's samples as halves. Throws ImageError for a sample beyond the largest half.
   std::vector<Imath::half>& halvesOf(const Image& image) {
     std::vector<Imath::half>& halves = halves_.emplace_back(image.pixels.begin(), image.pixels.end());
     for (const float sample : image.pixels) {
@@ -271,6 +290,7 @@ size_t exrWritingBytes(uint32_t width, uint32_t height) {
 void writeExr(const std::string& path, const Image& image, const Metadata& metadata, std::span<const ExrLayer> layers,
               const WriteProgress& progress, ExrSamples samples) {
   try {
+    // Header and channels.
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
     // Halves are for files that are kept: slower, and some percent smaller.
@@ -284,6 +304,7 @@ void writeExr(const std::string& path, const Image& image, const Metadata& metad
         throw ImageError(path, "EXR layer '" + layer.name + "' differs in size", "expected the main image's size");
       source.add(header, frame, layer.image, layer.name + ".");
     }
+    // OutputFile writes the table of blocks in its destructor, so the block ends before the commit.
     FileOutput stream(path);
     {
       const int threads = compressionThreads(), height = static_cast<int>(image.height);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr size_t kMessageSize = 160;
 
+// The error callback of libpng. It must not return, so it keeps the text and jumps back.
 void storeError(png_structp png, png_const_charp text) {
   auto* message = static_cast<char*>(png_get_error_ptr(png));
   std::strncpy(message, text, kMessageSize - 1);
@@ -23,6 +24,7 @@ void ignoreWarning(png_structp, png_const_charp) {}
 
 // ---- reading --------------------------------------------------------------------------------------------------------
 
+// The state of one read from memory. message tells what libpng found wrong.
 struct PngReader {
   png_structp png = nullptr;
   png_infop info = nullptr;
@@ -39,6 +41,7 @@ struct PngReader {
   PngReader& operator=(const PngReader&) = delete;
 };
 
+// The read callback of libpng.
 void takeBytes(png_structp png, png_bytep out, size_t count) {
   auto* reader = static_cast<PngReader*>(png_get_io_ptr(png));
   if (count > reader->left) png_error(png, "file ends early");
@@ -50,6 +53,7 @@ void takeBytes(png_structp png, png_bytep out, size_t count) {
 // Header and the conversion to three channels of 8 or 16 bits. False: reader.message tells why.
 bool startReading(PngReader& reader) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
+  // libpng refuses sides longer than 2^20.
   png_set_user_limits(reader.png, 1u << 20, 1u << 20);
   png_set_read_fn(reader.png, &reader, takeBytes);
   png_read_info(reader.png, reader.info);
@@ -57,12 +61,13 @@ bool startReading(PngReader& reader) {
   if (colorType == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(reader.png);
   if (png_get_bit_depth(reader.png, reader.info) < 8) png_set_expand_gray_1_2_4_to_8(reader.png);
   if (!(colorType & PNG_COLOR_MASK_COLOR)) png_set_gray_to_rgb(reader.png);
-  if (colorType & PNG_COLOR_MASK_ALPHA) png_set_strip_alpha(reader.png);
+  png_set_strip_alpha(reader.png);  // palettes may have an alpha channel as well
   png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
   return true;
 }
 
+// All pixels, after startReading. False: reader.message tells why.
 bool readRows(PngReader& reader, png_bytepp rows) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
   png_read_image(reader.png, rows);
@@ -72,6 +77,7 @@ bool readRows(PngReader& reader, png_bytepp rows) {
 
 // ---- writing --------------------------------------------------------------------------------------------------------
 
+// The state of one write to memory. message tells what libpng found wrong.
 struct PngWriter {
   png_structp png = nullptr;
   png_infop info = nullptr;
@@ -87,11 +93,13 @@ struct PngWriter {
   PngWriter& operator=(const PngWriter&) = delete;
 };
 
+// The write callback of libpng.
 void appendBytes(png_structp png, png_bytep data, size_t count) {
   auto& bytes = static_cast<PngWriter*>(png_get_io_ptr(png))->bytes;
   bytes.insert(bytes.end(), data, data + count);
 }
 
+// A whole file of 8-bit RGB. False: writer.message tells why.
 bool writeRows(PngWriter& writer, uint32_t width, uint32_t height, const uint8_t* pixels) {
   if (setjmp(png_jmpbuf(writer.png))) return false;
   png_set_write_fn(writer.png, &writer, appendBytes, nullptr);
@@ -111,6 +119,7 @@ namespace codecs {
 ImageFile decodePng(const std::string& path, Bytes bytes) {
   PngReader reader(bytes.data(), bytes.size());
   if (!reader.info) throw ImageError(path, "libpng cannot be started", "expected enough memory");
+  // Header and plausible size.
   auto fail = [&] {
     throw ImageError(path, std::string("PNG error: ") + reader.message, "expected an intact PNG file");
   };
@@ -124,6 +133,7 @@ ImageFile decodePng(const std::string& path, Bytes bytes) {
   const size_t rowBytes = size_t{width} * 3 * (deep ? 2 : 1);
   if (png_get_rowbytes(reader.png, reader.info) != rowBytes)
     throw ImageError(path, "unusual PNG pixel layout", "expected grey, RGB or palette with or without alpha");
+  // Pixels. libpng takes a list of pointers to the rows.
   std::vector<unsigned char> codes(rowBytes * height);
   std::vector<png_bytep> rows(height);
   for (size_t y = 0; y < height; ++y) rows[y] = codes.data() + y * rowBytes;
@@ -131,6 +141,7 @@ ImageFile decodePng(const std::string& path, Bytes bytes) {
 
   ImageFile file{{width, height, 3, {}}, deep ? Encoding::srgb16 : Encoding::srgb8, {}};
   file.image.pixels.resize(size_t{width} * height * 3);
+  // Codes become values in 0..1. Those of 16 bits have their high byte first.
   for (size_t i = 0; i < file.image.pixels.size(); ++i) {
     const int code = deep ? codes[2 * i] << 8 | codes[2 * i + 1] : codes[i];
     file.image.pixels[i] = static_cast<float>(code) / (deep ? 65535.0f : 255.0f);

@@ -53,7 +53,7 @@ struct DifferenceRow {
   const float* pixelMask;
   size_t width;
   float twoP, q;
-  float scale;            // n_b = 2^(b-1)
+  float scale;            // n_b = 2^b of band b = 0, 1, ...
   float kSelf, kXo, kXn;  // kSelf and kXo are divided by n_b^q beforehand
   float* difference;      // out: signed, not squared, without the pixel mask; or null
 };

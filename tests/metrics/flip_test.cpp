@@ -4,7 +4,9 @@
 #include <tbb/global_control.h>
 
 #include <limits>
+#include <stdexcept>
 
+#include "metrics/flip_model.h"
 #include "tests/metrics/golden.h"
 
 namespace wavecrest {
@@ -12,6 +14,11 @@ namespace {
 
 // The reference implementation works in single precision: its own digits end at 2e-5.
 constexpr double kTolerance = 2e-5;
+
+TEST(Flip, RefusesMorePixelsPerDegreeThanItsFiltersHold) {
+  EXPECT_NO_THROW(FlipModel(400, bestIsa()));
+  EXPECT_THROW(FlipModel(600, bestIsa()), std::invalid_argument);
+}
 
 TEST(Flip, MatchesGoldenMeansAndMaximaOfAllPairsOnEveryIsa) {
   for (const Isa isa : availableIsas()) {
