@@ -14,14 +14,20 @@ struct Overloaded : Functions... {
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that lints, does not find by itself
 
+// Whether a surface is compiled as rough: a roughness below kSmallestAlpha is smooth.
 bool isRough(const TexturedFloat& alpha) { return alpha.texture != kNone || alpha.value >= double{kSmallestAlpha}; }
+template <class Bsdf>
+bool isRough(const Bsdf& bsdf) {
+  return isRough(bsdf.alpha) || (bsdf.alphaV && isRough(*bsdf.alphaV));
+}
 
+// The plugin of a material's innermost BSDF.
 std::string nameOf(const Material& material) {
   return std::visit(
       Overloaded{[](const Diffuse&) -> std::string { return "diffuse"; },
-                 [](const Conductor& c) -> std::string { return isRough(c.alpha) ? "roughconductor" : "conductor"; },
+                 [](const Conductor& c) -> std::string { return isRough(c) ? "roughconductor" : "conductor"; },
                  [](const Dielectric& d) -> std::string {
-                   return d.thin ? "thindielectric" : isRough(d.alpha) ? "roughdielectric" : "dielectric";
+                   return d.thin ? "thindielectric" : isRough(d) ? "roughdielectric" : "dielectric";
                  },
                  [](const Plastic& p) -> std::string { return isRough(p.alpha) ? "roughplastic" : "plastic"; },
                  [](const Phong&) -> std::string { return "phong"; },
@@ -42,12 +48,14 @@ std::string nameOf(const Emitter& emitter) {
                     emitter.kind);
 }
 
+// What the scene asks of its kernels, in words. keeps: its instances.
 std::vector<std::string> needsOf(const Scene& scene, bool keeps) {
   constexpr std::pair<uint32_t, const char*> kWords[] = {
       {kSpecularBsdfs, "specular BSDFs"},
       {kLayeredBsdfs, "layered BSDFs"},
       {kTextures, "textures"},
       {kShadingNormals, "shading normals"},
+      {kNormalMaps, "bump or normal maps"},
       {kCurvedShapes, "analytic spheres"},
       {kRareLights, "spot, projector, directional or environment lights"},
       {kCompoundBsdfs, "compound BSDFs"},
@@ -63,6 +71,7 @@ std::vector<std::string> needsOf(const Scene& scene, bool keeps) {
   return needs;
 }
 
+// Counts BSDFs and their wrappers, lights and textures, each by its plugin.
 void countKinds(const Scene& scene, SceneInspection& out) {
   for (const Material& material : scene.materials) {
     ++out.bsdfs[nameOf(material)];
@@ -80,11 +89,13 @@ void countKinds(const Scene& scene, SceneInspection& out) {
 }  // namespace
 
 SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
+  // What the file says.
   SceneInspection out;
   countKinds(scene, out);
   out.sensor = Sensor::kKindNames[static_cast<size_t>(scene.sensor.kind)];
   out.filter = kFilterNames[static_cast<size_t>(scene.film.filter)];
 
+  // What it is compiled to.
   const auto compiled = compileScene<float>(scene, settings.accel, true, settings.instancing);
   out.groups = scene.groups.size();
   out.instances = scene.instances.size();
@@ -92,6 +103,7 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
   out.needs = needsOf(scene, out.keepsInstances);
   out.primitives = compiled->primitives.counts;
   out.bounds = compiled->bounds;
+  // The compiled scene is relative to its origin, the bounds here are not.
   for (size_t axis = 0; axis < 3; ++axis) {
     for (double* coordinate : {&out.bounds.center[axis], &out.bounds.low[axis], &out.bounds.high[axis]}) {
       *coordinate += compiled->origin[axis];
@@ -101,6 +113,7 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
   out.hierarchyNodes = compiled->bvh ? compiled->bvh->nodes() : 0;
   out.bytesPerPrimitive = static_cast<double>(primitiveBytes(*compiled)) / out.primitives.total();
 
+  // What each method does with it, or why it refuses.
   for (const MethodEntry& entry : kMethods) {
     MethodInspection& row = out.methods.emplace_back();
     row.method = settings.method = entry.method;
@@ -111,6 +124,7 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
       row.refusal = error.what();
     }
   }
+  // Which paths the scene has.
   out.paths = classifyPaths(scene);
   return out;
 }

@@ -15,6 +15,7 @@ struct Prefix {
   bool operator==(const Prefix&) const = default;
 };
 
+// The prefix with one more event.
 Prefix extended(Prefix path, bool diffuse) {
   if (diffuse) {
     if (!path.any) path.bits.firstD = true;
@@ -32,6 +33,7 @@ std::vector<Prefix> reachablePrefixes(const SceneLinks& links, LightKindOfPath l
   const auto add = [&](const Prefix& path) {
     if (std::find(found.begin(), found.end(), path) == found.end()) found.push_back(path);
   };
+  // The first event follows the light.
   Prefix start;
   start.bits.deltaLight = light == LightKindOfPath::delta;
   for (const EventKind event : {EventKind::diffuse, EventKind::specular}) {
@@ -39,6 +41,7 @@ std::vector<Prefix> reachablePrefixes(const SceneLinks& links, LightKindOfPath l
       add(extended(start, event == EventKind::diffuse));
     }
   }
+  // Every later event follows one of its neighbours. There are few distinct prefixes, so the search ends.
   for (size_t i = 0; i < found.size(); ++i) {  // NOLINT(modernize-loop-convert): it grows
     const Prefix path = found[i];
     const auto last = static_cast<size_t>(path.lastIsD ? EventKind::diffuse : EventKind::specular);
@@ -49,6 +52,7 @@ std::vector<Prefix> reachablePrefixes(const SceneLinks& links, LightKindOfPath l
   return found;
 }
 
+// The shortest path of a class, as in PathClass::signature.
 std::string signatureOf(const PathBits& bits) {
   std::string text = bits.deltaLight ? "P " : "A ";
   if (!bits.hasD) return text + "S+ E";
@@ -58,6 +62,7 @@ std::string signatureOf(const PathBits& bits) {
   return text + "E";
 }
 
+// The class in words.
 std::string describe(const PathBits& bits) {
   if (!bits.hasD) return "lights seen in specular surfaces";
   std::string text;
@@ -70,6 +75,7 @@ std::string describe(const PathBits& bits) {
   return text;
 }
 
+// The classes of the paths that the scene's links allow: a reachable prefix whose last event the eye sees.
 std::vector<PathClass> findClasses(const SceneLinks& links) {
   std::vector<PathClass> classes;
   if (links.eyeMeetsLight) classes.push_back({"A E", "lights in view", {}, {}});
@@ -104,13 +110,17 @@ struct Judge {
     const auto offer = [&](bool makes, bool efficient) {
       if (makes) best = std::min(best, efficient ? Verdict::sampled : Verdict::inefficient);
     };
-    // Where a method traces only specular views, an eye that sees the last event as D has it from t = 1.
+    // With specularViewsOnly, only t = 1 makes paths whose last event is D.
     const bool inView = !method.specularViewsOnly || !path.lastD;
+    // Emission beside merging without next event estimation makes only paths without D.
     const bool mergingAlone = method.merge && !method.nextEvent;
     offer(method.emission && inView && !path.deltaLight && !(mergingAlone && path.hasD), emissionIsEfficient(path));
-    // Indirect light has to be looked for where light falls.
+    // Next event estimation is efficient for direct light. For indirect light enough camera vertices have to see a
+    // light.
     offer(method.nextEvent && inView && path.firstD, !path.hasDD || links.lightCoverage >= limits.lightCoverage);
+    // Connections are inefficient where all pairs of D are glossy.
     offer(method.connect && path.hasDD, !links.onlyGlossyPairs);
+    // A glossy surface in view makes t = 1 inefficient, and merging if it is at the first vertex alone.
     offer(method.camera && path.lastD, links.cameraCoverage >= limits.cameraCoverage && !links.eyeSeesGlossy);
     offer(method.merge && path.hasD, !(method.mergeAtFirstVertex && path.lastD && links.eyeSeesGlossy));
     return best;
@@ -129,6 +139,7 @@ struct Count {
   std::string names;  // of the first classes that are not sampled
 };
 
+// How many classes a method makes inefficiently or not at all, with the names of two of them.
 Count countFor(const PathClassTable& table, Method method) {
   Count count;
   size_t named = 0;
@@ -143,6 +154,7 @@ Count countFor(const PathClassTable& table, Method method) {
   return count;
 }
 
+// The classes that a method cannot make.
 std::string impossibleFor(const PathClassTable& table, Method method) {
   std::string names;
   for (const PathClass& pathClass : table.classes) {
@@ -155,10 +167,12 @@ std::string impossibleFor(const PathClassTable& table, Method method) {
 // METHODS 8.3, which is the study's rule, with one line more: light tracing where it makes every class well and path
 // tracing does not, because no connection is then worth its price.
 ReferenceChoice chooseReference(const PathClassTable& table) {
+  // Whether the table has a method.
   const auto offers = [&](Method method) {
     return std::find(table.methods.begin(), table.methods.end(), method) != table.methods.end();
   };
   const auto count = [&](Method method) { return countFor(table, method); };
+  // An unbiased method: pt, then lt, then bpt, then pt although it is inefficient.
   if (offers(Method::pt)) {
     const Count pt = count(Method::pt);
     if (pt.impossible + pt.inefficient == 0) return {Method::pt, false, "path tracing samples every class of paths"};
@@ -182,6 +196,7 @@ ReferenceChoice chooseReference(const PathClassTable& table) {
       return {Method::pt, false, "path tracing makes every class of paths, " + pt.names + " inefficiently"};
     }
   }
+  // Merging, which is biased.
   for (const Method method : {Method::vcm, Method::ppm}) {
     if (!offers(method) || count(method).impossible != 0) continue;
     const std::string lacking = offers(Method::bpt) ? " (bpt lacks " + impossibleFor(table, Method::bpt) + ")" : "";

@@ -20,11 +20,13 @@ constexpr uint32_t kDepth = 12;      // edges; links between kinds show up long 
 
 enum Events : uint8_t { kDiffuse = 1, kSpecular = 2, kGlossy = 4 };  // glossy surfaces are diffuse, too
 
+// Whether a surface scatters nothing.
 bool isBlack(const MaterialRecord& m) {
   return static_cast<BsdfKind>(m.kind) == BsdfKind::diffuse && m.reflectanceTexture == kNoIndex &&
          m.reflectance[0] + m.reflectance[1] + m.reflectance[2] <= 0 && (m.flags & kHasDelta) == 0;
 }
 
+// Whether a surface has a narrow microfacet lobe and no wider one.
 bool isGlossy(const MaterialRecord& m) {
   if (m.alphaTexture != kNoIndex || m.alpha >= kGlossyAlpha) return false;
   switch (static_cast<BsdfKind>(m.kind)) {
@@ -42,6 +44,7 @@ bool isGlossy(const MaterialRecord& m) {
   }
 }
 
+// The events of a surface, as bits of Events; 0 if it is black.
 uint8_t eventsOf(const MaterialRecord& material) {
   if (isBlack(material)) return 0;
   uint8_t events = 0;
@@ -51,11 +54,13 @@ uint8_t eventsOf(const MaterialRecord& material) {
   return events;
 }
 
+// Marks the kinds among these events as seen.
 void add(SceneLinks::ByEvent& seen, uint8_t events) {
   seen[0] |= (events & kDiffuse) != 0;
   seen[1] |= (events & kSpecular) != 0;
 }
 
+// Whether no ray can meet the light.
 bool isDelta(LightKind kind) {
   return kind == LightKind::point || kind == LightKind::spot || kind == LightKind::projector ||
          kind == LightKind::directional;
@@ -63,8 +68,7 @@ bool isDelta(LightKind kind) {
 
 // ---- the size of a light --------------------------------------------------------------------------------------------
 
-// The solid angle that a sky of one radiance would need for the same share of directions to matter: (INT L)^2 / INT
-// L^2.
+// Solid angle of an even sky that has the same integrals of L and L^2: (INT L)^2 / INT L^2.
 double effectiveSolidAngle(const EnvironmentView& map) {
   double sum = 0, squares = 0;
   for (uint32_t y = 0; y < map.height; ++y) {
@@ -77,6 +81,7 @@ double effectiveSolidAngle(const EnvironmentView& map) {
       squares += weight * value * value;
     }
   }
+  // The sun, whose solid angle is pi times the squared chord.
   if (map.sunShare > 0) {
     const double value = (map.sunRadiance[0] + map.sunRadiance[1] + map.sunRadiance[2]) / 3;
     const double weight = std::numbers::pi * map.sunChord2;
@@ -86,6 +91,7 @@ double effectiveSolidAngle(const EnvironmentView& map) {
   return squares > 0 ? sum * sum / squares : 0;
 }
 
+// Of the smallest extended light, from a distance of the scene's radius, in sr. At most the whole sphere.
 double smallestSolidAngle(const Scene& scene, const CompiledScene<float>& compiled) {
   constexpr double kSphere = 4 * std::numbers::pi;
   const SceneView<float>& view = compiled.view;
@@ -106,6 +112,7 @@ double smallestSolidAngle(const Scene& scene, const CompiledScene<float>& compil
 
 // ---- walking --------------------------------------------------------------------------------------------------------
 
+// Walks light and camera paths with the stages of the kernels, and looks at their vertices between the stages.
 class Walker {
  public:
   explicit Walker(const Scene& scene)
@@ -143,7 +150,9 @@ class Walker {
     return settings;
   }
 
+  // One round of paths from the lights or from the eye.
   void walkFrom(Walk walk, uint32_t iteration) {
+    // The context of the stages. The sampler is seeded with 0, so that every run walks the same paths.
     wave_.firstPath = iteration * kPaths;
     wave_.pathCount = kPaths;
     StageContext<float> context;
@@ -154,6 +163,7 @@ class Walker {
     context.mis.lightPaths = kPaths;
     context.film = area_.window();
     context.counters = &counters_;
+    // Begin the paths, then take them from vertex to vertex.
     previous_.assign(kPaths, 0);
     (walk == Walk::light ? stages_.generateLightPaths : stages_.generateCameraPaths)(context, wave_);
     if (walk == Walk::light) noteLights();
@@ -168,6 +178,7 @@ class Walker {
     }
   }
 
+  // The kind of light on which each light path begins.
   void noteLights() {
     lightOf_.assign(kPaths, LightKindOfPath::extended);
     for (size_t i = 0; i < wave_.rays.size; ++i) {
@@ -176,11 +187,14 @@ class Walker {
     }
   }
 
+  // Camera rays that leave the scene see its infinite light, unless it hides.
   void noteMisses() {
-    if (plan_.scene->view.infiniteLight == kNoIndex) return;
+    const SceneView<float>& view = plan_.scene->view;
+    if (view.infiniteLight == kNoIndex || view.hidesInfinite) return;
     for (size_t i = 0; i < wave_.rays.size; ++i) links_.eyeMeetsLight |= wave_.hits.primitive[i] == kMiss;
   }
 
+  // Marks the link from each path's vertex before, or from its light or the eye, to the vertex here.
   void noteEvents(Walk walk, uint32_t depth) {
     for (size_t i = 0; i < wave_.rays.size; ++i) {
       const auto& primitive = plan_.scene->view.primitives[wave_.hits.primitive[i]];
@@ -199,6 +213,7 @@ class Walker {
       } else {
         add(links_.fromEye, here);
         links_.eyeSeesGlossy |= (here & kGlossy) != 0;
+        // An area light emits on the side of its normal alone.
         const float cosine = -(wave_.rays.directionX[i] * wave_.surfaces.normalX[i] +
                                wave_.rays.directionY[i] * wave_.surfaces.normalY[i] +
                                wave_.rays.directionZ[i] * wave_.surfaces.normalZ[i]);
@@ -208,8 +223,8 @@ class Walker {
     }
   }
 
-  // How many of the vertices under the camera paths next event estimation joins with a light: each shadow ray is made
-  // to carry 1.
+  // Counts the vertices of camera paths that a shadow ray of next event estimation joins with a light. Every shadow ray
+  // is made to carry 1, so the radiance that arrives is the count.
   void countLit(StageContext<float>& context) {
     if (context.scene->lightCount == 0) return;
     stages_.nextEvent(context, wave_);
@@ -219,6 +234,7 @@ class Walker {
     for (size_t i = 0; i < kPaths; ++i) cameraVertices_.joined += static_cast<double>(wave_.radiance.red[i]);
   }
 
+  // Makes every shadow ray carry 1, in the red channel.
   void carryOne() {
     auto& rays = wave_.shadowRays;
     for (size_t i = 0; i < rays.size; ++i) {
@@ -227,7 +243,7 @@ class Walker {
     }
   }
 
-  // The same for the vertices under the light paths and the lens.
+  // The same for the vertices of light paths and the lens, by the splats that arrive.
   void countSeen(StageContext<float>& context) {
     stages_.connectToCamera(context, wave_);
     carryOne();
@@ -248,7 +264,7 @@ class Walker {
   StageCounters counters_;
   SceneLinks links_;
   bool roughPairs_ = false;
-  // Diffuse vertices, and those that a shadow ray joined with what the other walk begins at.
+  // Numbers of diffuse vertices, and of those that a shadow ray joined with a light or with the lens.
   struct Joined {
     uint64_t all = 0;
     double joined = 0;

@@ -12,20 +12,58 @@ namespace {
 
 bool isTexture(const XmlElement& element) { return element.isObject() && element.tag == "texture"; }
 
+// The smallest and the largest value of a texture.
+std::pair<double, double> rangeOf(const Texture& texture) {
+  if (const auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
+    const auto [least0, most0] = std::ranges::minmax(board->color0);
+    const auto [least1, most1] = std::ranges::minmax(board->color1);
+    return {std::min(least0, least1), std::max(most0, most1)};
+  }
+  const std::vector<float>& pixels = std::get<BitmapTexture>(texture.kind).bitmap->pixels;
+  if (pixels.empty()) return {0, 0};
+  const auto [least, most] = std::ranges::minmax(pixels);
+  return {least, most};
+}
+
+// Textures that reflect more than arrives are taken as they are, as in Mitsuba; less than nothing is refused.
+void checkRange(LoadContext& context, const Texture& texture, ColorRole role, const SourceLocation& where) {
+  const auto [least, most] = rangeOf(texture);
+  if (role == ColorRole::emission && least < 0) {
+    throw LoadError(where, "emission texture has a value of " + std::to_string(least) + "; expected 0 or more");
+  }
+  if (role != ColorRole::reflectance) return;
+  if (least < 0) {
+    throw LoadError(where, "reflectance texture has a value of " + std::to_string(least) + "; expected 0 to 1");
+  }
+  if (most > 1) {
+    context.warn(where, "reflectance texture has values up to " + std::to_string(most) +
+                            ", which reflect more light than arrives; expected 0 to 1");
+  }
+}
+
 // The value of a texture that is the same everywhere.
-Rgb constantOf(LoadContext& context, const XmlElement& element) {
-  const Texture texture = readTexture(context, element);
+Rgb constantOf(const Texture& texture) {
   const std::vector<float>& value = std::get<BitmapTexture>(texture.kind).bitmap->pixels;
   return {value[0], value[1], value[2]};
 }
 
+// A colour or a texture; grey of value `fallback` if the parameter is absent. `role` says which colours are valid.
 TexturedRgb readTextured(LoadContext& context, Parameters& parameters, std::string_view name, double fallback,
                          ColorRole role) {
   const XmlElement* element = parameters.element(name);
   if (!element) return {.value = {fallback, fallback, fallback}};
-  if (isTexture(*element) && element->get("type") == "rawconstant") return {.value = constantOf(context, *element)};
-  if (isTexture(*element)) return {.value = {0, 0, 0}, .texture = textureOf(context, *element)};
-  return {.value = readColor(context, *element, role)};
+  if (!isTexture(*element)) return {.value = readColor(context, *element, role)};
+  const SourceLocation where = parameters.locationOf(name);
+  // A rawconstant becomes a plain colour, which needs no lookup.
+  if (element->get("type") == "rawconstant") {
+    const Texture texture = readTexture(context, *element);
+    checkRange(context, texture, role, where);
+    return {.value = constantOf(texture)};
+  }
+  const uint32_t texture = textureOf(context, *element);
+  // Texels of a baked attribute also lie outside of the triangles, where values are extrapolated.
+  if (!context.attributeBitmap) checkRange(context, context.scene.textures[texture], role, where);
+  return {.value = {0, 0, 0}, .texture = texture};
 }
 
 }  // namespace
@@ -35,6 +73,7 @@ uint32_t materialOf(LoadContext& context, const XmlElement& bsdf) {
   Material material;
   material.id = bsdf.get("id");
   material.source = bsdf.location();
+  // Reading adds the parts of a blend to the scene, so the index of this material is known only afterwards.
   readBsdf(context, bsdf, material);
   const uint32_t index = static_cast<uint32_t>(context.scene.materials.size());
   context.scene.materials.push_back(std::move(material));
@@ -43,6 +82,7 @@ uint32_t materialOf(LoadContext& context, const XmlElement& bsdf) {
 }
 
 uint32_t defaultMaterial(LoadContext& context, bool isLight) {
+  // Made for the first shape that needs it.
   uint32_t& index = context.defaultMaterial[isLight ? 1 : 0];
   if (index == kNone) {
     index = static_cast<uint32_t>(context.scene.materials.size());
@@ -58,6 +98,7 @@ uint32_t defaultMaterial(LoadContext& context, bool isLight) {
 void readBsdf(LoadContext& context, const XmlElement& bsdf, Material& material) {
   const ReadingGuard guard(context, bsdf);
   const BsdfPlugin* plugin = findPlugin(context, bsdfPlugins(), bsdf, "replaced by diffuse of reflectance 0.5");
+  // Without --lenient an unknown type is an error, and this is not reached.
   if (!plugin) {
     material.kind = Diffuse{};
     return;
@@ -69,6 +110,7 @@ void readBsdf(LoadContext& context, const XmlElement& bsdf, Material& material) 
 
 Texture readTexture(LoadContext& context, const XmlElement& texture) {
   const ReadingGuard guard(context, texture);
+  // With --lenient, a constant of 0.5 replaces a texture of unknown type.
   Texture result{.kind = CheckerboardTexture{.color0 = {0.5, 0.5, 0.5}, .color1 = {0.5, 0.5, 0.5}},
                  .toUv = identityMatrix()};
   if (const TexturePlugin* plugin = findPlugin(context, texturePlugins(), texture, "replaced by a constant of 0.5")) {
@@ -88,42 +130,8 @@ uint32_t textureOf(LoadContext& context, const XmlElement& texture) {
   return index;
 }
 
-namespace {
-
-// The smallest and the largest value of a texture.
-std::pair<double, double> rangeOf(const Texture& texture) {
-  if (const auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
-    const auto [least0, most0] = std::ranges::minmax(board->color0);
-    const auto [least1, most1] = std::ranges::minmax(board->color1);
-    return {std::min(least0, least1), std::max(most0, most1)};
-  }
-  const std::vector<float>& pixels = std::get<BitmapTexture>(texture.kind).bitmap->pixels;
-  if (pixels.empty()) return {0, 0};
-  const auto [least, most] = std::ranges::minmax(pixels);
-  return {least, most};
-}
-
-// Textures that reflect more than arrives are taken as they are, as in Mitsuba; less than nothing is refused.
-void checkReflectance(LoadContext& context, const Texture& texture, const SourceLocation& where) {
-  const auto [least, most] = rangeOf(texture);
-  if (least < 0) {
-    throw LoadError(where, "reflectance texture has a value of " + std::to_string(least) + "; expected 0 to 1");
-  }
-  if (most > 1) {
-    context.warn(where, "reflectance texture has values up to " + std::to_string(most) +
-                            ", which reflect more light than arrives; expected 0 to 1");
-  }
-}
-
-}  // namespace
-
 TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
-  const TexturedRgb colour = readTextured(context, parameters, name, fallback, ColorRole::reflectance);
-  // Texels of a baked attribute also lie outside of the triangles, where values are extrapolated.
-  if (colour.texture != kNone && !context.attributeBitmap) {
-    checkReflectance(context, context.scene.textures[colour.texture], parameters.locationOf(name));
-  }
-  return colour;
+  return readTextured(context, parameters, name, fallback, ColorRole::reflectance);
 }
 
 TexturedRgb readTexturedEmission(LoadContext& context, Parameters& parameters, std::string_view name) {
@@ -132,9 +140,10 @@ TexturedRgb readTexturedEmission(LoadContext& context, Parameters& parameters, s
 
 namespace {
 
-// Of linear Rec. 709, by the weights that Mitsuba has.
+// The luminance of linear Rec. 709, with Mitsuba's weights.
 double luminance(double r, double g, double b) { return 0.212671 * r + 0.715160 * g + 0.072169 * b; }
 
+// A bitmap of three channels as one of one channel.
 Bitmap luminanceOf(const Bitmap& colour) {
   Bitmap grey{.width = colour.width, .height = colour.height, .channels = 1, .pixels = {}};
   grey.pixels.reserve(colour.pixels.size() / 3);
@@ -163,8 +172,10 @@ uint32_t scalarTextureOf(LoadContext& context, uint32_t index) {
     return known->second;
   }
   const Texture& texture = context.scene.textures[index];
+  // A grey bitmap stands for itself.
   const auto* const bitmap = std::get_if<BitmapTexture>(&texture.kind);
   if (bitmap != nullptr && bitmap->bitmap->channels == 1) return index;
+  // Any other texture gets a scalar version in the scene, once.
   const uint32_t scalar = static_cast<uint32_t>(context.scene.textures.size());
   context.scene.textures.push_back(scalarTexture(texture));
   context.scalarTextures.emplace(index, scalar);
@@ -174,6 +185,7 @@ uint32_t scalarTextureOf(LoadContext& context, uint32_t index) {
 TexturedFloat readTexturedFloat(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
   TexturedRgb color = readTextured(context, parameters, name, fallback, ColorRole::unbounded);
   if (color.texture != kNone) color.texture = scalarTextureOf(context, color.texture);
+  // A grey value is taken as it is, since the weighted sum would round it.
   const double value = luminance(color.value[0], color.value[1], color.value[2]);
   const bool grey = color.value[0] == color.value[1] && color.value[1] == color.value[2];
   return {.value = grey ? color.value[0] : value, .texture = color.texture};

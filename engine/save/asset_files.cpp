@@ -38,6 +38,7 @@ std::optional<Image8> exactCodes(const Bitmap& bitmap, bool raw) {
   return image;
 }
 
+// Writes the mesh when it is called.
 std::function<void(const std::string&)> plyWriter(std::shared_ptr<const Mesh> mesh, PlyContent content) {
   return [mesh = std::move(mesh), content = std::move(content)](const std::string& path) {
     writeFileAtomically(path, plyBytes(*mesh, content));
@@ -46,6 +47,7 @@ std::function<void(const std::string&)> plyWriter(std::shared_ptr<const Mesh> me
 
 }  // namespace
 
+// Plans a file in the folder. Returns its name relative to the XML file.
 std::string AssetFiles::add(const std::string& file, std::function<void(const std::string& path)> write) {
   const std::filesystem::path path = folder_ / file;
   files_.push_back({path, [path, write = std::move(write)] { write(path.string()); }});
@@ -53,7 +55,7 @@ std::string AssetFiles::add(const std::string& file, std::function<void(const st
 }
 
 std::string AssetFiles::addMesh(const Mesh& mesh, PlyContent content) {
-  // A pointer that owns nothing.
+  // The pointer owns nothing: the scene has the mesh.
   return add(fmt::format("mesh-{}.ply", ++meshes_), plyWriter({std::shared_ptr<void>(), &mesh}, std::move(content)));
 }
 
@@ -62,23 +64,32 @@ std::string AssetFiles::addMesh(Mesh&& mesh, PlyContent content) {
              plyWriter(std::make_shared<const Mesh>(std::move(mesh)), std::move(content)));
 }
 
-StoredBitmap AssetFiles::addBitmap(const std::shared_ptr<const Bitmap>& bitmap, bool isData) {
-  const auto [known, first] = bitmaps_.emplace(bitmap.get(), StoredBitmap{});
-  StoredBitmap& stored = known->second;
-  if (!first) return stored;
-  const std::string name = fmt::format("bitmap-{}", bitmaps_.size());
-  for (const bool raw : {isData, !isData}) {
+StoredBitmap AssetFiles::store(const std::shared_ptr<const Bitmap>& bitmap, std::span<const bool> curves, bool isData) {
+  const std::string name = fmt::format("bitmap-{}", bitmaps_.size() + environments_.size());
+  for (const bool raw : curves) {
     std::optional<Image8> codes = exactCodes(*bitmap, raw);
     if (!codes) continue;
-    stored = {add(name + ".png", [image = std::move(*codes)](const std::string& path) { writePng(path, image); }), raw};
-    return stored;
+    return {add(name + ".png", [image = std::move(*codes)](const std::string& path) { writePng(path, image); }), raw};
   }
-  stored = {add(name + ".exr",
-                [bitmap](const std::string& path) {
-                  writeExr(path, {bitmap->width, bitmap->height, bitmap->channels, bitmap->pixels});
-                }),
-            isData};
-  return stored;
+  // Floats, where no curve gives them all.
+  return {add(name + ".exr",
+              [bitmap](const std::string& path) {
+                writeExr(path, {bitmap->width, bitmap->height, bitmap->channels, bitmap->pixels});
+              }),
+          isData};
+}
+
+StoredBitmap AssetFiles::addBitmap(const std::shared_ptr<const Bitmap>& bitmap, bool isData) {
+  // A bitmap is stored once: by the curve that suits its first use, else by the other.
+  const auto [known, first] = bitmaps_.emplace(bitmap.get(), StoredBitmap{});
+  if (first) known->second = store(bitmap, std::array{isData, !isData}, isData);
+  return known->second;
+}
+
+std::string AssetFiles::addEnvironment(const std::shared_ptr<const Bitmap>& bitmap) {
+  const auto [known, first] = environments_.emplace(bitmap.get(), StoredBitmap{});
+  if (first) known->second = store(bitmap, std::array{false}, false);
+  return known->second.filename;
 }
 
 }  // namespace wavecrest

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,16 +30,20 @@ class AssetFiles {
   // A PNG if 8-bit codes give the same floats, otherwise an EXR. A bitmap of several textures is stored once.
   // isData: of numbers or normals, not of colours.
   StoredBitmap addBitmap(const std::shared_ptr<const Bitmap>& bitmap, bool isData);
+  // The same for an environment map, which is never raw: its 8-bit codes have the sRGB curve. Returns the name.
+  std::string addEnvironment(const std::shared_ptr<const Bitmap>& bitmap);
 
   std::vector<SavedFile> takeFiles() { return std::move(files_); }
 
  private:
   std::string add(const std::string& file, std::function<void(const std::string& path)> write);
+  // curves: whether codes are raw, in the order in which they are tried. isData: of an EXR.
+  StoredBitmap store(const std::shared_ptr<const Bitmap>& bitmap, std::span<const bool> curves, bool isData);
 
   std::filesystem::path folder_;
   std::string name_;
   std::vector<SavedFile> files_;
-  std::map<const Bitmap*, StoredBitmap> bitmaps_;
+  std::map<const Bitmap*, StoredBitmap> bitmaps_, environments_;
   size_t meshes_ = 0;
 };
 

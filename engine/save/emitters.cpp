@@ -6,6 +6,7 @@ namespace wavecrest {
 
 namespace {
 
+// Writes one emitter as an element of the scene.
 class EmitterWriter {
  public:
   explicit EmitterWriter(SaveContext& context) : context_(context) {}
@@ -16,6 +17,7 @@ class EmitterWriter {
     addPoint(node, "position", e.position);
     addRgb(node, "intensity", e.intensity);
   }
+  // The loader takes position and direction from to_world.
   void operator()(const SpotEmitter& e) const {
     const pugi::xml_node node = start("spot");
     addTransform(node, "to_world", e.toWorld);
@@ -25,6 +27,7 @@ class EmitterWriter {
     if (e.texture != kNone) addRef(node, context_.textureIds[e.texture], "texture");
   }
   void operator()(const SunskyEmitter& e) const {
+    // The loader makes a unit vector of the direction. The vector written is one from which it makes the same.
     const auto unit = [](const Double3& v) { return (1 / length(v)) * v; };
     const pugi::xml_node node = start("sunsky");
     addTransform(node, "to_world", e.toWorld);
@@ -35,6 +38,7 @@ class EmitterWriter {
     addFloat(node, "sky_scale", e.skyScale);
     addFloat(node, "sun_aperture", e.sunAperture);
   }
+  // The aspect follows from the texture.
   void operator()(const ProjectorEmitter& e) const {
     const pugi::xml_node node = start("projector");
     addTransform(node, "to_world", e.toWorld);
@@ -44,7 +48,7 @@ class EmitterWriter {
     addTexturedRgb(context_, node, "irradiance", e.irradiance);
   }
   void operator()(const DirectionalEmitter& e) const {
-    // The loader makes a unit vector of it.
+    // As of the sun: a vector from which the loader makes this unit vector.
     const auto unit = [](const Double3& v) { return (1 / length(v)) * v; };
     const pugi::xml_node node = start("directional");
     addVector(node, "direction", unitPreimage(e.direction, 1.0 / 2048, unit));
@@ -53,7 +57,7 @@ class EmitterWriter {
   void operator()(const ConstantEmitter& e) const { addRgb(start("constant"), "radiance", e.radiance); }
   void operator()(const EnvmapEmitter& e) const {
     const pugi::xml_node node = start("envmap");
-    addString(node, "filename", context_.assets.addBitmap(e.bitmap, false).filename);
+    addString(node, "filename", context_.assets.addEnvironment(e.bitmap));
     addFloat(node, "scale", e.scale);
     addTransform(node, "to_world", e.toWorld);
   }

@@ -13,12 +13,14 @@ void addFactor(const SaveContext& context, pugi::xml_node node, const char* name
   if (value.texture != kNone || value.value != kWhite) addTexturedRgb(context, node, name, value);
 }
 
-// A reflectance above one, which a file can only give as a constant that is not checked.
+// Whether a constant is outside of [0, 1]. A file can give it only as a `rawconstant` texture, whose range is not
+// checked.
 bool isRaw(const TexturedRgb& value) {
   const auto outside = [](double v) { return v < 0 || v > 1; };
   return value.texture == kNone && (outside(value.value[0]) || outside(value.value[1]) || outside(value.value[2]));
 }
 
+// Whether the plugin is the rough one. The loader keeps roughness of rough plugins above 0.
 bool isRough(const TexturedFloat& alpha) { return alpha.texture != kNone || alpha.value != 0; }
 
 // Writes a BSDF without its adapters below `parent`.
@@ -33,6 +35,7 @@ class BsdfWriter {
   }
   void operator()(const Conductor& m) {
     start(isRough(m.alpha) ? "roughconductor" : "conductor");
+    // The material "none" stands for these numbers.
     if (m.perfectMirror && m.eta == Rgb{0, 0, 0} && m.k == kWhite) {
       addString(node_, "material", "none");
     } else {
@@ -80,9 +83,11 @@ class BsdfWriter {
       for (const uint32_t part : m.materials) addRef(node_, context_.materialIds[part]);
       return;
     }
+    // `weight` is that of the second BSDF. The second is what all other parts make together.
     addFloat(node_, "weight", 1 - m.weights[0]);
     addRef(node_, context_.materialIds[m.materials[0]]);
     if (m.materials.size() > 1) return parts(m, 1, 1 - m.weights[0]);
+    // A single part is blended with black, which takes the rest.
     addRgb(addObject(node_, "bsdf", "diffuse", ""), "reflectance", {0, 0, 0});
   }
   void operator()(const Phong& m) {
@@ -95,10 +100,12 @@ class BsdfWriter {
 
  private:
   void start(const char* type) { node_ = addObject(parent_, "bsdf", type, id_); }
+  // A colour or texture, by name.
   void reflectance(const char* name, const TexturedRgb& value) {
     if (!isRaw(value)) return addTexturedRgb(context_, node_, name, value);
     addVector(addObject(node_, "texture", "rawconstant", "", name), "value", value.value);
   }
+  // A factor that is 1 unless a file says otherwise, in [0, 1] or not.
   void factor(const char* name, const TexturedRgb& value) {
     if (isRaw(value)) return reflectance(name, value);
     addFactor(context_, node_, name, value);
@@ -107,6 +114,7 @@ class BsdfWriter {
     addFloat(node_, "int_ior", interior);
     addFloat(node_, "ext_ior", exterior);
   }
+  // Distribution and roughness of a rough plugin; nothing for a smooth one.
   void roughness(const TexturedFloat& alpha, const std::optional<TexturedFloat>& alphaV, Distribution distribution) {
     if (!isRough(alpha) && !alphaV) return;
     addString(node_, "distribution", distribution == Distribution::ggx ? "ggx" : "beckmann");
@@ -117,8 +125,10 @@ class BsdfWriter {
   void number(const char* name, const TexturedFloat& value) {
     if (value.texture != kNone || value.value != 0) addTexturedFloat(context_, node_, name, value);
   }
-  // The parts [first, ...) of a blend, of which `rest` of the whole weight is left, as blends of two below a node.
+  // Writes the parts [first, ...) of a blend as blends of two within each other. `rest` is the weight that all of them
+  // share, black included.
   void parts(const Blend& blend, size_t first, double rest) {
+    // The share of this part in the rest.
     const double weight = rest > 0 ? std::min(blend.weights[first] / rest, 1.0) : 1;
     const bool last = first + 1 == blend.materials.size();
     if (last && weight > 1 - 1e-9) return addRef(node_, context_.materialIds[blend.materials[first]]);
@@ -141,6 +151,7 @@ class AdapterWriter {
   AdapterWriter(SaveContext& context, const Material& material, std::string id)
       : context_(context), material_(material), parent_(context.root), id_(std::move(id)) {}
 
+  // Adapters from the outermost to the innermost, then the BSDF.
   void write() {
     const bool mapOutside = material_.normalMapping.aroundTwoSided || !material_.twoSided;
     if (mapOutside && mapBeforeMask()) map();
@@ -152,6 +163,7 @@ class AdapterWriter {
   }
 
  private:
+  // Adds an adapter within those before. The first element gets the id.
   pugi::xml_node open(const char* type) {
     parent_ = addObject(parent_, "bsdf", type, id_);
     id_.clear();
@@ -165,6 +177,7 @@ class AdapterWriter {
   void mask() {
     if (material_.opacity) addTexturedFloat(context_, open("mask"), "opacity", *material_.opacity);
   }
+  // A bump or normal map; a material has at most one of them.
   void map() {
     if (material_.bumpTexture != kNone) {
       const pugi::xml_node node = open("bumpmap");

@@ -17,8 +17,10 @@ namespace wavecrest {
 
 namespace {
 
+// Values are copied as they are in memory.
 static_assert(std::endian::native == std::endian::little);
 
+// Whether the file has texture coordinates. An attribute replaces those that were baked from it.
 bool hasUvs(const Mesh& mesh, const PlyContent& content) {
   return content.attribute.channels == 0 && !mesh.uvs.empty();
 }
@@ -30,6 +32,7 @@ std::string header(const Mesh& mesh, const PlyContent& content) {
       mesh.positions.size());
   if (content.normals) text += "property float nx\nproperty float ny\nproperty float nz\n";
   if (hasUvs(mesh, content)) text += "property float u\nproperty float v\n";
+  // Properties have the attribute's name without vertex_ or face_, and a number for each channel.
   const std::string property = content.attribute.name.substr(content.attribute.name.find('_') + 1);
   for (size_t c = 0; c < content.attribute.channels; ++c) text += fmt::format("property float {}_{}\n", property, c);
   return text +
@@ -43,9 +46,9 @@ void append(std::vector<unsigned char>& bytes, const Value& value) {
   bytes.insert(bytes.end(), raw, raw + sizeof(Value));
 }
 
-// The vector of which the loader makes a normal. A zero with a minus is lost among the products that a transform adds,
-// the identity as well. It comes back from the smallest negative number in a vector so long that dividing by its length
-// leaves less than half of that.
+// The vector from which the loader makes a normal to the bit. A component of -0 would be lost: a transform, even the
+// identity, adds products, and -0 plus 0 is 0. The smallest negative number is written instead, in a vector of about
+// length 4, where division by the length rounds it to -0.
 Float3 normalToWrite(const Float3& normal) {
   static const Matrix4 kInPlace = normalMatrix(identityMatrix());
   const auto isNegativeZero = [](float v) { return v == 0 && std::signbit(v); };
@@ -64,6 +67,7 @@ Float3 normalToWrite(const Float3& normal) {
 }  // namespace
 
 std::vector<unsigned char> plyBytes(const Mesh& mesh, const PlyContent& content) {
+  // The header, and room for all bytes.
   const std::string text = header(mesh, content);
   const size_t channels = content.attribute.channels;
   const bool uvs = hasUvs(mesh, content);
@@ -71,12 +75,14 @@ std::vector<unsigned char> plyBytes(const Mesh& mesh, const PlyContent& content)
   std::vector<unsigned char> bytes;
   bytes.reserve(text.size() + vertexFloats * 4 * mesh.positions.size() + (1 + 3 * 4) * mesh.triangles.size());
   bytes.insert(bytes.end(), text.begin(), text.end());
+  // Vertices, in the order of the header's properties.
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
     append(bytes, mesh.positions[i]);
     if (content.normals) append(bytes, normalToWrite(mesh.normals[i]));
     if (uvs) append(bytes, mesh.uvs[i]);
     for (size_t c = 0; c < channels; ++c) append(bytes, content.attribute.values[i * channels + c]);
   }
+  // Triangles, as lists of three indices.
   for (const std::array<uint32_t, 3>& triangle : mesh.triangles) {
     bytes.push_back(3);
     append(bytes, triangle);

@@ -12,6 +12,7 @@ namespace wavecrest {
 
 namespace {
 
+// Affine matrix with the images of the three axes and of the origin.
 Matrix4 fromColumns(const Double3& x, const Double3& y, const Double3& z, const Double3& origin) {
   Matrix4 m = identityMatrix();
   for (size_t i = 0; i < 3; ++i) m[i] = {x[i], y[i], z[i], origin[i]};
@@ -23,7 +24,7 @@ bool isSame(const Cylinder& a, const Cylinder& b) {
          a.phi90 == b.phi90;
 }
 
-// Whether a mesh without normals in its file gets these, to the bit.
+// Whether the loader makes the normals of this mesh, to the bit, where its file has none.
 bool hasSmoothNormals(const Mesh& mesh) {
   const std::vector<Float3> smooth = smoothNormals(mesh);
   return std::memcmp(smooth.data(), mesh.normals.data(), smooth.size() * sizeof(Float3)) == 0;
@@ -38,7 +39,9 @@ class ShapeWriter {
   pugi::xml_node operator()(const Mesh& mesh) const {
     const pugi::xml_node node = start("ply");
     PlyContent content;
+    // An attribute replaces the texture coordinates that were baked from it.
     if (attribute_ != nullptr) content.attribute = unbakedAttribute(*attribute_, mesh.triangles.size());
+    // Normals are left out where the loader makes the same ones, perhaps with flip_normals.
     const bool faceted = mesh.normals.empty();
     if (!faceted && !hasSmoothNormals(mesh)) {
       Mesh turned = mesh;
@@ -55,11 +58,12 @@ class ShapeWriter {
     return node;
   }
 
-  // to_world maps [-1, 1]^2 at z = 0 to it. It never mirrors: flip_normals does.
+  // to_world maps [-1, 1]^2 at z = 0 to the rectangle. It never mirrors: flip_normals does.
   pugi::xml_node operator()(const Rectangle& r) const {
     const Double3 edgeU = r.mirrored ? -1 * r.edgeU : r.edgeU;
     const Double3 x = 0.5 * edgeU, y = 0.5 * r.edgeV;
     Matrix4 toWorld = fromColumns(x, y, normalized(cross(x, y)), {});
+    // The corner is a rounded sum. The translation is one from which the loader makes that corner to the bit.
     for (size_t i = 0; i < 3; ++i) {
       toWorld[i][3] = sumPreimage(r.corner[i], [&](double offset) {
         Matrix4 moved = toWorld;
@@ -70,23 +74,25 @@ class ShapeWriter {
     return placed("rectangle", toWorld, r.mirrored);
   }
 
+  // As a rectangle: to_world never mirrors.
   pugi::xml_node operator()(const Disk& d) const {
     const Double3 axisV = d.mirrored ? -1 * d.axisV : d.axisV;
     return placed("disk", fromColumns(d.axisU, axisV, normalized(cross(d.axisU, axisV)), d.center), d.mirrored);
   }
 
+  // A transform that mirrors turns the normals around by itself.
   pugi::xml_node operator()(const Sphere& s) const {
     return placed("sphere", s.toWorld, s.flipNormals != (determinant3(s.toWorld) < 0));
   }
 
   pugi::xml_node operator()(const Cylinder& c) const {
-    // Without a transform, if phi is then where it must be.
+    // Without a transform, if the loader then makes the same cylinder.
     Matrix4 toWorld = identityMatrix();
     Double3 p0 = c.p0, p1 = c.p1;
     bool flip = c.flipNormals;
     double radius = radiusOf(c, toWorld, p0, p1);
     if (!isSame(placeCylinder(toWorld, p0, p1, radius, flip), c)) {
-      // From [0, 1] on the z axis.
+      // Otherwise as the image of a cylinder from 0 to 1 on the z axis, whose phi begins at x.
       const auto unit = [](const Double3& v) { return normalized(v); };
       constexpr double kStep = 1e-9;  // small: the two may differ in length by little
       Double3 axis{};
@@ -112,6 +118,7 @@ class ShapeWriter {
     if (flipNormals) addBoolean(node, "flip_normals", true);
     return node;
   }
+  // The radius from which the loader makes that of the cylinder.
   static double radiusOf(const Cylinder& c, const Matrix4& toWorld, const Double3& p0, const Double3& p1) {
     return productPreimage(c.radius, [&](double r) { return placeCylinder(toWorld, p0, p1, r, false).radius; });
   }
@@ -122,6 +129,7 @@ class ShapeWriter {
   const Bitmap* attribute_;  // of the mesh, or null
 };
 
+// Writes a shape with its material and its area light.
 void saveShape(SaveContext& context, pugi::xml_node parent, size_t index) {
   const Shape& shape = context.scene.shapes[index];
   const std::string id = context.names.unique(shape.id, "shape-" + std::to_string(index + 1));
@@ -149,6 +157,7 @@ class InstanceWriter {
   }
 
  private:
+  // The next instance, and its group before it if that is not yet written.
   void writeNext() {
     const Instance& instance = context_.scene.instances[next_++];
     if (!groups_[instance.group]) writeGroup(instance.group);

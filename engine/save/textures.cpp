@@ -8,7 +8,7 @@ namespace wavecrest {
 
 namespace {
 
-// What asks for a texture, and as what.
+// The textures that are asked for, as colours, as numbers and as normal maps.
 struct TextureUses {
   std::set<uint32_t> colors, numbers, normals;
 
@@ -56,6 +56,7 @@ struct TextureUses {
   }
 };
 
+// The uses by all materials and lights.
 TextureUses usesOf(const Scene& scene) {
   TextureUses uses;
   for (const Material& material : scene.materials) uses(material);
@@ -67,6 +68,7 @@ TextureUses usesOf(const Scene& scene) {
   return uses;
 }
 
+// Whether two textures have the same values everywhere; bitmaps may be different objects.
 bool isSame(const Texture& a, const Texture& b) {
   if (a.kind.index() != b.kind.index() || a.toUv != b.toUv) return false;
   if (const auto* board = std::get_if<CheckerboardTexture>(&a.kind)) {
@@ -79,14 +81,15 @@ bool isSame(const Texture& a, const Texture& b) {
          p.channels == q.channels && p.pixels == q.pixels;
 }
 
+// Whether scalarTexture could make `scalar` of a texture: a quick test before the exact one.
 bool mayBeSource(const Texture& texture, const Texture& scalar) {
   const auto *a = std::get_if<BitmapTexture>(&texture.kind), *b = std::get_if<BitmapTexture>(&scalar.kind);
   if (a == nullptr || b == nullptr) return a == nullptr && b == nullptr;
   return a->bitmap->channels == 3 && a->bitmap->width == b->bitmap->width && a->bitmap->height == b->bitmap->height;
 }
 
-// The loader puts a colour texture and the numbers that it made of it into the scene. A file has the former, so it is
-// looked for among the textures before the latter.
+// For each texture of numbers, the colour texture from which the loader derived it, or kNone. The loader puts both into
+// the scene, the derived one behind its source. A file has only the source. Each source has one derived texture.
 std::vector<uint32_t> findScalarSources(const Scene& scene, const std::set<uint32_t>& numbers) {
   std::vector<uint32_t> sources(scene.textures.size(), kNone);
   std::set<uint32_t> taken;
@@ -101,7 +104,7 @@ std::vector<uint32_t> findScalarSources(const Scene& scene, const std::set<uint3
   return sources;
 }
 
-// The bitmap of all textures of a shape, if the loader made it of an attribute of the shape's mesh.
+// The bitmap of a mesh attribute, if all textures of a shape have it; else null.
 const Bitmap* attributeOf(const SaveContext& context, const Shape& shape) {
   TextureUses uses;
   if (shape.material != kNone) {
@@ -112,12 +115,14 @@ const Bitmap* attributeOf(const SaveContext& context, const Shape& shape) {
     }
   }
   if (shape.emitter != kNone) uses(std::get<AreaEmitter>(context.scene.emitters[shape.emitter].kind).radiance);
+  // The textures that the file refers to.
   std::set<uint32_t> all = std::move(uses.colors);
   all.merge(uses.normals);
   for (const uint32_t number : uses.numbers) {
     const uint32_t source = context.scalarSources[number];
     all.insert(source != kNone ? source : number);
   }
+  // All of them must be the same attribute.
   const Bitmap* found = nullptr;
   for (const uint32_t index : all) {
     const auto* texture = std::get_if<BitmapTexture>(&context.scene.textures[index].kind);
@@ -128,6 +133,7 @@ const Bitmap* attributeOf(const SaveContext& context, const Shape& shape) {
   return found;
 }
 
+// Writes what a bitmap texture has to say about its file and its lookup.
 void saveBitmap(SaveContext& context, const BitmapTexture& texture, bool isData, pugi::xml_node node) {
   const StoredBitmap stored = context.assets.addBitmap(texture.bitmap, isData);
   addString(node, "filename", stored.filename);
@@ -137,17 +143,20 @@ void saveBitmap(SaveContext& context, const BitmapTexture& texture, bool isData,
   if (texture.wrap == Wrap::clamp) addString(node, "wrap_mode", "clamp");
 }
 
-// Numbers above 1 are no <rgb> in Mitsuba.
+// A colour of a checkerboard. Mitsuba takes no <rgb> above 1, so equal channels above 1 are a number.
 void addSquare(pugi::xml_node node, const char* name, const Rgb& color) {
   if (color[0] > 1 && color[0] == color[1] && color[0] == color[2]) return addFloat(node, name, color[0]);
   addRgb(node, name, color);
 }
 
+// Writes one texture. isNumber: it is asked for as a number, and has no source. isData: it is not asked for as a
+// colour.
 void saveTexture(SaveContext& context, const Texture& texture, bool isNumber, bool isData, const std::string& id) {
   const auto* bitmap = std::get_if<BitmapTexture>(&texture.kind);
   const auto& attributes = context.meshAttributes;
   if (bitmap != nullptr && std::find(attributes.begin(), attributes.end(), bitmap->bitmap.get()) != attributes.end()) {
     const pugi::xml_node attribute = addObject(context.root, "texture", "mesh_attribute", id);
+    // The name follows from the number of channels.
     return addString(attribute, "name", unbakedAttribute(*bitmap->bitmap, 0).name);
   }
   pugi::xml_node node = addObject(context.root, "texture", bitmap != nullptr ? "bitmap" : "checkerboard", id);
@@ -166,12 +175,15 @@ void saveTexture(SaveContext& context, const Texture& texture, bool isNumber, bo
 
 void saveTextures(SaveContext& context) {
   const Scene& scene = context.scene;
+  // Which textures the file has: first what refers to them, then which are derived or made of attributes.
   const TextureUses uses = usesOf(scene);
   context.textureIds.assign(scene.textures.size(), "");
   context.scalarSources = findScalarSources(scene, uses.numbers);
   for (const Shape& shape : scene.shapes) context.meshAttributes.push_back(attributeOf(context, shape));
+  // The sources of textures of numbers.
   std::set<uint32_t> sources;
   for (const uint32_t scalar : uses.numbers) TextureUses::add(sources, context.scalarSources[scalar]);
+  // Write those that are used, in the scene's order.
   for (uint32_t i = 0; i < scene.textures.size(); ++i) {
     const bool isColor = uses.colors.contains(i), isSource = sources.contains(i), isNormal = uses.normals.contains(i);
     const bool isNumber = uses.numbers.contains(i) && context.scalarSources[i] == kNone;

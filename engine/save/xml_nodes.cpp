@@ -9,6 +9,7 @@ namespace wavecrest {
 
 namespace {
 
+// <TAG name="NAME" value="VALUE">.
 void addValue(pugi::xml_node parent, const char* tag, const char* name, const std::string& value) {
   pugi::xml_node node = parent.append_child(tag);
   node.append_attribute("name") = name;
@@ -32,6 +33,7 @@ void addRef(pugi::xml_node parent, const std::string& id, const char* name) {
   node.append_attribute("id") = id.c_str();
 }
 
+// {} prints a number with the fewest digits that read back the same.
 void addFloat(pugi::xml_node parent, const char* name, double value) {
   addValue(parent, "float", name, fmt::format("{}", value));
 }
@@ -58,6 +60,7 @@ void addTransform(pugi::xml_node parent, const char* name, const Matrix4& value)
   if (isIdentity(value)) return;
   pugi::xml_node node = parent.append_child("transform");
   node.append_attribute("name") = name;
+  // All sixteen numbers, by rows.
   std::string rows;
   for (const std::array<double, 4>& row : value) {
     rows += fmt::format("{}{}", rows.empty() ? "" : "  ", fmt::join(row, " "));
@@ -69,18 +72,20 @@ std::string xmlName(std::string_view text) {
   std::string name;
   for (const char c : text) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    // No - at the start, nor two in a row: comments end with them.
+    // No "-" at the start and no two in a row: "--" would end a comment.
     if (plain) {
       name += c;
     } else if (!name.empty() && name.back() != '-') {
       name += '-';
     }
   }
+  // No "-" at the end either.
   if (!name.empty() && name.back() == '-') name.pop_back();
   return name;
 }
 
 std::string XmlNames::unique(const std::string& wanted, const std::string& fallback) {
+  // The first of base, base-2, base-3 and so on that is not taken.
   std::string base = xmlName(wanted);
   if (base.empty()) base = fallback;
   std::string name = base;

@@ -42,6 +42,26 @@ class Inspect(CommandTest):
         self.assertRegex(self.run_wavecrest("inspect", scene).stdout, r'scene\.xml:2: integrator "bdpt": .*--method bpt')
         self.assertEqual(self.inspect("cornell-diffuse")["notes"], [])
 
+    def test_a_hidden_sky_is_no_light_in_view(self):
+        scene = (
+            '<scene version="3.0.0"><integrator type="path"><boolean name="hide_emitters" value="HIDE"/></integrator>'
+            '<sensor type="perspective"/><emitter type="constant"/></scene>'
+        )
+        for hides in ("true", "false"):
+            classes = self.inspect(self.write(f"{hides}.xml", scene.replace("HIDE", hides)))["path_classes"]
+            self.assertEqual("A E" in [entry["class"] for entry in classes], hides == "false", hides)
+
+    def test_maps_and_roughness_across_are_named(self):
+        scene = self.write(
+            "scene.xml",
+            '<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"><bsdf type="bumpmap">'
+            '<texture type="checkerboard"/><bsdf type="roughconductor"><float name="alpha_u" value="0.0001"/>'
+            '<float name="alpha_v" value="0.2"/></bsdf></bsdf></shape></scene>',
+        )
+        features = self.inspect(scene)["features"]
+        self.assertIn("bump or normal maps", features["needs"])
+        self.assertEqual(features["bsdfs"], {"roughconductor": 1, "bumpmap": 1})
+
     def test_verdicts_are_of_three_words_for_every_method(self):
         classes = self.inspect("cornell-spheres")["path_classes"]
         for entry in classes:

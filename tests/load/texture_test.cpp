@@ -235,6 +235,15 @@ TEST(RawConstant, IsAValue) {
   EXPECT_FLOAT_EQ(static_cast<float>(value[1]), 0.2f);
 }
 
+TEST(RawConstant, IsInTheRangeOfWhatItStandsFor) {
+  const std::string negative =
+      R"(<texture name="NAME" type="rawconstant"><vector name="value" x="-1" y="0" z="0"/></texture>)";
+  const auto named = [&](std::string name) { return std::string(negative).replace(negative.find("NAME"), 4, name); };
+  expectErrorOnLine2(material(named("reflectance")), "a value of -1");
+  expectErrorOnLine2(R"(<shape type="sphere"><emitter type="area">)" + named("radiance") + "</emitter></shape>",
+                     "emission texture has a value of -1");
+}
+
 TEST(ScaleTexture, MultipliesTheOneWithin) {
   const ImageFolder folder;
   const Scene scene =

@@ -200,6 +200,17 @@ TEST(RoundTrip, BitmapsAsColoursNumbersAndNormals) {
   }
 }
 
+// Values that are codes without a curve: a texture may say that it is raw, an environment map may not.
+TEST(RoundTrip, EnvironmentMapsAreNeverRaw) {
+  const Folder folder;
+  writeExr((folder.path() / "sky.exr").string(), {2, 1, 3, std::vector<float>(6, 51 / 255.0f)});
+  const std::string file = R"(<string name="filename" value="sky.exr"/>)";
+  const std::string sky = R"(<emitter type="envmap">)" + file + "</emitter>";
+  expectSame(folder, sky);
+  expectSame(folder, R"(<shape type="sphere"><bsdf type="diffuse"><texture type="bitmap" name="reflectance">)" + file +
+                         "</texture></bsdf></shape>" + sky);
+}
+
 TEST(RoundTrip, ABitmapIsAPngIfEightBitsSayAllOfIt) {
   const Folder folder;
   Image image{2, 1, 3, {0.0f, 0.25f, 0.5f, 0.75f, 0.9f, 1.0f}};
