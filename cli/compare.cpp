@@ -19,6 +19,7 @@
 namespace wavecrest {
 namespace {
 
+// The options as written on the command line. thresholds[i] and limits[i] belong to metric i of metricList().
 struct CompareOptions {
   std::string reference, mapFolder, html, crop;
   std::vector<std::string> tests, metrics;
@@ -28,10 +29,12 @@ struct CompareOptions {
   std::vector<double> limits;
 };
 
+// Whether the threshold option of a metric was given; metric: its index in metricList().
 bool hasThreshold(const CompareOptions& options, size_t metric) { return options.thresholds[metric].given(); }
 
 // ---- which part of the images ---------------------------------------------------------------------------------------
 
+// Pixels from the top left.
 struct Crop {
   uint32_t x = 0, y = 0, width = 0, height = 0;
 };
@@ -52,6 +55,7 @@ Crop parseCrop(const std::string& text) {
   throw UsageError(fmt::format("--crop '{}': expected X,Y,WIDTHxHEIGHT in pixels from the top left", text));
 }
 
+// Keeps only the crop. Throws ImageError where the image does not contain it.
 void cropTo(const Crop& crop, const std::string& path, Image& image) {
   if (uint64_t{crop.x} + crop.width > image.width || uint64_t{crop.y} + crop.height > image.height) {
     throw ImageError(
@@ -67,6 +71,7 @@ void cropTo(const Crop& crop, const std::string& path, Image& image) {
   image = std::move(part);
 }
 
+// Reads an image, and crops it if --crop asks for that.
 ImageFile readPart(const CompareOptions& options, const std::string& path) {
   ImageFile file = readImage(path);
   if (!options.crop.empty()) cropTo(parseCrop(options.crop), path, file.image);
@@ -100,6 +105,7 @@ std::vector<const Metric*> chosenMetrics(const CompareOptions& options, const Im
 
 // ---- what comes of it -----------------------------------------------------------------------------------------------
 
+// Checks that no output is an input or another output, before anything is measured.
 void checkFiles(const CompareOptions& options, const std::vector<std::string>& labels) {
   FileCheck files;
   files.input("REFERENCE", options.reference);
@@ -113,6 +119,7 @@ void checkFiles(const CompareOptions& options, const std::vector<std::string>& l
   }
 }
 
+// Writes each map as a PNG in false colours.
 void writeMaps(const CompareOptions& options, const std::vector<MeasuredTest>& tests) {
   for (const MeasuredTest& test : tests) {
     for (const Measured& score : test.scores) {
@@ -126,8 +133,8 @@ void writeMaps(const CompareOptions& options, const std::vector<MeasuredTest>& t
   }
 }
 
-// True when every threshold holds for this test. Neither a score that is not a number nor an image with pixels that are
-// not finite holds any.
+// Whether the test meets all thresholds; each one that it misses is told. A NaN misses its threshold, and an image with
+// pixels that are not finite misses any.
 bool checkThresholds(const CompareOptions& options, const MeasuredTest& test, bool single) {
   const std::string of = single ? "" : test.file + ": ";
   bool held = true, asked = false;
@@ -149,6 +156,7 @@ bool checkThresholds(const CompareOptions& options, const MeasuredTest& test, bo
   return false;
 }
 
+// One test by all metrics. label: names its maps.
 MeasuredTest measure(const PreparedReference& reference, const std::string& file, const std::string& label,
                      ImageFile image, const std::vector<const Metric*>& metrics, bool withMaps) {
   ComparedImage test = reference.prepareTest(file, std::move(image));
@@ -160,28 +168,35 @@ MeasuredTest measure(const PreparedReference& reference, const std::string& file
 }
 
 int compare(const CompareOptions& options) {
+  // Checks options and file names.
   checkMetricNames(options.metrics);
   const std::vector<std::string> labels = uniqueLabels(options.tests);
   checkFiles(options, labels);
+  // Prepares the reference once for all tests.
   ComparisonSettings settings;
   settings.exposure = options.exposure;
   settings.gammaCorrectedErrors = options.gammaCorrected;
   const PreparedReference reference(options.reference, readPart(options, options.reference), settings);
   const std::vector<const Metric*> metrics = chosenMetrics(options, reference.image().file.image);
 
+  // Measures the tests.
   const bool withMaps = !options.mapFolder.empty() || !options.html.empty();
   std::vector<MeasuredTest> tests;
   for (size_t i = 0; i < options.tests.size(); ++i) {
     const std::string& file = options.tests[i];
     tests.push_back(measure(reference, file, labels[i], readPart(options, file), metrics, withMaps));
   }
-  if (options.json) {
-    fmt::print("{}\n", toJson(tests).dump(2));
-  } else {
-    printText(tests);
+  // Shows scores, maps and page. A page on stdout is alone there.
+  if (options.html != "-") {
+    if (options.json) {
+      fmt::print("{}\n", toJson(tests).dump(2));
+    } else {
+      printText(tests);
+    }
   }
   if (!options.mapFolder.empty()) writeMaps(options, tests);
   if (!options.html.empty()) writeText(options.html, comparePage(options.reference, reference.image().codes, tests));
+  // Checks all tests, also after one that fails.
   bool held = true;
   for (const MeasuredTest& test : tests) held = checkThresholds(options, test, tests.size() == 1) && held;
   return held ? kExitDone : kExitCheck;

@@ -24,13 +24,14 @@ std::string snapshotFile(const std::string& image, unsigned number) {
   return (path.parent_path() / fmt::format("{}.{:04}.exr", path.stem().string(), number)).string();
 }
 
-// Whether a file has the name of some snapshot of an image.
+// Whether the file is where some snapshot of the image, of any number, would be written.
 bool isSnapshotOf(const std::string& image, const std::string& file) {
   const fs::path stem = fs::path(file).stem();  // NAME.0007
   const std::string digits = stem.extension().string();
+  if (digits.size() < 2) return false;
   unsigned number = 0;
   const auto [end, error] = std::from_chars(digits.data() + 1, digits.data() + digits.size(), number);
-  if (digits.size() < 2 || error != std::errc() || end != digits.data() + digits.size()) return false;
+  if (error != std::errc() || end != digits.data() + digits.size()) return false;
   std::error_code ignored;
   return fs::weakly_canonical(fs::absolute(snapshotFile(image, number)), ignored) ==
          fs::weakly_canonical(fs::absolute(file), ignored);
@@ -39,6 +40,7 @@ bool isSnapshotOf(const std::string& image, const std::string& file) {
 }  // namespace
 
 void checkOutputs(const OutputNames& names, const std::vector<std::string>& inputs) {
+  // Inputs, and every output by itself and against the others.
   if (names.images.empty() && !names.snapshotEvery.empty()) {
     throw UsageError("--snapshot-every needs an output to name the snapshots after; expected -o FILE.exr");
   }
@@ -54,6 +56,7 @@ void checkOutputs(const OutputNames& names, const std::vector<std::string>& inpu
   }
   if (!names.stats.empty()) files.output("--stats", names.stats);
   if (!names.checkpoint.empty()) files.output("--checkpoint", names.checkpoint);
+  // How many snapshots there will be is not known, so no other file may have the name of any snapshot.
   if (names.snapshotEvery.empty()) return;
   std::vector<std::string> others(names.images.begin() + 1, names.images.end());
   others.push_back(names.stats);
@@ -66,6 +69,7 @@ void checkOutputs(const OutputNames& names, const std::vector<std::string>& inpu
   }
 }
 
+// A file that cannot be written is reported and remembered, but does not end the render.
 template <class Step>
 void RenderOutputs::attempt(Step step) {
   try {
@@ -81,6 +85,7 @@ void RenderOutputs::writeSnapshot(const Session& session, unsigned number) {
   const RenderStatistics statistics = session.statistics();
   snapshots_.push_back(
       {.number = number, .renderSeconds = statistics.renderSeconds, .iterations = statistics.iterations, .file = file});
+  // A snapshot that cannot be written leaves no record. For that, failed_ tells of this attempt alone for a moment.
   const bool failedBefore = failed_;
   failed_ = false;
   attempt([&] { writeExr(file, filmImage(session), statsMetadata(stats(statistics))); });
@@ -89,6 +94,7 @@ void RenderOutputs::writeSnapshot(const Session& session, unsigned number) {
 }
 
 void RenderOutputs::write(const Session& session) {
+  // The statistics go into the images as attributes, and into a file of their own.
   nlohmann::ordered_json all = stats(session.statistics());
   if (!until_.is_null()) all["until"] = until_;
   const Metadata metadata = statsMetadata(all);
@@ -104,6 +110,7 @@ void RenderOutputs::write(const Session& session) {
 
 void RenderOutputs::writeCheckpoint(const Session& session) {
   if (names_.checkpoint.empty() || session.statistics().paths == 0) return;
+  // The notes are what goOnFrom reads: time, schedule and snapshots so far.
   nlohmann::ordered_json snapshots = nlohmann::ordered_json::array();
   for (const SnapshotRecord& snapshot : snapshots_) {
     snapshots.push_back({snapshot.number, snapshot.renderSeconds, snapshot.iterations, snapshot.file});
@@ -115,6 +122,7 @@ void RenderOutputs::writeCheckpoint(const Session& session) {
 
 void RenderOutputs::goOnFrom(const nlohmann::ordered_json& notes, const Session& session) {
   earlierSeconds_ = notes.at("wall_seconds").get<double>();
+  // A row is number, render seconds, iterations and file.
   for (const auto& row : notes.at("snapshots")) {
     snapshots_.push_back({.number = row.at(0).get<unsigned>(),
                           .renderSeconds = row.at(1).get<double>(),
@@ -126,13 +134,16 @@ void RenderOutputs::goOnFrom(const nlohmann::ordered_json& notes, const Session&
 }
 
 unsigned RenderOutputs::nextSnapshot(const SnapshotSchedule& schedule, const Session& session) {
+  // With the schedule of the earlier part, numbers simply go on.
   if (sameSchedule_) return snapshots_.empty() ? 0 : snapshots_.back().number + 1;
+  // With another schedule, the first snapshot is the next that is not due yet.
   const unsigned next = schedule.firstAfter(session.progressSeconds(), session.statistics().iterations);
-  // Files of these names are written anew.
+  // Files of snapshots from that number on will be replaced, so their records go.
   std::erase_if(snapshots_, [&](const SnapshotRecord& snapshot) { return snapshot.number >= next; });
   return next;
 }
 
+// Seconds on the wall, of this process and of those that rendered earlier parts.
 double RenderOutputs::wallSeconds() const {
   return earlierSeconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }

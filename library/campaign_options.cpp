@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 using api::CampaignOptions;
 using nlohmann::json;
 
+// The options that say what a campaign is. They are stored in its results file; all others may change from one process
+// to the next.
 constexpr std::array<std::string_view, 19> kDefiningOptions{"scenes",
                                                             "--profile",
                                                             "--time-factor",
@@ -49,6 +51,7 @@ constexpr double kLeastFactor = 1e-4, kMostFactor = 1e4;  // of --time-factor
 
 bool has(const CampaignOptions& options, const char* name) { return options.defining.contains(name); }
 
+// The first word of an option, or `otherwise` where the option was not given.
 std::string get(const CampaignOptions& options, const char* name, const std::string& otherwise = "") {
   const auto found = options.defining.find(name);
   return found == options.defining.end() || found->second.empty() ? otherwise : found->second.front();
@@ -63,12 +66,14 @@ uint32_t countOf(std::string_view text) {
   return error == std::errc() && rest == text.data() + text.size() ? count : 0;
 }
 
+// A whole number from 1 on, or UsageError.
 uint32_t parseCount(const char* option, const std::string& text) {
   const uint32_t count = countOf(text);
   if (count == 0) throw UsageError(fmt::format("{} {}: expected a whole number from 1 on", option, text));
   return count;
 }
 
+// "i/n" with i from 1 to n, or UsageError.
 Shard parseShard(const std::string& text) {
   const size_t slash = text.find('/');
   if (slash == std::string::npos) throw UsageError(fmt::format("--shard {}: expected i/n", text));
@@ -79,12 +84,15 @@ Shard parseShard(const std::string& text) {
   return shard;
 }
 
+// The profile that was named; by default quick.
 const Profile& chosenProfile(const CampaignOptions& options) {
   std::vector<std::string_view> names;
   for (const Profile& profile : profiles()) names.push_back(profile.name);
   return profiles()[parseChoice("--profile", get(options, "--profile", "quick"), names)];
 }
 
+// Run time and snapshot interval of a scene: the profile's, scaled by --time-factor or replaced by --time and
+// --snapshot-every.
 Effort effortOf(const CampaignOptions& options, const Profile& profile, std::string_view scene) {
   Effort effort = profile.effort(scene);
   if (has(options, "--time-factor")) {
@@ -96,10 +104,13 @@ Effort effortOf(const CampaignOptions& options, const Profile& profile, std::str
   if (has(options, "--snapshot-every")) {
     const std::string every = get(options, "--snapshot-every");
     effort.snapshotSeconds = every == "log" ? 0 : parseDuration("--snapshot-every", every);
+    effort.logarithmicFirst = false;
   }
   return effort;
 }
 
+// The scenes that were named; by default the nine. Results, images and references go by the stem of the file, so no two
+// scenes may share one.
 std::vector<CampaignScene> chosenScenes(const CampaignOptions& options, const Profile& profile) {
   std::vector<std::string> words;
   if (has(options, "scenes")) {
@@ -118,6 +129,7 @@ std::vector<CampaignScene> chosenScenes(const CampaignOptions& options, const Pr
   return scenes;
 }
 
+// Settings that all runs share. Method, seed, path limits and the end come with each run.
 RenderSettings renderSettings(const CampaignOptions& options) {
   RenderSettings render;
   render.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
@@ -132,7 +144,8 @@ RenderSettings renderSettings(const CampaignOptions& options) {
 
 namespace {
 
-// Those that come with the scenes: of 256x192, and of other sizes in folders of their own, where there are any.
+// The folder of references that come with the scenes. It holds those of 256x192 itself, and those of some other sizes
+// in folders of their own.
 fs::path sceneReferences(const std::array<uint32_t, 2>& size) {
   const fs::path folder = sceneFolder() / "references", own = folder / fmt::format("{}x{}", size[0], size[1]);
   return fs::is_directory(own) ? own : folder;
@@ -141,12 +154,14 @@ fs::path sceneReferences(const std::array<uint32_t, 2>& size) {
 }  // namespace
 
 CampaignSettings campaignSettings(const CampaignOptions& options) {
+  // Scenes, seeds and the end of each run.
   const Profile& profile = chosenProfile(options);
   CampaignSettings settings;
   settings.scenes = chosenScenes(options, profile);
   settings.seeds = profile.seeds;
   if (has(options, "--seeds")) settings.seeds = parseCount("--seeds", get(options, "--seeds"));
   if (has(options, "--spp")) settings.iterations = parseCount("--spp", get(options, "--spp"));
+  // Options that contradict each other.
   if (settings.iterations && (has(options, "--time") || get(options, "--snapshot-every", "log") != "log")) {
     throw UsageError(
         "--spp counts iterations and takes snapshots after 1, 2, 4, ...; expected no --time or "
@@ -155,15 +170,18 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
   if (has(options, "--time-factor") && (has(options, "--time") || settings.iterations)) {
     throw UsageError("--time-factor multiplies the profile's run times; expected no --time or --spp beside it");
   }
+  // Film size, settings and methods of all runs.
   settings.size = has(options, "--size") ? parseSize("--size", get(options, "--size")) : profile.size;
   settings.render = renderSettings(options);
   chooseRows(options.defining, profile, settings);
+  // Files: outputs, images to keep, and references.
   settings.out = options.out;
   settings.shard = parseShard(options.shard);
   constexpr std::array<std::string_view, 2> kImageChoices{"all", "last"};
   settings.keepImages = parseChoice("--images", get(options, "--images", "all"), kImageChoices) == 0;
   settings.referenceRequired = !options.reference.empty();
   settings.referenceFolder = options.reference.empty() ? sceneReferences(settings.size) : fs::path(options.reference);
+  // --check needs all runs of a campaign by time.
   if (options.check && settings.iterations) {
     throw UsageError("--check: the study's findings are about equal time; expected no --spp beside it");
   }
@@ -200,6 +218,7 @@ std::string perScene(const CampaignSettings& settings, Value value) {
 }  // namespace
 
 std::map<std::string, std::string> campaignKeys(const CampaignOptions& options, const CampaignSettings& settings) {
+  // "options" holds the options as given, from which --resume goes on. The other keys are for readers.
   std::vector<std::string> scenes;
   for (const CampaignScene& scene : settings.scenes) scenes.push_back(scene.name);
   std::map<std::string, std::string> keys{
@@ -212,6 +231,7 @@ std::map<std::string, std::string> campaignKeys(const CampaignOptions& options, 
       {"sampler", std::string(toString(settings.render.sampler))},
       {"shard", fmt::format("{}/{}", settings.shard.index, settings.shard.count)}};
   addRowKeys(settings, keys);
+  // The end of each run and its snapshots.
   if (settings.iterations) {
     keys["spp"] = std::to_string(*settings.iterations);
     keys["snapshots"] = "doubling";
@@ -227,24 +247,28 @@ std::map<std::string, std::string> campaignKeys(const CampaignOptions& options, 
 std::span<const std::string_view> campaignWords() { return kDefiningOptions; }
 
 CampaignSettings begunCampaign(CampaignOptions& options) {
+  // Checks names and values.
   for (const auto& [name, words] : options.defining) {
     if (std::find(kDefiningOptions.begin(), kDefiningOptions.end(), name) == kDefiningOptions.end()) {
       throw UsageError(fmt::format("{}: unknown; expected one of {}", name, fmt::join(kDefiningOptions, ", ")));
     }
     if (words.empty()) throw UsageError(fmt::format("{}: has no value; expected at least one", name));
   }
+  // The settings say where the results file is.
   CampaignSettings settings = campaignSettings(options);
   const fs::path results = resultsFile(settings);
   if (!fs::exists(results)) return settings;
   if (!options.resume) {
     throw UsageError(fmt::format("{} exists; expected --resume to go on with it, or another --out", results.string()));
   }
+  // The results file completes the options, so the settings are made anew.
   resumeCampaign(options, results);
   return campaignSettings(options);
 }
 
 WrittenReport finishCampaign(const CampaignSettings& settings) {
   const fs::path results = resultsFile(settings);
+  // Verdicts are stored first, because the report shows them.
   const std::vector<ClaimRecord> claims = judgeStudyClaims(readResults(results));
   ResultsStore(results).putClaims(claims);
   return writeReport(std::array{settings.out});

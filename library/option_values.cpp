@@ -17,6 +17,7 @@ Number parseNumber(const std::string& option, const std::string& word, Number le
   Number number{};
   const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   const bool whole = error == std::errc() && rest == word.data() + word.size();
+  // Written with negations so that NaN fails.
   if (!whole || !(number >= least) || !(number <= most)) {
     throw UsageError(fmt::format("{} {}: expected a number from {} to {}", option, word, least, most));
   }
@@ -29,6 +30,7 @@ double parseDuration(const std::string& option, const std::string& text) {
   const auto fail = [&]() -> double {
     throw UsageError(fmt::format("{} '{}': no duration; expected one like 6s, 2m or 1h30m", option, text));
   };
+  // A sum of numbers with units. The last number may lack its unit and is then in seconds.
   double total = 0;
   const char* at = text.data();
   const char* const end = at + text.size();
@@ -36,8 +38,9 @@ double parseDuration(const std::string& option, const std::string& text) {
   while (at != end) {
     double number = 0;
     const auto [next, error] = std::from_chars(at, end, number);
-    if (error != std::errc() || next == at) return fail();
+    if (error != std::errc() || next == at || std::signbit(number)) return fail();
     at = next;
+    // A scale of 0 marks an unknown unit.
     const char unit = at == end ? 's' : *at++;
     const double scale = unit == 'h' ? 3600 : unit == 'm' ? 60 : unit == 's' ? 1 : 0;
     total += number * scale;
@@ -53,9 +56,11 @@ SnapshotSchedule parseSnapshotSchedule(const std::string& option, const std::str
 
 Isa parseIsaOption(const std::string& word) {
   if (word == "auto") return bestIsa();
+  // "auto" is among the names for the message, so the index of an instruction set is one less.
   std::vector<std::string_view> names{"auto"};
   for (const Isa isa : kAllIsas) names.push_back(toString(isa));
   const Isa isa = kAllIsas[parseChoice("--isa", word, names) - 1];
+  // A known instruction set may be missing in this machine or this build.
   const auto& available = availableIsas();
   if (std::find(available.begin(), available.end(), isa) == available.end()) {
     throw UsageError(fmt::format("--isa {}: this machine or build does not have it", word));
@@ -66,6 +71,7 @@ Isa parseIsaOption(const std::string& word) {
 std::array<uint32_t, 2> parseSize(const std::string& option, const std::string& text) {
   std::array<uint32_t, 2> size{};
   const char* const end = text.data() + text.size();
+  // Width, "x", height, and nothing after them.
   const auto [x, widthError] = std::from_chars(text.data(), end, size[0]);
   if (widthError == std::errc() && x != end && *x == 'x') {
     const auto [rest, heightError] = std::from_chars(x + 1, end, size[1]);
@@ -81,14 +87,17 @@ uint64_t parseMemory(const std::string& option, const std::string& text) {
   };
   double number = 0;
   const char* const end = text.data() + text.size();
+  // A number and a unit are required.
   const auto [next, error] = std::from_chars(text.data(), end, number);
   if (error != std::errc() || next == text.data() || next == end) return fail();
   const std::string_view unit(next, static_cast<size_t>(end - next));
+  // The unit is K, M, G or T, then nothing, "B" or "iB". With an i it is a power of 1024, else of 1000.
   const bool binary = unit.size() > 1 && unit[1] == 'i';
   const std::string_view rest = unit.substr(1);
   if (!rest.empty() && rest != "B" && rest != "iB") return fail();
   const size_t power = std::string_view("KMGT").find(unit[0]);
   if (power == std::string_view::npos) return fail();
+  // From 1 MB to 1 PB. NaN fails too.
   const double bytes = number * std::pow(binary ? 1024.0 : 1000.0, static_cast<double>(power + 1));
   return bytes >= 1e6 && bytes <= 1e15 ? static_cast<uint64_t>(bytes) : fail();
 }
@@ -102,6 +111,7 @@ size_t parseChoice(const std::string& option, const std::string& word, std::span
                                didYouMean(word, known)));
 }
 
+// The position of a name is that of its method in kMethods.
 Method parseMethodOption(const std::string& option, const std::string& word) {
   std::vector<std::string_view> names;
   names.reserve(std::size(kMethods));
@@ -109,6 +119,7 @@ Method parseMethodOption(const std::string& option, const std::string& word) {
   return kMethods[parseChoice(option, word, names)].method;
 }
 
+// Likewise for samplers and kAllSamplerKinds.
 SamplerKind parseSamplerOption(const std::string& option, const std::string& word) {
   std::vector<std::string_view> names;
   names.reserve(std::size(kAllSamplerKinds));

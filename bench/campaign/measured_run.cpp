@@ -19,13 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-// Takes the snapshots of one session into a record.
+// Takes snapshots of one session: writes the image, measures it and adds a row to the run.
 class SnapshotTaker {
  public:
   SnapshotTaker(const RunRequest& request, RunRecord& run, const Session& session)
       : request_(request), run_(run), session_(session) {}
 
   void take(unsigned number) {
+    // The record.
     const RenderStatistics statistics = session_.statistics();
     paths_ = session_.progressPaths();
     const std::string stem = fmt::format("{}.{}.{}", run_.scene, run_.method, run_.seed);
@@ -34,6 +35,7 @@ class SnapshotTaker {
     snapshot.renderSeconds = statistics.renderSeconds;
     snapshot.iterations = statistics.iterations;
     snapshot.file = (fs::path("images") / fmt::format("{}.{:04}.exr", stem, number)).string();
+    // The image, with the statistics as attributes. Unless all images are kept, it takes the place of the one before.
     const Image image = filmImage(session_);
     nlohmann::ordered_json stats = this->stats(statistics);
     writeExr((request_.out / snapshot.file).string(), image, statsMetadata(stats));
@@ -42,11 +44,13 @@ class SnapshotTaker {
       fs::remove(request_.out / before.file);
       before.file.clear();
     }
+    // Scores against the reference, and the error without the noise of the reference.
     snapshot.values = measureImage(request_.reference, snapshot.file, image);
     if (request_.halves != nullptr) {
       if (const std::optional<double> mse = unbiasedMse(image, *request_.halves)) snapshot.values[kUnbiasedMse] = *mse;
     }
-    // Both clocks, whichever is charged; counted iterations repeat to the bit, so they have none.
+    // Both clocks are kept, whichever the run is charged by. Runs of counted iterations repeat to the bit, so they keep
+    // neither.
     if (!request_.settings.iterations) {
       snapshot.values[kWallSeconds] = statistics.renderWallSeconds;
       snapshot.values[kCpuSeconds] = statistics.cpuSeconds;
@@ -56,6 +60,7 @@ class SnapshotTaker {
   // Whether anything was rendered since the last snapshot.
   bool outdated() const { return run_.snapshots.empty() || session_.progressPaths() != paths_; }
 
+  // The stats object of the run. Stages and snapshots are left out, as the results file has tables for them.
   nlohmann::ordered_json stats(const RenderStatistics& statistics) const {
     const double wall = std::chrono::duration<double>(Clock::now() - begin_).count();
     nlohmann::ordered_json all =
@@ -82,6 +87,7 @@ MetricValues measureImage(const PreparedReference& reference, const std::string&
   const ComparedImage test = reference.prepareTest(name, {std::move(image), Encoding::linear, {}});
   MetricValues values;
   for (const Metric& metric : metricList()) {
+    // A metric that needs a larger image is skipped.
     if (!metric.byDefault || side < metric.smallestSide) continue;
     for (const Score& score : metric.measure(reference, test, false).scores) {
       values[scoreName(metric, score.name)] = score.value;
@@ -94,6 +100,7 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHoo
   RunRecord run{.scene = request.scene.name,
                 .method = request.row.empty() ? std::string(toString(request.settings.method)) : request.row,
                 .seed = request.settings.seed};
+  // Makes the session. A scene that the method cannot render gives a run that is refused.
   std::unique_ptr<Session> session;
   try {
     const IdleScope building(hooks);
@@ -103,12 +110,16 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHoo
     run.reason = error.what();
     return run;
   }
+  // Renders from snapshot to snapshot. An interrupted run is dropped.
   SnapshotTaker taker(request, run, *session);
   if (hooks.watch) hooks.watch(session.get());
   const auto takeSnapshot = [&](unsigned number) { taker.take(number); };
   const unsigned count = renderWithSnapshots(*session, request.settings, request.schedule, takeSnapshot, hooks.goesOn);
+  // A request to save that came too late for the loop above does not end the run.
+  const bool stopped = session->interrupted() && !(hooks.goesOn && hooks.goesOn());
   if (hooks.watch) hooks.watch(nullptr);
-  if (session->interrupted()) return std::nullopt;
+  if (stopped) return std::nullopt;
+  // The end of the run is always a snapshot.
   if (taker.outdated()) taker.take(count);
   const RenderStatistics statistics = session->statistics();
   run.stats = taker.stats(statistics).dump();

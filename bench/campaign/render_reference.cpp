@@ -16,12 +16,15 @@
 namespace wavecrest {
 namespace {
 
+// Times are seconds of render time, of both halves together.
 constexpr double kSaveSeconds = 30;                       // of render time that a crash may cost
 constexpr double kShortestLook = 0.2, kLongestLook = 10;  // seconds between looks at the goal,
 constexpr double kLookFraction = 0.1;                     // a part of the time so far
 
+// The images of halves A and B.
 using Halves = std::array<Image, 2>;
 
+// What the file will say of the reference. Methods that do not merge have radius 0.
 ReferenceInfo describe(const Scene& scene, const RenderSettings& settings, const std::string& methodReason) {
   const bool merges = strategiesOf(settings.method).merge;
   return {.scene = scene.name,
@@ -39,6 +42,7 @@ ReferenceInfo describe(const Scene& scene, const RenderSettings& settings, const
           .commit = kCommit};
 }
 
+// Throws ReferenceMismatch where the two differ in anything that decides the image in the limit.
 void requireSame(const std::filesystem::path& file, const ReferenceInfo& found, const ReferenceInfo& wanted) {
   const auto require = [&](const char* what, const auto& a, const auto& b) {
     if (a == b) return;
@@ -57,7 +61,7 @@ void requireSame(const std::filesystem::path& file, const ReferenceInfo& found, 
   require("radius_alpha", found.radiusAlpha, wanted.radiusAlpha);
 }
 
-// The mean of `before` after n0 iterations and `now` after n more.
+// The mean image of n0 + n iterations. before: the mean of the first n0; now: the mean of the other n.
 Image joined(const Image& before, uint64_t n0, const Image& now, uint64_t n) {
   if (n0 == 0) return now;
   Image all = now;
@@ -68,7 +72,7 @@ Image joined(const Image& before, uint64_t n0, const Image& now, uint64_t n) {
   return all;
 }
 
-// Mean and half difference of two images.
+// Sets mean, half difference and relative error from the halves A and B.
 void setHalves(Reference& reference, const Image& a, const Image& b) {
   reference.mean = a;
   reference.difference = a;
@@ -79,6 +83,7 @@ void setHalves(Reference& reference, const Image& a, const Image& b) {
   reference.info.relativeError = relativeError(reference.mean, *reference.difference);
 }
 
+// Whether any part of the goal is reached. Without an iteration nothing is.
 bool reached(const ReferenceGoal& goal, const ReferenceInfo& info) {
   if (info.iterations == 0) return false;
   return (goal.relativeError && info.relativeError <= *goal.relativeError) ||
@@ -86,18 +91,21 @@ bool reached(const ReferenceGoal& goal, const ReferenceInfo& info) {
          (goal.iterations && info.iterations >= *goal.iterations);
 }
 
-// How many iterations until the next look at the goal: short of it, and not so many that Ctrl-C waits.
+// Iterations until the next look at the goal: no more than the goal leaves, and about a tenth of the time so far,
+// within kShortestLook and kLongestLook, so that Ctrl-C does not wait long. done and seconds: of this process.
 uint64_t nextIterations(const ReferenceGoal& goal, const ReferenceInfo& info, uint64_t done, double seconds) {
   uint64_t most = std::numeric_limits<uint64_t>::max();
   if (goal.iterations) most = *goal.iterations - info.iterations;
   if (done == 0) return 1;
   double look = std::clamp(kLookFraction * seconds, kShortestLook, kLongestLook);
   if (goal.seconds) look = std::min(look, *goal.seconds - info.renderSeconds);
+  // Iterations that fit into that time at the speed so far.
   const double fitting = look * static_cast<double>(done) / std::max(seconds, 1e-6);
   return std::min(most, static_cast<uint64_t>(std::max(1.0, std::round(fitting))));
 }
 
-// Two sessions that carry on from what a reference holds.
+// A session for each half. They begin at the iteration where the stored reference ends, and its images are added in
+// collect().
 class HalfSessions {
  public:
   HalfSessions(const Scene& scene, const RenderSettings& settings, const Reference& before, const SessionHooks& hooks)
@@ -112,21 +120,24 @@ class HalfSessions {
     }
   }
 
-  // False, and nothing is to be taken from the sessions any more, when a hook asked to stop.
+  // Renders both halves, one after the other. False: stopped. Then the halves differ in iterations, so collect() must
+  // not be called any more.
   bool render(uint64_t iterations, const ReferenceHooks& hooks) {
     const uint64_t goal = done_ + iterations;
     for (const auto& session : sessions_) {
       if (hooks.session.watch) hooks.session.watch(session.get());
+      bool goesOn = true;
       do {
         session->renderUntil(goal, std::nullopt);
-      } while (session->interrupted() && hooks.session.goesOn && hooks.session.goesOn());
+      } while (session->interrupted() && (goesOn = hooks.session.goesOn && hooks.session.goesOn()));
       if (hooks.session.watch) hooks.session.watch(nullptr);
-      if (session->interrupted() || (hooks.stopped && hooks.stopped())) return false;
+      if (!goesOn || (hooks.stopped && hooks.stopped())) return false;
     }
     done_ = goal;
     return true;
   }
 
+  // Puts the halves so far, joined with those of the file, into the reference.
   void collect(Reference& reference) const {
     Halves halves;
     for (size_t half = 0; half < 2; ++half) {
@@ -156,6 +167,7 @@ uint64_t referenceSeed(uint64_t seed, size_t half) {
 
 Reference renderReference(const Scene& scene, const RenderSettings& settings, const std::string& methodReason,
                           const ReferenceGoal& goal, const std::filesystem::path& file, const ReferenceHooks& hooks) {
+  // Begins a new reference, or goes on with the one in the file.
   const ReferenceInfo wanted = describe(scene, settings, methodReason);
   const FileLock lock(file);
   removeTemporaries(file.string());
@@ -171,13 +183,16 @@ Reference renderReference(const Scene& scene, const RenderSettings& settings, co
     reference.info.version = wanted.version;
     reference.info.commit = wanted.commit;
   }
+  // Sessions for both halves, and what saving does.
   HalfSessions halves(scene, settings, reference, hooks.session);
   double savedSeconds = reference.info.renderSeconds;
   const auto save = [&] {
+    // The noise floors follow from the halves, so they are measured anew.
     measureNoiseFloors(reference);
     writeReference(file, reference);
     savedSeconds = reference.info.renderSeconds;
   };
+  // Renders from look to look. Between looks both halves have equal iterations, so any look may save.
   while (!reached(goal, reference.info)) {
     if (!halves.render(nextIterations(goal, reference.info, halves.done(), halves.seconds()), hooks)) break;
     halves.collect(reference);

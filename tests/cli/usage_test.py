@@ -161,6 +161,10 @@ class Usage(CommandTest):
             self.assertIn(word, result.stdout)
         self.assertEqual(list(self.folder.iterdir()), [])
         self.render("--dry-run", "-o", "absent/image.exr", expect=USAGE)
+        result = self.render("--dry-run", "--until-relative-error", "0.1", "-o", "image.exr")
+        self.assertIn("ends     once the relative error is 0.1\n", result.stdout)
+        self.render("--dry-run", "--until-relative-error", "0.1", "--snapshot-every", "1s", "-o", "a.exr", expect=USAGE)
+        self.render("--dry-run", "--until-ssim", "0.9", "-o", "image.exr", expect=USAGE)
 
     def test_a_render_ends_with_a_line_about_itself(self):
         self.assertRegex(self.render("--spp", "3", "-o", "image.exr").stderr, r"wavecrest: image\.exr: 3 spp in .*paths/s")
