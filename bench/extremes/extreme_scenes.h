@@ -7,7 +7,7 @@ namespace wavecrest {
 
 constexpr uint32_t kExtremeSide = 12;  // pixels of a film
 
-// Side 2 around `center` times `size`, with a lamp below its ceiling, a block and a sphere; the camera is within.
+// Side 2 around `center` times `size`, with a lamp below its ceiling and a sphere; the camera is within.
 struct BoxOptions {
   double size = 1;
   Double3 center{};

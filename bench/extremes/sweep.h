@@ -2,7 +2,7 @@
 //
 // Each row is a method, a precision and a value of the property. Its image's mean is compared with a known answer, or
 // with the same method's image at a value that is no extreme, or with another method's. A row passes if it is off by no
-// more than the sweep's bound, beside six standard errors of its own, no sample was lost, and it is not too noisy to
+// more than the sweep's bound and six standard errors of its own, all samples are finite, and it is not too noisy to
 // tell.
 #pragma once
 

@@ -22,6 +22,7 @@ struct FeatureName {
   Feature bit;
   const char* name;
 };
+// One name for each bit of Feature. The assertion fails for a new bit without a name.
 constexpr FeatureName kFeatureNames[] = {{kSpecularBsdfs, "specular BSDFs"},
                                          {kLayeredBsdfs, "layered BSDFs"},
                                          {kTextures, "textures"},
@@ -42,12 +43,7 @@ std::vector<std::string> namesOf(uint32_t features) {
   return names;
 }
 
-uint32_t featuresNeeded(const Scene& scene, const RenderSettings& settings) {
-  const bool lightPaths = isBidirectional(pageOf(settings.method, settings.metropolis.variant));
-  return sceneFeatures(scene) | (lightPaths ? kBidirectional : 0u);
-}
-
-// Those that are compiled and cover the scene and method; `general` is the last of the list.
+// The feature sets that are compiled and cover these features. The last one is `complete`, which has all features.
 std::vector<Specialization> covering(uint32_t features, Precision precision) {
   std::vector<Specialization> sets;
   for (size_t i = 0; i < kSpecializationCount; ++i) {
@@ -57,12 +53,14 @@ std::vector<Specialization> covering(uint32_t features, Precision precision) {
   return sets;
 }
 
+// The image after so many iterations.
 std::vector<float> render(const Scene& scene, const RenderSettings& settings, uint64_t iterations) {
   const auto session = Session::create(scene, settings);
   session->renderUntil(iterations, std::nullopt);
   return session->film().resolve();
 }
 
+// Root mean square of the difference over samples, relative to the root mean square of the reference.
 double relativeDifference(const std::vector<float>& image, const std::vector<float>& reference) {
   double square = 0, difference = 0;
   for (size_t i = 0; i < image.size(); ++i) {
@@ -81,15 +79,18 @@ void compareImages(const Scene& scene, const std::vector<RenderSettings>& settin
       own.seed = seed;
       return render(scene, own, result.iterations);
     };
+    // The image of the last set, with which the others of this seed are compared.
     const std::vector<float> general = imageOf(settings.size() - 1);
     for (size_t i = 0; i < settings.size(); ++i) {
       const std::vector<float> image = i + 1 < settings.size() ? imageOf(i) : general;
       FeatureSetRow& row = result.rows[i];
+      // Every seed must give the same bits. The pixel difference is the largest of all seeds.
       row.sameBits = (seed == 0 || row.sameBits) && image == general;
       row.pixelDifference = std::max(row.pixelDifference, relativeDifference(image, general));
       blocks[i].push_back(blockMeans(image, result.width));
     }
   }
+  // Verdicts on the mean and on the blocks, for each set but the last, share the level (Bonferroni).
   const auto verdicts = 2 * static_cast<double>(std::max<size_t>(settings.size() - 1, 1));
   for (size_t i = 0; i < settings.size(); ++i) {
     FeatureSetRow& row = result.rows[i];
@@ -102,6 +103,7 @@ void compareImages(const Scene& scene, const std::vector<RenderSettings>& settin
   }
 }
 
+// Renders with all sets in turn. Speed-ups are over the last set, round by round.
 void measureSpeeds(const Scene& scene, const std::vector<RenderSettings>& settings, double seconds,
                    SpecializationResult& result) {
   std::vector<std::unique_ptr<Session>> sessions;
@@ -115,6 +117,7 @@ void measureSpeeds(const Scene& scene, const std::vector<RenderSettings>& settin
   for (size_t i = 0; i < sessions.size(); ++i) {
     std::vector<double> rates = valuesOf(slices[i], rate);
     result.rows[i].pathsPerCpuSecond = estimateMedian(rates);
+    // Over the last set's rate in the same round.
     for (size_t k = 0; k < rates.size(); ++k) rates[k] /= general[k];
     result.rows[i].speedup = estimateMedian(rates);
     result.rows[i].bytesPerPath = sessions[i]->statistics().bytesPerPath;
@@ -142,6 +145,7 @@ SpecializationResult measureSpecialization(const Scene& scene, const RenderSetti
                               .needs = namesOf(features),
                               .rows = {},
                               .machine = {}};
+  // A row for each feature set, with what is known before rendering. The program's own symbols tell the size of code.
   const std::vector<unsigned char> program = readFileBytes(ownBinary());
   const Specialization chosen = chooseSpecialization(features, base.precision);
   std::vector<RenderSettings> settings;
@@ -158,11 +162,14 @@ SpecializationResult measureSpecialization(const Scene& scene, const RenderSetti
                            .mean = {},
                            .worstBlock = {}});
   }
+  // As many iterations as the part of the time for images allows, judged by one iteration of the last set.
   const auto session = Session::create(scene, settings.back());
   session->renderUntil(1, std::nullopt);
+  // Each set renders one image for each seed.
   const double images = static_cast<double>(settings.size() * kSpecializationSeeds);
   const double affordable = kImagePart * seconds / (images * std::max(session->statistics().renderSeconds, 1e-6));
   result.iterations = static_cast<uint64_t>(std::clamp(affordable, 1.0, static_cast<double>(kMostIterations)));
+  // Images first, then speeds in the rest of the time.
   compareImages(scene, settings, result);
   measureSpeeds(scene, settings, (1 - kImagePart) * seconds, result);
   return result;

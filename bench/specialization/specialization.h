@@ -1,7 +1,7 @@
 // `wavecrest bench --specialization`: what it is worth to compile kernels for what a scene has.
 //
 // Every feature set that covers a scene and method renders the same iterations with the same random numbers, in turn
-// and on one thread. Its image must be that of the general kernels, bit for bit or but for rounding; what it gains is
+// and on one thread. Its image must be that of the complete kernels, bit for bit or but for rounding; what it gains is
 // speed, memory and code.
 #pragma once
 
@@ -23,12 +23,12 @@ struct FeatureSetRow {
   bool chosen = false;               // the set that this scene and method render with
   std::vector<std::string> paysFor;  // features of the set that the scene lacks
   Estimate pathsPerCpuSecond;
-  Estimate speedup;  // over the general kernels, round by round
+  Estimate speedup;  // over the complete kernels, round by round
   size_t bytesPerPath = 0;
   std::optional<uint64_t> codeBytes;  // where the program has symbols
-  bool sameBits = false;              // the image is the general kernels'
+  bool sameBits = false;              // the image is the complete kernels'
   double pixelDifference = 0;         // root mean square over samples, relative to the image's
-  Bias mean, worstBlock;              // against the general kernels, over seeds
+  Bias mean, worstBlock;              // against the complete kernels, over seeds
   bool differs = false;               // beyond chance and rounding
 };
 
@@ -38,7 +38,7 @@ struct SpecializationResult {
   uint32_t width = 0, height = 0;
   uint64_t iterations = 0;          // of the images that are compared, with each of kSpecializationSeeds
   std::vector<std::string> needs;   // features of the scene and method
-  std::vector<FeatureSetRow> rows;  // the general kernels last
+  std::vector<FeatureSetRow> rows;  // the complete kernels last
   MachineState machine;
 
   const FeatureSetRow& chosen() const;

@@ -13,21 +13,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// The words with commas between, or "nothing" where there are none.
 std::string listed(const std::vector<std::string>& words) {
   return words.empty() ? "nothing" : fmt::format("{}", fmt::join(words, ", "));
 }
 
+// Against the general kernels' image: the same bits, the same but for rounding and chance, or different.
 std::string imageInWords(const FeatureSetRow& row) {
   if (row.sameBits) return "same bits";
   return fmt::format("{}, pixels {:.1e}", row.differs ? "DIFFERS" : "same", row.pixelDifference);
 }
 
+// A relative difference, its standard error, and how probable one as large is by chance.
 Json biasJson(const Bias& bias) {
   return {{"value", bias.value}, {"standard_error", bias.standardError}, {"probability", bias.probability}};
 }
 
 }  // namespace
 
+// A star marks the kernels that scene and method render with. A size of code of "?" means a program without symbols.
 std::string toText(const SpecializationResult& result) {
   TextLines text;
   line(text, "{} {} {}x{}: needs {}", result.scene, toString(result.method), result.width, result.height,
@@ -35,6 +39,7 @@ std::string toText(const SpecializationResult& result) {
   for (const std::string& doubt : doubtsAbout(result.machine)) line(text, "  doubt: {}", doubt);
   line(text, "  {:<23} {:>9} {:>14} {:>10} {:>9}   {:<24} {}", "kernels", "M paths/s", "speed-up", "bytes/path",
        "code kB", "image", "pays for");
+  // One line for each feature set.
   for (const FeatureSetRow& row : result.rows) {
     const std::string code = row.codeBytes ? fmt::format("{:.0f}", 1e-3 * static_cast<double>(*row.codeBytes)) : "?";
     line(text, "{} {:<23} {:>9.3f} {:>7.3f} +-{:.3f} {:>10} {:>9}   {:<24} {}", row.chosen ? '*' : ' ',
@@ -45,6 +50,7 @@ std::string toText(const SpecializationResult& result) {
   return fmt::to_string(text);
 }
 
+// Only the chosen kernels of each result.
 std::string specializationSummary(const std::vector<SpecializationResult>& results) {
   TextLines text;
   line(text, "{:<23} {:<5} {:<23} {:>14}   {}", "scene", "", "kernels", "over general", "pays for");
@@ -60,6 +66,7 @@ std::string specializationSummary(const std::vector<SpecializationResult>& resul
 Json toJson(const SpecializationResult& result) {
   Json rows = Json::array();
   for (const FeatureSetRow& row : result.rows) {
+    // Intervals are pairs of their ends. code_bytes is null for a program without symbols.
     const auto estimate = [](const Estimate& e) { return Json{e.interval.low, e.interval.high}; };
     rows.push_back({{"kernels", enumeratorName(kSpecializationNames, row.specialization)},
                     {"chosen", row.chosen},

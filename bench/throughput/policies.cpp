@@ -9,8 +9,10 @@ namespace wavecrest {
 namespace {
 
 constexpr size_t kFewestRounds = 1, kMostRounds = 7;
+// Of the images that are compared. Their difference is rounding, not noise, so few iterations suffice.
 constexpr uint64_t kMostIterations = 16;
 
+// Sums over all samples: of the reference, and of an image minus the reference.
 struct Sums {
   double value = 0, square = 0, difference = 0, differenceSquare = 0;
 };
@@ -27,6 +29,8 @@ Sums sumsOf(const std::vector<float>& image, const std::vector<float>& reference
   return sums;
 }
 
+// Sessions for each instruction set, the best first: double, float, and float with the general kernels where the scene
+// chooses others. rows gets one row for each session.
 // One thread each: CPU time of threads that share caches would blur the comparison.
 std::vector<std::unique_ptr<Session>> makeSessions(const Scene& scene, RenderSettings settings,
                                                    std::vector<PolicyRow>& rows) {
@@ -69,6 +73,7 @@ PolicyTable measurePolicies(const Scene& scene, const RenderSettings& settings, 
   }
   table.iterations = std::clamp<uint64_t>(static_cast<uint64_t>(0.5 * share / slowest), 1, kMostIterations);
   for (const auto& session : sessions) session->renderUntil(table.iterations, std::nullopt);
+  // The yardstick: double on the best instruction set, which is the first session.
   const std::vector<float> reference = sessions.front()->film().resolve();
 
   for (size_t i = 0; i < sessions.size(); ++i) {
@@ -76,6 +81,7 @@ PolicyTable measurePolicies(const Scene& scene, const RenderSettings& settings, 
     table.rows[i].meanDifference = sums.value > 0 ? sums.difference / sums.value : 0;
     table.rows[i].pixelDifference = sums.square > 0 ? std::sqrt(sums.differenceSquare / sums.square) : 0;
   }
+  // Speeds of the same sessions, in alternating slices.
   const auto slices =
       renderInTurn(sessions, {.seconds = 0.5 * seconds, .fewestRounds = kFewestRounds, .mostRounds = kMostRounds});
   for (size_t i = 0; i < sessions.size(); ++i) {

@@ -31,7 +31,8 @@ struct Slice {
 // A session that goes on by the same number of iterations each time.
 class SliceRenderer {
  public:
-  explicit SliceRenderer(Session& session, uint64_t iterations = 1) : session_(session), iterations_(iterations) {}
+  explicit SliceRenderer(Session& session, uint64_t iterations = 1)
+      : session_(session), iterations_(iterations), done_(session.statistics().iterations) {}
 
   // Doubles the iterations until a slice takes half of the time or more. The first render does not count: chains
   // bootstrap in it. Chains advance in steps of many mutations; a slice must hold several, so that none is left empty.
@@ -41,7 +42,7 @@ class SliceRenderer {
 
  private:
   Session& session_;
-  uint64_t iterations_, done_ = 0;
+  uint64_t iterations_, done_;
 };
 
 struct TurnPlan {

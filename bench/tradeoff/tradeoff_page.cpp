@@ -18,27 +18,30 @@ Plot plotOf(const TradeResult& result) {
   plot.xLabel = "CPU seconds to 1 %";
   for (const TradeRow& row : result.rows) {
     if (!row.refusal.empty()) continue;
-    const bool same = !plot.curves.empty() && plot.curves.back().label == row.knob;
-    if (!same) {
+    // A curve for each knob.
+    auto curve = std::ranges::find(plot.curves, row.knob, &PlotCurve::label);
+    if (curve == plot.curves.end()) {
+      // Colours and marks are those of methods, in turn.
       const MethodStyle& style = kMethodStyles[plot.curves.size() % kMethodStyles.size()];
       plot.curves.push_back({.label = row.knob,
                              .cssClass = "m-" + std::string(style.id) + " variant-0",
                              .mark = style.mark,
                              .points = {}});
+      curve = plot.curves.end() - 1;
     }
     const double bias = std::max(std::abs(row.mean.value), row.mean.standardError);
-    plot.curves.back().points.push_back(
-        {.x = row.secondsToPercent,
-         .y = bias,
-         .low = bias,
-         .high = bias,
-         .tooltip = fmt::format("{} {}: {:.3g} s, bias {:+.2g} \u00b1 {:.1g}", row.knob, row.value,
-                                row.secondsToPercent, row.mean.value, row.mean.standardError)});
+    curve->points.push_back({.x = row.secondsToPercent,
+                             .y = bias,
+                             .low = bias,
+                             .high = bias,
+                             .tooltip = fmt::format("{} {}: {:.3g} s, bias {:+.2g} \u00b1 {:.1g}", row.knob, row.value,
+                                                    row.secondsToPercent, row.mean.value, row.mean.standardError)});
   }
   sortPoints(plot);
   return plot;
 }
 
+// All settings as an HTML table. A setting that was refused has the reason in place of figures.
 std::string tableOf(const TradeResult& result) {
   std::string html =
       "<div class=\"scroll\"><table><thead><tr><th>Setting<th class=\"n\">Speed<th class=\"n\">Efficiency"
@@ -62,6 +65,7 @@ std::string tableOf(const TradeResult& result) {
 
 }  // namespace
 
+// Advice, plot and table of each result.
 std::string tradePage(const std::vector<TradeResult>& results) {
   std::string sections;
   for (const TradeResult& result : results) {

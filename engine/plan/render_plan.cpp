@@ -13,6 +13,8 @@
 namespace wavecrest {
 namespace {
 
+// The optional columns that kernels of this specialisation work on. Columns of normal maps and tangents are left out
+// where the scene has none.
 ColumnNeeds columnNeeds(const Scene& scene, Specialization specialization, bool keepsInstances) {
   const uint32_t features = featuresOf(specialization);
   return {.shadingNormals = (features & kShadingNormals) != 0,
@@ -48,15 +50,22 @@ bool isBidirectional(const RenderSettings& settings) { return isBidirectional(pa
 
 }  // namespace
 
-Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
+uint32_t featuresNeeded(const Scene& scene, const RenderSettings& settings) {
   const bool keeps = keepsInstances(scene, settings.accel, settings.instancing);
-  const uint32_t features = sceneFeatures(scene, keeps) | (isBidirectional(settings) ? kBidirectional : 0u);
+  return sceneFeatures(scene, keeps) | (isBidirectional(settings) ? kBidirectional : 0u);
+}
+
+Specialization specializationFor(const Scene& scene, const RenderSettings& settings) {
+  const uint32_t features = featuresNeeded(scene, settings);
+  // The first specialisation that covers what scene and method need.
   const Specialization least = chooseSpecialization(features, settings.precision);
   if (!settings.specialization) return least;
+  // A choice of the settings must cover the same features.
   if ((features & ~featuresOf(*settings.specialization)) != 0) {
     throw SceneError({scene.name}, "scene and method need the '" +
                                        std::string(kSpecializationNames[static_cast<size_t>(least)]) + "' kernels");
   }
+  // The choice may not be compiled for this precision. Then wider kernels are taken.
   return chooseSpecialization(featuresOf(*settings.specialization), settings.precision);
 }
 
@@ -79,10 +88,12 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   if (inPathSpace && scene.sensor.kind != Sensor::Kind::perspective) {
     throw SceneError({scene.name}, "pathspace needs a pinhole; expected one, or --mlt mmlt");
   }
+  // Compile the scene for the kernels that it gets.
   plan.specialization = specializationFor(scene, settings);
   if (inPathSpace) refuseDeltaBlends(scene);
   plan.scene = compileScene<S>(scene, settings.accel, settings.precision != Precision::fast, settings.instancing);
   plan.needs = columnNeeds(scene, plan.specialization, plan.scene->view.instances != nullptr);
+  // Clips are left in the compiled camera only where they hide a surface.
   const CameraView& camera = plan.scene->view.camera;
   const bool clipped = camera.nearClip > 0 || std::isfinite(camera.farClip);
   if (clipped && settings.method == Method::mlt && settings.metropolis.variant == MetropolisVariant::pathspace) {
@@ -90,14 +101,17 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
                      "pathspace knows no clips of the camera, and the scene has a surface outside of them; "
                      "expected other clips, or another method");
   }
+  // Put the method's page together with the kernels.
   const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, plan.specialization);
   plan.isa = stages.isa;
   plan.stages = &stages;
   plan.pipeline = makePipeline(pageOf(settings), stages, chooseIntersector(stages, *plan.scene));
   plan.needs.splats = plan.pipeline.splats();
+  // Without a photon map, light vertices are stored only to be connected.
   plan.lightUse = {.connected = !plan.pipeline.photonMap || plan.pipeline.cameraPass.strategies.connect,
                    .merged = plan.pipeline.photonMap};
   if (plan.pipeline.chains && plan.pipeline.chains->inPathSpace) {
+    // Chains leave out the paths that the direct pass makes.
     const uint32_t least = settings.metropolis.directPass ? kDirectLength + 1 : 1;
     plan.pathLaws = PathLaws(least, std::max(settings.limits.maxDepth, least));
     plan.pathLaws.kinds = settings.metropolis.pathMutations;
@@ -109,7 +123,7 @@ template RenderPlan<double> planRender(const Scene&, const RenderSettings&);
 
 template <class S>
 bool spreadsSamples(const RenderPlan<S>& plan, const RenderSettings& settings) {
-  const bool samples = !plan.pipeline.chains || plan.pipeline.chains->directPass;
+  const bool samples = !plan.pipeline.chains || (plan.pipeline.chains->directPass && settings.metropolis.directPass);
   return samples && settings.filterMode == FilterMode::spread && canSpread(plan.scene->view.camera);
 }
 template bool spreadsSamples(const RenderPlan<float>&, const RenderSettings&);
@@ -119,8 +133,10 @@ MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, 
                         uint64_t iteration) {
   const auto lightPaths = static_cast<double>(count);
   strategies.lightPaths = lightPaths;
+  // The radius of METHODS 6.1, where iterations count from one.
   const double shrink = std::pow(static_cast<double>(iteration + 1), (settings.radiusAlpha - 1) / 2);
   strategies.radius = std::max(settings.radius * shrink, kSmallestRadius) * sceneRadius;
+  // `density` is eta. The other constants follow from it (METHODS 5.1).
   const double density = std::numbers::pi * strategies.radius * strategies.radius * lightPaths;
   strategies.mergeNorm = 1 / density;
   strategies.vmWeight = strategies.merge && strategies.mergeWeights ? density : 0;
@@ -131,6 +147,7 @@ MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, 
 uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most, uint32_t least) {
   constexpr size_t kPiecesPerThread = 16;
   if (threads <= 1) return most;
+  // The size of one of `pieces` equal pieces, rounded up to whole blocks of lanes.
   const auto whole = [&](size_t pieces) { return piecesOf(piecesOf(items, pieces), kColumnPadding) * kColumnPadding; };
   // A piece and a half for each thread in any case.
   const size_t fewest = std::min<size_t>(least, whole(threads + threads / 2));
@@ -141,6 +158,7 @@ uint32_t pieceSize(size_t items, uint32_t threads, uint32_t most, uint32_t least
 size_t iterationsAtOnce(const RenderSettings& settings, size_t pixels) {
   constexpr size_t kPiecesPerThread = 8, kMost = 8;
   if (settings.cutForThreads() <= 1) return 1;
+  // Take as many iterations as give each thread kPiecesPerThread pieces.
   const size_t lightPaths = settings.lightPaths.value_or(pixels);
   const size_t pieces = piecesOf(pixels, settings.waveSize) + piecesOf(lightPaths, settings.waveSize);
   return std::clamp<size_t>(piecesOf(kPiecesPerThread * settings.cutForThreads(), pieces), 1, kMost);
@@ -148,6 +166,7 @@ size_t iterationsAtOnce(const RenderSettings& settings, size_t pixels) {
 
 RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film, size_t pixels) {
   RenderSettings settings = asked;
+  // Where samples are spread, a wave has room for a tile.
   const bool spreads = settings.filterMode == FilterMode::spread && film.filter != ReconstructionFilter::box;
   const auto least = static_cast<uint32_t>(spreads ? kTilePixels : 1);
   settings.waveSize = std::max(settings.waveSize, least);

@@ -38,6 +38,9 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings);
 template <class S>
 bool spreadsSamples(const RenderPlan<S>& plan, const RenderSettings& settings);
 
+// Bits of Feature that the kernels must have for the scene and the settings' method.
+uint32_t featuresNeeded(const Scene& scene, const RenderSettings& settings);
+
 // The kernels that the settings' own choice, or else the scene and method, lead to. Throws std::runtime_error where the
 // choice does not cover the scene.
 Specialization specializationFor(const Scene& scene, const RenderSettings& settings);

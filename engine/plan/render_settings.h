@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -36,8 +37,10 @@ struct MetropolisSettings {
 // (engine/chains/README.md).
 constexpr uint64_t kMutationsPerBootstrapSample = 16;
 
-// Steps from one bootstrap, of so many samples, to the next.
+// Steps from one bootstrap, of so many samples, to the next. Without samples there are no paths for chains, and the
+// first epoch never ends.
 inline uint64_t epochSteps(const MetropolisSettings& settings, uint64_t samples) {
+  if (samples == 0) return std::numeric_limits<uint64_t>::max();
   if (settings.restartSteps) return *settings.restartSteps;
   return std::max<uint64_t>(kMutationsPerBootstrapSample * samples / settings.chains, 1);
 }

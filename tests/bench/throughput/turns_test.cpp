@@ -21,6 +21,15 @@ Speed speedOf(const Scene& scene, size_t visits, double visitSeconds) {
   return measurement.speed();
 }
 
+TEST(Turns, aSessionThatHasRenderedGoesOnFromThere) {
+  const Scene scene = smallBox(16, 16);
+  const auto session = Session::create(scene, {});
+  session->renderUntil(5, std::nullopt);
+  SliceRenderer renderer(*session, 2);
+  EXPECT_EQ(renderer.render().paths, 2u * 16 * 16);
+  EXPECT_EQ(session->statistics().iterations, 7u);
+}
+
 TEST(Turns, slicesAreWholeIterationsAndOfEqualSize) {
   const Scene scene = smallBox(24, 16);
   for (const Method method : {Method::pt, Method::vcm, Method::lt}) {
