@@ -45,7 +45,8 @@ class Inspect(CommandTest):
     def test_a_hidden_sky_is_no_light_in_view(self):
         scene = (
             '<scene version="3.0.0"><integrator type="path"><boolean name="hide_emitters" value="HIDE"/></integrator>'
-            '<sensor type="perspective"/><emitter type="constant"/></scene>'
+            '<sensor type="perspective"/><emitter type="constant"/>'
+            '<shape type="sphere"><point name="center" x="0" y="0" z="-9"/></shape></scene>'
         )
         for hides in ("true", "false"):
             classes = self.inspect(self.write(f"{hides}.xml", scene.replace("HIDE", hides)))["path_classes"]
