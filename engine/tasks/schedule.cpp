@@ -10,7 +10,7 @@ size_t Schedule::taskCount() const { return std::accumulate(tasks.begin(), tasks
 
 const ScheduleState::Phase* ScheduleState::phaseOf(uint64_t iteration, size_t phase) const {
   const uint64_t place = iteration - first_;
-  return place < begun_.size() ? &begun_[place][phase] : nullptr;
+  return place < begun_.size() ? &begun_[place].phases[phase] : nullptr;
 }
 
 bool ScheduleState::isOver(uint64_t iteration, size_t phase) const {
@@ -32,33 +32,43 @@ size_t ScheduleState::readyOf(uint64_t iteration, size_t phase, size_t taken) co
   return std::max(most, taken) - taken;
 }
 
+size_t ScheduleState::readyAt(uint64_t place) const {
+  const Iteration& iteration = begun_[place];
+  if (iteration.next == iteration.phases.size()) return 0;
+  return readyOf(first_ + place, iteration.next, iteration.phases[iteration.next].taken);
+}
+
 std::optional<ScheduledTask> ScheduleState::take(const MayBegin& mayBegin) {
   const auto takeOf = [this](uint64_t place, size_t phase) {
-    return ScheduledTask{first_ + place, phase, begun_[place][phase].taken++};
+    Iteration& iteration = begun_[place];
+    const ScheduledTask task{first_ + place, phase, iteration.phases[phase].taken++};
+    if (iteration.phases[phase].taken == schedule_.tasks[phase]) ++iteration.next;
+    return task;
   };
   // Look for a task in the iterations under way, the oldest first.
   for (size_t place = 0; place < begun_.size(); ++place) {
-    for (size_t phase = 0; phase < schedule_.tasks.size(); ++phase) {
-      if (readyOf(first_ + place, phase, begun_[place][phase].taken) != 0) return takeOf(place, phase);
-    }
+    if (readyAt(place) != 0) return takeOf(place, begun_[place].next);
   }
   // Without such a task, begin the next iteration if that is allowed.
   const uint64_t next = first_ + begun_.size();
   if (readyOf(next, 0, 0) == 0 || !mayBegin(next, begun_.size())) return std::nullopt;
-  Iteration& begun = begun_.emplace_back(schedule_.tasks.size());
-  for (size_t phase = 0; phase < begun.size(); ++phase) begun[phase].isOver.resize(schedule_.tasks[phase]);
+  Iteration& begun = begun_.emplace_back();
+  begun.phases.resize(schedule_.tasks.size());
+  for (size_t phase = 0; phase < begun.phases.size(); ++phase) {
+    begun.phases[phase].isOver.resize(schedule_.tasks[phase]);
+  }
   return takeOf(begun_.size() - 1, 0);
 }
 
 void ScheduleState::end(const ScheduledTask& task) {
   assert(task.iteration >= first_ && task.iteration - first_ < begun_.size());
-  Phase& phase = begun_[task.iteration - first_][task.phase];
+  Phase& phase = begun_[task.iteration - first_].phases[task.phase];
   ++phase.over;
   phase.isOver[task.index] = true;
   // Tasks end in any order. All tasks before `first` are over.
   while (phase.first < phase.isOver.size() && phase.isOver[phase.first]) ++phase.first;
   // Drop the oldest iterations whose last phase is over.
-  while (!begun_.empty() && begun_.front().back().over == schedule_.tasks.back()) {
+  while (!begun_.empty() && begun_.front().phases.back().over == schedule_.tasks.back()) {
     begun_.pop_front();
     ++first_;
   }
@@ -67,11 +77,7 @@ void ScheduleState::end(const ScheduledTask& task) {
 size_t ScheduleState::ready() const {
   // Count tasks of the next iteration, then tasks of the iterations under way.
   size_t count = readyOf(first_ + begun_.size(), 0, 0);
-  for (size_t place = 0; place < begun_.size(); ++place) {
-    for (size_t phase = 0; phase < schedule_.tasks.size(); ++phase) {
-      count += readyOf(first_ + place, phase, begun_[place][phase].taken);
-    }
-  }
+  for (size_t place = 0; place < begun_.size(); ++place) count += readyAt(place);
   return count;
 }
 

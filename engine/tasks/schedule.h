@@ -63,12 +63,17 @@ class ScheduleState {
     size_t first = 0;            // tasks before this one are over
     std::vector<bool> isOver;
   };
-  using Iteration = std::vector<Phase>;
+  struct Iteration {
+    std::vector<Phase> phases;
+    size_t next = 0;  // the first phase of which not all tasks are taken: no later one can begin
+  };
   // nullptr: of an iteration that has not begun.
   const Phase* phaseOf(uint64_t iteration, size_t phase) const;
   bool isOver(uint64_t iteration, size_t phase) const;
   // How many more tasks of a phase may be taken now; taken: how many were.
   size_t readyOf(uint64_t iteration, size_t phase, size_t taken) const;
+  // How many tasks of the iteration at this place of begun_ may be taken now.
+  size_t readyAt(uint64_t place) const;
 
   Schedule schedule_;
   uint64_t first_;
