@@ -77,8 +77,8 @@ StoredComparison compareStored(const Json& before, const Json& after, const Fami
       continue;
     }
     StoredRow& row = result.rows.emplace_back();
-    // The name is "scene method WxH".
-    const size_t first = name.find(' '), second = name.find(' ', first + 1);
+    // The name is "scene method WxH". Only the scene's own may have blanks.
+    const size_t second = name.rfind(' '), first = name.rfind(' ', second - 1);
     row.scene = name.substr(0, first);
     row.method = name.substr(first + 1, second - first - 1);
     row.size = name.substr(second + 1);

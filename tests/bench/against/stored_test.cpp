@@ -39,6 +39,15 @@ TEST(Stored, aSlowerResultIsCalledSoInEveryRow) {
   EXPECT_EQ(result.rows[1].method, "vcm");
 }
 
+TEST(Stored, namesOfScenesMayHaveBlanks) {
+  Json result = resultOf(1);
+  result["scenes"][0]["scene"] = "my own box";
+  const StoredRow row = compareStored(result, result, {}).rows.front();
+  EXPECT_EQ(row.scene, "my own box");
+  EXPECT_EQ(row.method, "pt");
+  EXPECT_EQ(row.size, "4x3");
+}
+
 TEST(Stored, equalResultsGetNoVerdict) {
   EXPECT_FALSE(compareStored(resultOf(1), resultOf(1), {}).anySlower());
   EXPECT_EQ(compareStored(resultOf(1.1), resultOf(1), {}).rows[0].comparison.verdict, SpeedVerdict::faster);
