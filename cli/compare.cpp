@@ -27,6 +27,10 @@ struct CompareOptions {
   double exposure = 0;
   std::vector<Option> thresholds;  // in the order of metricList()
   std::vector<double> limits;
+
+  // Scores go to stdout as text or as JSON, unless the page goes there: a page is alone on stdout.
+  bool printsText() const { return !json && html != "-"; }
+  bool printsJson() const { return json && html != "-"; }
 };
 
 // Whether the threshold option of a metric was given; metric: its index in metricList().
@@ -128,7 +132,7 @@ void writeMaps(const CompareOptions& options, const std::vector<MeasuredTest>& t
       std::filesystem::create_directories(file.parent_path(), error);
       const ShownMap map = showMap(score, test.codes.width, test.codes.height);
       writePng(file.string(), map.picture);
-      if (!options.json) fmt::print("map {}: 0 to {:.6g}\n", file.string(), map.range);
+      if (options.printsText()) fmt::print("map {}: 0 to {:.6g}\n", file.string(), map.range);
     }
   }
 }
@@ -186,14 +190,9 @@ int compare(const CompareOptions& options) {
     const std::string& file = options.tests[i];
     tests.push_back(measure(reference, file, labels[i], readPart(options, file), metrics, withMaps));
   }
-  // Shows scores, maps and page. A page on stdout is alone there.
-  if (options.html != "-") {
-    if (options.json) {
-      fmt::print("{}\n", toJson(tests).dump(2));
-    } else {
-      printText(tests);
-    }
-  }
+  // Shows scores, maps and page.
+  if (options.printsText()) printText(tests);
+  if (options.printsJson()) fmt::print("{}\n", toJson(tests).dump(2));
   if (!options.mapFolder.empty()) writeMaps(options, tests);
   if (!options.html.empty()) writeText(options.html, comparePage(options.reference, reference.image().codes, tests));
   // Checks all tests, also after one that fails.

@@ -226,8 +226,10 @@ TEST_F(CompareCommand, ThePageHoldsScoresImagesAndMaps) {
   EXPECT_EQ(images, 1u + 2 * (1 + 2)) << "the reference, and of each test itself and a map for each metric";
   EXPECT_NE(text.find("<td>0.0516611</td><td class=\"best\">0</td>"), std::string::npos);
   EXPECT_EQ(text.find("src=\"http"), std::string::npos) << "it opens offline";
-  const auto onStdout = runCompare({golden("ref"), golden("test"), "--metrics", "rmse", "--html", "-"});
+  const auto onStdout =
+      runCompare({golden("ref"), golden("test"), "--metrics", "rmse", "--html", "-", "--map", files_.path("maps")});
   EXPECT_EQ(onStdout.output.find("<!"), 0u) << "a page on stdout is alone there";
+  EXPECT_EQ(onStdout.output.find("map " + files_.path("maps")), std::string::npos) << onStdout.output.substr(0, 80);
 }
 
 TEST_F(CompareCommand, NoFileIsWrittenOverAnother) {
