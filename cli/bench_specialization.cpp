@@ -1,4 +1,4 @@
-// wavecrest bench --specialization: every feature set against the general kernels. Exit code 4 if an image differs.
+// wavecrest bench --specialization: every feature set against the complete kernels. Exit code 4 if an image differs.
 #include <fmt/core.h>
 
 #include <algorithm>

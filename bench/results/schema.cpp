@@ -104,34 +104,35 @@ bool hasTables(Database& database) {
                          std::to_string(kOldestResultsVersion));
 }
 
+// Throws unless the file is new, or has results of a version that can be read. 0 for a new file.
+int64_t requireOurs(Database& database) {
+  const int64_t version = versionOf(database);
+  const bool isNew = version == 0 && !hasTables(database);
+  if (!isNew && version != kOldestResultsVersion && version != kResultsVersion) failVersion(database, version);
+  return version;
+}
+
 }  // namespace
 
 void createSchema(Database& database) {
   const std::string setVersion = "PRAGMA user_version = " + std::to_string(kResultsVersion);
   // The journal mode stays in the file, so a database of another program is refused before it is set.
-  const int64_t before = versionOf(database);
-  if (before != 0 && before != kOldestResultsVersion && before != kResultsVersion) failVersion(database, before);
-  if (before == 0 && hasTables(database)) failVersion(database, before);
+  requireOurs(database);
   // One writer, readers beside it, and a file that is whole after a power cut.
   database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
   // Read the version inside the transaction, so that two processes cannot both make the tables.
   Transaction transaction(database);
-  const int64_t version = versionOf(database);
+  const int64_t version = requireOurs(database);
   if (version == 0) {
-    // Version 0: a new file, or a file of another program, which has tables.
-    if (hasTables(database)) failVersion(database, version);
     database.execute(std::string(kTables) + kClaimTable + setVersion);
   } else if (version == kOldestResultsVersion) {
     database.execute(std::string(kOlderClaims) + kClaimTable + kMoveClaims + setVersion);
-  } else if (version != kResultsVersion) {
-    failVersion(database, version);
   }
   transaction.commit();
 }
 
 void requireSchema(Database& database) {
-  const int64_t version = versionOf(database);
-  if (version != kResultsVersion && version != kOldestResultsVersion) failVersion(database, version);
+  if (requireOurs(database) == 0) failVersion(database, 0);
 }
 
 bool hasClaimFigures(Database& database) { return versionOf(database) > kOldestResultsVersion; }

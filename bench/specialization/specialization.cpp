@@ -80,13 +80,13 @@ void compareImages(const Scene& scene, const std::vector<RenderSettings>& settin
       return render(scene, own, result.iterations);
     };
     // The image of the last set, with which the others of this seed are compared.
-    const std::vector<float> general = imageOf(settings.size() - 1);
+    const std::vector<float> complete = imageOf(settings.size() - 1);
     for (size_t i = 0; i < settings.size(); ++i) {
-      const std::vector<float> image = i + 1 < settings.size() ? imageOf(i) : general;
+      const std::vector<float> image = i + 1 < settings.size() ? imageOf(i) : complete;
       FeatureSetRow& row = result.rows[i];
       // Every seed must give the same bits. The pixel difference is the largest of all seeds.
-      row.sameBits = (seed == 0 || row.sameBits) && image == general;
-      row.pixelDifference = std::max(row.pixelDifference, relativeDifference(image, general));
+      row.sameBits = (seed == 0 || row.sameBits) && image == complete;
+      row.pixelDifference = std::max(row.pixelDifference, relativeDifference(image, complete));
       blocks[i].push_back(blockMeans(image, result.width));
     }
   }
@@ -113,12 +113,12 @@ void measureSpeeds(const Scene& scene, const std::vector<RenderSettings>& settin
   const auto slices = renderInTurn(
       sessions, {.seconds = seconds, .fewestRounds = kFewestRounds, .mostRounds = kMostRounds}, [&] { watch.look(); });
   const auto rate = [](const Slice& slice) { return slice.pathsPerCpuSecond(); };
-  const std::vector<double> general = valuesOf(slices.back(), rate);
+  const std::vector<double> complete = valuesOf(slices.back(), rate);
   for (size_t i = 0; i < sessions.size(); ++i) {
     std::vector<double> rates = valuesOf(slices[i], rate);
     result.rows[i].pathsPerCpuSecond = estimateMedian(rates);
     // Over the last set's rate in the same round.
-    for (size_t k = 0; k < rates.size(); ++k) rates[k] /= general[k];
+    for (size_t k = 0; k < rates.size(); ++k) rates[k] /= complete[k];
     result.rows[i].speedup = estimateMedian(rates);
     result.rows[i].bytesPerPath = sessions[i]->statistics().bytesPerPath;
   }

@@ -18,7 +18,7 @@ std::string listed(const std::vector<std::string>& words) {
   return words.empty() ? "nothing" : fmt::format("{}", fmt::join(words, ", "));
 }
 
-// Against the general kernels' image: the same bits, the same but for rounding and chance, or different.
+// Against the complete kernels' image: the same bits, the same but for rounding and chance, or different.
 std::string imageInWords(const FeatureSetRow& row) {
   if (row.sameBits) return "same bits";
   return fmt::format("{}, pixels {:.1e}", row.differs ? "DIFFERS" : "same", row.pixelDifference);

@@ -57,7 +57,7 @@ class ChainSession final : public PlannedSession<S> {
   ChainWorker<S>& worker();
   uint64_t stepsFor(uint64_t iterations) const;
   uint64_t mutations() const { return step_ * settings_.metropolis.chains; }
-  bool direct() const { return plan_.pipeline.chains->directPass && settings_.metropolis.directPass; }
+  bool direct() const { return hasDirectPass(plan_, settings_); }
 
   // Whether a render is to end: its time is over, or somebody asked for it. Looked at before every wave.
   using Stop = std::function<bool()>;

@@ -29,14 +29,12 @@ Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that l
 
 // ---- which kernel ---------------------------------------------------------------------------------------------------
 
-// Whether lobes of this roughness are compiled as deltas. A textured roughness never is.
-bool isSmooth(const TexturedFloat& alpha) { return alpha.texture == kNone && alpha.value < kSmallestAlpha; }
+bool isNearlyZero(const TexturedFloat& alpha) { return alpha.texture == kNone && alpha.value < kSmallestAlpha; }
 
 // Interior over exterior index; of a rough boundary kept kIndexMatched away from 1.
 double relativeIor(const Dielectric& dielectric) {
   const double ratio = dielectric.intIor / dielectric.extIor;
-  if (dielectric.thin || (isSmooth(dielectric.alpha) && !dielectric.alphaV) || std::abs(ratio - 1) >= kIndexMatched)
-    return ratio;
+  if (dielectric.thin || isSmooth(dielectric) || std::abs(ratio - 1) >= kIndexMatched) return ratio;
   return ratio < 1 ? 1 - kIndexMatched : 1 + kIndexMatched;
 }
 
@@ -47,7 +45,7 @@ BsdfKind kindOf(const Conductor& conductor) {
     return conductor.distribution == Distribution::ggx ? BsdfKind::anisotropicConductor
                                                        : BsdfKind::anisotropicBeckmannConductor;
   }
-  if (isSmooth(conductor.alpha)) return BsdfKind::conductor;
+  if (isSmooth(conductor)) return BsdfKind::conductor;
   return conductor.distribution == Distribution::ggx ? BsdfKind::roughConductor : BsdfKind::beckmannConductor;
 }
 BsdfKind kindOf(const Dielectric& dielectric) {
@@ -56,11 +54,11 @@ BsdfKind kindOf(const Dielectric& dielectric) {
     return dielectric.distribution == Distribution::ggx ? BsdfKind::anisotropicDielectric
                                                         : BsdfKind::anisotropicBeckmannDielectric;
   }
-  if (isSmooth(dielectric.alpha)) return BsdfKind::dielectric;
+  if (isSmooth(dielectric)) return BsdfKind::dielectric;
   return dielectric.distribution == Distribution::ggx ? BsdfKind::roughDielectric : BsdfKind::beckmannDielectric;
 }
 BsdfKind kindOf(const Plastic& plastic) {
-  if (isSmooth(plastic.alpha)) return BsdfKind::plastic;
+  if (isSmooth(plastic)) return BsdfKind::plastic;
   return plastic.distribution == Distribution::ggx ? BsdfKind::roughPlastic : BsdfKind::beckmannPlastic;
 }
 BsdfKind kindOf(const Phong&) { return BsdfKind::phong; }
@@ -199,7 +197,7 @@ class Compiler {
     const double specular = average(mean(plastic.specularReflectance, scene_));
     record_.specularPick = specularShare(specular, diffuse);
     // What the boundary reflects of diffuse light from inside, and the table of what it lets pass.
-    if (isSmooth(plastic.alpha)) {
+    if (isSmooth(plastic)) {
       record_.internalDiffuse = static_cast<float>(diffuseFresnelReflectance(1 / eta));
     } else {
       const RoughBoundary boundary{plastic.distribution, plastic.alpha.value, eta};
@@ -272,6 +270,10 @@ bool isTextured(const Material& material, const Scene& scene) {
       material.kind);
   return anyTexture || hasNormalMap(material) || (material.opacity && textured(*material.opacity));
 }
+
+bool isSmooth(const Conductor& conductor) { return !conductor.alphaV && isNearlyZero(conductor.alpha); }
+bool isSmooth(const Dielectric& dielectric) { return !dielectric.alphaV && isNearlyZero(dielectric.alpha); }
+bool isSmooth(const Plastic& plastic) { return isNearlyZero(plastic.alpha); }
 
 bool isAnisotropic(const Material& material, const Scene& scene) {
   const auto part = [&](uint32_t index) { return isAnisotropic(scene.materials[index], scene); };

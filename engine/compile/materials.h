@@ -13,6 +13,12 @@ uint32_t materialFeatures(const Material& material, const Scene& scene);
 bool isAnisotropic(const Material& material, const Scene& scene);
 bool isTextured(const Material& material, const Scene& scene);
 
+// Whether the BSDF's microfacet lobes are compiled as deltas, because their roughness is nearly zero. A textured or
+// anisotropic roughness never is.
+bool isSmooth(const Conductor& conductor);
+bool isSmooth(const Dielectric& dielectric);
+bool isSmooth(const Plastic& plastic);
+
 // The scene is read for the means of textures, which decide how often a lobe is sampled.
 MaterialRecord compileMaterial(const Material& material, const Scene& scene);
 // Parameters that only compound BSDFs have; empty for other materials.

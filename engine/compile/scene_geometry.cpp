@@ -47,7 +47,7 @@ Extent extentOf(const PrimitiveRecord<double>& record) {
 }
 
 // Boxes that together hold all primitives: one around those whose centres are in the same cell of a grid over the
-// bounds. They give an instance a closer box than the corners of the bounds would.
+// bounds. An instance's box around them is tighter than one around its transformed bounds.
 std::vector<Box> outlineOf(const PrimitiveList& primitives, const BoundingSphere& bounds) {
   // Cells along each axis.
   constexpr size_t kCells = 8;

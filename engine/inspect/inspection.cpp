@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "engine/compile/materials.h"
 #include "engine/scene/scene_error.h"
 
 namespace wavecrest {
@@ -14,22 +15,15 @@ struct Overloaded : Functions... {
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;  // which clang 14, that lints, does not find by itself
 
-// Whether a surface is compiled as rough: a roughness below kSmallestAlpha is smooth.
-bool isRough(const TexturedFloat& alpha) { return alpha.texture != kNone || alpha.value >= double{kSmallestAlpha}; }
-template <class Bsdf>
-bool isRough(const Bsdf& bsdf) {
-  return isRough(bsdf.alpha) || (bsdf.alphaV && isRough(*bsdf.alphaV));
-}
-
 // The plugin of a material's innermost BSDF.
 std::string nameOf(const Material& material) {
   return std::visit(
       Overloaded{[](const Diffuse&) -> std::string { return "diffuse"; },
-                 [](const Conductor& c) -> std::string { return isRough(c) ? "roughconductor" : "conductor"; },
+                 [](const Conductor& c) -> std::string { return isSmooth(c) ? "conductor" : "roughconductor"; },
                  [](const Dielectric& d) -> std::string {
-                   return d.thin ? "thindielectric" : isRough(d) ? "roughdielectric" : "dielectric";
+                   return d.thin ? "thindielectric" : isSmooth(d) ? "dielectric" : "roughdielectric";
                  },
-                 [](const Plastic& p) -> std::string { return isRough(p.alpha) ? "roughplastic" : "plastic"; },
+                 [](const Plastic& p) -> std::string { return isSmooth(p) ? "plastic" : "roughplastic"; },
                  [](const Phong&) -> std::string { return "phong"; },
                  [](const Principled& p) -> std::string { return p.thin ? "principledthin" : "principled"; },
                  [](const Blend&) -> std::string { return "blendbsdf"; }},

@@ -27,15 +27,14 @@ std::pair<double, double> rangeOf(const Texture& texture) {
 
 // Textures that reflect more than arrives are taken as they are, as in Mitsuba; less than nothing is refused.
 void checkRange(LoadContext& context, const Texture& texture, ColorRole role, const SourceLocation& where) {
+  const bool reflects = role == ColorRole::reflectance;
+  if (!reflects && role != ColorRole::emission) return;
   const auto [least, most] = rangeOf(texture);
-  if (role == ColorRole::emission && least < 0) {
-    throw LoadError(where, "emission texture has a value of " + std::to_string(least) + "; expected 0 or more");
-  }
-  if (role != ColorRole::reflectance) return;
   if (least < 0) {
-    throw LoadError(where, "reflectance texture has a value of " + std::to_string(least) + "; expected 0 to 1");
+    throw LoadError(where, std::string(reflects ? "reflectance" : "emission") + " texture has a value of " +
+                               std::to_string(least) + "; expected " + (reflects ? "0 to 1" : "0 or more"));
   }
-  if (most > 1) {
+  if (reflects && most > 1) {
     context.warn(where, "reflectance texture has values up to " + std::to_string(most) +
                             ", which reflect more light than arrives; expected 0 to 1");
   }

@@ -123,7 +123,7 @@ template RenderPlan<double> planRender(const Scene&, const RenderSettings&);
 
 template <class S>
 bool spreadsSamples(const RenderPlan<S>& plan, const RenderSettings& settings) {
-  const bool samples = !plan.pipeline.chains || (plan.pipeline.chains->directPass && settings.metropolis.directPass);
+  const bool samples = !plan.pipeline.chains || hasDirectPass(plan, settings);
   return samples && settings.filterMode == FilterMode::spread && canSpread(plan.scene->view.camera);
 }
 template bool spreadsSamples(const RenderPlan<float>&, const RenderSettings&);

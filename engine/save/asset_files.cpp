@@ -64,7 +64,7 @@ std::string AssetFiles::addMesh(Mesh&& mesh, PlyContent content) {
              plyWriter(std::make_shared<const Mesh>(std::move(mesh)), std::move(content)));
 }
 
-StoredBitmap AssetFiles::store(const std::shared_ptr<const Bitmap>& bitmap, std::span<const bool> curves, bool isData) {
+StoredBitmap AssetFiles::store(const std::shared_ptr<const Bitmap>& bitmap, std::span<const bool> curves) {
   const std::string name = fmt::format("bitmap-{}", bitmaps_.size() + environments_.size());
   for (const bool raw : curves) {
     std::optional<Image8> codes = exactCodes(*bitmap, raw);
@@ -76,19 +76,19 @@ StoredBitmap AssetFiles::store(const std::shared_ptr<const Bitmap>& bitmap, std:
               [bitmap](const std::string& path) {
                 writeExr(path, {bitmap->width, bitmap->height, bitmap->channels, bitmap->pixels});
               }),
-          isData};
+          curves.front()};
 }
 
 StoredBitmap AssetFiles::addBitmap(const std::shared_ptr<const Bitmap>& bitmap, bool isData) {
   // A bitmap is stored once: by the curve that suits its first use, else by the other.
   const auto [known, first] = bitmaps_.emplace(bitmap.get(), StoredBitmap{});
-  if (first) known->second = store(bitmap, std::array{isData, !isData}, isData);
+  if (first) known->second = store(bitmap, std::array{isData, !isData});
   return known->second;
 }
 
 std::string AssetFiles::addEnvironment(const std::shared_ptr<const Bitmap>& bitmap) {
   const auto [known, first] = environments_.emplace(bitmap.get(), StoredBitmap{});
-  if (first) known->second = store(bitmap, std::array{false}, false);
+  if (first) known->second = store(bitmap, std::array{false});
   return known->second.filename;
 }
 

@@ -37,8 +37,8 @@ class AssetFiles {
 
  private:
   std::string add(const std::string& file, std::function<void(const std::string& path)> write);
-  // curves: whether codes are raw, in the order in which they are tried. isData: of an EXR.
-  StoredBitmap store(const std::shared_ptr<const Bitmap>& bitmap, std::span<const bool> curves, bool isData);
+  // curves: whether 8-bit codes are raw, in the order in which they are tried. An EXR has the first one's flag.
+  StoredBitmap store(const std::shared_ptr<const Bitmap>& bitmap, std::span<const bool> curves);
 
   std::filesystem::path folder_;
   std::string name_;

@@ -25,7 +25,8 @@ class PlannedSession : public Session {
   uint64_t progressPaths() const override { return progressPaths_.load(std::memory_order_relaxed); }
 
  protected:
-  // Compiles the scene and plans the memory; makes the film, without splats. Throws as Session::create does.
+  // Compiles the scene, plans the memory and makes the film. The film has no splats yet: a session that needs them adds
+  // them. Throws as Session::create does.
   PlannedSession(const Scene& scene, const RenderSettings& settings);
 
   // Calls `rest`, which makes what a schedule needs besides, under the settings' threads and placement of memory; then

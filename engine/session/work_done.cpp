@@ -37,7 +37,7 @@ void WorkDone::restore(StateReader& in, std::vector<RenderStatistics::StageRow> 
   counters = in.value<StageCounters>();
   renderSeconds = in.value<double>();
   cpuSeconds = in.value<double>();
-  // The names are those of this session's rows.
+  // Stages are saved without names, in the order of this session's rows.
   stages = std::move(rows);
   in.expect(stages.size(), "stages");
   for (RenderStatistics::StageRow& row : stages) {
