@@ -1,0 +1,152 @@
+#include "cli/render_messages.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/messages.h"
+#include "metrics/image/image_io.h"
+
+namespace wavecrest {
+namespace {
+
+// One line: the parts in MB, their sum, and the light paths where there are any.
+std::string describe(const MemoryPlan& plan) {
+  const MemoryUse& use = plan.use;
+  std::string text;
+  const auto add = [&](const char* name, size_t bytes) {
+    if (bytes != 0) text += fmt::format("{} {:.1f} MB, ", name, static_cast<double>(bytes) / 1e6);
+  };
+  add("scene", use.scene);
+  add("waves", use.waves);
+  add("film", use.film);
+  add("splats", use.splats);
+  add("light vertices", use.lightVertices);
+  add("photon map", use.photonMap);
+  add("chains", use.chains);
+  add("image", use.image);
+  text += fmt::format("together {:.1f} MB", static_cast<double>(use.total()) / 1e6);
+  if (plan.lightPaths != 0) text += fmt::format("; {} light paths in each iteration", plan.lightPaths);
+  return text;
+}
+
+// Warns of what the image lacks: pixels without samples, samples that were not finite, clamped splats, and paths that
+// were cut.
+void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const RenderStatistics& statistics) {
+  const StageCounters& counters = statistics.counters;
+  if (statistics.iterations == 0 && settings.method != Method::mlt) {  // which has no samples of pixels
+    warn(kind, "the render ended before all pixels had a sample; those without are black");
+  }
+  if (counters.nonFinite != 0) {
+    warn(kind, fmt::format("{} samples were not finite and count as black", counters.nonFinite));
+  }
+  if (counters.saturatedSplats != 0) {
+    warn(kind, fmt::format("{} splats were too large for the film's sums", counters.saturatedSplats));
+  }
+  // A limit of depth that was asked for needs no warning. cutThroughput is in units of what a path begins with.
+  if (counters.cutPaths != 0 && settings.limits.maxDepth == kUnlimitedDepth) {
+    const double paths = static_cast<double>(statistics.paths + statistics.lightPaths);
+    warn(kind,
+         fmt::format("{} paths were cut after {} edges; they carried {:.2g} of what all began with", counters.cutPaths,
+                     withinDepthOfMethod(settings).limits.maxDepth, counters.cutThroughput / paths));
+  }
+}
+
+// The memory plan as a line of --progress jsonl.
+nlohmann::ordered_json toJson(const MemoryPlan& plan) {
+  const MemoryUse& use = plan.use;
+  return {{"memory",
+           {{"scene_bytes", use.scene},
+            {"wave_bytes", use.waves},
+            {"film_bytes", use.film},
+            {"splat_bytes", use.splats},
+            {"light_vertex_bytes", use.lightVertices},
+            {"photon_map_bytes", use.photonMap},
+            {"chain_bytes", use.chains},
+            {"image_bytes", use.image},
+            {"total_bytes", use.total()},
+            {"light_paths", plan.lightPaths}}}};
+}
+
+}  // namespace
+
+void warnOfLimits(ProgressKind kind, const RenderSettings& settings) {
+  if (settings.precision == Precision::fast && settings.accel != Accel::embree) {
+    warn(kind, "--precision fast is float's but for --accel embree");
+  }
+  // The merge radius, relative to the scene's radius.
+  if (!strategiesOf(settings.method).merge) return;
+  if (settings.radius < kSmallestRadius) {
+    warn(kind,
+         fmt::format("--radius {:g} is below what positions resolve; {:g} is used", settings.radius, kSmallestRadius));
+  } else if (settings.radius >= 0.5) {
+    warn(kind,
+         fmt::format("--radius {:g} blurs over the whole scene; expected a small part of its radius", settings.radius));
+  }
+}
+
+void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, const Session& session) {
+  const bool spreads = session.film().spreads();
+  if (scene.film.filter == ReconstructionFilter::box || settings.filterMode != FilterMode::spread || spreads) return;
+  if (settings.method == Method::mlt) return;  // chains choose one pixel each
+  warn(kind,
+       fmt::format("the scene's filter reaches further than {} pixels: samples add to one pixel each", kWidestSpread));
+}
+
+void showMemory(ProgressKind kind, const MemoryPlan& plan) {
+  noteLine(kind, toJson(plan), "memory: " + describe(plan));
+}
+
+void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
+              const Session& session) {
+  const RenderStatistics statistics = session.statistics();
+  fmt::print("scene    {}, {}x{} pixels, scene_hash {:016x}\n", scene.name, session.film().area().width,
+             session.film().area().height, scene.hash);
+  fmt::print("method   {}, {} kernels on {}, {} intersector, {} threads\n", toString(settings.method),
+             kSpecializationNames[static_cast<size_t>(statistics.specialization)], toString(statistics.isa),
+             kAccelNames[static_cast<size_t>(statistics.accel)], settings.threads);
+  std::vector<std::string> ends;
+  if (settings.iterations) ends.push_back(fmt::format("after {} spp", *settings.iterations));
+  if (settings.seconds) ends.push_back(fmt::format("after {:g} s", *settings.seconds));
+  if (options.until.ssim > 0) ends.push_back(fmt::format("once SSIM is {:g}", options.until.ssim));
+  if (options.until.relativeError > 0) {
+    ends.push_back(fmt::format("once the relative error is {:g}", options.until.relativeError));
+  }
+  fmt::print("ends     {}\n", fmt::join(ends, " or "));
+  fmt::print("memory   {}\n", describe(session.memoryPlan()));
+  // Memory that writing an EXR takes besides the plan.
+  const auto isExr = [](const std::string& output) { return output.ends_with(".exr"); };
+  if (std::any_of(options.outputs.begin(), options.outputs.end(), isExr)) {
+    // The file is written block by block and is never in memory as a whole.
+    const size_t bytes = exrWritingBytes(session.film().area().width, session.film().area().height);
+    fmt::print("         and {:.1f} MB for the blocks of an EXR while they are compressed\n",
+               static_cast<double>(bytes) / 1e6);
+  }
+  for (const std::string& output : options.outputs) fmt::print("writes   {}\n", output);
+  if (!options.checkpoint.file.empty()) fmt::print("writes   {}\n", options.checkpoint.file);
+  if (!options.stats.empty()) fmt::print("writes   {}\n", options.stats);
+  if (options.outputs.empty()) fmt::print("writes   no image: there is no -o\n");
+}
+
+void showSummary(const RenderOptions& options, const RenderSettings& settings, ProgressKind kind,
+                 const Session& session) {
+  const RenderStatistics statistics = session.statistics();
+  warnOfLosses(kind, settings, statistics);
+  std::string files;
+  for (const std::string& output : options.outputs) files += (files.empty() ? "" : ", ") + output;
+  // The speed of lt is that of its light paths.
+  const uint64_t paths = settings.method == Method::lt ? statistics.lightPaths : statistics.paths;
+  const double seconds = statistics.renderSeconds;
+  const double perSecond = seconds > 0 ? static_cast<double>(paths) / seconds : 0;
+  noteLine(kind,
+           {{"outputs", options.outputs},
+            {"iterations", statistics.iterations},
+            {"render_seconds", seconds},
+            {"paths_per_second", perSecond}},
+           fmt::format("{}: {} spp in {:.1f} s, {:.2f} M paths/s",
+                       files.empty() ? "no -o, so the image was not kept" : files, statistics.iterations, seconds,
+                       perSecond * 1e-6));
+}
+
+}  // namespace wavecrest

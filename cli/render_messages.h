@@ -1,0 +1,23 @@
+// What `wavecrest render` tells beside its progress: warnings, its memory, its plan and its summary.
+#pragma once
+
+#include "cli/progress.h"
+#include "cli/render_options.h"
+#include "engine/session/session.h"
+
+namespace wavecrest {
+
+// Before the render: of settings that it cannot follow or that blur the image.
+void warnOfLimits(ProgressKind kind, const RenderSettings& settings);
+// Where samples add to one pixel each although --filter-mode asks to spread them, because the scene's filter is too
+// wide.
+void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, const Session& session);
+// The memory plan, in one line.
+void showMemory(ProgressKind kind, const MemoryPlan& plan);
+// What --dry-run prints on stdout: scene, kernels, end, memory and outputs of the render.
+void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, const Session& session);
+// After a render: warnings, and one line with its outputs, its iterations and its speed.
+void showSummary(const RenderOptions& options, const RenderSettings& settings, ProgressKind kind,
+                 const Session& session);
+
+}  // namespace wavecrest

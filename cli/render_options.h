@@ -1,0 +1,30 @@
+// The options of `wavecrest render`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/checkpointing.h"
+#include "cli/command_line.h"
+#include "cli/live_render.h"
+#include "cli/scene_options.h"
+#include "cli/until_goal.h"
+#include "library/render_settings.h"
+
+namespace wavecrest {
+
+// The library's options of a render, and those that only the command line has.
+struct RenderOptions : api::RenderOptions {
+  SceneOptions scene;
+  std::string snapshotEvery, stats, progress = "auto";
+  std::vector<std::string> outputs;
+  bool dryRun = false, pin = false;
+  CheckpointOptions checkpoint;
+  UntilRequest until;
+  LiveOptions live;
+};
+
+// Adds all of them to the command, which keeps references to `options`.
+void addRenderOptions(const Command& command, RenderOptions& options);
+
+}  // namespace wavecrest
