@@ -1,7 +1,11 @@
 #include "engine/load/mesh_build.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+
+#include "engine/tasks/parallel_for.h"
+#include "kernels/columns/parallel_ranges.h"
 
 namespace wavecrest {
 
@@ -13,15 +17,34 @@ Float3 toFloat(const Double3& v) {
 }
 bool isFinite(const Float3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
+// function(value) for each value, on any thread.
+template <class Value, class Function>
+void forAll(std::vector<Value>& values, const Function& function) {
+  forEachRange(parallelFor, values.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) function(values[i]);
+  });
+}
+// Whether the predicate holds for one of the values at least.
+template <class Value, class Predicate>
+bool holdsForAny(const std::vector<Value>& values, const Predicate& predicate) {
+  std::atomic<bool> found{false};
+  forEachRange(parallelFor, values.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end && !found; ++i) {
+      if (predicate(values[i])) found = true;
+    }
+  });
+  return found;
+}
+
 // Transforms positions to world space. LoadError if one leaves the range of float.
 void placePositions(std::vector<Float3>& positions, const Matrix4& toWorld, const SourceLocation& where) {
   if (isIdentity(toWorld)) return;
-  for (Float3& p : positions) {
+  forAll(positions, [&](Float3& p) {
     p = toFloat(transformPoint(toWorld, toDouble(p)));
     if (!isFinite(p)) {
       throw LoadError(where, "to_world moves a vertex beyond the range of float; expected smaller coordinates");
     }
-  }
+  });
 }
 
 // Differences of floats are nearly exact in double, so a cross product this small next to the edges is a rounding
@@ -38,6 +61,7 @@ uint64_t dropTrianglesWithoutArea(Mesh& mesh, MeshAttribute& attribute) {
     const Double3 a = toDouble(mesh.positions[t[0]]);
     return !hasArea(toDouble(mesh.positions[t[1]]) - a, toDouble(mesh.positions[t[2]]) - a);
   };
+  if (!holdsForAny(mesh.triangles, hasNone)) return 0;
   // Move the values of the remaining triangles to the front, in the order that erase_if keeps.
   if (attribute.perFace()) {
     size_t kept = 0;
@@ -52,11 +76,22 @@ uint64_t dropTrianglesWithoutArea(Mesh& mesh, MeshAttribute& attribute) {
   return std::erase_if(mesh.triangles, hasNone);
 }
 
-// Angle between two vectors, accurate when they are nearly parallel (Kahan, "How Futile are Mindless Assessments of
-// Roundoff", 2006, section 12).
-double angleBetween(const Double3& a, const Double3& b) {
-  const Double3 u = length(b) * a, v = length(a) * b;
-  return 2 * std::atan2(length(u - v), length(u + v));
+// The unit normal of a triangle and the angles at its corners, in radians.
+struct Facet {
+  Double3 normal;
+  double angle[3];
+};
+
+// Twice the area is the product of two edges and the sine of the angle between them, at each of the three corners, so
+// one root serves all angles. atan2 is accurate for all of them, those near 0 and near pi too.
+Facet facetOf(const Mesh& mesh, const std::array<uint32_t, 3>& triangle) {
+  const Double3 p0 = toDouble(mesh.positions[triangle[0]]), p1 = toDouble(mesh.positions[triangle[1]]),
+                p2 = toDouble(mesh.positions[triangle[2]]);
+  const Double3 e01 = p1 - p0, e02 = p2 - p0, e12 = p2 - p1, across = cross(e01, e02);
+  const double twiceArea = length(across);
+  return {.normal = across * (1 / twiceArea),
+          .angle = {std::atan2(twiceArea, dot(e01, e02)), std::atan2(twiceArea, -dot(e01, e12)),
+                    std::atan2(twiceArea, dot(e02, e12))}};
 }
 
 }  // namespace
@@ -65,22 +100,31 @@ double angleBetween(const Double3& a, const Double3& b) {
 // from Polygonal Facets", JGT 3(1), 1998).
 std::vector<Float3> smoothNormals(const Mesh& mesh) {
   std::vector<Double3> sums(mesh.positions.size(), Double3{0, 0, 0});
-  for (const std::array<uint32_t, 3>& t : mesh.triangles) {
-    const Double3 p[3] = {toDouble(mesh.positions[t[0]]), toDouble(mesh.positions[t[1]]),
-                          toDouble(mesh.positions[t[2]])};
-    const Double3 normal = normalized(cross(p[1] - p[0], p[2] - p[0]));
-    for (size_t i = 0; i < 3; ++i) {
-      const double angle = angleBetween(p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
-      sums[t[i]] = sums[t[i]] + angle * normal;
+  // The facets of some ranges at a time are found by all threads. One adds them in the order of the triangles, so that
+  // the sums do not depend on threads.
+  constexpr size_t kAtOnce = 16 * kRange;
+  std::vector<Facet> facets(std::min(mesh.triangles.size(), kAtOnce));
+  for (size_t first = 0; first < mesh.triangles.size(); first += kAtOnce) {
+    const auto* const triangles = mesh.triangles.data() + first;
+    const size_t count = std::min(kAtOnce, mesh.triangles.size() - first);
+    forEachRange(parallelFor, count, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) facets[i] = facetOf(mesh, triangles[i]);
+    });
+    for (size_t i = 0; i < count; ++i) {
+      for (size_t k = 0; k < 3; ++k) {
+        Double3& sum = sums[triangles[i][k]];
+        sum = sum + facets[i].angle[k] * facets[i].normal;
+      }
     }
   }
-  std::vector<Float3> normals;
-  normals.reserve(sums.size());
-  for (const Double3& sum : sums) {
-    // Opposite faces cancel, and an unused vertex has none: any direction will do, Mitsuba takes x.
-    const double size = length(sum);
-    normals.push_back(size > 1e-20 ? toFloat((1 / size) * sum) : Float3{1, 0, 0});
-  }
+  std::vector<Float3> normals(sums.size());
+  forEachRange(parallelFor, sums.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      // Opposite faces cancel, and an unused vertex has none: any direction will do, Mitsuba takes x.
+      const double size = length(sums[i]);
+      normals[i] = size > 1e-20 ? toFloat((1 / size) * sums[i]) : Float3{1, 0, 0};
+    }
+  });
   return normals;
 }
 
@@ -102,18 +146,18 @@ void fillMissingNormals(Mesh& mesh) {
 
 void placeNormals(std::vector<Float3>& normals, const Matrix4& toWorld) {
   const Matrix4 matrix = normalMatrix(toWorld);
-  for (Float3& n : normals) n = placedNormal(matrix, n);
+  forAll(normals, [&](Float3& n) { n = placedNormal(matrix, n); });
 }
 
 // Reverses triangles whose winding contradicts their normals, so that both name the same front side. Mitsuba shades and
 // emits by the normals; a mirroring transform or a careless exporter leaves the winding behind.
 void windAlongNormals(Mesh& mesh) {
-  for (std::array<uint32_t, 3>& t : mesh.triangles) {
+  forAll(mesh.triangles, [&](std::array<uint32_t, 3>& t) {
     const Double3 a = toDouble(mesh.positions[t[0]]);
     const Double3 facing = cross(toDouble(mesh.positions[t[1]]) - a, toDouble(mesh.positions[t[2]]) - a);
     const Double3 sum = toDouble(mesh.normals[t[0]]) + toDouble(mesh.normals[t[1]]) + toDouble(mesh.normals[t[2]]);
     if (dot(facing, sum) < 0) std::swap(t[1], t[2]);
-  }
+  });
 }
 
 }  // namespace
@@ -140,8 +184,7 @@ Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& pla
     const bool complete = std::find(mesh.normals.begin(), mesh.normals.end(), Float3{0, 0, 0}) == mesh.normals.end();
     if (!complete) fillMissingNormals(mesh);
   } else {
-    mesh.normals.assign(mesh.positions.size(), Float3{0, 0, 0});
-    fillMissingNormals(mesh);
+    mesh.normals = smoothNormals(mesh);
   }
   // Turn the mesh around if asked, and bake its attribute into a bitmap.
   if (placement.flipNormals) turnAround(mesh);

@@ -1,5 +1,6 @@
 // The body of a PLY file: vertices and faces, read by one routine over two kinds of source, text and binary.
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -8,6 +9,8 @@
 #include "engine/load/mesh_files.h"
 #include "engine/load/ply_header.h"
 #include "engine/load/text_scanner.h"
+#include "engine/tasks/parallel_for.h"
+#include "kernels/columns/parallel_ranges.h"
 
 namespace wavecrest {
 
@@ -64,6 +67,8 @@ class BinarySource {
   }
   bool canHold(PlyType type, uint64_t count) const { return count <= static_cast<size_t>(end_ - at_) / byteSize(type); }
   bool atEnd() const { return at_ == end_; }
+  // The next bytes, if there are so many and they are in the order of this machine; else nullptr. They stay unread.
+  const char* peek(uint64_t bytes) const { return swap_ || bytes > static_cast<size_t>(end_ - at_) ? nullptr : at_; }
   [[noreturn]] void fail(const std::string& message) const { throw LoadError(where_, message); }
 
  private:
@@ -229,6 +234,35 @@ void readPolygon(Source& source, const PlyProperty& property, uint64_t vertexCou
   }
 }
 
+// Faces as most files have them: a count in one byte, three indices of four bytes each, and nothing else. Reads them
+// side by side and returns true if all of them are such triangles of existing vertices; else it reads nothing.
+bool readTriangles(AsciiSource&, const PlyElement&, uint64_t, TriangleSoup&) { return false; }
+bool readTriangles(BinarySource& source, const PlyElement& element, uint64_t vertexCount, TriangleSoup& soup) {
+  constexpr size_t kRow = 1 + 3 * sizeof(uint32_t);
+  const PlyProperty& property = element.properties.front();
+  const bool plain = element.properties.size() == 1 && byteSize(property.countType) == 1 &&
+                     (property.type == PlyType::int32 || property.type == PlyType::uint32);
+  // The header's reader has checked that the file can hold the announced elements, so the product is small enough.
+  const char* const rows = plain ? source.peek(element.count * kRow) : nullptr;
+  if (rows == nullptr) return false;
+  soup.triangles.resize(element.count);
+  std::atomic<bool> complete{true};
+  forEachRange(parallelFor, element.count, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end && complete; ++i) {
+      std::memcpy(soup.triangles[i].data(), rows + i * kRow + 1, 3 * sizeof(uint32_t));
+      // A negative index is a large one here.
+      const uint32_t largest = std::max({soup.triangles[i][0], soup.triangles[i][1], soup.triangles[i][2]});
+      if (rows[i * kRow] != 3 || largest >= vertexCount) complete = false;
+    }
+  });
+  if (complete) {
+    source.skip(PlyType::uint8, element.count * kRow);
+  } else {
+    soup.triangles.clear();
+  }
+  return complete;
+}
+
 // Reads the element "face". All triangles of a face have its attribute.
 template <class Source>
 void readFaces(Source& source, const PlyElement& element, uint64_t vertexCount, const SourceLocation& where,
@@ -245,6 +279,7 @@ void readFaces(Source& source, const PlyElement& element, uint64_t vertexCount, 
   soup.triangles.reserve(element.count);
   startAttribute(element, true, soup.attribute);
   const bool hasAttribute = soup.attribute.channels != 0 && soup.attribute.perFace();
+  if (!hasAttribute && readTriangles(source, element, vertexCount, soup)) return;
   float values[3] = {};
   for (uint64_t i = 0; i < element.count; ++i) {
     const size_t firstTriangle = soup.triangles.size();

@@ -2,12 +2,17 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <vector>
 
 #include "engine/load/emitters.h"
 #include "engine/load/materials.h"
 #include "engine/load/mesh_attributes.h"
 #include "engine/load/meshes_ahead.h"
 #include "engine/load/values.h"
+#include "engine/scene/vector_math.h"
+#include "engine/tasks/parallel_for.h"
+#include "kernels/columns/parallel_ranges.h"
 
 namespace wavecrest {
 
@@ -152,15 +157,16 @@ namespace {
 // Surface area of each kind of shape, in the space of the shape's coordinates.
 struct Area {
   double operator()(const Mesh& mesh) const {
-    double sum = 0;
-    for (const std::array<uint32_t, 3>& t : mesh.triangles) {
-      const auto at = [&](size_t i) {
-        const Float3& p = mesh.positions[t[i]];
-        return Double3{p[0], p[1], p[2]};
-      };
-      sum += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
-    }
-    return sum;
+    // Each range has a sum of its own, so that the whole does not depend on threads.
+    std::vector<double> sums(rangesOf(mesh.triangles.size()));
+    forEachRange(parallelFor, mesh.triangles.size(), [&](size_t begin, size_t end) {
+      double& sum = sums[rangesOf(begin)];
+      for (size_t i = begin; i < end; ++i) {
+        const auto at = [&](size_t k) { return widened(mesh.positions[mesh.triangles[i][k]]); };
+        sum += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
+      }
+    });
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
   }
   double operator()(const Rectangle& r) const { return length(cross(r.edgeU, r.edgeV)); }
   double operator()(const Disk& d) const { return std::numbers::pi * length(cross(d.axisU, d.axisV)); }

@@ -23,15 +23,6 @@ float marginFor(const Box& all, const double (&eye)[3]) {
   return static_cast<float>(16 * kUnitRoundoff * rayReach(all, eye));
 }
 
-// The most references that a walk leaves on its stack.
-size_t stackNeed(const BranchTree& tree, const Branch& branch) {
-  if (branch.isLeaf()) return 1;
-  const BranchNode& node = tree.nodes[branch.at];
-  size_t deepest = 0;
-  for (uint32_t i = 0; i < node.count; ++i) deepest = std::max(deepest, stackNeed(tree, node.child[i]));
-  return node.count - 1 + deepest;
-}
-
 // Writes the boxes of a node's children, each widened by the margin on every side.
 void layBoxes(const Box* boxes, size_t count, double margin, BvhNode& node) {
   const Box all = unionOf(boxes, count);
@@ -74,14 +65,6 @@ struct Part {
     if (leaf == BvhEntry::end) return 0;  // instances have places of their own
     return leaf == BvhEntry::faces ? sizeof(FaceLeaf) : sizeof(SphereLeaf);
   }
-  size_t leaves() const {
-    size_t count = tree.root.isLeaf() ? 1 : 0;
-    for (const BranchNode& node : tree.nodes) {
-      count += static_cast<size_t>(
-          std::count_if(node.child, node.child + node.count, [](const Branch& child) { return child.isLeaf(); }));
-    }
-    return count;
-  }
 };
 
 // The hierarchies over the primitives of the world, or of a group, before they are laid out: one for faces, one for
@@ -102,18 +85,18 @@ struct Level {
   // Room for all nodes of the parts, and for one that joins the parts.
   size_t nodes() const {
     size_t count = 1;
-    for (const Part& part : parts) count += part.tree.nodes.size();
+    for (const Part& part : parts) count += part.tree.totals.nodes;
     return count;
   }
   size_t leafBytes() const {
     size_t bytes = 0;
-    for (const Part& part : parts) bytes += part.leaves() * part.leafBytes();
+    for (const Part& part : parts) bytes += part.tree.totals.leaves * part.leafBytes();
     return bytes;
   }
   // The most references that a walk leaves on its stack, those of the other parts among them.
   size_t stack() const {
     size_t most = 0;
-    for (const Part& part : parts) most = std::max(most, stackNeed(part.tree, part.tree.root));
+    for (const Part& part : parts) most = std::max(most, part.tree.totals.stack);
     return most + parts.size() - 1;
   }
 };
@@ -150,10 +133,12 @@ class Layout {
     // contents are written in parallel.
     nodes_.clear();
     ends_.clear();
+    nodes_.reserve(part.tree.totals.nodes);
+    ends_.reserve(part.tree.totals.leaves);
     const uint32_t root = reserve(part, part.tree.root);
-    if (!part.tree.root.isLeaf()) lay(part, part.tree.root, root);
+    if (!part.tree.root.isLeaf()) lay(part, *part.tree.root.node, root);
     forEachRange(parallelFor_, nodes_.size(), [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) writeNode(part, nodes_[i]);
+      for (size_t i = begin; i < end; ++i) writeNode(nodes_[i]);
     });
     forEachRange(parallelFor_, ends_.size(), [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) writeLeaf(part, ends_[i]);
@@ -172,7 +157,8 @@ class Layout {
 
   // A node, or a leaf, that has its place and is not written yet.
   struct PlacedNode {
-    uint32_t from, reference;      // index among the tree's nodes
+    const BranchNode* from;
+    uint32_t reference;
     uint32_t children[kBvhWidth];  // references
   };
   struct PlacedLeaf {
@@ -189,7 +175,7 @@ class Layout {
   // write().
   uint32_t reserve(const Part& part, const Branch& branch) {
     if (!branch.isLeaf()) return takeNode();
-    if (part.leaf == BvhEntry::end) return referenceOf(part.ids[branch.at]);
+    if (part.leaf == BvhEntry::end) return referenceOf(part.ids[branch.first]);
     const size_t at = nextLeaf_;
     nextLeaf_ += part.leafBytes();
     const uint32_t reference = makeReference(part.leaf, at);
@@ -198,25 +184,24 @@ class Layout {
   }
   // Takes places for everything below a node, depth first. The children of a node are reserved together before any
   // grandchild, so they lie side by side.
-  void lay(const Part& part, const Branch& branch, uint32_t reference) {
-    const BranchNode& from = part.tree.nodes[branch.at];
-    PlacedNode placed{.from = branch.at, .reference = reference, .children = {}};
+  void lay(const Part& part, const BranchNode& from, uint32_t reference) {
+    PlacedNode placed{.from = &from, .reference = reference, .children = {}};
     for (size_t i = 0; i < kBvhWidth; ++i) {
       placed.children[i] = i < from.count ? reserve(part, from.child[i]) : kBvhEnd;
     }
     nodes_.push_back(placed);
     for (size_t i = 0; i < from.count; ++i) {
-      if (!from.child[i].isLeaf()) lay(part, from.child[i], placed.children[i]);
+      if (!from.child[i].isLeaf()) lay(part, *from.child[i].node, placed.children[i]);
     }
   }
-  void writeNode(const Part& part, const PlacedNode& placed) const {
-    const BranchNode& from = part.tree.nodes[placed.from];
+  void writeNode(const PlacedNode& placed) const {
+    const BranchNode& from = *placed.from;
     auto& node = *new (place(placed.reference)) BvhNode;
     layBoxes(from.box, from.count, margin_, node);
     std::copy_n(placed.children, kBvhWidth, node.children);
   }
   void writeLeaf(const Part& part, const PlacedLeaf& placed) const {
-    const uint32_t* const ids = part.ids.data() + placed.from.at;
+    const uint32_t* const ids = part.ids.data() + placed.from.first;
     if (part.leaf == BvhEntry::faces) {
       new (place(placed.reference)) FaceLeaf(leaves_->faceLeaf(ids, placed.from.pieces));
     } else {

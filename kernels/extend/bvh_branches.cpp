@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <utility>
 
 namespace wavecrest {
@@ -149,25 +150,78 @@ Split bestSplit(const Bins& bins, size_t count, const BinScale& scale, size_t le
   return best;
 }
 
+// Memory for nodes, which stay where they are: threads take blocks of it, and nodes from their blocks.
+class NodeMemory {
+ public:
+  // pieces: of the tree. A small tree gets no more than it can use, as there may be thousands of them.
+  explicit NodeMemory(size_t pieces)
+      : block_(std::min(pieces, kBlock)), blocksAtOnce_(pieces > kLargeRange ? kBlocksAtOnce : 1) {}
+
+  size_t block() const { return block_; }
+  // Room for block() nodes, not initialised.
+  BranchNode* take() {
+    const std::lock_guard lock(mutex_);
+    if (left_ == 0) {
+      memory_.emplace_back(blocksAtOnce_ * block_ * sizeof(BranchNode), alignof(BranchNode));
+      left_ = blocksAtOnce_;
+    }
+    --left_;
+    return reinterpret_cast<BranchNode*>(memory_.back().get()) + left_ * block_;
+  }
+  std::vector<MemoryBlock> release() { return std::move(memory_); }
+
+ private:
+  // A large tree takes more at once than malloc ever keeps for itself when it is freed (32 MB).
+  static constexpr size_t kBlock = 256, kBlocksAtOnce = (size_t{64} << 20) / (kBlock * sizeof(BranchNode));
+  size_t block_, blocksAtOnce_;
+  std::mutex mutex_;
+  std::vector<MemoryBlock> memory_;
+  size_t left_ = 0;  // blocks of the last memory that nobody has taken
+};
+
+// The nodes that one thread makes in a row.
+class NodeBlock {
+ public:
+  explicit NodeBlock(NodeMemory& memory) : memory_(memory) {}
+  BranchNode& take() {
+    if (left_ == 0) {
+      next_ = memory_.take();
+      left_ = memory_.block();
+    }
+    --left_;
+    return *next_++;
+  }
+
+ private:
+  NodeMemory& memory_;
+  BranchNode* next_ = nullptr;
+  size_t left_ = 0;
+};
+
+struct Subtree {
+  const BranchNode* node = nullptr;
+  BranchTotals totals{.nodes = 0, .leaves = 1, .stack = 1};  // of a leaf
+};
+
 class Builder {
  public:
-  Builder(Piece* pieces, const ParallelFor& parallelFor, size_t leafSize)
-      : pieces_(pieces), parallelFor_(parallelFor), leafSize_(leafSize) {}
+  Builder(Piece* pieces, NodeMemory& memory, const ParallelFor& parallelFor, size_t leafSize)
+      : pieces_(pieces), memory_(memory), parallelFor_(parallelFor), leafSize_(leafSize) {}
 
   Range whole(size_t count) const {
     Range range{.begin = 0, .end = static_cast<uint32_t>(count), .all = {}, .centers = {}};
     measure(range);
     return range;
   }
-  // Appends the node of a range, which is no leaf, and all below it. Returns the node's index.
-  uint32_t build(const Range& range, size_t depth, std::vector<BranchNode>& out) const {
+  // The node of a range, which is no leaf, and all below it. nodes: where this thread takes its nodes from.
+  Subtree build(const Range& range, size_t depth, NodeBlock& nodes) const {
     // Split the child of the largest surface until there are eight children, or all of them are leaves.
     Range children[kBvhWidth] = {range};
     size_t count = 1;
     while (count < kBvhWidth) {
       size_t widest = kBvhWidth;
       for (size_t i = 0; i < count; ++i) {
-        if (children[i].size() <= leafSize_) continue;
+        if (isLeaf(children[i])) continue;
         if (widest == kBvhWidth || children[i].all.area() > children[widest].all.area()) widest = i;
       }
       if (widest == kBvhWidth) break;
@@ -176,46 +230,36 @@ class Builder {
       children[count++] = second;
     }
 
-    // Append the node. The indices of its child nodes are set when these are built.
-    const auto index = static_cast<uint32_t>(out.size());
-    BranchNode node;
-    node.count = static_cast<uint32_t>(count);
-    for (size_t i = 0; i < count; ++i) {
-      node.box[i] = children[i].all.box();
-      node.child[i] = {children[i].begin, children[i].size() <= leafSize_ ? children[i].size() : 0};
-    }
-    out.push_back(node);
-    // Build the subtrees.
+    // Build the subtrees. Below a large range each is a task of its own, with its own block of nodes.
+    BranchNode& node = nodes.take();
+    Subtree subtrees[kBvhWidth];
     if (range.size() > kLargeRange) {
-      buildApart(index, children, count, depth + 1, out);
+      parallelFor_(count, [&](size_t i) {
+        NodeBlock own(memory_);
+        if (!isLeaf(children[i])) subtrees[i] = build(children[i], depth + 1, own);
+      });
     } else {
       for (size_t i = 0; i < count; ++i) {
-        if (!node.child[i].isLeaf()) out[index].child[i].at = build(children[i], depth + 1, out);
+        if (!isLeaf(children[i])) subtrees[i] = build(children[i], depth + 1, nodes);
       }
     }
-    return index;
+
+    // Write the node. A walk that goes on with one child leaves the others on its stack.
+    Subtree built{.node = &node, .totals = {.nodes = 1, .leaves = 0, .stack = 0}};
+    node.count = static_cast<uint32_t>(count);
+    for (size_t i = 0; i < count; ++i) {
+      const auto& [below, totals] = subtrees[i];
+      node.box[i] = children[i].all.box();
+      node.child[i] = {below, children[i].begin, below == nullptr ? children[i].size() : 0};
+      built.totals.nodes += totals.nodes;
+      built.totals.leaves += totals.leaves;
+      built.totals.stack = std::max(built.totals.stack, count - 1 + totals.stack);
+    }
+    return built;
   }
 
  private:
-  // The children, each into nodes of its own, by as many threads as there are.
-  void buildApart(uint32_t node, const Range* children, size_t count, size_t depth,
-                  std::vector<BranchNode>& out) const {
-    std::vector<BranchNode> parts[kBvhWidth];
-    parallelFor_(count, [&](size_t i) {
-      if (!out[node].child[i].isLeaf()) build(children[i], depth, parts[i]);
-    });
-    // Append the subtrees in the order of the children, and shift the indices in them.
-    for (size_t i = 0; i < count; ++i) {
-      if (parts[i].empty()) continue;
-      const auto first = static_cast<uint32_t>(out.size());
-      out[node].child[i].at = first;
-      for (BranchNode& moved : parts[i]) {
-        for (Branch& child : moved.child) child.at += child.isLeaf() ? 0 : first;
-        out.push_back(moved);
-      }
-      parts[i] = {};
-    }
-  }
+  bool isLeaf(const Range& range) const { return range.size() <= leafSize_; }
 
   // Finds both boxes of a range from its pieces.
   void measure(Range& range) const {
@@ -280,6 +324,7 @@ class Builder {
   }
 
   Piece* pieces_;
+  NodeMemory& memory_;
   const ParallelFor& parallelFor_;
   size_t leafSize_;
 };
@@ -287,11 +332,15 @@ class Builder {
 }  // namespace
 
 BranchTree::BranchTree(Pieces& pieces, const ParallelFor& parallelFor, size_t leafSize) {
-  const Builder builder(pieces.begin(), parallelFor, leafSize);
+  NodeMemory memory(pieces.size());
+  const Builder builder(pieces.begin(), memory, parallelFor, leafSize);
   const Range whole = builder.whole(pieces.size());
   bounds = whole.all.box();
-  root = {0, static_cast<uint32_t>(pieces.size())};
-  if (pieces.size() > leafSize) root = {builder.build(whole, 0, nodes), 0};
+  NodeBlock nodes(memory);
+  const Subtree tree = pieces.size() > leafSize ? builder.build(whole, 0, nodes) : Subtree{};
+  totals = tree.totals;
+  root = {tree.node, 0, tree.node == nullptr ? static_cast<uint32_t>(pieces.size()) : 0};
+  nodes_ = memory.release();
 }
 
 }  // namespace wavecrest

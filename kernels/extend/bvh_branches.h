@@ -14,24 +14,35 @@
 
 namespace wavecrest {
 
-// A leaf of `pieces` pieces from index `at` on; or if that is 0, the node of index `at`.
+struct BranchNode;
+// A node; or without one, a leaf of `pieces` pieces from index `first` on.
 struct Branch {
-  uint32_t at, pieces;
-  bool isLeaf() const { return pieces != 0; }
+  const BranchNode* node;
+  uint32_t first, pieces;
+  bool isLeaf() const { return node == nullptr; }
 };
 struct BranchNode {
-  uint32_t count = 0;
+  uint32_t count;  // children
   Branch child[kBvhWidth];
   Box box[kBvhWidth];
+};
+
+// What a branch and all below it amount to.
+struct BranchTotals {
+  size_t nodes = 0, leaves = 0;
+  size_t stack = 0;  // the most references that a walk leaves on its stack
 };
 
 struct BranchTree {
   Branch root{};
   Box bounds{};
-  std::vector<BranchNode> nodes;
+  BranchTotals totals;
 
   // pieces: at least one. leafSize: how many a leaf may have.
   BranchTree(Pieces& pieces, const ParallelFor& parallelFor, size_t leafSize = kLeafSize);
+
+ private:
+  std::vector<MemoryBlock> nodes_;
 };
 
 }  // namespace wavecrest

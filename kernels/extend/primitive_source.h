@@ -4,34 +4,13 @@
 // to have them all at once.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <functional>
 
+#include "kernels/columns/parallel_ranges.h"
 #include "kernels/scene_view.h"
 
 namespace wavecrest {
-
-// Runs body(i) for each i in [0, count), in any order and perhaps on several threads; returns when all are done. Bodies
-// may call it again. Kernels have no threads of their own: whoever builds an intersector brings them.
-using ParallelFor = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
-
-inline void inTurn(size_t count, const std::function<void(size_t)>& body) {
-  for (size_t i = 0; i < count; ++i) body(i);
-}
-
-// body(begin, end) over [0, count), in ranges whose places depend on `count` alone: rangesOf(count) of them, and the
-// one that starts at `begin` is number rangesOf(begin).
-constexpr size_t kRange = size_t{1} << 14;
-constexpr size_t rangesOf(size_t count) { return (count + kRange - 1) / kRange; }
-template <class Body>
-void forEachRange(const ParallelFor& parallelFor, size_t count, const Body& body) {
-  if (count <= kRange) {
-    if (count > 0) body(size_t{0}, count);
-    return;
-  }
-  parallelFor(rangesOf(count), [&](size_t i) { body(i * kRange, std::min(count, (i + 1) * kRange)); });
-}
 
 struct PrimitiveRange {
   size_t first = 0, count = 0;

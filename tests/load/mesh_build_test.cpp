@@ -1,6 +1,11 @@
 // How meshes are placed: normals, orientation, triangles without area. Expectations as observed in Mitsuba 3.9.
-#include <cmath>
+#include <oneapi/tbb/task_arena.h>
 
+#include <cmath>
+#include <numbers>
+
+#include "engine/load/mesh_build.h"
+#include "kernels/columns/parallel_ranges.h"
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
@@ -44,6 +49,43 @@ TEST(MeshNormals, AreMadeFromFacesWeightedByAngle) {
   // Vertices 1 and 4 are at the same place but are two vertices: no welding.
   EXPECT_EQ(mesh.normals[1], (Float3{0, 0, 1}));
   EXPECT_EQ(mesh.normals[4], (Float3{0, 1, 0}));
+}
+
+// A sphere of many triangles without its poles; those near them are long and thin.
+Mesh sphereMesh() {
+  constexpr uint32_t kRings = 128, kAround = 256;
+  Mesh mesh;
+  for (uint32_t ring = 0; ring <= kRings; ++ring) {
+    for (uint32_t i = 0; i < kAround; ++i) {
+      const double theta = std::numbers::pi * ring / kRings, phi = 2 * std::numbers::pi * i / kAround;
+      mesh.positions.push_back({static_cast<float>(std::sin(theta) * std::cos(phi)),
+                                static_cast<float>(std::sin(theta) * std::sin(phi)),
+                                static_cast<float>(std::cos(theta))});
+      const uint32_t here = ring * kAround + i, next = ring * kAround + (i + 1) % kAround;
+      if (ring == 0 || ring + 2 > kRings) continue;
+      mesh.triangles.push_back({here, here + kAround, next});
+      mesh.triangles.push_back({next, here + kAround, next + kAround});
+    }
+  }
+  return mesh;
+}
+
+TEST(MeshNormals, OfASpherePointOutwards) {
+  const Mesh mesh = sphereMesh();
+  const std::vector<Float3> normals = smoothNormals(mesh);
+  for (size_t i = 512; i < mesh.positions.size() - 512; ++i) {  // but of the poles and the mesh's two borders
+    const Float3 &n = normals[i], &p = mesh.positions[i];
+    ASSERT_GT(double{n[0]} * p[0] + double{n[1]} * p[1] + double{n[2]} * p[2], 1 - 1e-3) << i;
+  }
+}
+
+TEST(MeshNormals, DoNotDependOnThreads) {
+  const Mesh mesh = sphereMesh();
+  ASSERT_GT(mesh.triangles.size(), 3 * kRange);
+  std::vector<Float3> one, two;
+  oneapi::tbb::task_arena(1).execute([&] { one = smoothNormals(mesh); });
+  oneapi::tbb::task_arena(2).execute([&] { two = smoothNormals(mesh); });
+  EXPECT_EQ(one, two);
 }
 
 TEST(MeshNormals, AreDroppedWithFaceNormals) {

@@ -45,6 +45,57 @@ TEST(Ply, BinaryLittleEndian) { expectQuad(meshOf(binaryQuadPly(false))); }
 
 TEST(Ply, BinaryBigEndian) { expectQuad(meshOf(binaryQuadPly(true))); }
 
+// A zigzag of triangles in binary, more than a thread reads at once. corner(face, k): the k-th index of a face.
+constexpr uint32_t kStripFaces = 40000;
+template <class Corner>
+std::string binaryStrip(uint32_t polygonAt, const Corner& corner) {
+  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(kStripFaces + 2) +
+                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                      std::to_string(kStripFaces) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (uint32_t i = 0; i < kStripFaces + 2; ++i) {
+    for (const float x : {static_cast<float>(i), static_cast<float>(i % 2), 0.0f}) appendValue<float>(bytes, x, false);
+  }
+  for (uint32_t face = 0; face < kStripFaces; ++face) {
+    const uint32_t count = face == polygonAt ? 4 : 3;
+    appendValue<uint8_t>(bytes, static_cast<uint8_t>(count), false);
+    for (uint32_t k = 0; k < count; ++k) appendValue<int32_t>(bytes, static_cast<int32_t>(corner(face, k)), false);
+  }
+  return bytes;
+}
+constexpr uint32_t kNoPolygon = kStripFaces;
+uint32_t cornerOfStrip(uint32_t face, uint32_t k) { return face + k; }
+
+TEST(Ply, ManyTriangles) {
+  const Mesh mesh = meshOf(binaryStrip(kNoPolygon, cornerOfStrip));
+  ASSERT_EQ(mesh.triangles.size(), kStripFaces);
+  for (uint32_t i = 0; i < kStripFaces; ++i) {
+    ASSERT_EQ(mesh.triangles[i], (std::array<uint32_t, 3>{i, i + 1, i + 2}));
+  }
+}
+
+TEST(Ply, APolygonAmongManyTriangles) {
+  // The last face but one is a polygon of four, which makes two triangles.
+  const Mesh mesh = meshOf(binaryStrip(kStripFaces - 2, cornerOfStrip));
+  ASSERT_EQ(mesh.triangles.size(), kStripFaces + 1);
+  EXPECT_EQ(mesh.triangles[kStripFaces - 2], (std::array<uint32_t, 3>{kStripFaces - 2, kStripFaces - 1, kStripFaces}));
+  EXPECT_EQ(mesh.triangles[kStripFaces - 1], (std::array<uint32_t, 3>{kStripFaces - 2, kStripFaces, kStripFaces + 1}));
+  EXPECT_EQ(mesh.triangles.back(), (std::array<uint32_t, 3>{kStripFaces - 1, kStripFaces, kStripFaces + 1}));
+}
+
+TEST(Ply, AMissingVertexAmongManyTriangles) {
+  constexpr int kBodyLine = 10;
+  const auto missing = [](uint32_t face, uint32_t k) {
+    return face == 30000 && k == 1 ? kStripFaces + 2 : cornerOfStrip(face, k);
+  };
+  expectPlyError(binaryStrip(kNoPolygon, missing), kBodyLine, "face refers to vertex 40002; expected 0 to 40001");
+  const auto negative = [](uint32_t face, uint32_t k) {
+    return face == 39999 && k == 2 ? ~0u : cornerOfStrip(face, k);
+  };
+  expectPlyError(binaryStrip(kNoPolygon, negative), kBodyLine, "face refers to vertex -1; expected 0 to 40001");
+  const std::string whole = binaryStrip(kNoPolygon, cornerOfStrip);
+  expectPlyError(whole.substr(0, whole.size() - 1), kBodyLine, "face has 3 corners but the file ends");
+}
+
 TEST(Ply, GzippedByContentWhateverTheName) { expectQuad(meshOf(gzip(kQuadPly))); }
 
 TEST(Ply, GzipOfSeveralMembers) { expectQuad(meshOf(gzip(kQuadPly.substr(0, 100)) + gzip(kQuadPly.substr(100)))); }
