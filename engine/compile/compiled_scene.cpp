@@ -131,8 +131,8 @@ struct NearBox {
   // Faces count with their bounding box, spheres with their surface.
   bool touches(const PrimitiveRecord<double>& primitive) const {
     if (static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::sphere) return touchesSphere(primitive);
-    const BoundingSphere bounds = boundPrimitives(std::span<const PrimitiveRecord<double>>(&primitive, 1));
-    return touches(vec(bounds.low), vec(bounds.high));
+    const Extent extent = extentOf(primitive);
+    return touches(extent.low, extent.high);
   }
   bool touches(const Double3& boxLow, const Double3& boxHigh) const {
     for (size_t i = 0; i < 3; ++i) {
@@ -177,7 +177,7 @@ void checkRange(const Scene& scene, double radius) {
 
 }  // namespace
 
-void setClips(const Sensor& sensor, const SceneGeometry& geometry, CameraView& camera) {
+void setClips(const Sensor& sensor, const SceneGeometry& geometry, const BoundingSphere& bounds, CameraView& camera) {
   // Near clip: set if a primitive may lie before it. Instances are tested by their boxes first.
   const PrimitiveList& primitives = geometry.world();
   // An orthographic camera's rays begin at the near clip anyway.
@@ -186,7 +186,7 @@ void setClips(const Sensor& sensor, const SceneGeometry& geometry, CameraView& c
     std::atomic<bool> touched{false};
     forEachRange(parallelFor, primitives.counts().total(), [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end && !touched; ++i) {
-        if (box.touches(primitives.geometry<double>(i))) touched = true;
+        if (box.touches(primitives.corners<double>(i))) touched = true;
       }
     });
     for (const BvhInstance& instance : geometry.instances()) {
@@ -196,9 +196,8 @@ void setClips(const Sensor& sensor, const SceneGeometry& geometry, CameraView& c
     }
     if (touched) camera.nearClip = sensor.nearClip;
   }
-  // Far clip: set if the farthest corner of the scene's box lies beyond it.
-  const BoundingSphere bounds = geometry.bounds<double>();
-  double farthest = 0;
+  // Far clip: set if the farthest corner of the scene's box lies beyond it, or may do so but for rounding to float.
+  double farthest = 1e-5 * bounds.radius;
   for (size_t i = 0; i < 3; ++i) {
     farthest += ((camera.axis[i] > 0 ? bounds.high[i] : bounds.low[i]) - camera.origin[i]) * camera.axis[i];
   }
@@ -229,7 +228,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   compiled->bounds = bounds;
   SceneView<S>& view = compiled->view;
   view.camera = compileCamera(scene.sensor, scene.film, origin);
-  setClips(scene.sensor, geometry, view.camera);
+  setClips(scene.sensor, geometry, bounds, view.camera);
 
   // Intersectors first: what they need only while they are built is gone before the records are made.
   const PrimitiveList& world = geometry.world();

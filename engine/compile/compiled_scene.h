@@ -62,6 +62,7 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const D
 
 // Sets the camera's clips where a primitive, in the camera's coordinates, may lie outside of them. Most scenes have
 // nothing there, and then rays begin at the lens and need no test. Of spheres in instances their boxes count.
-void setClips(const Sensor& sensor, const SceneGeometry& geometry, CameraView& camera);
+// bounds: of the geometry, in any precision.
+void setClips(const Sensor& sensor, const SceneGeometry& geometry, const BoundingSphere& bounds, CameraView& camera);
 
 }  // namespace wavecrest

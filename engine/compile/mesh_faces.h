@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/scene/scene.h"
-#include "kernels/extend/primitive_source.h"
+#include "kernels/columns/parallel_ranges.h"
 
 namespace wavecrest {
 

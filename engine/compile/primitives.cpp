@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/compile/materials.h"
 #include "engine/compile/tessellate.h"
@@ -68,51 +67,6 @@ void setFaceTangents(AttributeRecord& attributes, const Mesh& mesh, const FaceCo
 }
 
 }  // namespace
-
-// The box around what was included.
-struct PrimitiveExtent {
-  static constexpr double kFar = std::numeric_limits<double>::infinity();
-  Double3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
-
-  void include(size_t axis, double x) {
-    low[axis] = std::min(low[axis], x);
-    high[axis] = std::max(high[axis], x);
-  }
-  void include(const PrimitiveExtent& other) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      include(axis, other.low[axis]);
-      include(axis, other.high[axis]);
-    }
-  }
-  template <class S>
-  void include(const PrimitiveRecord<S>& r) {
-    const bool sphere = static_cast<PrimitiveKind>(r.kind) == PrimitiveKind::sphere;
-    const bool quad = static_cast<PrimitiveKind>(r.kind) == PrimitiveKind::quad;
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const double p = r.p0[axis];
-      if (sphere) {
-        include(axis, p - r.e1[0]);
-        include(axis, p + r.e1[0]);
-        continue;
-      }
-      // The corners of a face; a quad has a fourth.
-      const double u = p + r.e1[axis], v = p + r.e2[axis];
-      for (const double x : {p, u, v, quad ? u + v - p : p}) include(axis, x);
-    }
-  }
-  BoundingSphere sphere() const { return boundingSphere(low, high); }
-};
-
-BoundingSphere boundingSphere(const Double3& low, const Double3& high) {
-  BoundingSphere bounds;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    bounds.low[axis] = low[axis];
-    bounds.high[axis] = high[axis];
-    bounds.center[axis] = (low[axis] + high[axis]) / 2;
-  }
-  bounds.radius = length(high - low) / 2 * 1.0001;
-  return bounds;
-}
 
 PrimitiveList::PrimitiveList(const Scene& scene, bool textured, const ParallelFor& parallelFor, const Double3& origin,
                              PrimitiveChoice choice)
@@ -266,18 +220,19 @@ Rectangle PrimitiveList::rectangleOf(const Run& run) const {
   return r;
 }
 
-// The record of a primitive of the run. All is computed in double and rounded to S by the setters.
+// The record of a primitive of the run, without the normal of a mesh's face. All is computed in double and rounded to S
+// by the setters.
 template <class S>
-PrimitiveRecord<S> PrimitiveList::geometry(const Run& run, size_t index) const {
+PrimitiveRecord<S> PrimitiveList::corners(const Run& run, size_t index) const {
   PrimitiveRecord<S> record;
   record.kind = static_cast<uint32_t>(run.kind);
   record.material = scene_.shapes[run.shape].material;
   record.light = record.attributes = kNoIndex;
   if (run.mesh != nullptr) {
-    const FaceCorners corners = cornersOf(run, index);
-    const auto at = [&](size_t k) { return cornerOf(run, corners[k]); };
-    const Double3 p0 = at(0), e1 = at(1) - p0, e2 = at(2) - p0, across = cross(e1, e2);
-    setFace(record, run.moved ? p0 : p0 - origin_, e1, e2, across * (1 / length(across)));
+    const FaceCorners vertices = cornersOf(run, index);
+    const auto at = [&](size_t k) { return cornerOf(run, vertices[k]); };
+    const Double3 p0 = at(0);
+    setFace(record, run.moved ? p0 : p0 - origin_, at(1) - p0, at(2) - p0, {});
   } else if (std::holds_alternative<Rectangle>(scene_.shapes[run.shape].kind)) {
     const Rectangle r = rectangleOf(run);
     setFace(record, r.corner - origin_, r.edgeU, r.edgeV, normalized(cross(r.edgeU, r.edgeV)));
@@ -287,12 +242,31 @@ PrimitiveRecord<S> PrimitiveList::geometry(const Run& run, size_t index) const {
   return record;
 }
 
+// The whole record.
+template <class S>
+PrimitiveRecord<S> PrimitiveList::geometry(const Run& run, size_t index) const {
+  PrimitiveRecord<S> record = corners<S>(run, index);
+  if (run.mesh == nullptr) return record;
+  const FaceCorners vertices = cornersOf(run, index);
+  const auto at = [&](size_t k) { return cornerOf(run, vertices[k]); };
+  const Double3 p0 = at(0), across = cross(at(1) - p0, at(2) - p0);
+  assign(record.normal, across * (1 / length(across)));
+  return record;
+}
+
 template <class S>
 PrimitiveRecord<S> PrimitiveList::geometry(size_t index) const {
   return geometry<S>(runOf(index), index);
 }
 template PrimitiveRecord<float> PrimitiveList::geometry(size_t) const;
 template PrimitiveRecord<double> PrimitiveList::geometry(size_t) const;
+
+template <class S>
+PrimitiveRecord<S> PrimitiveList::corners(size_t index) const {
+  return corners<S>(runOf(index), index);
+}
+template PrimitiveRecord<float> PrimitiveList::corners(size_t) const;
+template PrimitiveRecord<double> PrimitiveList::corners(size_t) const;
 
 // Whether a run has Mitsuba's default tangents: its material is anisotropic but not textured, and its mesh has no
 // texture coordinates.
@@ -340,20 +314,20 @@ PrimitiveSource PrimitiveList::source(size_t first) const {
   return {.quads = {first, counts_.quads},
           .triangles = {first + counts_.quads, counts_.triangles},
           .spheres = {first + counts_.quads + counts_.triangles, counts_.spheres},
-          .at = [this, first](size_t i) { return geometry<double>(i - first); }};
+          .at = [this, first](size_t i) { return corners<double>(i - first); }};
 }
 
 template <class S>
 BoundingSphere PrimitiveList::bounds() const {
-  PrimitiveExtent all;
+  Extent all;
   for (const Run& run : runs_) {
     // Each range has an extent of its own, so that threads share nothing.
-    std::vector<PrimitiveExtent> parts(rangesOf(run.count));
+    std::vector<Extent> parts(rangesOf(run.count));
     forEachRange(parallelFor_, run.count, [&](size_t begin, size_t end) {
-      PrimitiveExtent& part = parts[rangesOf(begin)];
-      for (size_t i = begin; i < end; ++i) part.include(geometry<S>(run, run.first + i));
+      Extent& part = parts[rangesOf(begin)];
+      for (size_t i = begin; i < end; ++i) part.include(corners<S>(run, run.first + i));
     });
-    for (const PrimitiveExtent& part : parts) all.include(part);
+    for (const Extent& part : parts) all.include(part);
   }
   return all.sphere();
 }
@@ -382,24 +356,5 @@ void PrimitiveList::compile(Primitives<S>& out, size_t firstRecord, size_t first
 }
 template void PrimitiveList::compile(Primitives<float>&, size_t, size_t) const;
 template void PrimitiveList::compile(Primitives<double>&, size_t, size_t) const;
-
-template <class S>
-BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<S>> records) {
-  PrimitiveExtent all;
-  for (const PrimitiveRecord<S>& record : records) all.include(record);
-  return all.sphere();
-}
-template BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<float>>);
-template BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<double>>);
-
-Double3 originOf(const BoundingSphere& bounds) {
-  constexpr double kFarRadii = 8;
-  Double3 origin{};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const double center = bounds.center[axis];
-    if (std::abs(center) > kFarRadii * bounds.radius) origin[axis] = static_cast<float>(center);
-  }
-  return origin;
-}
 
 }  // namespace wavecrest

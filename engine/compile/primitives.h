@@ -6,10 +6,10 @@
 
 #include <deque>
 #include <map>
-#include <span>
 #include <vector>
 
 #include "engine/compile/affine.h"
+#include "engine/compile/bounds.h"
 #include "engine/compile/mesh_faces.h"
 #include "engine/compile/record_array.h"
 #include "engine/scene/scene.h"
@@ -21,19 +21,6 @@ namespace wavecrest {
 struct PrimitiveCounts {
   uint32_t quads = 0, triangles = 0, spheres = 0;
   uint32_t total() const { return quads + triangles + spheres; }
-};
-
-// Bounding sphere of all primitives: centre and half diagonal of the bounding box, times 1.0001.
-struct BoundingSphere {
-  double center[3]{}, radius = 0;
-  double low[3]{}, high[3]{};  // corners of the box
-
-  // Half edge of a box around all primitives which touches none, so that rays which start on it meet what lies along
-  // its faces.
-  double halfExtent(size_t axis) const {
-    constexpr double kClearance = 1e-4;  // relative to the radius: some hundred times the rounding of a position
-    return (high[axis] - low[axis]) / 2 + kClearance * radius;
-  }
 };
 
 template <class S>
@@ -61,9 +48,12 @@ class PrimitiveList {
                 PrimitiveChoice choice = {});
 
   const PrimitiveCounts& counts() const { return counts_; }
-  // Without material, light and attributes, which intersectors do not read.
+  // Without light and attributes.
   template <class S>
   PrimitiveRecord<S> geometry(size_t index) const;
+  // The same without the normals of meshes' faces, which neither hierarchies nor boxes need.
+  template <class S>
+  PrimitiveRecord<S> corners(size_t index) const;
   // For the hierarchy. first: where the list's records begin among those of the whole scene.
   PrimitiveSource source(size_t first = 0) const;
   // As S has it.
@@ -103,6 +93,8 @@ class PrimitiveList {
   Rectangle rectangleOf(const Run& run) const;
   template <class S>
   PrimitiveRecord<S> geometry(const Run& run, size_t index) const;
+  template <class S>
+  PrimitiveRecord<S> corners(const Run& run, size_t index) const;
   bool usesFaceTangents(const Run& run) const;
   template <class S>
   AttributeRecord attribute(const Run& run, size_t index, const PrimitiveRecord<S>& record) const;
@@ -119,20 +111,5 @@ class PrimitiveList {
   PrimitiveCounts counts_;
   size_t attributes_ = 0;
 };
-
-// Of the box between two corners.
-BoundingSphere boundingSphere(const Double3& low, const Double3& high);
-template <class S>
-BoundingSphere boundPrimitives(std::span<const PrimitiveRecord<S>> records);
-template <class S>
-BoundingSphere boundPrimitives(const RecordArray<PrimitiveRecord<S>>& records) {
-  return boundPrimitives(std::span<const PrimitiveRecord<S>>(records.data(), records.size()));
-}
-
-// Where kernels have their origin, so that float resolves a scene that is far from its own: on each axis 0, or the
-// centre of the box if that is farther away than eight radii of the scene. Nearer scenes lose three bits of 24 at most
-// and keep the coordinates they were written in. Centres are rounded to float, which takes nothing from the vertices of
-// meshes: their difference from it is exact, and what met in a corner still does.
-Double3 originOf(const BoundingSphere& bounds);
 
 }  // namespace wavecrest

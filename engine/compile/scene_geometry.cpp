@@ -13,37 +13,15 @@
 namespace wavecrest {
 namespace {
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
-
-// A box that grows by what it includes; empty at first, with low above high.
-struct Extent {
-  Double3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
-
-  void include(const Double3& p) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], p[axis]);
-      high[axis] = std::max(high[axis], p[axis]);
-    }
+// Rounded outwards.
+Box boxOf(const Extent& extent) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Box box{};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] = std::nextafter(static_cast<float>(extent.low[axis]), -kInfinity);
+    box.high[axis] = std::nextafter(static_cast<float>(extent.high[axis]), kInfinity);
   }
-  void include(const Double3& boxLow, const Double3& boxHigh) {
-    include(boxLow);
-    include(boxHigh);
-  }
-  // Rounded outwards.
-  Box box() const {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    Box box{};
-    for (size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::nextafter(static_cast<float>(low[axis]), -kInfinity);
-      box.high[axis] = std::nextafter(static_cast<float>(high[axis]), kInfinity);
-    }
-    return box;
-  }
-};
-
-Extent extentOf(const PrimitiveRecord<double>& record) {
-  const BoundingSphere bounds = boundPrimitives(std::span<const PrimitiveRecord<double>>(&record, 1));
-  return {.low = vec(bounds.low), .high = vec(bounds.high)};
+  return box;
 }
 
 // Boxes that together hold all primitives: one around those whose centres are in the same cell of a grid over the
@@ -53,7 +31,7 @@ std::vector<Box> outlineOf(const PrimitiveList& primitives, const BoundingSphere
   constexpr size_t kCells = 8;
   std::map<size_t, Extent> cells;
   for (size_t i = 0; i < primitives.counts().total(); ++i) {
-    const Extent extent = extentOf(primitives.geometry<double>(i));
+    const Extent extent = extentOf(primitives.corners<double>(i));
     size_t cell = 0;
     for (size_t axis = 0; axis < 3; ++axis) {
       // The centre's cell along this axis; the first one where the bounds are flat.
@@ -61,11 +39,11 @@ std::vector<Box> outlineOf(const PrimitiveList& primitives, const BoundingSphere
       const double place = ((extent.low[axis] + extent.high[axis]) / 2 - bounds.low[axis]) / size * kCells;
       cell = cell * kCells + static_cast<size_t>(size > 0 ? std::clamp(place, 0.0, kCells - 1.0) : 0);
     }
-    cells[cell].include(extent.low, extent.high);
+    cells[cell].include(extent);
   }
   std::vector<Box> outline;
   outline.reserve(cells.size());
-  for (const auto& [cell, extent] : cells) outline.push_back(extent.box());
+  for (const auto& [cell, extent] : cells) outline.push_back(boxOf(extent));
   return outline;
 }
 
@@ -141,7 +119,7 @@ void SceneGeometry::placeInstances(const Double3& origin) {
     for (const Box& box : group.outline) {
       forCorners(vec(box.low), vec(box.high), [&](const Double3& p) { extent.include(toWorld.vector(p) + place); });
     }
-    placed.box = extent.box();
+    placed.box = boxOf(extent);
   }
 }
 
@@ -152,7 +130,7 @@ bool SceneGeometry::anyInInstance(const BvhInstance& instance,
   std::atomic<bool> found{false};
   forEachRange(parallelFor, list.counts().total(), [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end && !found; ++i) {
-      const PrimitiveRecord<double> record = list.geometry<double>(i);
+      const PrimitiveRecord<double> record = list.corners<double>(i);
       Extent extent;
       const auto include = [&](const Double3& p) {
         Double3 there = vec(instance.place);
@@ -191,12 +169,12 @@ BoundingSphere SceneGeometry::bounds() const {
   if (world_->counts().total() != 0) {
     const BoundingSphere world = world_->bounds<S>();
     if (instances_.empty()) return world;
-    all.include(vec(world.low), vec(world.high));
+    all.include(Extent{.low = vec(world.low), .high = vec(world.high)});
   }
   for (const BvhInstance& instance : instances_) {
-    all.include(vec(instance.box.low), vec(instance.box.high));
+    all.include(Extent{.low = vec(instance.box.low), .high = vec(instance.box.high)});
   }
-  return boundingSphere(all.low, all.high);
+  return all.sphere();
 }
 template BoundingSphere SceneGeometry::bounds<float>() const;
 template BoundingSphere SceneGeometry::bounds<double>() const;
