@@ -63,6 +63,9 @@ class Publishing(CommandTest):
         overview = self.read("standard/overview.relmse.svg")
         self.assertEqual(overview.count("<polyline"), 2)
         self.assertIn(">cornell-diffuse</text>", overview)
+        for metric, label in (("ssim", ">0.75</text>"), ("q_mos", ">75</text>"), ("rmse", "<polyline")):
+            self.assertIn(label, self.read(f"standard/overview.{metric}.svg"))
+            self.assertIn(f"](overview.{metric}.svg)", page)
         self.assertTrue(readme.startswith("# A title\n\n<!-- results -->\n### "))
         self.assertTrue(readme.endswith("\n<!-- /results -->\n\nThe end.\n"))
         self.assertNotIn("\nold\n", readme)
