@@ -230,6 +230,9 @@ std::map<std::string, std::string> campaignKeys(const CampaignOptions& options, 
       {"precision", std::string(kPrecisionNames[static_cast<size_t>(settings.render.precision)])},
       {"sampler", std::string(toString(settings.render.sampler))},
       {"shard", fmt::format("{}/{}", settings.shard.index, settings.shard.count)}};
+  // --resume looks there again. Absolute, as it may be called from elsewhere.
+  if (!options.reference.empty())
+    keys["reference_folder"] = fs::absolute(options.reference).lexically_normal().string();
   addRowKeys(settings, keys);
   // The end of each run and its snapshots.
   if (settings.iterations) {

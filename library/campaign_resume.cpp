@@ -77,6 +77,9 @@ void resumeCampaign(CampaignOptions& options, const std::filesystem::path& resul
   const auto stored = before.campaign.find("options");
   // Without options the earlier process died before its first run, so the campaign begins with the given ones.
   if (stored == before.campaign.end()) return;
+  // References are where they were, unless another folder is given.
+  const auto folder = before.campaign.find("reference_folder");
+  if (options.reference.empty() && folder != before.campaign.end()) options.reference = folder->second;
   CampaignOptions all = options;
   all.defining = nlohmann::json::parse(stored->second).get<std::map<std::string, Words>>();
   const std::map<std::string, Words> begun = all.defining;

@@ -122,7 +122,7 @@ std::vector<ClaimRecord> readClaims(Database& database) {
 // ---- several --------------------------------------------------------------------------------------------------------
 
 // Keys of the campaign that may differ between the machines that share it; every other key must agree.
-const std::set<std::string_view> kEnvironmentKeys{"commit", "cpu",     "host",    "isa",
+const std::set<std::string_view> kEnvironmentKeys{"commit", "cpu",     "host",    "isa",    "reference_folder",
                                                   "shard",  "started", "version", "threads"};
 
 // Throws for a file that is no part of the campaign in the first file.

@@ -132,6 +132,18 @@ class Extending(Converge):
         same = ["cornell-diffuse", "--methods", "pt,vcm", "--seeds", "2", "--size", "20x20", "--reference", "given"]
         self.assert_grows([*same, "--spp", "2"], ["--spp", "4"], [*same, "--spp", "4"])
 
+    def test_by_a_scene_whose_reference_is_in_the_folder_that_was_named_first(self):
+        os.mkdir(self.path("given"))
+        scenes = ["cornell-diffuse", "cornell-mirror"]
+        for scene in scenes:
+            self.run_wavecrest("reference", scene, "--size", "20x20", "--spp", "8", "-o", f"given/{scene}.exr")
+        small = ["--methods", "pt", "--seeds", "1", "--size", "20x20", "--spp", "1"]
+        self.converge(scenes[0], *small, "--reference", "given", "--out", "a")
+        self.converge(scenes[1], "--out", "a", "--resume")
+        for scene in scenes:
+            given, taken = (pathlib.Path(self.path(f"{of}/{scene}.exr")).read_bytes() for of in ("given", "a/references"))
+            self.assertEqual(given, taken)
+
     def test_by_time(self):
         self.converge("cornell-diffuse", "--methods", "pt,lt", "--size", "20x20", "--time", "0.1s", "--out", "a",
                       "--images", "last")  # fmt: skip
