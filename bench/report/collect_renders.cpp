@@ -162,15 +162,26 @@ ReportSeries collectSeries(const std::vector<const RunFile*>& runs, const std::s
   return series;
 }
 
-// Groups the runs of one scene by method, sampler and precision, in order of first appearance.
+// Settings of the stats that make another series of a method. Runs that agree in all of them differ by their seeds.
+constexpr const char* kSeriesSettings[] = {"sampler", "precision",    "filter_mode",
+                                           "mlt",     "chains",       "direct_pass",
+                                           "radius",  "radius_alpha", "connection_roulette"};
+
+// What a run's stats say of a setting; null where they do not.
+nlohmann::json settingOf(const RunFile& run, const char* name) { return run.stats.value(name, nlohmann::json()); }
+
+bool isSameSeries(const RunFile& a, const RunFile& b) {
+  return a.method == b.method && std::ranges::all_of(kSeriesSettings, [&](const char* name) {
+           return settingOf(a, name) == settingOf(b, name);
+         });
+}
+
+// Groups the runs of one scene by method and settings, in order of first appearance.
 std::vector<std::vector<const RunFile*>> groupBySettings(const std::vector<const RunFile*>& runs) {
   std::vector<std::vector<const RunFile*>> groups;
   for (const RunFile* run : runs) {
-    const auto same = [&](const std::vector<const RunFile*>& group) {
-      return group[0]->method == run->method && group[0]->sampler == run->sampler &&
-             group[0]->precision == run->precision;
-    };
-    const auto group = std::find_if(groups.begin(), groups.end(), same);
+    const auto group =
+        std::ranges::find_if(groups, [&](const auto& known) { return isSameSeries(*known.front(), *run); });
     if (group == groups.end()) {
       groups.push_back({run});
     } else {
@@ -180,17 +191,26 @@ std::vector<std::vector<const RunFile*>> groupBySettings(const std::vector<const
   return groups;
 }
 
-// The method, and where several series share it what tells them apart.
+// The method, and where several series share it what tells them apart: words as they are, numbers and switches with the
+// setting's name.
 std::string seriesLabel(const std::vector<std::vector<const RunFile*>>& groups, const RunFile& run) {
   std::string label = run.method;
-  bool otherSampler = false, otherPrecision = false;
-  for (const auto& group : groups) {
-    if (group[0]->method != run.method) continue;
-    otherSampler |= group[0]->sampler != run.sampler;
-    otherPrecision |= group[0]->precision != run.precision;
+  for (const char* name : kSeriesSettings) {
+    const nlohmann::json own = settingOf(run, name);
+    const bool differs = std::ranges::any_of(groups, [&](const auto& group) {
+      return group.front()->method == run.method && settingOf(*group.front(), name) != own;
+    });
+    if (!differs) continue;
+    std::string words = name;
+    std::ranges::replace(words, '_', ' ');
+    if (own.is_string()) {
+      label += " " + own.get<std::string>();
+    } else if (own.is_number()) {
+      label += fmt::format(" {} {:g}", words, own.get<double>());
+    } else if (own.is_boolean()) {
+      label += (own.get<bool>() ? " " : " no ") + words;
+    }
   }
-  if (otherSampler) label += " " + run.sampler;
-  if (otherPrecision) label += " " + run.precision;
   return label;
 }
 

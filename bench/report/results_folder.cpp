@@ -82,8 +82,6 @@ RunFile readRun(const fs::path& path) {
   if (!run.stats.is_object()) fail(path, "is not an object", "an object as written by render --stats");
   run.scene = fs::path(require<std::string>(path, run.stats, "scene")).stem().string();
   run.method = require<std::string>(path, run.stats, "method");
-  run.sampler = require<std::string>(path, run.stats, "sampler");
-  run.precision = require<std::string>(path, run.stats, "precision");
   if (run.stats.contains("scene_hash")) run.sceneHash = require<std::string>(path, run.stats, "scene_hash");
   run.seed = require<uint64_t>(path, run.stats, "seed");
   run.snapshots = readSnapshots(path, run.stats);

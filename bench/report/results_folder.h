@@ -26,7 +26,7 @@ struct SnapshotFile {
 
 struct RunFile {
   std::filesystem::path path;  ///< of the stats file
-  std::string scene, method, sampler, precision;
+  std::string scene, method;
   std::string sceneHash;  ///< empty if the stats do not say
   uint64_t seed = 0;
   nlohmann::json stats;  ///< everything it says

@@ -239,6 +239,20 @@ TEST_F(CollectRenders, seriesOfOneMethodAreNamedByWhatDiffers) {
   EXPECT_EQ(scene.series[2].label, "lt");
 }
 
+TEST_F(CollectRenders, runsOfOtherRadiiAndPassesAreSeriesOfTheirOwn) {
+  addRun("a", {{"method", "ppm"}, {"radius", 0.001}, {"direct_pass", false}});
+  addRun("b", {{"method", "ppm"}, {"radius", 0.004}, {"direct_pass", false}});
+  addRun("c", {{"method", "ppm"}, {"radius", 0.004}, {"direct_pass", true}});
+  addRun("d", {{"method", "ppm"}, {"radius", 0.001}, {"direct_pass", false}, {"seed", 2}});
+  const ConvergenceReport report = collectRenders(folder);
+  const auto& series = report.scenes.at(0).series;
+  ASSERT_EQ(series.size(), 3u);
+  EXPECT_EQ(series[0].label, "ppm no direct pass radius 0.001");
+  EXPECT_EQ(series[0].runs.size(), 2u);
+  EXPECT_EQ(series[1].label, "ppm no direct pass radius 0.004");
+  EXPECT_EQ(series[2].label, "ppm direct pass radius 0.004");
+}
+
 TEST_F(CollectRenders, statsOfAReferenceAreNoRun) {
   addRun("box.pt");
   std::ofstream(folder / "box.reference.json") << "{}";
