@@ -1,5 +1,7 @@
 #include "engine/load/context.h"
 
+#include <algorithm>
+
 #include "engine/load/values.h"
 
 namespace wavecrest {
@@ -44,7 +46,9 @@ void LoadContext::unsupported(const SourceLocation& where, const std::string& me
 }
 
 void LoadContext::warn(const SourceLocation& where, const std::string& message) {
-  scene.warnings.push_back(toString(where) + ": " + message);
+  // Some objects are read twice: meshes ahead of their shapes, materials again for each shape with an attribute.
+  const std::string warning = toString(where) + ": " + message;
+  if (std::ranges::find(scene.warnings, warning) == scene.warnings.end()) scene.warnings.push_back(warning);
 }
 
 void LoadContext::note(const SourceLocation& where, const std::string& what, const std::string& effect) {

@@ -1,6 +1,7 @@
 // Structure of scene files: variables, includes, references, versions, unknown things.
 #include <ctime>
 
+#include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
 namespace wavecrest::testing {
@@ -204,6 +205,18 @@ TEST(Structure, UnknownElementIsAWarningWithLenient) {
   const Scene scene = loadBody("\n<bdsf type=\"diffuse\"/>", {.lenient = true});
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_NE(scene.warnings[0].find("scene.xml:2: unknown element <bdsf>"), std::string::npos);
+}
+
+TEST(Structure, UnknownElementOfAMeshIsOneWarningWithLenient) {
+  const Folder folder;
+  folder.write("mesh.ply", kQuadPly);
+  const Scene scene =
+      load(folder,
+           sceneXml(R"(<shape type="ply"><string name="filename" value="mesh.ply"/><bdsf type="diffuse"/></shape>)"
+                    R"(<shape type="ply"><string name="filename" value="mesh.ply"/></shape>)" +
+                    std::string(kSensor)),
+           {.lenient = true});
+  EXPECT_EQ(scene.warnings.size(), 1u);
 }
 
 TEST(Structure, UnknownPluginIsAnErrorThatListsTheKnownOnes) {
