@@ -76,10 +76,8 @@ std::vector<Claim> parseClaims(std::string_view text) {
       Claim claim{.id = object.at("id"),
                   .scene = object.at("scene"),
                   .statement = object.at("statement"),
-                  .source = object.value("source", ""),
-                  .explanation = object.value("explanation", "")};
-      requireKeys(claim.id, object,
-                  {"id", "scene", "statement", "source", "explanation", "all", "needs", "scenes", "at_least"});
+                  .source = object.value("source", "")};
+      requireKeys(claim.id, object, {"id", "scene", "statement", "source", "all", "needs", "scenes", "at_least"});
       if (!ids.insert(claim.id).second) throw ClaimListError("claim " + claim.id + ": a second one of this id");
       // Its conditions and needs, and the scenes of a general claim.
       for (const json& condition : object.at("all")) claim.conditions.push_back(parseCondition(claim.id, condition));

@@ -46,7 +46,6 @@ struct ClaimNeeds {
 struct Claim {
   std::string id, scene, statement;  // scene: "general" where `scenes` are several
   std::string source = {};           // the study's words
-  std::string explanation = {};      // why it may not hold here, or stay open; shown where that is so
   std::vector<Condition> conditions = {};
   ClaimNeeds needs = {};
   // A claim about many scenes holds where its conditions hold in at least so many of them.

@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bench/claims/explanations.h"
 #include "bench/claims/judge_claims.h"
 #include "bench/report/final_images.h"
 #include "bench/report/html_text.h"
@@ -236,8 +237,10 @@ ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile) {
   // An explanation is shown where the claim does not hold or is undecided.
   const bool open =
       record.verdict == toString(ClaimVerdict::fails) || record.verdict == toString(ClaimVerdict::undecided);
-  if (claim->explanation.empty() || !open) return shown;
-  shown.explanation = (profile == "standard" ? "" : "In the standard campaign: ") + claim->explanation;
+  const Explanation* explanation = open ? findExplanation(claim->id, profile) : nullptr;
+  if (explanation == nullptr) return shown;
+  if (explanation->profile != profile) shown.explanation = "In the " + explanation->profile + " campaign: ";
+  shown.explanation += explanation->text;
   return shown;
 }
 

@@ -114,8 +114,8 @@ END
         self.assertIn("without an explanation: cornell-diffuse.all-converge", result.stdout)
         readme = self.read("README.md")
         self.assertRegex(readme, r"Judged here: 2 of its \d+ findings. 1 hold: cornell-diffuse: ")
-        self.assertIn("1 does not hold: cornell-diffuse: All methods converge (SSIM of pt is 0.5, limit 0.9).", readme)
-        self.assertIn("(not explained yet: `explanation` of cornell-diffuse.all-converge)", self.read("standard/README.md"))
+        self.assertIn("Does not hold: cornell-diffuse: All methods converge (SSIM of pt is 0.5, limit 0.9).", readme)
+        self.assertIn("(not explained yet: cornell-diffuse.all-converge in explanations.json)", self.read("standard/README.md"))
 
     def test_a_campaign_is_restored_from_what_was_published(self):
         self.campaign()

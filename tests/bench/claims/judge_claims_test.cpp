@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "bench/claims/explanations.h"
+
 namespace wavecrest {
 namespace {
 
@@ -362,8 +364,8 @@ TEST(StudyClaims, malformedListsAreRefused) {
   const std::string head = R"([{"id": "a", "scene": "s", "statement": "t", "all": [)";
   EXPECT_THROW(parseClaims(head + "]}]"), ClaimListError);
   const std::string condition = R"({"kind": "good", "metrics": [], "methods": []})";
-  EXPECT_THROW(parseClaims(head + condition + R"(], "explanatoin": "so"}])"), ClaimListError);
-  EXPECT_EQ(parseClaims(head + condition + R"(], "explanation": "so"}])").at(0).explanation, "so");
+  EXPECT_THROW(parseClaims(head + condition + R"(], "suorce": "so"}])"), ClaimListError);
+  EXPECT_EQ(parseClaims(head + condition + R"(], "source": "so"}])").at(0).source, "so");
   EXPECT_THROW(parseClaims(head + R"({"kind": "nice", "metrics": [], "methods": []}]}])"), ClaimListError);
   EXPECT_THROW(parseClaims(head + R"({"kind": "good", "metrics": [], "methods": [], "facter": 2}]}])"), ClaimListError);
   EXPECT_EQ(parseClaims(head + R"({"kind": "good", "metrics": [], "methods": [], "factor": 2}]}])").size(), 1u);
@@ -377,6 +379,27 @@ TEST(StudyClaims, areJudgedForTheScenesOfATimedCampaignOnly) {
   for (const ClaimRecord& record : records) EXPECT_EQ(record.verdict, kNotJudged) << record.id;
   results.campaign["spp"] = "4";
   EXPECT_TRUE(judgeStudyClaims(results).empty());
+}
+
+TEST(Explanations, areOfKnownClaimsAndOneOfEachInAProfile) {
+  const std::string entry = R"({"claims": ["pool-interior.pt-fails"], "text": "so"})";
+  const auto explanations = parseExplanations(R"({"quick": [)" + entry + R"(], "study": [)" + entry + "]}");
+  ASSERT_EQ(explanations.size(), 2u);
+  EXPECT_EQ(explanations[1].profile, "study");
+  EXPECT_EQ(explanations[1].text, "so");
+  EXPECT_THROW(parseExplanations(R"({"study": [)" + entry + "," + entry + "]}"), ClaimListError);
+  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": ["nothing"], "text": "so"}]})"), ClaimListError);
+  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": [], "text": "so"}]})"), ClaimListError);
+  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": ["pool-interior.pt-fails"]}]})"), ClaimListError);
+  EXPECT_THROW(parseExplanations("["), ClaimListError);
+}
+
+TEST(Explanations, areOfTheProfileWhereItHasOne) {
+  const Explanation* standard = findExplanation("dragon-caustics.pt-stalls", "standard");
+  ASSERT_NE(standard, nullptr);
+  EXPECT_EQ(standard->profile, "standard");
+  EXPECT_NE(findExplanation("dragon-caustics.pt-stalls", "quick"), nullptr);
+  EXPECT_EQ(findExplanation("nothing", "standard"), nullptr);
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+// Why findings of the study do not hold, or stay open, in the campaigns that are published (explanations.json).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace wavecrest {
+
+struct Explanation {
+  std::string profile;  // of the campaign that it was written about
+  std::string text;
+  std::vector<std::string> claims = {};  // ids, at least one
+};
+
+// Throws ClaimListError for another form, for a claim that claims.json does not have, and for a claim with a second
+// explanation in one profile.
+std::vector<Explanation> parseExplanations(std::string_view json);
+
+const std::vector<Explanation>& studyExplanations();
+// That of the profile; else that of another profile, of which the study's comes first. Null if there is none.
+const Explanation* findExplanation(std::string_view claim, std::string_view profile);
+
+}  // namespace wavecrest
