@@ -46,7 +46,7 @@ Value require(const fs::path& path, const json& object, const char* key) {
 fs::path locate(const fs::path& stats, const std::string& name) {
   const fs::path file(name);
   for (const fs::path& candidate : {file.is_relative() ? file : file.filename(), file.filename()}) {
-    const fs::path beside = stats.parent_path() / candidate;
+    fs::path beside = stats.parent_path() / candidate;
     if (fs::is_regular_file(beside)) return beside;
   }
   fail(stats, fmt::format("snapshot '{}' does not exist", name), "an image beside this file");
