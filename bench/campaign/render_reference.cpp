@@ -115,7 +115,12 @@ class HalfSessions {
     for (size_t half = 0; half < 2; ++half) {
       RenderSettings own = settings;
       own.seed = referenceSeed(settings.seed, half);
-      own.firstIteration = firstIteration_;
+      if (settings.method == Method::mlt) {
+        // Chains begin at their first step: those that go on are others, with a seed for each iteration to go on from.
+        own.seed = referenceSeed(settings.seed ^ static_cast<uint32_t>(firstIteration_ * 0x9e3779b9u), half);
+      } else {
+        own.firstIteration = firstIteration_;
+      }
       sessions_[half] = Session::create(scene, own);
     }
   }

@@ -43,6 +43,14 @@ class Reference(CommandTest):
         self.assertGreater(errors[0], 1.4 * errors[1])
         self.assertGreater(errors[1], 1.4 * errors[2])
 
+    def test_chains_go_on_as_others(self):
+        errors = []
+        for spp in ("4", "64"):
+            self.reference("--method", "mlt", "--spp", spp, "-o", "r.exr")
+            self.assertEqual(self.header("r.exr")["wavecrest:iterations"], spp)
+            errors.append(float(self.header("r.exr")["wavecrest:relative_error"]))
+        self.assertGreater(errors[0], 2 * errors[1])
+
     def test_a_goal_that_is_reached_changes_nothing(self):
         self.reference("--spp", "4", "-o", "r.exr")
         before = pathlib.Path(self.path("r.exr")).read_bytes()
