@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/messages.h"
+#include "library/inspection_json.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {
@@ -55,18 +56,9 @@ void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const Rende
 
 // The memory plan as a line of --progress jsonl.
 nlohmann::ordered_json toJson(const MemoryPlan& plan) {
-  const MemoryUse& use = plan.use;
-  return {{"memory",
-           {{"scene_bytes", use.scene},
-            {"wave_bytes", use.waves},
-            {"film_bytes", use.film},
-            {"splat_bytes", use.splats},
-            {"light_vertex_bytes", use.lightVertices},
-            {"photon_map_bytes", use.photonMap},
-            {"chain_bytes", use.chains},
-            {"image_bytes", use.image},
-            {"total_bytes", use.total()},
-            {"light_paths", plan.lightPaths}}}};
+  nlohmann::ordered_json memory = memoryJson(plan.use);
+  memory["light_paths"] = plan.lightPaths;
+  return {{"memory", memory}};
 }
 
 }  // namespace

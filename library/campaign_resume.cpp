@@ -77,7 +77,7 @@ void resumeCampaign(CampaignOptions& options, const std::filesystem::path& resul
   const auto stored = before.campaign.find("options");
   // Without options the earlier process died before its first run, so the campaign begins with the given ones.
   if (stored == before.campaign.end()) return;
-  // References are where they were, unless another folder is given.
+  // Without --reference, references are in the folder that was given when the campaign began.
   const auto folder = before.campaign.find("reference_folder");
   if (options.reference.empty() && folder != before.campaign.end()) options.reference = folder->second;
   CampaignOptions all = options;

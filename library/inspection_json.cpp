@@ -12,10 +12,15 @@ using nlohmann::ordered_json;
 // The memory of a method, or why it cannot render the scene.
 ordered_json toJson(const MethodInspection& row) {
   if (!row.refusal.empty()) return {{"refused", row.refusal}};
-  // Bytes by what they are for.
-  const MemoryUse& use = row.memory.use;
-  return {{"bytes_per_path", row.memory.bytesPerPath},
-          {"scene_bytes", use.scene},
+  ordered_json memory{{"bytes_per_path", row.memory.bytesPerPath}};
+  memory.update(memoryJson(row.memory.use));
+  return memory;
+}
+
+}  // namespace
+
+ordered_json memoryJson(const MemoryUse& use) {
+  return {{"scene_bytes", use.scene},
           {"wave_bytes", use.waves},
           {"film_bytes", use.film},
           {"splat_bytes", use.splats},
@@ -25,8 +30,6 @@ ordered_json toJson(const MethodInspection& row) {
           {"image_bytes", use.image},
           {"total_bytes", use.total()}};
 }
-
-}  // namespace
 
 ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts) {
   // Methods: kernels and memory of each.

@@ -8,6 +8,8 @@
 
 namespace wavecrest {
 
+// Bytes by what they are for, and their sum.
+nlohmann::ordered_json memoryJson(const MemoryUse& use);
 nlohmann::ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts);
 
 }  // namespace wavecrest

@@ -104,7 +104,8 @@ bool hasTables(Database& database) {
                          std::to_string(kOldestResultsVersion));
 }
 
-// Throws unless the file is new, or has results of a version that can be read. 0 for a new file.
+// The version of the results in the file; 0 if the file is new. Throws for a version that cannot be read, and for a
+// database of another program.
 int64_t requireOurs(Database& database) {
   const int64_t version = versionOf(database);
   const bool isNew = version == 0 && !hasTables(database);

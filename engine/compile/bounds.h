@@ -11,7 +11,7 @@
 
 namespace wavecrest {
 
-// Centre and half diagonal of a bounding box, the latter times 1.0001.
+// A box with its centre. The radius is half its diagonal times 1.0001, so that nothing on a corner is outside.
 struct BoundingSphere {
   double center[3]{}, radius = 0;
   double low[3]{}, high[3]{};  // corners of the box

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -183,12 +182,8 @@ void setClips(const Sensor& sensor, const SceneGeometry& geometry, const Boundin
   // An orthographic camera's rays begin at the near clip anyway.
   if (!camera.parallel) {
     const NearBox box(camera, sensor.nearClip);
-    std::atomic<bool> touched{false};
-    forEachRange(parallelFor, primitives.counts().total(), [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end && !touched; ++i) {
-        if (box.touches(primitives.corners<double>(i))) touched = true;
-      }
-    });
+    bool touched = anyIndex(parallelFor, primitives.counts().total(),
+                            [&](size_t i) { return box.touches(primitives.corners<double>(i)); });
     for (const BvhInstance& instance : geometry.instances()) {
       if (touched || !box.touches(vec(instance.box.low), vec(instance.box.high))) continue;
       touched = geometry.anyInInstance(instance,

@@ -1,7 +1,6 @@
 #include "engine/compile/mesh_faces.h"
 
 #include <algorithm>
-#include <atomic>
 #include <map>
 #include <utility>
 
@@ -93,13 +92,8 @@ MeshFaces facesOf(const Mesh& mesh, const ParallelFor& parallelFor) {
     return faces;
   }
   // A large mesh keeps its own list of triangles, unless one of them has no area.
-  std::atomic<bool> complete{true};
-  forEachRange(parallelFor, mesh.triangles.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      if (!hasArea(mesh, mesh.triangles[i])) complete = false;
-    }
-  });
-  faces.allTriangles = complete;
+  faces.allTriangles =
+      !anyIndex(parallelFor, mesh.triangles.size(), [&](size_t i) { return !hasArea(mesh, mesh.triangles[i]); });
   for (uint32_t i = 0; i < mesh.triangles.size() && !faces.allTriangles; ++i) {
     if (hasArea(mesh, mesh.triangles[i])) faces.triangles.push_back(i);
   }

@@ -220,10 +220,9 @@ Rectangle PrimitiveList::rectangleOf(const Run& run) const {
   return r;
 }
 
-// The record of a primitive of the run, without the normal of a mesh's face. All is computed in double and rounded to S
-// by the setters.
+// All is computed in double and rounded to S by the setters.
 template <class S>
-PrimitiveRecord<S> PrimitiveList::corners(const Run& run, size_t index) const {
+PrimitiveRecord<S> PrimitiveList::recordOf(const Run& run, size_t index, bool withNormal) const {
   PrimitiveRecord<S> record;
   record.kind = static_cast<uint32_t>(run.kind);
   record.material = scene_.shapes[run.shape].material;
@@ -231,8 +230,11 @@ PrimitiveRecord<S> PrimitiveList::corners(const Run& run, size_t index) const {
   if (run.mesh != nullptr) {
     const FaceCorners vertices = cornersOf(run, index);
     const auto at = [&](size_t k) { return cornerOf(run, vertices[k]); };
-    const Double3 p0 = at(0);
-    setFace(record, run.moved ? p0 : p0 - origin_, at(1) - p0, at(2) - p0, {});
+    const Double3 p0 = at(0), e1 = at(1) - p0, e2 = at(2) - p0;
+    setFace(record, run.moved ? p0 : p0 - origin_, e1, e2, {});
+    if (!withNormal) return record;
+    const Double3 across = cross(e1, e2);
+    assign(record.normal, across * (1 / length(across)));
   } else if (std::holds_alternative<Rectangle>(scene_.shapes[run.shape].kind)) {
     const Rectangle r = rectangleOf(run);
     setFace(record, r.corner - origin_, r.edgeU, r.edgeV, normalized(cross(r.edgeU, r.edgeV)));
@@ -242,28 +244,16 @@ PrimitiveRecord<S> PrimitiveList::corners(const Run& run, size_t index) const {
   return record;
 }
 
-// The whole record.
-template <class S>
-PrimitiveRecord<S> PrimitiveList::geometry(const Run& run, size_t index) const {
-  PrimitiveRecord<S> record = corners<S>(run, index);
-  if (run.mesh == nullptr) return record;
-  const FaceCorners vertices = cornersOf(run, index);
-  const auto at = [&](size_t k) { return cornerOf(run, vertices[k]); };
-  const Double3 p0 = at(0), across = cross(at(1) - p0, at(2) - p0);
-  assign(record.normal, across * (1 / length(across)));
-  return record;
-}
-
 template <class S>
 PrimitiveRecord<S> PrimitiveList::geometry(size_t index) const {
-  return geometry<S>(runOf(index), index);
+  return recordOf<S>(runOf(index), index, true);
 }
 template PrimitiveRecord<float> PrimitiveList::geometry(size_t) const;
 template PrimitiveRecord<double> PrimitiveList::geometry(size_t) const;
 
 template <class S>
 PrimitiveRecord<S> PrimitiveList::corners(size_t index) const {
-  return corners<S>(runOf(index), index);
+  return recordOf<S>(runOf(index), index, false);
 }
 template PrimitiveRecord<float> PrimitiveList::corners(size_t) const;
 template PrimitiveRecord<double> PrimitiveList::corners(size_t) const;
@@ -325,7 +315,7 @@ BoundingSphere PrimitiveList::bounds() const {
     std::vector<Extent> parts(rangesOf(run.count));
     forEachRange(parallelFor_, run.count, [&](size_t begin, size_t end) {
       Extent& part = parts[rangesOf(begin)];
-      for (size_t i = begin; i < end; ++i) part.include(corners<S>(run, run.first + i));
+      for (size_t i = begin; i < end; ++i) part.include(recordOf<S>(run, run.first + i, false));
     });
     for (const Extent& part : parts) all.include(part);
   }
@@ -339,7 +329,7 @@ void PrimitiveList::compile(Primitives<S>& out, size_t firstRecord, size_t first
   for (const Run& run : runs_) {
     forEachRange(parallelFor_, run.count, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
-        PrimitiveRecord<S>& record = out.records[firstRecord + run.first + i] = geometry<S>(run, run.first + i);
+        PrimitiveRecord<S>& record = out.records[firstRecord + run.first + i] = recordOf<S>(run, run.first + i, true);
         if (run.firstAttribute == kNoIndex) continue;
         record.attributes = static_cast<uint32_t>(firstAttribute + run.firstAttribute + i);
         out.attributes[record.attributes] = attribute(run, run.first + i, record);

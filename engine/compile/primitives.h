@@ -91,10 +91,9 @@ class PrimitiveList {
   FaceCorners cornersOf(const Run& run, size_t index) const;
   Double3 cornerOf(const Run& run, uint32_t vertex) const;
   Rectangle rectangleOf(const Run& run) const;
+  // withNormal: of a mesh's face; other kinds have theirs always.
   template <class S>
-  PrimitiveRecord<S> geometry(const Run& run, size_t index) const;
-  template <class S>
-  PrimitiveRecord<S> corners(const Run& run, size_t index) const;
+  PrimitiveRecord<S> recordOf(const Run& run, size_t index, bool withNormal) const;
   bool usesFaceTangents(const Run& run) const;
   template <class S>
   AttributeRecord attribute(const Run& run, size_t index, const PrimitiveRecord<S>& record) const;

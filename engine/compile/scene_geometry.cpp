@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -127,29 +126,25 @@ bool SceneGeometry::anyInInstance(const BvhInstance& instance,
                                   const std::function<bool(const Double3&, const Double3&)>& test) const {
   // Tests the box of each primitive in the world; that of a sphere is the box around its box.
   const PrimitiveList& list = *groups_[instance.group].primitives;
-  std::atomic<bool> found{false};
-  forEachRange(parallelFor, list.counts().total(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end && !found; ++i) {
-      const PrimitiveRecord<double> record = list.corners<double>(i);
-      Extent extent;
-      const auto include = [&](const Double3& p) {
-        Double3 there = vec(instance.place);
-        for (size_t axis = 0; axis < 3; ++axis) there[axis] += dot(vec(instance.toWorld[axis]), p);
-        extent.include(there);
-      };
-      const auto kind = static_cast<PrimitiveKind>(record.kind);
-      const Double3 p = vec(record.p0), u = vec(record.e1), v = vec(record.e2);
-      if (kind == PrimitiveKind::sphere) {
-        const Double3 radius{u[0], u[0], u[0]};
-        forCorners(p - radius, p + radius, include);
-      } else {
-        for (const Double3& q : {p, p + u, p + v}) include(q);
-        if (kind == PrimitiveKind::quad) include(p + u + v);
-      }
-      if (test(extent.low, extent.high)) found = true;
+  return anyIndex(parallelFor, list.counts().total(), [&](size_t i) {
+    const PrimitiveRecord<double> record = list.corners<double>(i);
+    Extent extent;
+    const auto include = [&](const Double3& p) {
+      Double3 there = vec(instance.place);
+      for (size_t axis = 0; axis < 3; ++axis) there[axis] += dot(vec(instance.toWorld[axis]), p);
+      extent.include(there);
+    };
+    const auto kind = static_cast<PrimitiveKind>(record.kind);
+    const Double3 p = vec(record.p0), u = vec(record.e1), v = vec(record.e2);
+    if (kind == PrimitiveKind::sphere) {
+      const Double3 radius{u[0], u[0], u[0]};
+      forCorners(p - radius, p + radius, include);
+    } else {
+      for (const Double3& q : {p, p + u, p + v}) include(q);
+      if (kind == PrimitiveKind::quad) include(p + u + v);
     }
+    return test(extent.low, extent.high);
   });
-  return found;
 }
 
 PrimitiveCounts SceneGeometry::counts() const {

@@ -1,7 +1,6 @@
 #include "engine/load/mesh_build.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "engine/tasks/parallel_for.h"
@@ -17,25 +16,13 @@ Float3 toFloat(const Double3& v) {
 }
 bool isFinite(const Float3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
-// function(value) for each value, on any thread.
+// Calls function(value) for each value, from several threads.
 template <class Value, class Function>
 void forAll(std::vector<Value>& values, const Function& function) {
   forEachRange(parallelFor, values.size(), [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) function(values[i]);
   });
 }
-// Whether the predicate holds for one of the values at least.
-template <class Value, class Predicate>
-bool holdsForAny(const std::vector<Value>& values, const Predicate& predicate) {
-  std::atomic<bool> found{false};
-  forEachRange(parallelFor, values.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end && !found; ++i) {
-      if (predicate(values[i])) found = true;
-    }
-  });
-  return found;
-}
-
 // Transforms positions to world space. LoadError if one leaves the range of float.
 void placePositions(std::vector<Float3>& positions, const Matrix4& toWorld, const SourceLocation& where) {
   if (isIdentity(toWorld)) return;
@@ -61,7 +48,7 @@ uint64_t dropTrianglesWithoutArea(Mesh& mesh, MeshAttribute& attribute) {
     const Double3 a = toDouble(mesh.positions[t[0]]);
     return !hasArea(toDouble(mesh.positions[t[1]]) - a, toDouble(mesh.positions[t[2]]) - a);
   };
-  if (!holdsForAny(mesh.triangles, hasNone)) return 0;
+  if (!anyIndex(parallelFor, mesh.triangles.size(), [&](size_t i) { return hasNone(mesh.triangles[i]); })) return 0;
   // Move the values of the remaining triangles to the front, in the order that erase_if keeps.
   if (attribute.perFace()) {
     size_t kept = 0;

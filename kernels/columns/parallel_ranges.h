@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <functional>
 
@@ -26,6 +27,18 @@ void forEachRange(const ParallelFor& parallelFor, size_t count, const Body& body
     return;
   }
   parallelFor(rangesOf(count), [&](size_t i) { body(i * kRange, std::min(count, (i + 1) * kRange)); });
+}
+
+// Whether holds(i) is true for some i in [0, count). Not all of them are asked once one is found.
+template <class Predicate>
+bool anyIndex(const ParallelFor& parallelFor, size_t count, const Predicate& holds) {
+  std::atomic<bool> found{false};
+  forEachRange(parallelFor, count, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end && !found; ++i) {
+      if (holds(i)) found = true;
+    }
+  });
+  return found;
 }
 
 }  // namespace wavecrest
