@@ -31,7 +31,7 @@ struct ReferenceOptions {
   SceneOptions scene;
   std::string method = "auto", time, sampler = "independent", precision = "float", isa = "auto", output;
   double relativeError = 0, radius = kReferenceRadius;
-  std::string agreeWith, compact;
+  std::string larger, agreeWith, compact;
   uint64_t spp = 0, seed = 0;
   uint32_t threads = 0;
   std::string progress = "auto";
@@ -77,7 +77,12 @@ ReferenceGoal goalOf(const ReferenceOptions& options) {
   if (options.relativeError > 0) goal.relativeError = options.relativeError;
   if (!options.time.empty()) goal.seconds = parseDuration("--time", options.time);
   if (options.spp != 0) goal.iterations = options.spp;
-  if (!goal.relativeError && !goal.seconds && !goal.iterations) goal.relativeError = kDefaultRelativeError;
+  if (goal.relativeError || goal.seconds || goal.iterations) return goal;
+  if (options.larger.empty()) {
+    goal.relativeError = kDefaultRelativeError;
+  } else {
+    goal.iterations = 1;  // what the larger one has is enough
+  }
   return goal;
 }
 
@@ -99,6 +104,7 @@ int runReference(const ReferenceOptions& options) {
   files.output("-o", output);
   if (!options.compact.empty()) files.output("--compact", options.compact);
   if (!options.agreeWith.empty()) files.input("--agree-with", options.agreeWith);
+  if (!options.larger.empty()) files.input("--from", options.larger);
   const ReferenceGoal goal = goalOf(options);
   const auto kind = options.quiet
                         ? ProgressKind::none
@@ -129,6 +135,7 @@ int runReference(const ReferenceOptions& options) {
                              .saveNow = [&] { return std::exchange(saveNow, false) || guard.takeSaveRequest(); },
                              .advance = [&](const ReferenceInfo& info) { showAdvance(kind, info); }};
   try {
+    if (!options.larger.empty()) beginReference(scene, settings, options.larger, output);
     // Renders both halves. renderReference writes the file, also after a signal.
     const Reference reference = renderReference(scene, settings, method.reason, goal, output, hooks);
     if (reference.info.iterations == 0) {
@@ -190,6 +197,9 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   command.add("--radius", options->radius, "first merge radius of ppm, bpm and vcm").showDefault().between(1e-9, 10.0);
   // Outputs and checks.
   command.add("-o,--output", options->output, "EXR file; default: SCENE.reference.exr; goes on if it exists");
+  command.add("--from", options->larger,
+              "begin with a reference of the same scene of a multiple of the size, whose pixels are averaged: exact "
+              "with a box filter");
   command.add("--compact", options->compact,
               "EXR file: the same in half floats, a seventh of the size; to measure against, not to go on with");
   command.add("--agree-with", options->agreeWith,

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "bench/campaign/file_lock.h"
+#include "bench/campaign/shrunk_reference.h"
 #include "bench/film_image.h"
 #include "engine/version.h"
 #include "metrics/image/atomic_file.h"
@@ -168,6 +169,22 @@ class HalfSessions {
 
 uint64_t referenceSeed(uint64_t seed, size_t half) {
   return (static_cast<uint64_t>(half + 1) << 32) | static_cast<uint32_t>(seed);
+}
+
+void beginReference(const Scene& scene, const RenderSettings& settings, const std::filesystem::path& larger,
+                    const std::filesystem::path& file) {
+  const FileLock lock(file);
+  if (std::filesystem::exists(file)) {
+    throw ReferenceMismatch(
+        fmt::format("{}: exists; expected a new file to begin from {}", file.string(), larger.string()));
+  }
+  try {
+    const Reference shrunk = shrunkReference(readReference(larger), scene);
+    requireSame(larger, shrunk.info, describe(scene, settings, shrunk.info.methodReason));
+    writeReference(file, shrunk);
+  } catch (const ShrinkError& error) {
+    throw ReferenceMismatch(fmt::format("{}: {}", larger.string(), error.what()));
+  }
 }
 
 Reference renderReference(const Scene& scene, const RenderSettings& settings, const std::string& methodReason,

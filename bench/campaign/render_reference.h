@@ -43,6 +43,12 @@ struct ReferenceMismatch : std::runtime_error {
 // A continuation has it too, and begins at a later iteration: it adds what an unbroken render would have added.
 uint64_t referenceSeed(uint64_t seed, size_t half);
 
+// Writes a reference that has what a larger one of the same scene has (shrunkReference), for renderReference to go on
+// with. Throws ReferenceMismatch where the file exists, where the larger one cannot be shrunk or was rendered with
+// other settings; FileLockError; ImageError.
+void beginReference(const Scene& scene, const RenderSettings& settings, const std::filesystem::path& larger,
+                    const std::filesystem::path& file);
+
 // settings.seed is the seed of both halves, which differ in its high word. Renders nothing if the file has reached the
 // goal. Throws ReferenceMismatch, FileLockError where another process works on it, ImageError, and what Session::create
 // throws.

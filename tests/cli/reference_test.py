@@ -15,8 +15,8 @@ KILLS = int(os.environ.get("KILLS", "3"))
 
 
 class Reference(CommandTest):
-    def reference(self, *arguments, scene="cornell-diffuse", expect=DONE):
-        return self.run_wavecrest("reference", scene, "--size", "32x24", "--threads", "2", *arguments, expect=expect)
+    def reference(self, *arguments, scene="cornell-diffuse", size="32x24", expect=DONE):
+        return self.run_wavecrest("reference", scene, "--size", size, "--threads", "2", *arguments, expect=expect)
 
     def header(self, name):
         return read_exr_header(self.path(name))
@@ -71,6 +71,24 @@ class Reference(CommandTest):
         self.assertEqual(pathlib.Path(self.path("r.exr")).read_bytes(), before)
         compared = self.run_wavecrest("compare", "r.exr", "whole.exr", "--metrics", "ssim")
         self.assertRegex(compared.stdout, r"ssim +mean (1|0\.9999)")
+
+    def test_a_small_one_begins_with_a_larger_one(self):
+        self.reference("--spp", "2", "-o", "large.exr", size="64x48")
+        self.reference("--from", "large.exr", "-o", "r.exr")
+        header = self.header("r.exr")
+        self.assertEqual(header["dataWindow"], (0, 0, 31, 23))
+        self.assertEqual(header["wavecrest:iterations"], "8")
+        self.assertEqual(header["wavecrest:render_seconds"], self.header("large.exr")["wavecrest:render_seconds"])
+        self.reference("--spp", "12", "-o", "r.exr")
+        self.assertEqual(self.header("r.exr")["wavecrest:iterations"], "12")
+        for arguments, text in (
+            (["--from", "large.exr", "-o", "r.exr"], r"r\.exr: exists; expected a new file to begin from large\.exr"),
+            (["--from", "r.exr", "-o", "s.exr"], r"r\.exr: is 32x24 pixels; expected a whole multiple of 32x24"),
+            (["--from", "large.exr", "--seed", "3", "-o", "s.exr"], r"large\.exr: its seed is '0', not '3'"),
+            (["--from", "nowhere.exr", "-o", "s.exr"], r"nowhere\.exr"),
+        ):
+            self.assert_one_error_line(self.reference("--quiet", *arguments, expect=INPUT), text)
+        self.assertFalse((self.folder / "s.exr").exists())
 
     def test_what_a_killed_writer_left_is_removed(self):
         self.write("r.exr.tmp.1.0", "part of a reference")
