@@ -104,6 +104,7 @@ import csv
 rows = list(csv.DictReader(open("a/claims.csv")))
 rows[0].update(verdict="does not hold", figure="SSIM of pt is 0.5, limit 0.9", explanation="")
 rows[1].update(verdict="holds", figure="RMSE lt 2, pt 1")
+rows[2].update(verdict="does not hold", figure="RMSE lt 1, pt 2", explanation="Noise of short runs. It falls with time.")
 with open("a/claims.csv", "w") as file:
     writer = csv.DictWriter(file, rows[0].keys())
     writer.writeheader()
@@ -114,11 +115,14 @@ END
         pathlib.Path(stub).chmod(0o755)
         result = self.publish(program=stub)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("1 hold, 1 do not, 0 are undecided", result.stdout)
+        self.assertIn("1 hold, 2 do not, 0 are undecided", result.stdout)
         self.assertIn("without an explanation: cornell-diffuse.all-converge", result.stdout)
         readme = self.read("README.md")
-        self.assertRegex(readme, r"Judged here: 2 of its \d+ findings. 1 hold: cornell-diffuse: ")
+        self.assertRegex(readme, r"Judged here: 3 of its \d+ findings. 1 hold: cornell-diffuse: ")
         self.assertIn("Does not hold: cornell-diffuse: All methods converge (SSIM of pt is 0.5, limit 0.9).", readme)
+        # There the first sentence of an explanation, in the folder all of it.
+        self.assertRegex(readme, r"\(RMSE lt 1, pt 2\)\. Noise of short runs\.\n")
+        self.assertIn("Noise of short runs. It falls with time.<br>", self.read("standard/README.md"))
         self.assertIn("(not explained yet: cornell-diffuse.all-converge in explanations.json)", self.read("standard/README.md"))
 
     def test_a_campaign_is_restored_from_what_was_published(self):
