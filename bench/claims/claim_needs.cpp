@@ -37,12 +37,16 @@ std::optional<double> lightPathShare(const json& stats) {
   return paths / iterations * radius * radius / kStudyPixels;
 }
 
-// Camera and light paths per pixel, or mutations, as a share of what the study had time for.
-std::optional<double> pathShare(const json& stats, const std::string& scene) {
+// Camera and light paths per pixel, or mutations, as a share of what the study had time for. Of a method that merges a
+// light path counts for each camera path, as in the study: with more of them an iteration meets more photons, but
+// convergence goes by iterations.
+std::optional<double> pathShare(const json& stats, const std::string& method, const std::string& scene) {
   const double pixels = stats.value("width", 0.0) * stats.value("height", 0.0);
   if (!(pixels > 0)) return std::nullopt;
-  const double mutations = stats.value("mutations", 0.0);
-  const double paths = mutations > 0 ? mutations : stats.value("camera_paths", 0.0) + stats.value("light_paths", 0.0);
+  const double mutations = stats.value("mutations", 0.0), cameraPaths = stats.value("camera_paths", 0.0);
+  const double paths = mutations > 0    ? mutations
+                       : merges(method) ? 2 * cameraPaths
+                                        : cameraPaths + stats.value("light_paths", 0.0);
   return paths / pixels / studyPathsPerPixel(scene);
 }
 
@@ -73,7 +77,7 @@ std::string unmetNeed(const Claim& claim, const SceneLosses& scene) {
     }
     // Paths per pixel by the end of the run.
     if (claim.needs.paths > 0) {
-      const auto ofScene = [&](const json& stats) { return pathShare(stats, scene.name()); };
+      const auto ofScene = [&](const json& stats) { return pathShare(stats, method, scene.name()); };
       const std::optional<double> share = leastShare(scene, method, ofScene);
       if (share && *share < claim.needs.paths) {
         return fmt::format("{} made {:.2g} of the study's paths per pixel; needs {:g}", method, *share,

@@ -358,7 +358,8 @@ class Judge {
       // Shares in order of snapshots.
       std::vector<double> shares;
       for (const BiasRecord& bias : scene_.results().biases) {
-        if (bias.scene == scene_.name() && bias.method == SceneLosses::rowOf(method)) {
+        const bool ofMethod = bias.scene == scene_.name() && bias.method == SceneLosses::rowOf(method);
+        if (ofMethod && bias.meanSquareError > 0) {
           shares.push_back(bias.biasSquared / bias.meanSquareError);
         }
       }

@@ -16,8 +16,8 @@ namespace wavecrest {
 double lossOf(const std::string& metric, double score);
 double scoreOfLoss(const std::string& metric, double loss);
 
-// mean(a) - mean(b) of logarithms of losses. With one seed on either side the band is the spread that single seeds had
-// among each other in a campaign of three seeds (nine scenes, seven methods; bench/claims/README.md).
+// mean(a) - mean(b) of logarithms of losses. With one seed on either side the band is the spread that single seeds
+// have among each other in the standard campaign (bench/claims/seed-spread).
 Band lossDifference(const std::string& metric, std::span<const double> a, std::span<const double> b);
 // The same of slopes, and of one method's slope or score alone.
 Band slopeBand(std::span<const double> slopes);
@@ -43,8 +43,9 @@ class SceneLosses {
   // The loss that the reference's own noise gives; nothing where that is not known.
   std::optional<double> floorLoss(const std::string& metric) const;
 
-  // The logarithm of the time that each seed takes to a loss, between snapshots by straight lines over logarithms; of a
-  // seed that does not get there, the logarithm of its end. The first snapshot's time where that is there already.
+  // The logarithm of the time from which on each seed has at most this loss, between snapshots by straight lines over
+  // logarithms; of a seed that has more at its end, the logarithm of that. The first snapshot's time where it is there
+  // already.
   std::vector<double> logTimes(const std::string& method, const std::string& metric, double loss) const;
 
   // d log(error) / d log(time) over the last three quarters of the time, by least squares; error is the root of the
