@@ -71,10 +71,11 @@ class Future {
   Future(const PreparedReference& reference, const Pilot& pilot, const Image& bias, const Image& noise)
       : reference_(reference), pilot_(pilot), bias_(bias), noise_(noise) {}
 
-  // SSIM after so many seconds: noise falls with the root of time, bias with its own power.
+  // SSIM after so many seconds: noise and bias fall with their own powers from what a part of the pilot has. The mean
+  // of its four parts has the bias of one, and half the noise.
   double ssimAt(double seconds) const {
-    const double noise = std::sqrt(pilot_.seconds / seconds);
-    const double bias = std::pow(pilot_.seconds / seconds, pilot_.biasExponent);
+    const double times = 0.25 * pilot_.seconds / seconds;
+    const double noise = 2 * std::pow(times, pilot_.noiseExponent), bias = std::pow(times, pilot_.biasExponent);
     Image image = linearLight(reference_.image().file);
     for (size_t i = 0; i < image.pixels.size(); ++i) {
       image.pixels[i] += static_cast<float>(bias * bias_.pixels[i] + noise * noise_.pixels[i]);

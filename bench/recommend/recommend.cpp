@@ -44,7 +44,10 @@ Pilot renderPilot(const Scene& scene, RenderSettings settings, uint64_t firstSee
     pilot.seconds += renderBy(clock, *session, settings.threads, seconds / static_cast<double>(pilot.parts.size()));
     pilot.parts[part] = filmImage(*session);
   }
-  if (strategiesOf(settings.method).merge) pilot.biasExponent = biasDecay(settings.radiusAlpha);
+  const PathStrategies strategies = strategiesOf(settings.method);
+  if (strategies.merge) pilot.biasExponent = biasDecay(settings.radiusAlpha);
+  // Where vertices are connected as well, most of what is left is noise of connections.
+  if (strategies.merge && !strategies.connect) pilot.noiseExponent = noiseDecay(settings.radiusAlpha);
   return pilot;
 }
 

@@ -23,11 +23,12 @@ Image scene() {
   return image;
 }
 
-// After one second noise has a deviation of kNoise; four parts of a quarter of the time each have twice that.
+// After one second noise has a deviation of kNoise, which falls with time to the power; four parts of a quarter of the
+// time each have twice that of the whole where the power is a half.
 constexpr double kNoise = 0.2;
-Image noisy(double seconds, double bias, unsigned seed) {
+Image noisy(double seconds, double bias, unsigned seed, double power = 0.5) {
   std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0, kNoise / std::sqrt(seconds));
+  std::normal_distribution<double> noise(0, kNoise / std::pow(seconds, power));
   Image image = scene();
   for (float& value : image.pixels) value = static_cast<float>(value * (1 + bias) + noise(random));
   return image;
@@ -61,6 +62,17 @@ TEST_F(PredictionTest, theImageAtThePredictedTimeHasTheQualityAskedFor) {
   EXPECT_GE(p.interval.high, *p.seconds);
   EXPECT_LT(p.interval.high / p.interval.low, 1.5);
   EXPECT_GT(p.ssimLimit, 0.999);
+}
+
+TEST_F(PredictionTest, noiseOfMergesFallsMoreSlowly) {
+  Pilot pilot{.parts = {}, .seconds = 1};
+  pilot.noiseExponent = noiseDecay(0.75);
+  EXPECT_DOUBLE_EQ(pilot.noiseExponent, 0.375);
+  for (unsigned part = 0; part < 4; ++part) pilot.parts[part] = noisy(0.25, 0, part, pilot.noiseExponent);
+  const Prediction p = predict(reference_, noNoise_, pilot, 0.95);
+  ASSERT_TRUE(p.seconds);
+  EXPECT_GT(*p.seconds, 2);
+  EXPECT_NEAR(ssimOf(reference_, noisy(*p.seconds, 0, 77, pilot.noiseExponent)), 0.95, 0.003);
 }
 
 TEST_F(PredictionTest, doesNotDependOnHowLongThePilotWas) {
