@@ -45,23 +45,51 @@ std::vector<double> blockMeans(const Image& image, uint32_t columns, uint32_t ro
   return means;
 }
 
-// Sums over the blocks of a tile. variance: of the sum of differences, estimated from the half differences of both
-// references.
+// Sums over the blocks of a tile of one reference's half differences, and the variance of that sum, and of the mean's,
+// where blocks are independent.
+struct Noise {
+  double sum = 0, variance = 0;
+  void add(double half) {
+    sum += half;
+    variance += half * half;
+  }
+};
+
+// Sums over the blocks of a tile of both references.
 struct Sums {
-  double difference = 0, variance = 0, total = 0;
+  double difference = 0, total = 0;
+  Noise a{}, b{};
   int blocks = 0;
 
-  void add(double a, double b, double halfA, double halfB) {
-    difference += a - b;
-    variance += halfA * halfA + halfB * halfB;
-    total += 0.5 * (a + b);
+  void add(double meanA, double meanB, double halfA, double halfB) {
+    difference += meanA - meanB;
+    total += 0.5 * (meanA + meanB);
+    a.add(halfA);
+    b.add(halfB);
     ++blocks;
   }
-  double z() const {
+  // Factors: by how much variances are larger than those of independent blocks.
+  double z(double factorA, double factorB) const {
+    const double variance = factorA * a.variance + factorB * b.variance;
     if (variance > 0) return std::abs(difference) / std::sqrt(variance);
     return difference == 0 ? 0 : HUGE_VAL;
   }
 };
+
+// Whether blocks share their noise: a Markov chain leaves samples in the blocks around it one after the other.
+bool isCorrelated(const Reference& reference) { return reference.info.method == "mlt"; }
+
+// By how much the variance of a tile's sum is larger than that of independent blocks: the mean over tiles of what the
+// halves' difference itself has, at least 1. noise: Sums::a or Sums::b.
+double varianceFactor(const Reference& reference, const std::vector<Sums>& tiles, Noise Sums::*noise) {
+  if (!isCorrelated(reference)) return 1;
+  double sum = 0;
+  for (const Sums& tile : tiles) {
+    const Noise& own = tile.*noise;
+    if (own.variance > 0) sum += own.sum * own.sum / own.variance;
+  }
+  return std::max(1.0, sum / static_cast<double>(tiles.size()));
+}
 
 void requireComparable(const Reference& a, const Reference& b) {
   if (!a.difference || !b.difference) {
@@ -105,11 +133,12 @@ Agreement compareReferences(const Reference& a, const Reference& b) {
     }
   }
   // The largest z, and the limit for it. The tile with the fewest blocks has the fewest degrees of freedom, so its
-  // limit holds for all.
-  Agreement agreement{.tiles = kTilesX * kTilesY, .largestZ = whole.z()};
-  int fewest = whole.blocks;
+  // limit holds for all; of noise that blocks share only the tiles tell the variance.
+  const double factorA = varianceFactor(a, tiles, &Sums::a), factorB = varianceFactor(b, tiles, &Sums::b);
+  Agreement agreement{.tiles = kTilesX * kTilesY, .largestZ = whole.z(factorA, factorB)};
+  int fewest = isCorrelated(a) || isCorrelated(b) ? static_cast<int>(tiles.size()) : whole.blocks;
   for (const Sums& tile : tiles) {
-    agreement.largestZ = std::max(agreement.largestZ, tile.z());
+    agreement.largestZ = std::max(agreement.largestZ, tile.z(factorA, factorB));
     fewest = std::min(fewest, tile.blocks);
   }
   agreement.limit = studentLimit(fewest, kFalseAlarms / (agreement.tiles + 1));

@@ -3,7 +3,8 @@
 // The means of blocks of 8x8 pixels are independent but for splats and merges across their edges. In a tile of many
 // blocks the sum of their differences has a variance that the halves tell: the sum of the squared half differences of
 // both. Its ratio to the root of that is about Student's t of as many degrees of freedom as blocks where the truths
-// agree.
+// agree. Chains (mlt) share their noise among blocks: the variance is then larger by what the tiles of their own half
+// difference tell, and has as many degrees of freedom as there are tiles.
 #pragma once
 
 #include <stdexcept>

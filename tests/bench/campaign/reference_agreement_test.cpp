@@ -46,6 +46,41 @@ TEST(CompareReferences, aCornerThatIsOffIsFound) {
   EXPECT_LT(std::abs(agreement.relativeDifference), 0.01) << "little of the whole";
 }
 
+// Chains leave their samples in neighbouring blocks: here noise of patches of 16 pixels, in addition to that of pixels.
+Reference correlated(unsigned seed) {
+  Reference reference = noisy(seed, 0.1);
+  std::mt19937 random(seed + 1000);
+  std::normal_distribution<float> noise(0, 0.02f);
+  for (uint32_t y = 0; y < 96; y += 16) {
+    for (uint32_t x = 0; x < 128; x += 16) {
+      const float a = noise(random), b = noise(random);
+      for (uint32_t row = y; row < y + 16; ++row) {
+        for (uint32_t i = 3 * x; i < 3 * (x + 16); ++i) {
+          reference.mean.pixels[row * 3 * 128 + i] += 0.5f * (a + b);
+          reference.difference->pixels[row * 3 * 128 + i] += 0.5f * (a - b);
+        }
+      }
+    }
+  }
+  return reference;
+}
+
+TEST(CompareReferences, chainsShareTheirNoiseAmongBlocks) {
+  int asOthers = 0, asChains = 0, missed = 0;
+  for (unsigned i = 0; i < 40; ++i) {
+    Reference chains = correlated(i);
+    const Reference paths = noisy(2000 + i, 0.1);
+    asOthers += compareReferences(chains, paths).agrees() ? 0 : 1;
+    chains.info.method = "mlt";
+    asChains += compareReferences(chains, paths).agrees() ? 0 : 1;
+    for (float& sample : chains.mean.pixels) sample += 0.04f;
+    missed += compareReferences(paths, chains).agrees() ? 1 : 0;
+  }
+  EXPECT_GT(asOthers, 5) << "or the noise is not correlated enough to tell";
+  EXPECT_LE(asChains, 3);
+  EXPECT_EQ(missed, 0) << "what is off by eight per cent is found";
+}
+
 TEST(CompareReferences, needsHalvesAndEqualSizes) {
   Reference plain = noisy(1, 0.1);
   plain.difference.reset();
