@@ -95,6 +95,12 @@ SceneAnswer answerFor(const ReportScene& scene, const ReportMetric& metric, size
   answer.methods = {first.series->label};
   answer.reached = first.time.has_value();
   answer.figure = first.time ? formatTime(*first.time) : formatSignificant(first.value);
+  // Against a noisy reference not even an image without error reaches the target.
+  const std::optional<double> floor =
+      metricIndex < scene.noiseFloors.size() ? scene.noiseFloors[metricIndex] : std::nullopt;
+  if (!first.time && floor && isBetter(metric, *metric.target, *floor)) {
+    answer.figure += fmt::format("; the reference allows {}", formatSignificant(*floor));
+  }
   if (!first.time || isClearlyFastest(scene, *first.series, metric, metricIndex, *metric.target)) return answer;
   // Noise leaves the order of the fastest open: add the methods whose times are level with the first.
   for (size_t i = 1; i < all.size(); ++i) {

@@ -16,7 +16,7 @@ std::string renderAnswer(const ConvergenceReport& report);
 /// Methods that seeds cannot tell from the fastest are named with it.
 struct SceneAnswer {
   std::vector<std::string> methods;  // the fastest one, then those level with it
-  std::string figure;                // its time, or the score of what came closest
+  std::string figure;                // its time, or the score of what came closest and what its reference allows
   bool reached = false;
 };
 SceneAnswer answerFor(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex);

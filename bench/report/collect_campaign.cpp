@@ -179,6 +179,21 @@ std::optional<double> bestRelmse(const CampaignResults& results, const std::stri
   return best;
 }
 
+// The shortest and the longest time that runs of a scene were asked to take; 0 where none says. They differ where a
+// campaign that is made longer was stopped on its way.
+std::pair<double, double> askedSeconds(const CampaignResults& results, const std::string& scene) {
+  double shortest = 0, longest = 0;
+  for (const RunRecord& run : results.runs) {
+    if (run.scene != scene || run.state != RunState::done) continue;
+    const nlohmann::json stats = nlohmann::json::parse(run.stats, nullptr, false);
+    const double asked = stats.is_object() ? stats.value("asked_seconds", 0.0) : 0;
+    if (!(asked > 0)) continue;
+    shortest = longest > 0 ? std::min(shortest, asked) : asked;
+    longest = std::max(longest, asked);
+  }
+  return {shortest, longest};
+}
+
 // One scene with its series, and with its images as far as the files exist. Adds remarks to the report.
 ReportScene collectScene(const CampaignResults& results, const SceneRecord& record, ConvergenceReport& report) {
   ReportScene scene;
@@ -201,6 +216,10 @@ ReportScene collectScene(const CampaignResults& results, const SceneRecord& reco
   // Warn where the noise of the reference is too large to measure against.
   for (const std::string& floor : unmetFloors(record.noiseFloors, bestRelmse(results, record.name))) {
     report.remarks.push_back(fmt::format("{}: the reference is noisy: {}.", record.name, floor));
+  }
+  if (const auto [shortest, longest] = askedSeconds(results, record.name); longest > shortest) {
+    report.remarks.push_back(fmt::format("{}: runs of {} and of {} stand side by side; go on with the campaign.",
+                                         record.name, formatSeconds(shortest), formatSeconds(longest)));
   }
   addRefusals(scene, results);
   // Measurements come from the results file. Pictures need the image files.

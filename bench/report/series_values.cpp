@@ -165,8 +165,9 @@ bool isClearlyFastest(const ReportScene& scene, const ReportSeries& series, cons
   const std::vector<double> own = logTimes(series, metric, metricIndex, target);
   return isAheadOfAll(scene, series, [&](const ReportSeries& other) {
     const std::optional<TargetTime> time = timeToReach(other, metric, metricIndex, target);
-    // A series that never gets there loses. One whose time is only an upper bound may have been faster than that.
-    return !time || (!time->atMost && isClearlyLess(own, logTimes(other, metric, metricIndex, target)));
+    // A time that is only an upper bound may have been shorter. A series that never gets there counts with its end.
+    if (time && time->atMost) return false;
+    return isClearlyLess(own, logTimes(other, metric, metricIndex, target));
   });
 }
 

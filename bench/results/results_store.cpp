@@ -96,9 +96,12 @@ void ResultsStore::replaceRun(const RunRecord& run) {
   Statement(database_, "DELETE FROM run WHERE scene = ? AND method = ? AND seed = ?")
       .bind(run.scene, run.method, run.seed)
       .run();
+  // What was found of the bias of the runs before is of other images.
+  Statement(database_, "DELETE FROM bias WHERE scene = ? AND method = ?").bind(run.scene, run.method).run();
   insertRun(database_, run);
   transaction.commit();
 }
+
 void ResultsStore::putBiases(const std::vector<BiasRecord>& biases) {
   Transaction transaction(database_);
   Statement row(database_, "INSERT OR REPLACE INTO bias VALUES(?, ?, ?, ?, ?, ?, ?)");

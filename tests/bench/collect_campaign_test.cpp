@@ -141,6 +141,16 @@ TEST_F(CollectCampaign, resultsWithoutTheirImagesAreReportedWithARemark) {
   EXPECT_NE(report.remarks.at(0).find("no pictures"), std::string::npos);
 }
 
+TEST_F(CollectCampaign, runsOfUnequalTimeAreRemarked) {
+  RunRecord brief = run("pt", 1, 0.2), longer = run("lt", 1, 0.3);
+  brief.stats = R"({"asked_seconds": 12})";
+  longer.stats = R"({"asked_seconds": 24})";
+  writeStore("results.sqlite", {brief, longer});
+  const ConvergenceReport report = collect();
+  const auto speaksOf = [](const std::string& remark) { return remark.find("12 s and of 24 s") != std::string::npos; };
+  EXPECT_EQ(std::count_if(report.remarks.begin(), report.remarks.end(), speaksOf), 1);
+}
+
 TEST_F(CollectCampaign, carriesBiasPathClassesClaimsAndRefusals) {
   RunRecord refused{.scene = "box", .method = "ppm", .seed = 1, .state = RunState::refused, .reason = "no lights"};
   writeStore("results.sqlite", {run("pt", 1, 0.2), run("pt", 2, 0.2), refused});

@@ -97,6 +97,7 @@ TEST(IsClearlyBest, takesSeedsThatDoNotOverlap) {
   scene.series.resize(2);
   scene.series[1].runs.resize(1);
   EXPECT_FALSE(isClearlyBest(scene, scene.series[1], rising(), 0)) << "one seed has no band";
+  EXPECT_FALSE(isClearlyFastest(scene, scene.series[1], rising(), 0, 0.7)) << "whoever else gets there";
 }
 
 TEST(IsClearlyFastest, isNotDecidedByTheFirstSnapshot) {

@@ -105,6 +105,7 @@ rows = list(csv.DictReader(open("a/claims.csv")))
 rows[0].update(verdict="does not hold", figure="SSIM of pt is 0.5, limit 0.9", explanation="")
 rows[1].update(verdict="holds", figure="RMSE lt 2, pt 1")
 rows[2].update(verdict="does not hold", figure="RMSE lt 1, pt 2", explanation="Noise of short runs. It falls with time.")
+rows[3].update(verdict="undecided", figure="RMSE lt 1, pt 1.1")
 with open("a/claims.csv", "w") as file:
     writer = csv.DictWriter(file, rows[0].keys())
     writer.writeheader()
@@ -115,11 +116,12 @@ END
         pathlib.Path(stub).chmod(0o755)
         result = self.publish(program=stub)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("1 hold, 2 do not, 0 are undecided", result.stdout)
+        self.assertIn("1 hold, 2 do not, 1 are undecided", result.stdout)
         self.assertIn("without an explanation: cornell-diffuse.all-converge", result.stdout)
         readme = self.read("README.md")
-        self.assertRegex(readme, r"Judged here: 3 of its \d+ findings. 1 hold: cornell-diffuse: ")
+        self.assertRegex(readme, r"Judged here: 4 of its \d+ findings. 1 hold: cornell-diffuse: ")
         self.assertIn("Does not hold: cornell-diffuse: All methods converge (SSIM of pt is 0.5, limit 0.9).", readme)
+        self.assertRegex(readme, r"\n1 are undecided within noise: [^\n]*\(RMSE lt 1, pt 1\.1\)\.\n")
         # There the first sentence of an explanation, in the folder all of it.
         self.assertRegex(readme, r"\(RMSE lt 1, pt 2\)\. Noise of short runs\.\n")
         self.assertIn("Noise of short runs. It falls with time.<br>", self.read("standard/README.md"))
@@ -137,10 +139,18 @@ END
 
         self.assertEqual(claims("b"), claims("a"))
         self.assertGreater(len(claims("a")), 1)
-        database = sqlite3.connect(self.path("b/results.sqlite"))
-        (stats,) = database.execute("SELECT stats FROM run WHERE method = 'lt'").fetchone()
-        database.close()
+
+        def rows(folder, query):
+            database = sqlite3.connect(self.path(f"{folder}/results.sqlite"))
+            found = database.execute(query).fetchall()
+            database.close()
+            return found
+
+        ((stats,), *_) = rows("b", "SELECT stats FROM run WHERE method = 'lt'")
         self.assertGreater(json.loads(stats)["light_paths"], 0)
+        biases = "SELECT * FROM bias ORDER BY scene, method, number"
+        self.assertEqual(rows("b", biases), rows("a", biases))
+        self.assertGreater(len(rows("a", biases)), 0)
 
     def test_a_readme_without_a_place_for_it_is_left_alone(self):
         self.campaign()

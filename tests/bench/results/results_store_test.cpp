@@ -148,6 +148,24 @@ TEST(ResultsStore, aRunThatFailsHalfwayIsNotThereAtAll) {
   EXPECT_TRUE(readResults(folder.folder()).runs.empty());
 }
 
+TEST(ResultsStore, aRunInPlaceOfAnotherTakesThatOnesBiasAway) {
+  const TemporaryFolder folder;
+  {
+    ResultsStore store(folder.path("results.sqlite"));
+    store.putScene(sampleScene());
+    store.putRun(sampleRun("box", "pt"));
+    store.putRun(sampleRun("box", "lt"));
+    store.putBiases({{"box", "pt", 1, 2, 3, 2, 1}, {"box", "lt", 1, 2, 3, 2, 1}});
+    RunRecord longer = sampleRun("box", "pt");
+    longer.snapshots.resize(1);
+    store.replaceRun(longer);
+  }
+  const CampaignResults results = readResults(folder.folder());
+  EXPECT_EQ(results.runs.size(), 2u);
+  ASSERT_EQ(results.biases.size(), 1u);
+  EXPECT_EQ(results.biases[0].method, "lt");
+}
+
 TEST(ResultsStore, aRunNeedsItsScene) {
   const TemporaryFolder folder;
   ResultsStore store(folder.path("results.sqlite"));
