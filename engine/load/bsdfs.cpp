@@ -309,9 +309,19 @@ void readNormalMapping(Parameters& parameters, Material& material) {
                             .aroundTwoSided = material.twoSided};
 }
 
+// Whether a texture has steps and no slopes between them.
+bool isFlat(const Texture& texture) {
+  const auto* bitmap = std::get_if<BitmapTexture>(&texture.kind);
+  return bitmap == nullptr || bitmap->filter == Filter::nearest;
+}
+
 void readBumpMap(LoadContext& context, Parameters& parameters, Material& material) {
   // Heights are numbers, so a coloured bitmap is replaced by its luminance.
   const uint32_t texture = scalarTextureOf(context, textureOf(context, parameters.onlyObject("texture")));
+  if (isFlat(context.scene.textures[texture])) {
+    context.note(parameters.location(), "bumpmap of a checkerboard, or of a bitmap with filter_type nearest",
+                 "no bumps: heights have steps and no slopes");
+  }
   const double scale = parameters.real("scale", 1);
   readBsdf(context, parameters.onlyObject("bsdf"), material);
   readNormalMapping(parameters, material);

@@ -23,16 +23,12 @@ struct Tangents {
   Vec3<Real> dpDu, dpDv;
 };
 
-// n' of a height field over the surface: the normal of p + h n (Blinn 1978), with the slopes of h by differences within
-// a texel; on the side of the geometric normal.
+// n' of a height field over the surface: the normal of p + h n (Blinn 1978), on the side of the geometric normal.
 template <class Real>
 WAVECREST_INLINE Vec3<Real> bumped(const TextureRecord* textures, const float* texels, UInt id, Real scale, Float u,
                                    Float v, Vec3<Real> normal, Vec3<Real> geometric, const Tangents<Real>& tangents) {
-  constexpr float kStep = 1e-4f;
-  const auto height = [&](Float s, Float t) WAVECREST_LAMBDA { return evalTexture(textures, texels, id, s, t).x; };
-  const Float step(kStep);
-  const Real hu = to<Real>((height(u + step, v) - height(u - step, v)) * Float(0.5f / kStep)) * scale;
-  const Real hv = to<Real>((height(u, v + step) - height(u, v - step)) * Float(0.5f / kStep)) * scale;
+  const TextureSlopes slopes = textureSlopes(textures, texels, id, u, v);
+  const Real hu = to<Real>(slopes.u) * scale, hv = to<Real>(slopes.v) * scale;
   // The tangents of p + h n: along the normal they have the slope of h and nothing else.
   const Vec3<Real> du = mulAdd(normal, hu - dot(normal, tangents.dpDu), tangents.dpDu);
   const Vec3<Real> dv = mulAdd(normal, hv - dot(normal, tangents.dpDv), tangents.dpDv);

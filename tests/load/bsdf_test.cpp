@@ -189,6 +189,13 @@ TEST(Bsdf, BumpMapTakesTextureAndScale) {
   EXPECT_EQ(material.bumpScale, 3);
 }
 
+TEST(Bsdf, BumpsOfWhatHasNoSlopesAreNoted) {
+  const Scene scene = loadBody(R"(<shape type="sphere"><bsdf type="bumpmap"><texture type="checkerboard"/>
+      <bsdf type="diffuse"/></bsdf></shape>)");
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_NE(scene.notes[0].effect.find("no bumps"), std::string::npos);
+}
+
 TEST(Bsdf, MapsFlipNormalsAndSoftenShadowsUnlessToldOtherwise) {
   const auto mappingOf = [](const std::string& parameter) {
     return materialOf(R"(<bsdf type="bumpmap">)" + parameter +
