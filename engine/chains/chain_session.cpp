@@ -106,11 +106,13 @@ ChainWorker<S>& ChainSession<S>::worker() {
   return *mine;
 }
 
-// An iteration is a mutation per pixel in the mean.
+// An iteration is a mutation per pixel in the mean. More mutations than 64 bits count are steps without end.
 template <class S>
 uint64_t ChainSession<S>::stepsFor(uint64_t iterations) const {
-  const uint64_t chains = settings_.metropolis.chains;
-  return (iterations * film_.area().pixels.size() + chains - 1) / chains;
+  constexpr uint64_t kEndless = std::numeric_limits<uint64_t>::max();
+  const uint64_t chains = settings_.metropolis.chains, pixels = film_.area().pixels.size();
+  if (iterations > (kEndless - chains) / pixels) return kEndless;
+  return (iterations * pixels + chains - 1) / chains;
 }
 
 // Traces the bootstrap samples of one wave, and keeps the target of each.
@@ -190,27 +192,28 @@ void ChainSession<S>::advance(uint64_t steps) {
   });
 }
 
-// One direct sample of each pixel for every so many mutations of it, beginning with the first step.
+// One direct sample of each pixel for every so many mutations of it, beginning with the first step. One level of
+// samples after the other, so that whatever stops it leaves all pixels with about as many.
 template <class S>
 bool ChainSession<S>::traceDirect(const Stop& stop) {
   const FilmArea& area = film_.area();
   const uint64_t perIteration = kMutationsPerDirect * area.pixels.size(),
                  goal = (mutations() + perIteration - 1) / perIteration;
-  if (directDone_ >= goal) return true;
-  const std::vector<PixelRun> runs = film_.runsBelow(goal, settings_.waveSize);
-  forEach(runs.size(), [&](size_t index) {
-    const FlushToZero flushToZero;
-    const PixelRun& run = runs[index];
-    for (uint64_t done = run.samples; done < goal && !stop(); ++done) {
+  while (directDone_ < goal && !stop()) {
+    const std::vector<PixelRun> runs = film_.runsBelow(directDone_ + 1, settings_.waveSize);
+    forEach(runs.size(), [&](size_t index) {
+      if (stop()) return;
+      const FlushToZero flushToZero;
+      const PixelRun& run = runs[index];
       StageContext<S> context = chainContext(plan_, settings_, area);
-      context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(done), nullptr};
+      context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(run.samples), nullptr};
       context.sharedPlace = film_.spreads();
       ChainWorker<S>& mine = worker();
       mine.traceDirect(context, area, run.first, run.count);
       mine.counters.nonFinite += addSamples(film_, plan_, context.sampler, mine.wave());
-    }
-  });
-  directDone_ = film_.minSamples();
+    });
+    directDone_ = film_.minSamples();
+  }
   return directDone_ >= goal;
 }
 
@@ -266,8 +269,10 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
         if (epochs_.count() <= step_ / restart && !beginEpoch(step_ / restart, stop)) return;
         // Run a round of steps, which ends with the epoch at the latest. Steps of an epoch without light count too.
         const double before = clock.look();
-        const uint64_t steps = stepsInTime(std::min(restart - step_ % restart, goal - step_), end - before);
+        uint64_t steps = stepsInTime(std::min(restart - step_ % restart, goal - step_), end - before);
         if (steps == 0) return;
+        // Without light they cost nothing and time does not limit them; direct light is to keep up with them.
+        if (epochs_.dark()) steps = std::min(steps, kTurnSteps);
         if (!epochs_.dark()) advance(steps);
         step_ += steps;
         epochs_.addSteps(steps);

@@ -14,11 +14,12 @@ template <class P, uint32_t kFeatures>
 void recordMisses(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   const auto& scene = *context.scene;
   if (scene.infiniteLight == kNoIndex || context.walk != Walk::camera) return;
-  if (scene.hidesInfinite && context.depth == 1) return;
   const auto& v = context.paths->proposed.vertices;
   for (size_t i = 0; i < wave.rays.size; ++i) {
     const uint32_t lane = wave.paths.lane[i];
     if (wave.hits.primitive[i] != kMiss || context.chains->columns.emissionDepth[lane] != context.depth) continue;
+    // Walks begin at any vertex of the path: only a path of one edge shows the light itself to the camera.
+    if (scene.hidesInfinite && context.paths->proposed.headers.edges[lane] == 1) continue;
     v.positionX[lane] = wave.rays.directionX[i];
     v.positionY[lane] = wave.rays.directionY[i];
     v.positionZ[lane] = wave.rays.directionZ[i];

@@ -8,6 +8,7 @@
 // strategy s = 0 with its weight (5.6), which needs the distance and cosine of this edge.
 #include <cmath>
 
+#include "kernels/columns/chain_paths.h"
 #include "kernels/columns/chains.h"
 #include "kernels/endpoints/camera_lanes.h"
 #include "kernels/endpoints/light_lanes.h"
@@ -21,6 +22,16 @@
 WAVECREST_SIMD_BEGIN
 
 namespace {
+
+// Lanes whose rays show an infinite light if they meet it: with hide_emitters none that come from the camera. Walks of
+// path space begin at any vertex of a path, and only a path of one edge is a view of the light.
+template <class S>
+WAVECREST_INLINE Mask showsInfinite(const StageContext<S>& context, UInt lane, Mask active) {
+  if (!context.scene->hidesInfinite || context.depth > 1) return active;
+  if (context.paths == nullptr) return noLanes();
+  const UInt edges = gather(context.paths->proposed.headers.edges, select(active, lane, UInt(0u)));
+  return andNot(active, edges == UInt(1u));
+}
 
 // Radiance of the infinite light along lanes that left the scene, weighted against the other strategies. The sums are
 // those before arrival: the light has no area measure.
@@ -171,9 +182,10 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     const Mask missed = andNot(active, hit);
     if (any(missed)) {
       misses += countTrue(missed);
-      if (camera && scene.infiniteLight != kNoIndex && !(scene.hidesInfinite && context.depth == 1)) {
+      const Mask shown = missed & counted & showsInfinite(context, lane, active);
+      if (camera && scene.infiniteLight != kNoIndex && any(shown)) {
         const Vec3<Real> radiance = throughput * missedRadiance<P, kFeatures>(context, direction, mis, alone);
-        addRadiance(wave.radiance, lane, missed & counted, radiance);
+        addRadiance(wave.radiance, lane, shown, radiance);
       }
       if (none(hit)) continue;
     }

@@ -97,6 +97,10 @@ TEST_P(MetropolisTest, causticIsThatOfTheUnderlyingMethod) {
   expectReference(sceneFile("cornell-mirror", kWidth, kHeight), settings(), 192, 192);
 }
 
+TEST_P(MetropolisTest, aSkyThatIsHiddenFromTheCameraLightsTheScene) {
+  expectReference(sceneFile("features/hide-emitters", kWidth, kHeight), settings(), 192, 192);
+}
+
 TEST_P(MetropolisTest, everyPrecisionGivesTheSameImage) {
   const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
   const SeedMeans expected = renderSeeds(scene, settings(), 64);
@@ -300,6 +304,21 @@ INSTANTIATE_TEST_SUITE_P(Engine, MetropolisOfAllLightTest,
                                          MetropolisCase{MetropolisVariant::mmlt, false},
                                          MetropolisCase{MetropolisVariant::pathspace, false}),
                          nameOf);
+
+// Two edges leave nothing to chains. Their steps, which then cost no time, do not run ahead of direct light.
+TEST(Metropolis, directLightKeepsUpWithChainsThatHaveNone) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings chosen = metropolis(MetropolisVariant::mmlt);
+  chosen.metropolis.directPass = true;
+  chosen.limits.maxDepth = 2;
+  const auto session = Session::create(scene, chosen);
+  session->renderUntil(std::nullopt, 0.2);
+  const RenderStatistics statistics = session->statistics();
+  constexpr uint64_t kPixels = uint64_t{kWidth} * kHeight;
+  ASSERT_TRUE(statistics.chains);
+  EXPECT_GT(statistics.chains->directPaths, 0u);
+  EXPECT_GE(statistics.chains->directPaths + 4 * kPixels, statistics.chains->mutations / 2);
+}
 
 TEST(Metropolis, rendersNothingWhereThereIsNoLight) {
   Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
