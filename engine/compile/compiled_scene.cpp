@@ -156,15 +156,18 @@ struct NearBox {
   }
 };
 
-// Rays are intersected in single precision, which holds numbers from 1e-38 to 3e38, and intersectors square lengths.
-constexpr double kLargestExtent = 1e18, kSmallestSphere = 1e-18;
+// Rays are intersected in single precision, which holds numbers from 1e-38 to 3e38. The test of a face multiplies three
+// lengths, that of a sphere two.
+constexpr double kLargestRadius = 3e12, kSmallestRadius = 5e-13, kSmallestSphere = 1e-18;
 
-// Throws SceneError where the scene is too large, or a sphere too small. radius: of the scene, or of a group in its
-// space if that is larger; refused as well if it is not a number.
-void checkRange(const Scene& scene, double radius) {
-  if (!(radius <= kLargestExtent)) {
+// Throws SceneError where the scene is too large or too small, or a sphere too small. groupExtent: of the largest group
+// in its space. What is not a number is refused as well.
+void checkRange(const Scene& scene, double radius, double groupExtent) {
+  if (!(std::max(radius, groupExtent) <= kLargestRadius && radius >= kSmallestRadius)) {
     throw SceneError(SourceLocation{scene.name},
-                     fmt::format("the scene's radius is {:g}; expected at most {:g}", radius, kLargestExtent));
+                     fmt::format("the scene's radius is {:g}; expected {:g} to {:g}",
+                                 radius >= kSmallestRadius ? std::max(radius, groupExtent) : radius, kSmallestRadius,
+                                 kLargestRadius));
   }
   for (const Shape& shape : scene.shapes) {
     const auto* sphere = std::get_if<Sphere>(&shape.kind);
@@ -214,7 +217,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
     throw SceneError(where, "no shape of the scene has a surface; expected one of positive area");
   }
   BoundingSphere bounds = geometry.bounds<S>();
-  checkRange(scene, std::max(bounds.radius, geometry.groupExtent()));
+  checkRange(scene, bounds.radius, geometry.groupExtent());
   const Double3 origin = compiled->origin = originOf(bounds);
   if (origin != Double3{}) {
     geometry.moveTo(origin);

@@ -123,6 +123,10 @@ class LightCollector {
  private:
   // Adds a record of the emitter that `emitter_` names.
   void add(const LightRecord<S>& light, double power) {
+    if (lights_.records.size() >= kMostIndexed<LightRecord<S>>) {
+      throw SceneError({scene_.name}, "more than " + std::to_string(kMostIndexed<LightRecord<S>>) +
+                                          " primitives that emit light; expected fewer");
+    }
     lights_.records.push_back(light);
     power_.push_back(power);
     const auto number = static_cast<uint32_t>(numbers_.size());

@@ -313,6 +313,7 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
   record.opacity = 1;
   if (material.opacity) {
     assignTextured(record.opacity, record.opacityTexture, *material.opacity);
+    record.opacity = std::clamp(record.opacity, 0.0f, 1.0f);
     if (record.opacity < 1 || record.opacityTexture != kNone) record.flags |= kHasDelta;
   }
   // The fields of this kind of BSDF.

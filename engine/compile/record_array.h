@@ -3,11 +3,17 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 #include "kernels/columns/memory_block.h"
 
 namespace wavecrest {
+
+// The most records that lanes can index: they count the 32-bit words of records in 32 bits with a sign (RecordLanes in
+// kernels/lane_support.h).
+template <class Record>
+constexpr size_t kMostIndexed = (size_t{1} << 31) / (sizeof(Record) / sizeof(uint32_t));
 
 template <class Record>
 class RecordArray {

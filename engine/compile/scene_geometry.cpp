@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string>
 
+#include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
 #include "engine/tasks/parallel_for.h"
 
@@ -180,6 +182,18 @@ double SceneGeometry::groupExtent() const {
   return extent;
 }
 
+namespace {
+
+// SceneError if there are more records than lanes can index.
+template <class Record>
+void checkCount(const Scene& scene, size_t count, const std::string& what) {
+  if (count <= kMostIndexed<Record>) return;
+  throw SceneError({scene.name},
+                   std::to_string(count) + " " + what + "; expected at most " + std::to_string(kMostIndexed<Record>));
+}
+
+}  // namespace
+
 template <class S>
 Primitives<S> SceneGeometry::compile() const {
   // The lists in the order of their records.
@@ -190,6 +204,8 @@ Primitives<S> SceneGeometry::compile() const {
     records += list->counts().total();
     attributes += list->attributes();
   }
+  checkCount<PrimitiveRecord<S>>(scene_, records, "primitives");
+  checkCount<AttributeRecord>(scene_, attributes, "primitives with normals or texture coordinates");
   // Room for all, then each list's records behind those of the one before.
   Primitives<S> out;
   out.counts = counts();
@@ -208,6 +224,7 @@ template Primitives<double> SceneGeometry::compile() const;
 
 template <class S>
 RecordArray<InstanceRecord<S>> SceneGeometry::compileInstances() const {
+  checkCount<InstanceRecord<S>>(scene_, instances_.size(), "instances");
   RecordArray<InstanceRecord<S>> records(instances_.size());
   for (size_t i = 0; i < records.size(); ++i) {
     records[i] = InstanceRecord<S>{};

@@ -28,7 +28,8 @@ class SceneGeometry {
   // The longest that coordinates in a group are.
   double groupExtent() const;
 
-  // Primitives of the groups come after those of the world.
+  // Primitives of the groups come after those of the world. This and the next throw SceneError where there are more
+  // records than lanes can index.
   template <class S>
   Primitives<S> compile() const;
   template <class S>

@@ -2,19 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
+#include <set>
+#include <string>
 
 #include "engine/compile/lights.h"
+#include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
 
 namespace wavecrest {
 namespace {
 
+size_t pixelsOf(const Bitmap& bitmap) { return size_t{bitmap.width} * bitmap.height; }
+
 // Appends the texels as RGB times `scale`; a single channel is repeated.
 void appendRgb(const Bitmap& bitmap, double scale, std::vector<float>& out) {
-  const size_t pixels = size_t{bitmap.width} * bitmap.height;
-  out.reserve(out.size() + 3 * pixels);
+  const size_t pixels = pixelsOf(bitmap);
   for (size_t i = 0; i < pixels; ++i) {
     for (size_t c = 0; c < 3; ++c) {
       const float value = bitmap.pixels[i * bitmap.channels + (bitmap.channels == 3 ? c : 0)];
@@ -28,10 +33,28 @@ double luminanceAt(const std::vector<float>& texels, uint32_t width, uint32_t co
   return luminance({rgb[0], rgb[1], rgb[2]});
 }
 
+// The floats of all bitmaps, one that several textures share counted once. SceneError if there are more than kernels
+// can index: they count in 32 bits with a sign.
+size_t countTexels(const Scene& scene) {
+  constexpr size_t kMost = std::numeric_limits<int32_t>::max();
+  std::set<const Bitmap*> bitmaps;
+  size_t floats = 0;
+  for (const Texture& texture : scene.textures) {
+    const auto* bitmap = std::get_if<BitmapTexture>(&texture.kind);
+    if (bitmap != nullptr && bitmaps.insert(bitmap->bitmap.get()).second) floats += 3 * pixelsOf(*bitmap->bitmap);
+  }
+  if (floats > kMost) {
+    throw SceneError({scene.name}, "bitmaps of " + std::to_string(floats / 3) + " pixels together; expected at most " +
+                                       std::to_string(kMost / 3));
+  }
+  return floats;
+}
+
 }  // namespace
 
 Textures compileTextures(const Scene& scene) {
   Textures out;
+  out.texels.reserve(countTexels(scene));
   // Where the texels of each bitmap begin in out.texels.
   std::map<const Bitmap*, uint32_t> offsets;
   for (const Texture& texture : scene.textures) {
@@ -68,6 +91,7 @@ Textures compileTextures(const Scene& scene) {
 Environment compileEnvironment(const EnvmapEmitter& emitter) {
   Environment out;
   const uint32_t width = emitter.bitmap->width, height = emitter.bitmap->height;
+  out.texels.reserve(3 * pixelsOf(*emitter.bitmap));
   appendRgb(*emitter.bitmap, emitter.scale, out.texels);
 
   // Weight of a texel: mean luminance of the 3 x 3 texels around, times sin(theta) for its solid angle.

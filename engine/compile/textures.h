@@ -12,6 +12,7 @@ struct Textures {
   std::vector<TextureRecord> records;  // in the order of scene.textures
   std::vector<float> texels;           // RGB of all bitmaps; one that several textures share is stored once
 };
+// Throws SceneError where bitmaps have more texels than kernels can index.
 Textures compileTextures(const Scene& scene);
 
 // The environment map and its sampling distribution: texels by the luminance around them times their solid angle, so

@@ -54,6 +54,10 @@ void readIntegrator(LoadContext& context, const XmlElement& element) {
   // `direct` is what a path tracer does with two edges.
   const int64_t fallback = element.get("type") == "direct" ? 2 : -1;
   defaults.maxDepth = static_cast<int>(parameters.integer("max_depth", fallback, -1, kMost));
+  if (defaults.maxDepth == 0) {
+    throw LoadError(parameters.locationOf("max_depth"),
+                    "max_depth is 0, with which nothing is seen; expected -1, or 1 or more");
+  }
   defaults.rrDepth = static_cast<int>(parameters.integer("rr_depth", 5, 1, kMost));
   defaults.hideEmitters = parameters.boolean("hide_emitters", false);
   noteMethod(context, parameters, parameters.takeOthers());

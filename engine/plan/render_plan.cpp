@@ -1,5 +1,6 @@
 #include "engine/plan/render_plan.h"
-#include "engine/film/spread_sums.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "engine/compile/materials.h"
+#include "engine/film/spread_sums.h"
 #include "engine/scene/scene_error.h"
 
 namespace wavecrest {
@@ -79,8 +81,23 @@ Intersector<S> chooseIntersector(const Stages<S>& stages, const CompiledScene<S>
 template Intersector<float> chooseIntersector(const Stages<float>&, const CompiledScene<float>&);
 template Intersector<double> chooseIntersector(const Stages<double>&, const CompiledScene<double>&);
 
+namespace {
+
+// Random numbers tell apart so many paths of an iteration. Throws SceneError where there are more.
+void refuseTooManyPaths(const Scene& scene, const RenderSettings& settings) {
+  const uint64_t pixels = uint64_t{scene.film.width} * scene.film.height;
+  const uint64_t paths = std::max<uint64_t>(pixels, settings.lightPaths.value_or(0));
+  if (paths <= kMostPaths) return;
+  throw SceneError({scene.name},
+                   fmt::format("an iteration has {} paths; expected at most {}, of pixels and of light paths", paths,
+                               kMostPaths));
+}
+
+}  // namespace
+
 template <class S>
 RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
+  refuseTooManyPaths(scene, settings);
   RenderPlan<S> plan;
   // Densities of path space are those of rays that leave one point.
   const bool inPathSpace =

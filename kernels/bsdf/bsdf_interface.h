@@ -103,7 +103,7 @@ struct BsdfInput {
   WAVECREST_INLINE Real eta() const { return to<Real>(at(materials->eta[0])); }
   WAVECREST_INLINE Real opacity() const {
     const auto constant = to<Real>(at(materials->opacity));
-    if constexpr (kTextured) return constant * textures.opacity;
+    if constexpr (kTextured) return min(max(constant * textures.opacity, Real(0)), Real(1));
     return constant;
   }
 

@@ -8,6 +8,7 @@
 #include "engine/compile/textures.h"
 #include "engine/plan/render_plan.h"
 #include "engine/scene/scene_error.h"
+#include "tests/engine/light_scenes.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
 
@@ -87,13 +88,38 @@ Scene sphereOfRadius(double radius) {
   return scene;
 }
 
-TEST(SceneRange, whatSinglePrecisionCannotSquareIsRefused) {
-  for (const double radius : {1e30, 1e-30}) {
+TEST(SceneRange, whatSinglePrecisionCannotMultiplyIsRefused) {
+  for (const double radius : {1e30, 1e14, 1e-30}) {
     EXPECT_THROW(Session::create(sphereOfRadius(radius), settingsOf(Method::pt)), SceneError) << radius;
   }
   for (const double radius : {1e12, 1e-12}) {
     EXPECT_NO_THROW(Session::create(sphereOfRadius(radius), settingsOf(Method::pt))) << radius;
   }
+}
+
+TEST(PathNumbers, moreThanRandomNumbersTellApartAreRefused) {
+  Scene scene = shiningRoom(0.5);
+  scene.film.width = scene.film.height = 16385;  // 2^28 and some pixels, of which one is rendered
+  scene.film.cropWidth = scene.film.cropHeight = 1;
+  EXPECT_THROW(Session::create(scene, settingsOf(Method::pt)), SceneError);
+  scene.film.width = 16383;
+  EXPECT_NO_THROW(Session::create(scene, settingsOf(Method::pt)));
+  RenderSettings many = settingsOf(Method::ppm);
+  many.lightPaths = (uint64_t{1} << 28) + 1;
+  EXPECT_THROW(Session::create(shiningRoom(0.5), many), SceneError);
+}
+
+// The test of a face makes cubes of lengths.
+TEST(SceneRange, aSceneOfTinyFacesIsRefused) {
+  const auto sceneOf = [](double side) {
+    Scene scene;
+    addMaterial(scene, Diffuse{});
+    addEmitter(scene, ConstantEmitter{{1, 1, 1}});
+    addShape(scene, Rectangle{{0, 0, 0}, {side, 0, 0}, {0, side, 0}}, 0);
+    return scene;
+  };
+  EXPECT_THROW(Session::create(sceneOf(1e-14), settingsOf(Method::pt)), SceneError);
+  EXPECT_NO_THROW(Session::create(sceneOf(1e-11), settingsOf(Method::pt)));
 }
 
 // ---- environment maps of more texels than a number has bits ---------------------------------------------------------

@@ -140,6 +140,19 @@ TEST(Film, BoxAndTentFilters) {
   EXPECT_EQ(tent.filterRadius, 1);
 }
 
+TEST(Film, BoxIsAPixelWideWhateverTheFileSays) {
+  const auto boxOf = [](const std::string& radius) {
+    return sceneOf(R"(<film type="hdrfilm"><rfilter type="box"><float name="radius" value=")" + radius +
+                   R"("/></rfilter></film>)");
+  };
+  const Scene wide = boxOf("2");
+  EXPECT_EQ(wide.film.filterRadius, 0.5);
+  ASSERT_EQ(wide.notes.size(), 1u);
+  EXPECT_EQ(wide.notes[0].what, "\"radius\" of rfilter \"box\"");
+  EXPECT_TRUE(boxOf("0.5").notes.empty());
+  EXPECT_EQ(wide.hash, boxOf("0.5").hash);
+}
+
 TEST(Film, GaussianIsCutAtFourStandardDeviations) {
   const FilmSettings film =
       sceneOf(R"(<film type="hdrfilm"><rfilter type="gaussian"><float name="stddev" value="1.5"/></rfilter></film>)")
@@ -215,6 +228,8 @@ TEST(Integrator, DirectIsTwoEdges) { EXPECT_EQ(loadBody(R"(<integrator type="dir
 TEST(Integrator, DepthBelowMinusOneIsAnError) {
   expectErrorOnLine2(R"(<integrator type="path"><integer name="max_depth" value="-2"/></integrator>)",
                      "\"max_depth\" is -2");
+  expectErrorOnLine2(R"(<integrator type="path"><integer name="max_depth" value="0"/></integrator>)",
+                     "max_depth is 0");
 }
 
 TEST(Sampler, CountDefaultsToFour) { EXPECT_EQ(sceneOf("").defaults.sampleCount, 4u); }
