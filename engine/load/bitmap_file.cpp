@@ -1,7 +1,9 @@
 #include "engine/load/bitmap_file.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 #include "engine/load/bmp.h"
 #include "engine/load/input_file.h"
@@ -15,18 +17,52 @@ namespace wavecrest {
 
 namespace {
 
+// The usual extension of files that start with these bytes.
+struct Signature {
+  std::string_view bytes, extension;
+};
+constexpr std::array<Signature, 7> kSignatures = {{{"\x89PNG", ".png"},
+                                                   {"\xff\xd8", ".jpg"},
+                                                   {"\x76\x2f\x31\x01", ".exr"},
+                                                   {"#?", ".hdr"},
+                                                   {"BM", ".bmp"},
+                                                   {"PF", ".pfm"},
+                                                   {"Pf", ".pfm"}}};
+
+// The extension that says what the file is. As in Mitsuba its first bytes decide, and where they say nothing, as those
+// of TGA, its name.
+std::string formatOf(const std::filesystem::path& path, std::string_view bytes) {
+  for (const Signature& signature : kSignatures) {
+    if (bytes.starts_with(signature.bytes)) return std::string(signature.extension);
+  }
+  return toLower(path.extension().string());
+}
+
 ImageFile readImageFile(const std::filesystem::path& path, const SourceLocation& where) {
-  const std::string extension = toLower(path.extension().string());
+  const std::vector<char> bytes = readInputFile(path, where);
+  const std::string name = path.string(), format = formatOf(path, {bytes.data(), bytes.size()});
   try {
-    if (extension == ".bmp") return decodeBmp(path.string(), readInputFile(path, where));
-    if (extension == ".tga") return decodeTga(path.string(), readInputFile(path, where));
-    if (extension == ".jpg" || extension == ".jpeg") return decodeJpeg(path.string(), readInputFile(path, where));
-    // Checks with the wording of the loader that the file is there.
-    if (!std::filesystem::exists(path)) readInputFile(path, where);
-    return readImage(path.string());
+    if (format == ".bmp") return decodeBmp(name, bytes);
+    if (format == ".tga") return decodeTga(name, bytes);
+    if (format == ".jpg" || format == ".jpeg") return decodeJpeg(name, bytes);
+    return decodeImage(name, format, {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
   } catch (const ImageError& error) {
     throw LoadError(where, error.what());
   }
+}
+
+// Texels that are not finite become black, with a note that counts them.
+void clearNonFinite(LoadContext& context, Bitmap& bitmap, const std::filesystem::path& path,
+                    const SourceLocation& where) {
+  size_t count = 0;
+  for (float& value : bitmap.pixels) {
+    if (std::isfinite(value)) continue;
+    value = 0;
+    ++count;
+  }
+  if (count == 0) return;
+  const std::string name = inQuotes(path.filename().string());
+  context.note(where, "values in " + name + " that are not finite: " + std::to_string(count), "0 is used");
 }
 
 }  // namespace
@@ -36,19 +72,17 @@ std::shared_ptr<const Bitmap> readBitmap(LoadContext& context, const std::filesy
   const std::string key = (raw ? "raw:" : "linear:") + path.string();
   if (const auto known = context.bitmaps.find(key); known != context.bitmaps.end()) return known->second;
   ImageFile file = readImageFile(path, where);
+  if (file.exposure != 1) {
+    context.note(where, "EXPOSURE of a Radiance picture", "left out, as in Mitsuba: pixels are taken as stored");
+  }
   auto bitmap = std::make_shared<Bitmap>();
   bitmap->width = file.image.width;
   bitmap->height = file.image.height;
   bitmap->channels = file.image.channels;
   bitmap->pixels = std::move(file.image.pixels);
-  for (size_t i = 0; i < bitmap->pixels.size(); ++i) {
-    float& value = bitmap->pixels[i];
-    if (!std::isfinite(value)) {
-      const size_t pixel = i / bitmap->channels;
-      throw LoadError(where, path.string() + ": pixel (" + std::to_string(pixel % bitmap->width) + ", " +
-                                 std::to_string(pixel / bitmap->width) + ") is not finite; expected finite values");
-    }
-    if (file.encoding != Encoding::linear && !raw) value = static_cast<float>(srgbDecode(value));
+  clearNonFinite(context, *bitmap, path, where);
+  if (file.encoding != Encoding::linear && !raw) {
+    for (float& value : bitmap->pixels) value = static_cast<float>(srgbDecode(value));
   }
   context.bitmaps.emplace(key, bitmap);
   return bitmap;

@@ -20,8 +20,11 @@ const XmlElement& LoadContext::resolve(const XmlElement& element) const {
 std::filesystem::path LoadContext::findFile(std::string_view name, const XmlElement& namedIn) const {
   const auto folderOf = [](const std::string& file) { return std::filesystem::path(file).parent_path(); };
   std::filesystem::path besideScene = (folderOf(document.files.front()) / name).lexically_normal();
-  std::vector<std::filesystem::path> candidates = {besideScene, folderOf(*namedIn.file) / name};
-  for (const std::filesystem::path& folder : document.searchPaths) candidates.push_back(folder / name);
+  // Each <path> comes before all that Mitsuba searched until then, so the last one is first.
+  std::vector<std::filesystem::path> candidates;
+  for (const std::filesystem::path& folder : document.searchPaths) candidates.insert(candidates.begin(), folder / name);
+  candidates.push_back(besideScene);
+  candidates.push_back(folderOf(*namedIn.file) / name);
   for (const std::filesystem::path& candidate : candidates) {
     std::error_code error;
     if (std::filesystem::exists(candidate, error)) return candidate.lexically_normal();

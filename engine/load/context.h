@@ -35,8 +35,9 @@ struct LoadContext {
 
   // Follows <ref>; any other element is itself.
   const XmlElement& resolve(const XmlElement& element) const;
-  // The path of a file named in the XML, relative to the scene file (as Mitsuba takes it, also in included files), else
-  // to the file that names it, else to a <path>. The first that exists; if none does, the one beside the scene file.
+  // The path of a file named in the XML, relative to a <path>, the last one first, else to the scene file (as Mitsuba
+  // takes it, also in included files), else to the file that names it. The first that exists; if none does, the one
+  // beside the scene file.
   std::filesystem::path findFile(std::string_view name, const XmlElement& namedIn) const;
   // Names a file in Scene::files, if it exists.
   void listFile(const std::filesystem::path& path);

@@ -95,6 +95,10 @@ EmitterKind readSpot(LoadContext& context, Parameters& parameters) {
   SpotEmitter spot{.toWorld = readToWorld(parameters)};
   spot.position = transformPoint(spot.toWorld, {0, 0, 0});
   spot.direction = unitDirection(parameters, transformVector(spot.toWorld, {0, 0, 1}), "to_world");
+  if (!isSimilarity(spot.toWorld)) {
+    context.note(parameters.locationOf("to_world"), "spot light whose to_world scales unevenly or shears",
+                 "its cone stays circular; Mitsuba deforms it");
+  }
   spot.intensity = readConstantEmission(context, parameters, "intensity");
   // Half angles in degrees. The intensity falls off between beam_width and cutoff_angle.
   spot.cutoffAngle = parameters.positiveReal("cutoff_angle", 20);
@@ -158,6 +162,33 @@ EmitterKind readConstant(LoadContext& context, Parameters& parameters) {
   return ConstantEmitter{.radiance = readConstantEmission(context, parameters, "radiance")};
 }
 
+void checkEnvironmentTransform(LoadContext& context, const Parameters& parameters, const Matrix4& toWorld) {
+  const SourceLocation where = parameters.locationOf("to_world");
+  checkPerpendicular(toWorld, "the environment", where);
+  if (!isSimilarity(toWorld)) {
+    context.note(where, "environment whose to_world scales unevenly",
+                 "the scale is left out, and only the rotation used");
+  }
+}
+
+namespace {
+
+// The bitmap without negative values, which a light cannot have. A note counts those that become 0.
+std::shared_ptr<const Bitmap> withoutNegatives(LoadContext& context, std::shared_ptr<const Bitmap> bitmap,
+                                               const std::string& filename, const SourceLocation& where) {
+  const auto isNegative = [](float value) { return value < 0; };
+  const auto count = std::ranges::count_if(bitmap->pixels, isNegative);
+  if (count == 0) return bitmap;
+  context.note(where, "negative values in the environment " + inQuotes(filename) + ": " + std::to_string(count),
+               "0 is used");
+  // A copy, as textures may share the bitmap.
+  auto clamped = std::make_shared<Bitmap>(*bitmap);
+  std::ranges::replace_if(clamped->pixels, isNegative, 0.0f);
+  return clamped;
+}
+
+}  // namespace
+
 EmitterKind readEnvmap(LoadContext& context, Parameters& parameters) {
   const std::string filename = parameters.requiredString("filename");
   const SourceLocation where = parameters.locationOf("filename");
@@ -169,10 +200,8 @@ EmitterKind readEnvmap(LoadContext& context, Parameters& parameters) {
   if (!(light.scale >= 0)) {
     throw LoadError(parameters.locationOf("scale"), "scale of the environment is negative; expected 0 or more");
   }
-  const std::vector<float>& pixels = light.bitmap->pixels;
-  if (std::any_of(pixels.begin(), pixels.end(), [](float v) { return v < 0; })) {
-    throw LoadError(where, "environment map " + inQuotes(filename) + " has negative pixels; expected radiance from 0");
-  }
+  checkEnvironmentTransform(context, parameters, light.toWorld);
+  light.bitmap = withoutNegatives(context, std::move(light.bitmap), filename, where);
   return light;
 }
 

@@ -12,6 +12,10 @@ void addEmitter(LoadContext& context, const XmlElement& emitter);
 // The <emitter type="area"> of a shape.
 AreaEmitter readAreaEmitter(LoadContext& context, const XmlElement& emitter, uint32_t shape);
 
+// What the to_world of a light around the scene may be: LoadError if it shears or flattens, a note if it scales
+// unevenly.
+void checkEnvironmentTransform(LoadContext& context, const Parameters& parameters, const Matrix4& toWorld);
+
 EmitterKind readPoint(LoadContext&, Parameters&);
 EmitterKind readSpot(LoadContext&, Parameters&);
 EmitterKind readProjector(LoadContext&, Parameters&);

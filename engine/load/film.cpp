@@ -49,8 +49,12 @@ double checkedRadius(const Parameters& parameters, std::string_view name, double
 }  // namespace
 
 void readBoxFilter(Parameters& parameters, FilmSettings& film) {
+  // Mitsuba 3 has no boxes of another size than a pixel's; 0.6 had.
   film.filter = ReconstructionFilter::box;
-  film.filterRadius = checkedRadius(parameters, "radius", parameters.positiveReal("radius", 0.5));
+  film.filterRadius = 0.5;
+  if (parameters.positiveReal("radius", 0.5) != film.filterRadius) {
+    parameters.leaveOut({"radius"}, "left out: the box is a pixel wide");
+  }
 }
 
 void readTentFilter(Parameters& parameters, FilmSettings& film) {

@@ -142,6 +142,12 @@ namespace {
 // The luminance of linear Rec. 709, with Mitsuba's weights.
 double luminance(double r, double g, double b) { return 0.212671 * r + 0.715160 * g + 0.072169 * b; }
 
+// The mean of the channels. A grey value is taken as it is, since the sum would round it.
+double meanOf(const Rgb& color) {
+  const bool grey = color[0] == color[1] && color[1] == color[2];
+  return grey ? color[0] : (color[0] + color[1] + color[2]) / 3;
+}
+
 // A bitmap of three channels as one of one channel.
 Bitmap luminanceOf(const Bitmap& colour) {
   Bitmap grey{.width = colour.width, .height = colour.height, .channels = 1, .pixels = {}};
@@ -154,11 +160,12 @@ Bitmap luminanceOf(const Bitmap& colour) {
 
 }  // namespace
 
-// Where a number is asked for, Mitsuba reads a colour bitmap's luminance, and swaps the colours of a checkerboard (3.9,
-// seen in its images).
+// Where a number is asked for, Mitsuba reads a colour bitmap's luminance and a colour's mean, and swaps the colours of
+// a checkerboard (3.9, seen in its images).
 Texture scalarTexture(Texture texture) {
   if (auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
     std::swap(board->color0, board->color1);
+    for (Rgb* color : {&board->color0, &board->color1}) color->fill(meanOf(*color));
   } else {
     auto& bitmap = std::get<BitmapTexture>(texture.kind).bitmap;
     if (bitmap->channels != 1) bitmap = std::make_shared<Bitmap>(luminanceOf(*bitmap));
@@ -184,10 +191,7 @@ uint32_t scalarTextureOf(LoadContext& context, uint32_t index) {
 TexturedFloat readTexturedFloat(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
   TexturedRgb color = readTextured(context, parameters, name, fallback, ColorRole::unbounded);
   if (color.texture != kNone) color.texture = scalarTextureOf(context, color.texture);
-  // A grey value is taken as it is, since the weighted sum would round it.
-  const double value = luminance(color.value[0], color.value[1], color.value[2]);
-  const bool grey = color.value[0] == color.value[1] && color.value[1] == color.value[2];
-  return {.value = grey ? color.value[0] : value, .texture = color.texture};
+  return {.value = meanOf(color.value), .texture = color.texture};
 }
 
 Rgb readConstantEmission(LoadContext& context, Parameters& parameters, std::string_view name) {

@@ -89,6 +89,19 @@ bool hasInverse(const Matrix4& m) {
   return isFinite(m) && std::abs(determinant) > kResidue * size && std::isfinite(1 / determinant);
 }
 
+bool isSimilarity(const Matrix4& m) {
+  // The columns, the images of the axes, are perpendicular and of one length.
+  constexpr double kTolerance = 1e-3;
+  const auto product = [&](size_t i, size_t j) { return m[0][i] * m[0][j] + m[1][i] * m[1][j] + m[2][i] * m[2][j]; };
+  const double length2 = (product(0, 0) + product(1, 1) + product(2, 2)) / 3;
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = i; j < 3; ++j) {
+      if (!(std::abs(product(i, j) - (i == j ? length2 : 0)) <= kTolerance * length2)) return false;
+    }
+  }
+  return true;
+}
+
 bool isIdentity(const Matrix4& m) { return m == identityMatrix(); }
 
 }  // namespace wavecrest

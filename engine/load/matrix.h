@@ -19,6 +19,9 @@ double determinant3(const Matrix4& m);  // of the linear part
 Matrix4 normalMatrix(const Matrix4& m);
 // Whether the linear part has an inverse, and both are numbers.
 bool hasInverse(const Matrix4& m);
+// Whether the linear part is a rotation, or a mirror image of one, times one scale, to within the rounding of numbers
+// in a file.
+bool isSimilarity(const Matrix4& m);
 bool isFinite(const Matrix4& m);
 bool isIdentity(const Matrix4& m);
 

@@ -1,5 +1,6 @@
 #include "engine/load/mesh_attributes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/load/values.h"
@@ -61,19 +62,29 @@ class AttributeSearch {
 
 }  // namespace
 
-int MeshAttribute::channelOf(std::string_view property, bool ofFaces) const {
+std::vector<AttributeFields> MeshAttribute::possibleFields() const {
   const size_t underscore = name.find('_');
-  if (name.empty() || ofFaces != perFace() || underscore == std::string::npos) return -1;
-  const std::string_view own = std::string_view(name).substr(underscore + 1);
-  constexpr std::string_view kColors = "rgb";
-  // The properties r, g and b are the channels of the attribute "color".
-  if (own == "color" && property.size() == 1 && kColors.find(property) != std::string_view::npos) {
-    return static_cast<int>(kColors.find(property));
+  if (underscore == std::string::npos) return {};
+  const std::string own = name.substr(underscore + 1);
+  const auto withEnds = [](const std::string& prefix, const char* ends) {
+    return AttributeFields{prefix + "_" + ends[0], prefix + "_" + ends[1], prefix + "_" + ends[2]};
+  };
+  // NAME_0 and so on. The attribute NAME_color has the properties NAME_r, NAME_g and NAME_b.
+  std::vector<AttributeFields> possible;
+  for (const char* ends : {"012", "xyz", "123"}) possible.push_back(withEnds(own, ends));
+  constexpr std::string_view kColor = "_color";
+  if (own.ends_with(kColor)) possible.push_back(withEnds(own.substr(0, own.size() - kColor.size()), "rgb"));
+  // The attribute "color" alone has names without an underscore.
+  if (own == "color") {
+    possible.push_back({"r", "g", "b"});
+    possible.push_back({"red", "green", "blue"});
   }
-  // Other attributes have properties with the number of the channel at the end: NAME_0, NAME_1 and NAME_2.
-  const bool matches = property.size() == own.size() + 2 && property.starts_with(own) && property[own.size()] == '_' &&
-                       property.back() >= '0' && property.back() <= '2';
-  return matches ? property.back() - '0' : -1;
+  return possible;
+}
+
+int MeshAttribute::channelOf(std::string_view property) const {
+  const auto field = std::ranges::find(fields, property);
+  return field == fields.end() ? -1 : static_cast<int>(field - fields.begin());
 }
 
 std::string meshAttributeOf(LoadContext& context, const XmlElement& shape) {

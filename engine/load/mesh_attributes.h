@@ -5,22 +5,31 @@
 // kernels look up is what the attribute says, and they need not know of attributes.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/load/parameters.h"
 
 namespace wavecrest {
 
+// Names of three properties of a mesh file.
+using AttributeFields = std::array<std::string, 3>;
+
 struct MeshAttribute {
   std::string name;  // vertex_NAME or face_NAME; empty: none is asked for
   size_t channels = 0;
-  std::vector<float> values;  // of all vertices or all triangles, one after the other
+  std::vector<float> values;    // of all vertices or all triangles, one after the other
+  AttributeFields fields{};     // the properties of the file that are the channels; empty until they are known
+  bool ofWholeNumbers = false;  // the file has integers
 
   bool perFace() const { return name.starts_with("face_"); }
-  // Channel of this attribute that a mesh file calls `property` ("color_0", or r, g and b of the color); -1: none.
-  int channelOf(std::string_view property, bool ofFaces) const;
+  // What a mesh file may call the channels, the most usual names first.
+  std::vector<AttributeFields> possibleFields() const;
+  // The channel that is in this property; -1: none.
+  int channelOf(std::string_view property) const;
 };
 
 // The attribute that the materials and the light of a shape refer to; empty if there is none.

@@ -161,7 +161,7 @@ Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& pla
             .triangles = std::move(soup.triangles)};
   // Move the mesh to world space. Triangles without area have no normal there and are dropped.
   placePositions(mesh.positions, placement.toWorld, where);
-  context.scene.droppedTriangles += dropTrianglesWithoutArea(mesh, soup.attribute);
+  context.scene.droppedTriangles += soup.droppedFaces + dropTrianglesWithoutArea(mesh, soup.attribute);
   // Take no normals, those of the file, or smooth ones. A normal of zero is missing and is replaced.
   if (placement.faceNormals) {
     mesh.normals.clear();

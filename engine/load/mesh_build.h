@@ -13,7 +13,8 @@ struct TriangleSoup {
   std::vector<Float3> normals;  // empty or one per position
   std::vector<Float2> uvs;      // empty or one per position
   std::vector<std::array<uint32_t, 3>> triangles;
-  MeshAttribute attribute;  // without values: none is asked for
+  MeshAttribute attribute;    // without values: none is asked for
+  uint64_t droppedFaces = 0;  // of fewer than three corners
 };
 
 struct MeshPlacement {
@@ -27,7 +28,7 @@ struct MeshPlacement {
 //  - without them, or with face_normals, the winding in world space decides, mirrored or not; smooth normals are made
 //    from it unless face_normals is set;
 //  - flip_normals turns both around.
-// Triangles without area are left out and counted in Scene::droppedTriangles.
+// Triangles without area are left out and counted in Scene::droppedTriangles, with the faces that the soup has dropped.
 // An attribute is baked: the bitmap becomes LoadContext::attributeBitmap.
 Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& placement, const SourceLocation& where);
 

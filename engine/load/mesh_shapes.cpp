@@ -6,6 +6,7 @@
 #include "engine/load/input_file.h"
 #include "engine/load/meshes_ahead.h"
 #include "engine/load/shapes.h"
+#include "engine/load/values.h"
 
 namespace wavecrest {
 
@@ -67,8 +68,12 @@ Geometry readPlyShape(LoadContext& context, Parameters& parameters, const Matrix
   const MeshPlacement placement = readPlacement(parameters, toWorld);
   const MeshFile file = meshFileOf(context, parameters);
   context.listFile(file.path);
-  return buildMesh(context, readPly(file.path, file.flipTexCoords, file.where, context.meshAttribute), placement,
-                   file.where);
+  TriangleSoup soup = readPly(file.path, file.flipTexCoords, file.where, context.meshAttribute);
+  if (soup.attribute.ofWholeNumbers) {
+    context.warn(file.where, "attribute " + inQuotes(context.meshAttribute) +
+                                 " has whole numbers, which are taken as they are; expected floats, with 1 for white");
+  }
+  return buildMesh(context, std::move(soup), placement, file.where);
 }
 
 Geometry readObjShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
@@ -88,8 +93,16 @@ Geometry readSerializedShape(LoadContext& context, Parameters& parameters, const
     if (!archive) archive = std::make_shared<const std::vector<char>>(readInputFile(path, file.where));
     mesh = readSerialized(*archive, path, file.index);
   }
-  // The file can ask for facets too. Its texture coordinates are flipped here, as readSerialized does not do it.
-  placement.faceNormals = placement.faceNormals || mesh->faceNormals;
+  // Files of 0.5 and 0.6 can ask for facets too. Mitsuba 3 does not look at what the mesh asks for.
+  if (mesh->faceNormals && !placement.faceNormals) {
+    if (parameters.object().legacy) {
+      placement.faceNormals = true;
+    } else {
+      context.note(file.where, "face normals that a serialized mesh asks for",
+                   "left out, as in Mitsuba 3: face_normals of the shape decides");
+    }
+  }
+  // readSerialized leaves the texture coordinates as they are.
   if (file.flipTexCoords) {
     for (Float2& uv : mesh->soup.uvs) uv[1] = 1 - uv[1];
   }

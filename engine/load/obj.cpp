@@ -1,5 +1,5 @@
 // Wavefront OBJ: v, vt, vn and f lines; every other line (groups, materials, smoothing) is skipped as in Mitsuba.
-#include <algorithm>
+#include <limits>
 #include <unordered_map>
 
 #include "engine/load/input_file.h"
@@ -76,42 +76,47 @@ class ObjReader {
     return static_cast<uint32_t>(index > 0 ? index - 1 : index + size);
   }
 
-  // A corner in one of the forms v, v/vt, v//vn and v/vt/vn.
+  // A corner in one of the forms v, v/vt, v//vn and v/vt/vn. An index that is missing after a slash is absent.
   Corner readCorner() {
     Corner corner;
     corner.position = readIndex(positions_.size(), "vertex");
     if (scanner_.peek() != '/') return corner;
     scanner_.advance(1);
-    if (scanner_.peek() != '/') corner.uv = readIndexHere(uvs_.size(), "texture coordinate");
+    if (scanner_.peek() != '/' && !atCornerEnd()) corner.uv = readIndex(uvs_.size(), "texture coordinate");
     if (scanner_.peek() != '/') return corner;
     scanner_.advance(1);
-    corner.normal = readIndexHere(normals_.size(), "normal");
+    if (!atCornerEnd()) corner.normal = readIndex(normals_.size(), "normal");
     return corner;
   }
-  // The index right after a slash. readIndex alone would skip white space and take the number of the next corner.
-  uint32_t readIndexHere(size_t count, const char* what) {
+  // readIndex would skip the white space and take the number of the next corner.
+  bool atCornerEnd() const {
     const char c = scanner_.peek();
-    if (c == ' ' || c == '\t' || c == '\r' || c == '\n')
-      scanner_.fail("index is missing; expected v, v/vt, v//vn or v/vt/vn");
-    return readIndex(count, what);
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
   }
 
-  // Cuts a polygon into a fan of triangles around its first corner.
+  // Cuts a polygon into a fan of triangles around its first corner. As in Mitsuba, faces of fewer corners are left out.
   void readFace() {
-    // The first corner of the face and its two latest ones.
+    // The first two corners become vertices with the third, which makes them a face.
+    Corner start[2];
+    // The vertices of the first corner and of the two latest ones.
     uint32_t fan[3] = {};
     size_t corners = 0;
-    for (; !scanner_.atLineEnd(); ++corners) {
-      fan[std::min<size_t>(corners, 2)] = vertexOf(readCorner());
-      const char next = scanner_.peek();
-      if (next != ' ' && next != '\t' && next != '\r' && next != '\n') {
-        scanner_.fail("face corner is malformed; expected v, v/vt, v//vn or v/vt/vn");
+    for (; !scanner_.atLineEnd() && scanner_.peek() != '#'; ++corners) {
+      const Corner corner = readCorner();
+      if (!atCornerEnd()) scanner_.fail("face corner is malformed; expected v, v/vt, v//vn or v/vt/vn");
+      if (corners < 2) {
+        start[corners] = corner;
+        continue;
       }
-      if (corners < 2) continue;
+      if (corners == 2) {
+        fan[0] = vertexOf(start[0]);
+        fan[1] = vertexOf(start[1]);
+      }
+      fan[2] = vertexOf(corner);
       triangles_.push_back({fan[0], fan[1], fan[2]});
       fan[1] = fan[2];
     }
-    if (corners < 3) scanner_.fail("face has " + std::to_string(corners) + " corners; expected at least 3");
+    if (corners < 3) ++droppedFaces_;
   }
 
   // The index of the vertex for a corner. Equal corners share one vertex.
@@ -126,6 +131,7 @@ class ObjReader {
   // Makes a vertex of each distinct corner. There are normals and texture coordinates if any corner has them.
   TriangleSoup assemble() {
     TriangleSoup soup;
+    soup.droppedFaces = droppedFaces_;
     soup.triangles = std::move(triangles_);
     soup.positions.reserve(corners_.size());
     for (const Corner& corner : corners_) {
@@ -139,6 +145,7 @@ class ObjReader {
 
   TextScanner scanner_;
   bool flipTexCoords_, hasUvs_ = false, hasNormals_ = false;
+  uint64_t droppedFaces_ = 0;
   std::vector<Float3> positions_, normals_;
   std::vector<Float2> uvs_;
   std::vector<Corner> corners_;

@@ -83,8 +83,9 @@ void checkRigid(const Matrix4& m, std::string_view whose, const SourceLocation& 
 }
 
 void checkPerpendicular(const Matrix4& m, std::string_view whose, const SourceLocation& where) {
-  // The columns are the images of the axes: none may be zero, and any two must be perpendicular.
-  constexpr double kTolerance = 1e-6;
+  // The columns are the images of the axes: none may be zero, and any two must be perpendicular. The tolerance leaves
+  // room for rounded numbers in the file.
+  constexpr double kTolerance = 1e-4;
   const auto product = [&](size_t i, size_t j) { return m[0][i] * m[0][j] + m[1][i] * m[1][j] + m[2][i] * m[2][j]; };
   for (size_t i = 0; i < 3; ++i) {
     for (size_t j = i; j < 3; ++j) {

@@ -132,23 +132,31 @@ bool isFinite(const float* values, int count) {
   return std::all_of(values, values + count, [](float v) { return std::isfinite(v); });
 }
 
-// Channel of the attribute that a property is, or -1.
-int attributeChannel(const MeshAttribute& attribute, const PlyProperty& property, bool ofFaces) {
-  const bool isReal = property.type == PlyType::float32 || property.type == PlyType::float64;
-  return property.isList || !isReal ? -1 : attribute.channelOf(property.name, ofFaces);
+// The property of that name, or nullptr. Lists do not count.
+const PlyProperty* propertyOf(const PlyElement& element, std::string_view name) {
+  const auto found = std::ranges::find_if(
+      element.properties, [&](const PlyProperty& property) { return !property.isList && property.name == name; });
+  return found == element.properties.end() ? nullptr : &*found;
 }
 
-// Sets attribute.channels: 3 if all three channels are present, 1 if only some are but the first is among them. Without
-// the first channel there is no attribute, and it stays 0.
+// Channel of the attribute that a property is, or -1.
+int attributeChannel(const MeshAttribute& attribute, const PlyProperty& property) {
+  return property.isList ? -1 : attribute.channelOf(property.name);
+}
+
+// Finds the properties that are the attribute. Sets attribute.channels: 3 if all three are present, 1 if only some are
+// but the first is among them. Without the first there is no attribute, and it stays 0.
 void startAttribute(const PlyElement& element, bool ofFaces, MeshAttribute& attribute) {
-  bool present[3] = {};
-  for (const PlyProperty& property : element.properties) {
-    const int channel = attributeChannel(attribute, property, ofFaces);
-    if (channel >= 0) present[channel] = true;
+  if (attribute.perFace() != ofFaces) return;
+  for (const AttributeFields& fields : attribute.possibleFields()) {
+    const PlyProperty* const first = propertyOf(element, fields[0]);
+    if (first == nullptr) continue;
+    attribute.fields = fields;
+    attribute.ofWholeNumbers = first->type != PlyType::float32 && first->type != PlyType::float64;
+    attribute.channels = propertyOf(element, fields[1]) != nullptr && propertyOf(element, fields[2]) != nullptr ? 3 : 1;
+    attribute.values.reserve(element.count * attribute.channels);
+    return;
   }
-  if (!present[0]) return;
-  attribute.channels = present[1] && present[2] ? 3 : 1;
-  attribute.values.reserve(element.count * attribute.channels);
 }
 
 // Adds the attribute of one vertex or triangle. `values` holds soup.attribute.channels numbers.
@@ -168,7 +176,7 @@ void readVertices(Source& source, const PlyElement& element, const SourceLocatio
   bool present[kRowSlots] = {};
   startAttribute(element, false, soup.attribute);
   for (const PlyProperty& property : element.properties) {
-    const int channel = attributeChannel(soup.attribute, property, false);
+    const int channel = attributeChannel(soup.attribute, property);
     slots.push_back(channel < 0 ? slotOf(property) : kAttributeSlot + channel);
     present[slots.back()] = true;
   }
@@ -284,7 +292,7 @@ void readFaces(Source& source, const PlyElement& element, uint64_t vertexCount, 
   for (uint64_t i = 0; i < element.count; ++i) {
     const size_t firstTriangle = soup.triangles.size();
     for (const PlyProperty& property : element.properties) {
-      if (const int channel = hasAttribute ? attributeChannel(soup.attribute, property, true) : -1; channel >= 0) {
+      if (const int channel = hasAttribute ? attributeChannel(soup.attribute, property) : -1; channel >= 0) {
         values[channel] = source.real(property.type);
       } else if (isIndices(property)) {
         readPolygon(source, property, vertexCount, soup);

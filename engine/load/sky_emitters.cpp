@@ -82,6 +82,7 @@ EmitterKind readSunsky(LoadContext& context, Parameters& parameters) {
   const bool legacy = parameters.object().legacy;
   const std::string_view type = parameters.object().get("type");
   const Matrix4 toWorld = parameters.transform("to_world").value_or(identityMatrix());
+  checkEnvironmentTransform(context, parameters, toWorld);
   SunskyEmitter sky{.turbidity = parameters.real("turbidity", 3),
                     .albedo = readAlbedo(context, parameters, legacy ? 0.2 : 0.3),
                     .sunDirection = readSunDirection(parameters, toWorld, legacy),

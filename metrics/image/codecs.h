@@ -15,7 +15,7 @@ using Bytes = std::span<const unsigned char>;
 // Each decodes a whole file from memory; path serves error messages only. Throws ImageError.
 ImageFile decodeExr(const std::string& path, Bytes bytes);
 ImageFile decodePfm(const std::string& path, Bytes bytes);
-ImageFile decodeHdr(const std::string& path, Bytes bytes);
+ImageFile decodeHdr(const std::string& path, Bytes bytes);  // pixels as stored, whatever ImageFile::exposure
 ImageFile decodePng(const std::string& path, Bytes bytes);
 
 Image decodeExrLayer(const std::string& path, Bytes bytes, const std::string& layer);

@@ -37,6 +37,7 @@ struct ImageFile {
   Image image;
   Encoding encoding = Encoding::linear;
   std::map<std::string, std::string> metadata;  // string attributes of an EXR header
+  double exposure = 1;  // of a Radiance file: what its pixels have been multiplied by, if that is above 0
 };
 
 // An image file that cannot be read or written. The text is complete: "FILE: what is wrong; what was expected".

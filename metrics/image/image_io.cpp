@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <string_view>
 
 #include "metrics/image/atomic_file.h"
@@ -37,9 +38,27 @@ std::string extensionOf(const std::string& path) {
   return extension;
 }
 
-[[noreturn]] void failFormat(const std::string& path, const std::string& extension, const std::string& expected) {
-  const std::string wrong = extension.empty() ? "has no file extension" : "unknown image format '" + extension + "'";
+[[noreturn]] void failFormat(const std::string& path, std::string_view extension, const std::string& expected) {
+  const std::string wrong =
+      extension.empty() ? "has no file extension" : "unknown image format '" + std::string(extension) + "'";
   throw ImageError(path, wrong, expected);
+}
+
+const Format& formatOf(const std::string& path, std::string_view extension) {
+  for (const Format& format : kFormats) {
+    if (format.extension == extension) return format;
+  }
+  failFormat(path, extension, "expected .exr, .pfm, .hdr or .png");
+}
+
+// Restores the light before it was multiplied by the exposure.
+void undoExposure(const std::string& path, ImageFile& file) {
+  if (file.exposure == 1) return;
+  if (!(file.exposure > 0) || !std::isfinite(file.exposure)) {
+    throw ImageError(path, "exposure in the header is not a number above 0",
+                     "expected EXPOSURE= and a positive number");
+  }
+  for (float& value : file.image.pixels) value = static_cast<float>(value / file.exposure);
 }
 
 // The list of formats that can be written.
@@ -68,10 +87,15 @@ const Writer& writerOf(const std::string& path) {
 }  // namespace
 
 ImageFile readImage(const std::string& path) {
-  const std::string extension = extensionOf(path);
-  for (const Format& format : kFormats)
-    if (format.extension == extension) return format.decode(path, readFileBytes(path));
-  failFormat(path, extension, "expected .exr, .pfm, .hdr or .png");
+  // An unknown extension is an error before the file is opened.
+  const Format& format = formatOf(path, extensionOf(path));
+  ImageFile file = format.decode(path, readFileBytes(path));
+  undoExposure(path, file);
+  return file;
+}
+
+ImageFile decodeImage(const std::string& path, std::string_view extension, std::span<const unsigned char> bytes) {
+  return formatOf(path, extension).decode(path, bytes);
 }
 
 Image readExrLayer(const std::string& path, const std::string& layer) {

@@ -1,4 +1,4 @@
-// Reading and writing image files. The format follows from the file's name: .exr .pfm .hdr .png.
+// Reading and writing image files. The format follows from the file's extension: .exr .pfm .hdr .png.
 //
 // Readers take any well-formed file of these formats and refuse everything else with one ImageError; they never trust a
 // size in a header before the file's length makes it plausible. Writers never leave a half-written file behind: they
@@ -9,6 +9,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "metrics/image/image.h"
@@ -17,8 +18,12 @@ namespace wavecrest {
 
 using Metadata = std::map<std::string, std::string>;
 
-// Three channels, top row first. Throws ImageError.
+// Three channels, top row first. The exposure of a Radiance file is undone. Throws ImageError.
 ImageFile readImage(const std::string& path);
+
+// The same of a file in memory, with the pixels of a Radiance file as stored. `extension` is that of the format, in
+// lower case with its dot; path serves error messages only.
+ImageFile decodeImage(const std::string& path, std::string_view extension, std::span<const unsigned char> bytes);
 
 // A named group of channels beside the main image of an EXR, e.g. "variance" -> variance.R, variance.G, variance.B.
 struct ExrLayer {

@@ -1,5 +1,5 @@
 // PFM (portable float map): a three-line text header, then floats from the bottom row up. "PF" is colour, "Pf" grey;
-// the third line's sign tells the byte order (negative: little-endian), its magnitude a scale that readers ignore.
+// the third line's sign tells the byte order (negative: little-endian), its magnitude is a factor of all numbers.
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -50,7 +50,8 @@ ImageFile decodePfm(const std::string& path, Bytes bytes) {
   if (magic != "PF" && magic != "Pf") throw ImageError(path, "not a PFM file", "expected it to start with PF or Pf");
   const uint64_t width = parseExtent(path, header.token());
   const uint64_t height = parseExtent(path, header.token());
-  const bool littleEndian = parseScale(path, header.token()) < 0;
+  const double signedScale = parseScale(path, header.token()), scale = std::abs(signedScale);
+  const bool littleEndian = signedScale < 0;
   const uint64_t fileChannels = magic == "PF" ? 3 : 1;
   // The first check bounds the size, so that the byte count of the second cannot overflow.
   checkSize(path, width, height, 0, 0);
@@ -67,6 +68,10 @@ ImageFile decodePfm(const std::string& path, Bytes bytes) {
     for (uint64_t i = 0; i < width * 3; ++i) {
       out[i] = floatAt(row + (fileChannels == 3 ? i : i / 3) * sizeof(float), littleEndian);
     }
+  }
+  // By 1, as nearly every file has it, numbers would not change.
+  if (scale != 1) {
+    for (float& value : file.image.pixels) value = static_cast<float>(value * scale);
   }
   return file;
 }

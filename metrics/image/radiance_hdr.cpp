@@ -18,7 +18,7 @@ constexpr const char* kExpected = "expected a Radiance RGBE picture";
 
 struct RadianceHeader {
   uint64_t width = 0, height = 0;
-  double exposure = 1;  // product of all EXPOSURE= lines: pixel values have been multiplied by it
+  double exposure = 1;  // product of all EXPOSURE= lines; 0 if one of them is no number
 };
 
 // The header up to the pixels. Throws ImageError for pixels that are not RGBE, and for other orientations.
@@ -35,8 +35,7 @@ RadianceHeader readHeader(const std::string& path, HeaderReader& reader) {
     if (line.rfind("EXPOSURE=", 0) == 0) {
       std::istringstream text(line.substr(9));
       double factor = 0;
-      if (!(text >> factor) || !(factor > 0) || !std::isfinite(factor))
-        throw ImageError(path, "bad header line " + quoted(line), "expected EXPOSURE= and a positive number");
+      if (!(text >> factor)) factor = 0;
       header.exposure *= factor;
     }
   }
@@ -133,11 +132,11 @@ ImageFile decodeHdr(const std::string& path, Bytes bytes) {
   ImageFile file;
   file.image = {static_cast<uint32_t>(header.width), static_cast<uint32_t>(header.height), 3, {}};
   file.image.pixels.reserve(header.width * header.height * 3);
-  // Decode line by line. Dividing by the exposure restores the light before it was scaled.
+  file.exposure = header.exposure;
   ScanLines lines(path, reader.rest(), header.width);
   for (uint64_t y = 0; y < header.height; ++y) {
     for (const auto& [r, g, b, e] : lines.next()) {
-      const double scale = e == 0 ? 0 : std::ldexp(1.0, int{e} - 136) / header.exposure;
+      const double scale = e == 0 ? 0 : std::ldexp(1.0, int{e} - 136);
       for (unsigned char mantissa : {r, g, b}) file.image.pixels.push_back(static_cast<float>(mantissa * scale));
     }
   }

@@ -33,6 +33,12 @@ TEST(Color, FloatIsGrey) {
   expectRgb(reflectanceOf(R"(<float name="reflectance" value="0.25"/>)"), {0.25, 0.25, 0.25}, 0);
 }
 
+TEST(Color, WhereANumberIsAskedForIsItsMean) {
+  const Scene scene = loadBody(R"(<shape type="sphere"><bsdf type="mask"><rgb name="opacity" value="0.3, 0.6, 0"/>
+      <bsdf type="diffuse"/></bsdf></shape>)");
+  EXPECT_NEAR(scene.materials.at(0).opacity->value, 0.3, 1e-15);
+}
+
 TEST(Color, SrgbHexIsDecoded) {
   // IEC 61966-2-1: 0x80 / 255 = 0.50196 decodes to 0.215861, below 0.04045 the curve is v / 12.92.
   expectRgb(reflectanceOf(R"(<srgb name="reflectance" value="#FF8005"/>)"), {1, 0.2158605, 5 / 255.0 / 12.92}, 1e-7);

@@ -133,6 +133,15 @@ TEST(SpotLight, LooksAlongItsTransform) {
   EXPECT_EQ(spot.direction, (Double3{0, -1, 0}));
 }
 
+TEST(SpotLight, ConeThatMitsubaDeformsIsNoted) {
+  const auto scene = [](const std::string& scale) {
+    return loadBody(R"(<emitter type="spot"><transform name="to_world"><scale )" + scale + "/></transform></emitter>");
+  };
+  ASSERT_EQ(scene(R"(x="2")").notes.size(), 1u);
+  EXPECT_NE(scene(R"(x="2")").notes[0].effect.find("stays circular"), std::string::npos);
+  EXPECT_TRUE(scene(R"(value="2")").notes.empty());
+}
+
 TEST(SpotLight, AnglesAreChecked) {
   expectEmitterError("spot", R"(<float name="cutoff_angle" value="91"/>)", "above 90 degrees");
   expectEmitterError("spot", R"(<float name="beam_width" value="30"/>)", "not below the cutoff_angle");
@@ -173,17 +182,33 @@ TEST(EnvironmentMap, KeepsPixelsScaleAndTransform) {
   EXPECT_EQ(sky.toWorld[0][0], -1);
 }
 
-TEST(EnvironmentMap, NegativeAndNonFinitePixelsAreErrors) {
+TEST(EnvironmentMap, NegativeAndNonFiniteValuesAreBlackAndCounted) {
   const Folder folder;
-  const std::string xml =
-      sceneXml(std::string(kSensor) + std::string(kSphere) +
-               "\n<emitter type=\"envmap\"><string name=\"filename\" value=\"sky.exr\"/></emitter>");
-  Image image{.width = 1, .height = 1, .channels = 3, .pixels = {1, -1, 1}};
-  writeExr((folder.path() / "sky.exr").string(), image);
-  expectError(folder, xml, 2, "negative pixels");
-  image.pixels[1] = NAN;
-  writeExr((folder.path() / "sky.exr").string(), image);
-  expectError(folder, xml, 2, "pixel (0, 0) is not finite");
+  writeExr((folder.path() / "sky.exr").string(),
+           {.width = 2, .height = 1, .channels = 3, .pixels = {1, -1, 1, NAN, 2, -3}});
+  const Scene scene = loadBody(folder, R"(<emitter type="envmap"><string name="filename" value="sky.exr"/></emitter>)");
+  EXPECT_EQ(std::get<EnvmapEmitter>(scene.emitters.at(0).kind).bitmap->pixels, (std::vector<float>{1, 0, 1, 0, 2, 0}));
+  ASSERT_EQ(scene.notes.size(), 2u);
+  EXPECT_EQ(scene.notes[0].what, "values in \"sky.exr\" that are not finite: 1");
+  EXPECT_EQ(scene.notes[1].what, "negative values in the environment \"sky.exr\": 2");
+}
+
+TEST(EnvironmentMap, MayScaleUnevenlyWithANoteButNotShearOrFlatten) {
+  const Folder folder;
+  writeExr((folder.path() / "sky.exr").string(), {.width = 1, .height = 1, .channels = 3, .pixels = {1, 1, 1}});
+  const auto withMatrix = [](std::string_view rows) {
+    return "\n<emitter type=\"envmap\"><string name=\"filename\" value=\"sky.exr\"/><transform name=\"to_world\">"
+           "<matrix value=\"" +
+           std::string(rows) + "\"/></transform></emitter>";
+  };
+  const Scene scene = loadBody(folder, withMatrix("2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"));
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_EQ(scene.notes[0].what, "environment whose to_world scales unevenly");
+  EXPECT_TRUE(loadBody(folder, withMatrix("-2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1")).notes.empty());
+  for (const char* rows : {"1 0.5 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "1 0 0 0 0 0 0 0 0 0 1 0 0 0 0 1"}) {
+    expectError(folder, sceneXml(std::string(kSensor) + std::string(kSphere) + withMatrix(rows)), 2,
+                "of the environment shears or flattens");
+  }
 }
 
 TEST(EnvironmentMap, MissingFileIsReportedWhereItIsNamed) {

@@ -1,4 +1,5 @@
 // Colours of vertices and faces, baked into a bitmap.
+#include <array>
 #include <cmath>
 
 #include "tests/load/scene_file.h"
@@ -64,6 +65,47 @@ TEST(MeshAttribute, MaterialOfTwoMeshesIsReadForEach) {
       <shape type="ply"><string name="filename" value="mesh.ply"/><ref id="m"/></shape>
       <shape type="ply"><string name="filename" value="mesh.ply"/><ref id="m"/></shape>)");
   EXPECT_NE(scene.shapes.at(0).material, scene.shapes.at(1).material);
+}
+
+// A triangle whose vertices have three more properties of a type; those of vertex 0 are 1, 2 and 3.
+std::string plyOf(const std::string& type, const std::array<const char*, 3>& names) {
+  std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  for (const char* name : names) header += "property " + type + " " + name + "\n";
+  return header +
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n3 0 1 2\n";
+}
+
+TEST(MeshAttribute, ChannelsHaveMitsubasNames) {
+  const struct {
+    std::array<const char*, 3> properties;
+    const char* attribute;
+  } cases[] = {{{"heat_0", "heat_1", "heat_2"}, "vertex_heat"},
+               {{"heat_1", "heat_2", "heat_3"}, "vertex_heat"},
+               {{"heat_x", "heat_y", "heat_z"}, "vertex_heat"},
+               {{"heat_r", "heat_g", "heat_b"}, "vertex_heat_color"},
+               {{"r", "g", "b"}, "vertex_color"},
+               {{"red", "green", "blue"}, "vertex_color"}};
+  for (const auto& [properties, attribute] : cases) {
+    const Folder folder;
+    folder.write("mesh.ply", plyOf("float", properties));
+    const Scene scene = loadBody(folder, plyWith(attribute));
+    const Bitmap& bitmap = *std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap;
+    ASSERT_EQ(bitmap.channels, 3u) << properties[0];
+    EXPECT_EQ(std::vector<float>(bitmap.pixels.begin(), bitmap.pixels.begin() + 3), (std::vector<float>{1, 2, 3}))
+        << properties[0];
+    EXPECT_TRUE(scene.warnings.empty());
+  }
+}
+
+TEST(MeshAttribute, WholeNumbersAreTakenAsTheyAreWithAWarning) {
+  const Folder folder;
+  folder.write("mesh.ply", plyOf("uchar", {"red", "green", "blue"}));
+  const Scene scene = loadBody(folder, plyWith("vertex_color"));
+  EXPECT_EQ(std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap->pixels.at(2), 3.0f);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("whole numbers"), std::string::npos);
 }
 
 TEST(MeshAttribute, WhatCannotBeIsRefused) {

@@ -64,6 +64,27 @@ TEST(Obj, OtherLinesAreSkipped) {
       1u);
 }
 
+TEST(Obj, IndexThatIsMissingAfterASlashIsAbsent) {
+  const std::string text = std::string(kQuad) + "vt 0.25 0.5\nvn 0 0.6 0.8\n";
+  for (const char* face : {"f 1/1/ 2/1/ 3/1/\n", "f 1/1 2/1 3/1/ \n"}) {
+    const Mesh mesh = meshOf(text + face);
+    EXPECT_EQ(mesh.uvs, (std::vector<Float2>(3, {0.25f, 0.5f}))) << face;
+    EXPECT_EQ(mesh.normals, (std::vector<Float3>(3, {0, 0, 1}))) << face;
+  }
+  EXPECT_TRUE(meshOf(text + "f 1/ 2/ 3/\n").uvs.empty());
+}
+
+TEST(Obj, FaceEndsAtAComment) { EXPECT_EQ(meshOf(std::string(kQuad) + "f 1 2 3 # 4 tail\n").triangles.size(), 1u); }
+
+TEST(Obj, FacesOfFewerThanThreeCornersAreDroppedAndCounted) {
+  const Folder folder;
+  folder.write("mesh.obj", std::string(kQuad) + "f 4 2\nf 1 2 3\nf\n");
+  const Scene scene = load(folder, sceneXml(R"(<shape type="obj"><string name="filename" value="mesh.obj"/></shape>)" +
+                                            std::string(kSensor)));
+  EXPECT_EQ(std::get<Mesh>(scene.shapes.at(0).kind).positions.size(), 3u);
+  EXPECT_EQ(scene.droppedTriangles, 2u);
+}
+
 TEST(Obj, ErrorsNameTheirLine) {
   expectObjError("v 0 0\n", 1, "too few numbers; expected 3");
   expectObjError("v 0 0 zero\n", 1, "bad number \"zero\"");
@@ -73,9 +94,7 @@ TEST(Obj, ErrorsNameTheirLine) {
   expectObjError(std::string(kQuad) + "f 1 2 -5\n", 5, "refers to vertex -5");
   expectObjError(std::string(kQuad) + "f 1/1 2/1 3/1\n", 5, "texture coordinate 1");
   expectObjError(std::string(kQuad) + "f 1//1 2 3\n", 5, "normal 1");
-  expectObjError(std::string(kQuad) + "f 1 2\n", 5, "face has 2 corners");
   expectObjError(std::string(kQuad) + "f 1 2 3x\n", 5, "face corner is malformed");
-  expectObjError(std::string(kQuad) + "f 1/ 2 3\n", 5, "index is missing");
   expectObjError(std::string(kQuad) + "f 1 2 99999999999999999999\n", 5, "bad integer");
 }
 

@@ -41,9 +41,22 @@ TEST(Serialized, ColorsAreSkipped) { expectQuad(serializedMesh(serializedQuad({.
 
 TEST(Serialized, NormalsThatAreMissingAreMade) { expectQuad(serializedMesh(serializedQuad({.normals = false}))); }
 
-TEST(Serialized, FacetsByFlagOrParameter) {
-  EXPECT_TRUE(serializedMesh(serializedQuad({.faceNormals = true})).normals.empty());
+TEST(Serialized, FacetsByParameterAndInOldScenesByFlag) {
   EXPECT_TRUE(serializedMesh(serializedQuad(), R"(<boolean name="face_normals" value="true"/>)").normals.empty());
+  const Folder folder;
+  folder.write("mesh.serialized", serializedQuad({.faceNormals = true}));
+  const auto sceneOf = [&](std::string_view version) {
+    return load(folder,
+                sceneXml(R"(<shape type="serialized"><string name="filename" value="mesh.serialized"/></shape>)" +
+                             std::string(kSensor),
+                         version));
+  };
+  const Scene old = sceneOf("0.6.0"), scene = sceneOf("3.0.0");
+  EXPECT_TRUE(std::get<Mesh>(old.shapes.at(0).kind).normals.empty());
+  EXPECT_TRUE(old.notes.empty());
+  EXPECT_FALSE(std::get<Mesh>(scene.shapes.at(0).kind).normals.empty());
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_EQ(scene.notes[0].what, "face normals that a serialized mesh asks for");
 }
 
 TEST(Serialized, ShapeIndexPicksTheMesh) {

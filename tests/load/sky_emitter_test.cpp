@@ -104,6 +104,8 @@ TEST(Sunsky, MistakesAreErrors) {
   expectSkyError(R"(<float name="sun_aperture" value="180"/>)", "below 180");
   expectSkyError(R"(<rgb name="albedo" value="2"/>)", "out of range");
   expectSkyError(R"(<integer name="month" value="13"/>)", "13");
+  expectSkyError(R"(<transform name="to_world"><matrix value="1 1 0 0 0 1 0 0 0 0 1 0 0 0 0 1"/></transform>)",
+                 "of the environment shears");
 }
 
 TEST(Sunsky, NotesWhatItLeavesOut) {

@@ -1,4 +1,6 @@
 // Textures: image files of each kind, their colour treatment, and the options of a bitmap.
+#include <cmath>
+
 #include "metrics/image/image_io.h"
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
@@ -68,6 +70,41 @@ TEST(Bitmap, JpegIsDecodedFromSrgb) {
   EXPECT_NEAR(right[2], 0.21586, 0.008);
 }
 
+TEST(Bitmap, FormatFollowsFromTheContent) {
+  const Folder folder;
+  writeExr((folder.path() / "a.png").string(), {.width = 1, .height = 1, .channels = 3, .pixels = {0.5f, 1, 0.25f}});
+  EXPECT_EQ(bitmapOf(folder, "a.png").bitmap->pixels, (std::vector<float>{0.5f, 1, 0.25f}));
+  writePng((folder.path() / "b").string(), Image8{.width = 1, .height = 1, .pixels = {255, 0, 0}});
+  EXPECT_EQ(bitmapOf(folder, "b").bitmap->pixels, (std::vector<float>{1, 0, 0}));
+}
+
+Scene sceneOfFile(const Folder& folder, std::string_view file) {
+  return loadBody(folder, material("<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" value=\"" +
+                                   std::string(file) + "\"/></texture>"));
+}
+
+TEST(Bitmap, ExposureOfARadiancePictureIsLeftOut) {
+  const Folder folder;
+  for (const char* exposure : {"2", "0", "nonsense"}) {
+    folder.write("a.hdr",
+                 "#?RGBE\nEXPOSURE=" + std::string(exposure) + "\n\n-Y 1 +X 1\n" + std::string("\x40\x20\0\x82", 4));
+    const Scene scene = sceneOfFile(folder, "a.hdr");
+    EXPECT_EQ(std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap->pixels, (std::vector<float>{1, 0.5f, 0}));
+    ASSERT_EQ(scene.notes.size(), 1u);
+    EXPECT_EQ(scene.notes[0].what, "EXPOSURE of a Radiance picture");
+  }
+}
+
+TEST(Bitmap, WhatIsNotFiniteIsBlackAndCounted) {
+  const Folder folder;
+  writeExr((folder.path() / "a.exr").string(),
+           {.width = 1, .height = 1, .channels = 3, .pixels = {0.5f, NAN, INFINITY}});
+  const Scene scene = sceneOfFile(folder, "a.exr");
+  EXPECT_EQ(std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap->pixels, (std::vector<float>{0.5f, 0, 0}));
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_EQ(scene.notes[0].what, "values in \"a.exr\" that are not finite: 2");
+}
+
 TEST(Bitmap, TopRowComesFirst) {
   const Folder folder;
   writePng((folder.path() / "two.png").string(), Image8{.width = 1, .height = 2, .pixels = {255, 255, 255, 0, 0, 0}});
@@ -116,6 +153,28 @@ TEST(Bitmap, IsFoundInASearchPath) {
   const std::string body =
       material(R"(<texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture>)");
   EXPECT_EQ(loadBody(folder, R"(<path value="images"/>)" + body).textures.size(), 1u);
+}
+
+TEST(Bitmap, LastSearchPathComesFirstAndTheScenesFolderLast) {
+  const Folder folder;
+  uint32_t width = 0;
+  for (const char* place : {".", "a", "b"}) {
+    std::filesystem::create_directories(folder.path() / place);
+    ++width;
+    writePng((folder.path() / place / "grey.png").string(),
+             Image8{.width = width, .height = 1, .pixels = std::vector<uint8_t>(size_t{3} * width, 9)});
+  }
+  const auto widthWith = [&](const std::string& paths) {
+    const Scene scene = loadBody(
+        folder,
+        paths +
+            material(
+                R"(<texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture>)"));
+    return std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap->width;
+  };
+  EXPECT_EQ(widthWith(""), 1u);
+  EXPECT_EQ(widthWith(R"(<path value="a"/>)"), 2u);
+  EXPECT_EQ(widthWith(R"(<path value="a"/><path value="b"/>)"), 3u);
 }
 
 void expectTextureError(const Folder& folder, std::string_view content, std::string_view text) {
@@ -298,6 +357,13 @@ TEST(Checkerboard, SwapsItsColoursWhereANumberIsAskedFor) {
   };
   EXPECT_EQ(firstColour(std::get<Diffuse>(scene.materials.at(0).kind).reflectance.texture), 0.4);
   EXPECT_EQ(firstColour(scene.materials.at(0).opacity->texture), 0.2);
+}
+
+TEST(Checkerboard, ColoursAreTheirMeansWhereANumberIsAskedFor) {
+  const Scene scene = loadBody(R"(<shape type="sphere"><bsdf type="mask"><texture type="checkerboard" name="opacity">
+      <rgb name="color0" value="0.3, 0.6, 0"/></texture><bsdf type="diffuse"/></bsdf></shape>)");
+  const auto& board = std::get<CheckerboardTexture>(scene.textures.at(scene.materials.at(0).opacity->texture).kind);
+  for (const double channel : board.color1) EXPECT_NEAR(channel, 0.3, 1e-15);
 }
 
 TEST(Texture, ToUvActsOnTextureCoordinates) {

@@ -239,6 +239,8 @@ TEST_F(CompareCommand, NoFileIsWrittenOverAnother) {
   EXPECT_EQ(runCompare({reference, test, "--map", files_.path("."), "--metrics", "rmse"}).exitCode, kExitUsage);
   EXPECT_EQ(runCompare({reference, test, "--html", test}).exitCode, kExitUsage);
   EXPECT_EQ(runCompare({reference, test, "--html", files_.path("absent/page.html")}).exitCode, kExitUsage);
+  EXPECT_EQ(runCompare({reference, test, "--map", test + "/maps"}).exitCode, kExitUsage) << "a file is no folder";
+  EXPECT_EQ(runCompare({reference, test, "--json", "--html", "-"}).exitCode, kExitUsage) << "both are for stdout";
   EXPECT_EQ(readImage(reference).image.width, 32u);
 }
 

@@ -87,6 +87,11 @@ TEST_F(ImageFiles, BigEndianPfmIsRead) {
   EXPECT_EQ(readImage(path("a.pfm")).image.pixels, (std::vector<float>{1, 2, -3}));
 }
 
+TEST_F(ImageFiles, ScaleOfAPfmIsAFactor) {
+  writeText("a.pfm", std::string("PF\n1 1\n2.5\n") + std::string("\x3f\x80\0\0\x40\0\0\0\xc0\x40\0\0", 12));
+  EXPECT_EQ(readImage(path("a.pfm")).image.pixels, (std::vector<float>{2.5f, 5, -7.5f}));
+}
+
 TEST_F(ImageFiles, PngKeepsEveryCode) {
   const Image8 image = test::patternImage(31, 9);
   writePng(path("a.png"), image);
@@ -136,11 +141,12 @@ TEST_F(ImageFiles, BadFilesAreNamedWithWhatIsWrong) {
   writeText("size.pfm", "PF\n-3 5\n-1\n");
   writeText("scale.pfm", "PF\n1 1\n0\nabcdefghijkl");
   writeText("huge.hdr", "#?RADIANCE\n\n-Y 100000 +X 1000\n");
+  writeText("black.hdr", "#?RGBE\nEXPOSURE=0\n\n-Y 1 +X 1\n" + std::string("\x40\x20\0\x82", 4));
   writeText("a.tif", "x");
   const std::pair<const char*, const char*> expected[] = {
       {"empty.exr", "OpenEXR"},   {"text.png", "PNG"},     {"short.pfm", "ends before"}, {"zero.pfm", "empty image"},
       {"huge.pfm", "at most"},    {"size.pfm", "'-3'"},    {"scale.pfm", "'0'"},         {"huge.hdr", "ends before"},
-      {"a.tif", "unknown image"}, {"none.exr", "No such"},
+      {"a.tif", "unknown image"}, {"none.exr", "No such"}, {"black.hdr", "exposure"},
   };
   for (const auto& [name, text] : expected) {
     const std::string message = complaint(name);
