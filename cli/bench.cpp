@@ -1,10 +1,12 @@
 // wavecrest bench: the options of all its modes, and which mode they ask for.
-#include <fmt/core.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "bench/json_text.h"
 #include "bench/machine/machine_record.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
@@ -40,8 +42,8 @@ std::vector<Method> benchMethods(const BenchOptions& options) {
 }
 
 void printBench(const BenchOptions& options, const std::string& text) {
-  // Tables on stdout would spoil the JSON there.
-  if (options.json == "-") return;
+  // Tables on stdout would spoil the JSON or the page there.
+  if (options.json == kStandardStream || options.html == kStandardStream) return;
   fmt::print("{}", text);
   // A measurement takes long, so each row is shown once it is there.
   std::fflush(stdout);
@@ -94,20 +96,87 @@ void writeBenchJson(const BenchOptions& options, const std::string& kind, const 
                                 {"commit", kCommit},
                                 {"machine", toJson(machineRecord())}};
   all.update(figures);
-  writeText(options.json, all.dump(2) + "\n");
+  writeText(options.json, jsonText(all, 2) + "\n");
 }
 
 namespace {
 
-// The first mode that was asked for runs. Throughput is the default.
+// A mode and the option that asks for it.
+struct BenchMode {
+  std::string_view option;
+  bool asked = false;
+  int (*run)(const BenchOptions&) = nullptr;
+};
+
+// The mode that was asked for; without an option, throughput. Two of them are a UsageError.
+BenchMode chosenMode(const BenchOptions& options) {
+  const BenchMode modes[] = {{"--compare", !options.compare.empty(), runBenchCompare},
+                             {"--against", !options.against.empty(), runBenchAgainst},
+                             {"--tradeoff", options.tradeoff, runBenchTradeoff},
+                             {"--scaling", options.scaling, runBenchScaling},
+                             {"--specialization", options.specialization, runBenchSpecialization},
+                             {"--score", !options.score.empty(), runBenchScore},
+                             {"--extremes", options.extremes, runBenchExtremes}};
+  BenchMode chosen{"", true, runBenchThroughput};
+  for (const BenchMode& mode : modes) {
+    if (!mode.asked) continue;
+    if (!chosen.option.empty()) {
+      throw UsageError(fmt::format("{} and {}: two modes; expected one of them", chosen.option, mode.option));
+    }
+    chosen = mode;
+  }
+  return chosen;
+}
+
+// An option that only some modes take.
+struct ModeOption {
+  std::string_view name;
+  bool given;  // with another value than the default, which fits every mode
+  std::vector<std::string_view> modes;
+};
+
+// Refuses options that the mode would ignore. Throws UsageError.
+void refuseOptionsOfOtherModes(const BenchOptions& options, std::string_view mode) {
+  const BenchOptions byDefault;
+  const std::vector<ModeOption> all = {
+      {"--family-level", options.familyLevel != byDefault.familyLevel, {"--against", "--compare"}},
+      {"--tolerance", options.tolerance != byDefault.tolerance, {"--against", "--compare"}},
+      {"--hashes", !options.hashes.empty(), {"--score"}},
+      {"--write-hashes", !options.writeHashes.empty(), {"--score"}},
+      {"--knobs", !options.knobs.empty(), {"--tradeoff"}},
+      {"--seeds", options.seeds != byDefault.seeds, {"--tradeoff"}},
+      {"--html", !options.html.empty(), {"--extremes", "--tradeoff"}}};
+  for (const ModeOption& option : all) {
+    const bool taken = std::find(option.modes.begin(), option.modes.end(), mode) != option.modes.end();
+    if (!option.given || taken) continue;
+    throw UsageError(fmt::format("{} goes with {}; expected {}", option.name, fmt::join(option.modes, " or "),
+                                 option.modes.size() == 1 ? "it" : "one of them"));
+  }
+  if (options.pin && !mode.empty()) {
+    throw UsageError("--pin goes with none of bench's other modes; expected it alone");
+  }
+  if (!options.writeHashes.empty() && !(options.hashes.empty() && options.json.empty())) {
+    throw UsageError("--write-hashes measures nothing; expected neither --hashes nor --json beside it");
+  }
+}
+
+// Checks all names of files before anything is measured. Throws UsageError.
+void checkBenchFiles(const BenchOptions& options) {
+  FileCheck files;
+  for (const std::string& scene : options.scenes) files.input("the scene", findScene(scene));
+  for (const std::string& result : options.compare) files.input("--compare", result);
+  if (!options.hashes.empty()) files.input("--hashes", options.hashes);
+  if (!options.json.empty()) files.output("--json", options.json);
+  if (!options.html.empty()) files.output("--html", options.html);
+  if (options.writeHashes == kStandardStream) throw UsageError("--write-hashes -: expected a file");
+  if (!options.writeHashes.empty()) files.output("--write-hashes", options.writeHashes);
+}
+
 int runBench(const BenchOptions& options) {
-  if (!options.compare.empty()) return runBenchCompare(options);
-  if (!options.against.empty()) return runBenchAgainst(options);
-  if (options.tradeoff) return runBenchTradeoff(options);
-  if (options.scaling) return runBenchScaling(options);
-  if (options.specialization) return runBenchSpecialization(options);
-  if (!options.score.empty()) return runBenchScore(options);
-  return runBenchThroughput(options);
+  const BenchMode mode = chosenMode(options);
+  refuseOptionsOfOtherModes(options, mode.option);
+  checkBenchFiles(options);
+  return mode.run(options);
 }
 
 }  // namespace
@@ -117,7 +186,9 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   const Command command = program.add("bench", "measure speed, where it goes, and what it buys");
   // Options of several modes.
   command.add("scenes", options->scenes, "built-in scenes or XML files; default: two Cornell boxes");
-  command.add("--methods", options->methods, "methods, separated by commas; default: all").separatedByCommas();
+  command.add("--methods", options->methods, "methods, separated by commas; default: all")
+      .separatedByCommas()
+      .repeatable();
   command.add("--duration", options->duration,
               "time per scene and method, about; default: 6s, of --against, --scaling and --specialization 20s, of "
               "--tradeoff 60s");
@@ -151,31 +222,13 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command
       .add("--knobs", options->knobs,
            "--tradeoff: settings to vary, separated by commas: precision,kernels; default: all")
-      .separatedByCommas();
+      .separatedByCommas()
+      .repeatable();
   command.add("--seeds", options->seeds, "--tradeoff: renders of each setting; default: 6").between(2, 1000);
   command.addFlag("--extremes", options->extremes, "take scenes and renders to their extremes, one property at a time");
-  command.add("--html", options->html, "--extremes, --tradeoff: write a page with plots");
-  command.run([options, &exitCode] {
-    // Options that do not go with the chosen mode are refused.
-    const bool throughput = !options->extremes && !options->scaling && !options->tradeoff && !options->specialization &&
-                            options->score.empty() && options->against.empty() && options->compare.empty();
-    if (options->pin && !throughput) throw UsageError("--pin goes with none of bench's other modes; expected it alone");
-    if (options->extremes) {
-      exitCode = runBenchExtremes(*options);
-      return;
-    }
-    if (!options->html.empty() && !options->tradeoff) {
-      throw UsageError("--html goes with --extremes or --tradeoff; expected one of them");
-    }
-    // Options of a single mode.
-    if ((!options->knobs.empty() || options->seeds != 0) && !options->tradeoff) {
-      throw UsageError("--knobs and --seeds go with --tradeoff; expected it");
-    }
-    if (options->score.empty() && !(options->hashes.empty() && options->writeHashes.empty())) {
-      throw UsageError("--hashes and --write-hashes go with --score; expected it");
-    }
-    exitCode = runBench(*options);
-  });
+  command.add("--html", options->html,
+              "--extremes, --tradeoff: write a page with plots; -: to stdout, instead of the tables");
+  command.run([options, &exitCode] { exitCode = runBench(*options); });
 }
 
 }  // namespace wavecrest

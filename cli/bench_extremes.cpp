@@ -1,20 +1,18 @@
 // wavecrest bench --extremes: every sweep of bench/extremes, as text, JSON and a page.
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "bench/extremes/extremes_report.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
+#include "cli/file_check.h"
 #include "engine/version.h"
-#include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
 
 int runBenchExtremes(const BenchOptions& options) {
-  if (!options.scenes.empty() || !options.methods.empty() || !options.size.empty() || !options.against.empty()) {
-    throw UsageError("--extremes has scenes, methods and sizes of its own; expected none");
+  if (!options.scenes.empty() || !options.methods.empty() || !options.size.empty() || !options.duration.empty()) {
+    throw UsageError("--extremes has scenes, methods, sizes and lengths of its own; expected none");
   }
   const std::vector<Sweep> sweeps = allSweeps();
   const uint32_t threads = benchThreads(options);
@@ -23,15 +21,11 @@ int runBenchExtremes(const BenchOptions& options) {
       {"version", kVersion}, {"commit", kCommit}, {"sweeps", nlohmann::ordered_json::array()}};
   for (const Sweep& sweep : sweeps) {
     results.push_back(runSweep(sweep, {.threads = threads}));
-    fmt::print("{}", toText(results.back()));
-    std::fflush(stdout);
+    printBench(options, toText(results.back()));
     all["sweeps"].push_back(toJson(results.back()));
   }
   writeBenchJson(options, "extremes", all);
-  if (!options.html.empty()) {
-    const std::string page = extremesPage(results);
-    writeFileAtomically(options.html, page);
-  }
+  if (!options.html.empty()) writeText(options.html, extremesPage(results));
   const bool passes = std::all_of(results.begin(), results.end(), [](const auto& result) { return result.passes(); });
   return passes ? kExitDone : kExitCheck;
 }

@@ -38,7 +38,7 @@ int runBenchSpecialization(const BenchOptions& options);
 int runBenchScore(const BenchOptions& options);
 int runBenchExtremes(const BenchOptions& options);
 
-// Shared by the modes. Tables go to stdout unless the JSON does.
+// Shared by the modes. Tables go to stdout unless the JSON or the page does.
 void printBench(const BenchOptions& options, const std::string& text);
 std::vector<std::filesystem::path> benchSceneFiles(const BenchOptions& options);
 std::vector<Method> benchMethods(const BenchOptions& options);

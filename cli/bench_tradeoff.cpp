@@ -6,7 +6,7 @@
 #include "bench/tradeoff/tradeoff.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
-#include "metrics/image/atomic_file.h"
+#include "cli/file_check.h"
 
 namespace wavecrest {
 namespace {
@@ -50,10 +50,7 @@ int runBenchTradeoff(const BenchOptions& options) {
     }
   }
   writeBenchJson(options, "tradeoff", all);
-  if (!options.html.empty()) {
-    const std::string page = tradePage(results);
-    writeFileAtomically(options.html, page);
-  }
+  if (!options.html.empty()) writeText(options.html, tradePage(results));
   return kExitDone;
 }
 

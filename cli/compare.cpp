@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/json_text.h"
 #include "cli/commands.h"
 #include "cli/compare_page.h"
 #include "cli/compare_results.h"
@@ -28,9 +29,8 @@ struct CompareOptions {
   std::vector<Option> thresholds;  // in the order of metricList()
   std::vector<double> limits;
 
-  // Scores go to stdout as text or as JSON, unless the page goes there: a page is alone on stdout.
-  bool printsText() const { return !json && html != "-"; }
-  bool printsJson() const { return json && html != "-"; }
+  // Whether scores go to stdout as text. JSON or a page is alone there.
+  bool printsText() const { return !json && html != kStandardStream; }
 };
 
 // Whether the threshold option of a metric was given; metric: its index in metricList().
@@ -109,8 +109,21 @@ std::vector<const Metric*> chosenMetrics(const CompareOptions& options, const Im
 
 // ---- what comes of it -----------------------------------------------------------------------------------------------
 
-// Checks that no output is an input or another output, before anything is measured.
+// Makes a folder for maps. Throws UsageError where that fails.
+void makeMapFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error) return;
+  throw UsageError(fmt::format("--map {}: cannot be made: {}; expected a folder that takes new files", folder.string(),
+                               error.message()));
+}
+
+// Makes the folders of maps, and checks that all outputs can be written and that none is an input or another output,
+// before anything is measured.
 void checkFiles(const CompareOptions& options, const std::vector<std::string>& labels) {
+  if (options.json && options.html == kStandardStream) {
+    throw UsageError("--json and --html -: both are for stdout; expected a file for the page");
+  }
   FileCheck files;
   files.input("REFERENCE", options.reference);
   for (const std::string& test : options.tests) files.input("TEST", test);
@@ -118,7 +131,9 @@ void checkFiles(const CompareOptions& options, const std::vector<std::string>& l
   if (options.mapFolder.empty()) return;
   for (const std::string& label : labels) {
     for (const Metric& metric : metricList()) {
-      files.laterOutput("--map", mapFile(options.mapFolder, label, labels.size() == 1, metric));
+      const std::filesystem::path file = mapFile(options.mapFolder, label, labels.size() == 1, metric);
+      makeMapFolder(file.parent_path());
+      files.output("--map", file);
     }
   }
 }
@@ -128,8 +143,6 @@ void writeMaps(const CompareOptions& options, const std::vector<MeasuredTest>& t
   for (const MeasuredTest& test : tests) {
     for (const Measured& score : test.scores) {
       const auto file = mapFile(options.mapFolder, test.label, tests.size() == 1, *score.metric);
-      std::error_code error;
-      std::filesystem::create_directories(file.parent_path(), error);
       const ShownMap map = showMap(score, test.codes.width, test.codes.height);
       writePng(file.string(), map.picture);
       if (options.printsText()) fmt::print("map {}: 0 to {:.6g}\n", file.string(), map.range);
@@ -192,7 +205,7 @@ int compare(const CompareOptions& options) {
   }
   // Shows scores, maps and page.
   if (options.printsText()) printText(tests);
-  if (options.printsJson()) fmt::print("{}\n", toJson(tests).dump(2));
+  if (options.json) fmt::print("{}\n", jsonText(toJson(tests), 2));
   if (!options.mapFolder.empty()) writeMaps(options, tests);
   if (!options.html.empty()) writeText(options.html, comparePage(options.reference, reference.image().codes, tests));
   // Checks all tests, also after one that fails.

@@ -7,6 +7,7 @@
 #include "bench/campaign/file_lock.h"
 #include "bench/campaign/run_campaign.h"
 #include "bench/campaign/scene_reference.h"
+#include "bench/json_text.h"
 #include "bench/live/campaign_view.h"
 #include "bench/report/results_folder.h"
 #include "bench/results/read_results.h"
@@ -49,7 +50,7 @@ void showPlan(ProgressKind kind, const CampaignPlan& plan) {
                        {"render_seconds", plan.renderSeconds},
                        {"unreferenced", plan.unreferenced},
                        {"reference_seconds", plan.referenceSeconds}};
-    tell("{}", line.dump());
+    tell("{}", jsonText(line));
     return;
   }
   std::string text = fmt::format("{} runs, {} of them done", plan.runs, plan.done);
@@ -67,7 +68,7 @@ void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& pr
                  {"scene", run.scene},          {"method", run.method},    {"seed", run.seed},
                  {"state", toString(run.state)}};
     if (!run.snapshots.empty()) line["values"] = run.snapshots.back().values;
-    tell("{}", line.dump());
+    tell("{}", jsonText(line));
     return;
   }
   // As text, only the scores that most readers want.
@@ -134,7 +135,7 @@ int runConverge(ConvergeOptions options) {
                             .say =
                                 [&](const std::string& line) {
                                   if (kind == ProgressKind::jsonl) {
-                                    tell("{}", json{{"message", line}}.dump());
+                                    tell("{}", jsonText(json{{"message", line}}));
                                   } else if (kind != ProgressKind::none) {
                                     tell("{}", line);
                                   }
@@ -167,7 +168,8 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   // What the campaign is: stored with the results, and compared with them by --resume.
   defining("scenes", "built-in scenes or XML files; default: the nine");
   defining("--methods", "methods, separated by commas; also mlt-pathspace, mlt-pssmlt, ppm-direct; default: all")
-      .separatedByCommas();
+      .separatedByCommas()
+      .repeatable();
   defining("--profile", "quick, standard, study or paper; default: quick").oneValue();
   defining("--time", "render time of each run; default: the profile's").oneValue();
   defining("--time-factor", "multiplies the profile's run times, as 0.25").oneValue();
@@ -185,7 +187,8 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
            "light paths of an iteration of ppm, bpm and vcm; default: the profile's, or as many as pixels")
       .oneValue();
   defining("--mlt", "rows of mlt: pathspace, mmlt, pssmlt, separated by commas; default: the profile's")
-      .separatedByCommas();
+      .separatedByCommas()
+      .repeatable();
   command.addFlag("--direct-pass", options->directPass, "ppm also with direct light by next event estimation");
   defining("--clock", "what a run is charged: wall, or cpu time over threads; both are stored; default: wall")
       .oneValue();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "bench/json_text.h"
 #include "cli/commands.h"
 #include "cli/scene_options.h"
 #include "engine/inspect/inspection.h"
@@ -118,7 +119,7 @@ int runInspect(const InspectOptions& options) {
   const SceneInspection facts = inspectScene(scene, settings);
   // Output: one JSON object, or text.
   if (options.json) {
-    fmt::print("{}\n", inspectionJson(scene, facts).dump(2));
+    fmt::print("{}\n", jsonText(inspectionJson(scene, facts), 2));
     return kExitDone;
   }
   printFacts(scene, facts);

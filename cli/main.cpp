@@ -23,6 +23,7 @@
 #include "engine/version.h"
 #include "library/translate.h"
 #include "metrics/image/image.h"
+#include "scenes/scene_list.h"
 
 namespace wavecrest {
 namespace {
@@ -45,6 +46,8 @@ int report(const std::exception_ptr& thrown) {
   } catch (const LoadError& error) {
     return line(kExitInput, error.what());
   } catch (const SceneError& error) {
+    return line(kExitInput, error.what());
+  } catch (const SceneFolderError& error) {
     return line(kExitInput, error.what());
   } catch (const ImageError& error) {
     return line(kExitInput, error.what());

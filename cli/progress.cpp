@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "bench/json_text.h"
 #include "cli/messages.h"
 
 namespace wavecrest {
@@ -34,7 +35,7 @@ size_t barWidth() {
 
 void noteLine(ProgressKind kind, const nlohmann::ordered_json& line, const std::string& text) {
   if (kind == ProgressKind::none) return;
-  writeStderr(kind == ProgressKind::jsonl ? line.dump() + "\n" : "wavecrest: " + text + "\n");
+  writeStderr(kind == ProgressKind::jsonl ? jsonText(line) + "\n" : "wavecrest: " + text + "\n");
 }
 
 void warn(ProgressKind kind, const std::string& text) {
@@ -99,7 +100,7 @@ void WritingProgress::show(double fraction) {
   next_ = now + kInterval;
   shown_ = true;
   if (kind_ == ProgressKind::jsonl) {
-    tell("{}", nlohmann::ordered_json{{"writing", file_}, {"fraction", fraction}}.dump());
+    tell("{}", jsonText(nlohmann::ordered_json{{"writing", file_}, {"fraction", fraction}}));
   } else {
     writeStderr(fmt::format("\rwriting {} {:5.1f} % ", file_, fraction * 100));
   }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "bench/json_text.h"
 #include "bench/recommend/recommend.h"
 #include "cli/commands.h"
 #include "cli/scene_options.h"
@@ -56,7 +57,7 @@ void runRecommend(const RecommendOptions& options) {
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   const Recommendation result = recommend(scene, settings, request);
   // Output: JSON, or a paragraph and a table.
-  fmt::print("{}", options.json ? toJson(result).dump(2) + "\n" : toText(result));
+  fmt::print("{}", options.json ? jsonText(toJson(result), 2) + "\n" : toText(result));
 }
 
 }  // namespace
@@ -67,7 +68,9 @@ void addRecommendCommand(CommandLine& program, int& exitCode) {
   addSceneOptions(command, options->scene);
   command.add("--target-ssim", options->targetSsim, "quality to get to").showDefault().between(0.01, 0.9999);
   command.add("--budget", options->budget, "render time of the pilots together").showDefault();
-  command.add("--methods", options->methods, "methods, separated by commas; default: all").separatedByCommas();
+  command.add("--methods", options->methods, "methods, separated by commas; default: all")
+      .separatedByCommas()
+      .repeatable();
   command.add("--clock", options->clock, "what a second is: wall, or cpu over threads for a busy machine")
       .showDefault();
   command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "cli/messages.h"
 #include "cli/scene_options.h"
 #include "engine/inspect/path_classes.h"
+#include "engine/plan/render_plan.h"
 #include "library/option_values.h"
 #include "scenes/scene_list.h"
 
@@ -38,18 +40,39 @@ struct ReferenceOptions {
   bool quiet = false;
 };
 
-// One line for each look at the goal. On a terminal it overwrites the line before.
-void showAdvance(ProgressKind kind, const ReferenceInfo& info) {
-  if (kind == ProgressKind::none) return;
-  if (kind == ProgressKind::jsonl) {
-    tell(R"({{"render_seconds":{:.3f},"iterations":{},"relative_error":{:.6g}}})", info.renderSeconds, info.iterations,
-         info.relativeError);
-    return;
+// One line for each look at the goal. On a terminal it overwrites the line before, until end().
+class AdvanceLine {
+ public:
+  explicit AdvanceLine(ProgressKind kind)
+      : kind_(kind),
+        overwrites_(kind == ProgressKind::bar || (kind == ProgressKind::automatic && isatty(STDERR_FILENO) != 0)) {}
+  ~AdvanceLine() { end(); }
+  AdvanceLine(const AdvanceLine&) = delete;
+  AdvanceLine& operator=(const AdvanceLine&) = delete;
+
+  void show(const ReferenceInfo& info) {
+    if (kind_ == ProgressKind::none) return;
+    if (kind_ == ProgressKind::jsonl) {
+      tell(R"({{"render_seconds":{:.3f},"iterations":{},"relative_error":{:.6g}}})", info.renderSeconds,
+           info.iterations, info.relativeError);
+      return;
+    }
+    writeStderr(fmt::format("{}{:8.1f} s  {:8} iterations of each half  relative error {:.4f}{}",
+                            overwrites_ ? "\r" : "", info.renderSeconds, info.iterations, info.relativeError,
+                            overwrites_ ? " " : "\n"));
+    open_ = overwrites_;
   }
-  const bool bar = kind == ProgressKind::bar || isatty(STDERR_FILENO) != 0;
-  writeStderr(fmt::format("{}{:8.1f} s  {:8} iterations of each half  relative error {:.4f}{}", bar ? "\r" : "",
-                          info.renderSeconds, info.iterations, info.relativeError, bar ? " " : "\n"));
-}
+  // Ends the line, so that other output begins a new one.
+  void end() {
+    if (open_) writeStderr("\n");
+    open_ = false;
+  }
+
+ private:
+  const ProgressKind kind_;
+  const bool overwrites_;
+  bool open_ = false;
+};
 
 // The method that was named, or the one that suits the scene's path classes (METHODS 8.3).
 ReferenceChoice chosenMethod(const ReferenceOptions& options, const Scene& scene) {
@@ -67,6 +90,10 @@ RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, 
   settings.seed = options.seed;
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
+  if (options.radius != kReferenceRadius && !mergesPaths(method)) {
+    throw UsageError(
+        fmt::format("--radius: {} does not merge; expected {}", toString(method), methodsWith(mergesPaths)));
+  }
   settings.radius = options.radius;
   return settings;
 }
@@ -84,6 +111,37 @@ ReferenceGoal goalOf(const ReferenceOptions& options) {
     goal.iterations = 1;  // what the larger one has is enough
   }
   return goal;
+}
+
+// The reference of --agree-with, which has to be comparable with one of the scene. Null where the option was not given.
+std::unique_ptr<const Reference> otherReference(const ReferenceOptions& options, const Scene& scene) {
+  if (options.agreeWith.empty()) return nullptr;
+  auto other = std::make_unique<const Reference>(readReference(options.agreeWith));
+  const FilmArea film = filmArea(scene.film);
+  if (other->mean.width != film.width || other->mean.height != film.height) {
+    throw InputError(fmt::format("{}: is {}x{} pixels; expected {}x{}", options.agreeWith, other->mean.width,
+                                 other->mean.height, film.width, film.height));
+  }
+  try {
+    compareReferences(*other, *other);  // has the same needs as the comparison with what will be rendered
+  } catch (const ReferenceComparisonError& error) {
+    throw InputError(fmt::format("{}: {}", options.agreeWith, error.what()));
+  }
+  return other;
+}
+
+// Prints how good the reference is.
+void showReference(const std::string& output, const Reference& reference, ProgressKind kind) {
+  fmt::print("{}: {} iterations of each half, {:.1f} s, relative error {:.5f}\n", output, reference.info.iterations,
+             reference.info.renderSeconds, reference.info.relativeError);
+  for (const auto& [name, value] : reference.noiseFloors) fmt::print("noise floor {:8} {:.6g}\n", name, value);
+  if (reference.info.isBiased()) {
+    fmt::print("biased by merging within {:g} of the scene's radius; compare it with one of half of that\n",
+               reference.info.radius);
+  }
+  for (const std::string& floor : unmetFloors(reference.noiseFloors)) {
+    warn(kind, fmt::format("{}: {}; render it for longer", output, floor));
+  }
 }
 
 // Only EXR has layers for the difference of the halves.
@@ -106,9 +164,8 @@ int runReference(const ReferenceOptions& options) {
   if (!options.agreeWith.empty()) files.input("--agree-with", options.agreeWith);
   if (!options.larger.empty()) files.input("--from", options.larger);
   const ReferenceGoal goal = goalOf(options);
-  const auto kind = options.quiet
-                        ? ProgressKind::none
-                        : static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  const auto asked = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  const ProgressKind kind = options.quiet ? ProgressKind::none : asked;
   // Loads the scene and chooses the method.
   InterruptGuard guard("wavecrest: interrupted while loading; " + output + " is as it was");
   const Scene scene = loadScene(options.scene, kind);
@@ -116,12 +173,14 @@ int runReference(const ReferenceOptions& options) {
   for (const std::string& file : scene.files) files.input("the scene", file);
   const ReferenceChoice method = chosenMethod(options, scene);
   const RenderSettings settings = settingsFor(options, scene, method.method);
+  const std::unique_ptr<const Reference> other = otherReference(options, scene);
   noteLine(kind, {{"method", toString(method.method)}, {"reason", method.reason}},
            fmt::format("{} by {}: {}", scene.name, toString(method.method), method.reason));
 
   // SIGUSR1 interrupts one half. The request waits in saveNow until both halves have the same number of iterations, as
   // only then can the reference be saved.
   bool saveNow = false;
+  AdvanceLine line(kind);
   const ReferenceHooks hooks{.session = {.watch = [&](Session* session) { guard.watch(session); },
                                          .goesOn =
                                              [&] {
@@ -133,30 +192,21 @@ int runReference(const ReferenceOptions& options) {
                                          .idle = [&](bool idle) { guard.setIdle(idle); }},
                              .stopped = [&] { return guard.interrupted(); },
                              .saveNow = [&] { return std::exchange(saveNow, false) || guard.takeSaveRequest(); },
-                             .advance = [&](const ReferenceInfo& info) { showAdvance(kind, info); }};
+                             .advance = [&](const ReferenceInfo& info) { line.show(info); }};
   try {
     if (!options.larger.empty()) beginReference(scene, settings, options.larger, output);
     // Renders both halves. renderReference writes the file, also after a signal.
     const Reference reference = renderReference(scene, settings, method.reason, goal, output, hooks);
+    line.end();
     if (reference.info.iterations == 0) {
       tell("wavecrest: interrupted before anything was rendered; no reference was written");
       return kExitInterrupted;
     }
     if (!options.compact.empty() && !guard.interrupted()) writeCompactReference(options.compact, reference);
-    // Shows how good the reference is.
-    fmt::print("{}: {} iterations of each half, {:.1f} s, relative error {:.5f}\n", output, reference.info.iterations,
-               reference.info.renderSeconds, reference.info.relativeError);
-    for (const auto& [name, value] : reference.noiseFloors) fmt::print("noise floor {:8} {:.6g}\n", name, value);
-    if (reference.info.isBiased()) {
-      fmt::print("biased by merging within {:g} of the scene's radius; compare it with one of half of that\n",
-                 reference.info.radius);
-    }
-    for (const std::string& floor : unmetFloors(reference.noiseFloors)) {
-      warn(kind, fmt::format("{}: {}; render it for longer", output, floor));
-    }
+    showReference(output, reference, kind);
     // Checks it against another reference of the scene.
-    if (!options.agreeWith.empty() && !guard.interrupted()) {
-      const Agreement agreement = compareReferences(reference, readReference(options.agreeWith));
+    if (other && !guard.interrupted()) {
+      const Agreement agreement = compareReferences(reference, *other);
       fmt::print("{} and {} {}\n", output, options.agreeWith, agreement.describe());
       if (!agreement.agrees()) {
         tell("wavecrest: check failed: {} and {} are of different truths", output, options.agreeWith);

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -74,6 +75,13 @@ void goOn(const std::unique_ptr<Checkpoint>& earlier, const CheckpointOptions& o
                                    : ": there is none yet; begins from the start"));
 }
 
+// Paths of so many iterations, or the largest number where they are more.
+uint64_t pathsOf(uint64_t iterations, const FilmArea& film) {
+  constexpr uint64_t kMost = std::numeric_limits<uint64_t>::max();
+  const uint64_t pixels = film.pixels.size();
+  return iterations > kMost / pixels ? kMost : iterations * pixels;
+}
+
 // Renders to the end or to a signal. Snapshots and requested saves are written on the way.
 Ending render(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
               std::optional<UntilGoal>& until, ProgressKind kind, InterruptGuard& guard, RenderOutputs& outputs,
@@ -86,14 +94,14 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
     if (stopped) return false;
     const bool save = guard.takeSaveRequest();
     if (guard.takePauseRequest() || save) outputs.writeCheckpoint(session);
-    if (save && session.statistics().paths > 0) outputs.write(session);
+    if (save && session.statistics().paths > 0) outputs.save(session);
     guard.goOn();
     return true;
   };
   // From here on signals interrupt the session.
   guard.watch(&live.interruptible(session));
   std::optional<uint64_t> goalPaths;
-  if (settings.iterations) goalPaths = *settings.iterations * session.film().area().pixels.size();
+  if (settings.iterations) goalPaths = pathsOf(*settings.iterations, session.film().area());
   {
     // Progress lives in a block of its own: its end completes the line on the terminal.
     const Progress progress(kind, session, settings.seconds, goalPaths);

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "kernels/sampling/sampler.h"
+
 namespace wavecrest {
 
 void addRenderOptions(const Command& command, RenderOptions& options) {
@@ -44,7 +46,7 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command
       .add("--light-paths", options.lightPaths,
            "light paths of an iteration of ppm, bpm or vcm; default: as many as pixels")
-      .between(1, int64_t{1} << 32);
+      .between(1, int64_t{kMostPaths});
   command
       .add("--connection-roulette", options.connectionRoulette,
            "bpt, vcm: join connections below this part of a typical pixel's brightness by chance; 0: join all")

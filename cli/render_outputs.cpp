@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <charconv>
+#include <exception>
 #include <filesystem>
 
 #include "bench/campaign/render_stats.h"
 #include "bench/checkpoint/checkpoint.h"
 #include "bench/film_image.h"
+#include "bench/json_text.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/messages.h"
@@ -69,12 +71,13 @@ void checkOutputs(const OutputNames& names, const std::vector<std::string>& inpu
   }
 }
 
-// A file that cannot be written is reported and remembered, but does not end the render.
+// A file that cannot be written is reported and remembered, but does not end the render, nor keep others from being
+// written.
 template <class Step>
 void RenderOutputs::attempt(Step step) {
   try {
     step();
-  } catch (const ImageError& error) {
+  } catch (const std::exception& error) {
     tell("wavecrest: error: {}", error.what());
     failed_ = true;
   }
@@ -93,10 +96,20 @@ void RenderOutputs::writeSnapshot(const Session& session, unsigned number) {
   failed_ |= failedBefore;
 }
 
-void RenderOutputs::write(const Session& session) {
+void RenderOutputs::write(const Session& session) { write(session, names_.stats); }
+
+// Stdout takes one JSON object, the last.
+void RenderOutputs::save(const Session& session) {
+  write(session, names_.stats == kStandardStream ? "" : names_.stats);
+}
+
+void RenderOutputs::write(const Session& session, const std::string& statsFile) {
   // The statistics go into the images as attributes, and into a file of their own.
-  nlohmann::ordered_json all = stats(session.statistics());
-  if (!until_.is_null()) all["until"] = until_;
+  nlohmann::ordered_json all;
+  attempt([&] {
+    all = stats(session.statistics());
+    if (!until_.is_null()) all["until"] = until_;
+  });
   const Metadata metadata = statsMetadata(all);
   const Image image = names_.images.empty() ? Image() : filmImage(session);
   for (const std::string& name : names_.images) {
@@ -105,7 +118,7 @@ void RenderOutputs::write(const Session& session) {
       writeImage(name, image, metadata, [&](double fraction) { progress.show(fraction); });
     });
   }
-  if (!names_.stats.empty()) attempt([&] { writeText(names_.stats, all.dump(2) + "\n"); });
+  if (!statsFile.empty() && !all.is_null()) attempt([&] { writeText(statsFile, jsonText(all, 2) + "\n"); });
 }
 
 void RenderOutputs::writeCheckpoint(const Session& session) {

@@ -36,8 +36,10 @@ class RenderOutputs {
       : names_(names), scene_(scene), settings_(settings), loadSeconds_(loadSeconds), kind_(kind) {}
 
   void writeSnapshot(const Session& session, unsigned number);
-  // Images and statistics as they are now. May be called again later.
+  // Images and statistics at the end of the render.
   void write(const Session& session);
+  // Images and statistics so far, while the render goes on; no statistics on stdout.
+  void save(const Session& session);
   // The checkpoint, if one was asked for and there are paths to keep.
   void writeCheckpoint(const Session& session);
   // Takes over what writeCheckpoint has noted of an earlier part of the render.
@@ -54,6 +56,7 @@ class RenderOutputs {
  private:
   nlohmann::ordered_json stats(const RenderStatistics& statistics) const;
   double wallSeconds() const;
+  void write(const Session& session, const std::string& statsFile);  // statsFile: empty for none
   // Runs a step that writes one file.
   template <class Step>
   void attempt(Step step);

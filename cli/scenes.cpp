@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "bench/json_text.h"
 #include "cli/commands.h"
 #include "scenes/scene_list.h"
 
@@ -24,7 +25,7 @@ void addScenesCommand(CommandLine& program, int&) {
                      {"description", scene.description},
                      {"file", findScene(std::string(scene.name)).string()}});
     }
-    fmt::print("{}\n", all.dump(2));
+    fmt::print("{}\n", jsonText(all, 2));
   });
 }
 

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "bench/claims/judge_claims.h"
+#include "bench/json_text.h"
 #include "bench/report/results_folder.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
@@ -256,11 +257,23 @@ CampaignSettings begunCampaign(CampaignOptions& options) {
       throw UsageError(fmt::format("{}: unknown; expected one of {}", name, fmt::join(kDefiningOptions, ", ")));
     }
     if (words.empty()) throw UsageError(fmt::format("{}: has no value; expected at least one", name));
+    for (const std::string& word : words) {
+      if (!isUtf8(word)) throw UsageError(fmt::format("{} {}: is no UTF-8; expected it in results", name, word));
+    }
   }
   // The settings say where the results file is.
   CampaignSettings settings = campaignSettings(options);
   const fs::path results = resultsFile(settings);
-  if (!fs::exists(results)) return settings;
+  std::error_code error;
+  const bool begun = fs::exists(results, error);
+  if (error) {
+    throw UsageError(fmt::format("--out {}: {}; expected a folder that can be read and written", settings.out.string(),
+                                 error.message()));
+  }
+  if (!begun) {
+    refuseUnusedWords(options.defining, settings);
+    return settings;
+  }
   if (!options.resume) {
     throw UsageError(fmt::format("{} exists; expected --resume to go on with it, or another --out", results.string()));
   }

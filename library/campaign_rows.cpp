@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "kernels/sampling/sampler.h"
 #include "library/errors.h"
 #include "library/option_values.h"
 
@@ -91,10 +93,42 @@ void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSett
   // An option is stronger than the profile's choice.
   if (profile.lightPaths != 0) render.lightPaths = profile.lightPaths;
   if (const auto* paths = given(words, "--light-paths")) {
-    render.lightPaths = parseNumber("--light-paths", paths->front(), uint64_t{1}, uint64_t{1} << 32);
+    render.lightPaths = parseNumber("--light-paths", paths->front(), uint64_t{1}, uint64_t{kMostPaths});
   }
   if (const auto* clock = given(words, "--clock")) {
     render.clock = static_cast<ClockKind>(parseChoice("--clock", clock->front(), kClockNames));
+  }
+}
+
+void refuseUnusedWords(const CampaignWords& words, const CampaignSettings& settings) {
+  const auto anyRow = [&](const auto& test) {
+    return std::any_of(settings.methods.begin(), settings.methods.end(), test);
+  };
+  // Options of merging methods.
+  const RenderSettings byDefault;
+  const std::pair<const char*, bool> merging[] = {
+      {"--radius", settings.render.radius != byDefault.radius},
+      {"--radius-alpha", settings.render.radiusAlpha != byDefault.radiusAlpha},
+      {"--light-paths", given(words, "--light-paths") != nullptr}};
+  const bool merges = anyRow([](const CampaignMethod& row) { return mergesPaths(row.method); });
+  for (const auto& [name, chosen] : merging) {
+    if (!chosen || merges) continue;
+    throw UsageError(fmt::format("{}: no method of the campaign merges; expected {} among --methods", name,
+                                 methodsWith(mergesPaths)));
+  }
+  // Options that make rows of ppm and mlt.
+  if (given(words, "--direct-pass") != nullptr && !anyRow([](const CampaignMethod& row) { return row.directPass; })) {
+    throw UsageError("--direct-pass: is for ppm alone; expected ppm among --methods");
+  }
+  const auto* const variants = given(words, "--mlt");
+  if (variants == nullptr) return;
+  for (const std::string& word : *variants) {
+    const auto isRow = [&](const CampaignMethod& row) {
+      return row.method == Method::mlt && kMetropolisVariantNames[static_cast<size_t>(row.variant)] == word;
+    };
+    const bool asByDefault = word == kMetropolisVariantNames[static_cast<size_t>(MetropolisSettings().variant)];
+    if (asByDefault || anyRow(isRow)) continue;
+    throw UsageError(fmt::format("--mlt {}: is no row of the campaign; expected mlt among --methods", word));
   }
 }
 

@@ -18,6 +18,9 @@ std::map<std::string, std::string> parseDefinitions(const std::vector<std::strin
 // Fills methods, definitions, and of `render` radius, radiusAlpha, lightPaths and clock. Throws UsageError.
 void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSettings& settings);
 
+// Refuses options that no row of the settings has any use for, unless they are as by default. Throws UsageError.
+void refuseUnusedWords(const CampaignWords& words, const CampaignSettings& settings);
+
 // What the results file says of them.
 void addRowKeys(const CampaignSettings& settings, std::map<std::string, std::string>& keys);
 

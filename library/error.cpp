@@ -66,6 +66,8 @@ api::Error currentError() {
     return loadError(error, error.what());
   } catch (const SceneError& error) {
     return {api::ErrorKind::input, error.what(), error.location.file, static_cast<int>(error.location.line)};
+  } catch (const SceneFolderError& error) {
+    return inputError(error);
   } catch (const ImageError& error) {
     return inputError(error);
   } catch (const ReferenceError& error) {

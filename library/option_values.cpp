@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 #include "library/errors.h"
 #include "library/suggestion.h"
@@ -125,6 +126,21 @@ SamplerKind parseSamplerOption(const std::string& option, const std::string& wor
   names.reserve(std::size(kAllSamplerKinds));
   for (const SamplerKind kind : kAllSamplerKinds) names.push_back(toString(kind));
   return kAllSamplerKinds[parseChoice(option, word, names)];
+}
+
+bool mergesPaths(Method method) { return strategiesOf(method).merge; }
+
+std::string methodsWith(bool (*has)(Method)) {
+  std::vector<std::string_view> names;
+  for (const MethodEntry& entry : kMethods) {
+    if (has(entry.method)) names.push_back(entry.name);
+  }
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (i != 0) text += i + 1 == names.size() ? " or " : ", ";
+    text += names[i];
+  }
+  return text;
 }
 
 }  // namespace wavecrest

@@ -34,6 +34,12 @@ uint64_t parseMemory(const std::string& option, const std::string& text);
 // The method of that name.
 Method parseMethodOption(const std::string& option, const std::string& word);
 
+// Whether the method merges paths, so that --radius, --radius-alpha and --light-paths are for it.
+bool mergesPaths(Method method);
+
+// The names of all methods that have something, for messages: "ppm, bpm or vcm".
+std::string methodsWith(bool (*has)(Method));
+
 // "independent" or "sobol".
 SamplerKind parseSamplerOption(const std::string& option, const std::string& word);
 

@@ -6,6 +6,7 @@
 
 #include "bench/campaign/render_stats.h"
 #include "bench/film_image.h"
+#include "bench/json_text.h"
 #include "engine/session/session.h"
 #include "library/image_conversion.h"
 #include "library/render_settings.h"
@@ -60,7 +61,7 @@ Image Render::image() const {
 }
 
 std::string Render::stats() const {
-  return translated([&] { return data_->stats().dump(); });
+  return translated([&] { return jsonText(data_->stats()); });
 }
 
 void Render::write(const std::string& file) const {

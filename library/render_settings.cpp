@@ -23,9 +23,61 @@ MetropolisSettings chosenChains(const api::RenderOptions& options) {
   return settings;
 }
 
-}  // namespace
+// Whether a variant of mlt can leave direct light to path tracing.
+bool canLeaveDirectLight(MetropolisVariant variant) { return !pageOf(Method::mlt, variant).directLight.empty(); }
 
-RenderSettings renderSettings(const api::RenderOptions& options, const Scene& scene) {
+// An option that only some methods have.
+struct MethodOption {
+  const char* name;
+  bool given;           // with another value than the default, which fits every method
+  bool (*has)(Method);  // whether the option is the method's
+  const char* wrong;    // about any other method
+};
+
+// Refuses options that the method would ignore. Throws UsageError.
+void refuseOptionsOfOtherMethods(const api::RenderOptions& options, Method method) {
+  const api::RenderOptions byDefault;
+  const auto isMlt = [](Method one) { return one == Method::mlt; };
+  const auto isPpm = [](Method one) { return one == Method::ppm; };
+  constexpr const char* kNoChains = "has no Markov chains";
+  const bool otherMlt = chosenChains(options).variant != chosenChains(byDefault).variant;
+  const MethodOption all[] = {
+      {"--radius", options.radius != byDefault.radius, mergesPaths, "does not merge"},
+      {"--radius-alpha", options.radiusAlpha != byDefault.radiusAlpha, mergesPaths, "does not merge"},
+      {"--light-paths", options.lightPaths != 0, mergesPaths, "has one light path per camera path"},
+      {"--direct-pass", options.directPass, isPpm, "has no such choice"},
+      {"--connection-roulette", options.connectionRoulette != byDefault.connectionRoulette, hasConnectionRoulette,
+       "has no roulette of connections"},
+      {"--mlt", otherMlt, isMlt, kNoChains},
+      {"--chains", options.chains != byDefault.chains, isMlt, kNoChains},
+      {"--bootstrap", options.bootstrap != byDefault.bootstrap, isMlt, kNoChains},
+      {"--restart", options.restart != 0, isMlt, kNoChains},
+      {"--no-direct-pass", options.noDirectPass, isMlt, kNoChains},
+  };
+  for (const MethodOption& option : all) {
+    if (!option.given || option.has(method)) continue;
+    throw UsageError(
+        fmt::format("{}: {} {}; expected {}", option.name, toString(method), option.wrong, methodsWith(option.has)));
+  }
+}
+
+// Refuses what the variant of mlt would ignore. Throws UsageError.
+void refuseOptionsOfOtherVariants(const api::RenderOptions& options, const RenderSettings& settings) {
+  const MetropolisSettings& chains = settings.metropolis;
+  if (!canLeaveDirectLight(chains.variant) && !chains.directPass) {
+    throw UsageError(fmt::format("--no-direct-pass: {} has no direct pass; expected --mlt mmlt or pathspace",
+                                 kMetropolisVariantNames[static_cast<size_t>(chains.variant)]));
+  }
+  // Chains draw numbers of their own. Only the direct pass asks the sampler.
+  const bool direct = canLeaveDirectLight(chains.variant) && chains.directPass;
+  if (!direct && settings.sampler != SamplerKind::independent) {
+    throw UsageError(fmt::format("--sampler {}: is for the direct pass, which these chains do without; expected {}",
+                                 options.sampler, toString(SamplerKind::independent)));
+  }
+}
+
+// The settings of these options, whichever method has them.
+RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scene& scene) {
   RenderSettings settings;
   settings.method = parseMethodOption("--method", options.method);
   settings.sampler = parseSamplerOption("--sampler", options.sampler);
@@ -41,17 +93,8 @@ RenderSettings renderSettings(const api::RenderOptions& options, const Scene& sc
   settings.radius = options.radius;
   settings.radiusAlpha = options.radiusAlpha;
   settings.connectionRoulette = options.connectionRoulette;
-  if (options.lightPaths != 0) {
-    if (!strategiesOf(settings.method).merge) {
-      throw UsageError(fmt::format("--light-paths: {} has one light path per camera path; expected ppm, bpm or vcm",
-                                   toString(settings.method)));
-    }
-    settings.lightPaths = options.lightPaths;
-  }
+  if (options.lightPaths != 0) settings.lightPaths = options.lightPaths;
   settings.directPass = options.directPass;
-  if (settings.directPass && settings.method != Method::ppm) {
-    throw UsageError(fmt::format("--direct-pass: is for ppm, not for {}", toString(settings.method)));
-  }
   settings.limits = pathLimits(options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth,
                                options.rrDepth != 0 ? options.rrDepth : scene.defaults.rrDepth);
   if (settings.method == Method::mlt && options.maxDepth > static_cast<int>(kChainDepth)) {
@@ -63,6 +106,22 @@ RenderSettings renderSettings(const api::RenderOptions& options, const Scene& sc
   if (!settings.iterations && !settings.seconds) settings.iterations = scene.defaults.sampleCount;
   if (!options.memory.empty()) settings.memoryBytes = parseMemory("--memory", options.memory);
   return settings;
+}
+
+}  // namespace
+
+RenderSettings renderSettings(const api::RenderOptions& options, const Scene& scene) {
+  RenderSettings settings = settingsOfAnyMethod(options, scene);
+  refuseOptionsOfOtherMethods(options, settings.method);
+  if (settings.method == Method::mlt) refuseOptionsOfOtherVariants(options, settings);
+  return settings;
+}
+
+RenderSettings inspectionSettings(const api::RenderOptions& options, const Scene& scene) {
+  if (options.lightPaths != 0) {
+    throw UsageError("--light-paths: not every method of an inspection merges; expected none");
+  }
+  return settingsOfAnyMethod(options, scene);
 }
 
 }  // namespace wavecrest

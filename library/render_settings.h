@@ -7,7 +7,11 @@
 
 namespace wavecrest {
 
-// What the options leave open comes from the scene and the machine. Throws UsageError.
+// What the options leave open comes from the scene and the machine. Throws UsageError, also for an option that the
+// method would ignore; the default of an option fits every method.
 RenderSettings renderSettings(const api::RenderOptions& options, const Scene& scene);
+
+// The same of an inspection, which is about all methods and takes the options of each. Throws UsageError.
+RenderSettings inspectionSettings(const api::RenderOptions& options, const Scene& scene);
 
 }  // namespace wavecrest

@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bench/json_text.h"
 #include "engine/inspect/inspection.h"
 #include "engine/load/load.h"
 #include "engine/plan/render_plan.h"
@@ -79,8 +80,8 @@ const std::vector<std::string>& Scene::warnings() const { return data_->scene.wa
 
 std::string Scene::inspect(const RenderOptions& options) const {
   return translated([&] {
-    const SceneInspection facts = inspectScene(data_->scene, renderSettings(options, data_->scene));
-    return inspectionJson(data_->scene, facts).dump();
+    const SceneInspection facts = inspectScene(data_->scene, inspectionSettings(options, data_->scene));
+    return jsonText(inspectionJson(data_->scene, facts));
   });
 }
 

@@ -3,7 +3,6 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
-#include <stdexcept>
 #include <system_error>
 #include <vector>
 
@@ -72,8 +71,9 @@ std::span<const SceneEntry> benchmarkScenes() { return kBenchmarkScenes; }
 
 fs::path sceneFolder() {
   if (const char* folder = std::getenv("WAVECREST_SCENES"); folder && *folder) {
-    if (!fs::is_directory(folder)) {
-      throw std::runtime_error("WAVECREST_SCENES is '" + std::string(folder) + "'; expected a folder of scenes");
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) {
+      throw SceneFolderError("WAVECREST_SCENES is '" + std::string(folder) + "'; expected a folder of scenes");
     }
     return folder;
   }
@@ -82,8 +82,8 @@ fs::path sceneFolder() {
     if (holdsScenes(folder)) return folder;
     tried += (tried.empty() ? "" : ", ") + folder.string();
   }
-  throw std::runtime_error("the built-in scenes are in none of " + tried +
-                           "; expected WAVECREST_SCENES to name their folder");
+  throw SceneFolderError("the built-in scenes are in none of " + tried +
+                         "; expected WAVECREST_SCENES to name their folder");
 }
 
 fs::path findScene(const std::string& nameOrPath) {

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -19,10 +20,15 @@ struct SceneEntry {
 std::span<const SceneEntry> builtInScenes();    // the nine
 std::span<const SceneEntry> benchmarkScenes();  // known by name too, not part of the study
 
+// There is no folder of built-in scenes. The text is complete.
+struct SceneFolderError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 // The folder of the built-in scenes: $WAVECREST_SCENES if set, else the first that exists of those installed with this
 // program, library or Python module, the source folder that it was built from, the folder that it was to be installed
 // in, and ../../scenes beside the running executable.
-// Throws std::runtime_error when the folder that $WAVECREST_SCENES names does not exist, or none of the others does.
+// Throws SceneFolderError when the folder that $WAVECREST_SCENES names does not exist, or none of the others does.
 std::filesystem::path sceneFolder();
 
 // The file of a built-in or benchmark scene, or the argument itself taken as a path. Throws as sceneFolder does.

@@ -125,6 +125,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"close_pairs", statistics.counters.closePairs},
       {"paths_cut", statistics.counters.cutPaths},
       {"throughput_cut", statistics.counters.cutThroughput},
+      {"cut_energy", statistics.counters.cutThroughput},  // the same, by the name that scripts know
       {"machine", toJson(machineRecord())},
       {"pinned", {{"cpus", settings.placement.cpus}, {"nodes", settings.placement.nodes}}},
       {"stages", stages},

@@ -107,8 +107,13 @@ class Campaign {
 
  private:
   void createFolders() const {
-    fs::create_directories(settings_.out / "images");
-    fs::create_directories(settings_.out / "references");
+    for (const char* name : {"images", "references"}) {
+      std::error_code error;
+      fs::create_directories(settings_.out / name, error);
+      if (!error) continue;
+      throw ResultsFileError(fmt::format("{}: cannot be made: {}; expected a folder that takes new files",
+                                         (settings_.out / name).string(), error.message()));
+    }
   }
 
   // Makes folders, lock and results file of a new campaign.

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "bench/enumerator_name.h"
+#include "bench/json_text.h"
 #include "engine/state/state_stream.h"
 #include "engine/version.h"
 #include "metrics/image/atomic_file.h"
@@ -93,7 +94,7 @@ void writeCheckpoint(const std::string& file, const Scene& scene, const RenderSe
                        {"render", renderIdentity(scene, settings, session)},
                        {"cut", {{"threads", settings.cutForThreads()}}},
                        {"notes", notes}};
-  const std::string text = header.dump();
+  const std::string text = jsonText(header);
   AtomicFile out(file);
   uint32_t sum = 0;
   // The checksum covers every byte that is written before it.

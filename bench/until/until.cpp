@@ -21,9 +21,12 @@ double ssimNow(const Session& session, const PreparedReference& reference) {
 
 SsimNow renderUntilSsim(Session& session, const RenderSettings& settings, const SsimGoal& goal) {
   const uint64_t most = settings.iterations.value_or(std::numeric_limits<uint64_t>::max());
+  // Where an earlier call was interrupted, the looks that are behind are left out. Those ahead stay where they were.
+  const uint64_t done = session.statistics().iterations;
   SsimNow now;
   for (uint64_t asked = 0; !now.reached && asked < most;) {
     asked += std::min(nextBlock(asked), most - asked);
+    if (asked < done) continue;
     session.renderUntil(asked, settings.seconds);
     now.iterations = session.statistics().iterations;
     now.ssim = ssimNow(session, goal.reference);

@@ -150,7 +150,13 @@ class Tradeoff(CommandTest):
                                      "--size", "32x24", expect=USAGE)
         self.assert_one_error_line(refused, "--knobs: 'radius' is no setting that is varied here")
         alone = self.run_wavecrest("bench", "cornell-diffuse", "--seeds", "4", expect=USAGE)
-        self.assert_one_error_line(alone, "--knobs and --seeds go with --tradeoff")
+        self.assert_one_error_line(alone, "--seeds goes with --tradeoff; expected it")
+
+    def test_a_page_is_alone_on_stdout(self):
+        told = self.run_wavecrest("bench", "cornell-diffuse", "--tradeoff", "--methods", "pt", "--size", "32x24", "--seeds",
+                                  "2", "--duration", "0.5s", "--knobs", "precision", "--html", "-")
+        self.assertTrue(told.stdout.startswith("<!DOCTYPE html>"), told.stdout[:80])
+        self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_a_page_of_nothing_is_refused(self):
         result = self.run_wavecrest("bench", "cornell-diffuse", "--html", self.path("t.html"), expect=USAGE)
@@ -265,6 +271,36 @@ class Specialization(CommandTest):
             self.assertEqual(len([row for row in entry["rows"] if row["chosen"]]), 1)
             self.assertEqual(entry["rows"][-1]["kernels"], "complete")
             self.assertFalse(any(row["differs"] for row in entry["rows"]))
+
+
+class Modes(CommandTest):
+    def test_what_a_mode_would_ignore_is_refused(self):
+        for arguments, answer in [
+            (["--extremes", "--scaling"], r"--scaling and --extremes: two modes; expected one of them$"),
+            (["--tradeoff", "--compare", "a.json", "b.json"], r"--compare and --tradeoff: two modes"),
+            (["--score", "small", "--against", WAVECREST], r"--against and --score: two modes"),
+            (["--family-level", "0.1"], r"--family-level goes with --against or --compare; expected one of them$"),
+            (["--tolerance", "0.1", "--scaling"], r"--tolerance goes with --against or --compare"),
+            (["--extremes", "--knobs", "precision"], r"--knobs goes with --tradeoff; expected it$"),
+            (["--scaling", "--write-hashes", "h.json"], r"--write-hashes goes with --score; expected it$"),
+            (["--scaling", "--pin"], r"--pin goes with none"),
+            (["--score", "small", "--write-hashes", "h.json", "--json", "j.json"], r"--write-hashes measures nothing"),
+            (["--score", "small", "--write-hashes", "-"], r"--write-hashes -: expected a file$"),
+            (["cornell-diffuse", "--compare", "a.json", "b.json"], r"--compare measures nothing; expected no scenes"),
+            (["--extremes", "--duration", "1s"], r"--extremes has scenes, methods, sizes and lengths of its own"),
+        ]:
+            with self.subTest(arguments):
+                self.assert_one_error_line(self.run_wavecrest("bench", *arguments, expect=USAGE), answer)
+
+    def test_files_are_checked_before_anything_is_measured(self):
+        for arguments, answer in [
+            (["--json", "absent/b.json"], r"--json absent/b\.json: there is no folder"),
+            (["--extremes", "--html", "absent/p.html"], r"--html absent/p\.html: there is no folder"),
+            (["--extremes", "--html", "-", "--json", "-"], r"--html -: is the file of --json too"),
+            (["--score", "small", "--write-hashes", "absent/h.json"], r"--write-hashes absent/h\.json: there is no"),
+        ]:
+            with self.subTest(arguments):
+                self.assert_one_error_line(self.run_wavecrest("bench", *arguments, expect=USAGE), answer)
 
 
 class Against(CommandTest):

@@ -233,6 +233,12 @@ class Refusals(Converge):
             ["--radius", "0"],
             ["--radius-alpha", "2"],
             ["--light-paths", "none"],
+            ["--methods", "pt", "--radius", "0.01"],
+            ["--methods", "pt", "--radius-alpha", "0.5"],
+            ["--methods", "pt,bpt", "--light-paths", "500"],
+            ["--methods", "pt,vcm", "--direct-pass"],
+            ["--methods", "pt", "--mlt", "pathspace"],
+            ["--methods", "mlt-pathspace", "--mlt", "pssmlt"],
             ["cornell-diffuse", "cornell-diffuse"],
         ):
             with self.subTest(arguments):
@@ -255,6 +261,10 @@ class Refusals(Converge):
         self.run_wavecrest("reference", "cornell-diffuse", "--size", "16x12", *made)
         result = self.tiny("c", "--reference", "given", "--progress", "none", expect=INPUT)
         self.assert_one_error_line(result, r"given/cornell-diffuse\.exr: is 16x12 pixels; expected 32x24")
+
+    def test_a_folder_that_cannot_be_made(self):
+        result = self.tiny("/dev/null/a", "--progress", "none", expect=INPUT)
+        self.assert_one_error_line(result, r"/dev/null/a/images: cannot be made: .*; expected a folder")
 
     def test_a_scene_that_does_not_exist(self):
         self.converge("nowhere.xml", "--spp", "1", "--out", "a", expect=INPUT)

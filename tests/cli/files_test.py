@@ -93,6 +93,33 @@ class Checks(CommandTest):
         self.assertFalse(os.path.isfile("/dev/null"))
 
 
+class Names(CommandTest):
+    def run_bytes(self, *arguments):
+        """Without text: what is printed has the bytes of the names."""
+        return subprocess.run(
+            [WAVECREST, *arguments], cwd=self.folder, timeout=TIMEOUT_SECONDS, check=False, capture_output=True
+        )
+
+    def test_names_may_be_any_bytes(self):
+        (self.folder / os.fsdecode(b"s\xff.xml")).write_text(DARK)
+        images = [b"a\xff.exr", b"a\xff.pfm"]
+        result = self.run_bytes("render", b"s\xff.xml", "--size", "8x8", "--spp", "2", "-o", images[0], "-o", images[1],
+                                "--stats", "stats.json", "--checkpoint", "c", "--progress", "jsonl")  # fmt: skip
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        for image in images:
+            self.assertTrue((self.folder / os.fsdecode(image)).exists(), image)
+        self.assertEqual(read_json(self.path("stats.json"))["scene"], "s\ufffd")
+        self.assertTrue((self.folder / "c").exists())
+        for line in result.stderr.splitlines():
+            json.loads(line)
+        self.assertIsInstance(json.loads(self.run_bytes("inspect", b"s\xff.xml", "--json").stdout), dict)
+
+    def test_a_campaign_needs_names_that_its_results_can_hold(self):
+        result = self.run_bytes("converge", b"s\xff.xml", "--out", "a")
+        self.assertEqual(result.returncode, USAGE)
+        self.assertIn(b"is no UTF-8; expected", result.stderr)
+
+
 class Streams(CommandTest):
     def run_with(self, *arguments, **streams):
         return subprocess.run(

@@ -126,7 +126,30 @@ class Reference(CommandTest):
         self.reference("--spp", "2", "-o", "r.exr")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["r.exr"])
 
+    def test_what_it_is_to_agree_with_is_read_before_rendering(self):
+        self.reference("--spp", "1", "-o", "small.exr")
+        self.run_wavecrest("render", "cornell-diffuse", "--size", "64x48", "--spp", "1", "-o", "plain.exr")
+        for other, answer in (
+            ("nowhere.exr", r"nowhere\.exr: "),
+            ("small.exr", r"small\.exr: is 32x24 pixels; expected 64x48$"),
+            ("plain.exr", r"plain\.exr: a reference without halves"),
+        ):
+            arguments = ["--quiet", "--time", "10m", "-o", "r.exr", "--agree-with", other]
+            self.assert_one_error_line(self.reference(*arguments, size="64x48", expect=INPUT), answer)
+        self.assertFalse((self.folder / "r.exr").exists())
+
+    def test_the_line_of_a_bar_is_ended(self):
+        lines = self.reference("--progress", "bar", "--spp", "2", "-o", "r.exr").stderr
+        self.assertTrue(lines.endswith("\n"))
+        for line in lines.splitlines():
+            if "iterations of each half" in line:
+                self.assertRegex(line, r"relative error [\d.]+ *$")
+
     def test_wrong_words_and_files(self):
+        result = self.reference("--method", "pt", "--radius", "0.01", "--quiet", expect=USAGE)
+        self.assert_one_error_line(result, r"--radius: pt does not merge; expected ppm, bpm or vcm$")
+        self.reference("--method", "pt", "--radius", "0.001", "--spp", "1", "-o", "default.exr")
+        self.reference("--quiet", "--progress", "loud", expect=USAGE)
         self.reference("--method", "guess", expect=USAGE)
         self.reference("--until-relative-error", "0", expect=USAGE)
         self.reference("-o", "r.png", expect=USAGE)

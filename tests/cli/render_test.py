@@ -31,7 +31,8 @@ STATS = {
     "rays_closest": int, "rays_shadow": int, "connections": int, "merges": int, "load_seconds": NUMBER,
     "build_seconds": NUMBER, "render_seconds": NUMBER, "wall_seconds": NUMBER, "cpu_seconds": NUMBER,
     "paths_per_second": NUMBER, "rays_per_second": NUMBER, "bytes_per_path": int, "peak_memory_bytes": int,
-    "nonfinite_samples": int, "close_pairs": int, "paths_cut": int, "throughput_cut": NUMBER, "stages": list, "snapshots": list,
+    "nonfinite_samples": int, "close_pairs": int, "paths_cut": int, "throughput_cut": NUMBER, "cut_energy": NUMBER,
+    "saturated_splats": int, "stages": list, "snapshots": list,
 }  # fmt: skip
 
 
@@ -130,6 +131,12 @@ class Statistics(CommandTest):
         self.assertEqual(sum(s["items"] for s in stats["stages"] if s["name"] == "extend"), stats["rays_closest"])
         self.assertAlmostEqual(stats["paths_per_second"] * stats["render_seconds"], stats["camera_paths"], delta=1)
 
+    def test_the_throughput_that_a_limit_of_depth_cuts_is_told(self):
+        self.assertEqual(self.stats("--spp", "2")["cut_energy"], 0)
+        stats = self.stats("--spp", "2", "--max-depth", "2")
+        self.assertGreater(stats["cut_energy"], 0)
+        self.assertEqual(stats["cut_energy"], stats["throughput_cut"])
+
     def test_chains_report_their_steps(self):
         small = {"large", "small"}
         kinds = {"pssmlt": small, "mmlt": small, "pathspace": {"large", "bidirectional", "lens", "multi_chain", "caustic"}}
@@ -213,6 +220,15 @@ class Clock(CommandTest):
         seconds = read_json(self.path("stats.json"))["render_seconds"]
         self.assertGreaterEqual(seconds, 0.5)
         self.assertLess(seconds, 0.5 + self.OVERSHOOT_SECONDS)
+
+    def test_more_iterations_than_64_bits_of_paths_end_by_time(self):
+        # 2^56 iterations of 32x24 pixels are 3 * 2^64 mutations.
+        options = ["-m", "mlt", "--chains", "256", "--bootstrap", "4096", "--spp", str(1 << 56), "--time", "0.3s"]
+        result = self.render(*options, "--progress", "jsonl", "--stats", "stats.json")
+        self.assertGreater(read_json(self.path("stats.json"))["iterations"], 0)
+        for line in map(json.loads, result.stderr.splitlines()):
+            if line.get("render_seconds", 1) < 0.2 and "fraction" in line:
+                self.assertLess(line["fraction"], 0.9)
 
     def test_whichever_limit_comes_first_ends_the_render(self):
         self.render("--time", "60s", "--spp", "2", "--stats", "stats.json")

@@ -1,5 +1,6 @@
 """Signals: INT, TERM and HUP save and end with 130, USR1 saves and goes on, none of them spoils a write."""
 
+import json
 import os
 import pathlib
 import signal
@@ -62,6 +63,16 @@ class Render(Signals):
         self.assertEqual(iterations, sorted(iterations))
         self.assertGreater(iterations[0], 0)
         self.assertGreater(iterations[2], iterations[0])
+
+    def test_stdout_gets_the_last_statistics_alone(self):
+        process = self.started("-o", "image.exr", "--stats", "-")
+        for _ in range(2):
+            process.send_signal(signal.SIGUSR1)
+            self.wait_for(lambda: (self.folder / "image.exr").exists())
+            os.remove(self.path("image.exr"))
+        process.send_signal(signal.SIGTERM)
+        output, _ = self.end(process, INTERRUPTED)
+        self.assertGreater(json.loads(output)["camera_paths"], 0)
 
     def test_a_saved_render_is_the_same_in_the_end(self):
         arguments = ["-m", "vcm", "--spp", "400", "-o"]

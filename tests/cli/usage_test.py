@@ -81,6 +81,38 @@ class Usage(CommandTest):
                 self.assertNotEqual(result.stderr, "")
                 self.assertFalse((self.folder / "image.exr").exists())
 
+    def test_options_of_other_methods_are_refused(self):
+        no_chains = r"pt has no Markov chains; expected mlt$"
+        for arguments, answer in [
+            (["--radius", "0.2"], r"--radius: pt does not merge; expected ppm, bpm or vcm$"),
+            (["-m", "lt", "--radius-alpha", "0.1"], r"--radius-alpha: lt does not merge; expected ppm, bpm or vcm$"),
+            (["--light-paths", "9"], r"--light-paths: pt has one light path .*; expected ppm, bpm or vcm$"),
+            (["-m", "vcm", "--direct-pass"], r"--direct-pass: vcm has no such choice; expected ppm$"),
+            (["-m", "mlt", "--connection-roulette", "5"], r"--connection-roulette: mlt .*; expected bpt or vcm$"),
+            (["--mlt", "pathspace"], "--mlt: " + no_chains),
+            (["--chains", "3"], "--chains: " + no_chains),
+            (["--bootstrap", "5"], "--bootstrap: " + no_chains),
+            (["--restart", "3"], "--restart: " + no_chains),
+            (["--no-direct-pass"], "--no-direct-pass: " + no_chains),
+            (["-m", "mlt", "--mlt", "pssmlt", "--no-direct-pass"], r"--no-direct-pass: pssmlt .*; expected --mlt mmlt or"),
+            (["-m", "mlt", "--no-direct-pass", "--sampler", "sobol"], r"--sampler sobol: .*; expected independent$"),
+        ]:
+            with self.subTest(arguments):
+                self.assert_one_error_line(self.render("--dry-run", *arguments, expect=USAGE), answer)
+        # Defaults fit every method, and the direct pass of mlt has a sampler.
+        self.render("--dry-run", "--radius", "0.001", "--chains", "16384", "--connection-roulette", "0.2", "--mlt", "mmlt")
+        self.render("--dry-run", "-m", "mlt", "--sampler", "sobol")
+
+    def test_a_scene_may_follow_a_list_of_methods(self):
+        for command, *more in (["converge", "--out", "a", "--progress", "none"], ["bench"], ["recommend"]):
+            result = self.run_wavecrest(command, *more, "--methods", "pt,lt", "nowhere.xml", expect=INPUT)
+            self.assert_one_error_line(result, r".*nowhere\.xml: no such file")
+
+    def test_a_missing_folder_of_scenes_is_told(self):
+        for arguments in (["inspect", "cornell-diffuse"], ["scenes", "--json"]):
+            result = self.run_wavecrest(*arguments, expect=INPUT, variables={"WAVECREST_SCENES": "/nowhere"})
+            self.assert_one_error_line(result, r"WAVECREST_SCENES is '/nowhere'; expected a folder of scenes")
+
     def test_words_of_a_list_name_the_choices(self):
         self.assertIn("float, double, fast", self.render("--precision", "half", expect=USAGE).stderr)
         self.assertIn("auto, embree, small", self.render("--accel", "kd", expect=USAGE).stderr)

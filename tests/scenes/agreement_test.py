@@ -68,7 +68,8 @@ class Renderer:
         images = []
         for seed in range(first_seed, first_seed + self.arguments.seeds):
             command = [self.arguments.wavecrest, "render", self.scene, "--method", method, "--seed", seed]
-            command += ["--size", self.arguments.size, "--spp", self.arguments.spp, "--radius", self.arguments.radius]
+            command += ["--size", self.arguments.size, "--spp", self.arguments.spp]
+            command += ["--radius", self.arguments.radius] if method in BIAS else []
             command += [*MORE_SAMPLES.get(method, []), "--progress", "none", "-o", self.output]
             subprocess.run([str(word) for word in command], check=True)
             images.append(acceptance.read_pfm(self.output))

@@ -89,7 +89,7 @@ TEST(SceneList, TheEnvironmentChoosesTheFolder) {
 
 TEST(SceneList, AFolderThatDoesNotExistIsAnError) {
   const ScopedVariable variable("WAVECREST_SCENES", "/nowhere/scenes");
-  EXPECT_THROW(sceneFolder(), std::runtime_error);
+  EXPECT_THROW(sceneFolder(), SceneFolderError);
 }
 
 TEST(SceneList, HintsAtHowToGetMissingAssets) {

@@ -48,5 +48,15 @@ TEST(UntilSsim, endsAtTheIterationsOfTheSettingsUnreached) {
   EXPECT_EQ(now.ssim, ssimAfter(scene, reference, 7));
 }
 
+TEST(UntilSsim, goesOnWithTheFirstLookThatIsAhead) {
+  const Scene scene = smallBox(32, 24);
+  const PreparedReference reference = referenceOf(scene);
+  const auto session = Session::create(scene, settingsOf(Method::pt, 1));
+  session->renderUntil(9, std::nullopt);  // between the looks at 8 and 10
+  const SsimNow now = renderUntilSsim(*session, settingsOf(Method::pt, 1), {.reference = reference, .ssim = 1e-9});
+  EXPECT_TRUE(now.reached);
+  EXPECT_EQ(now.iterations, 10u);
+}
+
 }  // namespace
 }  // namespace wavecrest
