@@ -43,9 +43,9 @@ struct ReferenceMismatch : std::runtime_error {
 // A continuation has it too, and begins at a later iteration: it adds what an unbroken render would have added.
 uint64_t referenceSeed(uint64_t seed, size_t half);
 
-// Writes a reference that has what a larger one of the same scene has (shrunkReference), for renderReference to go on
-// with. Throws ReferenceMismatch where the file exists, where the larger one cannot be shrunk or was rendered with
-// other settings; FileLockError; ImageError.
+// Writes the first state of a reference: a larger one of the same scene, averaged down to its film (shrunkReference).
+// renderReference goes on with it. Throws ReferenceMismatch where the file exists, where the larger one cannot be
+// shrunk or was rendered with other settings; FileLockError; ImageError.
 void beginReference(const Scene& scene, const RenderSettings& settings, const std::filesystem::path& larger,
                     const std::filesystem::path& file);
 

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// The study's paths are known to a factor of three (study.h), so what misses a need by a tenth meets it.
+// The number of the study's paths is known to a factor of three (study.h), so 0.9 of what is needed is enough.
 constexpr double kPathTolerance = 0.9;
 
 // Whether a method merges paths with photons within a radius.

@@ -1,5 +1,5 @@
-// When an image will be good enough, from a short pilot: its noise shrinks with a power of time, mostly the square root,
-// its bias does not or hardly does.
+// When an image will be good enough, from a short pilot: its noise shrinks with a power of time, mostly the square
+// root, its bias does not or hardly does.
 //
 // in: a reference, and four independent images of the same render time. The differences of the four are samples of the
 // noise of their mean, with its fireflies and its places. What is left between mean and reference, block by block of

@@ -9,8 +9,8 @@
 namespace wavecrest {
 
 // Linear pixels, top row first. 8- and 16-bit files are decoded by the sRGB curve unless `raw`; files of linear light
-// are taken as they are, but for values that are not finite. Read once per path and treatment. `where` names the file
-// in the XML.
+// are taken as they are. Values that are not finite become 0, with a note. Read once per path and treatment. `where`
+// names the file in the XML.
 std::shared_ptr<const Bitmap> readBitmap(LoadContext& context, const std::filesystem::path& path, bool raw,
                                          const SourceLocation& where);
 

@@ -96,7 +96,7 @@ class ObjReader {
 
   // Cuts a polygon into a fan of triangles around its first corner. As in Mitsuba, faces of fewer corners are left out.
   void readFace() {
-    // The first two corners become vertices with the third, which makes them a face.
+    // A face has three corners at least, so the first two become vertices once there is a third.
     Corner start[2];
     // The vertices of the first corner and of the two latest ones.
     uint32_t fan[3] = {};

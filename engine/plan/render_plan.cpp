@@ -88,9 +88,9 @@ void refuseTooManyPaths(const Scene& scene, const RenderSettings& settings) {
   const uint64_t pixels = uint64_t{scene.film.width} * scene.film.height;
   const uint64_t paths = std::max<uint64_t>(pixels, settings.lightPaths.value_or(0));
   if (paths <= kMostPaths) return;
-  throw SceneError({scene.name},
-                   fmt::format("an iteration has {} paths; expected at most {}, of pixels and of light paths", paths,
-                               kMostPaths));
+  throw SceneError(
+      {scene.name},
+      fmt::format("an iteration has {} paths; expected at most {}, of pixels and of light paths", paths, kMostPaths));
 }
 
 }  // namespace

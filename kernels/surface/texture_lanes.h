@@ -28,8 +28,8 @@ WAVECREST_INLINE TexturePoint texturePoint(const TextureRecord* textures, const 
           mulAdd(at(textures->toUv[3]), u, mulAdd(at(textures->toUv[4]), v, at(textures->toUv[5])))};
 }
 
-// The four texels of a bitmap around a point, as indices of their first numbers, and where between them it is: at
-// (0, 0), the first one, where the nearest is taken.
+// The four texels of a bitmap around a point, each as the index of its first channel, and the place of the point
+// between them: x from left to right and y from top to bottom, 0 to 1. Both are 0 where the nearest texel is taken.
 struct TexelCell {
   UInt topLeft, topRight, bottomLeft, bottomRight;
   Float x, y;

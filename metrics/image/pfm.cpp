@@ -69,7 +69,7 @@ ImageFile decodePfm(const std::string& path, Bytes bytes) {
       out[i] = floatAt(row + (fileChannels == 3 ? i : i / 3) * sizeof(float), littleEndian);
     }
   }
-  // By 1, as nearly every file has it, numbers would not change.
+  // Nearly every file has a scale of 1.
   if (scale != 1) {
     for (float& value : file.image.pixels) value = static_cast<float>(value * scale);
   }

@@ -228,8 +228,7 @@ TEST(Integrator, DirectIsTwoEdges) { EXPECT_EQ(loadBody(R"(<integrator type="dir
 TEST(Integrator, DepthBelowMinusOneIsAnError) {
   expectErrorOnLine2(R"(<integrator type="path"><integer name="max_depth" value="-2"/></integrator>)",
                      "\"max_depth\" is -2");
-  expectErrorOnLine2(R"(<integrator type="path"><integer name="max_depth" value="0"/></integrator>)",
-                     "max_depth is 0");
+  expectErrorOnLine2(R"(<integrator type="path"><integer name="max_depth" value="0"/></integrator>)", "max_depth is 0");
 }
 
 TEST(Sampler, CountDefaultsToFour) { EXPECT_EQ(sceneOf("").defaults.sampleCount, 4u); }

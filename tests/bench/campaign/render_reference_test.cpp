@@ -7,30 +7,15 @@
 #include <cmath>
 #include <set>
 
-#include "engine/load/load.h"
-#include "scenes/scene_list.h"
+#include "tests/bench/campaign/small_references.h"
 #include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {
 namespace {
 
-Scene tinyScene(const char* name = "cornell-diffuse") {
-  LoadOptions options;
-  options.filmSize = {{32, 24}};
-  return loadScene(findScene(name), options);
-}
+using test::settingsOf, test::iterations;
 
-RenderSettings settingsOf(Method method) {
-  RenderSettings settings;
-  settings.method = method;
-  settings.isa = bestIsa();
-  settings.threads = 2;
-  return settings;
-}
-
-ReferenceGoal iterations(uint64_t count) {
-  return {.relativeError = std::nullopt, .seconds = std::nullopt, .iterations = count};
-}
+Scene tinyScene(const char* name = "cornell-diffuse") { return test::sceneOf(32, 24, name); }
 
 class RenderReferenceTest : public testing::TestWithParam<Method> {
  protected:

@@ -5,34 +5,19 @@
 #include <gtest/gtest.h>
 
 #include "bench/campaign/reference_agreement.h"
-#include "bench/campaign/render_reference.h"
-#include "engine/load/load.h"
-#include "scenes/scene_list.h"
+#include "tests/bench/campaign/small_references.h"
 #include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {
 namespace {
 
-Scene sceneOf(uint32_t width, uint32_t height, const char* name = "cornell-diffuse") {
-  LoadOptions options;
-  options.filmSize = {{width, height}};
-  return loadScene(findScene(name), options);
-}
-
-RenderSettings settingsOf(Method method) {
-  RenderSettings settings;
-  settings.method = method;
-  settings.isa = bestIsa();
-  settings.threads = 2;
-  return settings;
-}
+using test::sceneOf, test::settingsOf;
 
 class ShrunkReferenceTest : public testing::TestWithParam<Method> {
  protected:
   // Of so many iterations of each half.
   Reference render(const Scene& scene, uint64_t iterations, const std::string& name) const {
-    const ReferenceGoal goal{.relativeError = std::nullopt, .seconds = std::nullopt, .iterations = iterations};
-    return renderReference(scene, settingsOf(GetParam()), "test", goal, folder_.path(name), {});
+    return renderReference(scene, settingsOf(GetParam()), "test", test::iterations(iterations), folder_.path(name), {});
   }
   void begin(const Scene& scene, const std::string& larger, const std::string& name) const {
     beginReference(scene, settingsOf(GetParam()), folder_.path(larger), folder_.path(name));
