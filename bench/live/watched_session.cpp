@@ -67,10 +67,16 @@ std::optional<uint64_t> WatchedSession::nextSlice() const {
 
 void WatchedSession::beginSlices() {
   whileWaiting([&] { takeLook(session_->film().resolve(), false); });
-  // Looking so far tells what a copy of the film costs. Slices are so long that they take at most half of the share
-  // kMostLooking.
+  // Slices are so long that copies of the film take at most half of the share kMostLooking. What a copy costs is the
+  // shorter of two: on a busy machine a single one may have waited for others, and would keep the error away for long.
+  double copySeconds = std::numeric_limits<double>::infinity();
+  for (int copy = 0; copy < 2; ++copy) {
+    const double before = lookingSeconds_;
+    whileWaiting([&] { blocks_.take(session_->film().resolve()); });
+    copySeconds = std::min(copySeconds, lookingSeconds_ - before);
+  }
   const double seconds = std::max(session_->progressSeconds(), 1e-6);
-  const double rare = std::ceil(lookingSeconds_ / (0.5 * kMostLooking * seconds));
+  const double rare = std::ceil(copySeconds / (0.5 * kMostLooking * seconds));
   slices_.emplace(std::bit_ceil(static_cast<uint64_t>(std::clamp(rare, 1.0, 1e9))));
 }
 

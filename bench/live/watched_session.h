@@ -5,7 +5,7 @@
 // stays below kMostLooking of the render time, so films that are slow to resolve are looked at more rarely.
 //
 // The error is that of bench/until/film_error.h, of a sample of the film's blocks. It takes films of equal numbers of
-// iterations: how many follows from what the first iteration and the first look have taken.
+// iterations: how many follows from what the first iteration and two copies of the film have taken.
 #pragma once
 
 #include <memory>
