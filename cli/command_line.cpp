@@ -1,28 +1,53 @@
 #include "cli/command_line.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
+#include <string_view>
 #include <utility>
 
 #include "cli/commands.h"
 #include "cli/describe.h"
+#include "cli/variables.h"
 #include "library/suggestion.h"
 
 namespace wavecrest {
 namespace {
 
-// Options that can also be set by an environment variable, for users who want the same value in every call.
-constexpr std::pair<const char*, const char*> kVariables[] = {
-    {"--threads", "WAVECREST_THREADS"},   {"--isa", "WAVECREST_ISA"},       {"--precision", "WAVECREST_PRECISION"},
-    {"--progress", "WAVECREST_PROGRESS"}, {"--memory", "WAVECREST_MEMORY"}, {"--sampler", "WAVECREST_SAMPLER"},
-    {"-m,--method", "WAVECREST_METHOD"},  {"--size", "WAVECREST_SIZE"},     {"--seed", "WAVECREST_SEED"}};
-
 // Connects an option to its environment variable, if it has one. name: as registered, "-m,--method".
 CLI::Option* withVariable(CLI::Option* option, const std::string& name) {
   for (const auto& [known, variable] : kVariables) {
-    if (name == known) option->envname(variable);
+    if (name.ends_with(known)) option->envname(variable);
   }
   return option;
+}
+
+// CLI11 reads variables for all commands. Those of commands that are not asked for are not to be read, as a wrong value
+// is an error.
+void forgetVariablesOfOthers(CLI::App& program, const std::vector<std::string>& arguments) {
+  for (CLI::App* const command : program.get_subcommands([](CLI::App*) { return true; })) {
+    if (std::ranges::find(arguments, command->get_name()) != arguments.end()) continue;
+    for (CLI::Option* const option : command->get_options()) option->envname("");
+  }
+}
+
+// Where a value comes from that a message is about, "--spp: 'abc' is no whole number": the settings file, a variable,
+// or nothing to say for an argument.
+std::string originOf(const CLI::App& program, const CLI::App& command, const std::vector<std::string>& arguments,
+                     const std::string& message) {
+  const CLI::Option* const option = command.get_option_no_throw(message.substr(0, message.find(':')));
+  if (option == nullptr) return "";
+  const bool isArgument = std::ranges::any_of(arguments, [&](const std::string& word) {
+    return word.starts_with('-') && option->check_name(word.substr(0, word.find('=')));
+  });
+  if (isArgument) return "";
+  const std::string variable = option->get_envname();
+  const char* const value = variable.empty() ? nullptr : std::getenv(variable.c_str());
+  if (value != nullptr && message.find(fmt::format("'{}'", value)) != std::string::npos) return variable + ": ";
+  const CLI::Option* const file = program.get_config_ptr();
+  return file->count() > 0 ? file->as<std::string>() + ": " : "";
 }
 
 // Long names of a command's options, with their dashes.
@@ -133,7 +158,7 @@ std::vector<std::string> CommandLine::commandNames() const {
   return names;
 }
 
-void CommandLine::failParsing(const std::string& what) const {
+void CommandLine::failParsing(const std::string& what, const std::vector<std::string>& arguments) const {
   const std::vector<CLI::App*> commands = app_->get_subcommands();
   const std::string command = commands.empty() ? "" : " " + commands.front()->get_name();
   // A word that CLI11 could not place: the message suggests the closest option of the command.
@@ -143,8 +168,18 @@ void CommandLine::failParsing(const std::string& what) const {
     throw UsageError("unknown argument '" + extra + "'" + didYouMean(word, known) + "; expected those of `wavecrest" +
                      command + " --help`");
   }
+  // A key of the settings file that is no option.
+  constexpr std::string_view kUnknownKey = "INI was not able to parse ";
+  if (what.starts_with(kUnknownKey)) {
+    const std::string key = oneLine(what.substr(kUnknownKey.size()));
+    const std::string option = "--" + key.substr(key.rfind('.') + 1);
+    throw UsageError(app_->get_config_ptr()->as<std::string>() + ": unknown setting '" + key + "'" +
+                     didYouMean(option, longNames(commands.empty() ? *app_ : *commands.front())) +
+                     "; expected options of a command under [COMMAND]");
+  }
   // Everything else: the message of CLI11.
-  throw UsageError(oneLine(what) + "; see `wavecrest" + command + " --help`");
+  const std::string origin = commands.empty() ? "" : originOf(*app_, *commands.front(), arguments, what);
+  throw UsageError(origin + oneLine(what) + "; see `wavecrest" + command + " --help`");
 }
 
 bool CommandLine::parse(std::vector<std::string> arguments, int& exitCode) {
@@ -161,16 +196,17 @@ bool CommandLine::parse(std::vector<std::string> arguments, int& exitCode) {
     throw UsageError("unknown command '" + arguments.front() + "'; expected one of " + CLI::detail::join(names, ", ") +
                      didYouMean(arguments.front(), names));
   }
+  forgetVariablesOfOthers(*app_, arguments);
   // CLI11 takes the arguments as a stack, the first one at the end.
-  std::reverse(arguments.begin(), arguments.end());
+  std::vector<std::string> stack(arguments.rbegin(), arguments.rend());
   try {
-    app_->parse(std::move(arguments));
+    app_->parse(std::move(stack));
   } catch (const CLI::ArgumentMismatch& error) {
-    failParsing(withoutTypes(error));
+    failParsing(withoutTypes(error), arguments);
   } catch (const CLI::ParseError& error) {
     // CLI11 throws for --help and --version too. These errors have the exit code of success.
     const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
-    if (!asked) failParsing(error.what());
+    if (!asked) failParsing(error.what(), arguments);
     app_->exit(error);
     exitCode = kExitDone;
     return false;

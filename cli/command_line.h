@@ -89,7 +89,7 @@ class CommandLine {
 
  private:
   std::vector<std::string> commandNames() const;
-  [[noreturn]] void failParsing(const std::string& what) const;
+  [[noreturn]] void failParsing(const std::string& what, const std::vector<std::string>& arguments) const;
 
   std::unique_ptr<CLI::App> app_;
 };

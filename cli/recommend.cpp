@@ -44,11 +44,11 @@ void runRecommend(const RecommendOptions& options) {
       .methods = recommendMethods(options),
       .clock = static_cast<PilotClock>(parseChoice("--clock", options.clock, kPilotClockNames))};
   const Scene scene = loadScene(options.scene);
-  const FilmArea area = filmArea(scene.film);
+  const uint32_t width = scene.film.imageWidth(), height = scene.film.imageHeight();
   // The target is an SSIM, so the film must be large enough for one.
-  if (std::min(area.width, area.height) < kSsimSmallestSide) {
+  if (std::min(width, height) < kSsimSmallestSide) {
     throw UsageError(fmt::format("recommend: a film of {}x{} is too small for SSIM; expected at least {} pixels a side",
-                                 area.width, area.height, kSsimSmallestSide));
+                                 width, height, kSsimSmallestSide));
   }
   // Settings of all pilots.
   RenderSettings settings;

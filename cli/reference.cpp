@@ -18,7 +18,7 @@
 #include "cli/messages.h"
 #include "cli/scene_options.h"
 #include "engine/inspect/path_classes.h"
-#include "engine/plan/render_plan.h"
+#include "engine/plan/render_settings.h"
 #include "library/option_values.h"
 #include "scenes/scene_list.h"
 
@@ -117,10 +117,10 @@ ReferenceGoal goalOf(const ReferenceOptions& options) {
 std::unique_ptr<const Reference> otherReference(const ReferenceOptions& options, const Scene& scene) {
   if (options.agreeWith.empty()) return nullptr;
   auto other = std::make_unique<const Reference>(readReference(options.agreeWith));
-  const FilmArea film = filmArea(scene.film);
-  if (other->mean.width != film.width || other->mean.height != film.height) {
+  const uint32_t width = scene.film.imageWidth(), height = scene.film.imageHeight();
+  if (other->mean.width != width || other->mean.height != height) {
     throw InputError(fmt::format("{}: is {}x{} pixels; expected {}x{}", options.agreeWith, other->mean.width,
-                                 other->mean.height, film.width, film.height));
+                                 other->mean.height, width, height));
   }
   try {
     compareReferences(*other, *other);  // has the same needs as the comparison with what will be rendered

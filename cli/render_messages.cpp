@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/messages.h"
+#include "engine/scene/hash_text.h"
 #include "library/inspection_json.h"
 #include "metrics/image/image_io.h"
 
@@ -93,8 +94,8 @@ void showMemory(ProgressKind kind, const MemoryPlan& plan) {
 void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
               const Session& session) {
   const RenderStatistics statistics = session.statistics();
-  fmt::print("scene    {}, {}x{} pixels, scene_hash {:016x}\n", scene.name, session.film().area().width,
-             session.film().area().height, scene.hash);
+  fmt::print("scene    {}, {}x{} pixels, scene_hash {}\n", scene.name, session.film().area().width,
+             session.film().area().height, hashText(scene.hash));
   fmt::print("method   {}, {} kernels on {}, {} intersector, {} threads\n", toString(settings.method),
              kSpecializationNames[static_cast<size_t>(statistics.specialization)], toString(statistics.isa),
              kAccelNames[static_cast<size_t>(statistics.accel)], settings.threads);

@@ -1,15 +1,28 @@
 #include "cli/render_options.h"
 
+#include <fmt/format.h>
+
 #include <limits>
 
+#include "engine/methods/method_list.h"
 #include "kernels/sampling/sampler.h"
 
 namespace wavecrest {
+namespace {
+
+// All of them, each after a blank.
+std::string methodNames() {
+  std::string names;
+  for (const MethodEntry& entry : kMethods) names += fmt::format(" {}", entry.name);
+  return names;
+}
+
+}  // namespace
 
 void addRenderOptions(const Command& command, RenderOptions& options) {
   addSceneOptions(command, options.scene);
   // Method, end and threads.
-  command.add("-m,--method", options.method, "light-transport method").showDefault();
+  command.add("-m,--method", options.method, "light-transport method:" + methodNames()).showDefault();
   command.add("--time", options.time, "stop after this much render time: 6s, 2m, 1h30m");
   command
       .add("--spp", options.spp,

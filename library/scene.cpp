@@ -11,6 +11,7 @@
 #include "engine/inspect/inspection.h"
 #include "engine/load/load.h"
 #include "engine/plan/render_plan.h"
+#include "engine/scene/hash_text.h"
 #include "library/errors.h"
 #include "library/inspection_json.h"
 #include "library/render_settings.h"
@@ -75,7 +76,7 @@ const std::string& Scene::name() const { return data_->scene.name; }
 uint32_t Scene::width() const { return filmArea(data_->scene.film).width; }
 uint32_t Scene::height() const { return filmArea(data_->scene.film).height; }
 uint64_t Scene::spp() const { return data_->scene.defaults.sampleCount; }
-std::string Scene::hash() const { return fmt::format("{:016x}", data_->scene.hash); }
+std::string Scene::hash() const { return hashText(data_->scene.hash); }
 const std::vector<std::string>& Scene::warnings() const { return data_->scene.warnings; }
 
 std::string Scene::inspect(const RenderOptions& options) const {

@@ -11,6 +11,7 @@
 #include "bench/campaign/file_lock.h"
 #include "bench/campaign/shrunk_reference.h"
 #include "bench/film_image.h"
+#include "engine/scene/hash_text.h"
 #include "engine/version.h"
 #include "metrics/image/atomic_file.h"
 
@@ -29,7 +30,7 @@ using Halves = std::array<Image, 2>;
 ReferenceInfo describe(const Scene& scene, const RenderSettings& settings, const std::string& methodReason) {
   const bool merges = strategiesOf(settings.method).merge;
   return {.scene = scene.name,
-          .sceneHash = fmt::format("{:016x}", scene.hash),
+          .sceneHash = hashText(scene.hash),
           .method = std::string(toString(settings.method)),
           .sampler = std::string(toString(settings.sampler)),
           .precision = std::string(kPrecisionNames[static_cast<size_t>(settings.precision)]),

@@ -1,10 +1,10 @@
 #include "bench/campaign/render_stats.h"
 
-#include <fmt/core.h>
 #include <sys/resource.h>
 
 #include "bench/enumerator_name.h"
 #include "bench/machine/machine_record.h"
+#include "engine/scene/hash_text.h"
 #include "engine/version.h"
 
 namespace wavecrest {
@@ -87,13 +87,15 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"version", kVersion},
       {"commit", kCommit},
       {"scene", scene.name},
-      {"scene_hash", fmt::format("{:016x}", scene.hash)},
+      {"scene_hash", hashText(scene.hash)},
       {"method", std::string(toString(settings.method))},
       {"seed", settings.seed},
       {"sampler", std::string(toString(settings.sampler))},
       {"filter_mode", enumeratorName(kFilterModeNames, statistics.filterMode)},
-      {"width", scene.film.cropWidth != 0 ? scene.film.cropWidth : scene.film.width},
-      {"height", scene.film.cropHeight != 0 ? scene.film.cropHeight : scene.film.height},
+      {"max_depth", settings.limits.maxDepth},
+      {"rr_depth", settings.limits.rouletteDepth},
+      {"width", scene.film.imageWidth()},
+      {"height", scene.film.imageHeight()},
       {"threads", settings.threads},
       {"isa", std::string(toString(statistics.isa))},
       {"precision", enumeratorName(kPrecisionNames, settings.precision)},
@@ -133,7 +135,10 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
   };
   // Keys of some methods only.
   if (strategiesOf(settings.method).merge) {
-    stats.update({{"radius", settings.radius}, {"radius_alpha", settings.radiusAlpha}});
+    const uint64_t pixels = uint64_t{scene.film.imageWidth()} * scene.film.imageHeight();
+    stats.update({{"radius", settings.radius},
+                  {"radius_alpha", settings.radiusAlpha},
+                  {"light_paths_per_iteration", settings.lightPaths.value_or(pixels)}});
     if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
   }
   if (hasConnectionRoulette(settings.method)) stats["connection_roulette"] = settings.connectionRoulette;

@@ -16,6 +16,7 @@
 #include "bench/results/results_store.h"
 #include "engine/inspect/path_classes.h"
 #include "engine/load/load.h"
+#include "engine/scene/hash_text.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
@@ -25,8 +26,6 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-std::string hashOf(const Scene& scene) { return fmt::format("{:016x}", scene.hash); }
 
 // The methods of a scene that this shard does. scene: its index. Groups of scene and method are counted through and
 // dealt to the shards in turn.
@@ -178,7 +177,7 @@ class Campaign {
   // Whether the scene was begun by an earlier process, which settled its reference. Throws if it has changed since.
   bool isKnown(const CampaignScene& entry, const Scene& scene) {
     const std::optional<std::string> known = store_ ? store_->sceneHash(entry.name) : std::nullopt;
-    if (known && *known != hashOf(scene)) {
+    if (known && *known != hashText(scene.hash)) {
       throw ResultsFileError(fmt::format("{}: the scene changed since this campaign began; expected scene_hash {}",
                                          entry.file.string(), *known));
     }
@@ -244,7 +243,7 @@ class Campaign {
   // Stores the scene with the facts of its reference and its path classes.
   void putScene(const CampaignScene& entry, const Scene& scene, const Reference& reference) {
     store_->putScene({.name = entry.name,
-                      .hash = hashOf(scene),
+                      .hash = hashText(scene.hash),
                       .referenceFile = referenceFile(entry.name).string(),
                       .width = settings_.size[0],
                       .height = settings_.size[1],

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/inspect/path_classes.h"
+#include "engine/scene/hash_text.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
@@ -17,7 +18,7 @@ std::string misfit(const Reference& reference, const Scene& scene, const Campaig
     return fmt::format("is {}x{} pixels; expected {}x{}", reference.mean.width, reference.mean.height, settings.size[0],
                        settings.size[1]);
   }
-  const std::string hash = fmt::format("{:016x}", scene.hash);
+  const std::string hash = hashText(scene.hash);
   if (reference.info.sceneHash != hash) {
     return fmt::format("is of scene_hash {}; expected {} of this {}", reference.info.sceneHash, hash, scene.name);
   }

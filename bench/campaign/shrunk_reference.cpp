@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/load/scene_hash.h"
+#include "engine/scene/hash_text.h"
 
 namespace wavecrest {
 namespace {
@@ -20,7 +21,7 @@ void requireBoxFilter(const FilmSettings& film) {
   if (film.filter != ReconstructionFilter::box || film.filterRadius != 0.5) {
     throw ShrinkError("cannot be averaged: the scene's filter reaches over pixels; expected a box filter");
   }
-  if (film.cropWidth != 0) throw ShrinkError("cannot be averaged: the film is cropped; expected a whole film");
+  if (film.isCropped()) throw ShrinkError("cannot be averaged: the film is cropped; expected a whole film");
 }
 
 // The hash of the scene with a film of that size.
@@ -61,7 +62,7 @@ Reference shrunkReference(const Reference& larger, const Scene& scene) {
   if (larger.info.isBiased()) throw ShrinkError("is by a method that merges; expected one that does not");
   const uint32_t factor = shrinkFactor(larger.mean, scene.film);
   requireBoxFilter(scene.film);
-  const std::string hash = fmt::format("{:016x}", hashAtSize(scene, larger.mean.width, larger.mean.height));
+  const std::string hash = hashText(hashAtSize(scene, larger.mean.width, larger.mean.height));
   if (larger.info.sceneHash != hash) {
     throw ShrinkError(
         fmt::format("is of scene_hash {}; expected {} of this {}", larger.info.sceneHash, hash, scene.name));
@@ -71,7 +72,7 @@ Reference shrunkReference(const Reference& larger, const Scene& scene) {
                    .difference = blockMeans(*larger.difference, factor),
                    .info = larger.info,
                    .noiseFloors = {}};
-  shrunk.info.sceneHash = fmt::format("{:016x}", scene.hash);
+  shrunk.info.sceneHash = hashText(scene.hash);
   shrunk.info.iterations *= uint64_t{factor} * factor;
   shrunk.info.relativeError = relativeError(shrunk.mean, *shrunk.difference);
   measureNoiseFloors(shrunk);

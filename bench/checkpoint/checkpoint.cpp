@@ -7,6 +7,7 @@
 
 #include "bench/enumerator_name.h"
 #include "bench/json_text.h"
+#include "engine/scene/hash_text.h"
 #include "engine/state/state_stream.h"
 #include "engine/version.h"
 #include "metrics/image/atomic_file.h"
@@ -63,7 +64,7 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                    {"commit", kCommit},
                    {"method", std::string(toString(settings.method))},
                    {"size", fmt::format("{}x{}", film.width, film.height)},
-                   {"scene_hash", fmt::format("{:016x}", scene.hash)},
+                   {"scene_hash", hashText(scene.hash)},
                    {"seed", settings.seed},
                    {"first_iteration", settings.firstIteration},
                    {"sampler", std::string(toString(settings.sampler))},

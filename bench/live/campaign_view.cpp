@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bench/json_text.h"
 #include "bench/live/live_page.h"
 #include "bench/report/method_style.h"
 #include "metrics/metric_list.h"
@@ -47,7 +48,7 @@ Json campaignJson(const CampaignSettings& settings) {
 CampaignView::CampaignView(const HostPort& address, const CampaignSettings& settings)
     : server_(address, campaignViewPage()) {
   // Readers get all events in order, so the page learns of the campaign before any run.
-  server_.publish(campaignJson(settings).dump());
+  server_.publish(jsonText(campaignJson(settings)));
 }
 
 void CampaignView::showEarlier(const CampaignResults& results) {
@@ -56,12 +57,11 @@ void CampaignView::showEarlier(const CampaignResults& results) {
 
 void CampaignView::showPlan(const CampaignPlan& plan) {
   // The time left is that of runs and of references that are to be rendered.
-  server_.publish(Json{{"plan",
-                        {{"runs", plan.runs},
-                         {"done", plan.done},
-                         {"seconds_left", plan.renderSeconds + plan.referenceSeconds},
-                         {"unreferenced", plan.unreferenced}}}}
-                      .dump());
+  server_.publish(jsonText(Json{{"plan",
+                                 {{"runs", plan.runs},
+                                  {"done", plan.done},
+                                  {"seconds_left", plan.renderSeconds + plan.referenceSeconds},
+                                  {"unreferenced", plan.unreferenced}}}}));
 }
 
 void CampaignView::publishRun(const RunRecord& run) {
@@ -72,24 +72,22 @@ void CampaignView::publishRun(const RunRecord& run) {
     for (const auto& [name, value] : snapshot.values) values[name] = std::isfinite(value) ? Json(value) : Json();
     points.push_back({{"seconds", snapshot.renderSeconds}, {"iterations", snapshot.iterations}, {"values", values}});
   }
-  server_.publish(Json{{"run",
-                        {{"scene", run.scene},
-                         {"method", run.method},
-                         {"seed", run.seed},
-                         {"state", toString(run.state)},
-                         {"reason", run.reason},
-                         {"points", points}}}}
-                      .dump());
+  server_.publish(jsonText(Json{{"run",
+                                 {{"scene", run.scene},
+                                  {"method", run.method},
+                                  {"seed", run.seed},
+                                  {"state", toString(run.state)},
+                                  {"reason", run.reason},
+                                  {"points", points}}}}));
 }
 
 void CampaignView::showRun(const RunRecord& run, const CampaignProgress& progress) {
   // The page adds the run to its curves, then shows what is left.
   publishRun(run);
-  server_.publish(
-      Json{{"progress", {{"done", progress.done}, {"total", progress.total}, {"seconds_left", progress.secondsLeft}}}}
-          .dump());
+  server_.publish(jsonText(Json{
+      {"progress", {{"done", progress.done}, {"total", progress.total}, {"seconds_left", progress.secondsLeft}}}}));
 }
 
-void CampaignView::showEnd(bool complete) { server_.publish(Json{{"end", {{"complete", complete}}}}.dump()); }
+void CampaignView::showEnd(bool complete) { server_.publish(jsonText(Json{{"end", {{"complete", complete}}}})); }
 
 }  // namespace wavecrest

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "bench/json_text.h"
 #include "bench/live/live_page.h"
 
 namespace wavecrest {
@@ -11,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 RenderView::RenderView(const HostPort& address, const Json& facts, const Goal& goal)
     : goal_(goal), server_(address, renderViewPage()) {
-  server_.publish(Json{{"facts", facts}}.dump());
+  server_.publish(jsonText(Json{{"facts", facts}}));
 }
 
 void RenderView::take(const std::shared_ptr<const Look>& look) {
@@ -35,7 +36,7 @@ void RenderView::take(const std::shared_ptr<const Look>& look) {
   }
   event["last"] = look->last;
   server_.setImage({look, &look->image});  // the look lives as long as the image
-  server_.publish(event.dump());
+  server_.publish(jsonText(event));
 }
 
 }  // namespace wavecrest

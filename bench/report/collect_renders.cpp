@@ -163,9 +163,18 @@ ReportSeries collectSeries(const std::vector<const RunFile*>& runs, const std::s
 }
 
 // Settings of the stats that make another series of a method. Runs that agree in all of them differ by their seeds.
-constexpr const char* kSeriesSettings[] = {"sampler", "precision",    "filter_mode",
-                                           "mlt",     "chains",       "direct_pass",
-                                           "radius",  "radius_alpha", "connection_roulette"};
+constexpr const char* kSeriesSettings[] = {"sampler",
+                                           "precision",
+                                           "filter_mode",
+                                           "max_depth",
+                                           "rr_depth",
+                                           "mlt",
+                                           "chains",
+                                           "direct_pass",
+                                           "radius",
+                                           "radius_alpha",
+                                           "light_paths_per_iteration",
+                                           "connection_roulette"};
 
 // What a run's stats say of a setting; null where they do not.
 nlohmann::json settingOf(const RunFile& run, const char* name) { return run.stats.value(name, nlohmann::json()); }
@@ -205,6 +214,8 @@ std::string seriesLabel(const std::vector<std::vector<const RunFile*>>& groups, 
     std::ranges::replace(words, '_', ' ');
     if (own.is_string()) {
       label += " " + own.get<std::string>();
+    } else if (own.is_number_integer()) {
+      label += fmt::format(" {} {}", words, own.get<int64_t>());
     } else if (own.is_number()) {
       label += fmt::format(" {} {:g}", words, own.get<double>());
     } else if (own.is_boolean()) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/score/score_files.h"
+#include "engine/scene/hash_text.h"
 #include "kernels/stages.h"
 
 namespace wavecrest {
@@ -80,7 +81,7 @@ nlohmann::ordered_json ImageHashes::toJson() const {
       place = &(*place)[key.substr(begin, end - begin)];
       begin = end + 1;
     }
-    *place = fmt::format("{:016x}", hash);
+    *place = hashText(hash);
   }
   return {{"score_version", kScoreVersion}, {"images", images}};
 }

@@ -1,10 +1,9 @@
 // A ScoreResult as JSON: base units, as bench/schema.json describes.
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "bench/enumerator_name.h"
 #include "bench/score/score.h"
+#include "engine/scene/hash_text.h"
 
 namespace wavecrest {
 namespace {
@@ -50,7 +49,7 @@ Json rowJson(const ScoreRow& row, const ScoreResult& result) {
                {"width", row.entry.width},
                {"height", row.entry.height},
                {"iterations", row.entry.iterations},
-               {"image_hash", fmt::format("{:016x}", row.hash)},
+               {"image_hash", hashText(row.hash)},
                {"image", enumeratorName(kValidityNames, row.validity)},
                {"score", row.score},
                {"core_score", row.coreScore}};

@@ -1,11 +1,10 @@
 // A SceneResult as JSON: every number in base units (seconds, counts per second, bytes).
-#include <fmt/core.h>
-
 #include <nlohmann/json.hpp>
 
 #include "bench/enumerator_name.h"
 #include "bench/throughput/bench_scene.h"
 #include "bench/throughput/doubts.h"
+#include "engine/scene/hash_text.h"
 
 namespace wavecrest {
 namespace {
@@ -145,7 +144,7 @@ Json toJson(const SceneResult& result) {
     methods.push_back(entry);
   }
   return {{"scene", result.scene},
-          {"scene_hash", fmt::format("{:016x}", result.hash)},
+          {"scene_hash", hashText(result.hash)},
           {"width", result.width},
           {"height", result.height},
           {"threads", result.threads},

@@ -179,6 +179,20 @@ void checkRange(const Scene& scene, double radius, double groupExtent) {
 
 }  // namespace
 
+Box rayOrigins(const Scene& scene, const BoundingSphere& bounds, const double (&eye)[3], const Double3& origin) {
+  std::vector<Box> points{boxAt(eye)};
+  const Double3 center = vec(bounds.center);
+  for (const Emitter& emitter : scene.emitters) {
+    const std::optional<Double3> position = positionOf(emitter);
+    if (!position) continue;
+    const Double3 away = *position - origin - center;
+    const double nearer = std::min(1.0, kFarthestLight * bounds.radius / length(away));
+    const Double3 point = center + nearer * away;
+    points.push_back(boxAt({point[0], point[1], point[2]}));
+  }
+  return unionOf(points.data(), points.size());
+}
+
 void setClips(const Sensor& sensor, const SceneGeometry& geometry, const BoundingSphere& bounds, CameraView& camera) {
   // Near clip: set if a primitive may lie before it. Instances are tested by their boxes first.
   const PrimitiveList& primitives = geometry.world();
@@ -233,14 +247,15 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   if (accel == Accel::automatic) {
     accel = !keeps && world.counts().total() <= kSmallSceneLimit ? Accel::small : Accel::bvh;
   }
+  const Box origins = rayOrigins(scene, bounds, view.camera.origin, origin);
   if (accel == Accel::small) {
     std::vector<PrimitiveRecord<double>> precise(world.counts().total());
     for (size_t i = 0; i < precise.size(); ++i) precise[i] = world.geometry<double>(i);
-    compiled->small = std::make_unique<SmallScene>(precise.data(), precise.size(), view.camera.origin);
+    compiled->small = std::make_unique<SmallScene>(precise.data(), precise.size(), origins);
     view.small = &compiled->small->view();
   } else if (accel == Accel::bvh) {
     compiled->bvh =
-        std::make_unique<Bvh>(world.source(), geometry.groups(), geometry.instances(), view.camera.origin, parallelFor);
+        std::make_unique<Bvh>(world.source(), geometry.groups(), geometry.instances(), origins, parallelFor);
     view.bvh = &compiled->bvh->view();
   }
   // Records of primitives and instances. Embree is built from the former.

@@ -55,6 +55,13 @@ template <class S>
 std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, bool watertightEmbree = true,
                                                Instancing instancing = Instancing::automatic);
 
+// Around the points outside of the scene's bounds that rays may start from, relative to `origin` as all else: the eye,
+// and lights that have a place. Lights beyond kFarthestLight radii of the scene count as if they were there:
+// intersectors widen boxes in proportion, and so few of such a light's paths meet the scene that what slips through is
+// lost in noise.
+Box rayOrigins(const Scene& scene, const BoundingSphere& bounds, const double (&eye)[3], const Double3& origin);
+constexpr double kFarthestLight = 1024;
+
 class SceneGeometry;
 
 // The camera of a sensor over its full film, relative to `origin`.

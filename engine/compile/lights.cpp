@@ -32,6 +32,11 @@ double areaOf(const PrimitiveRecord<S>& primitive) {
   return static_cast<PrimitiveKind>(primitive.kind) == PrimitiveKind::quad ? parallelogram : parallelogram / 2;
 }
 
+Double3 positionOf(const ProjectorEmitter& projector) {
+  const Matrix4& m = projector.toWorld;
+  return {m[0][3], m[1][3], m[2][3]};
+}
+
 // The light of one emitting primitive, without its pick and texture.
 template <class S>
 LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radiance) {
@@ -171,7 +176,7 @@ class LightCollector {
     const double area = 4 * halfWidth * halfHeight;
     const bool textured = projector.irradiance.texture != kNone;
     const Rgb irradiance = textured ? Rgb{1, 1, 1} : projector.irradiance.value;
-    assign(light.p0, Double3{m[0][3], m[1][3], m[2][3]} - origin_);
+    assign(light.p0, positionOf(projector) - origin_);
     assign(light.normal, normalized(column(m, 2)));
     // As in a camera, x points to the left of the picture and y up; u points right and v down.
     assign(light.e1, -1.0 * pictureAxis(m, 0, halfWidth));
@@ -277,6 +282,13 @@ void composeWithCorners(const PrimitiveRecord<S>& primitive, const RecordArray<A
 }
 
 }  // namespace
+
+std::optional<Double3> positionOf(const Emitter& emitter) {
+  if (const auto* point = std::get_if<PointEmitter>(&emitter.kind)) return point->position;
+  if (const auto* spot = std::get_if<SpotEmitter>(&emitter.kind)) return spot->position;
+  if (const auto* projector = std::get_if<ProjectorEmitter>(&emitter.kind)) return positionOf(*projector);
+  return std::nullopt;
+}
 
 template <class S>
 void bindLightTextures(const Scene& scene, const Primitives<S>& primitives, Lights<S>& lights, Textures& textures) {

@@ -1,6 +1,7 @@
 // Emitters to light records and the table from which lights are picked.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/compile/primitives.h"
@@ -26,6 +27,9 @@ struct Lights {
 template <class S>
 Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primitives<S>& primitives,
                         const Double3& origin = {});
+
+// Where a light's paths begin, in the scene's coordinates, of those that begin at a point.
+std::optional<Double3> positionOf(const Emitter& emitter);
 
 // How often each emitter is picked from now on: shares that are at least 0 and add up to 1. Records and table stay
 // where they are.

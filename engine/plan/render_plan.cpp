@@ -210,7 +210,7 @@ RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film,
 }
 
 FilmArea filmArea(const FilmSettings& film) {
-  if (film.cropWidth == 0 || film.cropHeight == 0) return FilmArea::make(0, 0, film.width, film.height);
+  if (!film.isCropped()) return FilmArea::make(0, 0, film.width, film.height);
   return FilmArea::make(film.cropX, film.cropY, film.cropWidth, film.cropHeight);
 }
 

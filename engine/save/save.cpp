@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "engine/save/sections.h"
+#include "engine/scene/hash_text.h"
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image.h"
 
@@ -30,7 +31,7 @@ SavePlan planSave(const Scene& scene, const fs::path& xml) {
   pugi::xml_document document;
   document.append_child(pugi::node_comment)
       .set_value(
-          fmt::format(" {}, as wavecrest reads it; scene_hash {:016x} ", xmlName(scene.name), scene.hash).c_str());
+          fmt::format(" {}, as wavecrest reads it; scene_hash {} ", xmlName(scene.name), hashText(scene.hash)).c_str());
   pugi::xml_node root = document.append_child("scene");
   root.append_attribute("version") = "3.0.0";
 

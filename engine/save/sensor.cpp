@@ -16,7 +16,7 @@ void saveFilm(pugi::xml_node sensor, const FilmSettings& film) {
   const pugi::xml_node node = addObject(sensor, "film", "hdrfilm");
   addInteger(node, "width", film.width);
   addInteger(node, "height", film.height);
-  if (film.cropWidth != 0) {
+  if (film.isCropped()) {
     addInteger(node, "crop_offset_x", film.cropX);
     addInteger(node, "crop_offset_y", film.cropY);
     addInteger(node, "crop_width", film.cropWidth);

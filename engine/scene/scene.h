@@ -264,6 +264,11 @@ struct FilmSettings {
   uint32_t cropX = 0, cropY = 0, cropWidth = 0, cropHeight = 0;  // crop 0 x 0: the whole film
   ReconstructionFilter filter = ReconstructionFilter::box;
   double filterRadius = 0.5, gaussianStddev = 0.5;  // raster units
+
+  // Of the image: the crop window's sides, or the film's.
+  bool isCropped() const { return cropWidth != 0 && cropHeight != 0; }
+  uint32_t imageWidth() const { return isCropped() ? cropWidth : width; }
+  uint32_t imageHeight() const { return isCropped() ? cropHeight : height; }
 };
 
 // What the scene file asks of its <integrator> and <sampler>; the command line overrides each.

@@ -19,8 +19,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // How far boxes are widened. A ray's distances to the planes of a box are (corner - origin) / direction + step * (scale
 // / direction): six roundings, each of which moves the plane by at most a unit roundoff of the distance between origin
 // and box. The corners of triangles are as uncertain, relative to the origin and laid along the ray.
-float marginFor(const Box& all, const double (&eye)[3]) {
-  return static_cast<float>(16 * kUnitRoundoff * rayReach(all, eye));
+float marginFor(const Box& all, const Box& origins) {
+  return static_cast<float>(16 * kUnitRoundoff * rayReach(all, origins));
 }
 
 // Writes the boxes of a node's children, each widened by the margin on every side.
@@ -224,12 +224,12 @@ class Layout {
 
 // The boxes of instances, with room for the rounding of rays on their way into the group's space: a few units of the
 // distance to the ray's origin, as the transform and its inverse stretch it.
-Pieces piecesOf(std::span<const BvhInstance> instances, const double (&eye)[3]) {
+Pieces piecesOf(std::span<const BvhInstance> instances, const Box& origins) {
   std::vector<Box> boxes;
   for (const BvhInstance& instance : instances) boxes.push_back(instance.box);
   Pieces pieces(boxes.size());
   if (boxes.empty()) return pieces;
-  const double rounding = 8 * kUnitRoundoff * rayReach(unionOf(boxes.data(), boxes.size()), eye);
+  const double rounding = 8 * kUnitRoundoff * rayReach(unionOf(boxes.data(), boxes.size()), origins);
   for (size_t i = 0; i < boxes.size(); ++i) {
     Piece& piece = pieces.begin()[i];
     piece = {.low = {}, .id = static_cast<uint32_t>(i), .high = {}, .unused = 0};
@@ -264,10 +264,10 @@ InstanceLeaf leafOf(const BvhInstance& instance, size_t index, double radius, ui
 }  // namespace
 
 Bvh::Bvh(const PrimitiveSource& primitives, std::span<const BvhGroup> groups, std::span<const BvhInstance> instances,
-         const double (&eye)[3], const ParallelFor& parallelFor) {
+         const Box& origins, const ParallelFor& parallelFor) {
   // Build the hierarchies of the world and of each group, and count what they need.
   Level top(primitives, parallelFor);
-  Pieces placed = piecesOf(instances, eye);
+  Pieces placed = piecesOf(instances, origins);
   if (!placed.empty()) top.parts.emplace_back(placed, BvhEntry::end, parallelFor);
   std::deque<Level> inGroups;
   size_t nodes = top.nodes(), leafBytes = top.leafBytes(), stackInGroups = 0;
@@ -292,11 +292,11 @@ Bvh::Bvh(const PrimitiveSource& primitives, std::span<const BvhGroup> groups, st
   // Lay out the world, then the groups, then the instances, which refer to the roots of their groups.
   Layout layout(arena_.get(), nodes, instances.size(), parallelFor);
   view_.arena = arena_.get();
-  view_.root = layout.add(top, marginFor(top.bounds(), eye));
+  view_.root = layout.add(top, marginFor(top.bounds(), origins));
   // Rays in a group start near its origin (PlacedRay::enter).
   std::vector<uint32_t> roots;
   roots.reserve(inGroups.size());
-  for (const Level& level : inGroups) roots.push_back(layout.add(level, marginFor(level.bounds(), {0, 0, 0})));
+  for (const Level& level : inGroups) roots.push_back(layout.add(level, marginFor(level.bounds(), boxAt({0, 0, 0}))));
   for (size_t i = 0; i < instances.size(); ++i) {
     const uint32_t group = instances[i].group;
     layout.write(i, leafOf(instances[i], i, groups[group].radius, roots[group]));

@@ -80,16 +80,16 @@ struct BvhInstance {
 
 class Bvh {
  public:
-  // primitives: at least one. eye: another point that rays start from. Throws std::runtime_error where the hierarchy
-  // would be too large for its references or for a ray's stack.
-  Bvh(const PrimitiveSource& primitives, const double (&eye)[3], const ParallelFor& parallelFor)
-      : Bvh(primitives, {}, {}, eye, parallelFor) {}
+  // primitives: at least one. origins: around other points that rays start from. Throws std::runtime_error where the
+  // hierarchy would be too large for its references or for a ray's stack.
+  Bvh(const PrimitiveSource& primitives, const Box& origins, const ParallelFor& parallelFor)
+      : Bvh(primitives, {}, {}, origins, parallelFor) {}
   // Of two levels: over primitives, of which there may be none, and over instances of groups, each of which has some.
   Bvh(const PrimitiveSource& primitives, std::span<const BvhGroup> groups, std::span<const BvhInstance> instances,
-      const double (&eye)[3], const ParallelFor& parallelFor);
+      const Box& origins, const ParallelFor& parallelFor);
   // records: in SceneView order.
-  Bvh(const PrimitiveRecord<double>* records, size_t count, const double (&eye)[3])
-      : Bvh(PrimitiveSource::of(records, count), eye, inTurn) {}
+  Bvh(const PrimitiveRecord<double>* records, size_t count, const Box& origins)
+      : Bvh(PrimitiveSource::of(records, count), origins, inTurn) {}
   const BvhView& view() const { return view_; }
   size_t bytes() const { return arena_.size(); }
   size_t nodes() const { return nodes_; }

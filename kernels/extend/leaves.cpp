@@ -57,6 +57,12 @@ Box unionOf(const Box* boxes, size_t count) {
   return all;
 }
 
+Box boxAt(const double (&point)[3]) {
+  Box box;
+  for (size_t axis = 0; axis < 3; ++axis) box.low[axis] = box.high[axis] = static_cast<float>(point[axis]);
+  return box;
+}
+
 // Only corners of quads become points of the weld. Corners of all faces are moved to these points (corner_weld.h).
 LeafMaker::LeafMaker(PrimitiveSource primitives, const ParallelFor& parallelFor)
     : primitives_(std::move(primitives)),
@@ -131,11 +137,11 @@ SphereLeaf LeafMaker::sphereLeaf(const uint32_t* ids, size_t count) const {
   return leaf;
 }
 
-double rayReach(const Box& scene, const double (&eye)[3]) {
+double rayReach(const Box& scene, const Box& origins) {
   double reach = 0;
   for (size_t axis = 0; axis < 3; ++axis) {
-    const double low = std::min(eye[axis], double{scene.low[axis]});
-    const double high = std::max(eye[axis], double{scene.high[axis]});
+    const double low = std::min(origins.low[axis], scene.low[axis]);
+    const double high = std::max(origins.high[axis], scene.high[axis]);
     reach = std::max({reach, std::abs(low), std::abs(high), 3 * (high - low)});
   }
   return reach;

@@ -32,6 +32,8 @@ struct Box {
   float low[3], high[3];
 };
 Box unionOf(const Box* boxes, size_t count);
+// Of a point, rounded to float.
+Box boxAt(const double (&point)[3]);
 
 // What a leaf holds in a slot, and its box. Four floats may be read from `low` and from `high`.
 struct alignas(16) Piece {
@@ -83,7 +85,8 @@ class LeafMaker {
 };
 
 // Upper bound of the coordinates of all points that rays start from, relative to which intersectors bound their
-// rounding: within the scene, at the eye, or on the box that distant light starts from, with room to spare.
-double rayReach(const Box& scene, const double (&eye)[3]);
+// rounding: within the scene, on the box that distant light starts from, or within `origins`, around the eye and lights
+// that have a place; with room to spare.
+double rayReach(const Box& scene, const Box& origins);
 
 }  // namespace wavecrest

@@ -53,7 +53,7 @@ FaceCoordinates inFloat(const DualBasis& basis) {
 
 }  // namespace
 
-SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, const double (&eye)[3]) {
+SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, const Box& origins) {
   const auto ofKind = [&](PrimitiveKind kind) {
     return static_cast<uint32_t>(
         std::count_if(primitives, primitives + count, [kind](const auto& p) { return kindOf(p) == kind; }));
@@ -72,7 +72,7 @@ SmallScene::SmallScene(const PrimitiveRecord<double>* primitives, size_t count, 
   for (const Pieces* pieces : {&leaves.faces(), &leaves.spheres()}) {
     for (const Piece& piece : *pieces) bounds.push_back(piece.box());
   }
-  const double reach = rayReach(unionOf(bounds.data(), bounds.size()), eye);
+  const double reach = rayReach(unionOf(bounds.data(), bounds.size()), origins);
 
   // Quads that bound boxes, closed boxes first; those too thin for a ray's rounding errors stay single quads.
   std::vector<bool> taken(count, false);

@@ -91,8 +91,8 @@ struct SmallSceneView {
 class SmallScene {
  public:
   // primitives: sorted by kind, as in SceneView. Coordinates in double, so that the forms are right to float's last
-  // place. eye: another point that rays start from.
-  SmallScene(const PrimitiveRecord<double>* primitives, size_t count, const double (&eye)[3]);
+  // place. origins: around other points that rays start from.
+  SmallScene(const PrimitiveRecord<double>* primitives, size_t count, const Box& origins);
   const SmallSceneView& view() const { return view_; }
 
  private:

@@ -228,6 +228,18 @@ TEST_F(CollectRenders, runsThatDifferByTheSeedAreOneSeries) {
   EXPECT_EQ(scene.series[0].stages.at(0).items, 20U);
 }
 
+TEST_F(CollectRenders, runsOfOtherPathsAreNotSeedsOfOneSeries) {
+  addRun("a", {{"max_depth", 64}, {"rr_depth", 5}});
+  addRun("b", {{"seed", 2}, {"max_depth", 4}, {"rr_depth", 5}});
+  addRun("c", {{"seed", 3}, {"max_depth", 64}, {"rr_depth", 2}});
+  addRun("d", {{"method", "ppm"}, {"light_paths_per_iteration", 1024}});
+  addRun("e", {{"method", "ppm"}, {"seed", 2}, {"light_paths_per_iteration", 2048}});
+  const ReportScene scene = collectRenders(folder).scenes[0];
+  ASSERT_EQ(scene.series.size(), 5U);
+  EXPECT_EQ(scene.series[1].label, "pt max depth 4 rr depth 5");
+  EXPECT_EQ(scene.series[4].label, "ppm light paths per iteration 2048");
+}
+
 TEST_F(CollectRenders, seriesOfOneMethodAreNamedByWhatDiffers) {
   addRun("a");
   addRun("b", {{"sampler", "sobol"}});

@@ -223,7 +223,18 @@ class Usage(CommandTest):
         self.assertEqual(read_json(self.path("stats.json"))["seed"], 9, result.stderr)
         self.write("settings.toml", "[render]\nsede = 5\n")
         wrong = self.run_wavecrest("--config", "settings.toml", "render", "cornell-diffuse", "--spp", "1", expect=USAGE)
-        self.assert_one_error_line(wrong, r".*sede")
+        self.assert_one_error_line(wrong, r"settings\.toml: unknown setting 'render\.sede'; did you mean '--seed'\?")
+        # What is wrong with a value says where it is from.
+        self.write("settings.toml", '[render]\nseed = "five"\n')
+        render = ("render", "cornell-diffuse", "--spp", "1")
+        wrong = self.run_wavecrest("--config", "settings.toml", *render, expect=USAGE)
+        self.assert_one_error_line(wrong, r"settings\.toml: --seed: 'five' is no whole number")
+        wrong = self.run_wavecrest(*render, expect=USAGE, variables={"WAVECREST_SEED": "six"})
+        self.assert_one_error_line(wrong, r"WAVECREST_SEED: --seed: 'six' is no whole number")
+        wrong = self.run_wavecrest(*render, "--seed", "6x", expect=USAGE, variables={"WAVECREST_SEED": "six"})
+        self.assert_one_error_line(wrong, r"--seed: '6x' is no whole number")
+        # Commands without the option do not read it.
+        self.run_wavecrest("scenes", variables={"WAVECREST_SEED": "six"})
         self.run_wavecrest("--config", "absent.toml", "scenes", expect=USAGE)
 
     def test_scenes_are_told_as_json(self):

@@ -170,7 +170,7 @@ void expectSame(const BvhView& a, uint32_t atA, const BvhView& b, uint32_t atB) 
 TEST(BvhTest, doesNotDependOnWhoBuildsIt) {
   const auto list =
       bumpySphere(160, 0.2).walls;  // enough triangles for several tasks on every level of the first three
-  const double eye[3] = {};
+  const Box origins = boxAt({0, 0, 0});
   const ParallelFor backwards = [](size_t count, const std::function<void(size_t)>& body) {
     for (size_t i = count; i-- > 0;) body(i);
   };
@@ -184,9 +184,9 @@ TEST(BvhTest, doesNotDependOnWhoBuildsIt) {
     other.join();
   };
   const PrimitiveSource source = PrimitiveSource::of(list.data(), list.size());
-  const Bvh inOrder(source, eye, inTurn);
+  const Bvh inOrder(source, origins, inTurn);
   for (const ParallelFor& parallelFor : {backwards, byThreads}) {
-    const Bvh other(source, eye, parallelFor);
+    const Bvh other(source, origins, parallelFor);
     expectSame(inOrder.view(), inOrder.view().root, other.view(), other.view().root);
   }
 }
@@ -381,6 +381,31 @@ TEST_P(BvhRaysTest, noRayLeavesAClosedMesh) {
       for (const Found& found : hits(named(name), scene, rays)) leaks += found.primitive == kMiss ? 1 : 0;
       EXPECT_EQ(leaks, 0u) << name << " bumps " << bumps;
     }
+  }
+}
+
+// As the rays of a lamp would: the margins of boxes have to know how far away it is.
+TEST_P(BvhRaysTest, noRayFromAfarEntersAClosedMesh) {
+  RandomPoints random(42);
+  const ClosedBody body = bumpySphere(effort(100, 20), 0);
+  for (const double distance : {300.0, 30'000.0}) {
+    const Point towardsLamp = normalized(turned({1, 0.7, 0.5})), lamp = body.center + towardsLamp * distance;
+    const StageScene<float> scene(body.walls, boxAt({lamp[0], lamp[1], lamp[2]}));
+    // At the edges of the near side.
+    std::vector<TestRay> rays;
+    for (const auto& edge : body.edges) {
+      const Point &a = body.corners[edge[0]], &b = body.corners[edge[1]];
+      if (dot(a - body.center, towardsLamp) < 0.2) continue;
+      for (size_t i = 0; i < 10; ++i) rays.push_back(aimedRay(lamp, a + (b - a) * random.uniform(0, 1)));
+    }
+    size_t leaks = 0;
+    for (const Found& found : hits(named("bvh"), scene, rays)) {
+      // On the near side a face lies towards the lamp.
+      leaks += found.primitive == kMiss || dot(corner(body.walls[found.primitive], 0, 0) - body.center, towardsLamp) < 0
+                   ? 1
+                   : 0;
+    }
+    EXPECT_EQ(leaks, 0u) << "distance " << distance;
   }
 }
 

@@ -89,7 +89,10 @@ template <class S>
 class StageScene {
  public:
   // Sorts the primitives by kind, keeping their order otherwise.
-  explicit StageScene(const std::vector<PrimitiveRecord<double>>& primitives) {
+  explicit StageScene(const std::vector<PrimitiveRecord<double>>& primitives)
+      : StageScene(primitives, boxAt(primitives.front().p0)) {}
+  // origins: around other points that rays start from.
+  StageScene(const std::vector<PrimitiveRecord<double>>& primitives, const Box& origins) {
     // No std::stable_sort: its buffer does not keep the records' alignment.
     for (size_t kind = 0; kind < 3; ++kind) {
       std::copy_if(primitives.begin(), primitives.end(), std::back_inserter(precise),
@@ -100,9 +103,9 @@ class StageScene {
       records.push_back(rounded(record));
       ++counts[order(record)];
     }
-    small = std::make_unique<SmallScene>(precise.data(), precise.size(), precise.front().p0);
+    small = std::make_unique<SmallScene>(precise.data(), precise.size(), origins);
     embree = std::make_unique<EmbreeScene>(records.data(), counts[0], counts[1], counts[2]);
-    bvh = std::make_unique<Bvh>(precise.data(), precise.size(), precise.front().p0);
+    bvh = std::make_unique<Bvh>(precise.data(), precise.size(), origins);
     materials.resize(1);
     std::fill_n(materials[0].reflectance, 3, 0.8f);
     view.primitives = records.data();

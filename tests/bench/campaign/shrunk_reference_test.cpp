@@ -1,10 +1,10 @@
 // A small reference from a larger one is what a render of the small film would have been.
 #include "bench/campaign/shrunk_reference.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "bench/campaign/reference_agreement.h"
+#include "engine/scene/hash_text.h"
 #include "tests/bench/campaign/small_references.h"
 #include "tests/metrics/temporary_folder.h"
 
@@ -63,7 +63,7 @@ Reference grey(const Scene& scene, uint32_t width, uint32_t height) {
   const Image image{
       .width = width, .height = height, .channels = 3, .pixels = std::vector<float>(3 * width * height, 1)};
   Reference reference{.mean = image, .difference = image, .info = {}, .noiseFloors = {}};
-  reference.info.sceneHash = fmt::format("{:016x}", scene.hash);
+  reference.info.sceneHash = hashText(scene.hash);
   return reference;
 }
 
