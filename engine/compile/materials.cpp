@@ -245,8 +245,7 @@ uint32_t sidesOf(const Material& material) {
   return flags;
 }
 
-}  // namespace
-
+// Whether the material, or a part of it, has any texture.
 bool isTextured(const Material& material, const Scene& scene) {
   // Whether any of these values has a texture, and the same of a roughness across dp/du.
   const auto textured = [](const auto&... values) { return ((values.texture != kNone) || ...); };
@@ -270,6 +269,8 @@ bool isTextured(const Material& material, const Scene& scene) {
       material.kind);
   return anyTexture || hasNormalMap(material) || (material.opacity && textured(*material.opacity));
 }
+
+}  // namespace
 
 bool isSmooth(const Conductor& conductor) { return !conductor.alphaV && isNearlyZero(conductor.alpha); }
 bool isSmooth(const Dielectric& dielectric) { return !dielectric.alphaV && isNearlyZero(dielectric.alpha); }

@@ -9,9 +9,8 @@ namespace wavecrest {
 // What a material asks of the kernels: Feature bits (kernels/stages.h).
 uint32_t materialFeatures(const Material& material, const Scene& scene);
 
-// Whether the direction of dp/du matters to it, and whether the material, or a part of it, has any texture.
+// Whether the direction of dp/du matters to it.
 bool isAnisotropic(const Material& material, const Scene& scene);
-bool isTextured(const Material& material, const Scene& scene);
 
 // Whether the BSDF's microfacet lobes are compiled as deltas, because their roughness is nearly zero. A textured or
 // anisotropic roughness never is.

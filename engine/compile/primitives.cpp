@@ -48,24 +48,6 @@ Float3 placedNormal(const Affine& placed, const Float3& normal) {
   const Double3 there = placed.normal(widened(normal)) * (1 / std::sqrt(most));
   return {static_cast<float>(there[0]), static_cast<float>(there[1]), static_cast<float>(there[2])};
 }
-// The unit normal in the group's space of a face whose normal in the world is n.
-Double3 groupNormal(const Affine& placed, const Double3& n) {
-  const Double3* const rows = placed.linear;
-  return normalized(rows[0] * n[0] + rows[1] * n[1] + rows[2] * n[2]);
-}
-
-// Texture coordinates that make dp/du the first axis of Duff's frame around the face's normal, as Mitsuba has it for
-// meshes without texture coordinates.
-void setFaceTangents(AttributeRecord& attributes, const Mesh& mesh, const FaceCorners& corners, const Double3& n) {
-  const double sign = std::copysign(1.0, n[2]), a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
-  const Double3 s{1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]}, t{b, sign + n[1] * n[1] * a, -n[1]};
-  for (size_t k = 0; k < 3; ++k) {
-    const Double3 p = widened(mesh.positions[corners[k]]) - widened(mesh.positions[corners[0]]);
-    attributes.uv[k][0] = static_cast<float>(dot(p, s));
-    attributes.uv[k][1] = static_cast<float>(dot(p, t));
-  }
-}
-
 }  // namespace
 
 PrimitiveList::PrimitiveList(const Scene& scene, bool textured, const ParallelFor& parallelFor, const Double3& origin,
@@ -258,16 +240,7 @@ PrimitiveRecord<S> PrimitiveList::corners(size_t index) const {
 template PrimitiveRecord<float> PrimitiveList::corners(size_t) const;
 template PrimitiveRecord<double> PrimitiveList::corners(size_t) const;
 
-// Whether a run has Mitsuba's default tangents: its material is anisotropic but not textured, and its mesh has no
-// texture coordinates.
-bool PrimitiveList::usesFaceTangents(const Run& run) const {
-  const uint32_t material = scene_.shapes[run.shape].material;
-  return run.mesh != nullptr && run.mesh->uvs.empty() && material != kNone &&
-         isAnisotropic(scene_.materials[material], scene_) && !isTextured(scene_.materials[material], scene_);
-}
-
-template <class S>
-AttributeRecord PrimitiveList::attribute(const Run& run, size_t index, const PrimitiveRecord<S>& record) const {
+AttributeRecord PrimitiveList::attribute(const Run& run, size_t index) const {
   // Without texture coordinates of its own a face has its (u, v), and a mirrored rectangle (1 - u, v).
   AttributeRecord attributes{};
   constexpr Float2 kDefaultUv[3] = {{0, 0}, {1, 0}, {0, 1}}, kMirroredUv[3] = {{1, 0}, {0, 0}, {1, 1}};
@@ -290,13 +263,6 @@ AttributeRecord PrimitiveList::attribute(const Run& run, size_t index, const Pri
     uvs = ofMesh;
   }
   for (size_t k = 0; k < 3; ++k) std::ranges::copy(uvs[k], attributes.uv[k]);
-  // Nothing reads these coordinates as such: others replace them that give the default tangents. Normal and positions
-  // are both in the space of the mesh.
-  if (usesFaceTangents(run)) {
-    Double3 normal{record.normal[0], record.normal[1], record.normal[2]};
-    if (run.placed != nullptr) normal = groupNormal(*run.placed, normal);
-    setFaceTangents(attributes, *run.mesh, cornersOf(run, index), normal);
-  }
   return attributes;
 }
 
@@ -332,7 +298,7 @@ void PrimitiveList::compile(Primitives<S>& out, size_t firstRecord, size_t first
         PrimitiveRecord<S>& record = out.records[firstRecord + run.first + i] = recordOf<S>(run, run.first + i, true);
         if (run.firstAttribute == kNoIndex) continue;
         record.attributes = static_cast<uint32_t>(firstAttribute + run.firstAttribute + i);
-        out.attributes[record.attributes] = attribute(run, run.first + i, record);
+        out.attributes[record.attributes] = attribute(run, run.first + i);
       }
     });
   }

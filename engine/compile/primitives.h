@@ -94,9 +94,7 @@ class PrimitiveList {
   // withNormal: of a mesh's face; other kinds have theirs always.
   template <class S>
   PrimitiveRecord<S> recordOf(const Run& run, size_t index, bool withNormal) const;
-  bool usesFaceTangents(const Run& run) const;
-  template <class S>
-  AttributeRecord attribute(const Run& run, size_t index, const PrimitiveRecord<S>& record) const;
+  AttributeRecord attribute(const Run& run, size_t index) const;
 
   const Scene& scene_;
   const bool textured_;
