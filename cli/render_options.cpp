@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "engine/methods/method_list.h"
-#include "kernels/sampling/sampler.h"
+#include "library/option_ranges.h"
 
 namespace wavecrest {
 namespace {
@@ -29,7 +27,8 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
            "stop after N iterations: paths, of mlt mutations, per pixel; default without --time: "
            "the scene's sample_count, or 4")
       .atLeast(1);
-  command.add("--threads", options.threads, "worker threads; default: all cores").between(1, 4096);
+  command.add("--threads", options.threads, "worker threads; default: all cores")
+      .between(kThreadRange.least, kThreadRange.most);
   command.addFlag("--pin", options.pin, "bind threads to cores and spread shared memory over their nodes");
   // Samples and paths.
   command.add("--seed", options.seed, "seed of all random numbers").showDefault();
@@ -39,42 +38,44 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
            "spread: camera samples add to all pixels that the filter reaches; sample: to one")
       .showDefault();
   command.add("--max-depth", options.maxDepth, "edges of the longest path; -1: unlimited")
-      .between(1, kUnlimitedDepth, -1);
+      .between(kDepthRange.least, kDepthRange.most, -1);
   command.add("--rr-depth", options.rrDepth, "first vertex where roulette may end a path")
-      .between(1, std::numeric_limits<int>::max());
+      .between(kRouletteDepthRange.least, kRouletteDepthRange.most);
   // Kernels and intersector.
   command.add("--precision", options.precision, "float, double, or fast: float with Embree's faster tests")
       .showDefault();
   command.add("--isa", options.isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--accel", options.accel, "intersector: auto, small, bvh or embree").showDefault();
   command.add("--instances", options.instances, "of shape groups: auto, expand into copies, or keep").showDefault();
-  command.add("--wave", options.wave, "paths per wave").showDefault().between(16, 1 << 20);
+  command.add("--wave", options.wave, "paths per wave").showDefault().between(kWaveRange.least, kWaveRange.most);
   // Merging, connections and memory.
   command.add("--radius", options.radius, "first merge radius of ppm, bpm and vcm, relative to the bounding sphere")
       .showDefault()
-      .between(1e-9, 10.0);
+      .between(kRadiusRange.least, kRadiusRange.most);
   command.add("--radius-alpha", options.radiusAlpha, "how slowly the radius shrinks, 0 to 1")
       .showDefault()
-      .between(0.0, 1.0);
+      .between(kRadiusAlphaRange.least, kRadiusAlphaRange.most);
   command
       .add("--light-paths", options.lightPaths,
            "light paths of an iteration of ppm, bpm or vcm; default: as many as pixels")
-      .between(1, int64_t{kMostPaths});
+      .between(kLightPathRange.least, kLightPathRange.most);
   command
       .add("--connection-roulette", options.connectionRoulette,
            "bpt, vcm: join connections below this part of a typical pixel's brightness by chance; 0: join all")
       .showDefault()
-      .between(0.0, 100.0);
+      .between(kConnectionRouletteRange.least, kConnectionRouletteRange.most);
   command.addFlag("--direct-pass", options.directPass, "ppm: direct light by next event estimation, not from photons");
   command.add("--memory", options.memory, "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
   // Markov chains.
   command.add("--mlt", options.mlt, "what the chains of mlt walk in: pssmlt, mmlt or pathspace; default: mmlt");
-  command.add("--chains", options.chains, "Markov chains of mlt").showDefault().between(1, 1 << 24);
+  command.add("--chains", options.chains, "Markov chains of mlt")
+      .showDefault()
+      .between(kChainRange.least, kChainRange.most);
   command.add("--bootstrap", options.bootstrap, "independent samples from which chains start")
       .showDefault()
-      .between(1, 1 << 28);
+      .between(kBootstrapRange.least, kBootstrapRange.most);
   command.add("--restart", options.restart, "steps before chains start anew; default: 16 mutations to a sample")
-      .between(1, 1 << 28);
+      .between(kRestartRange.least, kRestartRange.most);
   command.addFlag("--no-direct-pass", options.noDirectPass, "mmlt and pathspace: chains render direct light too");
   // Snapshots, goals, checkpoints and outputs.
   command.add("--snapshot-every", options.snapshotEvery, "snapshots at this interval, or 'log'");

@@ -180,7 +180,7 @@ struct alignas(sizeof(S) * 32) LightRecord {
   S inverseArea;  // 1 / area of an area light, or of a projector's picture
   S radius;
   S offset;  // bound on the error of a sampled point along the normal
-  S cosTotal, cosFalloff;
+  S cutoffHeight, beamHeight;  // of a spot, 1 - cos of the angles
   uint32_t kind;     // LightKind
   uint32_t texture;  // factor of the radiance of an area light, a spot or a projector, or kNoIndex
 };

@@ -2,6 +2,7 @@
 #include "wavecrest/campaign.h"
 
 #include <array>
+#include <thread>
 
 #include "bench/campaign/run_campaign.h"
 #include "bench/report/write_report.h"
@@ -17,18 +18,43 @@ namespace wavecrest::api {
 const char* version() { return kVersion; }
 const char* commit() { return kCommit; }
 
+// Counted while it holds a session. Where a signal handler interrupts watch(), it is through before watch() goes on.
 void StopRequest::request() noexcept {
   requested_.store(true);
+  requesting_.fetch_add(1);
   if (Session* const session = session_.load()) session->interrupt();
+  requesting_.fetch_sub(1);
 }
 
+// A request that begins after the store finds the new session. Earlier ones may hold the former, whose owner is about
+// to end it, so they are waited for.
 void StopRequest::watch(Session* session) noexcept {
   session_.store(session);
+  while (requesting_.load() != 0) std::this_thread::yield();
   if (session != nullptr && requested_.load()) session->interrupt();
 }
 
+namespace {
+
+// Whatever ends a campaign, no session is watched afterwards. stop: may be null.
+class WatchEnd {
+ public:
+  explicit WatchEnd(StopRequest* stop) : stop_(stop) {}
+  ~WatchEnd() {
+    if (stop_ != nullptr) stop_->watch(nullptr);
+  }
+  WatchEnd(const WatchEnd&) = delete;
+  WatchEnd& operator=(const WatchEnd&) = delete;
+
+ private:
+  StopRequest* stop_;
+};
+
+}  // namespace
+
 bool converge(const CampaignOptions& options, const CampaignCallbacks& callbacks, StopRequest* stop) {
   return translated([&] {
+    const WatchEnd end(stop);
     CampaignOptions asked = options;
     const CampaignSettings settings = begunCampaign(asked);
     const CampaignHooks hooks{.session = {.watch =

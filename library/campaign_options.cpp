@@ -48,11 +48,12 @@ constexpr std::array<std::string_view, 19> kDefiningOptions{"scenes",
                                                             "--clock",
                                                             "-D"};
 
-constexpr double kLeastFactor = 1e-4, kMostFactor = 1e4;  // of --time-factor
+// Those that take several words.
+constexpr std::array<std::string_view, 4> kListOptions{"scenes", "--methods", "--mlt", "-D"};
 
 bool has(const CampaignOptions& options, const char* name) { return options.defining.contains(name); }
 
-// The first word of an option, or `otherwise` where the option was not given.
+// The word of an option that takes one, or `otherwise` where the option was not given.
 std::string get(const CampaignOptions& options, const char* name, const std::string& otherwise = "") {
   const auto found = options.defining.find(name);
   return found == options.defining.end() || found->second.empty() ? otherwise : found->second.front();
@@ -97,7 +98,7 @@ const Profile& chosenProfile(const CampaignOptions& options) {
 Effort effortOf(const CampaignOptions& options, const Profile& profile, std::string_view scene) {
   Effort effort = profile.effort(scene);
   if (has(options, "--time-factor")) {
-    const double factor = parseNumber("--time-factor", get(options, "--time-factor"), kLeastFactor, kMostFactor);
+    const double factor = parseNumber("--time-factor", get(options, "--time-factor"), kTimeFactorRange);
     effort.seconds *= factor;
     effort.snapshotSeconds *= factor;
   }
@@ -133,6 +134,7 @@ std::vector<CampaignScene> chosenScenes(const CampaignOptions& options, const Pr
 // Settings that all runs share. Method, seed, path limits and the end come with each run.
 RenderSettings renderSettings(const CampaignOptions& options) {
   RenderSettings render;
+  if (options.threads != 0) requireInRange("--threads", options.threads, kThreadRange);
   render.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   render.isa = parseIsaOption(options.isa);
   render.precision =
@@ -250,17 +252,31 @@ std::map<std::string, std::string> campaignKeys(const CampaignOptions& options, 
 
 std::span<const std::string_view> campaignWords() { return kDefiningOptions; }
 
-CampaignSettings begunCampaign(CampaignOptions& options) {
-  // Checks names and values.
-  for (const auto& [name, words] : options.defining) {
-    if (std::find(kDefiningOptions.begin(), kDefiningOptions.end(), name) == kDefiningOptions.end()) {
-      throw UsageError(fmt::format("{}: unknown; expected one of {}", name, fmt::join(kDefiningOptions, ", ")));
-    }
-    if (words.empty()) throw UsageError(fmt::format("{}: has no value; expected at least one", name));
-    for (const std::string& word : words) {
-      if (!isUtf8(word)) throw UsageError(fmt::format("{} {}: is no UTF-8; expected it in results", name, word));
-    }
+namespace {
+
+// Checks an option's name and how many words it has. Throws UsageError.
+void checkOption(const std::string& name, const std::vector<std::string>& words) {
+  const auto isAmong = [&](const auto& names) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  if (!isAmong(kDefiningOptions)) {
+    throw UsageError(fmt::format("{}: unknown; expected one of {}", name, fmt::join(kDefiningOptions, ", ")));
   }
+  if (words.empty()) throw UsageError(fmt::format("{}: has no value; expected at least one", name));
+  if (words.size() > 1 && !isAmong(kListOptions)) {
+    throw UsageError(fmt::format("{} {}: expected one value", name, fmt::join(words, " ")));
+  }
+  // A flag, which is left out where it does not hold.
+  if (name == "--direct-pass" && words.front() != "yes") {
+    throw UsageError(fmt::format("--direct-pass {}: expected yes, or no such option", words.front()));
+  }
+  for (const std::string& word : words) {
+    if (!isUtf8(word)) throw UsageError(fmt::format("{} {}: is no UTF-8; expected it in results", name, word));
+  }
+}
+
+}  // namespace
+
+CampaignSettings begunCampaign(CampaignOptions& options) {
+  for (const auto& [name, words] : options.defining) checkOption(name, words);
   // The settings say where the results file is.
   CampaignSettings settings = campaignSettings(options);
   const fs::path results = resultsFile(settings);

@@ -85,15 +85,15 @@ void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSett
   // Settings of merging methods, and the clock.
   RenderSettings& render = settings.render;
   if (const auto* radius = given(words, "--radius")) {
-    render.radius = parseNumber("--radius", radius->front(), 1e-9, 10.0);
+    render.radius = parseNumber("--radius", radius->front(), kRadiusRange);
   }
   if (const auto* alpha = given(words, "--radius-alpha")) {
-    render.radiusAlpha = parseNumber("--radius-alpha", alpha->front(), 0.0, 1.0);
+    render.radiusAlpha = parseNumber("--radius-alpha", alpha->front(), kRadiusAlphaRange);
   }
   // An option is stronger than the profile's choice.
   if (profile.lightPaths != 0) render.lightPaths = profile.lightPaths;
   if (const auto* paths = given(words, "--light-paths")) {
-    render.lightPaths = parseNumber("--light-paths", paths->front(), uint64_t{1}, uint64_t{kMostPaths});
+    render.lightPaths = parseNumber("--light-paths", paths->front(), kLightPathRange);
   }
   if (const auto* clock = given(words, "--clock")) {
     render.clock = static_cast<ClockKind>(parseChoice("--clock", clock->front(), kClockNames));

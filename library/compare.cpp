@@ -1,20 +1,33 @@
 // Comparisons of the interface.
 #include "wavecrest/compare.h"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "library/comparison.h"
 #include "library/image_conversion.h"
+#include "library/option_values.h"
 #include "library/translate.h"
 #include "metrics/false_colour.h"
 
 namespace wavecrest::api {
 namespace {
 
+// Whether all values are codes of 8 bits over 255, to rounding. Codes of 16 bits that are none lie 1/257 of a code or
+// more from them.
+bool isOf8Bits(const std::vector<float>& values) {
+  return std::all_of(values.begin(), values.end(), [](float value) {
+    const double code = 255 * double{value};
+    return std::abs(code - std::round(code)) <= 1e-4;
+  });
+}
+
 // An image of the interface as one that was read from a file. name: for messages.
 ImageFile toFile(const std::string& name, Image image) {
   checkPixels(name, image);
-  const Encoding encoding = image.srgb ? Encoding::srgb8 : Encoding::linear;
+  Encoding encoding = Encoding::linear;
+  if (image.srgb) encoding = isOf8Bits(image.pixels) ? Encoding::srgb8 : Encoding::srgb16;
   return {.image = toImage(std::move(image)), .encoding = encoding, .metadata = {}};
 }
 
@@ -57,6 +70,7 @@ struct Reference::Data {
 
 Reference::Reference(Image image, const CompareOptions& options, const std::string& name) {
   translated([&] {
+    requireInRange("--exposure", options.exposure, kExposureRange);
     ComparisonSettings settings;
     settings.exposure = options.exposure;
     settings.gammaCorrectedErrors = options.gammaCorrectedErrors;

@@ -2,6 +2,7 @@
 #include "metrics/image/image.h"
 
 #include "library/image_conversion.h"
+#include "library/option_values.h"
 #include "library/translate.h"
 #include "metrics/false_colour.h"
 #include "metrics/image/image_io.h"
@@ -39,7 +40,7 @@ Image readImage(const std::string& file) {
 void writeImage(const std::string& file, const Image& image) {
   translated([&] {
     checkPixels(file, image);
-    if (image.srgb) throw ImageError(file, "8-bit sRGB values cannot be written", "expected linear radiance");
+    if (image.srgb) throw ImageError(file, "sRGB values cannot be written", "expected linear radiance");
     checkImageTarget(file);
     wavecrest::writeImage(file, toImage(image));
   });
@@ -48,6 +49,7 @@ void writeImage(const std::string& file, const Image& image) {
 std::vector<uint8_t> srgbCodes(const Image& image, double exposure) {
   return translated([&] {
     checkPixels("image", image);
+    requireInRange("--exposure", exposure, kExposureRange);
     wavecrest::Image light = toImage(image);
     if (image.srgb) light = linearLight({.image = light, .encoding = Encoding::srgb8, .metadata = {}});
     return encodeSrgb8(light, exposure).pixels;

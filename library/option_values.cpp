@@ -13,19 +13,43 @@
 
 namespace wavecrest {
 
+namespace {
+
+// False for NaN.
 template <class Number>
-Number parseNumber(const std::string& option, const std::string& word, Number least, Number most) {
+bool contains(const OptionRange<Number>& range, Number number) {
+  return number >= range.least && number <= range.most;
+}
+
+// value: the number, or the word that is none.
+template <class Number, class Value>
+UsageError outOfRange(const std::string& option, const Value& value, const OptionRange<Number>& range,
+                      std::string_view also) {
+  return UsageError(
+      fmt::format("{} {}: expected a number from {} to {}{}", option, value, range.least, range.most, also));
+}
+
+}  // namespace
+
+template <class Number>
+Number parseNumber(const std::string& option, const std::string& word, const OptionRange<Number>& range) {
   Number number{};
   const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   const bool whole = error == std::errc() && rest == word.data() + word.size();
-  // Written with negations so that NaN fails.
-  if (!whole || !(number >= least) || !(number <= most)) {
-    throw UsageError(fmt::format("{} {}: expected a number from {} to {}", option, word, least, most));
-  }
+  if (!whole || !contains(range, number)) throw outOfRange(option, word, range, "");
   return number;
 }
-template double parseNumber(const std::string&, const std::string&, double, double);
-template uint64_t parseNumber(const std::string&, const std::string&, uint64_t, uint64_t);
+template double parseNumber(const std::string&, const std::string&, const OptionRange<double>&);
+template uint64_t parseNumber(const std::string&, const std::string&, const OptionRange<uint64_t>&);
+
+template <class Number>
+void requireInRange(const std::string& option, std::type_identity_t<Number> number, const OptionRange<Number>& range,
+                    std::string_view also) {
+  if (!contains(range, number)) throw outOfRange(option, number, range, also);
+}
+template void requireInRange(const std::string&, double, const OptionRange<double>&, std::string_view);
+template void requireInRange(const std::string&, uint64_t, const OptionRange<uint64_t>&, std::string_view);
+template void requireInRange(const std::string&, int, const OptionRange<int>&, std::string_view);
 
 double parseDuration(const std::string& option, const std::string& text) {
   const auto fail = [&]() -> double {

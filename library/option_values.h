@@ -7,14 +7,22 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "engine/session/snapshots.h"
+#include "library/option_ranges.h"
 
 namespace wavecrest {
 
-// A number from least to most, or UsageError. Number: double or uint64_t.
+// A number of the range, or UsageError. Number: double or uint64_t.
 template <class Number>
-Number parseNumber(const std::string& option, const std::string& word, Number least, Number most);
+Number parseNumber(const std::string& option, const std::string& word, const OptionRange<Number>& range);
+
+// Throws UsageError for a number outside of the range, also for NaN. also: what else is allowed, for the message.
+// Number: double, uint64_t or int.
+template <class Number>
+void requireInRange(const std::string& option, std::type_identity_t<Number> number, const OptionRange<Number>& range,
+                    std::string_view also = "");
 
 // "6s", "2m", "1h30m", "0.5s", or plain seconds. Positive and finite, or UsageError.
 double parseDuration(const std::string& option, const std::string& text);

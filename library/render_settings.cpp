@@ -76,8 +76,28 @@ void refuseOptionsOfOtherVariants(const api::RenderOptions& options, const Rende
   }
 }
 
+// Refuses numbers outside of their ranges. Where 0 leaves a number to the scene or the machine, 0 is none of them.
+// Throws UsageError.
+void refuseNumbersOutOfRange(const api::RenderOptions& options) {
+  const auto unlessZero = [](const char* name, auto number, const auto& range, const char* also = "") {
+    if (number != 0) requireInRange(name, number, range, also);
+  };
+  unlessZero("--threads", options.threads, kThreadRange);
+  if (options.maxDepth != -1) unlessZero("--max-depth", options.maxDepth, kDepthRange, ", or -1");
+  unlessZero("--rr-depth", options.rrDepth, kRouletteDepthRange);
+  requireInRange("--wave", options.wave, kWaveRange);
+  requireInRange("--radius", options.radius, kRadiusRange);
+  requireInRange("--radius-alpha", options.radiusAlpha, kRadiusAlphaRange);
+  unlessZero("--light-paths", options.lightPaths, kLightPathRange);
+  requireInRange("--connection-roulette", options.connectionRoulette, kConnectionRouletteRange);
+  requireInRange("--chains", options.chains, kChainRange);
+  requireInRange("--bootstrap", options.bootstrap, kBootstrapRange);
+  unlessZero("--restart", options.restart, kRestartRange);
+}
+
 // The settings of these options, whichever method has them.
 RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scene& scene) {
+  refuseNumbersOutOfRange(options);
   RenderSettings settings;
   settings.method = parseMethodOption("--method", options.method);
   settings.sampler = parseSamplerOption("--sampler", options.sampler);

@@ -18,14 +18,21 @@ constexpr std::array<std::array<float, 3>, 9> kStops{{{0, 0, 4},
                                                       {254, 194, 135},
                                                       {252, 253, 191}}};
 
+constexpr double kTop = kStops.size() - 1;
+
 }  // namespace
 
 Image8 falseColour(std::span<const float> map, uint32_t width, uint32_t height, double range) {
   Image8 picture{width, height, {}};
   picture.pixels.reserve(map.size() * 3);
-  const double scale = range > 0 ? (kStops.size() - 1) / range : 0;
-  for (float value : map) {
-    const double position = std::isnan(value) ? 0 : std::clamp(value * scale, 0.0, double{kStops.size() - 1});
+  for (const float value : map) {
+    // Only values between 0 and the range are scaled. Their products are finite, whatever the range is.
+    double position = 0;
+    if (range > 0 && value >= range) {
+      position = kTop;
+    } else if (range > 0 && value > 0) {
+      position = std::min(value * (kTop / range), kTop);
+    }
     const auto stop = std::min(static_cast<size_t>(position), kStops.size() - 2);
     const auto t = static_cast<float>(position - static_cast<double>(stop));
     for (size_t c = 0; c < 3; ++c) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "metrics/image/srgb.h"
@@ -39,8 +40,10 @@ Image toUnitRange(const Image8& codes) {
 }
 
 // Error of each pixel: the root mean square difference of its channels or, if relative, the mean of its squared
-// differences over the squared reference, as in relmse. Pixels that are not finite have no error.
+// differences over the squared reference, as in relmse. Pixels that are not finite have no error. The others' errors
+// end at the largest float, so that quantiles of the map are finite.
 std::vector<float> errorMap(const ErrorPair& images, bool relative) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
   std::vector<float> map(images.reference.pixelCount());
   for (size_t i = 0; i < map.size(); ++i) {
     double sum = 0;
@@ -49,7 +52,7 @@ std::vector<float> errorMap(const ErrorPair& images, bool relative) {
       sum += relative ? d * d / (r * r + RelmseSettings{}.epsilon) : d * d;
     }
     const double value = relative ? sum / 3 : std::sqrt(sum / 3);
-    map[i] = std::isfinite(value) ? static_cast<float>(value) : 0.0f;
+    map[i] = std::isfinite(value) ? static_cast<float>(std::min(value, kLargest)) : 0.0f;
   }
   return map;
 }

@@ -1,7 +1,7 @@
 // The built-in scenes: their names, a line about each, and where their files are.
 //
-// The nine scenes of the study come first, in its order, then those that exist for benchmarks. This list is the one
-// place that names them.
+// The nine scenes of the study come first, in its order, then those that exist for benchmarks. Tools and tests that
+// treat each of the nine differently name them too (CONTRIBUTING.md, "How to add a scene").
 #pragma once
 
 #include <filesystem>

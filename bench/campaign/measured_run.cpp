@@ -19,6 +19,23 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* kUnfinished = "unfinished.";
+
+// Where an image lies until its run is done. file: as the record has it.
+fs::path unfinishedFile(const fs::path& out, const fs::path& file) {
+  return out / file.parent_path() / (kUnfinished + file.filename().string());
+}
+
+std::string stemOf(const RunRecord& run) { return fmt::format("{}.{}.{}", run.scene, run.method, run.seed); }
+
+// Removes the images that a run which did not end has left.
+void removeUnfinished(const fs::path& out, const RunRecord& run) {
+  const std::string prefix = kUnfinished + stemOf(run) + ".";
+  for (const fs::directory_entry& entry : fs::directory_iterator(out / "images")) {
+    if (entry.path().filename().string().starts_with(prefix)) fs::remove(entry.path());
+  }
+}
+
 // Takes snapshots of one session: writes the image, measures it and adds a row to the run.
 class SnapshotTaker {
  public:
@@ -29,19 +46,18 @@ class SnapshotTaker {
     // The record.
     const RenderStatistics statistics = session_.statistics();
     paths_ = session_.progressPaths();
-    const std::string stem = fmt::format("{}.{}.{}", run_.scene, run_.method, run_.seed);
     SnapshotRecord& snapshot = run_.snapshots.emplace_back();
     snapshot.number = number;
     snapshot.renderSeconds = statistics.renderSeconds;
     snapshot.iterations = statistics.iterations;
-    snapshot.file = (fs::path("images") / fmt::format("{}.{:04}.exr", stem, number)).string();
+    snapshot.file = (fs::path("images") / fmt::format("{}.{:04}.exr", stemOf(run_), number)).string();
     // The image, with the statistics as attributes. Unless all images are kept, it takes the place of the one before.
     const Image image = filmImage(session_);
     nlohmann::ordered_json stats = this->stats(statistics);
-    writeExr((request_.out / snapshot.file).string(), image, statsMetadata(stats));
+    writeExr(unfinishedFile(request_.out, snapshot.file).string(), image, statsMetadata(stats));
     if (!request_.keepImages && run_.snapshots.size() > 1) {
       SnapshotRecord& before = run_.snapshots[run_.snapshots.size() - 2];
-      fs::remove(request_.out / before.file);
+      fs::remove(unfinishedFile(request_.out, before.file));
       before.file.clear();
     }
     // Scores against the reference, and the error without the noise of the reference.
@@ -111,20 +127,32 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHoo
     return run;
   }
   // Renders from snapshot to snapshot. An interrupted run is dropped.
+  removeUnfinished(request.out, run);
   SnapshotTaker taker(request, run, *session);
-  if (hooks.watch) hooks.watch(session.get());
   const auto takeSnapshot = [&](unsigned number) { taker.take(number); };
-  const unsigned count = renderWithSnapshots(*session, request.settings, request.schedule, takeSnapshot, hooks.goesOn);
+  unsigned count = 0;
+  {
+    const WatchScope watch(hooks, *session);
+    count = renderWithSnapshots(*session, request.settings, request.schedule, takeSnapshot, hooks.goesOn);
+  }
   // A request to save that came too late for the loop above does not end the run.
   const bool stopped = session->interrupted() && !(hooks.goesOn && hooks.goesOn());
-  if (hooks.watch) hooks.watch(nullptr);
-  if (stopped) return std::nullopt;
+  if (stopped) {
+    removeUnfinished(request.out, run);
+    return std::nullopt;
+  }
   // The end of the run is always a snapshot.
   if (taker.outdated()) taker.take(count);
   const RenderStatistics statistics = session->statistics();
   run.stats = taker.stats(statistics).dump();
   for (const auto& stage : statistics.stages) run.stages.push_back({stage.name, stage.items, stage.seconds});
   return run;
+}
+
+void placeImages(const fs::path& out, const RunRecord& run) {
+  for (const SnapshotRecord& snapshot : run.snapshots) {
+    if (!snapshot.file.empty()) fs::rename(unfinishedFile(out, snapshot.file), out / snapshot.file);
+  }
 }
 
 }  // namespace wavecrest

@@ -23,14 +23,19 @@ struct RunRequest {
   const PreparedReference& reference;
   const Reference* halves = nullptr;  // the same: to measure error without its noise, where it is given
   std::string row = {};               // under which the campaign keeps the run; empty: the method's name
-  std::filesystem::path out;          // images go to out/images/SCENE.METHOD.SEED.NUMBER.exr
+  std::filesystem::path out;          // images go to its folder images
   bool keepImages = true;             // of all snapshots, else of the last
   double loadSeconds = 0;             // of the scene, for the record
 };
 
-// Nothing if the run was interrupted; its images are of no use then and the next attempt overwrites them. A method that
-// cannot render the scene gives a run that is refused.
+// The run, whose images are named as unfinished ones until placeImages(): what an earlier, shorter run has stays as it
+// is. Nothing if the run was interrupted; then its images are removed. A method that cannot render the scene gives a
+// run that is refused.
 std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHooks& hooks);
+
+// Gives the images of a run the names that its record says, out/images/SCENE.METHOD.SEED.NUMBER.exr, in place of those
+// that have them. Throws std::filesystem::filesystem_error.
+void placeImages(const std::filesystem::path& out, const RunRecord& run);
 
 // All scores of all metrics that are measured by default and that the image is large enough for, by scoreName.
 MetricValues measureImage(const PreparedReference& reference, const std::string& name, Image image);

@@ -132,12 +132,13 @@ class HalfSessions {
   bool render(uint64_t iterations, const ReferenceHooks& hooks) {
     const uint64_t goal = done_ + iterations;
     for (const auto& session : sessions_) {
-      if (hooks.session.watch) hooks.session.watch(session.get());
       bool goesOn = true;
-      do {
-        session->renderUntil(goal, std::nullopt);
-      } while (session->interrupted() && (goesOn = hooks.session.goesOn && hooks.session.goesOn()));
-      if (hooks.session.watch) hooks.session.watch(nullptr);
+      {
+        const WatchScope watch(hooks.session, *session);
+        do {
+          session->renderUntil(goal, std::nullopt);
+        } while (session->interrupted() && (goesOn = hooks.session.goesOn && hooks.session.goesOn()));
+      }
       if (!goesOn || (hooks.stopped && hooks.stopped())) return false;
     }
     done_ = goal;

@@ -283,13 +283,25 @@ class Campaign {
                                                           .loadSeconds = loadSeconds},
                                                          hooks_.session);
         if (!run || stopped()) return false;
-        // A stored run that was asked for less is replaced.
-        knownRun(entry, method, seed) ? store_->replaceRun(*run) : store_->putRun(*run);
+        store(*run, knownRun(entry, method, seed));
         const CampaignProgress& progress = pace_.finish(entry, secondsSince(begin));
         if (hooks_.finished) hooks_.finished(*run, progress);
       }
     }
     return true;
+  }
+
+  // Stores a run and its images; those of a shorter one that it replaces go once it is stored.
+  void store(const RunRecord& run, const std::optional<ResultsStore::KnownRun>& shorter) {
+    placeImages(settings_.out, run);
+    if (!shorter) return store_->putRun(run);
+    store_->replaceRun(run);
+    for (const std::string& image : shorter->images) {
+      const bool kept =
+          std::ranges::any_of(run.snapshots, [&](const auto& snapshot) { return snapshot.file == image; });
+      std::error_code ignored;  // of files that are gone already
+      if (!kept) fs::remove(settings_.out / image, ignored);
+    }
   }
 
   // The settings of a run: the campaign's, with the method, the seed and the end of the run. Light paths apply to

@@ -30,4 +30,20 @@ class IdleScope {
   const SessionHooks& hooks_;
 };
 
+// Tells of a session for its lifetime, also where an exception ends it.
+class WatchScope {
+ public:
+  WatchScope(const SessionHooks& hooks, Session& session) : hooks_(hooks) {
+    if (hooks_.watch) hooks_.watch(&session);
+  }
+  ~WatchScope() {
+    if (hooks_.watch) hooks_.watch(nullptr);
+  }
+  WatchScope(const WatchScope&) = delete;
+  WatchScope& operator=(const WatchScope&) = delete;
+
+ private:
+  const SessionHooks& hooks_;
+};
+
 }  // namespace wavecrest

@@ -35,10 +35,6 @@ uint32_t checksum(uint32_t before, Bytes bytes) {
   return bytes.empty() ? before : static_cast<uint32_t>(crc32_z(before, bytes.data(), bytes.size()));
 }
 
-// Whether the image's bits depend on how light paths are cut into waves. They do where the method merges, because
-// photons are merged in an order that follows from the waves.
-bool dependsOnWaves(const RenderSettings& settings) { return strategiesOf(settings.method).merge; }
-
 // The settings of Markov chains that decide the image.
 Json chainIdentity(const MetropolisSettings& chains) {
   return {{"mlt", enumeratorName(kMetropolisVariantNames, chains.variant)},
@@ -77,13 +73,13 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                    {"rr_depth", limits.rouletteDepth}};
   // Settings that matter only for some scenes and methods.
   if (!scene.instances.empty()) identity["instances"] = enumeratorName(kInstancingNames, settings.instancing);
-  if (dependsOnWaves(settings)) {
+  if (strategiesOf(settings.method).merge) {
     identity.update({{"radius", settings.radius},
                      {"radius_alpha", settings.radiusAlpha},
                      {"light_paths", session.memoryPlan().lightPaths},
-                     {"direct_pass", settings.directPass},
-                     {"wave", settings.waveSize}});
+                     {"direct_pass", settings.directPass}});
   }
+  if (dependsOnWaves(settings.method)) identity["wave"] = settings.waveSize;
   if (hasConnectionRoulette(settings.method)) identity["connection_roulette"] = settings.connectionRoulette;
   if (settings.method == Method::mlt) identity.update(chainIdentity(settings.metropolis));
   return identity;
@@ -152,7 +148,7 @@ void Checkpoint::fail(const std::string& wrong, const std::string& expected) con
 }
 
 void Checkpoint::cutAlike(RenderSettings& settings) const {
-  if (dependsOnWaves(settings)) settings.piecesForThreads = cut_.value("threads", settings.threads);
+  if (dependsOnWaves(settings.method)) settings.piecesForThreads = cut_.value("threads", settings.threads);
 }
 
 // Throws with the first difference in the order of renderIdentity: the method before its settings, the size before the

@@ -1,9 +1,10 @@
 // Judges claims on the results of a campaign: holds, does not hold, undecided within noise, or not judged here.
 //
 // Losses are compared by their logarithms at the end of runs of equal render time, times to equal quality likewise,
-// with 95 % bands from the seeds; a single seed gets the spread that seeds had in a campaign of three (scene_losses.h).
-// What the bands leave open is undecided. A claim is not judged, and counts for nothing, where the campaign lacks what
-// the claim is about: light paths, time, methods, a control, or a reference clean enough to see a difference.
+// with 95 % bands from the seeds; a single seed gets the spread between the two seeds of the standard campaign
+// (scene_losses.h). What the bands leave open is undecided. A claim is not judged, and counts for nothing, where the
+// campaign lacks what the claim is about: light paths, time, methods, a control, or a reference clean enough to see a
+// difference.
 #pragma once
 
 #include <span>

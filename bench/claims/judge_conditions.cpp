@@ -56,6 +56,9 @@ std::string nameOf(const std::string& metric) {
   return metric == "rmse" ? "RMSE" : metric;
 }
 
+// A method in print: the row that it is judged by.
+std::string shown(const std::string& method) { return SceneLosses::rowOf(method); }
+
 // The geometric mean of numbers whose logarithms are given.
 double meanOfLog(std::span<const double> values) { return std::exp(meanBand(values).mean); }
 
@@ -124,7 +127,7 @@ class Judge {
       const std::vector<double> values = scene_.scores(method, metric);
       if (values.empty()) continue;
       const Band band = meanBand(values);
-      line += fmt::format("{}{} {:.4g}", line.empty() ? "" : ", ", SceneLosses::rowOf(method), band.mean);
+      line += fmt::format("{}{} {:.4g}", line.empty() ? "" : ", ", shown(method), band.mean);
       if (std::isfinite(band.halfWidth)) line += fmt::format(" \u00b1 {:.2g}", band.halfWidth);
     }
     if (const std::optional<double> floor = scene_.floorLoss(metric)) {
@@ -145,8 +148,9 @@ class Judge {
   Comparison largerLoss(const std::string& metric, const std::string& a, const std::string& b, double factor) const {
     const std::vector<double> lossesA = scene_.logLosses(a, metric), lossesB = scene_.logLosses(b, metric);
     if (lossesA.empty() || lossesB.empty()) return {V::notJudged, 0, nameOf(metric) + " was not measured"};
-    std::string text = fmt::format("{} {} {:.3g}, {} {:.3g}", nameOf(metric), a,
-                                   meanBand(scene_.scores(a, metric)).mean, b, meanBand(scene_.scores(b, metric)).mean);
+    std::string text =
+        fmt::format("{} {} {:.3g}, {} {:.3g}", nameOf(metric), shown(a), meanBand(scene_.scores(a, metric)).mean,
+                    shown(b), meanBand(scene_.scores(b, metric)).mean);
     if (factor != 1)
       text += fmt::format(", losses {:.2g} : 1, limit {:g}", meanOfLog(lossesA) / meanOfLog(lossesB), factor);
     Comparison result = above(lossDifference(metric, lossesA, lossesB), std::log(factor), text);
@@ -177,9 +181,10 @@ class Judge {
     Band band = differenceBand(timesB, timesA);
     if (timesA.size() == 1 || timesB.size() == 1)
       band.halfWidth = 2 * lossDifference(metric, lossesA, lossesB).halfWidth;
-    Comparison result = above(band, 0,
-                              fmt::format("to {} {:.3g} {} takes {:.3g} s, {} {:.3g} s", nameOf(metric),
-                                          scoreOfLoss(metric, loss), a, meanOfLog(timesA), b, meanOfLog(timesB)));
+    Comparison result =
+        above(band, 0,
+              fmt::format("to {} {:.3g} {} takes {:.3g} s, {} {:.3g} s", nameOf(metric), scoreOfLoss(metric, loss),
+                          shown(a), meanOfLog(timesA), shown(b), meanOfLog(timesB)));
     if (result.margin == 0) result.verdict = V::undecided;  // both have it at their first snapshots
     if (result.verdict != V::holds && nearFloor(metric, lossesA) && nearFloor(metric, lossesB)) {
       result.verdict = V::notJudged;
@@ -301,7 +306,7 @@ class Judge {
     // The two scenes are independent, so half widths add as squares.
     const Band band{here->mean - there->mean, std::hypot(here->halfWidth, there->halfWidth)};
     return above(band, std::log(condition_.factor),
-                 fmt::format("{} loss of {} over {}: {:.2g} here, {:.2g} in {}", nameOf(metric), a, b,
+                 fmt::format("{} loss of {} over {}: {:.2g} here, {:.2g} in {}", nameOf(metric), shown(a), shown(b),
                              std::exp(here->mean), std::exp(there->mean), condition_.control));
   }
 
@@ -312,12 +317,12 @@ class Judge {
       if (!measured(method)) continue;
       const std::vector<double> values = scene_.scores(method, metric);
       if (values.empty()) {
-        add({V::notJudged, 0, fmt::format("{} of {} was not measured", nameOf(metric), method)});
+        add({V::notJudged, 0, fmt::format("{} of {} was not measured", nameOf(metric), shown(method))});
         continue;
       }
       const Band band = scoreBand(metric, values);
       const std::string text =
-          fmt::format("{} of {} is {:.3g}, limit {:g}", nameOf(metric), method, band.mean, condition_.score);
+          fmt::format("{} of {} is {:.3g}, limit {:g}", nameOf(metric), shown(method), band.mean, condition_.score);
       add(reaches ? above(band, condition_.score, text) : below(band, condition_.score, text));
     }
   }
@@ -330,10 +335,10 @@ class Judge {
       const std::vector<double> slopes = scene_.errorSlopes(method);
       if (slopes.empty()) continue;
       const Band band = slopeBand(slopes);
-      note(fmt::format("slope of {} {:.2f} \u00b1 {:.2f}", method, band.mean, band.halfWidth));
-      controls += fmt::format(", control {} {:.2f}", method, band.mean);
+      note(fmt::format("slope of {} {:.2f} \u00b1 {:.2f}", shown(method), band.mean, band.halfWidth));
+      controls += fmt::format(", control {} {:.2f}", shown(method), band.mean);
       if (below(band, condition_.slope, "").verdict == V::holds) continue;
-      add({V::notJudged, 0, fmt::format("the control, {}, may stall as well: slope {:.2f}", method, band.mean)});
+      add({V::notJudged, 0, fmt::format("the control, {}, may stall as well: slope {:.2f}", shown(method), band.mean)});
     }
     // A method stalls if its slope is above the limit.
     for (const std::string& method : condition_.methods) {
@@ -344,10 +349,10 @@ class Judge {
         continue;
       }
       const Band band = slopeBand(slopes);
-      note(fmt::format("slope of {} {:.2f} \u00b1 {:.2f}", method, band.mean, band.halfWidth));
-      add(above(
-          band, condition_.slope,
-          fmt::format("error of {} goes as t^{:.2f}, limit {:g}{}", method, band.mean, condition_.slope, controls)));
+      note(fmt::format("slope of {} {:.2f} \u00b1 {:.2f}", shown(method), band.mean, band.halfWidth));
+      add(above(band, condition_.slope,
+                fmt::format("error of {} goes as t^{:.2f}, limit {:g}{}", shown(method), band.mean, condition_.slope,
+                            controls)));
     }
   }
 
@@ -365,7 +370,8 @@ class Judge {
       }
       if (shares.size() > kBiasSnapshots) shares.erase(shares.begin(), shares.end() - kBiasSnapshots);
       if (shares.empty()) {
-        if (measured(method)) add({V::notJudged, 0, "bias of " + method + " was not measured: it takes two seeds"});
+        if (measured(method))
+          add({V::notJudged, 0, "bias of " + shown(method) + " was not measured: it takes two seeds"});
         continue;
       }
       // The share has to reach the limit at all of these snapshots, or at none.
@@ -374,8 +380,8 @@ class Judge {
                         : reached == 0                                        ? V::fails
                                                                               : V::undecided;
       // The last snapshot gives the figure.
-      const std::string text = fmt::format("bias^2 of {} is {:.1f} % of its mean square error, limit {:g} %", method,
-                                           100 * shares.back(), 100 * condition_.share);
+      const std::string text = fmt::format("bias^2 of {} is {:.1f} % of its mean square error, limit {:g} %",
+                                           shown(method), 100 * shares.back(), 100 * condition_.share);
       note(text);
       add({verdict, shares.back() - condition_.share, text});
     }

@@ -1,5 +1,6 @@
 #include "bench/extremes/extreme_scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -185,6 +186,41 @@ Scene litFloor(double lightDistance, double lightRadius) {
     scene.emitters.push_back(emitter);
   }
   setParallelCamera(scene, {0, 0.6, -0.8}, {0, 1, 0}, 0.1, 0.1, 2);
+  return scene;
+}
+
+Scene spotFloor(double cutoff) {
+  Scene scene;
+  addShape(scene, Rectangle{.corner = {-1, -1, 0}, .edgeU = {2, 0, 0}, .edgeV = {0, 2, 0}}, addGrey(scene, 1));
+  Emitter emitter;
+  constexpr double kPi = std::numbers::pi;
+  emitter.kind = SpotEmitter{.position = {0, 0, 1},
+                             .direction = {0, 0, -1},
+                             .intensity = {kPi, kPi, kPi},
+                             .cutoffAngle = cutoff,
+                             .beamWidth = 0,
+                             .toWorld = kUnit};
+  scene.emitters.push_back(emitter);
+  const double radius = std::tan(cutoff * kPi / 180);
+  setParallelCamera(scene, {0, 0, -1}, {0, 1, 0}, radius, radius, 0.5);
+  return scene;
+}
+
+Scene polarSky(uint32_t rows) {
+  Scene scene;
+  addShape(scene, Rectangle{.corner = {-1, 0, 1}, .edgeU = {2, 0, 0}, .edgeV = {0, 0, -2}}, addGrey(scene, 0.5));
+  // Radiance falls in a line from L at the pole to 0 at the next row, at an angle d: an irradiance of pi L d^2 / 3.
+  const double next = std::numbers::pi / (rows - 1);
+  auto bitmap = std::make_shared<Bitmap>();
+  bitmap->width = 8;
+  bitmap->height = rows;
+  bitmap->channels = 3;
+  bitmap->pixels.assign(size_t{3} * bitmap->width * rows, 0.0f);
+  std::fill_n(bitmap->pixels.begin(), 3 * bitmap->width, static_cast<float>(3 / (next * next)));
+  Emitter emitter;
+  emitter.kind = EnvmapEmitter{.bitmap = bitmap, .scale = 1, .toWorld = kUnit};
+  scene.emitters.push_back(emitter);
+  setParallelCamera(scene, {0, -1, 0}, {0, 0, 1}, 0.5, 0.5, 1);
   return scene;
 }
 

@@ -39,6 +39,13 @@ Scene nestedGlass(uint32_t shells);
 // above by parallel rays.
 Scene litFloor(double lightDistance, double lightRadius);
 
+// A white floor under a spot at distance 1, straight above, whose intensity falls off from pi on the axis to 0 at the
+// cutoff (degrees); seen from above by parallel rays, as far as it is lit.
+Scene spotFloor(double cutoff);
+
+// A floor of albedo 0.5 under a sky that is black but for the upper of its rows, so bright that 0.5 is seen.
+Scene polarSky(uint32_t rows);
+
 // A floor of albedo 0.5 under a sky of radiance 1, seen by parallel rays at `angle` to it.
 Scene grazedFloor(double angle);
 // The same from above, made of triangles of this aspect, with triangles without area and a second floor in its plane.

@@ -251,6 +251,32 @@ void addLights(std::vector<Sweep>& out) {
                  .boundSource = "intensity over squared distance; off the foot by squared size over distance",
                  .methods = {Method::pt, Method::bpt, Method::vcm, Method::mlt},
                  .leftOut = "lt, ppm, bpm: next to none of the light's paths reach the floor"});
+  out.push_back(
+      {.name = "spot-cutoff",
+       .title = "A floor under a narrow spot, straight above",
+       .xLabel = "angle of the cutoff in degrees",
+       .values = {1, 0.1, 1e-2},
+       .scene = spotFloor,
+       .baseline = 0.5,
+       .bound = 2e-3,
+       .boundSource = "the same seeds at 0.5 degrees; cosines differ by the squared angle, roundings by 1e-7 over it",
+       .methods = {Method::pt, Method::lt, Method::bpt},
+       .leftOut = "vcm, ppm, bpm: discs of photons are wider than the beam; mlt: chains make the paths of bpt",
+       .samples = samples(256),
+       .everyRun = true});
+  // Directions to within a row of the pole have a vertical part that rounds to 1.
+  out.push_back({.name = "sky-pole",
+                 .title = "A floor under a sky that is black but for the row at its pole",
+                 .xLabel = "rows of the sky",
+                 .values = {128, 1024, 8192},
+                 .scene = [](double x) { return polarSky(static_cast<uint32_t>(x)); },
+                 .truth = [](double) { return 0.5; },
+                 .bound = 1e-3,
+                 .boundSource = "the irradiance of a small cone, to the fifth of its squared angle",
+                 .methods = {Method::pt, Method::lt, Method::bpt},
+                 .leftOut = "vcm, ppm, bpm: discs reach beyond the floor; mlt: chains make the paths of bpt",
+                 .samples = samples(256),
+                 .everyRun = true});
   // Rows are divided by their value, so all must be equal.
   out.push_back({.name = "brightness",
                  .title = "A box with a lamp of this radiance",

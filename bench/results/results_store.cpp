@@ -130,9 +130,15 @@ std::optional<std::string> ResultsStore::sceneHash(const std::string& scene) {
 
 std::optional<ResultsStore::KnownRun> ResultsStore::findRun(const std::string& scene, const std::string& method,
                                                             uint64_t seed) {
-  Statement query(database_, "SELECT state, stats FROM run WHERE scene = ? AND method = ? AND seed = ?");
+  Statement query(database_, "SELECT state, stats, id FROM run WHERE scene = ? AND method = ? AND seed = ?");
   if (!query.bind(scene, method, seed).step()) return std::nullopt;
-  return KnownRun{query.text(0) == toString(RunState::refused) ? RunState::refused : RunState::done, query.text(1)};
+  KnownRun run{.state = query.text(0) == toString(RunState::refused) ? RunState::refused : RunState::done,
+               .stats = query.text(1),
+               .images = {}};
+  Statement images(database_, "SELECT file FROM snapshot WHERE run = ? AND file <> ''");
+  images.bind(query.integer(2));
+  while (images.step()) run.images.push_back(images.text(0));
+  return run;
 }
 
 }  // namespace wavecrest

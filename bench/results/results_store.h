@@ -39,10 +39,11 @@ class ResultsStore {
 
   // The hash under which a scene was put; nothing if it was not.
   std::optional<std::string> sceneHash(const std::string& scene);
-  // State and stats of a run; nothing if it is not there.
+  // What is stored of a run; nothing if it is not there.
   struct KnownRun {
     RunState state;
     std::string stats;
+    std::vector<std::string> images;  // of the snapshots that have one
   };
   std::optional<KnownRun> findRun(const std::string& scene, const std::string& method, uint64_t seed);
 

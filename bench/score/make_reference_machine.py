@@ -19,7 +19,7 @@ FOLDER = pathlib.Path(__file__).parent
 
 def main():
     campaign = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER.parent / "campaign" / "standard"
-    facts = re.search(r"(\d+)x(\d+), .* (1) thread\(s\) of (.*?), precision float.*?commit (\w+)",
+    facts = re.search(r"(\d+)x(\d+), .* 1 thread of (.*?), precision float.*?commit (\w+)",
                       (campaign / "README.md").read_text())
     if not facts:
         sys.exit(f"{campaign}/README.md: does not say what ran; expected size, one thread, machine, and commit")
@@ -33,7 +33,7 @@ def main():
         scene: {method: round(statistics.median(seeds.values())) for method, seeds in methods.items()}
         for scene, methods in last.items()
     }
-    machine = {"machine": f"one thread of {facts[4]}, commit {facts[5]}", "paths_per_cpu_second": rates}
+    machine = {"machine": f"one thread of {facts[3]}, commit {facts[4]}", "paths_per_cpu_second": rates}
     (FOLDER / "reference_machine.json").write_text(json.dumps(machine, indent=1) + "\n")
 
 

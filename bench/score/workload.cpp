@@ -73,7 +73,7 @@ RenderSettings scoreSettings(const Scene& scene, const ScoreEntry& entry, Isa is
   settings.isa = isa;
   settings.threads = threads;
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
-  if (strategiesOf(entry.method).merge) settings.piecesForThreads = kPiecesForThreads;
+  if (dependsOnWaves(entry.method)) settings.piecesForThreads = kPiecesForThreads;
   return settings;
 }
 

@@ -53,7 +53,7 @@ std::string toText(const SpecializationResult& result) {
 // Only the chosen kernels of each result.
 std::string specializationSummary(const std::vector<SpecializationResult>& results) {
   TextLines text;
-  line(text, "{:<23} {:<5} {:<23} {:>14}   {}", "scene", "", "kernels", "over general", "pays for");
+  line(text, "{:<23} {:<5} {:<23} {:>14}   {}", "scene", "", "kernels", "over complete", "pays for");
   for (const SpecializationResult& result : results) {
     const FeatureSetRow& row = result.chosen();
     line(text, "{:<23} {:<5} {:<23} {:>7.3f} +-{:.3f}   {}", result.scene, toString(result.method),

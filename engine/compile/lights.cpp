@@ -153,10 +153,11 @@ class LightCollector {
     assign(light.p0, spot.position - origin_);
     assign(light.normal, spot.direction);
     assign(light.radiance, spot.intensity);
-    const double cosTotal = std::cos(spot.cutoffAngle * std::numbers::pi / 180);
-    const double cosFalloff = std::cos(spot.beamWidth * std::numbers::pi / 180);
-    light.cosTotal = static_cast<S>(cosTotal);
-    light.cosFalloff = static_cast<S>(cosFalloff);
+    // 1 - cos of an angle in degrees, without the rounding of the cosine.
+    const auto heightOf = [](double angle) { return 2 * std::pow(std::sin(angle * std::numbers::pi / 360), 2); };
+    const double cutoffHeight = heightOf(spot.cutoffAngle), beamHeight = heightOf(spot.beamWidth);
+    light.cutoffHeight = static_cast<S>(cutoffHeight);
+    light.beamHeight = static_cast<S>(beamHeight);
     light.kind = static_cast<uint32_t>(LightKind::spot);
     if (spot.texture != kNone) {  // its square touches the circle of the cutoff
       light.texture = spot.texture;
@@ -165,7 +166,7 @@ class LightCollector {
       assign(light.e2, pictureAxis(spot.toWorld, 1, half));
     }
     // The flux as if full intensity ended halfway, in cosine, between the beam and the cutoff.
-    add(light, 2 * std::numbers::pi * (1 - (cosTotal + cosFalloff) / 2) * luminance(spot.intensity));
+    add(light, 2 * std::numbers::pi * (cutoffHeight + beamHeight) / 2 * luminance(spot.intensity));
   }
   void visit(const ProjectorEmitter& projector) {
     LightRecord<S> light = blank();
@@ -211,7 +212,7 @@ class LightCollector {
       throw SceneError(location_, "environment map of more than " + std::to_string(kMostTexelsAcross) +
                                       " columns or rows; expected a smaller one");
     }
-    lights_.environment = compileEnvironment(envmap);
+    lights_.environment = compileEnvironment(envmap, location_);
     addInfinite(light, lights_.environment.meanLuminance);
   }
   void visit(const SunskyEmitter& sunsky) {

@@ -33,20 +33,23 @@ double luminanceAt(const std::vector<float>& texels, uint32_t width, uint32_t co
   return luminance({rgb[0], rgb[1], rgb[2]});
 }
 
-// The floats of all bitmaps, one that several textures share counted once. SceneError if there are more than kernels
-// can index: they count in 32 bits with a sign.
-size_t countTexels(const Scene& scene) {
+// SceneError if there are more floats of bitmaps than kernels can index: they count in 32 bits with a sign.
+void requireIndexed(size_t floats, const SourceLocation& where) {
   constexpr size_t kMost = std::numeric_limits<int32_t>::max();
+  if (floats <= kMost) return;
+  throw SceneError(where, "bitmaps of " + std::to_string(floats / 3) + " pixels together; expected at most " +
+                              std::to_string(kMost / 3));
+}
+
+// The floats of all bitmaps, one that several textures share counted once.
+size_t countTexels(const Scene& scene) {
   std::set<const Bitmap*> bitmaps;
   size_t floats = 0;
   for (const Texture& texture : scene.textures) {
     const auto* bitmap = std::get_if<BitmapTexture>(&texture.kind);
     if (bitmap != nullptr && bitmaps.insert(bitmap->bitmap.get()).second) floats += 3 * pixelsOf(*bitmap->bitmap);
   }
-  if (floats > kMost) {
-    throw SceneError({scene.name}, "bitmaps of " + std::to_string(floats / 3) + " pixels together; expected at most " +
-                                       std::to_string(kMost / 3));
-  }
+  requireIndexed(floats, {scene.name});
   return floats;
 }
 
@@ -88,7 +91,8 @@ Textures compileTextures(const Scene& scene) {
   return out;
 }
 
-Environment compileEnvironment(const EnvmapEmitter& emitter) {
+Environment compileEnvironment(const EnvmapEmitter& emitter, const SourceLocation& where) {
+  requireIndexed(3 * pixelsOf(*emitter.bitmap), where);
   Environment out;
   const uint32_t width = emitter.bitmap->width, height = emitter.bitmap->height;
   out.texels.reserve(3 * pixelsOf(*emitter.bitmap));

@@ -23,6 +23,7 @@ struct Environment {
   double meanLuminance = 0;  // over the sphere
   EnvironmentView view;      // into the above; width 0 without a map
 };
-Environment compileEnvironment(const EnvmapEmitter& emitter);
+// Throws SceneError, at `where`, where the map has more texels than kernels can index.
+Environment compileEnvironment(const EnvmapEmitter& emitter, const SourceLocation& where = {});
 
 }  // namespace wavecrest

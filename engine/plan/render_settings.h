@@ -101,6 +101,10 @@ struct RenderSettings {
 // follow.
 inline bool hasConnectionRoulette(Method method) { return method != Method::mlt && strategiesOf(method).connect; }
 
+// Whether the last bits of the method's images depend on how paths are cut into waves: photons are summed, and pairs of
+// vertices joined, in an order that follows from the waves.
+inline bool dependsOnWaves(Method method) { return strategiesOf(method).merge || hasConnectionRoulette(method); }
+
 // The settings with the longest path that their method can make, where they ask for longer ones.
 inline RenderSettings withinDepthOfMethod(RenderSettings settings) {
   uint32_t& depth = settings.limits.maxDepth;

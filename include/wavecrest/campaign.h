@@ -30,18 +30,20 @@ struct CampaignProgress {
   double secondsLeft = 0;      // about
 };
 
-// A wish to stop a campaign, from another thread or a signal handler.
+// A wish to stop a campaign, from another thread or a signal handler, at any time while this lives.
 class WAVECREST_EXPORT StopRequest {
  public:
   void request() noexcept;
   bool requested() const noexcept { return requested_.load(); }
 
-  // For converge(): the session that is to stop, or null while none renders.
+  // For converge(): the session that is to stop, or null while none renders. Once it returns no request holds the
+  // former session.
   void watch(Session* session) noexcept;
 
  private:
   std::atomic<bool> requested_{false};
   std::atomic<Session*> session_{nullptr};
+  std::atomic<int> requesting_{0};  // requests under way
 };
 
 struct CampaignCallbacks {

@@ -12,12 +12,13 @@ struct CampaignOptions {
   // What the campaign is, by the name of the option: "scenes", "--methods", "--profile", "--time", "--time-factor",
   // "--snapshot-every", "--spp", "--seeds", "--size", "--precision", "--sampler", "--images", "--radius",
   // "--radius-alpha", "--light-paths", "--direct-pass", "--mlt", "--clock", "-D"; only what differs from the defaults.
+  // "scenes", "--methods", "--mlt" and "-D" take several words, the others one; that of "--direct-pass" is "yes".
   // They are stored with the results as they are given, so that going on needs none of them and is refused with others.
-  std::map<std::string, std::vector<std::string>> defining;
+  std::map<std::string, std::vector<std::string>> defining{};
 
   // How it is run; may change from one process to the next.
   std::string out = "out/converge";  // folder of results.sqlite, images, references and report
-  std::string reference;             // folder of SCENE.exr; empty: those that come with the scenes
+  std::string reference{};           // folder of SCENE.exr; empty: those that come with the scenes
   std::string shard = "1/1";         // i/n: do only the i-th of n parts
   std::string isa = "auto";
   uint32_t threads = 0;  // 0: all cores

@@ -42,7 +42,7 @@ struct Comparison {
 };
 
 struct CompareOptions {
-  double exposure = 0;                // stops, applied to light before it becomes 8-bit codes
+  double exposure = 0;                // stops, -100 to 100, applied to light before it becomes 8-bit codes
   bool gammaCorrectedErrors = false;  // rmse and relmse on 8-bit codes instead of linear light
 };
 
@@ -50,7 +50,7 @@ struct CompareOptions {
 // several threads.
 class WAVECREST_EXPORT Reference {
  public:
-  // name: for messages. Throws Error for an image without a finite pixel.
+  // name: for messages. Throws Error for an image without a finite pixel and for options out of range.
   explicit Reference(Image image, const CompareOptions& options = {}, const std::string& name = "reference");
   ~Reference();
   Reference(Reference&&) noexcept;

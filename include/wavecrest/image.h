@@ -9,8 +9,8 @@
 
 namespace wavecrest::api {
 
-// RGB, row by row from the top, 3 * width * height samples. Linear radiance, or with srgb the values of 8-bit sRGB
-// codes divided by 255.
+// RGB, row by row from the top, 3 * width * height samples. Linear radiance, or with srgb the values of sRGB codes: of
+// 8 bits divided by 255, of 16 bits by 65535.
 struct Image {
   uint32_t width = 0, height = 0;
   std::vector<float> pixels;

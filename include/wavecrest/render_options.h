@@ -1,4 +1,5 @@
 // What one may choose about a render: the options of `wavecrest render`, with the same names, words and defaults.
+// Numbers outside of the ranges that its --help names are refused.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,7 @@ namespace wavecrest::api {
 
 struct RenderOptions {
   std::string method = "pt";  // pt, lt, bpt, mlt, ppm, bpm or vcm
-  std::string time;           // of rendering: "6s", "2m", "1h30m"
+  std::string time{};         // of rendering: "6s", "2m", "1h30m"
   uint64_t spp = 0;  // iterations: paths, of mlt mutations, per pixel. Neither time nor spp: what the scene says
   uint64_t seed = 0;
   uint32_t threads = 0;  // 0: all cores
@@ -17,7 +18,7 @@ struct RenderOptions {
   int maxDepth = 0;      // edges of the longest path; -1: unlimited, 0: what the scene says
   int rrDepth = 0;       // first vertex where roulette may end a path; 0: what the scene says
   uint32_t wave = 2048;  // paths per wave
-  std::string memory;    // budget: "800M", "2GiB"; empty: none
+  std::string memory{};  // budget: "800M", "2GiB"; empty: none
 
   // ppm, bpm, vcm: the first radius of merges, relative to the bounding sphere's, and how slowly it shrinks.
   double radius = 0.001, radiusAlpha = 0.75;
@@ -29,7 +30,7 @@ struct RenderOptions {
 
   // mlt: pssmlt, mmlt or pathspace (empty: mmlt); Markov chains; independent samples from which they start; steps
   // before they start anew (0: by the number of samples); whether chains render direct light, too.
-  std::string mlt;
+  std::string mlt{};
   uint32_t chains = 16384, bootstrap = 131072, restart = 0;
   bool noDirectPass = false;
 };

@@ -21,7 +21,7 @@ WAVECREST_INLINE Mask isInfinite(UInt kind) {
 template <class Real>
 struct LightLanes {
   Vec3<Real> p0, e1, e2, normal, radiance;
-  Real pick, inverseArea, radius, offset, cosTotal, cosFalloff;
+  Real pick, inverseArea, radius, offset, cutoffHeight, beamHeight;
   UInt kind, texture;
 };
 // Where the scene has one light its fields are broadcast: a lane's gather costs as much as all broadcasts.
@@ -30,9 +30,9 @@ WAVECREST_INLINE auto loadLight(const SceneView<S>& scene, UInt index) {
   const LightRecord<S>& fields = *scene.lights;
   const auto load = [&](auto at) WAVECREST_LAMBDA {
     using Real = decltype(at(fields.pick));
-    return LightLanes<Real>{at(fields.p0),       at(fields.e1),       at(fields.e2),          at(fields.normal),
-                            at(fields.radiance), at(fields.pick),     at(fields.inverseArea), at(fields.radius),
-                            at(fields.offset),   at(fields.cosTotal), at(fields.cosFalloff),  at(fields.kind),
+    return LightLanes<Real>{at(fields.p0),       at(fields.e1),           at(fields.e2),          at(fields.normal),
+                            at(fields.radiance), at(fields.pick),         at(fields.inverseArea), at(fields.radius),
+                            at(fields.offset),   at(fields.cutoffHeight), at(fields.beamHeight),  at(fields.kind),
                             at(fields.texture)};
   };
   if (scene.lightCount == 1) return load(OneRecord());
@@ -61,8 +61,9 @@ WAVECREST_INLINE MapPoint<Real> mapPoint(const EnvironmentView& map, Vec3<Real> 
     sun = zeroUnless(length2(direction - broadcast<Real>(map.sunDirection)) <= Real(map.sunChord2), Real(1));
   }
   const Float turn = to<Float>(atan2(x, -z)) * Float(0.5f * static_cast<float>(kInvPi));
-  return {turn - floor(turn), to<Float>(acos(min(max(y, Real(-1)), Real(1)))) * Float(static_cast<float>(kInvPi)),
-          sqrt(max(Real(1) - y * y, Real(0))), sun};
+  // Near the poles y is 1 to all digits, while x and z still tell how far away they are.
+  const Real sinTheta = sqrt(mulAdd(x, x, z * z));
+  return {turn - floor(turn), to<Float>(atan2(sinTheta, y)) * Float(static_cast<float>(kInvPi)), sinTheta, sun};
 }
 
 // Radiance of the map: bilinear, columns by their centres and around, rows from pole to pole.
@@ -148,14 +149,25 @@ WAVECREST_INLINE Mask isBeam(UInt kind) {
   return (kind == lightKind(LightKind::spot)) | (kind == lightKind(LightKind::projector));
 }
 
-// Share of the intensity in directions at this cosine from the axis: 1 within the beam, 0 outside the cutoff, linear in
+// Narrow beams are measured by 1 - cosine of angles, which float knows to all digits where the cosine is nearly 1.
+//
+// The angle of which 1 - cosine is `height`, 0 to 2.
+template <class Real>
+WAVECREST_INLINE Real angleOfHeight(Real height) {
+  const Real one(1), half = min(height * Real(0.5f), one);
+  const Real quarter = atan2(sqrt(half), sqrt(one - half));
+  return quarter + quarter;
+}
+
+// Share of the intensity in unit directions around a spot's axis: 1 within the beam, 0 outside the cutoff, linear in
 // the angle between, as Mitsuba's spot.
 template <class Real>
-WAVECREST_INLINE Real spotFalloff(Real cosine, Real cosTotal, Real cosFalloff) {
-  const Real angle = acos(min(max(cosine, Real(-1)), Real(1)));
-  const Real total = acos(cosTotal), beam = acos(cosFalloff);
-  const Real ramp = (total - angle) / max(total - beam, Real(1e-6f));
-  return zeroUnless(cosine > cosTotal, select(cosine >= cosFalloff, Real(1), ramp));
+WAVECREST_INLINE Real spotFalloff(const LightLanes<Real>& light, Vec3<Real> direction) {
+  const Real height = length2(direction - light.normal) * Real(0.5f);
+  const Real angle = angleOfHeight(height), cutoff = angleOfHeight(light.cutoffHeight),
+             beam = angleOfHeight(light.beamHeight);
+  const Real ramp = (cutoff - angle) / max(cutoff - beam, cutoff * Real(1e-6f));
+  return zeroUnless(height < light.cutoffHeight, select(height <= light.beamHeight, Real(1), ramp));
 }
 
 // 1 / cos^3 of the angle from the axis, in front of the light: area on the plane at distance 1 per solid angle.
@@ -173,7 +185,7 @@ WAVECREST_INLINE Vec3<typename P::Real> beamFactor(const SceneView<typename P::S
                                                    Vec3<typename P::Real> direction) {
   using Real = typename P::Real;
   const Real one(1), cosine = dot(direction, light.normal);
-  Real factor = spotFalloff(cosine, light.cosTotal, light.cosFalloff);
+  Real factor = spotFalloff(light, direction);
   const Mask projector = light.kind == lightKind(LightKind::projector);
   const bool textures = has(kFeatures, kTextures) && scene.textures != nullptr;
   if (none(projector) && !textures) return {factor, factor, factor};
@@ -198,7 +210,7 @@ WAVECREST_INLINE Vec3<typename P::Real> beamFactor(const SceneView<typename P::S
 // spot, uniform on the picture of a projector.
 template <class Real>
 WAVECREST_INLINE Real beamPdfW(const LightLanes<Real>& light, Real cosine) {
-  const Real cone = Real(kInvPi / 2) / max(Real(1) - light.cosTotal, Real(1e-9f));
+  const Real cone = Real(kInvPi / 2) / max(light.cutoffHeight, Real(1e-30f));
   const Mask projector = light.kind == lightKind(LightKind::projector);
   if (none(projector)) return cone;
   return select(projector, light.inverseArea * areaPerSolidAngle(cosine), cone);

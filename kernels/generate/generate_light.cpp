@@ -101,9 +101,8 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromBeam(const SceneView<typen
                                                            const LightLanes<typename P::Real>& light,
                                                            const Uniform4& u) {
   using Real = typename P::Real;
-  const Real height = max(Real(1) - light.cosTotal, Real(1e-9f));
   const Real one(1), two(2), b = to<Real>(u.b), c = to<Real>(u.c);
-  Vec3<Real> direction = Frame<Real>::fromNormal(light.normal).toWorld(uniformCone<Real>(b, c, height));
+  Vec3<Real> direction = Frame<Real>::fromNormal(light.normal).toWorld(uniformCone<Real>(b, c, light.cutoffHeight));
   const Mask projector = light.kind == lightKind(LightKind::projector);
   if (any(projector)) {
     // From a place in [0, 1] to a vector in the picture's plane from its middle, whose product with the axis is between

@@ -156,15 +156,23 @@ struct ShadingLanes {
     out.f = select(mapped, out.f * lightFactor(seesThis, direction), out.f);
   }
 
-  // Lanes that went on straight through an absent surface, whatever its normal.
-  static WAVECREST_INLINE Mask passes(const BsdfSample<Real>& sample, Vec3<Real> wi) {
-    return sample.specular & (sample.wo.x == -wi.x) & (sample.wo.y == -wi.y) & (sample.wo.z == -wi.z);
+  // Lanes that went straight on, and of them those through a pane. The others went through an absent surface, whatever
+  // its normal. u: the numbers that the sample was taken with.
+  struct Straight {
+    Mask all, pane;
+    Mask absent() const { return andNot(all, pane); }
+  };
+  WAVECREST_INLINE Straight straightOn(const BsdfSample<Real>& sample, Vec3<Real> from, const Uniform4& u) const {
+    const Mask all = sample.specular & (sample.wo.x == -from.x) & (sample.wo.y == -from.y) & (sample.wo.z == -from.z);
+    const Mask thin = bsdf.kind == UInt(static_cast<uint32_t>(BsdfKind::thinDielectric));
+    return {all, all & thin & (to<Real>(u.a) < bsdf.opacity())};
   }
 
   // A camera walk samples with this frame's normal, which is the one that the eye faces.
   WAVECREST_INLINE BsdfSample<Real> sampledFromEye(Mask active, const Uniform4& u) const {
     BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, wi, u);
-    const Mask mapped = andNot(active & map.lanes, passes(sample, wi));
+    const Straight straight = straightOn(sample, wi, u);
+    const Mask mapped = andNot(active & map.lanes, straight.absent());
     if (none(mapped)) return sample;
     // The reverse walk comes from a light. Through a delta lobe it takes this way only if it draws this normal; other
     // lobes have the density of the mixture.
@@ -173,7 +181,9 @@ struct ShadingLanes {
     const Real back = sample.pdfReverse * map.lightShare(frame.n, direction);
     sample.pdfReverse = select(mapped, back, sample.pdfReverse);
     if (any(finite)) sample.pdfReverse = select(finite, scattering(finite, direction).pdfReverse, sample.pdfReverse);
-    sample.weight = select(mapped, sample.weight * lightFactor(mapped, direction), sample.weight);
+    // What a pane lets through is not dimmed: the light is right behind.
+    const Mask dimmed = andNot(mapped, straight.pane);
+    sample.weight = select(dimmed, sample.weight * lightFactor(dimmed, direction), sample.weight);
     return sample;
   }
 
@@ -191,7 +201,8 @@ struct ShadingLanes {
     // Sample in the frame of the drawn normal. wo is the result in this frame.
     const Vec3<Real> from = select(drawsOther, other.wi, wi);
     BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdfIn(drawsOther, other), active, from, numbers);
-    const Mask mapped = andNot(active & map.lanes, passes(sample, from));
+    const Straight straight = straightOn(sample, from, u);
+    const Mask mapped = andNot(active & map.lanes, straight.absent());
     const Vec3<Real> direction = select(drawsOther, other.toWorld(sample.wo), toWorld(sample.wo));
     const Vec3<Real> wo = select(drawsOther, toLocal(direction), sample.wo);
 
@@ -199,7 +210,8 @@ struct ShadingLanes {
     // A delta lobe joins its two directions by the drawn normal alone, which must be the one that the eye faces.
     const Mask delta = mapped & sample.specular, joins = andNot(drawsOther, seesThis) | andNot(seesThis, drawsOther);
     const Real turn = abs(from.z * wo.z) / max(abs(sample.wo.z * wi.z), tiny);  // of cosines to this frame's
-    const Real factor = zeroUnless(joins, turn * lightFactor(seesThis, direction) / drawn);
+    const Real dimming = select(straight.pane, one, lightFactor(seesThis, direction));
+    const Real factor = zeroUnless(joins, turn * dimming / drawn);
     sample.weight = select(delta, sample.weight * factor, sample.weight);
     sample.pdfReverse = select(delta, sample.pdfReverse * turn, sample.pdfReverse);
     sample.pdf = select(delta, sample.pdf * drawn, sample.pdf);

@@ -1,6 +1,7 @@
 // OpenEXR, single part, scan lines or tiles. Files are decoded from memory, so that one place checks lengths. They are
 // written as they are compressed, and renamed at the end as those of every other format.
 #include <ImathBox.h>
+#include <OpenEXR/IlmThreadPool.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -10,9 +11,11 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <half.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -102,15 +105,66 @@ class FileOutput : public Imf::OStream {
   std::exception_ptr failure_;  // OpenEXR keeps what is thrown while it closes a file to itself
 };
 
-// Compression dominates the time of a write; blocks are compressed by OpenEXR's own threads. The bytes do not depend
-// on their number.
+// ---- threads --------------------------------------------------------------------------------------------------------
+
+// Gives out the blocks of all files that OpenEXR reads and writes. It has no threads until setNumThreads(), and none in
+// a forked child of the process that has them: there each block is done at once by the thread that brings it. OpenEXR's
+// own pool would wait for threads that do not exist in a child, even with 0 threads for the file, and again at exit.
+class BlockPool : public IlmThread::ThreadPoolProvider {
+ public:
+  int numThreads() const override {
+    const IlmThread::ThreadPool* pool = threads();
+    return pool != nullptr ? pool->numThreads() : 0;
+  }
+  void setNumThreads(int count) override {
+    const std::lock_guard lock(starting_);
+    if (process_ == 0) {
+      threads_ = new IlmThread::ThreadPool(static_cast<unsigned>(count));
+      process_ = ::getpid();
+    } else if (IlmThread::ThreadPool* pool = threads()) {
+      pool->setNumThreads(count);
+    }
+  }
+  void addTask(IlmThread::Task* task) override {
+    if (IlmThread::ThreadPool* pool = threads()) {
+      pool->addTask(task);
+      return;
+    }
+    IlmThread::TaskGroup* group = task->group();
+    task->execute();
+    delete task;
+    group->finishOneTask();
+  }
+  // OpenEXR deletes the pool after this. A child leaves its parent's threads_ as they are, for they cannot be joined.
+  void finish() override { delete threads(); }
+
+ private:
+  // Null where there are none.
+  IlmThread::ThreadPool* threads() const { return process_ == ::getpid() ? threads_ : nullptr; }
+
+  std::mutex starting_;
+  IlmThread::ThreadPool* threads_ = nullptr;  // set before process_
+  std::atomic<pid_t> process_ = 0;            // where the threads are
+};
+
+// A pool whose threads the program has started before stays.
+void useBlockPoolOnce() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    if (Imf::globalThreadCount() == 0) IlmThread::ThreadPool::globalThreadPool().setThreadProvider(new BlockPool);
+  });
+}
+
+// Compression dominates the time of a write; blocks are compressed by a pool of threads. The bytes do not depend on
+// their number.
 int compressionThreads() {
+  useBlockPoolOnce();
   static std::once_flag once;
   std::call_once(once, [] {
     const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     if (Imf::globalThreadCount() == 0) Imf::setGlobalThreadCount(threads);
   });
-  return Imf::globalThreadCount();
+  return std::max(1, Imf::globalThreadCount());  // a forked child has none, and compresses by itself
 }
 
 // A header may claim any size; beyond these OpenEXR refuses before it allocates.
@@ -206,6 +260,7 @@ Metadata stringAttributes(const Imf::Header& header) {
 ImageFile readLayerAndMetadata(const std::string& path, codecs::Bytes bytes, const std::string& layer) {
   try {
     setLimitsOnce();
+    useBlockPoolOnce();
     MemoryInput stream(path, bytes);
     Imf::InputFile input(stream, 0);
     ImageFile file;

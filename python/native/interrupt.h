@@ -1,11 +1,14 @@
 // Ctrl-C while C++ works: the work is asked to stop, and Python learns of the signal afterwards.
 #pragma once
 
+#include <atomic>
+
 namespace wavecrest::python {
 
 // While it lives, SIGINT calls stop(what) from the signal's handler and then whatever handler Python has. Only in the
-// main thread, where Python's handlers run, and not where SIGINT is ignored. One at a time. To be made and destroyed
-// with the GIL; in between the work may run without.
+// main thread, where Python's handlers run, and not where SIGINT is ignored. To be made and destroyed with the GIL; in
+// between the work may run without. Scopes may be nested, as where the callback of a campaign renders: the signal then
+// stops the work of all of them.
 class InterruptScope {
  public:
   InterruptScope(void (*stop)(void*), void* what);
@@ -18,7 +21,13 @@ class InterruptScope {
   bool interrupted();
 
  private:
-  bool installed_ = false;
+  static void onInterrupt(int signal);
+
+  void (*stop_)(void*);
+  void* what_;
+  InterruptScope* outer_ = nullptr;
+  std::atomic<bool> requested_{false};
+  bool active_ = false, installed_ = false;  // installed: the handler, by this scope
 };
 
 }  // namespace wavecrest::python

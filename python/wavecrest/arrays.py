@@ -25,7 +25,7 @@ ImageLike = Union[str, "os.PathLike[str]", Any]
 
 
 def as_pixels(image: ImageLike) -> tuple[FloatArray, bool, str]:
-    """Height x width x 3 float32, whether they are 8-bit sRGB codes / 255 instead of linear light, and a name."""
+    """Height x width x 3 float32, whether they are sRGB codes scaled to 0..1 instead of linear light, and a name."""
     import numpy
 
     if isinstance(image, (str, os.PathLike)):
@@ -46,7 +46,7 @@ def as_pixels(image: ImageLike) -> tuple[FloatArray, bool, str]:
 
 
 def read_image(file: str | os.PathLike[str]) -> FloatArray:
-    """An EXR, PFM, HDR or PNG as float32, height x width x 3: linear light, or of PNG the 8-bit sRGB codes / 255."""
+    """An EXR, PFM, HDR or PNG as float32, height x width x 3: linear light, or of PNG the sRGB codes / 255 or 65535."""
     return _native.read_image(os.fspath(file))[0]
 
 

@@ -6,13 +6,13 @@ import json
 import os
 import pathlib
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from typing import Any
 
 from wavecrest import _native
 from wavecrest.errors import Interrupted
-from wavecrest.render import duration
+from wavecrest.render import duration, scene_value
 from wavecrest.tables import Table
 
 
@@ -71,7 +71,10 @@ def read_results(path: str | os.PathLike[str]) -> Results:
 
 
 def _words(value: object) -> list[str]:
-    return [str(word) for word in value] if isinstance(value, (list, tuple)) else [str(value)]
+    """Those of an option; of a flag that is set the word that the command line stores."""
+    if isinstance(value, (list, tuple)):
+        return [str(word) for word in value]
+    return ["yes" if value is True else str(value)]
 
 
 def converge(
@@ -84,6 +87,7 @@ def converge(
     size: str | tuple[int, int] | None = None,
     profile: str | None = None,
     snapshot_every: float | str | None = None,
+    D: Mapping[str, object] | Sequence[str] | None = None,
     out: str | os.PathLike[str] = "out/converge",
     reference: str | os.PathLike[str] | None = None,
     shard: str = "1/1",
@@ -97,9 +101,10 @@ def converge(
     """Renders every scene by every method for the same time and measures all snapshots: `wavecrest converge`.
 
     What is not given is as there; further options (precision, sampler, images, ...) are its own, with underscores for
-    dashes. The campaign can go on with resume=True, here or on the command line, and may then become larger: more scenes, methods,
-    seeds or time. say: takes a line of progress now and
-    then, default: stderr. Ctrl-C raises Interrupted; whole runs are kept.
+    dashes; True sets a flag (direct_pass), False leaves it out. D: values of the scenes' $names, by name or as
+    "NAME=VALUE". The campaign can go on with resume=True, here or on the command line, and may then become larger: more
+    scenes, methods, seeds or time. say: takes a line of progress now and then, default: stderr. Ctrl-C raises
+    Interrupted; whole runs are kept.
     """
     given: dict[str, object] = {
         "methods": methods,
@@ -111,7 +116,10 @@ def converge(
         "snapshot-every": snapshot_every if snapshot_every == "log" else duration(snapshot_every) or None,
         **{name.replace("_", "-"): value for name, value in options.items()},
     }
-    defining = {f"--{name}": _words(value) for name, value in given.items() if value is not None}
+    defining = {f"--{name}": _words(value) for name, value in given.items() if value is not None and value is not False}
+    if D:
+        words = [f"{name}={scene_value(value)}" for name, value in D.items()] if isinstance(D, Mapping) else D
+        defining["-D"] = _words(words)
     if scenes is not None:
         defining["scenes"] = [os.fspath(scene) for scene in ([scenes] if isinstance(scenes, str) else scenes)]
     done = _native.converge(

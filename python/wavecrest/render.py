@@ -23,6 +23,11 @@ def duration(time: float | str | None) -> str:
     return "" if time is None else time if isinstance(time, str) else f"{time}s"
 
 
+def scene_value(value: object) -> str:
+    """The value of a scene's $name as the words that C++ reads."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
 def _options(method: str, settings: Mapping[str, Any]) -> _native.RenderOptions:
     options = _native.RenderOptions()
     options.method = method
@@ -140,6 +145,9 @@ class Scene:
         """
         if (times is None) == (iterations is None):
             raise UsageError("snapshots: expected times or iterations, and not both")
+        for name in ("time", "spp"):
+            if options.get(name) is not None:
+                raise UsageError(f"snapshots: {name} is for render(); expected times or iterations alone")
         due: Sequence[float] = times if times is not None else iterations or ()
         if any(b <= a for a, b in zip(due, due[1:])) or any(not at > 0 for at in due):
             raise UsageError(f"snapshots at {list(due)}: expected positive numbers in growing order")
@@ -187,7 +195,7 @@ def load(
     width, height: of the film; one alone keeps the aspect ratio. spp: iterations of a render that does not say. lenient:
     skip what is not supported, see Scene.warnings. Further keywords are values of the scene's $names.
     """
-    texts = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in defines.items()}
+    texts = {name: scene_value(value) for name, value in defines.items()}
     return Scene(_native.load(os.fspath(scene), texts, lenient, width or 0, height or 0, spp or 0))
 
 

@@ -155,6 +155,27 @@ class Extending(Converge):
         self.assertTrue(all(end >= 0.3 for end in ends), ends)
         self.assertEqual(len(self.image_names("a")), 4)
 
+    def test_a_longer_run_that_is_stopped_leaves_the_shorter_one_as_it_was(self):
+        given = ["cornell-diffuse", "--size", "20x20"]
+        os.mkdir(self.path("given"))
+        self.run_wavecrest("reference", *given, "--spp", "8", "-o", "given/cornell-diffuse.exr")
+        for images in ("last", "all"):
+            self.converge(*given, "--methods", "pt", "--seeds", "1", "--spp", "4", "--images", images, "--reference", "given",
+                          "--out", images)  # fmt: skip
+            folder = pathlib.Path(self.path(f"{images}/images"))
+            before = {path.name: path.read_bytes() for path in folder.iterdir()}
+            process = subprocess.Popen(
+                [WAVECREST, "converge", "--out", images, "--resume", "--spp", "1000000000"],
+                cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            )  # fmt: skip
+            deadline = time.monotonic() + TIMEOUT_SECONDS
+            while set(self.image_names(images)) == set(before) and time.monotonic() < deadline:
+                time.sleep(0.01)
+            process.terminate()
+            self.assertEqual(process.wait(timeout=TIMEOUT_SECONDS), INTERRUPTED)
+            self.assertEqual({path.name: path.read_bytes() for path in folder.iterdir()}, before)
+            self.run_wavecrest("report", images)
+
     def test_by_a_larger_part_of_the_profiles_time(self):
         quick = ["cornell-diffuse", "--methods", "pt", "--size", "20x20", "--seeds", "1", "--out", "a", "--images", "last"]
         self.converge(*quick, "--time-factor", "0.02")

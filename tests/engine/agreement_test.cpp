@@ -250,6 +250,13 @@ INSTANTIATE_TEST_SUITE_P(Engine, FurnaceTest,
                          testing::Values(Method::pt, Method::lt, Method::bpt, Method::ppm, Method::bpm, Method::vcm),
                          [](const auto& instance) { return std::string(toString(instance.param)); });
 
+// ---- normals that belong to a direction -----------------------------------------------------------------------------
+
+// Next event estimation does not see through the pane, so path tracing meets the lamp by chance.
+TEST(Agreement, throughAPaneWithANormalMap) {
+  expectAgreement(sceneFile("validation/tilted-pane", 16, 16), {Method::lt, Method::bpt, Method::vcm}, ", tilted pane");
+}
+
 // ---- SmallVCM's boxes -----------------------------------------------------------------------------------------------
 
 // With lights that next event estimation or chance can find, all methods make all paths.

@@ -24,6 +24,13 @@ TEST(IndexLimits, BitmapsAreRefusedAbove31BitsOfFloats) {
   EXPECT_THROW(compileTextures(scene), SceneError);
 }
 
+TEST(IndexLimits, EnvironmentMapsAreRefusedLikewise) {
+  EnvmapEmitter emitter;
+  emitter.bitmap =
+      std::make_shared<const Bitmap>(Bitmap{.width = 1u << 15, .height = 1u << 15, .channels = 3, .pixels = {}});
+  EXPECT_THROW(compileEnvironment(emitter), SceneError);
+}
+
 TEST(IndexLimits, BitmapOfSeveralTexturesIsStoredOnce) {
   const auto small =
       std::make_shared<const Bitmap>(Bitmap{.width = 1, .height = 2, .channels = 1, .pixels = {0.25f, 0.5f}});

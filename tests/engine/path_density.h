@@ -156,7 +156,7 @@ class PathDensity {
         out = {pick, toArea / (4 * std::numbers::pi), pick, true};
         break;
       case LightKind::spot:
-        out = {pick, toArea / (2 * std::numbers::pi * (1 - light.cosTotal)), pick, true};
+        out = {pick, toArea / (2 * std::numbers::pi * light.cutoffHeight), pick, true};
         break;
       case LightKind::projector: {  // uniform on its picture, at distance 1 along the axis
         const Double3 axis{light.normal[0], light.normal[1], light.normal[2]};

@@ -30,6 +30,18 @@ TEST(FalseColour, ShowsWhatIsBeyondTheRangeAsItsEnds) {
   EXPECT_EQ(colours({0, 3}, 0), (std::vector<Pixel>{{0, 0, 4}, {0, 0, 4}})) << "no range: nothing to show";
 }
 
+TEST(FalseColour, ShowsMapsWithoutBounds) {
+  constexpr float kLargest = std::numeric_limits<float>::max(), kLeast = std::numeric_limits<float>::denorm_min();
+  constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr Pixel kDark{0, 0, 4}, kMiddle{181, 54, 122}, kBright{252, 253, 191};
+  EXPECT_EQ(colours({0, 1, kLargest, kInf, -kInf, kNan}, double{kInf}),
+            (std::vector<Pixel>{kDark, kDark, kDark, kBright, kDark, kDark}));
+  EXPECT_EQ(colours({0, kLargest / 2, kLargest, kInf}, double{kLargest}),
+            (std::vector<Pixel>{kDark, kMiddle, kBright, kBright}));
+  EXPECT_EQ(colours({0, kLeast, kInf}, 1e-320), (std::vector<Pixel>{kDark, kBright, kBright}));
+  EXPECT_EQ(colours({0, 1, kInf}, double{kNan}), (std::vector<Pixel>{kDark, kDark, kDark})) << "no range";
+}
+
 TEST(FalseColour, BrightensWithTheValue) {
   std::vector<float> ramp;
   for (int i = 0; i <= 64; ++i) ramp.push_back(static_cast<float>(i) / 64);

@@ -9,6 +9,15 @@ import unittest
 
 import wavecrest as wc
 
+ROOM = """<scene version="3.0.0">
+  <sensor type="perspective"><float name="fov" value="40"/>
+    <transform name="to_world"><lookat origin="0,0,4" target="0,0,0" up="0,1,0"/></transform></sensor>
+  <shape type="sphere"><boolean name="flip_normals" value="$flipped"/><bsdf type="diffuse"/></shape>
+  <shape type="sphere"><point name="center" x="2" y="2" z="2"/><float name="radius" value="0.5"/>
+    <emitter type="area"><rgb name="radiance" value="$power"/></emitter></shape>
+</scene>
+"""
+
 
 class Converging(unittest.TestCase):
     @classmethod
@@ -56,6 +65,13 @@ class Converging(unittest.TestCase):
         with self.assertRaisesRegex(wc.UsageError, "expected the same, more, or another --out"):
             wc.converge(resume=True, **{**options, "spp": 1})
 
+    def run_script(self, script, name):
+        """Its words, of a process of its own whose first argument is a folder."""
+        result = subprocess.run([sys.executable, "-c", script, self.out.with_name(name)],
+                                capture_output=True, text=True, timeout=100, check=False)  # fmt: skip
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout.split()
+
     def test_ctrl_c_ends_a_campaign_that_keeps_its_whole_runs(self):
         script = """
 import os, signal, sys
@@ -70,9 +86,47 @@ try:
 except KeyboardInterrupt as stop:
     print(type(stop).__name__, len(wc.read_results(sys.argv[1]).runs) in range(1, 50))
 """
-        result = subprocess.run([sys.executable, "-c", script, self.out.with_name("interrupted")],
-                                capture_output=True, text=True, timeout=100, check=False)  # fmt: skip
-        self.assertEqual(result.stdout.split(), ["Interrupted", "True"], result.stderr)
+        self.assertEqual(self.run_script(script, "interrupted"), ["Interrupted", "True"])
+
+    def test_ctrl_c_still_ends_a_campaign_whose_say_has_rendered(self):
+        script = """
+import os, signal, sys, time
+import wavecrest as wc
+scene = wc.load("cornell-mirror", width=32)
+def say(line):
+    if line.startswith("[1/"):
+        print(scene.render(spp=1).iterations)
+        os.kill(os.getpid(), signal.SIGINT)
+try:
+    wc.converge(["cornell-diffuse"], methods=["pt"], spp=2, seeds=50, size=(32, 24), threads=2, out=sys.argv[1], say=say)
+except KeyboardInterrupt as stop:
+    print(type(stop).__name__, len(wc.read_results(sys.argv[1]).runs) in range(1, 50))
+try:
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(10)
+except KeyboardInterrupt:
+    print("again")
+"""
+        self.assertEqual(self.run_script(script, "rendered"), ["1", "Interrupted", "True", "again"])
+
+    def test_ctrl_c_ends_the_render_of_a_say_and_the_campaign(self):
+        script = """
+import os, signal, sys, threading
+import wavecrest as wc
+scene = wc.load("cornell-mirror", width=32)
+def say(line):
+    if line.startswith("[1/"):
+        threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        try:
+            scene.render(time=100)
+        except KeyboardInterrupt:
+            print("render")
+try:
+    wc.converge(["cornell-diffuse"], methods=["pt"], spp=2, seeds=50, size=(32, 24), threads=2, out=sys.argv[1], say=say)
+except KeyboardInterrupt:
+    print("campaign")
+"""
+        self.assertEqual(self.run_script(script, "rendering"), ["render", "campaign"])
 
     def test_an_exception_of_say_ends_the_campaign(self):
         def say(line):
@@ -93,6 +147,36 @@ except KeyboardInterrupt as stop:
             wc.converge(["cornell-diffuse"], colour="blue", out=self.out / "other")
         with self.assertRaises(wc.InputError):
             wc.read_results(self.out / "nothing-here")
+
+    def tiny(self, name, scenes=("cornell-diffuse",), **options):
+        options = {"spp": 1, "seeds": 1, "size": (16, 12), "threads": 2, "say": lambda line: None, **options}
+        return wc.converge(scenes, out=self.out.with_name(name), **options)
+
+    def test_flags_are_set_as_on_the_command_line_or_left_out(self):
+        for name, value, expected in (("indirect", False, ["ppm"]), ("direct", True, ["ppm", "ppm-direct"])):
+            results = self.tiny(name, methods=["ppm"], direct_pass=value)
+            self.assertEqual([run["method"] for run in results.runs], expected)
+        arguments = ["converge", "--direct-pass", "--resume", "--out", self.out.with_name("direct")]
+        result = subprocess.run([os.environ["WAVECREST"], *arguments], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with self.assertRaisesRegex(wc.UsageError, "--direct-pass no: expected yes"):
+            self.tiny("no", methods=["ppm"], direct_pass="no")
+
+    def test_definitions_reach_the_scenes(self):
+        scene = self.out.with_name("own.xml")
+        scene.write_text(ROOM)
+        by_name = self.tiny("by-name", [scene], methods=["pt"], D={"flipped": False, "power": 2})
+        in_words = self.tiny("in-words", [scene], methods=["pt"], D=["flipped=false", "power=2"])
+        for results in (by_name, in_words):
+            self.assertEqual(results.campaign["definitions"], "flipped=false power=2")
+        with self.assertRaisesRegex(wc.UsageError, "-D power: expected NAME=VALUE"):
+            self.tiny("wrong", [scene], D="power")
+
+    def test_several_values_of_one_are_refused(self):
+        for name, values in (("seeds", [3, 4, 5]), ("precision", ["float", "double"])):
+            with self.assertRaisesRegex(wc.UsageError, f"--{name} .*: expected one value"):
+                self.tiny("several", **{name: values})
+        self.assertFalse(self.out.with_name("several").exists())
 
     def test_snapshots_become_a_frame(self):
         try:

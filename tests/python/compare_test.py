@@ -4,15 +4,36 @@ import json
 import os
 import pathlib
 import pickle
+import struct
 import subprocess
 import sys
+import tempfile
 import unittest
+import zlib
 
 import numpy
 import wavecrest as wc
 
 GOLDEN = pathlib.Path(__file__).resolve().parent.parent / "metrics" / "golden"
 REFERENCE, TEST = (GOLDEN / f"p1_cornell_128x128_{which}.png" for which in ("ref", "test"))
+
+
+def write_png16(file, code):
+    """16 x 16 pixels of one 16-bit code."""
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", 16, 16, 16, 2, 0, 0, 0)
+    row = b"\0" + struct.pack(">H", code) * (3 * 16)
+    data = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(16 * row)) + chunk(b"IEND", b"")
+    file.write_bytes(b"\x89PNG\r\n\x1a\n" + data)
+
+
+def by_the_program(*arguments):
+    said = subprocess.run([os.environ["WAVECREST"], "compare", *arguments, "--json"],
+                          check=True, capture_output=True, text=True)  # fmt: skip
+    return json.loads(said.stdout)
 
 
 class HasAnArray:
@@ -27,9 +48,7 @@ class HasAnArray:
 
 class Comparing(unittest.TestCase):
     def test_scores_are_the_programs(self):
-        said = subprocess.run([os.environ["WAVECREST"], "compare", REFERENCE, TEST, "--json"],
-                              check=True, capture_output=True, text=True)  # fmt: skip
-        program = json.loads(said.stdout)
+        program = by_the_program(REFERENCE, TEST)
         comparison = wc.compare(REFERENCE, TEST)
         self.assertEqual(comparison["ssim"], program["ssim"]["mean"])
         self.assertEqual(comparison["ssim_r"], program["ssim"]["r"])
@@ -37,6 +56,15 @@ class Comparing(unittest.TestCase):
         self.assertEqual(comparison["q"], program["hdrvdp2"]["q"])
         self.assertEqual(comparison["rmse"], program["rmse"])
         self.assertEqual(comparison["relmse_trimmed"], program["relmse_trimmed"])
+
+    def test_16_bit_files_keep_their_precision(self):
+        with tempfile.TemporaryDirectory(prefix="wavecrest_python_") as folder:
+            a, b = (pathlib.Path(folder) / name for name in ("a.png", "b.png"))
+            write_png16(a, 32768)
+            write_png16(b, 32828)
+            rmse = wc.compare(a, b, ["rmse"])["rmse"]
+            self.assertEqual(rmse, by_the_program(a, b, "--metrics", "rmse")["rmse"])
+        self.assertAlmostEqual(rmse, 60 / 65535, places=7)
 
     def test_each_metric_is_a_function(self):
         comparison = wc.compare(REFERENCE, TEST)
@@ -94,6 +122,9 @@ class Comparing(unittest.TestCase):
             wc.compare(square, square.astype(numpy.int64), "rmse")
         with self.assertRaises(wc.InputError):
             wc.compare("no-such-image.exr", square)
+        for exposure, text in ((float("nan"), "nan"), (1e4, "10000")):
+            with self.assertRaisesRegex(wc.UsageError, f"--exposure {text}: expected a number from -100 to 100"):
+                wc.compare(square, square, "ssim", exposure=exposure)
 
 
 if __name__ == "__main__":

@@ -105,6 +105,28 @@ signal.signal(signal.SIGINT, signal.SIG_DFL)
         result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=100, check=False)
         self.assertEqual(result.stdout.splitlines(), ["interrupted True True", "again 2"], result.stderr)
 
+    def test_a_forked_child_saves_and_reads_as_its_parent_does(self):
+        # The child has none of the threads that compressed the parent's file. It ends as every program does.
+        script = """
+import os, signal, sys
+import wavecrest as wc
+parent, child, again = sys.argv[1:]
+result = wc.load("cornell-mirror", width=32).render(spp=1)
+result.save(parent)
+process = os.fork()
+if process == 0:
+    signal.alarm(30)
+    result.save(child)
+    sys.exit(0 if (wc.read_image(parent) == result.image).all() else 3)
+print(os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]))
+result.save(again)
+"""
+        files = [self.folder / f"{name}.exr" for name in ("parent", "child", "again")]
+        result = subprocess.run([sys.executable, "-c", script, *files],
+                                capture_output=True, text=True, timeout=100, check=False)  # fmt: skip
+        self.assertEqual((result.returncode, result.stdout), (0, "0\n"), result.stderr)
+        self.assertEqual(len({file.read_bytes() for file in files}), 1)
+
     def test_errors_name_file_and_line(self):
         file = self.folder / "bad.xml"
         file.write_text('<scene version="3.0.0">\n  <sensor type="perspective"/>\n  <shape type="no-such-shape"/>\n</scene>\n')
@@ -118,6 +140,22 @@ signal.signal(signal.SIGINT, signal.SIG_DFL)
             small().render(wav=1)
         with self.assertRaises(ValueError):
             small().snapshots(times=[2, 1])
+        for name, value in (("spp", 2), ("time", "1s")):
+            with self.assertRaisesRegex(wc.UsageError, f"snapshots: {name} is for render"):
+                small().snapshots(iterations=[4, 8], **{name: value})
+
+    def test_numbers_out_of_range_are_refused_as_by_the_program(self):
+        for method, name, value, text in (
+            ("mlt", "chains", 0, "--chains 0: expected a number from 1 to 16777216"),
+            ("vcm", "radius", float("nan"), "--radius nan: expected a number from 1e-09 to 10"),
+            ("vcm", "radius", -0.05, "--radius -0.05: expected a number from 1e-09 to 10"),
+            ("vcm", "radius_alpha", -5, "--radius-alpha -5: expected a number from 0 to 1"),
+            ("pt", "wave", 0, "--wave 0: expected a number from 16 to 1048576"),
+            ("pt", "max_depth", -7, "--max-depth -7: expected a number from 1 to 4095, or -1"),
+            ("pt", "rr_depth", -3, "--rr-depth -3: expected a number from 1 to 2147483647"),
+        ):
+            with self.assertRaisesRegex(wc.UsageError, f"^{text}$"):
+                small().render(method, spp=4, **{name: value})
 
     def test_a_scene_that_does_not_exist_is_no_file_and_maybe_a_misspelt_name(self):
         with self.assertRaisesRegex(wc.InputError, "^cornell-miror: no such file.*did you mean 'cornell-mirror'") as raised:

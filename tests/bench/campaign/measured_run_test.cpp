@@ -31,13 +31,15 @@ class MeasuredRunTest : public testing::Test {
     settings.threads = 2;
     settings.measureStages = true;
     settings.iterations = iterations;
-    return measuredRun({.scene = scene_,
-                        .settings = settings,
-                        .schedule = SnapshotSchedule::doubling(),
-                        .reference = reference_,
-                        .out = folder_.folder(),
-                        .keepImages = keepImages},
-                       {.watch = watch_});
+    std::optional<RunRecord> run = measuredRun({.scene = scene_,
+                                                .settings = settings,
+                                                .schedule = SnapshotSchedule::doubling(),
+                                                .reference = reference_,
+                                                .out = folder_.folder(),
+                                                .keepImages = keepImages},
+                                               {.watch = watch_});
+    if (run) placeImages(folder_.folder(), *run);
+    return run;
   }
   size_t imageCount() const {
     return static_cast<size_t>(std::distance(std::filesystem::directory_iterator(folder_.folder() / "images"), {}));

@@ -1,0 +1,54 @@
+// Numbers of a render that the command line would refuse are refused by the library as well.
+#include "library/render_settings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "library/errors.h"
+#include "library/option_ranges.h"
+#include "tests/library/refusal.h"
+
+namespace wavecrest {
+namespace {
+
+std::string refusalOfRender(const api::RenderOptions& options) {
+  return refusalOf<UsageError>([&] { renderSettings(options, Scene()); });
+}
+
+TEST(RenderSettings, numbersOutOfRangeAreRefusedByName) {
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  const std::pair<api::RenderOptions, const char*> cases[] = {
+      {{.threads = 4097}, "--threads 4097: expected a number from 1 to 4096"},
+      {{.maxDepth = -7}, "--max-depth -7: expected a number from 1 to 4095, or -1"},
+      {{.maxDepth = 4096}, "--max-depth 4096: expected a number from 1 to 4095, or -1"},
+      {{.rrDepth = -3}, "--rr-depth -3: expected a number from 1 to 2147483647"},
+      {{.wave = 0}, "--wave 0: expected a number from 16 to 1048576"},
+      {{.method = "vcm", .radius = nan}, "--radius nan: expected a number from 1e-09 to 10"},
+      {{.method = "vcm", .radius = -0.05}, "--radius -0.05: expected a number from 1e-09 to 10"},
+      {{.method = "vcm", .radiusAlpha = -5}, "--radius-alpha -5: expected a number from 0 to 1"},
+      {{.method = "vcm", .lightPaths = kMostPaths + uint64_t{1}},
+       "--light-paths 268435457: expected a number from 1 to 268435456"},
+      {{.method = "bpt", .connectionRoulette = infinity}, "--connection-roulette inf: expected a number from 0 to 100"},
+      {{.method = "mlt", .chains = 0}, "--chains 0: expected a number from 1 to 16777216"},
+      {{.method = "mlt", .bootstrap = 0}, "--bootstrap 0: expected a number from 1 to 268435456"},
+      {{.method = "mlt", .restart = (1u << 28) + 1}, "--restart 268435457: expected a number from 1 to 268435456"},
+  };
+  for (const auto& [options, expected] : cases) EXPECT_EQ(refusalOfRender(options), expected);
+  // Inspections take the options of all methods.
+  EXPECT_EQ(refusalOf<UsageError>([] { inspectionSettings({.chains = 0}, Scene()); }),
+            "--chains 0: expected a number from 1 to 16777216");
+}
+
+TEST(RenderSettings, endsOfRangesAndDefaultsAreTaken) {
+  const auto accepts = [](const api::RenderOptions& options) { renderSettings(options, Scene()); };
+  EXPECT_NO_THROW(accepts({}));
+  EXPECT_NO_THROW(accepts({.maxDepth = -1}));
+  EXPECT_NO_THROW(accepts({.threads = 4096, .maxDepth = kDepthRange.most, .rrDepth = 1, .wave = 16}));
+  EXPECT_NO_THROW(accepts({.method = "vcm", .radius = 1e-9, .radiusAlpha = 1, .lightPaths = kMostPaths}));
+  EXPECT_NO_THROW(accepts({.method = "mlt", .chains = 1, .bootstrap = 1, .restart = 1}));
+}
+
+}  // namespace
+}  // namespace wavecrest

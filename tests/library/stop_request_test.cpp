@@ -1,0 +1,62 @@
+// A wish to stop a campaign reaches the session that renders, and none that has ended.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include "engine/session/session.h"
+#include "wavecrest/campaign.h"
+
+namespace wavecrest {
+namespace {
+
+// Can be interrupted, and nothing else.
+class IdleSession : public Session {
+ public:
+  void renderUntil(std::optional<uint64_t>, std::optional<double>) override {}
+  RenderStatistics statistics() const override { return {}; }
+  const Film& film() const override { throw std::logic_error("no film"); }
+  const MemoryPlan& memoryPlan() const override { throw std::logic_error("no plan"); }
+  void save(StateWriter&) const override {}
+  void restore(StateReader&) override {}
+  double progressSeconds() const override { return 0; }
+  uint64_t progressPaths() const override { return 0; }
+};
+
+TEST(StopRequest, reachesTheSessionThatIsWatchedAndLaterOnes) {
+  IdleSession first, second, after;
+  api::StopRequest stop;
+  stop.watch(&first);
+  EXPECT_FALSE(first.interrupted());
+  stop.request();
+  EXPECT_TRUE(first.interrupted());
+  stop.watch(&second);
+  EXPECT_TRUE(second.interrupted());
+  stop.watch(nullptr);
+  stop.request();
+  EXPECT_FALSE(after.interrupted());
+}
+
+// What the thread sanitizer reads: an interrupt() of a session that has ended is a race with its end.
+TEST(StopRequest, noRequestHoldsASessionThatIsWatchedNoMore) {
+  api::StopRequest stop;
+  std::atomic<bool> done{false};
+  std::thread other([&] {
+    while (!done.load()) stop.request();
+  });
+  while (!stop.requested()) std::this_thread::yield();
+  for (int round = 0; round < 2000; ++round) {
+    const auto session = std::make_unique<IdleSession>();
+    stop.watch(session.get());
+    EXPECT_TRUE(session->interrupted());
+    std::this_thread::yield();
+    stop.watch(nullptr);
+  }
+  done.store(true);
+  other.join();
+}
+
+}  // namespace
+}  // namespace wavecrest
