@@ -13,6 +13,7 @@
 #include "cli/file_check.h"
 #include "cli/pinning.h"
 #include "engine/version.h"
+#include "library/option_ranges.h"
 #include "library/option_values.h"
 #include "scenes/scene_list.h"
 
@@ -195,7 +196,7 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.add("--json", options->json, "write all figures as JSON; -: to stdout, instead of the tables");
   command.add("--size", options->size, "film size, WIDTHxHEIGHT");
   command.add("--threads", options->threads, "most threads; default: all cores, of --against and --tradeoff one")
-      .between(1, 4096);
+      .between(kThreadRange.least, kThreadRange.most);
   command.addFlag("--pin", options->pin,
                   "bind threads to cores and spread shared memory over their nodes; not with the modes below");
   // Comparison with another build, or of two stored results.

@@ -18,6 +18,7 @@
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "library/campaign_options.h"
+#include "library/option_ranges.h"
 #include "library/option_values.h"
 
 namespace wavecrest {
@@ -194,7 +195,8 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
       .oneValue();
   defining("-D", "value of the scenes' $name: NAME=VALUE").repeatable();
   // How this process runs it.
-  command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
+  command.add("--threads", options->threads, "worker threads; default: all cores")
+      .between(kThreadRange.least, kThreadRange.most);
   command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--out", options->out, "folder of results.sqlite, images and references").showDefault();
   command.add("--reference", options->reference, "folder of SCENE.exr; default: those that come with the scenes");

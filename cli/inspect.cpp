@@ -10,6 +10,7 @@
 #include "cli/scene_options.h"
 #include "engine/inspect/inspection.h"
 #include "library/inspection_json.h"
+#include "library/option_ranges.h"
 #include "library/option_values.h"
 
 namespace wavecrest {
@@ -139,8 +140,9 @@ void addInspectCommand(CommandLine& program, int& exitCode) {
   command.add("--precision", options->precision, "of the render that is planned").showDefault();
   command.add("--accel", options->accel, "auto, small, bvh or embree").showDefault();
   command.add("--instances", options->instances, "of shape groups: auto, expand or keep").showDefault();
-  command.add("--threads", options->threads, "of the render that is planned; default: all cores").between(1, 4096);
-  command.add("--wave", options->wave, "paths per wave").showDefault().between(16, 1 << 20);
+  command.add("--threads", options->threads, "of the render that is planned; default: all cores")
+      .between(kThreadRange.least, kThreadRange.most);
+  command.add("--wave", options->wave, "paths per wave").showDefault().between(kWaveRange.least, kWaveRange.most);
   command.run([options, &exitCode] { exitCode = runInspect(*options); });
 }
 

@@ -10,6 +10,7 @@
 #include "bench/recommend/recommend.h"
 #include "cli/commands.h"
 #include "cli/scene_options.h"
+#include "library/option_ranges.h"
 #include "library/option_values.h"
 #include "metrics/ssim.h"
 
@@ -73,7 +74,8 @@ void addRecommendCommand(CommandLine& program, int& exitCode) {
       .repeatable();
   command.add("--clock", options->clock, "what a second is: wall, or cpu over threads for a busy machine")
       .showDefault();
-  command.add("--threads", options->threads, "worker threads; default: all cores").between(1, 4096);
+  command.add("--threads", options->threads, "worker threads; default: all cores")
+      .between(kThreadRange.least, kThreadRange.most);
   command.addFlag("--json", options->json, "as JSON");
   command.run([options, &exitCode] {
     runRecommend(*options);

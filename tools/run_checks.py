@@ -145,8 +145,8 @@ CHECKED_TESTS = ("contracts_test",)
 
 # Sessions of all methods on several threads, with photon maps and chains. Not yet the metrics, whose loops do not say
 # what TBB orders (engine/tasks/task_order.h).
-THREADED_TESTS = ("render_test", "session_test")
-THREADED_CASES = "Determinism|IterationsTogether|Snapshots"
+THREADED_TESTS = ("library_test", "render_test", "session_test")
+THREADED_CASES = "Determinism|IterationsTogether|Snapshots|StopRequest"
 
 
 def step_sanitizers(tally):
