@@ -179,10 +179,10 @@ struct alignas(sizeof(S) * 32) LightRecord {
   S pick;         // probability that light selection takes this light
   S inverseArea;  // 1 / area of an area light, or of a projector's picture
   S radius;
-  S offset;  // bound on the error of a sampled point along the normal
+  S offset;                    // bound on the error of a sampled point along the normal
   S cutoffHeight, beamHeight;  // of a spot, 1 - cos of the angles
-  uint32_t kind;     // LightKind
-  uint32_t texture;  // factor of the radiance of an area light, a spot or a projector, or kNoIndex
+  uint32_t kind;               // LightKind
+  uint32_t texture;            // factor of the radiance of an area light, a spot or a projector, or kNoIndex
 };
 
 // Alias table: entry i is kept with probability `keep`, else replaced by `other` (Walker 1977, Vose 1991).
