@@ -196,7 +196,7 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.add("--json", options->json, "write all figures as JSON; -: to stdout, instead of the tables");
   command.add("--size", options->size, "film size, WIDTHxHEIGHT");
   command.add("--threads", options->threads, "most threads; default: all cores, of --against and --tradeoff one")
-      .between(kThreadRange.least, kThreadRange.most);
+      .between(kThreadRange);
   command.addFlag("--pin", options->pin,
                   "bind threads to cores and spread shared memory over their nodes; not with the modes below");
   // Comparison with another build, or of two stored results.

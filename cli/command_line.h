@@ -41,6 +41,10 @@ class Option {
     return within(WholeRange{static_cast<int64_t>(low), static_cast<uint64_t>(high), also});
   }
   Option between(double low, double high) const { return within(RealRange{low, high}); }
+  // range: an OptionRange (library/option_ranges.h).
+  template <class Range>
+  requires requires(const Range& range) { range.least, range.most; }
+  Option between(const Range& range) const { return between(range.least, range.most); }
   // check returns what is wrong with a word, or nothing.
   Option checkedBy(std::function<std::string(const std::string&)> check) const;
   bool given() const;

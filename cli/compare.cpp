@@ -227,8 +227,7 @@ void addCompareCommand(CommandLine& program, int& exitCode) {
   command.add("--map", options->mapFolder, "write a false-colour PNG of each metric into this folder");
   command.add("--html", options->html, "write scores, images and maps as one page; - for stdout");
   command.add("--crop", options->crop, "compare this part only: X,Y,WIDTHxHEIGHT");
-  command.add("--exposure", options->exposure, "stops applied before conversion to 8 bits")
-      .between(kExposureRange.least, kExposureRange.most);
+  command.add("--exposure", options->exposure, "stops applied before conversion to 8 bits").between(kExposureRange);
   command.addFlag("--gamma", options->gammaCorrected, "rmse and relmse on gamma-corrected 8-bit values");
   options->limits.resize(metricList().size());
   for (size_t i = 0; i < metricList().size(); ++i) {

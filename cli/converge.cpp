@@ -195,8 +195,7 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
       .oneValue();
   defining("-D", "value of the scenes' $name: NAME=VALUE").repeatable();
   // How this process runs it.
-  command.add("--threads", options->threads, "worker threads; default: all cores")
-      .between(kThreadRange.least, kThreadRange.most);
+  command.add("--threads", options->threads, "worker threads; default: all cores").between(kThreadRange);
   command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--out", options->out, "folder of results.sqlite, images and references").showDefault();
   command.add("--reference", options->reference, "folder of SCENE.exr; default: those that come with the scenes");

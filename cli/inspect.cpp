@@ -140,9 +140,8 @@ void addInspectCommand(CommandLine& program, int& exitCode) {
   command.add("--precision", options->precision, "of the render that is planned").showDefault();
   command.add("--accel", options->accel, "auto, small, bvh or embree").showDefault();
   command.add("--instances", options->instances, "of shape groups: auto, expand or keep").showDefault();
-  command.add("--threads", options->threads, "of the render that is planned; default: all cores")
-      .between(kThreadRange.least, kThreadRange.most);
-  command.add("--wave", options->wave, "paths per wave").showDefault().between(kWaveRange.least, kWaveRange.most);
+  command.add("--threads", options->threads, "of the render that is planned; default: all cores").between(kThreadRange);
+  command.add("--wave", options->wave, "paths per wave").showDefault().between(kWaveRange);
   command.run([options, &exitCode] { exitCode = runInspect(*options); });
 }
 

@@ -74,8 +74,7 @@ void addRecommendCommand(CommandLine& program, int& exitCode) {
       .repeatable();
   command.add("--clock", options->clock, "what a second is: wall, or cpu over threads for a busy machine")
       .showDefault();
-  command.add("--threads", options->threads, "worker threads; default: all cores")
-      .between(kThreadRange.least, kThreadRange.most);
+  command.add("--threads", options->threads, "worker threads; default: all cores").between(kThreadRange);
   command.addFlag("--json", options->json, "as JSON");
   command.run([options, &exitCode] {
     runRecommend(*options);

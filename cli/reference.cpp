@@ -239,8 +239,7 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   command.add("--time", options->time, "stop after this much render time in all: 10m, 6h");
   command.add("--spp", options->spp, "stop after N iterations of each half").atLeast(1);
   // Settings.
-  command.add("--threads", options->threads, "worker threads; default: all cores")
-      .between(kThreadRange.least, kThreadRange.most);
+  command.add("--threads", options->threads, "worker threads; default: all cores").between(kThreadRange);
   command.add("--seed", options->seed, "seed of both halves, which differ in its high word").between(0, 0xffffffff);
   command.add("--sampler", options->sampler, "independent or sobol").showDefault();
   command.add("--precision", options->precision, "float, double, or fast: float with Embree's faster tests")
@@ -248,7 +247,7 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--radius", options->radius, "first merge radius of ppm, bpm and vcm")
       .showDefault()
-      .between(kRadiusRange.least, kRadiusRange.most);
+      .between(kRadiusRange);
   // Outputs and checks.
   command.add("-o,--output", options->output, "EXR file; default: SCENE.reference.exr; goes on if it exists");
   command.add("--from", options->larger,

@@ -1,34 +1,20 @@
 #include "cli/render_options.h"
 
-#include <fmt/format.h>
-
 #include "engine/methods/method_list.h"
 #include "library/option_ranges.h"
 
 namespace wavecrest {
-namespace {
-
-// All of them, each after a blank.
-std::string methodNames() {
-  std::string names;
-  for (const MethodEntry& entry : kMethods) names += fmt::format(" {}", entry.name);
-  return names;
-}
-
-}  // namespace
-
 void addRenderOptions(const Command& command, RenderOptions& options) {
   addSceneOptions(command, options.scene);
   // Method, end and threads.
-  command.add("-m,--method", options.method, "light-transport method:" + methodNames()).showDefault();
+  command.add("-m,--method", options.method, "light-transport method: " + methodChoices()).showDefault();
   command.add("--time", options.time, "stop after this much render time: 6s, 2m, 1h30m");
   command
       .add("--spp", options.spp,
            "stop after N iterations: paths, of mlt mutations, per pixel; default without --time: "
            "the scene's sample_count, or 4")
       .atLeast(1);
-  command.add("--threads", options.threads, "worker threads; default: all cores")
-      .between(kThreadRange.least, kThreadRange.most);
+  command.add("--threads", options.threads, "worker threads; default: all cores").between(kThreadRange);
   command.addFlag("--pin", options.pin, "bind threads to cores and spread shared memory over their nodes");
   // Samples and paths.
   command.add("--seed", options.seed, "seed of all random numbers").showDefault();
@@ -39,43 +25,40 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
       .showDefault();
   command.add("--max-depth", options.maxDepth, "edges of the longest path; -1: unlimited")
       .between(kDepthRange.least, kDepthRange.most, -1);
-  command.add("--rr-depth", options.rrDepth, "first vertex where roulette may end a path")
-      .between(kRouletteDepthRange.least, kRouletteDepthRange.most);
+  command.add("--rr-depth", options.rrDepth, "first vertex where roulette may end a path").between(kRouletteDepthRange);
   // Kernels and intersector.
   command.add("--precision", options.precision, "float, double, or fast: float with Embree's faster tests")
       .showDefault();
   command.add("--isa", options.isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--accel", options.accel, "intersector: auto, small, bvh or embree").showDefault();
   command.add("--instances", options.instances, "of shape groups: auto, expand into copies, or keep").showDefault();
-  command.add("--wave", options.wave, "paths per wave").showDefault().between(kWaveRange.least, kWaveRange.most);
+  command.add("--wave", options.wave, "paths per wave").showDefault().between(kWaveRange);
   // Merging, connections and memory.
   command.add("--radius", options.radius, "first merge radius of ppm, bpm and vcm, relative to the bounding sphere")
       .showDefault()
-      .between(kRadiusRange.least, kRadiusRange.most);
+      .between(kRadiusRange);
   command.add("--radius-alpha", options.radiusAlpha, "how slowly the radius shrinks, 0 to 1")
       .showDefault()
-      .between(kRadiusAlphaRange.least, kRadiusAlphaRange.most);
+      .between(kRadiusAlphaRange);
   command
       .add("--light-paths", options.lightPaths,
            "light paths of an iteration of ppm, bpm or vcm; default: as many as pixels")
-      .between(kLightPathRange.least, kLightPathRange.most);
+      .between(kLightPathRange);
   command
       .add("--connection-roulette", options.connectionRoulette,
            "bpt, vcm: join connections below this part of a typical pixel's brightness by chance; 0: join all")
       .showDefault()
-      .between(kConnectionRouletteRange.least, kConnectionRouletteRange.most);
+      .between(kConnectionRouletteRange);
   command.addFlag("--direct-pass", options.directPass, "ppm: direct light by next event estimation, not from photons");
   command.add("--memory", options.memory, "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
   // Markov chains.
   command.add("--mlt", options.mlt, "what the chains of mlt walk in: pssmlt, mmlt or pathspace; default: mmlt");
-  command.add("--chains", options.chains, "Markov chains of mlt")
-      .showDefault()
-      .between(kChainRange.least, kChainRange.most);
+  command.add("--chains", options.chains, "Markov chains of mlt").showDefault().between(kChainRange);
   command.add("--bootstrap", options.bootstrap, "independent samples from which chains start")
       .showDefault()
-      .between(kBootstrapRange.least, kBootstrapRange.most);
+      .between(kBootstrapRange);
   command.add("--restart", options.restart, "steps before chains start anew; default: 16 mutations to a sample")
-      .between(kRestartRange.least, kRestartRange.most);
+      .between(kRestartRange);
   command.addFlag("--no-direct-pass", options.noDirectPass, "mmlt and pathspace: chains render direct light too");
   // Snapshots, goals, checkpoints and outputs.
   command.add("--snapshot-every", options.snapshotEvery, "snapshots at this interval, or 'log'");

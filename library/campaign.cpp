@@ -34,27 +34,8 @@ void StopRequest::watch(Session* session) noexcept {
   if (session != nullptr && requested_.load()) session->interrupt();
 }
 
-namespace {
-
-// Whatever ends a campaign, no session is watched afterwards. stop: may be null.
-class WatchEnd {
- public:
-  explicit WatchEnd(StopRequest* stop) : stop_(stop) {}
-  ~WatchEnd() {
-    if (stop_ != nullptr) stop_->watch(nullptr);
-  }
-  WatchEnd(const WatchEnd&) = delete;
-  WatchEnd& operator=(const WatchEnd&) = delete;
-
- private:
-  StopRequest* stop_;
-};
-
-}  // namespace
-
 bool converge(const CampaignOptions& options, const CampaignCallbacks& callbacks, StopRequest* stop) {
   return translated([&] {
-    const WatchEnd end(stop);
     CampaignOptions asked = options;
     const CampaignSettings settings = begunCampaign(asked);
     const CampaignHooks hooks{.session = {.watch =

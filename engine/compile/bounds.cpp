@@ -53,6 +53,16 @@ BoundingSphere Extent::sphere() const {
   return bounds;
 }
 
+Box boxOf(const Extent& extent) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Box box{};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] = std::nextafter(static_cast<float>(extent.low[axis]), -kInfinity);
+    box.high[axis] = std::nextafter(static_cast<float>(extent.high[axis]), kInfinity);
+  }
+  return box;
+}
+
 template <class S>
 BoundingSphere boundPrimitives(const RecordArray<PrimitiveRecord<S>>& records) {
   Extent all;

@@ -7,6 +7,7 @@
 
 #include "engine/compile/record_array.h"
 #include "engine/scene/scene.h"
+#include "kernels/extend/leaves.h"
 #include "kernels/scene_view.h"
 
 namespace wavecrest {
@@ -35,6 +36,9 @@ struct Extent {
   void include(const PrimitiveRecord<S>& record);
   BoundingSphere sphere() const;
 };
+
+// Rounded outwards.
+Box boxOf(const Extent& extent);
 
 template <class S>
 Extent extentOf(const PrimitiveRecord<S>& record) {

@@ -180,17 +180,17 @@ void checkRange(const Scene& scene, double radius, double groupExtent) {
 }  // namespace
 
 Box rayOrigins(const Scene& scene, const BoundingSphere& bounds, const double (&eye)[3], const Double3& origin) {
-  std::vector<Box> points{boxAt(eye)};
+  Extent points;
+  points.include(vec(eye));
   const Double3 center = vec(bounds.center);
   for (const Emitter& emitter : scene.emitters) {
     const std::optional<Double3> position = positionOf(emitter);
     if (!position) continue;
     const Double3 away = *position - origin - center;
     const double nearer = std::min(1.0, kFarthestLight * bounds.radius / length(away));
-    const Double3 point = center + nearer * away;
-    points.push_back(boxAt({point[0], point[1], point[2]}));
+    points.include(center + nearer * away);
   }
-  return unionOf(points.data(), points.size());
+  return boxOf(points);
 }
 
 void setClips(const Sensor& sensor, const SceneGeometry& geometry, const BoundingSphere& bounds, CameraView& camera) {

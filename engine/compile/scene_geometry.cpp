@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 
@@ -13,17 +12,6 @@
 
 namespace wavecrest {
 namespace {
-
-// Rounded outwards.
-Box boxOf(const Extent& extent) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Box box{};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = std::nextafter(static_cast<float>(extent.low[axis]), -kInfinity);
-    box.high[axis] = std::nextafter(static_cast<float>(extent.high[axis]), kInfinity);
-  }
-  return box;
-}
 
 // Boxes that together hold all primitives: one around those whose centres are in the same cell of a grid over the
 // bounds. An instance's box around them is tighter than one around its transformed bounds.

@@ -6,8 +6,8 @@
 namespace wavecrest::python {
 
 // While it lives, SIGINT calls stop(what) from the signal's handler and then whatever handler Python has. Only in the
-// main thread, where Python's handlers run, and not where SIGINT is ignored. To be made and destroyed with the GIL; in
-// between the work may run without. Scopes may be nested, as where the callback of a campaign renders: the signal then
+// main thread, where Python's handlers run, and not where SIGINT is ignored. Hold the GIL to make and to destroy one;
+// the work in between may release it. Scopes may be nested, as when the callback of a campaign renders: the signal then
 // stops the work of all of them.
 class InterruptScope {
  public:
