@@ -6,7 +6,7 @@
 #include "bench/report/results_folder.h"
 #include "bench/results/results_error.h"
 #include "engine/load/load.h"
-#include "engine/plan/memory_plan.h"
+#include "engine/plan/memory_use.h"
 #include "engine/scene/scene_error.h"
 #include "library/errors.h"
 #include "library/suggestion.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/plan/stage_observer.h"
+#include "engine/walks/stage_observer.h"
 
 namespace wavecrest {
 

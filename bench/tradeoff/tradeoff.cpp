@@ -9,7 +9,6 @@
 #include "bench/tradeoff/block_means.h"
 #include "bench/until/film_error.h"
 #include "engine/inspect/path_classes.h"
-#include "engine/plan/memory_plan.h"
 #include "engine/scene/scene_error.h"
 #include "engine/session/session.h"
 

@@ -12,6 +12,7 @@
 #include "engine/chains/chain_worker.h"
 #include "engine/chains/epochs.h"
 #include "engine/plan/chain_layout.h"
+#include "engine/plan/memory_plan.h"
 #include "engine/session/add_samples.h"
 #include "engine/session/planned_session.h"
 #include "engine/session/stage_rows.h"
@@ -51,8 +52,7 @@ class ChainSession final : public PlannedSession<S> {
 
  private:
   using Base = PlannedSession<S>;
-  using Base::arena_, Base::clock_, Base::earlier_, Base::film_, Base::memory_, Base::plan_, Base::progressPaths_,
-      Base::settings_;
+  using Base::arena_, Base::clock_, Base::earlier_, Base::film_, Base::plan_, Base::progressPaths_, Base::settings_;
 
   ChainWorker<S>& worker();
   uint64_t stepsFor(uint64_t iterations) const;
@@ -88,7 +88,7 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
     throw std::invalid_argument("ChainSession: chains cannot begin in the middle; expected the first iteration");
   }
   this->finishBuilding([&] {
-    film_.makeSplats(settings_.threads, memory_.splatScale);
+    film_.makeSplats(settings_.threads, plan_.memory.splatScale);
     const MetropolisSettings& metropolis = settings_.metropolis;
     const bool multiplexed = plan_.pipeline.lightPass.has_value();
     epochs_ = Epochs(multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "engine/chains/bootstrap.h"
 #include "engine/chains/chain_worker.h"
+#include "engine/pilot/bootstrap.h"
 #include "engine/plan/chain_layout.h"
 #include "engine/session/session.h"
 #include "kernels/columns/chain_paths.h"

@@ -5,6 +5,8 @@
 #include <limits>
 #include <variant>
 
+#include "engine/tasks/ticks.h"
+
 namespace wavecrest {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/plan/render_plan.h"
+#include "engine/walks/run_walk.h"
 #include "kernels/columns/chains.h"
 #include "kernels/columns/light_vertices.h"
 

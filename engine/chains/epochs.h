@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/chains/bootstrap.h"
+#include "engine/pilot/bootstrap.h"
 
 namespace wavecrest {
 

@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "engine/compile/materials.h"
+#include "engine/pilot/finished_plan.h"
+#include "engine/plan/memory_plan.h"
 #include "engine/scene/scene_error.h"
 
 namespace wavecrest {

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "engine/inspect/path_classes.h"
-#include "engine/plan/memory_plan.h"
+#include "engine/plan/memory_use.h"
+#include "engine/plan/render_settings.h"
 
 namespace wavecrest {
 

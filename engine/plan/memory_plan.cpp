@@ -7,7 +7,6 @@
 
 #include "engine/film/spread_sums.h"
 #include "engine/plan/chain_layout.h"
-#include "engine/tasks/flush_to_zero.h"
 #include "kernels/columns/light_vertices.h"
 #include "kernels/merge/photon_map.h"
 
@@ -19,70 +18,19 @@ size_t bytesOf(const Items& items) {
   return items.size() * sizeof(items[0]);
 }
 
-// Light paths that are walked, whatever the size of waves: the unit of splats follows from them, and with it the last
-// bits of an image.
-constexpr size_t kPilotLightPaths = 8192;
-
 // Later waves and iterations may need some more room than the first ones.
 constexpr double kSpread = 1.05;
-
-// What the first waves of light paths of iteration 0 left behind.
-struct Pilot {
-  size_t paths = 0, stored = 0;
-  size_t room = 0;  // of the largest store: of all vertices, and of those that it might have stored at last
-  // Splats that are finite and not black, and the sum of their exponents: integers, which no order of sums changes.
-  int64_t splats = 0, exponents = 0;
-};
-
-// Walks the first light paths of iteration 0: kPilotLightPaths, or all `lightPaths` if there are fewer. Splats are
-// counted and reach no film.
-template <class S>
-Pilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
-                     size_t lightPaths) {
-  const FlushToZero flushToZero;
-  // A wave, a light store and a context, as a worker has them.
-  Wave<S> wave(settings.waveSize, plan.needs);
-  LightStore<S> store(settings.waveSize, plan.needs, plan.lightUse);
-  StageCounters counters;
-  StageContext<S> context;
-  context.scene = &plan.scene->view;
-  context.pixels = area.pixels.data();
-  context.sampler = {settings.sampler, settings.seed, 0};
-  context.limits = settings.limits;
-  context.mis = misSettings(plan.pipeline.lightPass->strategies, settings, plan.scene->view.radius, lightPaths, 0);
-  context.light = &store;
-  context.film = area.window();
-  context.counters = &counters;
-  Pilot pilot;
-  // The drain counts splats by the exponent of their largest channel.
-  const SplatDrain<S> drain = [&](Splats<S>& splats) {
-    for (size_t i = 0; i < splats.size; ++i) {
-      const auto value = static_cast<double>(std::max({splats.red[i], splats.green[i], splats.blue[i]}));
-      if (!(value > 0 && std::isfinite(value))) continue;
-      ++pilot.splats;
-      pilot.exponents += std::ilogb(value);
-    }
-    splats.size = 0;
-  };
-  // Walk one wave after the other. All waves use the same store.
-  const size_t wanted = std::min(kPilotLightPaths, lightPaths);
-  while (pilot.paths < wanted) {
-    wave.firstPath = pilot.paths;
-    wave.pathCount = std::min<size_t>(settings.waveSize, wanted - pilot.paths);
-    runPass<S>(*plan.pipeline.lightPass, context, wave, nullptr, drain);
-    pilot.paths += wave.pathCount;
-    pilot.stored += store.vertices.size;
-    pilot.room = std::max(pilot.room, store.roomUsed());
-  }
-  return pilot;
-}
 
 // Adds up what a render will hold, part by part. run() is called once.
 template <class S>
 class Planner {
  public:
-  Planner(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
-      : plan_(plan), settings_(settings), area_(area), emptyStore_(settings.waveSize, plan.needs, plan.lightUse) {
+  Planner(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area, const LightPilot& pilot)
+      : plan_(plan),
+        settings_(settings),
+        area_(area),
+        emptyStore_(settings.waveSize, plan.needs, plan.lightUse),
+        pilot_(pilot) {
     if (settings.lightPaths && !plan.pipeline.photonMap) {
       throw std::invalid_argument("planMemory: a number of light paths for " + std::string(toString(settings.method)));
     }
@@ -104,7 +52,7 @@ class Planner {
     if (plan_.pipeline.chains) {
       addChains();
     } else if (plan_.pipeline.lightPass) {
-      addLightPaths(static_cast<size_t>(settings_.lightPaths.value_or(pixels)));
+      addLightPaths(lightPathsWanted(settings_, pixels));
     }
     // Methods with a photon map have fitted their light paths to the budget. Other methods have nothing to leave out.
     if (settings_.memoryBytes && use.total() > *settings_.memoryBytes) refuse(use.total());
@@ -131,16 +79,15 @@ class Planner {
       if (pathSpace) use.chains += PathStore<S>::bytesFor(settings_.waveSize, edges, plan_.needs);
     }
   }
-  // Counts light vertices and photons, as the pilot foresees them. asked: light paths of an iteration.
-  void addLightPaths(size_t asked) {
-    pilot_ = walkLightPaths(plan_, settings_, area_, asked);
+  // Counts light vertices and photons, as the pilot foresees them. wanted: light paths of an iteration.
+  void addLightPaths(size_t wanted) {
     // Where the pilot has no splat, those of the render are rare, and any unit of theirs is fine enough.
     const int64_t exponent = pilot_.splats == 0 ? 0 : pilot_.exponents / pilot_.splats;
     // A splat of the pilot's mean exponent has about 2^kSplatUnitBits units.
     memory_.splatScale = std::ldexp(1.0, kSplatUnitBits - static_cast<int>(exponent));
-    const double spread = pilot_.paths < asked ? kSpread : 1;
+    const double spread = pilot_.paths < wanted ? kSpread : 1;
     memory_.verticesPerWave = static_cast<size_t>(spread * static_cast<double>(pilot_.room));
-    memory_.lightPaths = asked;
+    memory_.lightPaths = wanted;
     if (plan_.pipeline.photonMap && settings_.memoryBytes) fitLightPaths(*settings_.memoryBytes);
     memory_.use.lightVertices = vertexBytes(memory_.lightPaths);
     if (plan_.pipeline.photonMap) {
@@ -192,7 +139,7 @@ class Planner {
   const RenderSettings& settings_;
   const FilmArea& area_;
   const LightStore<S> emptyStore_;
-  Pilot pilot_;
+  const LightPilot& pilot_;
   MemoryPlan memory_;
 };
 
@@ -228,18 +175,11 @@ template size_t sceneBytes(const CompiledScene<double>&);
 size_t waveBytes(size_t bytesPerPath, size_t waveSize) { return bytesPerPath * paddedItems(waveSize); }
 
 template <class S>
-MemoryPlan planMemory(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
-  return Planner<S>(plan, settings, area).run();
+MemoryPlan planMemory(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
+                      const LightPilot& pilot) {
+  return Planner<S>(plan, settings, area, pilot).run();
 }
-template MemoryPlan planMemory(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);
-template MemoryPlan planMemory(const RenderPlan<double>&, const RenderSettings&, const FilmArea&);
-
-MemoryPlan planMemory(const Scene& scene, const RenderSettings& asked) {
-  const RenderSettings settings = withinDepthOfMethod(asked);
-  const FilmArea area = filmArea(scene.film);
-  const RenderSettings cut = withPieces(settings, scene.film, area.pixels.size());
-  return settings.precision == Precision::doubled ? planMemory(planRender<double>(scene, cut), cut, area)
-                                                  : planMemory(planRender<float>(scene, cut), cut, area);
-}
+template MemoryPlan planMemory(const RenderPlan<float>&, const RenderSettings&, const FilmArea&, const LightPilot&);
+template MemoryPlan planMemory(const RenderPlan<double>&, const RenderSettings&, const FilmArea&, const LightPilot&);
 
 }  // namespace wavecrest

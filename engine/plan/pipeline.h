@@ -1,11 +1,10 @@
-// A pipeline: a method's page (engine/methods/method_page.h) with the kernels that it calls, and the loop that runs a
-// walk of it on one wave.
+// A pipeline: a method's page (engine/methods/method_page.h) with the kernels that it calls, as data. engine/walks runs
+// it on waves.
 #pragma once
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -94,29 +93,5 @@ struct Intersector {
 // The page's stages, of these kernels and this intersector.
 template <class S>
 Pipeline<S> makePipeline(const MethodPage& page, const Stages<S>& stages, const Intersector<S>& intersector);
-
-// Time and items of each stage, in pipeline order, of one worker. laneSlots: items rounded up to whole blocks.
-struct StageTally {
-  uint64_t items = 0, laneSlots = 0, ticks = 0;
-};
-
-// Runs one stage; tally: its entry, or nullptr to measure nothing.
-template <class S>
-void runStage(const StageCall<S>& stage, const StageContext<S>& context, Wave<S>& wave, StageTally* tally);
-
-// Time-stamp counter ticks, and their length.
-uint64_t readTicks();
-double secondsPerTick();
-
-// Empties a wave's queue of splats. A pass calls it before the queue could overrun, and at its end.
-template <class S>
-using SplatDrain = std::function<void(Splats<S>&)>;
-
-// Takes one wave from generation to the end of its last path. tally: one entry per stage in the order generate,
-// firstDepth, perDepth, drain, or nullptr to measure nothing. The wave's firstPath and pathCount say which paths.
-// drain: of a pass that splats.
-template <class S>
-void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, StageTally* tally,
-             const SplatDrain<S>& drain = {});
 
 }  // namespace wavecrest

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "engine/film/film.h"
+#include "engine/plan/memory_use.h"
 #include "engine/plan/path_laws.h"
 #include "engine/plan/pipeline.h"
 #include "engine/plan/render_settings.h"
@@ -26,6 +27,9 @@ struct RenderPlan {
   const Stages<S>* stages = nullptr;
   Pipeline<S> pipeline;
   PathLaws pathLaws;  // of chains in path space
+  // What pilots decide (engine/pilot/finished_plan.h).
+  MemoryPlan memory;
+  S connectionRouletteBelow = 0;  // StageContext::rouletteBelow
 
   Accel accel() const { return scene->accel(); }
 };

@@ -1,22 +1,35 @@
 #include "engine/session/planned_session.h"
 
+#include "engine/pilot/finished_plan.h"
+#include "engine/plan/memory_plan.h"
 #include "engine/tasks/for_each.h"
 
 namespace wavecrest {
+
+namespace {
+
+// All threads read what a plan holds, so its pages are spread over the nodes.
+template <class S>
+RenderPlan<S> planIn(oneapi::tbb::task_arena& arena, const Scene& scene, const RenderSettings& settings,
+                     const FilmArea& area, double& seconds) {
+  const auto begin = Clock::now();
+  const WorkerLimit limit(settings.threads);
+  const SpreadMemory spread(settings.placement);
+  RenderPlan<S> plan;
+  arena.execute([&] { plan = finishedPlan<S>(scene, settings, area); });
+  seconds = secondsSince(begin);
+  return plan;
+}
+
+}  // namespace
 
 template <class S>
 PlannedSession<S>::PlannedSession(const Scene& scene, const RenderSettings& settings)
     : arena_(static_cast<int>(settings.threads)),
       film_(filmArea(scene.film)),
-      settings_(withPieces(settings, scene.film, film_.area().pixels.size())) {
-  // All threads read what is built here, so new pages are spread over the nodes.
-  const auto begin = Clock::now();
-  const WorkerLimit limit(settings_.threads);
-  const SpreadMemory spread(settings_.placement);
-  arena_.execute([&] { plan_ = planRender<S>(scene, settings_); });
-  memory_ = planMemory(plan_, settings_, film_.area());
+      settings_(withPieces(settings, scene.film, film_.area().pixels.size())),
+      plan_(planIn<S>(arena_, scene, settings_, film_.area(), buildSeconds_)) {
   if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.scene->view.camera);
-  buildSeconds_ = secondsSince(begin);
 }
 
 template <class S>

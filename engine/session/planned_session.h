@@ -20,7 +20,7 @@ template <class S>
 class PlannedSession : public Session {
  public:
   const Film& film() const override { return film_; }
-  const MemoryPlan& memoryPlan() const override { return memory_; }
+  const MemoryPlan& memoryPlan() const override { return plan_.memory; }
   double progressSeconds() const override { return clock_.shown(); }
   uint64_t progressPaths() const override { return progressPaths_.load(std::memory_order_relaxed); }
 
@@ -40,17 +40,16 @@ class PlannedSession : public Session {
   void goOnFromEarlier(uint64_t progressPaths);
 
   oneapi::tbb::task_arena arena_;
+  double buildSeconds_ = 0;
   Film film_;
   const RenderSettings settings_;
-  RenderPlan<S> plan_;
-  MemoryPlan memory_;
+  const RenderPlan<S> plan_;
   WorkDone earlier_;  // of the sessions that this one goes on for
   RenderClock clock_{settings_.clock, settings_.threads};
   std::atomic<uint64_t> progressPaths_{0};
 
  private:
   std::optional<ThreadPins> pins_;  // once the session is built
-  double buildSeconds_ = 0;
 };
 
 extern template class PlannedSession<float>;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/film/film.h"
-#include "engine/plan/memory_plan.h"
+#include "engine/plan/memory_use.h"
 #include "engine/plan/render_settings.h"
 #include "kernels/columns/chains.h"
 

@@ -1,8 +1,9 @@
 // The rows of --stats: one for each stage of a pass, filled from the workers' tallies.
 #pragma once
 
-#include "engine/plan/pipeline.h"
 #include "engine/session/session.h"
+#include "engine/tasks/ticks.h"
+#include "engine/walks/run_walk.h"
 
 namespace wavecrest {
 

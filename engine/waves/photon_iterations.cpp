@@ -1,13 +1,13 @@
 #include "engine/waves/photon_iterations.h"
 
+#include "engine/plan/memory_plan.h"
 #include "engine/tasks/thread_pins.h"
 
 namespace wavecrest {
 
 template <class S>
-PhotonIterations<S>::PhotonIterations(const RenderPlan<S>& plan, const MemoryPlan& memory,
-                                      const RenderSettings& settings, size_t pixels)
-    : lightWaves_(piecesOf(memory.lightPaths, settings.waveSize)),
+PhotonIterations<S>::PhotonIterations(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels)
+    : lightWaves_(piecesOf(plan.memory.lightPaths, settings.waveSize)),
       slots_(iterationsAtOnce(settings, pixels)),
       buildSteps_(PhotonMap<S>::buildSteps(lightWaves_)) {
   const size_t count = lightStores(settings, pixels, lightWaves_);
@@ -16,8 +16,8 @@ PhotonIterations<S>::PhotonIterations(const RenderPlan<S>& plan, const MemoryPla
     stores_.push_back(std::make_unique<LightStore<S>>(settings.waveSize, plan.needs, plan.lightUse));
     LightStore<S>& store = *stores_.back();
     // All stores lie in one arena and take equal parts of it.
-    if (i == 0) memory_ = Arena(count * store.arenaBytes(memory.verticesPerWave));
-    store.reserve(memory.verticesPerWave, memory_);
+    if (i == 0) memory_ = Arena(count * store.arenaBytes(plan.memory.verticesPerWave));
+    store.reserve(plan.memory.verticesPerWave, memory_);
   }
   for (Slot& slot : slots_) slot.stores.resize(lightWaves_);
 }

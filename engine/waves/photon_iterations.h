@@ -10,7 +10,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/plan/memory_plan.h"
 #include "engine/plan/render_plan.h"
 #include "engine/tasks/schedule.h"
 #include "kernels/columns/light_vertices.h"
@@ -27,7 +26,7 @@ class PhotonIterations {
   // None: of a method without a photon map.
   PhotonIterations() = default;
   // pixels: of the film. settings must outlive it.
-  PhotonIterations(const RenderPlan<S>& plan, const MemoryPlan& memory, const RenderSettings& settings, size_t pixels);
+  PhotonIterations(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels);
 
   size_t lightWaves() const { return lightWaves_; }
   LightStore<S>& storeOf(uint64_t iteration, size_t lightWave) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/plan/memory_plan.h"
 #include "engine/session/add_samples.h"
 #include "engine/session/planned_session.h"
 #include "engine/session/stage_rows.h"
@@ -15,9 +16,7 @@
 #include "engine/tasks/flush_to_zero.h"
 #include "engine/tasks/for_each.h"
 #include "engine/tasks/run_schedule.h"
-#include "engine/waves/light_picks.h"
 #include "engine/waves/photon_iterations.h"
-#include "engine/waves/typical_brightness.h"
 #include "engine/waves/wave_worker.h"
 
 namespace wavecrest {
@@ -35,8 +34,7 @@ class WaveSession final : public PlannedSession<S> {
 
  private:
   using Base = PlannedSession<S>;
-  using Base::arena_, Base::clock_, Base::earlier_, Base::film_, Base::memory_, Base::plan_, Base::progressPaths_,
-      Base::settings_;
+  using Base::arena_, Base::clock_, Base::earlier_, Base::film_, Base::plan_, Base::progressPaths_, Base::settings_;
   using Worker = WaveWorker<S>;
   // How far the camera paths of a wave's pixels are: 2^iterationBits iterations from `next` on are under way, and done
   // for the first `pixels` of them.
@@ -82,8 +80,7 @@ class WaveSession final : public PlannedSession<S> {
   std::vector<CameraProgress> camera_;  // of each tile
   bool level_ = true;                   // false: pixels of a restored film have different numbers of samples
   PhotonIterations<S> photons_;
-  std::optional<S> rouletteBelow_;  // StageContext's, once a render has begun
-  double iterationSeconds_ = 0;     // of the latest iterations with a photon map; 0: of none yet
+  double iterationSeconds_ = 0;  // of the latest iterations with a photon map; 0: of none yet
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
 };
 
@@ -91,9 +88,7 @@ template <class S>
 WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings) : Base(scene, settings) {
   this->finishBuilding([&] {
     const size_t pixels = film_.area().pixels.size();
-    // Path tracing picks its lights by what they give in view (METHODS 2.3).
-    if (!plan_.pipeline.lightPass) arena_.execute([&] { pickLightsByView(plan_, settings_, film_.area()); });
-    if (plan_.pipeline.splats()) film_.makeSplats(settings_.threads, memory_.splatScale);
+    if (plan_.pipeline.splats()) film_.makeSplats(settings_.threads, plan_.memory.splatScale);
     // A piece of camera paths is a wave; where waves take several iterations at once, as many pixels as give all
     // threads work.
     const uint32_t together = 1u << mostIterationBits();
@@ -103,7 +98,7 @@ WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings) 
             : pieceSize(pixels * together, settings_.cutForThreads(), settings_.waveSize * together) / together;
     pieces_ = film_.area().pieces(piece, film_.spreads());
     camera_.resize(pieces_.size() - 1, {.next = settings_.firstIteration});
-    if (plan_.pipeline.photonMap) photons_ = PhotonIterations<S>(plan_, memory_, settings_, pixels);
+    if (plan_.pipeline.photonMap) photons_ = PhotonIterations<S>(plan_, settings_, pixels);
   });
 }
 
@@ -111,7 +106,7 @@ WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings) 
 template <class S>
 typename WaveSession<S>::Worker& WaveSession<S>::worker() {
   std::unique_ptr<Worker>& mine = workers_.local();
-  if (!mine) mine = std::make_unique<Worker>(plan_, memory_, settings_.waveSize, film_);
+  if (!mine) mine = std::make_unique<Worker>(plan_, settings_.waveSize, film_);
   return *mine;
 }
 
@@ -121,13 +116,13 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
   const FilmArea& area = film_.area();
   // Weights and the merging radius are those of the iteration.
   const MisSettings mis =
-      misSettings(pass.strategies, settings_, plan_.scene->view.radius, memory_.lightPaths, iteration);
+      misSettings(pass.strategies, settings_, plan_.scene->view.radius, plan_.memory.lightPaths, iteration);
   StageContext<S> context{.scene = &plan_.scene->view,
                           .pixels = area.pixels.data(),
                           .sampler = {settings_.sampler, settings_.seed, iteration},
                           .limits = settings_.limits,
                           .mis = mis,
-                          .rouletteBelow = *rouletteBelow_,
+                          .rouletteBelow = plan_.connectionRouletteBelow,
                           .light = light,
                           .photonGrid = photonGrid(mis.radius),
                           .photons = photons_.mapOf(iteration),
@@ -153,7 +148,7 @@ void WaveSession<S>::traceLight(size_t first, size_t count, uint64_t iteration, 
 
 template <class S>
 void WaveSession<S>::traceLightWave(size_t waveIndex, uint64_t iteration, Worker& worker) {
-  const size_t count = itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
+  const size_t count = itemsOfPiece(waveIndex, plan_.memory.lightPaths, settings_.waveSize);
   traceLight(waveIndex * settings_.waveSize, count, iteration, photons_.storeOf(iteration, waveIndex), worker);
 }
 
@@ -167,9 +162,9 @@ LightStore<S>* WaveSession<S>::partnersOf(size_t waveIndex, uint64_t iteration, 
   // The store of the light wave with this index will do if it has the light paths of exactly these pixels. Otherwise
   // the light vertices are collected from several stores.
   const bool sameCut = waveIndex < stores.size() && first == waveIndex * settings_.waveSize &&
-                       count == itemsOfPiece(waveIndex, memory_.lightPaths, settings_.waveSize);
-  if (sameCut && memory_.lightPaths == film_.area().pixels.size()) return stores[waveIndex];
-  worker.light.collect(stores, memory_.lightPaths, first, count);
+                       count == itemsOfPiece(waveIndex, plan_.memory.lightPaths, settings_.waveSize);
+  if (sameCut && plan_.memory.lightPaths == film_.area().pixels.size()) return stores[waveIndex];
+  worker.light.collect(stores, plan_.memory.lightPaths, first, count);
   return &worker.light;
 }
 
@@ -232,13 +227,13 @@ PhotonGrid<S> WaveSession<S>::photonGrid(double searchRadius) const {
   if (!plan_.pipeline.photonMap) return {};
   const SceneView<S>& scene = plan_.scene->view;
   return PhotonGrid<S>::over(scene.center, scene.radius, searchRadius,
-                             static_cast<double>(std::max<size_t>(memory_.photons, 1)));
+                             static_cast<double>(std::max<size_t>(plan_.memory.photons, 1)));
 }
 
 template <class S>
 void WaveSession<S>::buildPhotonMap(const ScheduledTask& task, Worker& worker) {
   const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
-                                      memory_.lightPaths, task.iteration);
+                                      plan_.memory.lightPaths, task.iteration);
   const uint64_t begin = readTicks();
   // All tasks of a map share one row of the statistics. The map's photons are counted once.
   photons_.buildMap(task, photonGrid(mis.radius), settings_.placement);
@@ -311,8 +306,6 @@ void WaveSession<S>::renderUntil(std::optional<uint64_t> iterations, std::option
       return (seconds && now >= *seconds) || this->interrupted();
     };
     arena_.execute([&] {
-      // The limit for roulette of connections is measured once in a session.
-      if (!rouletteBelow_) rouletteBelow_ = connectionRouletteLimit(plan_, settings_, film_.area());
       if (!level_) levelPixels(finished);
       if (!level_) return;
       if (plan_.pipeline.photonMap) {

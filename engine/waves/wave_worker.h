@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "engine/film/film.h"
-#include "engine/plan/memory_plan.h"
 #include "engine/plan/render_plan.h"
+#include "engine/walks/run_walk.h"
 #include "kernels/columns/light_vertices.h"
 
 namespace wavecrest {
@@ -21,13 +21,13 @@ struct WaveWorker {
   std::optional<SplatWriter<S>> splats;
   uint64_t paths = 0, lightPaths = 0;
 
-  WaveWorker(const RenderPlan<S>& plan, const MemoryPlan& memory, uint32_t waveSize, Film& film)
+  WaveWorker(const RenderPlan<S>& plan, uint32_t waveSize, Film& film)
       : wave(waveSize, plan.needs),
         light(waveSize, plan.needs, {.merged = false}),
         cameraTallies(plan.pipeline.cameraPass.stageCount()) {
     if (plan.pipeline.lightPass) {
       lightTallies.resize(plan.pipeline.lightPass->stageCount());
-      if (!plan.pipeline.photonMap) light.reserve(memory.verticesPerWave);
+      if (!plan.pipeline.photonMap) light.reserve(plan.memory.verticesPerWave);
     }
     if (plan.pipeline.splats()) splats.emplace(film.splats(), plan.stages->addSplats, waveSize);
   }

@@ -12,6 +12,7 @@
 #include "engine/plan/chain_layout.h"
 #include "engine/plan/pipeline.h"
 #include "engine/plan/render_plan.h"
+#include "engine/walks/run_walk.h"
 #include "tests/engine/test_scenes.h"
 
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "engine/chains/bootstrap.h"
 #include "engine/chains/chain_worker.h"
 #include "engine/chains/epochs.h"
+#include "engine/pilot/bootstrap.h"
 #include "engine/plan/chain_layout.h"
 #include "tests/engine/test_scenes.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/waves/typical_brightness.h"
+#include "engine/pilot/typical_brightness.h"
 #include "tests/engine/bidirectional_walk.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"

@@ -3,7 +3,7 @@
 // nothing here could fail.
 #include <gtest/gtest.h>
 
-#include "engine/plan/stage_contracts.h"
+#include "engine/walks/stage_contracts.h"
 #include "tests/engine/light_scenes.h"
 #include "tests/engine/render_statistics.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/waves/light_picks.h"
+#include "engine/pilot/light_picks.h"
 #include "tests/load/scene_file.h"
 
 namespace wavecrest {

@@ -1,8 +1,9 @@
 // The memory plan is what a session then holds.
-#include "engine/plan/memory_plan.h"
 
 #include <gtest/gtest.h>
 
+#include "engine/pilot/finished_plan.h"
+#include "engine/plan/memory_plan.h"
 #include "engine/plan/render_plan.h"
 #include "engine/session/session.h"
 #include "tests/engine/test_scenes.h"

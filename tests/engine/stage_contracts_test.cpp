@@ -1,5 +1,5 @@
 // Contracts of stages: a wave as stages leave it keeps them, and each damage to it is found.
-#include "engine/plan/stage_contracts.h"
+#include "engine/walks/stage_contracts.h"
 
 #include <gtest/gtest.h>
 

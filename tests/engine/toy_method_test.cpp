@@ -6,6 +6,7 @@
 #include "engine/methods/method_list.h"
 #include "engine/plan/render_plan.h"
 #include "engine/tasks/flush_to_zero.h"
+#include "engine/walks/run_walk.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/test_scenes.h"
 

@@ -1,9 +1,9 @@
-#include "engine/waves/typical_brightness.h"
+#include "engine/pilot/typical_brightness.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "engine/waves/pilot_paths.h"
+#include "engine/pilot/pilot_paths.h"
 
 namespace wavecrest {
 

@@ -1,4 +1,4 @@
-#include "engine/plan/stage_contracts.h"
+#include "engine/walks/stage_contracts.h"
 
 #include <cmath>
 #include <cstdio>

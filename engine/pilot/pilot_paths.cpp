@@ -1,9 +1,10 @@
-#include "engine/waves/pilot_paths.h"
+#include "engine/pilot/pilot_paths.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "engine/tasks/flush_to_zero.h"
+#include "engine/walks/run_walk.h"
 
 namespace wavecrest {
 

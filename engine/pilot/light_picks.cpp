@@ -1,10 +1,10 @@
-#include "engine/waves/light_picks.h"
+#include "engine/pilot/light_picks.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "engine/waves/pilot_paths.h"
+#include "engine/pilot/pilot_paths.h"
 
 namespace wavecrest {
 namespace {

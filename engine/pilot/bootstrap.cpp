@@ -1,4 +1,4 @@
-#include "engine/chains/bootstrap.h"
+#include "engine/pilot/bootstrap.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,0 +1,56 @@
+#include "engine/pilot/light_walks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/tasks/flush_to_zero.h"
+#include "engine/walks/run_walk.h"
+#include "kernels/columns/light_vertices.h"
+
+namespace wavecrest {
+
+template <class S>
+LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
+  const FlushToZero flushToZero;
+  const size_t lightPaths = lightPathsWanted(settings, area.pixels.size());
+  // A wave, a light store and a context, as a worker has them.
+  Wave<S> wave(settings.waveSize, plan.needs);
+  LightStore<S> store(settings.waveSize, plan.needs, plan.lightUse);
+  StageCounters counters;
+  StageContext<S> context;
+  context.scene = &plan.scene->view;
+  context.pixels = area.pixels.data();
+  context.sampler = {settings.sampler, settings.seed, 0};
+  context.limits = settings.limits;
+  context.mis = misSettings(plan.pipeline.lightPass->strategies, settings, plan.scene->view.radius, lightPaths, 0);
+  context.light = &store;
+  context.film = area.window();
+  context.counters = &counters;
+  LightPilot pilot;
+  // The drain counts splats by the exponent of their largest channel.
+  const SplatDrain<S> drain = [&](Splats<S>& splats) {
+    for (size_t i = 0; i < splats.size; ++i) {
+      const auto value = static_cast<double>(std::max({splats.red[i], splats.green[i], splats.blue[i]}));
+      if (!(value > 0 && std::isfinite(value))) continue;
+      ++pilot.splats;
+      pilot.exponents += std::ilogb(value);
+    }
+    splats.size = 0;
+  };
+  // Walk one wave after the other. All waves use the same store. The number of paths does not depend on the size of
+  // waves: the unit of splats follows from these paths, and with it the last bits of an image.
+  const size_t wanted = std::min(kPilotLightPaths, lightPaths);
+  while (pilot.paths < wanted) {
+    wave.firstPath = pilot.paths;
+    wave.pathCount = std::min<size_t>(settings.waveSize, wanted - pilot.paths);
+    runPass<S>(*plan.pipeline.lightPass, context, wave, nullptr, drain);
+    pilot.paths += wave.pathCount;
+    pilot.stored += store.vertices.size;
+    pilot.room = std::max(pilot.room, store.roomUsed());
+  }
+  return pilot;
+}
+template LightPilot walkLightPaths(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);
+template LightPilot walkLightPaths(const RenderPlan<double>&, const RenderSettings&, const FilmArea&);
+
+}  // namespace wavecrest
