@@ -167,8 +167,9 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
     return command.add(name, options->defining[name], description);
   };
   // What the campaign is: stored with the results, and compared with them by --resume.
-  defining("scenes", "built-in scenes or XML files; default: the nine");
-  defining("--methods", "methods, separated by commas; also mlt-pathspace, mlt-pssmlt, ppm-direct; default: all")
+  defining("scenes", "built-in scenes or XML files; default: the nine, as far as they are there");
+  defining("--methods",
+           "methods, separated by commas; also mlt-pathspace, mlt-pssmlt, ppm-direct; default: all methods")
       .separatedByCommas()
       .repeatable();
   defining("--profile", "quick, standard, study or paper; default: quick").oneValue();

@@ -26,7 +26,7 @@ struct CommandFacts {
 };
 
 // The facts of an option, with the words of `values` that complete it.
-OptionFacts factsOf(const CLI::Option& option, const Values& values) {
+OptionFacts factsOf(const CLI::Option& option, const std::string& command, const Values& values) {
   OptionFacts facts;
   // Names with their dashes; a positional argument has a plain name only.
   for (const std::string& name : option.get_snames()) facts.names.push_back("-" + name);
@@ -37,6 +37,7 @@ OptionFacts factsOf(const CLI::Option& option, const Values& values) {
   facts.takesValue = option.get_expected_max() > 0 && option.get_type_size_max() > 0;
   // Words for its value, listed under one of its names.
   for (const CompletionWords& value : values) {
+    if (!value.command.empty() && value.command != command) continue;
     const bool named = std::any_of(facts.names.begin(), facts.names.end(), [&](const std::string& name) {
       return std::find(value.names.begin(), value.names.end(), name) != value.names.end();
     });
@@ -50,7 +51,9 @@ std::vector<CommandFacts> commandsOf(const CLI::App& program, const Values& valu
   std::vector<CommandFacts> all;
   for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
     CommandFacts facts{command->get_name(), command->get_description(), {}};
-    for (const CLI::Option* option : command->get_options()) facts.options.push_back(factsOf(*option, values));
+    for (const CLI::Option* option : command->get_options()) {
+      facts.options.push_back(factsOf(*option, facts.name, values));
+    }
     all.push_back(std::move(facts));
   }
   return all;
@@ -114,9 +117,8 @@ std::string bashCompletion(const std::vector<CommandFacts>& commands) {
     for (const OptionFacts& option : command.options) {
       if (option.place && option.words) places = fmt::format(" {}", fmt::join(*option.words, " "));
       if (option.place || !option.takesValue) continue;
-      const std::string reply =
-          option.words ? fmt::format("COMPREPLY=($(compgen -W \"{}\" -- \"$word\"))", fmt::join(*option.words, " "))
-                       : "COMPREPLY=($(compgen -f -- \"$word\"))";
+      const std::string reply = option.words ? fmt::format("_wavecrest_words \"{}\"", fmt::join(*option.words, " "))
+                                             : "COMPREPLY=($(compgen -f -- \"$word\"))";
       values += fmt::format("        {}) {}; return ;;\n", fmt::join(option.names, "|"), reply);
     }
     // Elsewhere: option names after a dash, else files and the words of positional arguments.
@@ -126,6 +128,11 @@ std::string bashCompletion(const std::vector<CommandFacts>& commands) {
     cases += fmt::format("      else COMPREPLY=($(compgen -f -W \"{}\" -- \"$word\")); fi ;;\n", places);
   }
   return fmt::format(R"(# bash completion of wavecrest; printed by `wavecrest describe bash`
+# Completes the last of words that are separated by commas.
+_wavecrest_words() {{
+  local last=${{word##*,}}
+  COMPREPLY=($(compgen -P "${{word%"$last"}}" -W "$1" -- "$last"))
+}}
 _wavecrest() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}}
   if ((COMP_CWORD == 1)); then

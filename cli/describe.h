@@ -16,10 +16,12 @@ namespace wavecrest {
 enum class DescriptionKind { man, bash, zsh, fish };
 constexpr std::array<std::string_view, 4> kDescriptionKindNames{"man", "bash", "zsh", "fish"};
 
-// Words that complete values: of options and places of these names; other values are taken for file names.
+// Words that complete values: of options and places of these names; other values are taken for file names. Where
+// several fit, the last one does.
 struct CompletionWords {
   std::vector<std::string> names;
   std::vector<std::string> words;
+  std::string command = {};  // whose options; empty: of all
 };
 
 std::string describe(const CLI::App& program, DescriptionKind kind, const std::string& version,

@@ -30,7 +30,10 @@ class FileCheck {
   std::map<std::filesystem::path, Use> uses_;
 };
 
-// Replaces the file, or writes to stdout. Throws ImageError where that fails.
+// Whether stdout is a pipe whose reader has closed it, as `head` does once it has its lines.
+bool readerHasLeft();
+
+// Replaces the file, or writes to stdout. Throws ImageError where that fails for another reason than that.
 void writeText(const std::string& file, const std::string& text);
 
 }  // namespace wavecrest

@@ -17,6 +17,7 @@
 
 #include "bench/checkpoint/checkpoint.h"
 #include "cli/commands.h"
+#include "cli/file_check.h"
 #include "cli/messages.h"
 #include "engine/load/load.h"
 #include "engine/scene/scene_error.h"
@@ -106,12 +107,12 @@ int run(std::vector<std::string> arguments) {
     program.parse(std::move(arguments), exitCode);
   } catch (const std::system_error&) {
     // fmt::print throws where stdout does not take a full buffer; the state of the stream tells of that below.
-    exitCode = std::ferror(stdout) != 0 ? kExitFailure : report(std::current_exception());
+    if (std::ferror(stdout) == 0) exitCode = report(std::current_exception());
   } catch (...) {
     exitCode = report(std::current_exception());
   }
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (written) return exitCode;
+  if (written || readerHasLeft()) return exitCode;
   tell("wavecrest: error: stdout: writing failed: {}; expected somebody who reads", std::strerror(errno));
   return exitCode == kExitDone ? kExitFailure : exitCode;
 }
@@ -120,7 +121,7 @@ int run(std::vector<std::string> arguments) {
 }  // namespace wavecrest
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of writing, which is reported as such
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away ends no render
   std::signal(SIGUSR1, SIG_IGN);  // before there is anything to save; commands that save set their own
   std::set_terminate(wavecrest::onTerminate);
   wavecrest::openStandardStreams();

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/file_check.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/pinning.h"
@@ -126,14 +127,20 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
   return session.statistics().paths > 0 ? Ending::stopped : Ending::stoppedBeforeAnyPath;
 }
 
+// Where the image goes without -o: SCENE.exr in the working directory.
+std::string defaultOutput(const std::string& scene) {
+  return scene == kStandardStream ? "stdin.exr" : findScene(scene).stem().string() + ".exr";
+}
+
 int runRender(const RenderOptions& options) {
   // Checks options and output names before anything takes time.
   const SnapshotSchedule schedule = parseSnapshotSchedule("--snapshot-every", options.snapshotEvery);
   const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
-  const OutputNames names{options.outputs, options.stats, options.snapshotEvery, options.checkpoint.file};
+  const OutputNames names{options.outputs, options.stats, options.snapshotEvery, options.checkpoint.file,
+                          options.exposure};
   const std::string nothing = "wavecrest: interrupted before anything was rendered; no image was written";
   InterruptGuard guard(nothing);
-  checkOutputs(names, {findScene(options.scene.scene)});
+  checkOutputs(names, {findScene(options.scene.scene)}, options.until.reference);
   // Locks the checkpoint, and reads it with --resume.
   Checkpointing checkpointing(options.checkpoint);
   std::unique_ptr<Checkpoint> earlier = checkpointing.takeEarlier();
@@ -146,7 +153,7 @@ int runRender(const RenderOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const Scene scene = loadScene(options.scene, kind);
   printNotes(scene, kind);
-  checkOutputs(names, scene.files);
+  checkOutputs(names, scene.files, options.until.reference);
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   // Makes the session. Where the image depends on it, light paths are cut into waves as the checkpoint says.
   RenderSettings settings = resolved(options, scene);
@@ -187,7 +194,7 @@ int runRender(const RenderOptions& options) {
   live.look(true);
   outputs.writeCheckpoint(*session);
   outputs.write(*session);
-  if (!options.outputs.empty() && !outputs.failed()) live.showFile(options.outputs.front());
+  if (!outputs.failed()) live.showFile(options.outputs.front());
   showSummary(options, settings, kind, *session);
   if (outputs.failed()) return kExitInput;
   return ending == Ending::stopped ? kExitInterrupted : kExitDone;
@@ -199,7 +206,10 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<RenderOptions>();
   const Command command = program.add("render", "render a scene by one method");
   addRenderOptions(command, *options);
-  command.run([options, &exitCode] { exitCode = runRender(*options); });
+  command.run([options, &exitCode] {
+    if (options->outputs.empty()) options->outputs = {defaultOutput(options->scene.scene)};
+    exitCode = runRender(*options);
+  });
 }
 
 }  // namespace wavecrest

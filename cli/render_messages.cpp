@@ -119,7 +119,6 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
   for (const std::string& output : options.outputs) fmt::print("writes   {}\n", output);
   if (!options.checkpoint.file.empty()) fmt::print("writes   {}\n", options.checkpoint.file);
   if (!options.stats.empty()) fmt::print("writes   {}\n", options.stats);
-  if (options.outputs.empty()) fmt::print("writes   no image: there is no -o\n");
 }
 
 void showSummary(const RenderOptions& options, const RenderSettings& settings, ProgressKind kind,
@@ -132,14 +131,13 @@ void showSummary(const RenderOptions& options, const RenderSettings& settings, P
   const uint64_t paths = settings.method == Method::lt ? statistics.lightPaths : statistics.paths;
   const double seconds = statistics.renderSeconds;
   const double perSecond = seconds > 0 ? static_cast<double>(paths) / seconds : 0;
-  noteLine(kind,
-           {{"outputs", options.outputs},
-            {"iterations", statistics.iterations},
-            {"render_seconds", seconds},
-            {"paths_per_second", perSecond}},
-           fmt::format("{}: {} spp in {:.1f} s, {:.2f} M paths/s",
-                       files.empty() ? "no -o, so the image was not kept" : files, statistics.iterations, seconds,
-                       perSecond * 1e-6));
+  noteLine(
+      kind,
+      {{"outputs", options.outputs},
+       {"iterations", statistics.iterations},
+       {"render_seconds", seconds},
+       {"paths_per_second", perSecond}},
+      fmt::format("{}: {} spp in {:.1f} s, {:.2f} M paths/s", files, statistics.iterations, seconds, perSecond * 1e-6));
 }
 
 }  // namespace wavecrest

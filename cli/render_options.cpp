@@ -8,7 +8,7 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   addSceneOptions(command, options.scene);
   // Method, end and threads.
   command.add("-m,--method", options.method, "light-transport method: " + methodChoices()).showDefault();
-  command.add("--time", options.time, "stop after this much render time: 6s, 2m, 1h30m");
+  command.add("--time", options.time, "stop after this much render time: 6s, 100ms, 1h30m");
   command
       .add("--spp", options.spp,
            "stop after N iterations: paths, of mlt mutations, per pixel; default without --time: "
@@ -71,7 +71,9 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command.add("--reference", options.until.reference, "image that --until-ssim compares with");
   addCheckpointOptions(command, options.checkpoint);
   addLiveOptions(command, options.live);
-  command.add("-o,--output", options.outputs, "image file: .exr, .png or .pfm; repeatable").repeatable();
+  command.add("-o,--output", options.outputs, "image file: .exr, .png or .pfm; repeatable; default: SCENE.exr")
+      .repeatable();
+  command.add("--exposure", options.exposure, "stops by which PNG images are brighter").between(kExposureRange);
   command.add("--stats", options.stats, "write statistics as JSON; - for stdout");
   command.addFlag("--dry-run", options.dryRun, "print plan, memory and outputs, and render nothing");
   command.add("--progress", options.progress, "auto, bar, jsonl or none").showDefault();

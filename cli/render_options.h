@@ -18,6 +18,7 @@ struct RenderOptions : api::RenderOptions {
   SceneOptions scene;
   std::string snapshotEvery, stats, progress = "auto";
   std::vector<std::string> outputs;
+  double exposure = 0;  // stops, of PNG
   bool dryRun = false, pin = false;
   CheckpointOptions checkpoint;
   UntilRequest until;

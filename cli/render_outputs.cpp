@@ -2,7 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
+#include <cmath>
 #include <exception>
 #include <filesystem>
 
@@ -39,15 +42,31 @@ bool isSnapshotOf(const std::string& image, const std::string& file) {
          fs::weakly_canonical(fs::absolute(file), ignored);
 }
 
+// As writeImage goes by the extension.
+bool isPng(const std::string& file) {
+  std::string extension = fs::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".png";
+}
+
+// The image brighter by so many stops.
+Image exposed(Image image, double stops) {
+  const auto factor = static_cast<float>(std::exp2(stops));
+  for (float& value : image.pixels) value *= factor;
+  return image;
+}
+
 }  // namespace
 
-void checkOutputs(const OutputNames& names, const std::vector<std::string>& inputs) {
+void checkOutputs(const OutputNames& names, const std::vector<std::string>& inputs, const std::string& reference) {
   // Inputs, and every output by itself and against the others.
-  if (names.images.empty() && !names.snapshotEvery.empty()) {
-    throw UsageError("--snapshot-every needs an output to name the snapshots after; expected -o FILE.exr");
+  if (names.exposure != 0 && std::none_of(names.images.begin(), names.images.end(), isPng)) {
+    throw UsageError("--exposure: is for PNG images alone; expected -o FILE.png");
   }
   FileCheck files;
   for (const std::string& input : inputs) files.input("the scene", input);
+  if (!reference.empty()) files.input("--reference", reference);
   for (const std::string& image : names.images) {
     try {
       checkImageTarget(image);
@@ -111,11 +130,13 @@ void RenderOutputs::write(const Session& session, const std::string& statsFile) 
     if (!until_.is_null()) all["until"] = until_;
   });
   const Metadata metadata = statsMetadata(all);
-  const Image image = names_.images.empty() ? Image() : filmImage(session);
+  const Image image = filmImage(session);
   for (const std::string& name : names_.images) {
     attempt([&] {
       WritingProgress progress(kind_, name);
-      writeImage(name, image, metadata, [&](double fraction) { progress.show(fraction); });
+      const bool brighter = names_.exposure != 0 && isPng(name);
+      writeImage(name, brighter ? exposed(image, names_.exposure) : image, metadata,
+                 [&](double fraction) { progress.show(fraction); });
     });
   }
   if (!statsFile.empty() && !all.is_null()) attempt([&] { writeText(statsFile, jsonText(all, 2) + "\n"); });

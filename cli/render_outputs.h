@@ -19,14 +19,16 @@
 namespace wavecrest {
 
 struct OutputNames {
-  std::vector<std::string> images;
-  std::string stats;          // empty: none; - is stdout
-  std::string snapshotEvery;  // empty: no snapshots; they are named after the first image
-  std::string checkpoint;     // empty: none
+  std::vector<std::string> images;  // at least one
+  std::string stats;                // empty: none; - is stdout
+  std::string snapshotEvery;        // empty: no snapshots; they are named after the first image
+  std::string checkpoint;           // empty: none
+  double exposure = 0;              // stops, of PNG images
 };
 
-// Throws UsageError where a name cannot be written, or is that of an input (a file of the scene) or of another output.
-void checkOutputs(const OutputNames& names, const std::vector<std::string>& inputs);
+// Throws UsageError where a name cannot be written, or is that of an input (a file of the scene, or the reference of
+// --until-ssim, if there is one) or of another output.
+void checkOutputs(const OutputNames& names, const std::vector<std::string>& inputs, const std::string& reference);
 
 class RenderOutputs {
  public:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
@@ -111,15 +112,33 @@ Effort effortOf(const CampaignOptions& options, const Profile& profile, std::str
   return effort;
 }
 
-// The scenes that were named; by default the nine. Results, images and references go by the stem of the file, so no two
-// scenes may share one.
-std::vector<CampaignScene> chosenScenes(const CampaignOptions& options, const Profile& profile) {
-  std::vector<std::string> words;
-  if (has(options, "scenes")) {
-    words = options.defining.at("scenes");
-  } else {
-    for (const SceneEntry& entry : builtInScenes()) words.emplace_back(entry.name);
+// The scenes of a campaign that names none: the nine, without those whose model has not been fetched and is not
+// replaced by -D. leftOut: a line about those.
+std::vector<std::string> scenesByDefault(const CampaignOptions& options, std::string& leftOut) {
+  const auto defines = options.defining.find("-D");
+  const bool ownDragon = defines != options.defining.end() &&
+                         std::any_of(defines->second.begin(), defines->second.end(),
+                                     [](const std::string& word) { return word.starts_with("dragon="); });
+  std::vector<std::string> scenes, without;
+  fs::path missing;
+  for (const SceneEntry& entry : builtInScenes()) {
+    const fs::path file = sceneFolder() / entry.fetched;
+    const bool there = ownDragon || fs::exists(file);
+    (there ? scenes : without).emplace_back(entry.name);
+    if (!there) missing = file;
   }
+  if (!without.empty()) {
+    leftOut = fmt::format("without {}: there is no {}; {}", fmt::join(without, " and "), missing.filename().string(),
+                          missingAssetHint(missing));
+  }
+  return scenes;
+}
+
+// The scenes that were named, or those by default. Results, images and references go by the stem of the file, so no two
+// scenes may share one.
+std::vector<CampaignScene> chosenScenes(const CampaignOptions& options, const Profile& profile, std::string& leftOut) {
+  const std::vector<std::string> words =
+      has(options, "scenes") ? options.defining.at("scenes") : scenesByDefault(options, leftOut);
   std::vector<CampaignScene> scenes;
   std::set<std::string> names;
   for (const std::string& word : words) {
@@ -160,7 +179,7 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
   // Scenes, seeds and the end of each run.
   const Profile& profile = chosenProfile(options);
   CampaignSettings settings;
-  settings.scenes = chosenScenes(options, profile);
+  settings.scenes = chosenScenes(options, profile, settings.leftOut);
   settings.seeds = profile.seeds;
   if (has(options, "--seeds")) settings.seeds = parseCount("--seeds", get(options, "--seeds"));
   if (has(options, "--spp")) settings.iterations = parseCount("--spp", get(options, "--spp"));
@@ -180,7 +199,6 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
   // Files: outputs, images to keep, and references.
   settings.out = options.out;
   settings.shard = parseShard(options.shard);
-  constexpr std::array<std::string_view, 2> kImageChoices{"all", "last"};
   settings.keepImages = parseChoice("--images", get(options, "--images", "all"), kImageChoices) == 0;
   settings.referenceRequired = !options.reference.empty();
   settings.referenceFolder = options.reference.empty() ? sceneReferences(settings.size) : fs::path(options.reference);

@@ -1,6 +1,7 @@
 // From a campaign's options, in words, to its settings, and what belongs to its beginning and its end.
 #pragma once
 
+#include <array>
 #include <map>
 #include <span>
 #include <string>
@@ -11,6 +12,9 @@
 #include "wavecrest/campaign_options.h"
 
 namespace wavecrest {
+
+// The words of --images.
+constexpr std::array<std::string_view, 2> kImageChoices{"all", "last"};
 
 // The keys that CampaignOptions::defining may have.
 std::span<const std::string_view> campaignWords();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "kernels/sampling/sampler.h"
@@ -17,6 +18,11 @@ const std::vector<std::string>* given(const CampaignWords& words, const char* na
   const auto found = words.find(name);
   return found == words.end() || found->second.empty() ? nullptr : &found->second;
 }
+
+// Rows that --methods can ask for alone.
+const std::array kSpecialRows{CampaignMethod{.method = Method::mlt, .variant = MetropolisVariant::pathspace},
+                              CampaignMethod{.method = Method::mlt, .variant = MetropolisVariant::pssmlt},
+                              CampaignMethod{.method = Method::ppm, .directPass = true}};
 
 // The variants of mlt that are rows of the campaign: those of --mlt, or by the profile mmlt and perhaps path space.
 std::vector<MetropolisVariant> chosenVariants(const CampaignWords& words, const Profile& profile) {
@@ -36,13 +42,9 @@ std::vector<MetropolisVariant> chosenVariants(const CampaignWords& words, const 
 // row ("mlt-pathspace", "ppm-direct") stands for that row alone.
 std::vector<CampaignMethod> rowsOfWord(const std::string& word, const std::vector<MetropolisVariant>& variants,
                                        DirectPass directPass) {
-  for (const MetropolisVariant variant : {MetropolisVariant::pathspace, MetropolisVariant::pssmlt}) {
-    const CampaignMethod row{.method = Method::mlt, .variant = variant};
-    if (word == row.name()) return {row};
-  }
-  const CampaignMethod direct{.method = Method::ppm, .directPass = true};
-  if (word == direct.name()) return {direct};
-  return rowsOf(parseMethodOption("--methods", word), variants, directPass);
+  const size_t at = parseChoice("--methods", word, campaignMethodNames());
+  if (at < std::size(kMethods)) return rowsOf(kMethods[at].method, variants, directPass);
+  return {kSpecialRows[at - std::size(kMethods)]};
 }
 
 // All rows of the campaign in the order of the words, each once.
@@ -67,6 +69,21 @@ std::vector<CampaignMethod> chosenMethods(const CampaignWords& words, const Prof
 }
 
 }  // namespace
+
+std::span<const std::string_view> campaignMethodNames() {
+  static const auto special = [] {
+    std::array<std::string, kSpecialRows.size()> names;
+    for (size_t i = 0; i < names.size(); ++i) names[i] = kSpecialRows[i].name();
+    return names;
+  }();
+  static const auto names = [] {
+    std::vector<std::string_view> all;
+    for (const MethodEntry& entry : kMethods) all.push_back(entry.name);
+    all.insert(all.end(), special.begin(), special.end());
+    return all;
+  }();
+  return names;
+}
 
 std::map<std::string, std::string> parseDefinitions(const std::vector<std::string>& words) {
   std::map<std::string, std::string> definitions;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/campaign/campaign_settings.h"
@@ -11,6 +13,9 @@
 namespace wavecrest {
 
 using CampaignWords = std::map<std::string, std::vector<std::string>>;  // by option name; only what was given
+
+// What --methods of a campaign takes: all methods, and the rows that have names of their own ("ppm-direct").
+std::span<const std::string_view> campaignMethodNames();
 
 // NAME=VALUE of a scene's variables; UsageError for any other word.
 std::map<std::string, std::string> parseDefinitions(const std::vector<std::string>& words);

@@ -27,7 +27,7 @@ constexpr OptionRange<double> kConnectionRouletteRange{0, 100};
 constexpr OptionRange<uint64_t> kChainRange{1, 1 << 24}, kBootstrapRange{1, 1 << 28}, kRestartRange{1, 1 << 28};
 // Campaigns.
 constexpr OptionRange<double> kTimeFactorRange{1e-4, 1e4};
-// Comparisons.
+// Exposure of 8-bit images.
 constexpr OptionRange<double> kExposureRange{-100, 100};  // stops
 
 }  // namespace wavecrest

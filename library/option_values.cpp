@@ -53,7 +53,7 @@ template void requireInRange(const std::string&, int, const OptionRange<int>&, s
 
 double parseDuration(const std::string& option, const std::string& text) {
   const auto fail = [&]() -> double {
-    throw UsageError(fmt::format("{} '{}': no duration; expected one like 6s, 2m or 1h30m", option, text));
+    throw UsageError(fmt::format("{} '{}': no duration; expected one like 6s, 100ms, 2m or 1h30m", option, text));
   };
   // A sum of numbers with units. The last number may lack its unit and is then in seconds.
   double total = 0;
@@ -67,7 +67,9 @@ double parseDuration(const std::string& option, const std::string& text) {
     at = next;
     // A scale of 0 marks an unknown unit.
     const char unit = at == end ? 's' : *at++;
-    const double scale = unit == 'h' ? 3600 : unit == 'm' ? 60 : unit == 's' ? 1 : 0;
+    const bool milli = unit == 'm' && at != end && *at == 's';
+    if (milli) ++at;
+    const double scale = milli ? 1e-3 : unit == 'h' ? 3600 : unit == 'm' ? 60 : unit == 's' ? 1 : 0;
     total += number * scale;
     if (scale == 0) return fail();
   }
@@ -79,12 +81,15 @@ SnapshotSchedule parseSnapshotSchedule(const std::string& option, const std::str
   return text == "log" ? SnapshotSchedule::logarithmic() : SnapshotSchedule::every(parseDuration(option, text));
 }
 
-Isa parseIsaOption(const std::string& word) {
-  if (word == "auto") return bestIsa();
-  // "auto" is among the names for the message, so the index of an instruction set is one less.
+std::vector<std::string_view> isaNames() {
   std::vector<std::string_view> names{"auto"};
   for (const Isa isa : kAllIsas) names.push_back(toString(isa));
-  const Isa isa = kAllIsas[parseChoice("--isa", word, names) - 1];
+  return names;
+}
+
+Isa parseIsaOption(const std::string& word) {
+  if (word == "auto") return bestIsa();
+  const Isa isa = kAllIsas[parseChoice("--isa", word, isaNames()) - 1];
   // A known instruction set may be missing in this machine or this build.
   const auto& available = availableIsas();
   if (std::find(available.begin(), available.end(), isa) == available.end()) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "engine/session/snapshots.h"
 #include "library/option_ranges.h"
@@ -24,11 +25,14 @@ template <class Number>
 void requireInRange(const std::string& option, std::type_identity_t<Number> number, const OptionRange<Number>& range,
                     std::string_view also = "");
 
-// "6s", "2m", "1h30m", "0.5s", or plain seconds. Positive and finite, or UsageError.
+// "6s", "100ms", "2m", "1h30m", "0.5s", or plain seconds. Positive and finite, or UsageError.
 double parseDuration(const std::string& option, const std::string& text);
 
 // "" for no snapshots, "log" for render times that grow by a fixed ratio, else a duration between snapshots.
 SnapshotSchedule parseSnapshotSchedule(const std::string& option, const std::string& text);
+
+// The words that --isa takes: auto, then the names of kAllIsas.
+std::vector<std::string_view> isaNames();
 
 // "auto" for the best there is, or the name of one that this machine and build have; UsageError otherwise.
 Isa parseIsaOption(const std::string& word);

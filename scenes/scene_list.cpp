@@ -16,8 +16,10 @@ constexpr SceneEntry kScenes[] = {
     {"cornell-mirror", "the Cornell box with a mirror block that throws lamp light onto the ceiling"},
     {"cornell-glossy", "the Cornell box with two blocks of brushed aluminium that reflect each other"},
     {"cornell-spheres", "a mirror and a glass sphere in a box lit by the sun alone; caustics, also seen in the mirror"},
-    {"dragon-caustics", "the Stanford dragon in amber glass under a small sun; caustics in its shadow"},
-    {"dragon-caustics-glossy", "the amber dragon beside a glossy metal box that reflects it and its caustics"},
+    {"dragon-caustics", "the Stanford dragon in amber glass under a small sun; caustics in its shadow",
+     "assets/dragon_res2.ply"},
+    {"dragon-caustics-glossy", "the amber dragon beside a glossy metal box that reflects it and its caustics",
+     "assets/dragon_res2.ply"},
     {"lafortune-room", "a living room lit by lamps in opaque shades; nearly all light is indirect"},
     {"pool-interior", "a tiled pool under water, lit by sunlight through the waves"},
     {"veach-door", "three teapots in a room lit through a door ajar"},
@@ -25,7 +27,7 @@ constexpr SceneEntry kScenes[] = {
 
 constexpr SceneEntry kBenchmarkScenes[] = {
     {"mitsuba-cornell-box", "Mitsuba 3's built-in Cornell box, 256 x 256"},
-    {"dragon-diffuse", "the full dragon, 871,414 triangles, diffuse under a constant sky"},
+    {"dragon-diffuse", "the full dragon, 871,414 triangles, diffuse under a constant sky", "assets/dragon_full.ply"},
 };
 
 // Prepared dragons are called dragon_full.ply, dragon_res2.ply, ...; the scans they come from dragon_vrip*.ply.gz.

@@ -13,8 +13,9 @@
 namespace wavecrest {
 
 struct SceneEntry {
-  std::string_view name;         // as on the command line; its file is NAME.xml
-  std::string_view description;  // one line
+  std::string_view name;          // as on the command line; its file is NAME.xml
+  std::string_view description;   // one line
+  std::string_view fetched = {};  // a file, relative to sceneFolder(), that users have to get themselves
 };
 
 std::span<const SceneEntry> builtInScenes();    // the nine

@@ -86,7 +86,8 @@ nlohmann::json renderInChild(const fs::path& binary, const ChildRequest& request
                                         "--stats",
                                         stats.string()};
   if (!request.size.empty()) arguments.insert(arguments.end(), {"--size", request.size});
-  if (request.imageFile) arguments.insert(arguments.end(), {"--output", *request.imageFile});
+  const std::string image = request.imageFile.value_or((folder.path() / "image.pfm").string());
+  arguments.insert(arguments.end(), {"--output", image});
   arguments.insert(arguments.end(), request.more.begin(), request.more.end());
   // Run the program, and report its last error line if it fails.
   const int code = runProgram(arguments, errors);

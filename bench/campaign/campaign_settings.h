@@ -68,6 +68,7 @@ struct Shard {
 
 struct CampaignSettings {
   std::vector<CampaignScene> scenes;
+  std::string leftOut;  // which of the nine are not among the scenes by default, and why; or nothing
   std::vector<CampaignMethod> methods;
   unsigned seeds = 1;                  // 1, 2, ...
   std::optional<uint64_t> iterations;  // of each run, with snapshots after 1, 2, 4, ...; else the scenes' efforts

@@ -81,6 +81,7 @@ class Campaign {
       : settings_(settings), hooks_(hooks), pace_(settings) {}
 
   bool run(const std::map<std::string, std::string>& keys) {
+    if (!settings_.leftOut.empty()) hooks_.say(settings_.leftOut);
     // Opens or makes the results file. plan() throws where the campaign cannot run, so a new campaign makes its folder
     // only afterwards.
     if (fs::exists(resultsFile(settings_))) {

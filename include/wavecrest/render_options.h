@@ -9,7 +9,7 @@ namespace wavecrest::api {
 
 struct RenderOptions {
   std::string method = "pt";  // pt, lt, bpt, mlt, ppm, bpm or vcm
-  std::string time{};         // of rendering: "6s", "2m", "1h30m"
+  std::string time{};         // of rendering: "6s", "100ms", "1h30m"
   uint64_t spp = 0;  // iterations: paths, of mlt mutations, per pixel. Neither time nor spp: what the scene says
   uint64_t seed = 0;
   uint32_t threads = 0;  // 0: all cores

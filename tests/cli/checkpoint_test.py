@@ -158,7 +158,7 @@ class GoingOn(Checkpoints):
     def test_what_killed_writers_left_is_removed(self):
         self.write("c.tmp.1.0", "part of a checkpoint")
         self.render("--spp", "1", "--checkpoint", "c")
-        self.assertEqual(os.listdir(self.folder), ["c"])
+        self.assertEqual(sorted(os.listdir(self.folder)), ["c", "cornell-diffuse.exr"])
 
     def test_what_writers_of_the_image_left_is_removed_by_going_on(self):
         self.render("--spp", "1", "--checkpoint", "c", "-o", "a.pfm")

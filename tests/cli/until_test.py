@@ -37,7 +37,7 @@ class Until(CommandTest):
             ("--until-ssim", "0.9", "--reference", "x.exr", "--until-relative-error", "0.1"),
             ("--until-relative-error", "0.1", "-m", "mlt"),
             ("--until-relative-error", "0.1", "--sampler", "sobol"),
-            ("--until-ssim", "0.9", "--reference", "x.exr", "--snapshot-every", "1s", "-o", self.path("x.exr")),
+            ("--until-ssim", "0.9", "--reference", "x.exr", "--snapshot-every", "1s", "-o", self.path("y.exr")),
         ):
             self.assert_one_error_line(self.render(*arguments, expect=USAGE), "--")
 

@@ -200,7 +200,7 @@ class Usage(CommandTest):
 
     def test_a_render_ends_with_a_line_about_itself(self):
         self.assertRegex(self.render("--spp", "3", "-o", "image.exr").stderr, r"wavecrest: image\.exr: 3 spp in .*paths/s")
-        self.assertIn("no -o, so the image was not kept", self.render("--spp", "1").stderr)
+        self.assertIn("wavecrest: cornell-diffuse.exr: 1 spp in", self.render("--spp", "1").stderr)
         self.assertEqual(self.render("--spp", "1", "--progress", "none").stderr, "")
 
     def test_settings_come_from_arguments_then_a_file_then_variables(self):
@@ -242,9 +242,6 @@ class Usage(CommandTest):
         self.assertEqual(len(scenes), 9)
         for scene in scenes:
             self.assertTrue(os.path.isfile(scene["file"]) and scene["description"])
-
-    def test_snapshots_need_a_name(self):
-        self.render("--snapshot-every", "1s", "--spp", "1", expect=USAGE)
 
     def test_an_output_that_no_format_fits_is_refused_before_rendering(self):
         for name in ("image.foo", "image", "image.exr.bak", "absent/image.exr"):
