@@ -23,6 +23,7 @@ namespace {
 struct ReportOptions {
   std::vector<std::string> paths;
   ReportFiles files;
+  std::string reference;
   bool check = false, judge = false;
 };
 
@@ -44,9 +45,11 @@ void addReportCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<ReportOptions>();
   command
       .add("DIR", options->paths,
-           "folder of a campaign, or of renders with stats and a reference per scene; several folders or "
-           "results files are the parts of one campaign, reported in the first")
+           "folder of a campaign, or of renders with stats and a reference per scene, or of any program's images "
+           "METHOD.SECONDS.exr with reference.exr, or a list of those (CSV: image,seconds); several folders or results "
+           "files are the parts of one campaign, reported in the first")
       .required();
+  command.add("--reference", options->reference, "image that a folder of renders or images is measured against");
   command.addFlag("--csv", options->files.csv,
                   "also write DIR/measurements.csv, every score of every snapshot, and DIR/summary.csv and claims.csv");
   command.addFlag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");
@@ -59,6 +62,7 @@ void addReportCommand(CommandLine& program, int& exitCode) {
     try {
       // The verdicts come first, because the report shows them.
       if (options->judge) judgeAnew(paths);
+      options->files.reference = options->reference;
       const WrittenReport report = writeReport(paths, options->files);
       for (const auto& file : report.files) fmt::print("{}\n", file.string());
       // --check: the exit code tells whether all findings hold.

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "bench/report/final_images.h"
+#include "bench/report/method_style.h"
+#include "bench/report/other_images.h"
 #include "bench/report/results_folder.h"
 #include "bench/report/series_facts.h"
 #include "bench/report/shown_metrics.h"
@@ -31,6 +33,7 @@ struct SceneReference {
 };
 
 constexpr const char* kHashKey = "wavecrest:scene_hash";
+constexpr const char* kErrorKey = "wavecrest:relative_error";
 constexpr const char* kFloorPrefix = "wavecrest:noise_floor.";
 
 // A value of the metadata; empty if the image does not have it.
@@ -47,7 +50,7 @@ void requireHash(const fs::path& file, const std::string& found, const std::stri
 
 // Throws unless the metadata have the scene hash and the relative error that `wavecrest reference` writes.
 void requireReference(const fs::path& file, const ImageFile& image) {
-  const bool said = !attribute(image, kHashKey).empty() && !attribute(image, "wavecrest:relative_error").empty();
+  const bool said = !attribute(image, kHashKey).empty() && !attribute(image, kErrorKey).empty();
   if (said) return;
   throw ResultsError(
       fmt::format("{}: is a plain image, without the two halves of a reference; expected one made by "
@@ -80,8 +83,8 @@ void readFloors(const fs::path& file, const ImageFile& image, std::vector<std::o
 
 // The reference of a scene with the noise floor of each reported metric. Throws ResultsError if the file or the halves
 // are not fit to be one.
-SceneReference readReference(const fs::path& folder, const std::string& scene, const std::string& hashOfRuns) {
-  const std::vector<fs::path> files = findReference(folder, scene);
+// plain: whether it may be an image that says nothing of its noise.
+SceneReference readReference(const std::vector<fs::path>& files, const std::string& hashOfRuns, bool plain) {
   const std::vector<const Metric*> metrics = reportedMetrics();
   std::vector<std::optional<double>> floors(metrics.size());
   ImageFile mean = readImage(files[0].string());
@@ -90,7 +93,11 @@ SceneReference readReference(const fs::path& folder, const std::string& scene, c
   // A file of `wavecrest reference` is the mean already and stores the floors. Two halves are averaged, and their
   // difference gives the floors.
   if (files.size() == 1) {
-    requireReference(files[0], mean);
+    if (plain && attribute(mean, kErrorKey).empty()) {
+      origin += ", an image that does not say how noisy it is";
+    } else {
+      requireReference(files[0], mean);
+    }
     readFloors(files[0], mean, floors);
   } else {
     const PreparedReference first(files[0].string(), mean);
@@ -148,7 +155,7 @@ void addStages(std::vector<ReportStage>& sums, const nlohmann::json& stats) {
 ReportSeries collectSeries(const std::vector<const RunFile*>& runs, const std::string& label,
                            const PreparedReference& reference) {
   ReportSeries series;
-  series.method = runs.front()->method;
+  series.method = methodId(runs.front()->method);
   series.label = label;
   std::vector<const nlohmann::json*> stats;
   for (const RunFile* run : runs) {
@@ -225,12 +232,45 @@ std::string seriesLabel(const std::vector<std::vector<const RunFile*>>& groups, 
   return label;
 }
 
+// Where runs and references come from.
+struct RenderFolder {
+  fs::path folder;
+  fs::path list;       // of images of other programs; need not exist
+  fs::path reference;  // of all scenes; empty: those in the folder
+};
+
+// Runs with stats files, then images of other programs.
+std::vector<RunFile> readAllRuns(const RenderFolder& from) {
+  std::vector<RunFile> runs = readRuns(from.folder);
+  // Images that do not say their scene are of the only one.
+  std::string scene = runs.empty() ? sceneOfFolder(from.folder) : runs.front().scene;
+  const bool several = std::ranges::any_of(runs, [&](const RunFile& run) { return run.scene != scene; });
+  const std::vector<RunFile> others = fs::is_regular_file(from.list)
+                                          ? readListedRuns(from.list, several ? "" : scene)
+                                          : readNamedRuns(from.folder, several ? "" : scene, runs);
+  for (const RunFile& other : others) {
+    if (!other.scene.empty()) continue;
+    throw ResultsError(
+        fmt::format("{}: of which scene is open, as the folder has several; expected a column 'scene' in {}",
+                    other.path.string(), kImageList));
+  }
+  runs.insert(runs.end(), others.begin(), others.end());
+  if (!runs.empty()) return runs;
+  throw ResultsError(
+      fmt::format("{}: holds nothing to report; expected results of converge, stats files of render --stats, or images "
+                  "METHOD.SECONDS.exr",
+                  from.folder.string()));
+}
+
 // One scene with all its runs, of which there is at least one.
-ReportScene collectScene(const fs::path& folder, const std::string& name, const std::vector<const RunFile*>& runs) {
+ReportScene collectScene(const RenderFolder& from, const std::string& name, const std::vector<const RunFile*>& runs) {
   ReportScene scene;
   scene.name = name;
-  // The reference has to be of the scene that the first run rendered.
-  const SceneReference reference = readReference(folder, name, runs.front()->sceneHash);
+  // The reference has to be of the scene that the first run rendered, whose stats come first.
+  const bool given = !from.reference.empty();
+  const bool anyOther = std::ranges::any_of(runs, [](const RunFile* run) { return run->other; });
+  const SceneReference reference = readReference(given ? std::vector{from.reference} : findReference(from.folder, name),
+                                                 runs.front()->sceneHash, given || anyOther);
   scene.width = reference.image.image().codes.width;
   scene.height = reference.image.image().codes.height;
   scene.referenceOrigin = reference.origin;
@@ -248,8 +288,11 @@ ReportScene collectScene(const fs::path& folder, const std::string& name, const 
 
 }  // namespace
 
-ConvergenceReport collectRenders(const fs::path& folder) {
-  const std::vector<RunFile> files = readRuns(folder);
+ConvergenceReport collectRenders(const fs::path& path, const fs::path& givenReference) {
+  const RenderFolder from{.folder = path.extension() == ".csv" ? path.parent_path() : path,
+                          .list = path.extension() == ".csv" ? path : path / kImageList,
+                          .reference = givenReference};
+  const std::vector<RunFile> files = readAllRuns(from);
   // List the scenes in order of first appearance.
   std::vector<const nlohmann::json*> stats;
   std::vector<std::string> scenes;
@@ -269,7 +312,7 @@ ConvergenceReport collectRenders(const fs::path& folder) {
     for (const RunFile& file : files) {
       if (file.scene == scene) runs.push_back(&file);
     }
-    report.scenes.push_back(collectScene(folder, scene, runs));
+    report.scenes.push_back(collectScene(from, scene, runs));
   }
   return report;
 }

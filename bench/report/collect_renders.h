@@ -8,7 +8,8 @@
 
 namespace wavecrest {
 
+/// path: the folder, or a list of images (other_images.h) in it. reference: of all scenes; empty: those in the folder.
 /// Throws ResultsError if the folder lacks something, ImageError if an image cannot be read or differs in size.
-ConvergenceReport collectRenders(const std::filesystem::path& folder);
+ConvergenceReport collectRenders(const std::filesystem::path& path, const std::filesystem::path& reference = {});
 
 }  // namespace wavecrest

@@ -87,7 +87,7 @@ std::string renderContents(const ConvergenceReport& report) {
 // The whole document. A single scene needs no summary.
 std::string assemble(const ConvergenceReport& report, const EmbeddedImages& images) {
   const bool several = report.scenes.size() > 1;
-  std::string html = pageHead(report.title);
+  std::string html = pageHead(report.title, coloursOfOthers(report));
   html += renderHeader(report, images);
   if (several) html += renderContents(report);
   html += "<main>\n";

@@ -37,6 +37,17 @@ constexpr MethodStyle methodStyle(std::string_view id) {
   return {id, id, CurveMark::kCircle};
 }
 
+/// The identifier of a method by any name: letters, digits, - and _ as they are, anything else as -. It is a class of
+/// style sheets.
+inline std::string methodId(std::string name) {
+  for (char& letter : name) {
+    const bool kept = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                      (letter >= '0' && letter <= '9') || letter == '_';
+    if (!kept) letter = '-';
+  }
+  return name;
+}
+
 /// Where a method stands in the list: the order of tables and pictures. Methods that are not listed come last.
 constexpr size_t methodRank(std::string_view id) {
   size_t rank = 0;

@@ -5,12 +5,13 @@
 
 namespace wavecrest {
 
-std::string pageHead(std::string_view title) {
+std::string pageHead(std::string_view title, std::string_view css) {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n";
-  append(html, "<title>{}</title>\n<style>\n{}{}</style></head>\n<body>\n", escapeHtml(title), kPlotCss, kReportCss);
+  append(html, "<title>{}</title>\n<style>\n{}{}{}</style></head>\n<body>\n", escapeHtml(title), kPlotCss, kReportCss,
+         css);
   return html;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bench/report/scene_plots.h"
+#include "bench/report/series_values.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
@@ -24,9 +25,10 @@ std::vector<std::filesystem::path> writePlotFiles(const ConvergenceReport& repor
                                                   const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   std::vector<std::filesystem::path> paths;
+  const std::string colours = coloursOfOthers(report);
   for (const ReportScene& scene : report.scenes) {
     for (const ScenePlot& plot : scenePlots(report, scene)) {
-      const std::string svg = renderPlotFile(plot.plot);
+      const std::string svg = renderPlotFile(plot.plot, colours);
       paths.push_back(folder / (fileName(scene.name) + "." + fileName(plot.key) + ".svg"));
       writeFileAtomically(paths.back().string(), svg);
     }

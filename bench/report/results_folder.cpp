@@ -13,6 +13,7 @@ using nlohmann::json;
 
 // Part of the file names of references. Their stats files are not runs.
 constexpr const char* kReferenceMark = ".reference";
+constexpr const char* kCommonReference = "reference.exr";
 
 [[noreturn]] void fail(const fs::path& file, const std::string& wrong, const std::string& expected) {
   throw ResultsError(fmt::format("{}: {}; expected {}", file.string(), wrong, expected));
@@ -95,12 +96,10 @@ std::vector<RunFile> readRuns(const fs::path& folder) {
   // Collect stats files. A folder lists files in any order, so they are sorted by name.
   std::vector<fs::path> paths;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.path().extension() == ".json" && name.find(kReferenceMark) == std::string::npos) {
+    if (entry.path().extension() == ".json" && !isReferenceFile(entry.path())) {
       paths.push_back(entry.path());
     }
   }
-  if (paths.empty()) fail(folder, "holds no stats file", "one *.json of render --stats for each run");
   std::sort(paths.begin(), paths.end());
   std::vector<RunFile> runs;
   runs.reserve(paths.size());
@@ -115,9 +114,28 @@ std::vector<fs::path> findReference(const fs::path& folder, const std::string& s
   const fs::path first = folder / (scene + kReferenceMark + ".1.exr");
   const fs::path second = folder / (scene + kReferenceMark + ".2.exr");
   if (fs::is_regular_file(first) && fs::is_regular_file(second)) return {first, second};
+  if (fs::is_regular_file(folder / kCommonReference)) return {folder / kCommonReference};
   fail(folder, fmt::format("no reference for '{}'", scene),
-       fmt::format("{}, or {} and {}", whole.filename().string(), first.filename().string(),
-                   second.filename().string()));
+       fmt::format("{}, {} and {}, or {}", whole.filename().string(), first.filename().string(),
+                   second.filename().string(), kCommonReference));
+}
+
+bool isReferenceFile(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name == kCommonReference || name.find(std::string(kReferenceMark) + ".") != std::string::npos;
+}
+
+std::string sceneOfFolder(const fs::path& folder) {
+  std::vector<std::string> scenes;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const size_t mark = name.find(std::string(kReferenceMark) + ".");
+    if (mark == std::string::npos || mark == 0 || entry.path().extension() != ".exr") continue;
+    const std::string scene = name.substr(0, mark);
+    if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) scenes.push_back(scene);
+  }
+  if (scenes.size() == 1) return scenes.front();
+  return fs::weakly_canonical(fs::absolute(folder)).filename().string();
 }
 
 }  // namespace wavecrest

@@ -2,7 +2,8 @@
 //
 // Runs are all `*.json` files with the keys of `render --stats`, except those of references. The reference of a scene
 // is `SCENE.reference.exr`, or two independent halves of equal effort `SCENE.reference.1.exr` and `.2.exr`, whose mean
-// is the reference and whose difference is its noise. SCENE is the stem of the name that the runs give.
+// is the reference and whose difference is its noise. SCENE is the stem of the name that the runs give. `reference.exr`
+// is that of a scene without one of its own.
 #pragma once
 
 #include <filesystem>
@@ -31,14 +32,21 @@ struct RunFile {
   uint64_t seed = 0;
   nlohmann::json stats;  ///< everything it says
   std::vector<SnapshotFile>
-      snapshots;  ///< in order of time, at least one; the last is the final image if that is there
+      snapshots;       ///< in order of time, at least one; the last is the final image if that is there
+  bool other = false;  ///< an image by name or list (other_images.h): without stats, perhaps of another program
 };
 
-/// All runs of a folder in the order of their file names. Throws ResultsError if there is none, or one is malformed or
-/// names a snapshot that does not exist.
+/// All runs with stats files of a folder in the order of their file names. Throws ResultsError if it is no folder, or
+/// one is malformed or names a snapshot that does not exist.
 std::vector<RunFile> readRuns(const std::filesystem::path& folder);
 
 /// One or two files that are the reference of a scene. Throws ResultsError if there is none.
 std::vector<std::filesystem::path> findReference(const std::filesystem::path& folder, const std::string& scene);
+
+/// Whether a file has the name of a reference of any scene.
+bool isReferenceFile(const std::filesystem::path& file);
+
+/// The scene of images that do not say theirs: SCENE of the only SCENE.reference.exr, else the folder's name.
+std::string sceneOfFolder(const std::filesystem::path& folder);
 
 }  // namespace wavecrest

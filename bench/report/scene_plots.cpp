@@ -51,6 +51,11 @@ std::string guideLabel(double slope) {
   return slope == -1 ? "1/t" : fmt::format("t^{}", slope);
 }
 
+// ", 40 iterations", or nothing where they are not known.
+std::string iterationsText(double iterations) {
+  return iterations > 0 ? fmt::format(", {} iterations", formatCount(iterations)) : "";
+}
+
 // A metric over render time: for each series the mean over seeds, with the extremes over seeds as its band.
 ScenePlot metricPlot(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex) {
   ScenePlot result{.key = metric.key, .heading = metric.name, .explanation = metric.explanation, .plot = {}};
@@ -68,13 +73,13 @@ ScenePlot metricPlot(const ReportScene& scene, const ReportMetric& metric, size_
   for (const ReportSeries& series : scene.series) {
     PlotCurve curve = emptyCurve(scene, series);
     for (const CurvePoint& point : thinned(meanCurve(series, metricIndex))) {
-      curve.points.push_back({.x = point.seconds,
-                              .y = point.mean,
-                              .low = point.low,
-                              .high = point.high,
-                              .tooltip = fmt::format("{}: {} {} after {}, {} iterations", series.label, metric.name,
-                                                     formatSignificant(point.mean), formatSeconds(point.seconds),
-                                                     formatCount(point.iterations))});
+      curve.points.push_back(
+          {.x = point.seconds,
+           .y = point.mean,
+           .low = point.low,
+           .high = point.high,
+           .tooltip = fmt::format("{}: {} {} after {}{}", series.label, metric.name, formatSignificant(point.mean),
+                                  formatSeconds(point.seconds), iterationsText(point.iterations))});
     }
     plot.curves.push_back(std::move(curve));
   }

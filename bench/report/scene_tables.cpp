@@ -28,6 +28,9 @@ std::string methodCell(const ReportSeries& series) {
   return fmt::format("<th><i class=\"swatch m-{}\"></i>{}", escapeHtml(series.method), escapeHtml(series.label));
 }
 
+// A dash for zero, which other programs leave open.
+std::string countCell(double count) { return count > 0 ? formatCount(count) : "–"; }
+
 // "12 s", or for a method that never got there a dash.
 std::string targetCell(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
                        size_t metricIndex) {
@@ -86,7 +89,7 @@ std::string renderResults(const ConvergenceReport& report, const ReportScene& sc
     const ReportPoint last = run.points.empty() ? ReportPoint{} : run.points.back();
     append(html, "<tr>{}<td class=\"n\">{}<td class=\"n\">{}", methodCell(*series), series->runs.size(),
            formatSeconds(finalSeconds(*series)));
-    append(html, "<td class=\"n\">{}", formatCount(static_cast<double>(last.iterations)));
+    append(html, "<td class=\"n\">{}", countCell(static_cast<double>(last.iterations)));
     // One column for each metric.
     for (size_t m = 0; m < report.metrics.size(); ++m) {
       const double value = finalValue(*series, m);
@@ -97,8 +100,8 @@ std::string renderResults(const ConvergenceReport& report, const ReportScene& sc
     for (size_t m = 0; m < report.metrics.size(); ++m) {
       if (report.metrics[m].target) html += targetCell(scene, *series, report.metrics[m], m);
     }
-    append(html, "<td class=\"n\">{}<td class=\"n\">{}", formatCount(series->pathsPerSecond),
-           formatSeconds(series->cpuSeconds));
+    append(html, "<td class=\"n\">{}<td class=\"n\">{}", countCell(series->pathsPerSecond),
+           series->cpuSeconds > 0 ? formatSeconds(series->cpuSeconds) : "–");
   }
   html += "</tbody></table></div>\n";
   // Methods that cannot render the scene stand below the table.

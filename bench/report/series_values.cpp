@@ -183,6 +183,17 @@ std::vector<std::string> methodsOf(const ConvergenceReport& report) {
   return methods;
 }
 
+std::string coloursOfOthers(const ConvergenceReport& report) {
+  constexpr size_t kColours = 6;  // --x0 to --x5 in plot.css
+  std::string css;
+  size_t others = 0;
+  for (const std::string& method : methodsOf(report)) {
+    if (methodRank(method) < kMethodStyles.size()) continue;
+    append(css, ".m-{} {{ color: var(--x{}); }}\n", escapeHtml(method), others++ % kColours);
+  }
+  return css;
+}
+
 const ReportSeries* seriesOf(const ReportScene& scene, const std::string& method) {
   const auto found = std::find_if(scene.series.begin(), scene.series.end(),
                                   [&](const ReportSeries& series) { return series.method == method; });

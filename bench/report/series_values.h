@@ -62,6 +62,9 @@ bool isClearlyFastest(const ReportScene& scene, const ReportSeries& series, cons
 /// Every method that occurs, in the order of kMethodStyles, then any others.
 std::vector<std::string> methodsOf(const ConvergenceReport& report);
 
+/// Colours of the methods that have none in plot.css, as rules of a style sheet: in order of appearance.
+std::string coloursOfOthers(const ConvergenceReport& report);
+
 /// The first series of a method in a scene, or null.
 const ReportSeries* seriesOf(const ReportScene& scene, const std::string& method);
 

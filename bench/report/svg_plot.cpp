@@ -299,15 +299,16 @@ std::string renderPlot(const Plot& plot) {
                      kHeight, escapeHtml(plot.title), drawPlot(plot));
 }
 
-std::string renderPlotFile(const Plot& plot) {
+std::string renderPlotFile(const Plot& plot, std::string_view css) {
   // The title stands above y = 0, so the view box begins at a negative y.
   const double height = kHeight + kTitleHeight;
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" viewBox=\"0 {} {} {}\" width=\"{}\" height=\"{}\">\n"
       "<title>{}</title>\n<style>\n{}svg {{ background: #fff; font-family: sans-serif; }}\n</style>\n"
       "<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n{}</svg>\n",
-      -kTitleHeight, kWidth, height, 1.5 * kWidth, 1.5 * height, escapeHtml(plot.title), withoutVariables(kPlotCss),
-      kLeastLeft, -8, escapeHtml(plot.title), drawPlot(plot));
+      -kTitleHeight, kWidth, height, 1.5 * kWidth, 1.5 * height, escapeHtml(plot.title),
+      withoutVariables(std::string(kPlotCss) + std::string(css)), kLeastLeft, -8, escapeHtml(plot.title),
+      drawPlot(plot));
 }
 
 }  // namespace wavecrest

@@ -49,6 +49,6 @@ void sortPoints(Plot& plot);
 std::string renderPlot(const Plot& plot);
 
 /// The plot as an SVG file of its own, with its title above it and the style sheet inside.
-std::string renderPlotFile(const Plot& plot);
+std::string renderPlotFile(const Plot& plot, std::string_view css = {});
 
 }  // namespace wavecrest

@@ -19,7 +19,7 @@ void write(const fs::path& path, const std::string& text) { writeFileAtomically(
 }  // namespace
 
 WrittenReport writeReport(std::span<const fs::path> paths, const ReportFiles& files) {
-  ConvergenceReport report = collectReport(paths);
+  ConvergenceReport report = collectReport(paths, files.reference);
   const fs::path folder = fs::is_directory(paths[0]) ? paths[0] : paths[0].parent_path();
   std::vector<fs::path> written{folder / "report.html"};
   write(written[0], renderReport(report));

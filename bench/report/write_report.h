@@ -12,6 +12,7 @@ namespace wavecrest {
 struct ReportFiles {
   bool csv = false;    ///< measurements.csv: every measurement; summary.csv: series at their ends; claims.csv
   bool plots = false;  ///< plots/SCENE.METRIC.svg
+  std::filesystem::path reference = {};  ///< what a folder of renders is measured against; empty: what it has itself
 };
 
 struct WrittenReport {

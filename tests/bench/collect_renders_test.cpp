@@ -286,7 +286,7 @@ TEST_F(CollectRenders, writesThePageIntoTheFolder) {
 }
 
 TEST_F(CollectRenders, errorsNameTheFileAndWhatWasExpected) {
-  EXPECT_NE(error().find("holds no stats file; expected"), std::string::npos) << error();
+  EXPECT_NE(error().find("holds nothing to report; expected"), std::string::npos) << error();
 
   addRun("box.pt");
   fs::remove(folder / "box.reference.exr");
