@@ -136,7 +136,7 @@ class Comparison {
 
   // The camera pass' stage of this name, on the intersector that renders the scene.
   Stage<float> stageNamed(std::string_view name) {
-    for (const StageCall<float>& stage : used_.plan().pipeline.cameraPass.perDepth) {
+    for (const StageCall<float>& stage : used_.plan().pipeline.cameraPass().perDepth) {
       if (stage.name == name) return stage.run;
     }
     throw std::logic_error("the pipeline has no such stage");

@@ -19,7 +19,7 @@ StageContext<S> WaveCapture<S>::context(uint32_t depth) {
           .pixels = pixels_.data(),
           .sampler = {settings_.sampler, settings_.seed, 0},
           .limits = settings_.limits,
-          .mis = plan_.pipeline.cameraPass.strategies,
+          .mis = plan_.pipeline.cameraPass().strategies,
           .depth = depth,
           .film = {},
           .counters = &counters_};
@@ -37,9 +37,9 @@ void WaveCapture<S>::trace(Wave<S>& wave, size_t index, const Observer& observer
     stage.run(context, wave);
     return true;
   };
-  if (!run(plan_.pipeline.cameraPass.generate)) return;
+  if (!run(plan_.pipeline.cameraPass().generate)) return;
   for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {
-    for (const StageCall<S>& stage : plan_.pipeline.cameraPass.perDepth) {
+    for (const StageCall<S>& stage : plan_.pipeline.cameraPass().perDepth) {
       if (!run(stage)) return;
     }
   }

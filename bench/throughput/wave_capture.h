@@ -19,7 +19,7 @@ class WaveCapture {
   WaveCapture(const Scene& scene, const RenderSettings& settings);
 
   // Whether camera paths are all that the method traces: only then do waves come without what is built before them.
-  bool tracesWholeMethod() const { return !plan_.pipeline.lightPass && !plan_.pipeline.chains; }
+  bool tracesWholeMethod() const { return !plan_.pipeline.lightPass() && !plan_.pipeline.chains; }
 
   // Called with the name of the stage that is about to run, its depth and the wave; returns whether to go on.
   using Observer = std::function<bool(std::string_view stage, uint32_t depth, Wave<S>& wave)>;

@@ -90,7 +90,7 @@ ChainSession<S>::ChainSession(const Scene& scene, const RenderSettings& settings
   this->finishBuilding([&] {
     film_.makeSplats(settings_.threads, plan_.memory.splatScale);
     const MetropolisSettings& metropolis = settings_.metropolis;
-    const bool multiplexed = plan_.pipeline.lightPass.has_value();
+    const bool multiplexed = plan_.pipeline.lightPass() != nullptr;
     epochs_ = Epochs(multiplexed ? bootstrapByLength(metropolis.bootstrapSamples, direct() ? kDirectLength + 1 : 1,
                                                      settings_.limits.maxDepth)
                                  : plainBootstrap(metropolis.bootstrapSamples));
@@ -127,7 +127,7 @@ void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   // Bootstrap walks draw the same blocks of numbers as the walks of chains.
   const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
   std::copy_n(kept.blocks, 2, state.samples.blocks);
-  state.multiplexed = plan_.pipeline.lightPass.has_value();
+  state.multiplexed = plan_.pipeline.lightPass() != nullptr;
   state.samples.stream = Stream::bootstrap;
   // A probability above one: every step is large.
   state.samples.largeStep = 2;
@@ -315,7 +315,7 @@ RenderStatistics ChainSession<S>::statistics() const {
   chains.largestShare = ofFilm.largestShare;
   chains.counters = chains_->counters();
   chains.bytes = chains_->bytes();
-  const Brightness all = epochs_.pooledWith(chains_->largeSteps(), plan_.pipeline.chains->inPathSpace);
+  const Brightness all = epochs_.pooledWith(chains_->largeSteps(), plan_.pipeline.inPathSpace);
   chains.pooledBrightness = all.mean;
   chains.pooledError = all.standardError;
   chains.stuck = stuck_;

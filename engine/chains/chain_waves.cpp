@@ -22,7 +22,7 @@ ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& setti
   // Make memory for all chains, wave by wave.
   const ChainState::Kept kept = keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth);
   for (size_t wave = 0; wave < size(); ++wave) {
-    states_.emplace_back(layout_.chainsOf(wave), kept).multiplexed = plan.pipeline.lightPass.has_value();
+    states_.emplace_back(layout_.chainsOf(wave), kept).multiplexed = plan.pipeline.lightPass() != nullptr;
     if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan.pathLaws.law().maxEdges, plan.needs);
   }
   // A column keeps one block: four numbers, each in a row of its own.

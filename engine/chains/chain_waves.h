@@ -62,7 +62,7 @@ class ChainWaves {
   template <class Visit>
   void forEachGroup(Visit&& visit) const;
 
-  bool inPathSpace() const { return plan_.pipeline.chains->inPathSpace; }
+  bool inPathSpace() const { return plan_.pipeline.inPathSpace; }
   PathStore<S>* pathsOf(size_t wave) { return paths_.empty() ? nullptr : &paths_[wave]; }
 
   const RenderPlan<S>& plan_;

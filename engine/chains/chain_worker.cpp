@@ -8,19 +8,10 @@
 #include "engine/tasks/ticks.h"
 
 namespace wavecrest {
-namespace {
-
-// The pass of a walk, which the pipeline must have.
-template <class S>
-const Pass<S>& passOf(const Pipeline<S>& pipeline, Walk walk) {
-  return walk == Walk::camera ? pipeline.cameraPass : *pipeline.lightPass;
-}
-
-}  // namespace
 
 template <class S>
 StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
-  const Pass<S>& pass = plan.pipeline.cameraPass;
+  const Pass<S>& pass = plan.pipeline.cameraPass();
   StageContext<S> context{.scene = &plan.scene->view,
                           .sampler = {.kind = SamplerKind::chain, .seed = settings.seed, .iteration = 0},
                           .limits = settings.limits,
@@ -28,7 +19,7 @@ StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& se
                           .film = area.window(),
                           .splatting = false};  // contributions go to the chain's lane
   // A strategy's walks have their lengths; roulette would only lose some.
-  if (plan.pipeline.lightPass) context.limits.rouletteDepth = std::numeric_limits<uint32_t>::max();
+  if (plan.pipeline.lightPass()) context.limits.rouletteDepth = std::numeric_limits<uint32_t>::max();
   return context;
 }
 
@@ -43,10 +34,10 @@ ChainWorker<S>::ChainWorker(const RenderPlan<S>& plan, size_t capacity, SplatFil
   lanesArena_ = Arena(lightLanes_.bytes(capacity));
   lightLanes_.bind(lanesArena_, capacity);
   // Make memory for proposed paths, or for ends of walks that are joined.
-  if (pipeline_.chains->inPathSpace) {
+  if (pipeline_.inPathSpace) {
     paths_.emplace(capacity, law_.maxEdges, plan.needs);
     paths_->law = &law_;
-  } else if (pipeline_.lightPass) {
+  } else if (pipeline_.lightPass()) {
     ends_.emplace(capacity, plan.needs, wave_);
     light_.reserve(capacity);  // at most one light vertex to a lane: room for all of them from the start
   }
@@ -70,16 +61,17 @@ size_t ChainWorker<S>::chooseLightLanes(const Chains& chains, size_t count) {
 // A walk of the proposals. The light walk of multiplexed chains begins only in lanes where it can be joined with
 // something. Ends of the camera walk that join a light have been joined by then, and are cleared.
 template <class S>
-void ChainWorker<S>::walkPaths(Walk walk, StageContext<S>& context, size_t count, StageTally* tally) {
-  if (ends_ && walk == Walk::light) {
+void ChainWorker<S>::walkPaths(const Pass<S>& pass, StageContext<S>& context, size_t count, StageTally* tally) {
+  const bool light = ends_ && pass.walk == Walk::light;
+  if (light) {
     ends_->atOrigin.setVertices(0, 0);
     wave_.pathCount = chooseLightLanes(context.chains->columns, count);
     context.lanes = lightLanes_;
   }
-  runPass(passOf(pipeline_, walk), context, wave_, tally);
+  runPass(pass, context, wave_, tally);
   wave_.pathCount = count;
   context.walk = Walk::camera;
-  if (ends_ && walk == Walk::light) {
+  if (light) {
     // Vertices where light walks have ended become light vertices, all of one depth.
     light_.clear();
     light_.beginDepth(ends_->lightAtVertex.rays.size);
@@ -130,14 +122,14 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
   }
   // Run phase by phase. Each phase has the next rows of the tallies.
   StageTally* tally = measure ? tallies.data() : nullptr;
-  for (const auto& phase : pipeline_.chains->trace) {
-    const Walk* const walk = std::get_if<Walk>(&phase);
+  for (const auto& phase : pipeline_.stretches.front().phases) {
     size_t rows = 0;
-    if (walk != nullptr) {
-      walkPaths(*walk, context, count, tally);
-      rows = passOf(pipeline_, *walk).stageCount();
+    if (const auto* const pass = std::get_if<Pass<S>>(&phase)) {
+      walkPaths(*pass, context, count, tally);
+      rows = pass->stageCount();
     } else {
       const auto& once = std::get<OnceCalls<S>>(phase);
+      if (once.decides) break;  // the last phase
       runOnce(once, context, tally);
       rows = once.stages.size();
     }
@@ -151,10 +143,10 @@ void ChainWorker<S>::decide(StageContext<S> context, ChainState& chains, bool me
   context.sampler.chain = &chains.samples;
   context.counters = &counters;
   if (paths_) context.paths = &*paths_;
-  const std::vector<StageCall<S>>& stages = pipeline_.chains->decide;
+  const OnceCalls<S>& deciding = std::get<OnceCalls<S>>(pipeline_.stretches.front().phases.back());
   // These stages have the last rows of the tallies. Their times include the drain of splats.
-  StageTally* tally = measure ? tallies.data() + (tallies.size() - stages.size()) : nullptr;
-  for (const StageCall<S>& stage : stages) {
+  StageTally* tally = measure ? tallies.data() + (tallies.size() - deciding.stages.size()) : nullptr;
+  for (const StageCall<S>& stage : deciding.stages) {
     const uint64_t begin = readTicks();
     runStage<S>(stage, context, wave_, nullptr);
     splats_.drain(wave_.splats, counters);
@@ -168,7 +160,7 @@ void ChainWorker<S>::decide(StageContext<S> context, ChainState& chains, bool me
 
 template <class S>
 void ChainWorker<S>::traceDirect(StageContext<S> context, const FilmArea& area, size_t first, size_t count) {
-  const Pass<S>& pass = *pipeline_.chains->directPass;
+  const Pass<S>& pass = *pipeline_.directPass;
   // Paths begin in the film's pixels and end after kDirectLength edges.
   context.pixels = area.pixels.data();
   context.limits.maxDepth = std::min(context.limits.maxDepth, kDirectLength);
@@ -190,17 +182,15 @@ std::vector<std::string> stageNames(const Pipeline<S>& pipeline) {
     for (const StageCall<S>& call : calls) names.push_back(call.name);
   };
   // The order is that in which trace and decide fill the tallies.
-  for (const auto& phase : pipeline.chains->trace) {
-    if (const Walk* walk = std::get_if<Walk>(&phase)) {
-      const Pass<S>& pass = passOf(pipeline, *walk);
-      names.push_back(pass.generate.name);
-      add(pass.firstDepth);
-      add(pass.perDepth);
+  for (const auto& phase : pipeline.stretches.front().phases) {
+    if (const auto* const pass = std::get_if<Pass<S>>(&phase)) {
+      names.push_back(pass->generate.name);
+      add(pass->firstDepth);
+      add(pass->perDepth);
     } else {
       add(std::get<OnceCalls<S>>(phase).stages);
     }
   }
-  add(pipeline.chains->decide);
   return names;
 }
 

@@ -45,7 +45,7 @@ class ChainWorker {
   }
 
  private:
-  void walkPaths(Walk walk, StageContext<S>& context, size_t count, StageTally* tally);
+  void walkPaths(const Pass<S>& pass, StageContext<S>& context, size_t count, StageTally* tally);
   void runOnce(const OnceCalls<S>& calls, StageContext<S>& context, StageTally* tally);
   size_t chooseLightLanes(const Chains& chains, size_t count);
 

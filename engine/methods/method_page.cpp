@@ -43,9 +43,11 @@ bool MethodPage::has(StageId stage) const {
   return found;
 }
 
-bool MethodPage::hasPhotonMap() const {
-  return std::any_of(phases.begin(), phases.end(),
-                     [](const Phase& phase) { return std::holds_alternative<PhotonMapPhase>(phase); });
+bool MethodPage::has(Fold fold) const {
+  return std::any_of(phases.begin(), phases.end(), [fold](const Phase& phase) {
+    const auto* barrier = std::get_if<Barrier>(&phase);
+    return barrier != nullptr && barrier->fold == fold;
+  });
 }
 
 PathStrategies strategiesOf(const MethodPage& page) {

@@ -62,8 +62,12 @@ struct WalkPhase {
   Steps first = {};
 };
 
-// All light walks of an iteration end before its photon map is built; its camera walks begin after that.
-struct PhotonMapPhase {};
+// A barrier: all waves of an iteration have been through the phases before it when those after it begin. In between it
+// folds what the former gathered into what the latter read.
+enum class Fold { photonMap };  // the light vertices of the iteration into its photon map
+struct Barrier {
+  Fold fold{};
+};
 
 // Where the stages that join the walks of multiplexed chains work: kernels/columns/chains.h, WalkEnds. `wave`: on the
 // wave itself.
@@ -78,7 +82,7 @@ struct OncePhase {
   uint32_t depth = 0;
 };
 
-using Phase = std::variant<WalkPhase, PhotonMapPhase, OncePhase>;
+using Phase = std::variant<WalkPhase, Barrier, OncePhase>;
 
 struct MethodPage {
   std::vector<Phase> phases;
@@ -87,7 +91,7 @@ struct MethodPage {
 
   const WalkPhase* walk(Walk walk) const;  // null if there is none
   bool has(StageId stage) const;           // in any phase
-  bool hasPhotonMap() const;
+  bool has(Fold fold) const;               // at a barrier
   bool hasChains() const { return has(StageId::acceptMutations); }
 };
 
@@ -95,7 +99,7 @@ inline WalkPhase walk(Walk walk, StageId generate, Steps steps) { return {walk, 
 inline WalkPhase walk(Walk walk, StageId generate, Steps first, Steps steps) {
   return {walk, generate, std::move(steps), std::move(first)};
 }
-inline PhotonMapPhase buildPhotonMap() { return {}; }
+inline Barrier buildPhotonMap() { return {Fold::photonMap}; }
 inline OncePhase once(std::vector<StageId> stages) { return {std::move(stages)}; }
 inline OncePhase atEnds(EndsOf ends, Walk walk, uint32_t depth, std::vector<StageId> stages) {
   return {std::move(stages), ends, walk, depth};

@@ -10,7 +10,7 @@ namespace {
 // The memory of a plan. Walks light paths where their number of vertices matters.
 template <class S>
 MemoryPlan memoryOf(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
-  const bool walks = plan.pipeline.lightPass && !plan.pipeline.chains;
+  const bool walks = plan.pipeline.lightPass() && !plan.pipeline.chains;
   return planMemory(plan, settings, area, walks ? walkLightPaths(plan, settings, area) : LightPilot{});
 }
 
@@ -21,7 +21,7 @@ RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, c
   RenderPlan<S> plan = planRender<S>(scene, settings);
   plan.memory = memoryOf(plan, settings, area);
   // Path tracing picks its lights by what they give in view (METHODS 2.3).
-  if (!plan.pipeline.lightPass && !plan.pipeline.chains) pickLightsByView(plan, settings, area);
+  if (!plan.pipeline.lightPass() && !plan.pipeline.chains) pickLightsByView(plan, settings, area);
   plan.connectionRouletteBelow = connectionRouletteLimit(plan, settings, area);
   return plan;
 }

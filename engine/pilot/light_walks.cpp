@@ -22,7 +22,7 @@ LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& setti
   context.pixels = area.pixels.data();
   context.sampler = {settings.sampler, settings.seed, 0};
   context.limits = settings.limits;
-  context.mis = misSettings(plan.pipeline.lightPass->strategies, settings, plan.scene->view.radius, lightPaths, 0);
+  context.mis = misSettings(plan.pipeline.lightPass()->strategies, settings, plan.scene->view.radius, lightPaths, 0);
   context.light = &store;
   context.film = area.window();
   context.counters = &counters;
@@ -43,7 +43,7 @@ LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& setti
   while (pilot.paths < wanted) {
     wave.firstPath = pilot.paths;
     wave.pathCount = std::min<size_t>(settings.waveSize, wanted - pilot.paths);
-    runPass<S>(*plan.pipeline.lightPass, context, wave, nullptr, drain);
+    runPass<S>(*plan.pipeline.lightPass(), context, wave, nullptr, drain);
     pilot.paths += wave.pathCount;
     pilot.stored += store.vertices.size;
     pilot.room = std::max(pilot.room, store.roomUsed());

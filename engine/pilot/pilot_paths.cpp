@@ -14,7 +14,7 @@ std::vector<double> tracePilotPaths(const RenderPlan<S>& plan, const RenderSetti
   const FlushToZero flushToZero;
   // Make the pass of path tracing, whatever the plan's method is.
   const Pass<S> pass =
-      makePipeline(pageOf(Method::pt, {}), *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass;
+      makePipeline(pageOf(Method::pt, {}), *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass();
   MisSettings strategies = pass.strategies;
   SceneView<S> view = plan.scene->view;
   if (light != PilotLight::weighted) strategies.emission = strategies.nextEvent = false;  // nothing shares a path

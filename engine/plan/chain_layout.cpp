@@ -35,11 +35,11 @@ template <class S>
 ChainState::Kept keptSamples(const Pipeline<S>& pipeline, const SceneView<S>& scene, uint32_t maxDepth) {
   const uint32_t sky = scene.environment.width != 0 ? bit(Block::environment) : 0u;
   ChainState::Kept kept;
-  if (pipeline.chains->inPathSpace) {  // numbers are drawn for all that walks do, and none is kept
+  if (pipeline.inPathSpace) {  // numbers are drawn for all that walks do, and none is kept
     kept.blocks[0] = kept.blocks[1] = {0xfu, 0xfu};
     return kept;
   }
-  if (!pipeline.lightPass) {
+  if (!pipeline.lightPass()) {
     kept.blocks[0] = {bit(Block::scatter), bit(Block::scatter) | bit(Block::light) | sky};
     kept.vertices[0] = maxDepth;  // the last vertex, which draws nothing, does not count
     return kept;

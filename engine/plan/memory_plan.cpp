@@ -31,7 +31,7 @@ class Planner {
         area_(area),
         emptyStore_(settings.waveSize, plan.needs, plan.lightUse),
         pilot_(pilot) {
-    if (settings.lightPaths && !plan.pipeline.photonMap) {
+    if (settings.lightPaths && !plan.pipeline.has(Fold::photonMap)) {
       throw std::invalid_argument("planMemory: a number of light paths for " + std::string(toString(settings.method)));
     }
   }
@@ -46,12 +46,12 @@ class Planner {
     use.film = area_.bytes() + pixels * sizeof(uint64_t);
     use.film += spreadsSamples(plan_, settings_) ? SpreadSums::bytesFor(plan_.scene->view.camera, area_)
                                                  : pixels * 3 * sizeof(double);
-    use.image = Film::imageBytesFor(pixels, spreadsSamples(plan_, settings_), plan_.pipeline.chains.has_value());
+    use.image = Film::imageBytesFor(pixels, spreadsSamples(plan_, settings_), plan_.pipeline.chains);
     // Count splats, and what chains or light paths hold.
     if (plan_.pipeline.splats()) use.splats = SplatFilms::bytesFor(pixels, settings_.threads);
     if (plan_.pipeline.chains) {
       addChains();
-    } else if (plan_.pipeline.lightPass) {
+    } else if (plan_.pipeline.lightPass()) {
       addLightPaths(lightPathsWanted(settings_, pixels));
     }
     // Methods with a photon map have fitted their light paths to the budget. Other methods have nothing to leave out.
@@ -64,11 +64,11 @@ class Planner {
   void addChains() {
     MemoryUse& use = memory_.use;
     memory_.splatScale = std::ldexp(1.0, kSplatUnitBits);  // a chain's splat has luminance 1
-    const bool pathSpace = plan_.pipeline.chains->inPathSpace;
+    const bool pathSpace = plan_.pipeline.inPathSpace;
     const uint32_t edges = plan_.pathLaws.law().maxEdges;
     if (pathSpace) {
       use.waves += settings_.threads * PathMutations<S>::bytesFor(settings_.waveSize, edges, plan_.needs);
-    } else if (plan_.pipeline.lightPass) {
+    } else if (plan_.pipeline.lightPass()) {
       use.waves *= kWavesOfJoinedWalks;
       use.lightVertices = settings_.threads * emptyStore_.bytesFor(settings_.waveSize);
     }
@@ -88,9 +88,9 @@ class Planner {
     const double spread = pilot_.paths < wanted ? kSpread : 1;
     memory_.verticesPerWave = static_cast<size_t>(spread * static_cast<double>(pilot_.room));
     memory_.lightPaths = wanted;
-    if (plan_.pipeline.photonMap && settings_.memoryBytes) fitLightPaths(*settings_.memoryBytes);
+    if (plan_.pipeline.has(Fold::photonMap) && settings_.memoryBytes) fitLightPaths(*settings_.memoryBytes);
     memory_.use.lightVertices = vertexBytes(memory_.lightPaths);
-    if (plan_.pipeline.photonMap) {
+    if (plan_.pipeline.has(Fold::photonMap)) {
       memory_.photons = photons(memory_.lightPaths);
       memory_.use.photonMap = photonBytes(memory_.lightPaths);
     }
@@ -100,7 +100,7 @@ class Planner {
   size_t vertexBytes(size_t lightPaths) const {
     const size_t waves = piecesOf(lightPaths, settings_.waveSize);
     const size_t stores =
-        plan_.pipeline.photonMap ? lightStores(settings_, area_.pixels.size(), waves) : settings_.threads;
+        plan_.pipeline.has(Fold::photonMap) ? lightStores(settings_, area_.pixels.size(), waves) : settings_.threads;
     return stores * emptyStore_.bytesFor(memory_.verticesPerWave);
   }
   size_t photons(size_t lightPaths) const {

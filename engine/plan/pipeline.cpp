@@ -95,55 +95,61 @@ class Caller {
   const Intersector<S>& intersector_;
 };
 
-// The phases of a method with chains. The phase that begins with acceptMutations decides, all others trace.
-template <class S>
-ChainCalls<S> chainCalls(const MethodPage& page, const Caller<S>& caller) {
-  ChainCalls<S> chains;
-  chains.inPathSpace = page.has(StageId::proposePaths);
-  for (const Phase& phase : page.phases) {
-    if (const auto* walking = std::get_if<WalkPhase>(&phase)) {
-      chains.trace.push_back(walking->walk);
-    } else if (const auto* once = std::get_if<OncePhase>(&phase)) {
-      std::vector<StageCall<S>> calls = caller.calls(*once);
-      if (once->stages.front() == StageId::acceptMutations) {
-        chains.decide = std::move(calls);
-      } else {
-        chains.trace.push_back(OnceCalls<S>{std::move(calls), once->ends, once->walk, once->depth});
-      }
-    }
-  }
-  return chains;
-}
-
 }  // namespace
 
 template <class S>
-bool ChainCalls<S>::joinsEnds() const {
-  return std::any_of(trace.begin(), trace.end(), [](const auto& phase) {
-    const auto* once = std::get_if<OnceCalls<S>>(&phase);
-    return once != nullptr && once->ends != EndsOf::wave;
-  });
+const Pass<S>* Stretch<S>::pass(Walk walk) const {
+  for (const auto& phase : phases) {
+    const auto* const pass = std::get_if<Pass<S>>(&phase);
+    if (pass != nullptr && pass->walk == walk) return pass;
+  }
+  return nullptr;
+}
+
+template <class S>
+const Pass<S>* Pipeline<S>::pass(Walk walk) const {
+  for (const Stretch<S>& stretch : stretches) {
+    if (const Pass<S>* const pass = stretch.pass(walk)) return pass;
+  }
+  return nullptr;
+}
+
+template <class S>
+bool Pipeline<S>::has(Fold fold) const {
+  return std::any_of(stretches.begin(), stretches.end(),
+                     [fold](const Stretch<S>& stretch) { return stretch.fold == fold; });
 }
 
 template <class S>
 Pipeline<S> makePipeline(const MethodPage& page, const Stages<S>& stages, const Intersector<S>& intersector) {
   const Caller<S> caller(page, stages, intersector);
   Pipeline<S> pipeline;
-  pipeline.photonMap = page.hasPhotonMap();
-  pipeline.cameraPass = caller.pass(*page.walk(Walk::camera));
-  if (const WalkPhase* light = page.walk(Walk::light)) pipeline.lightPass = caller.pass(*light);
-  if (page.hasChains()) {
-    pipeline.chains = chainCalls(page, caller);
-    if (!page.directLight.empty()) {
-      // Direct light is a page of its own: chains change neither the weights nor the names of its stages.
-      const MethodPage direct{{page.directLight.front()}};
-      pipeline.chains->directPass = Caller<S>(direct, stages, intersector).pass(page.directLight.front());
+  pipeline.chains = page.hasChains();
+  pipeline.inPathSpace = page.has(StageId::proposePaths);
+  pipeline.stretches.emplace_back();
+  for (const Phase& phase : page.phases) {
+    Stretch<S>& stretch = pipeline.stretches.back();
+    if (const auto* walking = std::get_if<WalkPhase>(&phase)) {
+      stretch.phases.push_back(caller.pass(*walking));
+    } else if (const auto* once = std::get_if<OncePhase>(&phase)) {
+      const bool decides = once->stages.front() == StageId::acceptMutations;
+      stretch.phases.push_back(OnceCalls<S>{caller.calls(*once), decides, once->ends, once->walk, once->depth});
+    } else {
+      stretch.fold = std::get<Barrier>(phase).fold;
+      pipeline.stretches.emplace_back();
     }
+  }
+  if (!page.directLight.empty()) {
+    // Direct light is a page of its own: chains change neither the weights nor the names of its stages.
+    const MethodPage direct{{page.directLight.front()}};
+    pipeline.directPass = Caller<S>(direct, stages, intersector).pass(page.directLight.front());
   }
   return pipeline;
 }
-template struct ChainCalls<float>;
-template struct ChainCalls<double>;
+template struct Stretch<float>;
+template struct Stretch<double>;
+template struct Pipeline<float>;
+template struct Pipeline<double>;
 template Pipeline<float> makePipeline(const MethodPage&, const Stages<float>&, const Intersector<float>&);
 template Pipeline<double> makePipeline(const MethodPage&, const Stages<double>&, const Intersector<double>&);
 

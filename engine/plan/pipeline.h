@@ -43,44 +43,50 @@ struct Pass {
   size_t stageCount() const { return 1 + firstDepth.size() + perDepth.size() + (splats ? 1 : 0); }
 };
 
-// Stages that run once, on the wave or on the ends of its walks (OncePhase).
+// Stages that run once, on the wave or on the ends of its walks (OncePhase). decides: they begin with acceptMutations.
 template <class S>
 struct OnceCalls {
   std::vector<StageCall<S>> stages;
+  bool decides = false;
   EndsOf ends = EndsOf::wave;
   Walk walk = Walk::camera;
   uint32_t depth = 0;
 };
 
-// What Markov chains do, in order: `trace` makes a proposal and its contribution, a walk being the pipeline's own pass;
-// `decide` begins with acceptMutations.
-template <class S>
-struct ChainCalls {
-  std::vector<std::variant<Walk, OnceCalls<S>>> trace;
-  std::vector<StageCall<S>> decide;
-  std::optional<Pass<S>> directPass = std::nullopt;  // paths of up to kDirectLength edges, if chains leave them out
-  bool inPathSpace = false;
-
-  bool joinsEnds() const;  // multiplexed: stages join the ends of walks
-};
 constexpr uint32_t kDirectLength = 2;
 
-// A method's page with the kernels that it calls. With a photon map, all light passes of an iteration come before all
-// its camera passes; with chains, paths are what the chains propose.
+// The phases between two barriers. A wave goes through them one after the other and waits for no other wave. fold: at
+// the barrier behind them, if there is one.
+template <class S>
+struct Stretch {
+  std::vector<std::variant<Pass<S>, OnceCalls<S>>> phases;
+  std::optional<Fold> fold;
+
+  const Pass<S>* pass(Walk walk) const;  // null if there is none
+};
+
+// A method's page with the kernels that it calls: an iteration goes through the stretches in order.
 template <class S>
 struct Pipeline {
-  std::optional<Pass<S>> lightPass = std::nullopt;
-  bool photonMap = false;
-  Pass<S> cameraPass;
-  std::optional<ChainCalls<S>> chains = std::nullopt;
+  std::vector<Stretch<S>> stretches;
+  // Paths are what Markov chains propose: in their one stretch all phases but those that decide trace a proposal and
+  // its contribution.
+  bool chains = false;
+  bool inPathSpace = false;
+  std::optional<Pass<S>> directPass = std::nullopt;  // paths of up to kDirectLength edges, if chains leave them out
+
+  const Pass<S>* pass(Walk walk) const;  // null if there is none
+  const Pass<S>* lightPass() const { return pass(Walk::light); }
+  const Pass<S>& cameraPass() const { return *pass(Walk::camera); }
+  bool has(Fold fold) const;
 
   // The logarithm of how many iterations a camera wave of this many paths takes at once (Wave::iterationBits), where it
   // may: camera paths that are joined with light paths of their iteration come alone.
   uint32_t mostIterationBits(uint32_t waveSize) const {
-    if (lightPass || chains) return 0;
+    if (lightPass() != nullptr || chains) return 0;
     return static_cast<uint32_t>(std::bit_width(std::clamp(waveSize, 1u, kIterationsPerWave))) - 1;
   }
-  bool splats() const { return chains || (lightPass && lightPass->splats); }
+  bool splats() const { return chains || (lightPass() != nullptr && lightPass()->splats); }
 };
 
 // All intersectors offer the same pair of stages.

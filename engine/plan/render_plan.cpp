@@ -125,9 +125,9 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   plan.pipeline = makePipeline(pageOf(settings), stages, chooseIntersector(stages, *plan.scene));
   plan.needs.splats = plan.pipeline.splats();
   // Without a photon map, light vertices are stored only to be connected.
-  plan.lightUse = {.connected = !plan.pipeline.photonMap || plan.pipeline.cameraPass.strategies.connect,
-                   .merged = plan.pipeline.photonMap};
-  if (plan.pipeline.chains && plan.pipeline.chains->inPathSpace) {
+  const bool merged = plan.pipeline.has(Fold::photonMap);
+  plan.lightUse = {.connected = !merged || plan.pipeline.cameraPass().strategies.connect, .merged = merged};
+  if (plan.pipeline.inPathSpace) {
     // Chains leave out the paths that the direct pass makes.
     const uint32_t least = settings.metropolis.directPass ? kDirectLength + 1 : 1;
     plan.pathLaws = PathLaws(least, std::max(settings.limits.maxDepth, least));
@@ -203,7 +203,8 @@ RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film,
   if (page.hasChains()) {
     cut.waveSize = pieceSize(std::max<size_t>(settings.metropolis.chains, 1), threads, settings.waveSize);
   } else {
-    cut.waveSize = pieceSize(pixels, threads, settings.waveSize, page.hasPhotonMap() ? kLeastWithMap : kLeastWithLight);
+    cut.waveSize =
+        pieceSize(pixels, threads, settings.waveSize, page.has(Fold::photonMap) ? kLeastWithMap : kLeastWithLight);
   }
   cut.waveSize = std::max(cut.waveSize, least);
   return cut;

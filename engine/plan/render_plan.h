@@ -41,7 +41,7 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings);
 // Whether chains leave direct light to a pass of its own. False without chains.
 template <class S>
 bool hasDirectPass(const RenderPlan<S>& plan, const RenderSettings& settings) {
-  return plan.pipeline.chains && plan.pipeline.chains->directPass && settings.metropolis.directPass;
+  return plan.pipeline.directPass && settings.metropolis.directPass;
 }
 
 // Whether camera samples are spread over the filter's footprint. Those of Markov chains are not.

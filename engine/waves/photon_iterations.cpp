@@ -6,7 +6,8 @@
 namespace wavecrest {
 
 template <class S>
-PhotonIterations<S>::PhotonIterations(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels)
+PhotonIterations<S>::PhotonIterations(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels,
+                                      size_t cameraPieces)
     : lightWaves_(piecesOf(plan.memory.lightPaths, settings.waveSize)),
       slots_(iterationsAtOnce(settings, pixels)),
       buildSteps_(PhotonMap<S>::buildSteps(lightWaves_)) {
@@ -20,31 +21,36 @@ PhotonIterations<S>::PhotonIterations(const RenderPlan<S>& plan, const RenderSet
     store.reserve(plan.memory.verticesPerWave, memory_);
   }
   for (Slot& slot : slots_) slot.stores.resize(lightWaves_);
+  // The tables of the map are one step, and the others are the map's own.
+  for (const Stretch<S>& stretch : plan.pipeline.stretches) {
+    phases_.push_back({&stretch, 0, stretch.pass(Walk::light) != nullptr ? lightWaves_ : cameraPieces});
+    if (!stretch.fold) continue;
+    phases_.push_back({});
+    for (size_t step = 0; step < buildSteps_.size(); ++step)
+      phases_.push_back({nullptr, step + 1, buildSteps_[step].tasks});
+  }
 }
 
 template <class S>
-Schedule PhotonIterations<S>::schedule(size_t cameraPieces) const {
-  Schedule schedule{.tasks = {lightWaves_, 1}, .waits = {}};
-  for (const auto& step : buildSteps_) schedule.tasks.push_back(step.tasks);
-  schedule.tasks.push_back(cameraPieces);
+Schedule PhotonIterations<S>::schedule() const {
+  Schedule schedule;
+  for (const Phase& phase : phases_) schedule.tasks.push_back(phase.tasks);
   // Light waves of all iterations take the stores in turn. The first `ahead` waves of iteration i reuse stores of
   // iteration i - atOnce - 1, and the other waves reuse stores of iteration i - atOnce. Camera passes read the stores
   // and the map of their iteration. A pixel's samples are added in order.
-  const size_t atOnce = slots_.size(), camera = cameraPhase();
-  schedule.waits = {
-      {.phase = kLightPhase, .on = camera, .earlier = atOnce, .ahead = stores_.size() - atOnce * lightWaves_},
-      {.phase = kLightPhase, .on = camera, .earlier = atOnce + 1},
-      {.phase = kMapPhase, .on = camera, .earlier = atOnce},
-      {.phase = camera, .on = camera, .earlier = 1, .sameTask = true}};
+  const size_t atOnce = slots_.size(), light = 0, map = 1, camera = phases_.size() - 1;
+  schedule.waits = {{.phase = light, .on = camera, .earlier = atOnce, .ahead = stores_.size() - atOnce * lightWaves_},
+                    {.phase = light, .on = camera, .earlier = atOnce + 1},
+                    {.phase = map, .on = camera, .earlier = atOnce},
+                    {.phase = camera, .on = camera, .earlier = 1, .sameTask = true}};
   return schedule;
 }
 
 template <class S>
 void PhotonIterations<S>::buildMap(const ScheduledTask& task, const PhotonGrid<S>& grid, const Placement& placement) {
   Slot& slot = slots_[task.iteration % slots_.size()];
-  // All steps after the first belong to the map itself.
-  if (task.phase != kMapPhase) {
-    (slot.map.*buildSteps_[task.phase - kMapPhase - 1].run)(task.index);
+  if (const size_t step = phases_[task.phase].step; step != 0) {
+    (slot.map.*buildSteps_[step - 1].run)(task.index);
     return;
   }
   // The first step binds the map to the stores of the iteration and makes the tables. All threads read the tables, so

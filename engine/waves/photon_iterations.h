@@ -20,13 +20,16 @@ namespace wavecrest {
 template <class S>
 class PhotonIterations {
  public:
-  // Phases of an iteration: light passes, then the steps of the map, then camera passes.
-  static constexpr size_t kLightPhase = 0, kMapPhase = 1;
+  // A phase of an iteration's schedule: a stretch of the page, or a step of the fold behind one.
+  struct Phase {
+    const Stretch<S>* stretch = nullptr;  // null: a step
+    size_t step = 0, tasks = 1;
+  };
 
   // None: of a method without a photon map.
   PhotonIterations() = default;
-  // pixels: of the film. settings must outlive it.
-  PhotonIterations(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels);
+  // pixels: of the film. cameraPieces: of an iteration's camera walks. The plan must outlive it.
+  PhotonIterations(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels, size_t cameraPieces);
 
   size_t lightWaves() const { return lightWaves_; }
   LightStore<S>& storeOf(uint64_t iteration, size_t lightWave) {
@@ -41,10 +44,11 @@ class PhotonIterations {
     return slots_[iteration % slots_.size()].stores;
   }
 
-  // The phases with their tasks: light waves, steps of the map, camera pieces.
-  Schedule schedule(size_t cameraPieces) const;
-  size_t cameraPhase() const { return kMapPhase + 1 + buildSteps_.size(); }
-  // A task between the light and the camera phase. grid: of the iteration's search radius.
+  // The page's stretches and folds, in order.
+  const std::vector<Phase>& phases() const { return phases_; }
+  // The same as a schedule, with what phases wait for.
+  Schedule schedule() const;
+  // A task of a step of the map. grid: of the iteration's search radius.
   void buildMap(const ScheduledTask& task, const PhotonGrid<S>& grid, const Placement& placement);
 
   size_t storeBytes() const;
@@ -61,6 +65,7 @@ class PhotonIterations {
   std::vector<std::unique_ptr<LightStore<S>>> stores_;  // lightStores() of the memory plan
   std::vector<Slot> slots_;                             // iterationsAtOnce()
   std::vector<typename PhotonMap<S>::BuildStep> buildSteps_;
+  std::vector<Phase> phases_;
 };
 
 }  // namespace wavecrest

@@ -62,6 +62,7 @@ class WaveSession final : public PlannedSession<S> {
                    Worker& worker);
   void traceLightWave(size_t waveIndex, uint64_t iteration, Worker& worker);
   void traceCameraWave(size_t waveIndex, Worker& worker);
+  void traceStretch(const Stretch<S>& stretch, size_t piece, Worker& worker);
   // A restored film may have stopped within an iteration. Renders until all its pixels have as many samples as the one
   // that has most.
   void levelPixels(const Finished& finished);
@@ -98,7 +99,7 @@ WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings) 
             : pieceSize(pixels * together, settings_.cutForThreads(), settings_.waveSize * together) / together;
     pieces_ = film_.area().pieces(piece, film_.spreads());
     camera_.resize(pieces_.size() - 1, {.next = settings_.firstIteration});
-    if (plan_.pipeline.photonMap) photons_ = PhotonIterations<S>(plan_, settings_, pixels);
+    if (plan_.pipeline.has(Fold::photonMap)) photons_ = PhotonIterations<S>(plan_, settings_, pixels, camera_.size());
   });
 }
 
@@ -142,7 +143,7 @@ void WaveSession<S>::traceLight(size_t first, size_t count, uint64_t iteration, 
   wave.firstPath = first;
   wave.pathCount = count;
   wave.iterationBits = 0;
-  tracePass(*plan_.pipeline.lightPass, iteration, &store, worker);
+  tracePass(*plan_.pipeline.lightPass(), iteration, &store, worker);
   worker.lightPaths += wave.pathCount;
 }
 
@@ -155,8 +156,8 @@ void WaveSession<S>::traceLightWave(size_t waveIndex, uint64_t iteration, Worker
 template <class S>
 LightStore<S>* WaveSession<S>::partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker) {
   // Without a photon map, the worker holds the light vertices of the wave that it traces.
-  if (!plan_.pipeline.photonMap) return &worker.light;
-  if (!plan_.pipeline.cameraPass.strategies.connect) return nullptr;
+  if (!plan_.pipeline.has(Fold::photonMap)) return &worker.light;
+  if (!plan_.pipeline.cameraPass().strategies.connect) return nullptr;
   const std::span<LightStore<S>* const> stores = photons_.mappedStores(iteration);
   const size_t first = pieces_[waveIndex], count = pieces_[waveIndex + 1] - first;
   // The store of the light wave with this index will do if it has the light paths of exactly these pixels. Otherwise
@@ -184,7 +185,7 @@ void WaveSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration,
   wave.firstPath = first;
   wave.iterationBits = iterationBits;
   wave.pathCount = count << iterationBits;
-  tracePass(plan_.pipeline.cameraPass, iteration, partners, worker);
+  tracePass(plan_.pipeline.cameraPass(), iteration, partners, worker);
   worker.counters.nonFinite += addSamples(film_, plan_, {settings_.sampler, settings_.seed, iteration}, wave);
   worker.paths += wave.pathCount;
   progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
@@ -208,23 +209,33 @@ void WaveSession<S>::traceCameraWave(size_t waveIndex, Worker& worker) {
   progress.pixels = 0;
 }
 
-// A turn is a light walk, where the method has one, and a camera walk of the same pixels.
+// The pixels of a piece go through the phases of a stretch, in the page's order: a light walk, where there is one, and
+// a camera walk of the same iteration.
+template <class S>
+void WaveSession<S>::traceStretch(const Stretch<S>& stretch, size_t piece, Worker& worker) {
+  const size_t first = pieces_[piece], count = pieces_[piece + 1] - first;
+  for (const auto& phase : stretch.phases) {
+    if (std::get<Pass<S>>(phase).walk == Walk::light) {
+      traceLight(first, count, camera_[piece].next, worker.light, worker);
+    } else {
+      traceCameraWave(piece, worker);
+    }
+  }
+}
+
+// A turn is an iteration of a piece, or several of some of its pixels.
 template <class S>
 void WaveSession<S>::renderWaves(const Finished& finished) {
   takeTurns(camera_.size(), settings_.threads, [&](size_t wave) {
     if (finished(camera_[wave].next)) return false;
-    Worker& mine = worker();
-    if (plan_.pipeline.lightPass) {
-      traceLight(pieces_[wave], pieces_[wave + 1] - pieces_[wave], camera_[wave].next, mine.light, mine);
-    }
-    traceCameraWave(wave, mine);
+    traceStretch(plan_.pipeline.stretches.front(), wave, worker());
     return !finished(camera_[wave].next);
   });
 }
 
 template <class S>
 PhotonGrid<S> WaveSession<S>::photonGrid(double searchRadius) const {
-  if (!plan_.pipeline.photonMap) return {};
+  if (!plan_.pipeline.has(Fold::photonMap)) return {};
   const SceneView<S>& scene = plan_.scene->view;
   return PhotonGrid<S>::over(scene.center, scene.radius, searchRadius,
                              static_cast<double>(std::max<size_t>(plan_.memory.photons, 1)));
@@ -232,13 +243,13 @@ PhotonGrid<S> WaveSession<S>::photonGrid(double searchRadius) const {
 
 template <class S>
 void WaveSession<S>::buildPhotonMap(const ScheduledTask& task, Worker& worker) {
-  const MisSettings mis = misSettings(plan_.pipeline.lightPass->strategies, settings_, plan_.scene->view.radius,
+  const MisSettings mis = misSettings(plan_.pipeline.lightPass()->strategies, settings_, plan_.scene->view.radius,
                                       plan_.memory.lightPaths, task.iteration);
   const uint64_t begin = readTicks();
   // All tasks of a map share one row of the statistics. The map's photons are counted once.
   photons_.buildMap(task, photonGrid(mis.radius), settings_.placement);
   worker.photonTally.ticks += readTicks() - begin;
-  if (task.phase == PhotonIterations<S>::kMapPhase) worker.photonTally.items += photons_.mapOf(task.iteration)->size;
+  if (photons_.phases()[task.phase].step == 0) worker.photonTally.items += photons_.mapOf(task.iteration)->size;
 }
 
 template <class S>
@@ -256,15 +267,16 @@ void WaveSession<S>::renderPhases(const Finished& finished, double end) {
     return iterationSeconds_ > 0 && clock_.shown() + static_cast<double>(underWay) * iterationSeconds_ < end;
   };
   // Hand out the tasks of all phases.
-  const Schedule schedule = photons_.schedule(camera_.size());
+  const Schedule schedule = photons_.schedule();
   runSchedule(schedule, first, settings_.threads, mayBegin, [&](const ScheduledTask& task) {
-    if (task.phase == PhotonIterations<S>::kLightPhase) {
+    const Stretch<S>* const stretch = photons_.phases()[task.phase].stretch;
+    if (stretch == nullptr) {
+      buildPhotonMap(task, worker());
+    } else if (stretch->pass(Walk::light) != nullptr) {
       traceLightWave(task.index, task.iteration, worker());
-    } else if (task.phase == photons_.cameraPhase()) {
+    } else {
       traceCameraWave(task.index, worker());
       finished(task.iteration);  // progress alone: an iteration that has begun is finished
-    } else {
-      buildPhotonMap(task, worker());
     }
   });
 }
@@ -279,7 +291,7 @@ void WaveSession<S>::levelPixels(const Finished& finished) {
     Worker& mine = worker();
     for (uint64_t next = settings_.firstIteration + run.samples; next < settings_.firstIteration + goal; ++next) {
       if (finished(next)) return;
-      if (plan_.pipeline.lightPass) traceLight(run.first, run.count, next, mine.light, mine);
+      if (plan_.pipeline.lightPass()) traceLight(run.first, run.count, next, mine.light, mine);
       traceCamera(run.first, run.count, next, 0, &mine.light, mine);
     }
   });
@@ -308,7 +320,7 @@ void WaveSession<S>::renderUntil(std::optional<uint64_t> iterations, std::option
     arena_.execute([&] {
       if (!level_) levelPixels(finished);
       if (!level_) return;
-      if (plan_.pipeline.photonMap) {
+      if (plan_.pipeline.has(Fold::photonMap)) {
         renderPhases(finished, seconds.value_or(std::numeric_limits<double>::infinity()));
       } else {
         renderWaves(finished);
@@ -324,9 +336,9 @@ RenderStatistics WaveSession<S>::statistics() const {
   out.iterations = film_.minSamples();
   if (plan_.pipeline.splats()) out.memory.splats = film_.splats().bytes();
   // Make the rows of the light pass, then those of the camera pass.
-  if (plan_.pipeline.lightPass) addRows(*plan_.pipeline.lightPass, out.stages);
+  if (plan_.pipeline.lightPass()) addRows(*plan_.pipeline.lightPass(), out.stages);
   const size_t cameraRow = out.stages.size();
-  addRows(plan_.pipeline.cameraPass, out.stages);
+  addRows(plan_.pipeline.cameraPass(), out.stages);
   // Add up what all workers have counted.
   for (const auto& worker : workers_) {
     out.paths += worker->paths;
@@ -334,12 +346,13 @@ RenderStatistics WaveSession<S>::statistics() const {
     out.counters += worker->counters;
     out.bytesPerPath = worker->wave.bytesPerPath();
     out.memory.waves += waveBytes(out.bytesPerPath, settings_.waveSize);
-    if (plan_.pipeline.lightPass && !plan_.pipeline.photonMap) out.memory.lightVertices += worker->light.bytes();
+    if (plan_.pipeline.lightPass() && !plan_.pipeline.has(Fold::photonMap))
+      out.memory.lightVertices += worker->light.bytes();
     addTallies(worker->lightTallies, 0, out.stages);
     addTallies(worker->cameraTallies, cameraRow, out.stages);
   }
   // The photon map is the last row.
-  if (plan_.pipeline.photonMap) {
+  if (plan_.pipeline.has(Fold::photonMap)) {
     out.stages.push_back({"photon map"});
     for (const auto& worker : workers_) addTallies({worker->photonTally}, out.stages.size() - 1, out.stages);
     out.memory.lightVertices += photons_.storeBytes();
@@ -365,7 +378,7 @@ void WaveSession<S>::restore(StateReader& in) {
   // The next renderUntil levels pixels that have fewer samples than others.
   const uint64_t done = film_.maxSamples();
   level_ = film_.minSamples() == done;
-  if (!level_ && plan_.pipeline.photonMap) throw StateError("it ends within an iteration");
+  if (!level_ && plan_.pipeline.has(Fold::photonMap)) throw StateError("it ends within an iteration");
   for (CameraProgress& progress : camera_) progress.next = settings_.firstIteration + done;
   this->goOnFromEarlier(earlier_.paths);
   countLightPaths();

@@ -24,10 +24,10 @@ struct WaveWorker {
   WaveWorker(const RenderPlan<S>& plan, uint32_t waveSize, Film& film)
       : wave(waveSize, plan.needs),
         light(waveSize, plan.needs, {.merged = false}),
-        cameraTallies(plan.pipeline.cameraPass.stageCount()) {
-    if (plan.pipeline.lightPass) {
-      lightTallies.resize(plan.pipeline.lightPass->stageCount());
-      if (!plan.pipeline.photonMap) light.reserve(plan.memory.verticesPerWave);
+        cameraTallies(plan.pipeline.cameraPass().stageCount()) {
+    if (plan.pipeline.lightPass()) {
+      lightTallies.resize(plan.pipeline.lightPass()->stageCount());
+      if (!plan.pipeline.has(Fold::photonMap)) light.reserve(plan.memory.verticesPerWave);
     }
     if (plan.pipeline.splats()) splats.emplace(film.splats(), plan.stages->addSplats, waveSize);
   }

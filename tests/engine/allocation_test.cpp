@@ -89,10 +89,10 @@ size_t allocationsPerWave(const std::string& sceneName, const RenderSettings& se
   context.pixels = area.pixels.data();
   context.sampler.kind = settings.sampler;
   context.counters = &counters;
-  context.mis = plan.pipeline.cameraPass.strategies;
-  std::vector<StageTally> tallies(plan.pipeline.cameraPass.stageCount());
+  context.mis = plan.pipeline.cameraPass().strategies;
+  std::vector<StageTally> tallies(plan.pipeline.cameraPass().stageCount());
   wave.pathCount = 1000;
-  const auto run = [&] { runPass(plan.pipeline.cameraPass, context, wave, tallies.data()); };
+  const auto run = [&] { runPass(plan.pipeline.cameraPass(), context, wave, tallies.data()); };
   run();
   const size_t count = allocationsOf([&] {
     for (context.sampler.iteration = 1; context.sampler.iteration <= 4; ++context.sampler.iteration) run();

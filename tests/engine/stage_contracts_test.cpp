@@ -22,7 +22,7 @@ class StageContractsTest : public testing::Test {
   StageContractsTest() {
     context_.scene = &plan_.scene->view;
     context_.pixels = area_.pixels.data();
-    context_.mis = plan_.pipeline.cameraPass.strategies;
+    context_.mis = plan_.pipeline.cameraPass().strategies;
     context_.mis.lightPaths = kPaths;
     context_.counters = &counters_;
     context_.light = &store_;

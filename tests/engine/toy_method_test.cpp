@@ -34,13 +34,13 @@ double meanOf(const MethodPage& page, const Scene& scene, uint64_t seed, uint32_
   context.scene = &plan.scene->view;
   context.pixels = film.area().pixels.data();
   context.limits = settings.limits;
-  context.mis = plan.pipeline.cameraPass.strategies;
+  context.mis = plan.pipeline.cameraPass().strategies;
   context.counters = &counters;
   for (uint32_t i = 0; i < iterations; ++i) {
     context.sampler = {SamplerKind::independent, seed, i};
     wave.firstPath = 0;
     wave.pathCount = pixels;
-    runPass<float>(plan.pipeline.cameraPass, context, wave, nullptr);
+    runPass<float>(plan.pipeline.cameraPass(), context, wave, nullptr);
     film.add(wave);
   }
   double sum = 0;
@@ -55,7 +55,7 @@ TEST(ToyMethod, strategiesFollowFromItsPage) {
   EXPECT_TRUE(weights.emission);
   EXPECT_FALSE(weights.nextEvent || weights.connect || weights.camera || weights.merge || weights.powerHeuristic);
   EXPECT_FALSE(isBidirectional(page));
-  EXPECT_FALSE(page.hasPhotonMap() || page.hasChains());
+  EXPECT_FALSE(page.has(Fold::photonMap) || page.hasChains());
 }
 
 // The same image as path tracing with next event estimation: means over seeds, |t| <= 5.
