@@ -70,7 +70,7 @@ class Publishing(CommandTest):
         for metric, label in (("ssim", ">0.75</text>"), ("q_mos", ">75</text>"), ("rmse", "<polyline")):
             self.assertIn(label, self.read(f"standard/overview.{metric}.svg"))
             self.assertIn(f"](overview.{metric}.svg)", page)
-        self.assertTrue(readme.startswith("# A title\n\n<!-- results -->\n### "))
+        self.assertTrue(readme.startswith("# A title\n\n<!-- results -->\nWho is first to look right"))
         self.assertTrue(readme.endswith("\n<!-- /results -->\n\nThe end.\n"))
         self.assertNotIn("\nold\n", readme)
         self.assertTrue(pathlib.Path(self.path("standard/cornell-diffuse.ssim.svg")).is_file())
@@ -90,8 +90,8 @@ class Publishing(CommandTest):
         self.assertIn("none of the study's", result.stdout)
         self.assertIn("without an explanation: none", result.stdout)
         self.assertRegex(page, r"\*\*not judged\*\* \| [^|]*(was not measured|paths per pixel)[^|]*<details>")
-        self.assertRegex(readme, r"Not judged, and counted neither way, as .*too few scenes can be judged \(2\)")
-        self.assertNotIn("not hold", readme)
+        self.assertRegex(page, r"Not judged, and counted neither way, as .*too few scenes can be judged \(2\)")
+        self.assertIn("The study's findings: none of the study's", readme)
 
     def test_open_findings_without_an_explanation_are_named(self):
         self.campaign()
@@ -118,14 +118,14 @@ END
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("1 hold, 2 do not, 1 are undecided", result.stdout)
         self.assertIn("without an explanation: cornell-diffuse.all-converge", result.stdout)
-        readme = self.read("README.md")
-        self.assertRegex(readme, r"Judged here: 4 of its \d+ findings. 1 hold: cornell-diffuse: ")
-        self.assertIn("Does not hold: cornell-diffuse: All methods converge (SSIM of pt is 0.5, limit 0.9).", readme)
-        self.assertRegex(readme, r"\n1 are undecided within noise: [^\n]*\(RMSE lt 1, pt 1\.1\)\.\n")
-        # There the first sentence of an explanation, in the folder all of it.
-        self.assertRegex(readme, r"\(RMSE lt 1, pt 2\)\. Noise of short runs\.\n")
-        self.assertIn("Noise of short runs. It falls with time.<br>", self.read("standard/README.md"))
-        self.assertIn("(not explained yet: cornell-diffuse.all-converge in explanations.json)", self.read("standard/README.md"))
+        self.assertIn("The study's findings: 1 hold, 2 do not, 1 are undecided", self.read("README.md"))
+        page = self.read("standard/README.md")
+        self.assertRegex(page, r"Judged here: 4 of its \d+ findings. 1 hold: cornell-diffuse: ")
+        self.assertIn("Does not hold: cornell-diffuse: All methods converge (SSIM of pt is 0.5, limit 0.9).", page)
+        self.assertRegex(page, r"\n1 are undecided within noise: [^\n]*\(RMSE lt 1, pt 1\.1\)\.\n")
+        self.assertRegex(page, r"\(RMSE lt 1, pt 2\)\. Noise of short runs\. It falls with time\.\n")
+        self.assertIn("Noise of short runs. It falls with time.<br>", page)
+        self.assertIn("(not explained yet: cornell-diffuse.all-converge in explanations.json)", page)
 
     def test_a_campaign_is_restored_from_what_was_published(self):
         self.campaign()
