@@ -54,8 +54,8 @@ template <class T>
 WAVECREST_INLINE auto gather(const Column<T>& column, UInt index) {
   return gather(static_cast<const T*>(column), index);
 }
-// out[i] = read(index[i]) for i < count. Numbers that vectors were stored as some time ago are read one by one: with
-// 16 loads a gather costs more, and so does taking a vector of indices apart, as g++ would, were they not volatile.
+// out[i] = read(index[i]) for i < count. Reads the indices as scalars: faster than a gather of 16 lanes. `volatile`
+// keeps g++ from loading a vector of indices and extracting its lanes.
 template <class T, class Read>
 WAVECREST_INLINE void readEach(const uint32_t* index, size_t count, const Read& read, T* out) {
   const volatile uint32_t* const listed = index;

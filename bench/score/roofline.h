@@ -19,11 +19,11 @@ namespace wavecrest {
 // Of one thread.
 struct Ceilings {
   double cacheBytesPerSecond = 0;   // triad over half of the second cache
-  double memoryBytesPerSecond = 0;  // triad over several times the third; what lines written are read for is left out
+  double memoryBytesPerSecond = 0;  // triad over several times the third; write-allocate traffic is not counted
   double operationsPerSecond = 0;   // additions and multiplications, fused
 };
 
-// Takes about half a second of CPU time. What a triad writes is counted once.
+// Takes about half a second of CPU time.
 Ceilings measureCeilings(Isa isa);
 
 // Bytes per item of a stage by its row of the statistics, such as "extend light"; nothing for rows that are no stage of

@@ -59,7 +59,7 @@ class ChainSession final : public PlannedSession<S> {
   uint64_t mutations() const { return step_ * settings_.metropolis.chains; }
   bool direct() const { return hasDirectPass(plan_, settings_); }
 
-  // Whether a render is to end: its time is over, or somebody asked for it. Looked at before every wave.
+  // Whether a render is to end: its time is over, or it was interrupted. Checked before every wave.
   using Stop = std::function<bool()>;
 
   // These return false where they were stopped; the next call goes on from there.

@@ -97,7 +97,7 @@ uint16_t readHeader(std::span<const char> file, uint64_t offset, const SourceLoc
   return version;
 }
 
-// The first mesh stands at the start, so that a file of one mesh needs no table.
+// The first mesh is at the start, so that a file of one mesh needs no table.
 uint64_t offsetOfMesh(std::span<const char> file, uint16_t version, uint32_t index, const SourceLocation& where) {
   if (index == 0) return 0;
   const size_t entrySize = version == 4 ? sizeof(uint64_t) : sizeof(uint32_t);

@@ -111,7 +111,7 @@ class Planner {
     return iterationsAtOnce(settings_, area_.pixels.size()) * PhotonMap<S>::bytesFor(photons(lightPaths));
   }
 
-  // The most light paths, up to those asked for, that leave the plan within the budget.
+  // The most light paths, up to those wanted, that leave the plan within the budget.
   void fitLightPaths(size_t budget) {
     const size_t fixed = memory_.use.total();
     const auto needed = [&](size_t paths) { return fixed + vertexBytes(paths) + photonBytes(paths); };

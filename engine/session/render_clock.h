@@ -19,7 +19,7 @@ inline double secondsSince(Clock::time_point begin) {
 // CPU time of the process up to now, all threads together.
 double processCpuSeconds();
 
-// The clock of a session. It runs while the session renders; other threads may look at it meanwhile.
+// The clock of a session. It runs while the session renders; other threads may read it meanwhile.
 class RenderClock {
  public:
   RenderClock(ClockKind kind, unsigned threads) : kind_(kind), threads_(threads) {}

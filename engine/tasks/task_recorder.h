@@ -27,7 +27,7 @@ struct TaskGraph {
 };
 
 // Records what forEach and the waves of a session run while it lives. At most one lives at a time, and only one thread
-// begins steps; tasks may run on any thread. Without a recorder, a step costs one look at a pointer.
+// begins steps; tasks may run on any thread. Without a recorder, a step reads one pointer.
 class TaskRecorder {
  public:
   using Clock = std::chrono::steady_clock;

@@ -1,5 +1,5 @@
 // Somebody who wants to know when a stage begins and ends on a thread, in renders that measure their stages: to count
-// the processor's events (bench/machine/perf_events.h). Without one, a stage costs one look at a pointer more.
+// the processor's events (bench/machine/perf_events.h). Without one, a stage reads one more pointer.
 #pragma once
 
 #include <atomic>

@@ -94,7 +94,7 @@ class PairLister {
 // Light vertices of all depths are joined together: where there are connections, edgeSwitch() is 1 at each of them.
 constexpr uint32_t kAnyLightDepth = 2;
 
-// Light vertices of a whole iteration are more than the caches hold: their rows are asked for so many pairs ahead.
+// How many pairs ahead rows of light vertices are prefetched: the caches do not hold those of a whole iteration.
 constexpr size_t kRowsAhead = 128;
 
 // The probability that a connection is joined at all, by what it carries.

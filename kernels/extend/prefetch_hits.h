@@ -1,4 +1,4 @@
-// What the next stage gathers of a hit lies far from any cache in a large scene: asked for while other rays are traced.
+// Prefetches what the next stage gathers of a hit, while other rays are traced: in a large scene no cache has it.
 #pragma once
 
 #include "kernels/scene_view.h"

@@ -11,9 +11,8 @@
 // and says how near the edge that was. Where the nearest hit was within the bound, rounding might have decided, and the
 // ray is decided anew against leaves, whose neighbours agree on every edge (bvh_lanes.h). One ray in thousands is. A
 // box or solid has no edges to slip through: a ray that starts inside leaves it where it leaves the first of its
-// planes, whichever that is. The gaps between the origin and the two planes of a slab are rounded apart, as that of a
-// plane is: a box far thicker than it is far from the origin would lose in a shared centre and half width what
-// kOffsetGamma allows for.
+// planes, whichever that is. Both planes of a slab are stored. Centre and half-width would lose precision for large
+// boxes near the origin, more than kOffsetGamma allows for.
 #pragma once
 
 #include <cstddef>

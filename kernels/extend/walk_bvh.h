@@ -3,9 +3,9 @@
 // A ray of its own spends its time waiting for memory and for branches that cannot be foreseen. Here some thirty
 // walkers, each a ray or a packet of rays, are under way at once: one takes a step, asks for what its next step reads,
 // and makes room for the others. A step has no branch but the end of its loop: walkers are kept in one list for each
-// kind of entry that they stand at, and a node's children go to the walker's stack sorted in a register.
+// kind of entry that they visit, and a node's children go to the walker's stack sorted in a register.
 //
-// A walker has `at`, the entry that it stands at; `stack`, the entries that it has still to visit, of which `waiting`
+// A walker has `at`, the entry that it visits; `stack`, the entries that it has still to visit, of which `waiting`
 // are in use; `index`; and visit(BvhNode), visit(FaceLeaf) and visit(SphereLeaf). It begins at the root, unless
 // begin(walker) puts it elsewhere. A walker that knows instances (placed_rays.h) has enter(InstanceLeaf), which says
 // whether it goes on at the root of the group, and leave().
@@ -40,7 +40,7 @@ template <class Walker, class Begin, class End>
 WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End& end) {
   constexpr size_t kUnderWay = Walker::kUnderWay;
   Walker walkers[kUnderWay];
-  // Which walkers stand at which kind of entry; BvhEntry::end: those that have nowhere to go.
+  // The walkers at each kind of entry; BvhEntry::end: those that are done.
   constexpr size_t kEntries = 4;
   uint8_t lists[kEntries][kUnderWay], current[kUnderWay];
   size_t sizes[kEntries] = {};
@@ -86,7 +86,7 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
     sizes[which] = 0;
     return size;
   };
-  // All walkers that stand at an entry of one kind: the same code for each, one after the other.
+  // All walkers that visit an entry of one kind: the same code for each, one after the other.
   const auto visitAll = [&]<class Record>(BvhEntry entry, std::type_identity<Record>) HWY_ATTR {
     for (size_t k = 0, size = take(entry); k < size; ++k) {
       Walker& walker = walkers[current[k]];

@@ -2,8 +2,8 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]; the photon map. out: Radiance grows. METHODS 6.2, 6.4, 5.6
 // (37)-(39). Candidates are (vertex, photon) pairs in a flat list, so that lanes are full whatever the photons per
-// cell; a vertex sums its pairs in the order of photons. Most candidates only share a bucket with the vertex: what is
-// looked at first is their place, which is rounded, and the rows of the others decide.
+// cell; a vertex sums its pairs in the order of photons. Most candidates are hash
+// collisions. Quantised positions reject them; exact rows decide about the rest.
 #include <algorithm>
 
 #include "kernels/merge/photon_grid_lanes.h"
@@ -33,8 +33,8 @@ class Merger {
   Merger(const StageContext<S>& context, Wave<S>& wave)
       : context_(context), wave_(wave), map_(*context.photons), inGrid_(map_.grid) {}
 
-  // Buckets, photons and rows are all over memory: each is asked for some blocks of vertices before it is read, and
-  // rows are read when the next ones have been asked for.
+  // Buckets, photons and rows are all over memory: each is prefetched some blocks of vertices before it is read, and
+  // rows are read once the next ones have been prefetched.
   void run() {
     const size_t blocks = (wave_.joinable + kLanes - 1) / kLanes, groups = (blocks + kTogether - 1) / kTogether;
     Search searches[3][kTogether];
@@ -47,18 +47,18 @@ class Merger {
     for (size_t group = 0; group < groups + 2; ++group) {
       forGroup(group, [&](Search& search, size_t i) WAVECREST_LAMBDA {
         locate(i, search);
-        askForBuckets(search);
+        prefetchBuckets(search);
       });
       forGroup(group - 1, [&](Search& search, size_t) WAVECREST_LAMBDA {
         findRuns(search);
-        askForKeys(search);
+        prefetchKeys(search);
       });
-      settled_ = asked_;
+      settled_ = prefetched_;
       forGroup(group - 2, [&](Search& search, size_t) WAVECREST_LAMBDA {
         listCandidates(search);
-        if (nearCount_ - asked_ >= kLanes) askForRows();
+        if (nearCount_ - prefetched_ >= kLanes) prefetchRows();
       });
-      askForRows();
+      prefetchRows();
       if (settled_ >= kNear / 2) shade(wholeBlocks(settled_));
     }
     shade(nearCount_);
@@ -67,7 +67,7 @@ class Merger {
  private:
   static constexpr size_t kTogether = 2;  // blocks
 
-  // The runs of photons that the vertices of a block look at, one for each strip of cells: y and z of the lower cell,
+  // The runs of photons that the vertices of a block search, one for each strip of cells: y and z of the lower cell,
   // or one more. In memory, where lanes are read one by one, and looked up.
   static constexpr uint32_t kRuns = 4;
   template <size_t kSize>
@@ -115,7 +115,7 @@ class Merger {
     store(packAxes(parityBit(low.x), parityBit(low.y), parityBit(low.z)), search.lower);
   }
 
-  WAVECREST_INLINE void askForBuckets(const Search& search) const {
+  WAVECREST_INLINE void prefetchBuckets(const Search& search) const {
     for (size_t k = 0; k < search.count; ++k) __builtin_prefetch(map_.bucketStart + search.bucket[k]);
   }
 
@@ -129,7 +129,7 @@ class Merger {
     }
   }
 
-  WAVECREST_INLINE void askForKeys(const Search& search) const {
+  WAVECREST_INLINE void prefetchKeys(const Search& search) const {
     for (size_t k = 0; k < search.count; ++k) {
       __builtin_prefetch(map_.keys + search.first[k]);
       __builtin_prefetch(map_.keys + std::max(search.end[k], 1u) - 1);
@@ -204,8 +204,8 @@ class Merger {
       const Mask near = firstLanes(count - i) & (mulAdd(dx, dx, mulAdd(dy, dy, dz * dz)) <= reach2) &
                         (((vertex ^ place) & UInt(kPlaceStripMask)) == UInt(0u));
       if (nearCount_ > kNear) {
-        askForRows();
-        shade(wholeBlocks(kNear / 2));  // the rest have just been asked for
+        prefetchRows();
+        shade(wholeBlocks(kNear / 2));  // the rest have just been prefetched
       }
       storeUnaligned(compress(vertex & UInt(kIndexMask), near), nearVertex_ + nearCount_);
       storeUnaligned(compress(shiftRight<kRunShift>(vertex) & UInt(kRuns - 1), near), nearRun_ + nearCount_);
@@ -215,10 +215,10 @@ class Merger {
   }
 
   // Of the photons that have been listed since it was called last.
-  WAVECREST_INLINE void askForRows() {
-    for (; asked_ < nearCount_; ++asked_) {
-      const uint32_t photon = map_.keys[nearPhoton_[asked_]].photon;
-      nearPhoton_[asked_] = photon;
+  WAVECREST_INLINE void prefetchRows() {
+    for (; prefetched_ < nearCount_; ++prefetched_) {
+      const uint32_t photon = map_.keys[nearPhoton_[prefetched_]].photon;
+      nearPhoton_[prefetched_] = photon;
       __builtin_prefetch(&map_.rowOf(photon));
     }
   }
@@ -260,7 +260,7 @@ class Merger {
     }
     for (uint32_t* const list : {nearVertex_, nearRun_, nearPhoton_}) std::copy(list + count, list + nearCount_, list);
     nearCount_ -= count;
-    asked_ -= count;
+    prefetched_ -= count;
     settled_ -= std::min(settled_, count);
   }
 
@@ -318,11 +318,11 @@ class Merger {
   HWY_ALIGN uint32_t candidateVertex_[kCandidates + kRoom];
   HWY_ALIGN uint32_t candidateKey_[kCandidates + kRoom];
   HWY_ALIGN uint32_t candidatePlace_[kCandidates + kRoom];
-  // Of all blocks: index of the vertex, run, and photon, where it has been asked for, else its key.
+  // Of all blocks: index of the vertex, run, and photon, where it has been prefetched, else its key.
   HWY_ALIGN uint32_t nearVertex_[kNear + kRoom];
   HWY_ALIGN uint32_t nearRun_[kNear + kRoom];
   HWY_ALIGN uint32_t nearPhoton_[kNear + kRoom];
-  size_t nearCount_ = 0, asked_ = 0, settled_ = 0;  // settled: asked for before the searches that go on
+  size_t nearCount_ = 0, prefetched_ = 0, settled_ = 0;  // settled: prefetched before the searches that go on
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 // pass writes as many streams, whose pages are all at hand, the second stays within a core's caches for up to some
 // million photons.
 constexpr uint32_t kPartitions = 64;
-// What a cache line holds. Lines are asked for before they are written: the next ones of each stream while those before
+// What a cache line holds. Lines are prefetched before they are written: the next ones of each stream while those before
 // them are filled, and what a partition is sorted into at once.
 constexpr uint32_t kKeysPerLine = kColumnAlignment / sizeof(PhotonKey);
 constexpr uint32_t kNumbersPerLine = kColumnAlignment / sizeof(uint32_t);

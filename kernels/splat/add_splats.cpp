@@ -2,7 +2,7 @@
 //
 // in: Splats [begin, end). out: sums (kernels/columns/splat_sums.h); counts of splats that are not finite, which are
 // dropped, and of those that saturate a sum. The values of a block become integers in lanes; then every splat is added
-// by itself, as two may be of one pixel. Pixels lie all over the film, so those of later splats are asked for ahead.
+// by itself, as two may be of one pixel. Pixels lie all over the film, so those of later splats are prefetched.
 #include <algorithm>
 #include <cmath>
 
