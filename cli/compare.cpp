@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -17,6 +18,7 @@
 #include "library/option_ranges.h"
 #include "metrics/image/image_io.h"
 #include "metrics/metric_list.h"
+#include "metrics/pu21.h"
 
 namespace wavecrest {
 namespace {
@@ -81,6 +83,37 @@ ImageFile readPart(const CompareOptions& options, const std::string& path) {
   ImageFile file = readImage(path);
   if (!options.crop.empty()) cropTo(parseCrop(options.crop), path, file.image);
   return file;
+}
+
+// A note where the data windows of two files begin at different places: their pixels are compared all the same.
+void noteWindows(const CompareOptions& options, const ImageFile& reference, const std::string& file,
+                 const ImageFile& test) {
+  const auto [x, y] = reference.corner;
+  const auto [testX, testY] = test.corner;
+  if (reference.corner == test.corner) return;
+  tell(
+      "wavecrest: note: the data window of {} begins at {},{} and that of {} at {},{}; their top left pixels are "
+      "compared",
+      options.reference, x, y, file, testX, testY);
+}
+
+// A note where an image is brighter than what the PU21 metrics tell apart.
+void notePu21Range(const CompareOptions& options, const std::vector<const Metric*>& metrics, const std::string& file,
+                   const ImageFile& image) {
+  const bool measured =
+      std::ranges::any_of(metrics, [](const Metric* metric) { return metric->name.starts_with("pu21"); });
+  if (!measured || image.encoding != Encoding::linear) return;
+  const double brightest = kPu21Brightest / (kPu21WhiteLuminance * std::exp2(options.exposure));
+  size_t count = 0;
+  const std::vector<float>& pixels = image.image.pixels;
+  for (size_t i = 0; i < pixels.size(); i += 3)
+    count += std::max({pixels[i], pixels[i + 1], pixels[i + 2]}) > brightest;
+  if (count == 0) return;
+  tell(
+      "wavecrest: note: {} of {} pixels of {} are brighter than {:.0f} cd/m2, where PU21 ends, and count as that; a "
+      "lower "
+      "--exposure shows more of them",
+      count, image.image.pixelCount(), file, kPu21Brightest);
 }
 
 // ---- which metrics --------------------------------------------------------------------------------------------------
@@ -196,13 +229,17 @@ int compare(const CompareOptions& options) {
   settings.gammaCorrectedErrors = options.gammaCorrected;
   const PreparedReference reference(options.reference, readPart(options, options.reference), settings);
   const std::vector<const Metric*> metrics = chosenMetrics(options, reference.image().file.image);
+  notePu21Range(options, metrics, options.reference, reference.image().file);
 
   // Measures the tests.
   const bool withMaps = !options.mapFolder.empty() || !options.html.empty();
   std::vector<MeasuredTest> tests;
   for (size_t i = 0; i < options.tests.size(); ++i) {
     const std::string& file = options.tests[i];
-    tests.push_back(measure(reference, file, labels[i], readPart(options, file), metrics, withMaps));
+    ImageFile test = readPart(options, file);
+    noteWindows(options, reference.image().file, file, test);
+    notePu21Range(options, metrics, file, test);
+    tests.push_back(measure(reference, file, labels[i], std::move(test), metrics, withMaps));
   }
   // Shows scores, maps and page.
   if (options.printsText()) printText(tests);

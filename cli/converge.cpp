@@ -186,7 +186,8 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
       .oneValue();
   defining("--radius-alpha", "how slowly the radius shrinks, 0 to 1; default: 0.75").oneValue();
   defining("--light-paths",
-           "light paths of an iteration of ppm, bpm and vcm; default: the profile's, or as many as pixels")
+           "light paths of an iteration of ppm, bpm and vcm; default: the profile's, or as many as pixels and of ppm "
+           "and bpm at least 4096")
       .oneValue();
   defining("--mlt", "rows of mlt: pathspace, mmlt, pssmlt, separated by commas; default: the profile's")
       .separatedByCommas()

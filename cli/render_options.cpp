@@ -42,7 +42,7 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
       .between(kRadiusAlphaRange);
   command
       .add("--light-paths", options.lightPaths,
-           "light paths of an iteration of ppm, bpm or vcm; default: as many as pixels")
+           "light paths of an iteration of ppm, bpm or vcm; default: as many as pixels, of ppm and bpm at least 4096")
       .between(kLightPathRange);
   command
       .add("--connection-roulette", options.connectionRoulette,

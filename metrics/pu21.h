@@ -20,6 +20,7 @@ namespace wavecrest {
 
 constexpr double kPu21WhiteLuminance = 100;  // cd/m2 of linear light 1
 constexpr double kPu21GreatestPsnr = 100;    // dB
+constexpr double kPu21Brightest = 10'000;    // cd/m2, where the encoding ends; brighter light counts as that
 
 struct Pu21PsnrResult {
   double colour = 0, luminance = 0;  // dB

@@ -4,6 +4,7 @@
 
 #include "bench/enumerator_name.h"
 #include "bench/machine/machine_record.h"
+#include "engine/plan/render_plan.h"
 #include "engine/scene/hash_text.h"
 #include "engine/version.h"
 
@@ -138,7 +139,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
     const uint64_t pixels = uint64_t{scene.film.imageWidth()} * scene.film.imageHeight();
     stats.update({{"radius", settings.radius},
                   {"radius_alpha", settings.radiusAlpha},
-                  {"light_paths_per_iteration", settings.lightPaths.value_or(pixels)}});
+                  {"light_paths_per_iteration", lightPathsWanted(settings, pixels)}});
     if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
   }
   if (hasConnectionRoulette(settings.method)) stats["connection_roulette"] = settings.connectionRoulette;

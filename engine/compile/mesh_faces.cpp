@@ -83,9 +83,9 @@ MeshFaces pairFaces(const Mesh& mesh) {
 
 }  // namespace
 
-MeshFaces facesOf(const Mesh& mesh, const ParallelFor& parallelFor) {
+MeshFaces facesOf(const Mesh& mesh, bool usesUv, const ParallelFor& parallelFor) {
   MeshFaces faces;
-  if (mesh.triangles.size() <= kMergeLimit) {
+  if (mesh.triangles.size() <= kMergeLimit && !(usesUv && mesh.uvs.empty())) {
     faces = pairFaces(mesh);
     std::erase_if(faces.quads, [&](const FaceCorners& quad) { return !hasArea(mesh, quad); });
     std::erase_if(faces.triangles, [&](uint32_t i) { return !hasArea(mesh, mesh.triangles[i]); });

@@ -25,6 +25,8 @@ struct MeshFaces {
     return mesh.triangles[allTriangles ? i : triangles[i]];
   }
 };
-MeshFaces facesOf(const Mesh& mesh, const ParallelFor& parallelFor);
+// usesUv: (u, v) matters to the material or the light. Without texture coordinates triangles then stay apart, since
+// each has its own (u, v).
+MeshFaces facesOf(const Mesh& mesh, bool usesUv, const ParallelFor& parallelFor);
 
 }  // namespace wavecrest

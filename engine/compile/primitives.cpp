@@ -48,6 +48,15 @@ Float3 placedNormal(const Affine& placed, const Float3& normal) {
   const Double3 there = placed.normal(widened(normal)) * (1 / std::sqrt(most));
   return {static_cast<float>(there[0]), static_cast<float>(there[1]), static_cast<float>(there[2])};
 }
+
+// Whether (u, v) or dp/du changes what the shape looks like.
+bool usesUv(const Scene& scene, const Shape& shape) {
+  if ((materialFeatures(scene.materials[shape.material], scene) & kTextures) != 0) return true;
+  if (shape.emitter == kNone) return false;
+  const auto* light = std::get_if<AreaEmitter>(&scene.emitters[shape.emitter].kind);
+  return light != nullptr && light->radiance.texture != kNone;
+}
+
 }  // namespace
 
 PrimitiveList::PrimitiveList(const Scene& scene, bool textured, const ParallelFor& parallelFor, const Double3& origin,
@@ -120,7 +129,7 @@ PrimitiveList::Surface PrimitiveList::surfaceOf(const Shape& shape, bool copied)
     surface.mesh = &tessellations_.emplace_back(tessellated(there));
     surface.moved = !copied;
   }
-  surface.faces = &faces_.emplace_back(facesOf(*surface.mesh, parallelFor_));
+  surface.faces = &faces_.emplace_back(facesOf(*surface.mesh, usesUv(scene_, shape), parallelFor_));
   return surface;
 }
 

@@ -29,7 +29,8 @@ Mesh tessellated(const Disk& disk) {
     const double r = static_cast<double>(ring) / kRings, angle = 2 * std::numbers::pi * segment / kSegments;
     mesh.positions.push_back(
         rounded(disk.center + disk.axisU * (r * std::cos(angle)) + disk.axisV * (r * std::sin(angle))));
-    mesh.uvs.push_back({static_cast<float>(r), static_cast<float>(segment) / kSegments});
+    const float turn = static_cast<float>(segment) / kSegments;
+    mesh.uvs.push_back({static_cast<float>(r), disk.mirrored ? 1 - turn : turn});
   };
   for (uint32_t sector = 0; sector < kSegments; ++sector) {
     const auto centre = static_cast<uint32_t>(mesh.positions.size());

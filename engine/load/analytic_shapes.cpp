@@ -97,12 +97,12 @@ CylinderFrame frameOf(const Matrix4& toWorld, const Double3& p0, const Double3& 
 
 // Assumes that the image is a circular cylinder, which readCylinder checks.
 Cylinder placeCylinder(const Matrix4& toWorld, const Double3& p0, const Double3& p1, double radius, bool flipNormals) {
+  // Normals point away from the axis in the mirror, too.
   const CylinderFrame frame = frameOf(toWorld, p0, p1);
-  const bool mirrored = determinant3(toWorld) < 0;
   return {.p0 = transformPoint(toWorld, p0),
           .p1 = transformPoint(toWorld, p1),
           .radius = radius * length(frame.phi0),
-          .flipNormals = mirrored != flipNormals,
+          .flipNormals = flipNormals,
           .phi0 = normalized(frame.phi0),
           .phi90 = normalized(frame.phi90)};
 }

@@ -14,11 +14,18 @@ namespace wavecrest {
 namespace {
 
 // The microfacet distribution, which is Beckmann by default.
-Distribution readDistribution(Parameters& parameters) {
+Distribution readDistribution(LoadContext& context, Parameters& parameters) {
   const std::string name = toLower(parameters.string("distribution", "beckmann"));
   parameters.ignore({"sample_visible"});  // how to sample, not what
   if (name == "ggx") return Distribution::ggx;
   if (name == "beckmann") return Distribution::beckmann;
+  if (name == "phong" || name == "as") {  // of 0.6, whose exponent for an alpha makes it as wide as Beckmann's
+    context.unsupported(parameters.locationOf("distribution"),
+                        "distribution " + inQuotes(name) + " of Mitsuba 0.6 is not supported" +
+                            (context.options.lenient ? " (replaced by beckmann)" : "") +
+                            "; expected beckmann of the same alpha, the nearest, or ggx");
+    return Distribution::beckmann;
+  }
   throw LoadError(parameters.locationOf("distribution"),
                   "unknown distribution " + inQuotes(name) + "; expected beckmann or ggx");
 }
@@ -63,37 +70,38 @@ TexturedFloat readAlpha(LoadContext& context, Parameters& parameters) {
 }
 
 // An index of refraction for each channel: a real one, or a part of a complex one.
-Rgb readIndexColor(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
+Rgb readIndexColor(LoadContext& context, Parameters& parameters, std::string_view name, const Rgb& fallback) {
   const XmlElement* element = parameters.element(name);
-  if (!element) return {fallback, fallback, fallback};
+  if (!element) return fallback;
   return readColor(context, *element, ColorRole::refraction);
 }
 
-// The parameters that `conductor` and `roughconductor` share.
+// The parameters that `conductor` and `roughconductor` share. In files of 0.5 and 0.6 the material is copper by
+// default, eta and k stand in for its own one by one, and both are those of the metal in a vacuum, with air outside.
 Conductor readAnyConductor(LoadContext& context, Parameters& parameters) {
   Conductor conductor;
-  const std::string material = parameters.string("material", "none");
+  const bool legacy = parameters.object().legacy;
+  const std::string material = parameters.string("material", legacy ? "Cu" : "none");
   const bool hasEta = parameters.has("eta"), hasK = parameters.has("k");
   // The complex index of refraction: that of a named metal, or eta and k.
-  if (material != "none") {
-    if (hasEta || hasK) {
+  ComplexIor ior{.eta = {0, 0, 0}, .k = {1, 1, 1}};
+  if (toLower(material) != "none") {
+    if ((hasEta || hasK) && !legacy) {
       throw LoadError(parameters.locationOf(hasEta ? "eta" : "k"),
                       "eta and k stand beside a material; expected one of the two");
     }
-    const std::optional<ComplexIor> ior = findConductor(material);
-    if (!ior) {
+    const std::optional<ComplexIor> found = findConductor(material);
+    if (!found) {
       throw LoadError(parameters.locationOf("material"),
                       "unknown conductor " + inQuotes(material) + "; expected one of " + listConductorNames());
     }
-    conductor.eta = ior->eta;
-    conductor.k = ior->k;
-  } else {
-    conductor.eta = readIndexColor(context, parameters, "eta", 0);
-    conductor.k = readIndexColor(context, parameters, "k", 1);
-    // Fresnel's factor for eta = 0 is 1 at every angle, whatever k.
-    conductor.perfectMirror = conductor.eta == Rgb{0, 0, 0};
+    ior = *found;
   }
-  if (parameters.has("ext_eta")) {  // of version 0.6, where eta and k are those of the metal in a vacuum
+  conductor.eta = readIndexColor(context, parameters, "eta", ior.eta);
+  conductor.k = readIndexColor(context, parameters, "k", ior.k);
+  // Fresnel's factor for eta = 0 is 1 at every angle, whatever k.
+  conductor.perfectMirror = conductor.eta == Rgb{0, 0, 0};
+  if (legacy || parameters.has("ext_eta")) {
     const double outside = parameters.ior("ext_eta", "air");
     // Fresnel's equations need the index relative to that of the outside.
     conductor.eta = (1 / outside) * conductor.eta;
@@ -152,7 +160,7 @@ void readConductor(LoadContext& context, Parameters& parameters, Material& mater
 
 void readRoughConductor(LoadContext& context, Parameters& parameters, Material& material) {
   Conductor conductor = readAnyConductor(context, parameters);
-  conductor.distribution = readDistribution(parameters);
+  conductor.distribution = readDistribution(context, parameters);
   const Roughness roughness = readRoughness(context, parameters);
   conductor.alpha = roughness.alpha;
   conductor.alphaV = roughness.alphaV;
@@ -171,7 +179,7 @@ void readThinDielectric(LoadContext& context, Parameters& parameters, Material& 
 
 void readRoughDielectric(LoadContext& context, Parameters& parameters, Material& material) {
   Dielectric dielectric = readAnyDielectric(context, parameters);
-  dielectric.distribution = readDistribution(parameters);
+  dielectric.distribution = readDistribution(context, parameters);
   const Roughness roughness = readRoughness(context, parameters);
   dielectric.alpha = roughness.alpha;
   dielectric.alphaV = roughness.alphaV;
@@ -184,7 +192,7 @@ void readPlastic(LoadContext& context, Parameters& parameters, Material& materia
 
 void readRoughPlastic(LoadContext& context, Parameters& parameters, Material& material) {
   Plastic plastic = readAnyPlastic(context, parameters);
-  plastic.distribution = readDistribution(parameters);
+  plastic.distribution = readDistribution(context, parameters);
   plastic.alpha = readAlpha(context, parameters);
   // As in Mitsuba, where roughplastic takes only a number.
   if (plastic.alpha.texture != kNone) {
@@ -197,6 +205,40 @@ void readPhong(LoadContext& context, Parameters& parameters, Material& material)
   material.kind = Phong{.diffuseReflectance = readTexturedRgb(context, parameters, "diffuse_reflectance", 0.5),
                         .specularReflectance = readTexturedRgb(context, parameters, "specular_reflectance", 0.2),
                         .exponent = parameters.positiveReal("exponent", 30)};
+}
+
+namespace {
+
+// For a BSDF of 0.6 that is not supported: an error that names the nearest one, or with --lenient a warning.
+void replaceBsdf(LoadContext& context, const Parameters& parameters, const std::string& nearest) {
+  context.unsupported(parameters.location(), parameters.describe() + " of Mitsuba 0.6 is not supported" +
+                                                 (context.options.lenient ? " (replaced by the nearest)" : "") +
+                                                 "; expected " + nearest + ", the nearest");
+}
+
+}  // namespace
+
+// Oren-Nayar's BSDF, which is diffuse for an alpha of 0.
+void readRoughDiffuse(LoadContext& context, Parameters& parameters, Material& material) {
+  const TexturedFloat alpha = readTexturedFloat(context, parameters, "alpha", 0.2);
+  parameters.ignore({"use_fast_approx"});
+  if (alpha.texture != kNone || alpha.value != 0) {
+    replaceBsdf(context, parameters, "a bsdf \"diffuse\" of the same reflectance");
+  }
+  material.kind = Diffuse{.reflectance = readTexturedRgb(context, parameters, "reflectance", 0.5)};
+}
+
+// Ward's lobe is a Gaussian of the half vector's slope, as wide as a power of the cosine of 2 / alpha^2.
+void readWard(LoadContext& context, Parameters& parameters, Material& material) {
+  parameters.ignore({"variant"});
+  const Roughness roughness = readRoughness(context, parameters);
+  const double u = roughness.alpha.value, v = roughness.alphaV ? roughness.alphaV->value : u;
+  const double exponent = 2 / std::max(u * v, 1e-8);
+  replaceBsdf(context, parameters,
+              "a bsdf \"phong\" of the same reflectances and of exponent " + std::to_string(std::lround(exponent)));
+  material.kind = Phong{.diffuseReflectance = readTexturedRgb(context, parameters, "diffuse_reflectance", 0.5),
+                        .specularReflectance = readTexturedRgb(context, parameters, "specular_reflectance", 0.2),
+                        .exponent = exponent};
 }
 
 namespace {

@@ -14,6 +14,8 @@ void readRoughDielectric(LoadContext&, Parameters&, Material&);
 void readPlastic(LoadContext&, Parameters&, Material&);
 void readRoughPlastic(LoadContext&, Parameters&, Material&);
 void readPhong(LoadContext&, Parameters&, Material&);
+void readRoughDiffuse(LoadContext&, Parameters&, Material&);  // of Mitsuba 0.6, not supported: names the nearest
+void readWard(LoadContext&, Parameters&, Material&);          // likewise
 void readPrincipled(LoadContext&, Parameters&, Material&);
 void readPrincipledThin(LoadContext&, Parameters&, Material&);
 // Sums of others (blends.cpp).

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/load/cie_tables.h"
+#include "engine/load/input_file.h"
 #include "engine/load/parameters.h"
 #include "engine/load/transform.h"
 #include "engine/load/values.h"
@@ -26,9 +27,10 @@ Rgb xyzToRgb(const Rgb& xyz) {
 Rgb grey(double value) { return {value, value, value}; }
 Rgb scaled(double factor, const Rgb& color) { return {factor * color[0], factor * color[1], factor * color[2]}; }
 
-// A spectrum of one value everywhere. As emission it has the colour of illuminant E.
-Rgb uniformSpectrum(double value, ColorRole role) {
-  return role == ColorRole::emission ? scaled(value, xyzToRgb({1, 1, 1})) : grey(value);
+// A spectrum of one value everywhere. As emission it has the colour of illuminant E, but in files of 0.5 and 0.6 it is
+// R = G = B.
+Rgb uniformSpectrum(double value, ColorRole role, bool legacy) {
+  return role == ColorRole::emission && !legacy ? scaled(value, xyzToRgb({1, 1, 1})) : grey(value);
 }
 
 Rgb readSrgb(std::string_view text, const SourceLocation& where);
@@ -66,37 +68,99 @@ Rgb readSrgb(std::string_view text, const SourceLocation& where) {
   return linear;
 }
 
+// A piecewise linear spectrum as it stands in a file.
+struct Spectrum {
+  std::vector<double> wavelengths, values;
+
+  // Interpolation needs at least two wavelengths in increasing order.
+  Rgb toRgb(const SourceLocation& where, ColorRole role) const {
+    for (size_t i = 1; i < wavelengths.size(); ++i) {
+      if (wavelengths[i] > wavelengths[i - 1]) continue;
+      throw LoadError(where, "wavelengths of a spectrum do not increase at " + std::to_string(wavelengths[i]) +
+                                 "; expected them in increasing order");
+    }
+    if (wavelengths.size() < 2) {
+      throw LoadError(where, "spectrum has too few entries; expected one value, or two wavelengths and their values");
+    }
+    return spectrumToRgb(wavelengths, values, role);
+  }
+};
+
 // One value, or pairs "wavelength:value, …" in nm. Three numbers are an RGB colour.
-Rgb readSpectrum(std::string_view text, const SourceLocation& where, ColorRole role) {
+Rgb readSpectrum(std::string_view text, const XmlElement& element, ColorRole role) {
+  const SourceLocation where = element.location();
   const std::vector<std::string_view> tokens = splitTokens(text);
   if (tokens.size() == 1 && tokens[0].find(':') == std::string_view::npos) {
-    return uniformSpectrum(parseReal(tokens[0], where), role);
+    return uniformSpectrum(parseReal(tokens[0], where), role, element.legacy);
   }
   if (tokens.size() == 3 && text.find(':') == std::string_view::npos) return readRgb(text, where);  // of version 0.6
-  // Split the pairs. Interpolation needs increasing wavelengths.
-  std::vector<double> wavelengths, values;
+  Spectrum spectrum;
   for (const std::string_view token : tokens) {
     const size_t colon = token.find(':');
     if (colon == std::string_view::npos) {
       throw LoadError(where, "bad entry " + inQuotes(token) + " of a spectrum; expected wavelength:value");
     }
-    wavelengths.push_back(parseReal(token.substr(0, colon), where));
-    values.push_back(parseReal(token.substr(colon + 1), where));
-    if (wavelengths.size() > 1 && wavelengths.back() <= wavelengths[wavelengths.size() - 2]) {
-      throw LoadError(where, "wavelengths of a spectrum do not increase at " + inQuotes(token) +
-                                 "; expected them in increasing order");
-    }
+    spectrum.wavelengths.push_back(parseReal(token.substr(0, colon), where));
+    spectrum.values.push_back(parseReal(token.substr(colon + 1), where));
   }
-  if (wavelengths.size() < 2) {
-    throw LoadError(where, "spectrum " + inQuotes(text) + " has too few entries; expected one value or two pairs");
-  }
-  return spectrumToRgb(wavelengths, values, role);
+  return spectrum.toRgb(where, role);
 }
 
-// <spectrum type="uniform|d65|srgb">
+// A file with a wavelength and its value on each line; # begins a comment.
+Rgb readSpectrumFile(LoadContext& context, const XmlElement& element, ColorRole role) {
+  constexpr size_t kLargest = size_t{1} << 24;
+  const std::filesystem::path path = context.resolvePath(element.get("filename"), element);
+  const std::vector<char> bytes = readInputFile(path, element.location(), kLargest);
+  SourceLocation line{path.string(), 0};
+  Spectrum spectrum;
+  for (std::string_view text(bytes.data(), bytes.size()); !text.empty();) {
+    ++line.line;
+    const size_t end = std::min(text.size(), text.find('\n'));
+    const std::vector<double> numbers = parseReals(text.substr(0, std::min(end, text.find('#'))), line);
+    text.remove_prefix(std::min(text.size(), end + 1));
+    if (numbers.empty()) continue;
+    if (numbers.size() != 2) throw LoadError(line, "bad line of a spectrum; expected a wavelength and a value");
+    spectrum.wavelengths.push_back(numbers[0]);
+    spectrum.values.push_back(numbers[1]);
+  }
+  return spectrum.toRgb({path.string(), 0}, role);
+}
+
+// Radiance of a black body (Planck's law) as Mitsuba has it: W / (m^2 sr nm), from `first` to `last` nm.
+Rgb blackbody(double temperature, double first, double last, const SourceLocation& where, ColorRole role) {
+  constexpr double kC = 2.99792458e8, kH = 6.62607004e-34, kBoltzmann = 1.38064852e-23;
+  constexpr int kSteps = 1000;
+  if (role == ColorRole::reflectance || role == ColorRole::refraction) {
+    throw LoadError(where, "blackbody spectrum for what does not emit; expected it for a light");
+  }
+  if (!(temperature > 0)) throw LoadError(where, "temperature is not positive; expected kelvins above 0");
+  Spectrum spectrum;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double nm = first + (last - first) * i / kSteps, m = nm * 1e-9;
+    spectrum.wavelengths.push_back(nm);
+    spectrum.values.push_back(1e-9 * 2 * kH * kC * kC /
+                              (std::pow(m, 5) * std::expm1(kH * kC / (m * kBoltzmann * temperature))));
+  }
+  return spectrum.toRgb(where, role);
+}
+
+// <blackbody temperature="5000K" scale="…"/> of 0.5 and 0.6.
+Rgb readBlackbody(const XmlElement& element, ColorRole role) {
+  checkAttributes(element, {"name", "temperature", "scale"});
+  std::string_view temperature = element.get("temperature");
+  if (temperature.ends_with('K') || temperature.ends_with('k')) temperature.remove_suffix(1);
+  const std::string* scale = element.find("scale");
+  return scaled(scale ? parseReal(*scale, element.location()) : 1,
+                blackbody(parseReal(temperature, element.location()), kCieFirst, kCieLast, element.location(), role));
+}
+
+// <spectrum type="uniform|d65|srgb|regular|irregular|blackbody">
 Rgb readSpectrumObject(LoadContext& context, const XmlElement& object, ColorRole role) {
   Parameters parameters(context, object);
   const std::string_view type = object.get("type");
+  const auto numbers = [&](const char* name) {
+    return parseReals(parameters.requiredString(name), parameters.locationOf(name));
+  };
   Rgb color = grey(1);
   if (type == "uniform") {
     color = grey(parameters.requiredReal("value"));
@@ -107,9 +171,31 @@ Rgb readSpectrumObject(LoadContext& context, const XmlElement& object, ColorRole
     const XmlElement* value = parameters.element("color");
     if (!value) throw LoadError(object.location(), "spectrum \"srgb\" has no color; expected <rgb name=\"color\">");
     color = readColor(context, *value, parameters.boolean("unbounded", false) ? ColorRole::unbounded : role);
+  } else if (type == "irregular" || type == "regular") {
+    Spectrum spectrum{.wavelengths = {}, .values = numbers("values")};
+    if (type == "irregular") {
+      spectrum.wavelengths = numbers("wavelengths");
+    } else {
+      const double first = parameters.requiredReal("wavelength_min"), last = parameters.requiredReal("wavelength_max");
+      const size_t count = spectrum.values.size();
+      for (size_t i = 0; i < count; ++i) {
+        spectrum.wavelengths.push_back(first +
+                                       (last - first) * static_cast<double>(i) / static_cast<double>(count - 1));
+      }
+    }
+    if (spectrum.wavelengths.size() != spectrum.values.size()) {
+      throw LoadError(object.location(), "spectrum has " + std::to_string(spectrum.wavelengths.size()) +
+                                             " wavelengths and " + std::to_string(spectrum.values.size()) +
+                                             " values; expected as many of both");
+    }
+    color = spectrum.toRgb(object.location(), role);
+  } else if (type == "blackbody") {
+    color = blackbody(parameters.requiredReal("temperature"), parameters.real("wavelength_min", kCieFirst),
+                      parameters.real("wavelength_max", kCieLast), object.location(), role);
   } else {
     throw LoadError(object.location(),
-                    "spectrum " + inQuotes(type) + " is not supported; expected uniform, d65 or srgb");
+                    "spectrum " + inQuotes(type) +
+                        " is not supported; expected uniform, d65, srgb, regular, irregular or blackbody");
   }
   parameters.finish();
   return color;
@@ -151,6 +237,11 @@ Rgb spectrumToRgb(std::span<const double> wavelengths, std::span<const double> v
 Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role) {
   if (element.isObject() && element.tag == "spectrum") return readSpectrumObject(context, element, role);
   const SourceLocation where = element.location();
+  if (element.tag == "blackbody") return readBlackbody(element, role);
+  if (element.tag == "spectrum" && element.find("filename") != nullptr) {
+    checkAttributes(element, {"name", "filename"});
+    return readSpectrumFile(context, element, role);
+  }
   const std::string* value = element.find("value");
   Rgb color{};
   if (element.tag != "rgb" && element.tag != "srgb" && element.tag != "spectrum" && element.tag != "float" &&
@@ -165,7 +256,7 @@ Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role) {
   else if (element.tag == "srgb")
     color = readSrgb(*value, where);
   else if (element.tag == "spectrum")
-    color = readSpectrum(*value, where, role);
+    color = readSpectrum(*value, element, role);
   else
     color = grey(parseReal(*value, where));
   // Check the range that the role allows.

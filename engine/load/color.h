@@ -1,8 +1,9 @@
 // Colours of a scene file as linear Rec. 709 RGB, converted as Mitsuba's rgb variants do.
 //
-// A value is a <float> (grey), an <rgb>, an <srgb> (hexadecimal or gamma-encoded), a <spectrum> (one number, or
-// wavelength:value pairs) or an object <spectrum type=…>. What a spectrum becomes depends on its role: reflectance is
-// seen under D65 and clamped to [0, 1]; radiance is integrated as it is, so that a flat spectrum is slightly purple.
+// A value is a <float> (grey), an <rgb>, an <srgb> (hexadecimal or gamma-encoded), a <spectrum> (one number,
+// wavelength:value pairs or a file of them), a <blackbody> of 0.5 and 0.6, or an object <spectrum type=…>. What a
+// spectrum becomes depends on its role: reflectance is seen under D65 and clamped to [0, 1]; radiance is integrated as
+// it is, so that a flat spectrum is slightly pink (in files of 0.5 and 0.6 <spectrum> with one number is grey).
 #pragma once
 
 #include <span>

@@ -7,6 +7,7 @@
 #include "engine/load/materials.h"
 #include "engine/load/perspective.h"
 #include "engine/load/values.h"
+#include "engine/scene/vector_math.h"
 
 namespace wavecrest {
 
@@ -173,17 +174,28 @@ void checkEnvironmentTransform(LoadContext& context, const Parameters& parameter
 
 namespace {
 
-// The bitmap without negative values, which a light cannot have. A note counts those that become 0.
+// The bitmap without texels of negative luminance, which a light cannot have. A note counts those that become 0. Other
+// negative values are those of colours outside of Rec. 709, and stay as in Mitsuba.
 std::shared_ptr<const Bitmap> withoutNegatives(LoadContext& context, std::shared_ptr<const Bitmap> bitmap,
                                                const std::string& filename, const SourceLocation& where) {
-  const auto isNegative = [](float value) { return value < 0; };
-  const auto count = std::ranges::count_if(bitmap->pixels, isNegative);
-  if (count == 0) return bitmap;
-  context.note(where, "negative values in the environment " + inQuotes(filename) + ": " + std::to_string(count),
-               "0 is used");
+  const size_t channels = bitmap->channels;
+  const auto isNegative = [&](size_t texel) {
+    const float* const p = &bitmap->pixels[texel * channels];
+    const Rgb colour = channels == 3 ? Rgb{p[0], p[1], p[2]} : Rgb{p[0], p[0], p[0]};
+    return luminance(colour) < 0 || (luminance(colour) == 0 && colour != Rgb{0, 0, 0});
+  };
+  std::vector<size_t> negative;
+  for (size_t i = 0; i < bitmap->pixels.size() / channels; ++i) {
+    if (isNegative(i)) negative.push_back(i);
+  }
+  if (negative.empty()) return bitmap;
+  context.note(
+      where,
+      "texels of negative luminance in the environment " + inQuotes(filename) + ": " + std::to_string(negative.size()),
+      "black is used");
   // A copy, as textures may share the bitmap.
   auto clamped = std::make_shared<Bitmap>(*bitmap);
-  std::ranges::replace_if(clamped->pixels, isNegative, 0.0f);
+  for (const size_t texel : negative) std::fill_n(&clamped->pixels[texel * channels], channels, 0.0f);
   return clamped;
 }
 

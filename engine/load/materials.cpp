@@ -96,7 +96,10 @@ uint32_t defaultMaterial(LoadContext& context, bool isLight) {
 
 void readBsdf(LoadContext& context, const XmlElement& bsdf, Material& material) {
   const ReadingGuard guard(context, bsdf);
-  const BsdfPlugin* plugin = findPlugin(context, bsdfPlugins(), bsdf, "replaced by diffuse of reflectance 0.5");
+  const auto replaced = std::ranges::find(replacedBsdfPlugins(), bsdf.get("type"), &BsdfPlugin::type);
+  const BsdfPlugin* plugin = replaced != replacedBsdfPlugins().end()
+                                 ? &*replaced
+                                 : findPlugin(context, bsdfPlugins(), bsdf, "replaced by diffuse of reflectance 0.5");
   // Without --lenient an unknown type is an error, and this is not reached.
   if (!plugin) {
     material.kind = Diffuse{};

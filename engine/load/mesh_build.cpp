@@ -85,7 +85,8 @@ Facet facetOf(const Mesh& mesh, const std::array<uint32_t, 3>& triangle) {
 
 // The mean of the face normals weighted by the angle at the vertex (Thürmer and Wüthrich, "Computing Vertex Normals
 // from Polygonal Facets", JGT 3(1), 1998).
-std::vector<Float3> smoothNormals(const Mesh& mesh) {
+std::vector<Float3> smoothNormals(const Mesh& mesh, std::span<const uint32_t> vertexOf) {
+  const auto placeOf = [&](size_t vertex) { return vertexOf.empty() ? vertex : vertexOf[vertex]; };
   std::vector<Double3> sums(mesh.positions.size(), Double3{0, 0, 0});
   // The facets of some ranges at a time are found by all threads. One adds them in the order of the triangles, so that
   // the sums do not depend on threads.
@@ -99,7 +100,7 @@ std::vector<Float3> smoothNormals(const Mesh& mesh) {
     });
     for (size_t i = 0; i < count; ++i) {
       for (size_t k = 0; k < 3; ++k) {
-        Double3& sum = sums[triangles[i][k]];
+        Double3& sum = sums[placeOf(triangles[i][k])];
         sum = sum + facets[i].angle[k] * facets[i].normal;
       }
     }
@@ -108,8 +109,9 @@ std::vector<Float3> smoothNormals(const Mesh& mesh) {
   forEachRange(parallelFor, sums.size(), [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       // Opposite faces cancel, and an unused vertex has none: any direction will do, Mitsuba takes x.
-      const double size = length(sums[i]);
-      normals[i] = size > 1e-20 ? toFloat((1 / size) * sums[i]) : Float3{1, 0, 0};
+      const Double3& sum = sums[placeOf(i)];
+      const double size = length(sum);
+      normals[i] = size > 1e-20 ? toFloat((1 / size) * sum) : Float3{1, 0, 0};
     }
   });
   return normals;
@@ -124,8 +126,8 @@ Float3 placedNormal(const Matrix4& normalMatrix, const Float3& normal) {
 namespace {
 
 // Replaces normals that are zero by smooth normals.
-void fillMissingNormals(Mesh& mesh) {
-  const std::vector<Float3> smooth = smoothNormals(mesh);
+void fillMissingNormals(Mesh& mesh, std::span<const uint32_t> vertexOf) {
+  const std::vector<Float3> smooth = smoothNormals(mesh, vertexOf);
   for (size_t i = 0; i < smooth.size(); ++i) {
     if (mesh.normals[i] == Float3{0, 0, 0}) mesh.normals[i] = smooth[i];
   }
@@ -169,9 +171,9 @@ Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& pla
     placeNormals(mesh.normals, placement.toWorld);
     windAlongNormals(mesh);
     const bool complete = std::find(mesh.normals.begin(), mesh.normals.end(), Float3{0, 0, 0}) == mesh.normals.end();
-    if (!complete) fillMissingNormals(mesh);
+    if (!complete) fillMissingNormals(mesh, soup.vertexOf);
   } else {
-    mesh.normals = smoothNormals(mesh);
+    mesh.normals = smoothNormals(mesh, soup.vertexOf);
   }
   // Turn the mesh around if asked, and bake its attribute into a bitmap.
   if (placement.flipNormals) turnAround(mesh);

@@ -1,6 +1,8 @@
 // From triangles as a file gives them (object space) to a Mesh of the scene: placed, oriented, with its normals.
 #pragma once
 
+#include <span>
+
 #include "engine/load/context.h"
 #include "engine/load/matrix.h"
 #include "engine/load/mesh_attributes.h"
@@ -13,6 +15,8 @@ struct TriangleSoup {
   std::vector<Float3> normals;  // empty or one per position
   std::vector<Float2> uvs;      // empty or one per position
   std::vector<std::array<uint32_t, 3>> triangles;
+  // Of copies that differ in texture coordinates alone: the vertex that they are. Empty: all vertices are their own.
+  std::vector<uint32_t> vertexOf;
   MeshAttribute attribute;    // without values: none is asked for
   uint64_t droppedFaces = 0;  // of fewer than three corners
 };
@@ -32,8 +36,8 @@ struct MeshPlacement {
 // An attribute is baked: the bitmap becomes LoadContext::attributeBitmap.
 Mesh buildMesh(LoadContext& context, TriangleSoup soup, const MeshPlacement& placement, const SourceLocation& where);
 
-// Normals of all vertices as a mesh has them that is not given any: unit vectors.
-std::vector<Float3> smoothNormals(const Mesh& mesh);
+// Normals of all vertices as a mesh has them that is not given any: unit vectors. vertexOf: as in TriangleSoup.
+std::vector<Float3> smoothNormals(const Mesh& mesh, std::span<const uint32_t> vertexOf = {});
 // A normal of a file after a transform: a unit vector, or zero where it has no direction. normalMatrix: see matrix.h.
 Float3 placedNormal(const Matrix4& normalMatrix, const Float3& normal);
 // Makes the other side of all triangles the front, as flip_normals does.

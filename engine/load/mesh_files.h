@@ -8,7 +8,7 @@
 
 namespace wavecrest {
 
-// `where` is the line of the XML that names the file. Polygons are cut into fans of triangles.
+// `where` is the line of the XML that names the file. Polygons are cut into triangles (polygon.h).
 // `attribute` is the name of one to read along, or empty.
 TriangleSoup readPly(const std::filesystem::path& path, bool flipTexCoords, const SourceLocation& where,
                      const std::string& attribute = {});

@@ -4,7 +4,9 @@
 
 #include "engine/load/input_file.h"
 #include "engine/load/mesh_files.h"
+#include "engine/load/polygon.h"
 #include "engine/load/text_scanner.h"
+#include "engine/load/triple_hash.h"
 
 namespace wavecrest {
 
@@ -19,13 +21,7 @@ struct Corner {
 };
 
 struct CornerHash {
-  // Mixes all bits, so that no choice of indices can crowd the table (finalizer of splitmix64).
-  static uint64_t mix(uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-  }
-  size_t operator()(const Corner& c) const { return mix(mix((uint64_t{c.position} << 32) + c.uv) + c.normal); }
+  size_t operator()(const Corner& c) const { return TripleHash{}({c.position, c.uv, c.normal}); }
 };
 
 // Reads a file line by line. A face can refer only to positions, normals and coordinates above it.
@@ -94,29 +90,30 @@ class ObjReader {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n';
   }
 
-  // Cuts a polygon into a fan of triangles around its first corner. As in Mitsuba, faces of fewer corners are left out.
+  // Reads a face and cuts it into triangles. As in Mitsuba, faces of fewer than three corners are left out.
   void readFace() {
-    // A face has three corners at least, so the first two become vertices once there is a third.
-    Corner start[2];
-    // The vertices of the first corner and of the two latest ones.
-    uint32_t fan[3] = {};
-    size_t corners = 0;
-    for (; !scanner_.atLineEnd() && scanner_.peek() != '#'; ++corners) {
-      const Corner corner = readCorner();
+    face_.clear();
+    while (!scanner_.atLineEnd() && scanner_.peek() != '#') {
+      face_.push_back(readCorner());
       if (!atCornerEnd()) scanner_.fail("face corner is malformed; expected v, v/vt, v//vn or v/vt/vn");
-      if (corners < 2) {
-        start[corners] = corner;
-        continue;
-      }
-      if (corners == 2) {
-        fan[0] = vertexOf(start[0]);
-        fan[1] = vertexOf(start[1]);
-      }
-      fan[2] = vertexOf(corner);
-      triangles_.push_back({fan[0], fan[1], fan[2]});
-      fan[1] = fan[2];
     }
-    if (corners < 3) ++droppedFaces_;
+    if (face_.size() < 3) {
+      ++droppedFaces_;
+      return;
+    }
+    faceVertices_.clear();
+    for (const Corner& corner : face_) faceVertices_.push_back(vertexOf(corner));
+    if (face_.size() == 3) {
+      triangles_.push_back({faceVertices_[0], faceVertices_[1], faceVertices_[2]});
+      return;
+    }
+    facePositions_.clear();
+    for (const Corner& corner : face_) facePositions_.push_back(positions_[corner.position]);
+    const auto triangles = cutPolygon(facePositions_);
+    if (triangles.empty()) scanner_.fail(tooManyCorners(face_.size()));
+    for (const auto& [a, b, c] : triangles) {
+      triangles_.push_back({faceVertices_[a], faceVertices_[b], faceVertices_[c]});
+    }
   }
 
   // The index of the vertex for a corner. Equal corners share one vertex.
@@ -151,6 +148,10 @@ class ObjReader {
   std::vector<Corner> corners_;
   std::unordered_map<Corner, uint32_t, CornerHash> vertices_;
   std::vector<std::array<uint32_t, 3>> triangles_;
+  // Of the face being read.
+  std::vector<Corner> face_;
+  std::vector<uint32_t> faceVertices_;
+  std::vector<Float3> facePositions_;
 };
 
 }  // namespace

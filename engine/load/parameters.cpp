@@ -13,8 +13,9 @@ namespace wavecrest {
 namespace {
 
 // Tags of values. A <spectrum> with a type is an object instead.
-constexpr std::array<std::string_view, 11> kValueTags = {"boolean",  "integer", "float", "string", "point",    "vector",
-                                                         "spectrum", "rgb",     "srgb",  "color",  "transform"};
+constexpr std::array<std::string_view, 12> kValueTags = {"boolean", "integer", "float",    "string",
+                                                         "point",   "vector",  "spectrum", "blackbody",
+                                                         "rgb",     "srgb",    "color",    "transform"};
 
 // A tag as files write it, for messages.
 std::string article(std::string_view tag) { return "<" + std::string(tag) + ">"; }
@@ -233,6 +234,12 @@ void Parameters::finish() {
       context_.unsupported(child.site->location(),
                            article(child.target->tag) + " in " + describe() +
                                ": light transport in media is not supported; expected surfaces only");
+      continue;
+    }
+    // As Mitsuba 0.6 did, in its files.
+    if (object_.legacy && !child.target->isObject()) {
+      context_.note(child.site->location(), "parameter " + inQuotes(child.name) + " of " + describe(),
+                    "left out, since wavecrest does not know it");
       continue;
     }
     // For anything else, the message lists the names that the reader has asked for.

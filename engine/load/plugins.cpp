@@ -60,6 +60,11 @@ std::span<const BsdfPlugin> bsdfPlugins() {
   return kPlugins;
 }
 
+std::span<const BsdfPlugin> replacedBsdfPlugins() {
+  static constexpr BsdfPlugin kPlugins[] = {{"roughdiffuse", &readRoughDiffuse}, {"ward", &readWard}};
+  return kPlugins;
+}
+
 // `scale` is of Mitsuba 0.6.
 std::span<const TexturePlugin> texturePlugins() {
   static constexpr TexturePlugin kPlugins[] = {{"bitmap", &readBitmapTexture},

@@ -29,6 +29,7 @@ using SensorPlugin = Plugin<void (*)(Parameters&, Sensor&)>;
 using FilterPlugin = Plugin<void (*)(Parameters&, FilmSettings&)>;
 
 std::span<const BsdfPlugin> bsdfPlugins();
+std::span<const BsdfPlugin> replacedBsdfPlugins();  // of Mitsuba 0.6: each names the nearest that is supported
 std::span<const TexturePlugin> texturePlugins();
 std::span<const ShapePlugin> shapePlugins();
 std::span<const EmitterPlugin> emitterPlugins();  // all but `area`, which belongs to a shape

@@ -4,11 +4,16 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <optional>
+#include <unordered_map>
 
 #include "engine/load/input_file.h"
 #include "engine/load/mesh_files.h"
 #include "engine/load/ply_header.h"
+#include "engine/load/polygon.h"
 #include "engine/load/text_scanner.h"
+#include "engine/load/triple_hash.h"
 #include "engine/tasks/parallel_for.h"
 #include "kernels/columns/parallel_ranges.h"
 
@@ -109,6 +114,17 @@ class BinarySource {
   SourceLocation where_;
 };
 
+// The number of items of a list property.
+template <class Source>
+uint64_t readCount(Source& source, const PlyProperty& property) {
+  const int64_t count = source.integer(property.countType);
+  if (count < 0) source.fail("list has a negative length; expected 0 or more");
+  if (!source.canHold(property.type, static_cast<uint64_t>(count))) {
+    source.fail("list has " + std::to_string(count) + " items but the file ends; expected the announced elements");
+  }
+  return static_cast<uint64_t>(count);
+}
+
 // A row holds the properties of one vertex. Slots 0 to 2 are the position, 3 to 5 the normal, 6 and 7 the texture
 // coordinates, and 9 to 11 the attribute. All properties that are not needed share slot 8.
 constexpr int kNormalSlot = 3, kUvSlot = 6, kNoSlot = 8, kAttributeSlot = 9, kRowSlots = 12;
@@ -196,9 +212,7 @@ void readVertices(Source& source, const PlyElement& element, const SourceLocatio
       if (!property.isList) {
         row[slots[j]] = source.real(property.type);
       } else {
-        const int64_t count = source.integer(property.countType);
-        if (count < 0) source.fail("list has a negative length; expected 0 or more");
-        source.skip(property.type, static_cast<uint64_t>(count));
+        source.skip(property.type, readCount(source, property));
       }
     }
     if (!isFinite(row, 3)) source.fail("vertex " + std::to_string(i) + " is not finite; expected finite coordinates");
@@ -219,27 +233,100 @@ void readVertices(Source& source, const PlyElement& element, const SourceLocatio
   }
 }
 
-// Reads the indices of one face and cuts it into a fan of triangles around its first corner.
+// One face of the file: vertices and texture coordinates of its corners, these with u and v in turn.
+struct PlyFace {
+  std::vector<uint32_t> vertices;
+  std::vector<float> uvs;
+  std::vector<Float3> positions;  // of the vertices, if there are more than three
+};
+
+// Reads the vertices of a face.
 template <class Source>
-void readPolygon(Source& source, const PlyProperty& property, uint64_t vertexCount, TriangleSoup& soup) {
-  const int64_t corners = source.integer(property.countType);
+void readCorners(Source& source, const PlyProperty& property, uint64_t vertexCount, std::vector<uint32_t>& vertices) {
+  const uint64_t corners = readCount(source, property);
   if (corners < 3) source.fail("face has " + std::to_string(corners) + " corners; expected at least 3");
-  if (!source.canHold(property.type, static_cast<uint64_t>(corners))) {
-    source.fail("face has " + std::to_string(corners) + " corners but the file ends; expected the announced elements");
-  }
-  // The first corner of the face and its two latest ones.
-  uint32_t fan[3] = {};
-  for (int64_t i = 0; i < corners; ++i) {
+  vertices.resize(corners);
+  for (uint32_t& vertex : vertices) {
     const int64_t index = source.integer(property.type);
     if (index < 0 || static_cast<uint64_t>(index) >= vertexCount) {
       source.fail("face refers to vertex " + std::to_string(index) + "; expected 0 to " +
                   std::to_string(static_cast<int64_t>(vertexCount) - 1));
     }
-    fan[std::min<int64_t>(i, 2)] = static_cast<uint32_t>(index);
-    if (i < 2) continue;
-    soup.triangles.push_back({fan[0], fan[1], fan[2]});
-    fan[1] = fan[2];
+    vertex = static_cast<uint32_t>(index);
   }
+}
+
+// Reads the texture coordinates of a face's corners. A face without a texture may have none.
+template <class Source>
+void readCornerUvs(Source& source, const PlyProperty& property, std::vector<float>& uvs) {
+  uvs.resize(readCount(source, property));
+  for (float& coordinate : uvs) coordinate = source.real(property.type);
+  if (!isFinite(uvs.data(), static_cast<int>(uvs.size()))) {
+    source.fail("texture coordinates of a face are not finite; expected finite numbers");
+  }
+}
+
+// Gives the corners of faces vertices with their texture coordinates: the vertex itself to the first corner that is
+// there, and copies to those that differ from it.
+class CornerVertices {
+ public:
+  explicit CornerVertices(TriangleSoup& soup) : soup_(soup), taken_(soup.positions.size()) {
+    soup.uvs.assign(soup.positions.size(), Float2{});
+    soup.vertexOf.resize(soup.positions.size());
+    std::iota(soup.vertexOf.begin(), soup.vertexOf.end(), 0);
+  }
+
+  uint32_t operator()(uint32_t vertex, const Float2& uv) {
+    const std::array<uint32_t, 3> corner{vertex, std::bit_cast<uint32_t>(uv[0]), std::bit_cast<uint32_t>(uv[1])};
+    const auto [entry, inserted] = known_.try_emplace(corner, vertex);
+    if (!inserted) return entry->second;
+    if (!taken_[vertex]) {
+      taken_[vertex] = true;
+      soup_.uvs[vertex] = uv;
+      return vertex;
+    }
+    // A copy of the vertex with all that it has.
+    entry->second = static_cast<uint32_t>(soup_.positions.size());
+    soup_.positions.push_back(Float3{soup_.positions[vertex]});
+    if (!soup_.normals.empty()) soup_.normals.push_back(Float3{soup_.normals[vertex]});
+    soup_.uvs.push_back(uv);
+    soup_.vertexOf.push_back(vertex);
+    MeshAttribute& attribute = soup_.attribute;
+    for (size_t c = 0; !attribute.perFace() && c < attribute.channels; ++c) {
+      attribute.values.push_back(float{attribute.values[vertex * attribute.channels + c]});
+    }
+    return entry->second;
+  }
+
+ private:
+  TriangleSoup& soup_;
+  std::vector<bool> taken_;
+  std::unordered_map<std::array<uint32_t, 3>, uint32_t, TripleHash> known_;
+};
+
+// Cuts a face into triangles.
+template <class Source>
+void addFace(const Source& source, PlyFace& face, CornerVertices* cornerVertices, TriangleSoup& soup) {
+  std::vector<uint32_t>& vertices = face.vertices;
+  if (cornerVertices != nullptr) {
+    if (!face.uvs.empty() && face.uvs.size() != 2 * vertices.size()) {
+      source.fail("face of " + std::to_string(vertices.size()) + " corners has " + std::to_string(face.uvs.size()) +
+                  " texture coordinates; expected u and v for each corner");
+    }
+    for (size_t i = 0; i < vertices.size(); ++i) {
+      vertices[i] =
+          (*cornerVertices)(vertices[i], face.uvs.empty() ? Float2{} : Float2{face.uvs[2 * i], face.uvs[2 * i + 1]});
+    }
+  }
+  if (vertices.size() == 3) {
+    soup.triangles.push_back({vertices[0], vertices[1], vertices[2]});
+    return;
+  }
+  face.positions.clear();
+  for (const uint32_t vertex : vertices) face.positions.push_back(soup.positions[vertex]);
+  const auto triangles = cutPolygon(face.positions);
+  if (triangles.empty()) source.fail(tooManyCorners(vertices.size()));
+  for (const auto& [a, b, c] : triangles) soup.triangles.push_back({vertices[a], vertices[b], vertices[c]});
 }
 
 // Faces as most files have them: a count in one byte, three indices of four bytes each, and nothing else. Reads them
@@ -271,39 +358,44 @@ bool readTriangles(BinarySource& source, const PlyElement& element, uint64_t ver
   return complete;
 }
 
+bool isIndices(const PlyProperty& property) {
+  return property.isList && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+// Texture coordinates of corners, as MeshLab names them.
+bool isCornerUvs(const PlyProperty& property) { return property.isList && property.name == "texcoord"; }
+
 // Reads the element "face". All triangles of a face have its attribute.
 template <class Source>
 void readFaces(Source& source, const PlyElement& element, uint64_t vertexCount, const SourceLocation& where,
                TriangleSoup& soup) {
-  const auto isIndices = [](const PlyProperty& property) {
-    return property.isList && (property.name == "vertex_indices" || property.name == "vertex_index");
-  };
   // One list gives the corners of a face.
-  if (std::count_if(element.properties.begin(), element.properties.end(), isIndices) != 1) {
+  if (std::ranges::count_if(element.properties, isIndices) != 1) {
     throw LoadError({where.file, element.line},
                     "PLY faces have no vertices; expected one list property vertex_indices or vertex_index");
   }
-  // Read the rows. The attribute may stand behind the corners, so triangles get it at the end of the row.
   soup.triangles.reserve(element.count);
   startAttribute(element, true, soup.attribute);
   const bool hasAttribute = soup.attribute.channels != 0 && soup.attribute.perFace();
   if (!hasAttribute && readTriangles(source, element, vertexCount, soup)) return;
+  // Read the rows. What belongs to corners and faces may stand in any order, so a face is added at the end of its row.
+  std::optional<CornerVertices> cornerVertices;
+  if (std::ranges::any_of(element.properties, isCornerUvs)) cornerVertices.emplace(soup);
+  PlyFace face;
   float values[3] = {};
   for (uint64_t i = 0; i < element.count; ++i) {
-    const size_t firstTriangle = soup.triangles.size();
     for (const PlyProperty& property : element.properties) {
       if (const int channel = hasAttribute ? attributeChannel(soup.attribute, property) : -1; channel >= 0) {
         values[channel] = source.real(property.type);
       } else if (isIndices(property)) {
-        readPolygon(source, property, vertexCount, soup);
-      } else if (property.isList) {
-        const int64_t count = source.integer(property.countType);
-        if (count < 0) source.fail("list has a negative length; expected 0 or more");
-        source.skip(property.type, static_cast<uint64_t>(count));
+        readCorners(source, property, vertexCount, face.vertices);
+      } else if (isCornerUvs(property)) {
+        readCornerUvs(source, property, face.uvs);
       } else {
-        source.skip(property.type, 1);
+        source.skip(property.type, property.isList ? readCount(source, property) : 1);
       }
     }
+    const size_t firstTriangle = soup.triangles.size();
+    addFace(source, face, cornerVertices ? &*cornerVertices : nullptr, soup);
     for (size_t t = firstTriangle; hasAttribute && t < soup.triangles.size(); ++t)
       appendAttribute(source, values, soup);
   }
@@ -315,9 +407,7 @@ void skipElement(Source& source, const PlyElement& element) {
   if (element.properties.empty()) return;
   for (uint64_t i = 0; i < element.count; ++i) {
     for (const PlyProperty& property : element.properties) {
-      const int64_t count = property.isList ? source.integer(property.countType) : 1;
-      if (count < 0) source.fail("list has a negative length; expected 0 or more");
-      source.skip(property.type, static_cast<uint64_t>(count));
+      source.skip(property.type, property.isList ? readCount(source, property) : 1);
     }
   }
 }

@@ -27,8 +27,6 @@ enum SerializedFlag : uint32_t {
   kDoublePrecision = 0x2000
 };
 
-constexpr uint64_t kMostDeflateShrinks = 1032;  // the highest ratio that deflate can reach
-
 // Inflates the zlib stream of a mesh piece by piece, into memory of the caller.
 class DeflatedStream {
  public:
@@ -168,13 +166,16 @@ SerializedMesh readSerialized(std::span<const char> file, const std::string& nam
   // Read the flags, and skip the name that version 4 has.
   const auto flags = stream.value<uint32_t>();
   if (version == 4) {
+    constexpr int kLongestName = 1 << 16;
+    int length = 0;
     while (stream.value<char>() != 0) {
+      if (++length > kLongestName) stream.fail("name of a mesh has no end; expected at most 65536 characters");
     }
   }
-  // Refuse counts that no stream of this size can hold, before memory is allocated for them.
+  // Refuse counts that no mesh has in a stream of this size, before memory is allocated for them.
   const auto vertices = stream.value<uint64_t>(), triangles = stream.value<uint64_t>();
-  const uint64_t most = kMostDeflateShrinks * compressed.size();
-  if (vertices > most / sizeof(Float3) || triangles > most / sizeof(Float3)) {
+  const uint64_t most = kHighestRatio * compressed.size() + (size_t{1} << 20);
+  if (vertices > most / sizeof(Float3) || triangles > most / sizeof(Float3) - vertices) {
     stream.fail("mesh announces " + std::to_string(vertices) + " vertices and " + std::to_string(triangles) +
                 " triangles in " + std::to_string(compressed.size()) + " bytes; expected fewer");
   }

@@ -133,14 +133,16 @@ void addShape(LoadContext& context, const XmlElement& element) {
   ignoreCommonParameters(parameters);
   parameters.finish();
 
-  // A shape needs a positive and finite area. Without it a light is an error, and any other shape is unsupported.
+  // Without area there is nothing to see, and nothing that shines.
   const double area = surfaceArea(shape.kind);
-  if (!(area > 0) || !std::isfinite(area)) {
-    const std::string message = parameters.describe() + (light ? ", a light," : "") +
-                                (area > 0 ? " has an infinite area" : " has no area") + "; expected a positive area";
-    if (light) throw LoadError(element.location(), message);
-    context.unsupported(element.location(), message);
+  if (area == 0) {
+    if (light) context.areaLights.insert(light);
+    context.note(element.location(), parameters.describe() + " without area",
+                 light ? "left out with its light" : "left out");
     return;
+  }
+  if (!std::isfinite(area)) {
+    throw LoadError(element.location(), parameters.describe() + " has an infinite area; expected a finite area");
   }
   if (context.shapeGroup != kNone && light) {
     throw LoadError(light->location(), "light inside a shapegroup; expected instances without lights");

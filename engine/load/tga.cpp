@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "metrics/image/image_io.h"
+
 namespace wavecrest {
 
 namespace {
@@ -66,6 +68,7 @@ class TgaReader {
       fail("TGA of " + std::to_string(width_) + " x " + std::to_string(height_) + " pixels in " +
            std::to_string(bytes_.size()) + " bytes");
     }
+    checkDecodedSize(path_, width_, height_, bytes_.size());
   }
 
   // The position of the colour of the pixel at position `at`: the pixel itself, or an entry of the palette.

@@ -37,11 +37,6 @@ struct LightPilot {
   int64_t splats = 0, exponents = 0;
 };
 
-// The light paths that an iteration has, if memory allows.
-inline size_t lightPathsWanted(const RenderSettings& settings, size_t pixels) {
-  return static_cast<size_t>(settings.lightPaths.value_or(pixels));
-}
-
 // What a session with this plan and these settings will hold. pilot: of a method whose light paths are not those of
 // chains. Throws MemoryBudgetError where it does not fit the settings' budget.
 template <class S>

@@ -176,9 +176,15 @@ size_t iterationsAtOnce(const RenderSettings& settings, size_t pixels) {
   constexpr size_t kPiecesPerThread = 8, kMost = 8;
   if (settings.cutForThreads() <= 1) return 1;
   // Take as many iterations as give each thread kPiecesPerThread pieces.
-  const size_t lightPaths = settings.lightPaths.value_or(pixels);
+  const size_t lightPaths = lightPathsWanted(settings, pixels);
   const size_t pieces = piecesOf(pixels, settings.waveSize) + piecesOf(lightPaths, settings.waveSize);
   return std::clamp<size_t>(piecesOf(kPiecesPerThread * settings.cutForThreads(), pieces), 1, kMost);
+}
+
+size_t lightPathsWanted(const RenderSettings& settings, size_t pixels) {
+  if (settings.lightPaths) return static_cast<size_t>(*settings.lightPaths);
+  const PathStrategies strategies = strategiesOf(pageOf(settings));
+  return strategies.merge && !strategies.connect ? std::max(pixels, kLeastLightPaths) : pixels;
 }
 
 RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film, size_t pixels) {
@@ -203,8 +209,9 @@ RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film,
   if (page.hasChains()) {
     cut.waveSize = pieceSize(std::max<size_t>(settings.metropolis.chains, 1), threads, settings.waveSize);
   } else {
+    const size_t paths = std::max(pixels, lightPathsWanted(settings, pixels));
     cut.waveSize =
-        pieceSize(pixels, threads, settings.waveSize, page.has(Fold::photonMap) ? kLeastWithMap : kLeastWithLight);
+        pieceSize(paths, threads, settings.waveSize, page.has(Fold::photonMap) ? kLeastWithMap : kLeastWithLight);
   }
   cut.waveSize = std::max(cut.waveSize, least);
   return cut;

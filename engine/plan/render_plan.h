@@ -79,6 +79,11 @@ size_t iterationsAtOnce(const RenderSettings& settings, size_t pixels);
 inline size_t piecesOf(size_t items, size_t size) { return (items + size - 1) / size; }
 inline size_t itemsOfPiece(size_t index, size_t items, size_t size) { return std::min(size, items - index * size); }
 
+// The light paths that an iteration has, if memory allows: those of the settings, or one per pixel. Methods that do
+// nothing but merge have kLeastLightPaths at least: on a film of a few pixels they would find no photon.
+constexpr size_t kLeastLightPaths = 4096;
+size_t lightPathsWanted(const RenderSettings& settings, size_t pixels);
+
 // The settings with waves cut by pieceSize, for a method whose waves are pieces of work. pixels: of the rendered part
 // of the film. Where samples are spread, a wave has room for a tile.
 RenderSettings withPieces(const RenderSettings& settings, const FilmSettings& film, size_t pixels);

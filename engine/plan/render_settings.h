@@ -81,8 +81,8 @@ struct RenderSettings {
   double connectionRoulette = 0.2;
   bool directPass = false;      // ppm: direct light by next event estimation, the rest from photons
   uint64_t firstIteration = 0;  // of this session: what came before was rendered by another
-  // N_L, the light paths of an iteration: one per pixel unless stated. Only methods with a photon map may have another
-  // number; the others join each light path with its own camera path.
+  // N_L, the light paths of an iteration: one per pixel unless stated (lightPathsWanted). Only methods with a photon
+  // map may have another number; the others join each light path with its own camera path.
   std::optional<uint64_t> lightPaths;
   std::optional<uint64_t> memoryBytes;           // budget; lowers N_L where that is what fills the memory
   std::optional<uint64_t> iterations;            // stop after this many,

@@ -89,9 +89,8 @@ class ShapeWriter {
     // Without a transform, if the loader then makes the same cylinder.
     Matrix4 toWorld = identityMatrix();
     Double3 p0 = c.p0, p1 = c.p1;
-    bool flip = c.flipNormals;
     double radius = radiusOf(c, toWorld, p0, p1);
-    if (!isSame(placeCylinder(toWorld, p0, p1, radius, flip), c)) {
+    if (!isSame(placeCylinder(toWorld, p0, p1, radius, c.flipNormals), c)) {
       // Otherwise as the image of a cylinder from 0 to 1 on the z axis, whose phi begins at x.
       const auto unit = [](const Double3& v) { return normalized(v); };
       constexpr double kStep = 1e-9;  // small: the two may differ in length by little
@@ -100,10 +99,9 @@ class ShapeWriter {
       toWorld = fromColumns(unitPreimage(c.phi0, kStep, unit), unitPreimage(c.phi90, kStep, unit), axis, c.p0);
       p0 = {0, 0, 0};
       p1 = {0, 0, 1};
-      flip = c.flipNormals != (determinant3(toWorld) < 0);
       radius = radiusOf(c, toWorld, p0, p1);
     }
-    const pugi::xml_node node = placed("cylinder", toWorld, flip);
+    const pugi::xml_node node = placed("cylinder", toWorld, c.flipNormals);
     addPoint(node, "p0", p0);
     addPoint(node, "p1", p1);
     addFloat(node, "radius", radius);

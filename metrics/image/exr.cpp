@@ -25,6 +25,7 @@
 
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/codecs.h"
+#include "metrics/image/exr_colour.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {
@@ -179,18 +180,6 @@ void setLimitsOnce() {
 
 // ---- reading --------------------------------------------------------------------------------------------------------
 
-// The names of the three channels of a layer: R G B, or one Y for all three. Empty: the layer is not there.
-std::vector<std::string> channelsOfLayer(const Imf::ChannelList& channels, const std::string& layer) {
-  const std::string prefix = layer.empty() ? "" : layer + ".";
-  for (const auto& names : {std::vector<std::string>{"R", "G", "B"}, std::vector<std::string>{"Y"}}) {
-    std::vector<std::string> found;
-    for (const std::string& name : names)
-      if (channels.findChannel((prefix + name).c_str())) found.push_back(prefix + name);
-    if (found.size() == names.size()) return found;
-  }
-  return {};
-}
-
 // The first 16 channel names of a file, for error messages.
 std::string listChannels(const Imf::ChannelList& channels) {
   std::string list;
@@ -202,19 +191,20 @@ std::string listChannels(const Imf::ChannelList& channels) {
   return list.empty() ? "none" : list;
 }
 
-// The pixels of a layer, always with three channels. An empty name is the main image.
+// The pixels of a layer in Rec. 709, always with three channels. An empty name is the main image.
 Image readLayer(const std::string& path, Imf::InputFile& input, uint64_t fileBytes, const std::string& layer) {
-  // The layer's channels, each with one sample per pixel.
   const Imf::ChannelList& channels = input.header().channels();
-  const std::vector<std::string> names = channelsOfLayer(channels, layer);
+  const auto [colour, names] = codecs::findExrChannels(channels, layer);
   if (names.empty()) {
-    const std::string wanted = layer.empty() ? "R G B or Y" : "a layer '" + layer + "'";
+    const std::string wanted = layer.empty() ? "R G B, X Y Z, Y RY BY or Y" : "a layer '" + layer + "'";
     throw ImageError(path, "EXR channels are: " + listChannels(channels), "expected " + wanted);
   }
-  for (const std::string& name : names) {
-    const Imf::Channel& channel = channels[name.c_str()];
-    if (channel.xSampling != 1 || channel.ySampling != 1)
-      throw ImageError(path, "EXR channel " + name + " is subsampled", "expected a sample for every pixel");
+  // Only chroma may have fewer samples than pixels.
+  for (size_t c = 0; c < names.size(); ++c) {
+    const Imf::Channel& channel = channels[names[c].c_str()];
+    const bool chroma = colour == codecs::ExrColour::lumaChroma && c > 0;
+    if (!chroma && (channel.xSampling != 1 || channel.ySampling != 1))
+      throw ImageError(path, "EXR channel " + names[c] + " is subsampled", "expected a sample for every pixel");
   }
 
   // In 64 bits, as the corners of a damaged window may be further apart than an int can tell.
@@ -223,25 +213,23 @@ Image readLayer(const std::string& path, Imf::InputFile& input, uint64_t fileByt
   const auto height = static_cast<uint64_t>(int64_t{window.max.y} - window.min.y + 1);
   // A sample has at least two bytes. ZIP shrinks at most about 1000 times, the run-length and wavelet coders less than
   // 4096.
+  const size_t full = colour == codecs::ExrColour::lumaChroma ? 1 : names.size();
   codecs::checkSize(path, width, height, 0, 0);
-  codecs::checkSize(path, width, height, width * height * 2 * names.size() / 4096, fileBytes);
+  codecs::checkSize(path, width, height, width * height * 2 * full / 4096, fileBytes);
 
   // OpenEXR converts every sample type to float, and interleaves the channels through the strides.
   Image image{static_cast<uint32_t>(width), static_cast<uint32_t>(height), 3, {}};
   image.pixels.resize(width * height * 3);
   Imf::FrameBuffer frame;
+  std::list<codecs::ExrChannelTarget> targets;
   for (size_t c = 0; c < names.size(); ++c) {
-    // OpenEXR addresses pixels by their absolute position in the data window.
-    char* base = reinterpret_cast<char*>(image.pixels.data() + c);
-    const size_t xStride = 3 * sizeof(float), yStride = xStride * width;
-    frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, base, window.min, static_cast<int64_t>(width),
-                                            static_cast<int64_t>(height), xStride, yStride));
+    targets.emplace_back(channels[names[c].c_str()], image, c);
+    frame.insert(names[c], targets.back().slice(window));
   }
   input.setFrameBuffer(frame);
   input.readPixels(window.min.y, window.max.y);
-  if (names.size() == 1) {
-    for (size_t i = 0; i < image.pixels.size(); i += 3) image.pixels[i + 1] = image.pixels[i + 2] = image.pixels[i];
-  }
+  for (const codecs::ExrChannelTarget& target : targets) target.spread();
+  codecs::convertExrColour(path, input.header(), colour, image);
   return image;
 }
 
@@ -261,11 +249,14 @@ ImageFile readLayerAndMetadata(const std::string& path, codecs::Bytes bytes, con
   try {
     setLimitsOnce();
     useBlockPoolOnce();
+    codecs::checkExrHeader(path, bytes);
     MemoryInput stream(path, bytes);
     Imf::InputFile input(stream, 0);
     ImageFile file;
     file.image = readLayer(path, input, bytes.size(), layer);
     file.metadata = stringAttributes(input.header());
+    const Imath::Box2i& window = input.header().dataWindow();
+    file.corner = {window.min.x, window.min.y};
     return file;
   } catch (const ImageError&) {
     throw;

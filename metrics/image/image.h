@@ -4,6 +4,7 @@
 // defined on. Both are row-major from the top row, channels interleaved. Nothing here knows of rendering.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -37,6 +38,7 @@ struct ImageFile {
   Image image;
   Encoding encoding = Encoding::linear;
   std::map<std::string, std::string> metadata;  // string attributes of an EXR header
+  std::array<int32_t, 2> corner{};              // of an EXR's data window, top left; {0, 0} of other files
   double exposure = 1;  // of a Radiance file: what its pixels have been multiplied by, if that is above 0
 };
 

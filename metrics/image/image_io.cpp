@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <string_view>
 
 #include "metrics/image/atomic_file.h"
@@ -51,6 +54,24 @@ const Format& formatOf(const std::string& path, std::string_view extension) {
   failFormat(path, extension, "expected .exr, .pfm, .hdr or .png");
 }
 
+// The largest decoded image in bytes.
+uint64_t imageLimit() {
+  const char* const variable = std::getenv(kImageLimitVariable);
+  if (variable == nullptr || *variable == 0) return kImageLimit;
+  constexpr std::string_view kUnits = "KMGT";
+  std::string_view text(variable);
+  const size_t unit = kUnits.find(text.back());
+  if (unit != std::string_view::npos) text.remove_suffix(1);
+  uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const unsigned shift = unit == std::string_view::npos ? 0 : 10 * static_cast<unsigned>(unit + 1);
+  if (error != std::errc() || end != text.data() + text.size() || number == 0 || number > UINT64_MAX >> shift) {
+    throw ImageError(kImageLimitVariable, "'" + std::string(variable) + "' is no size",
+                     "expected bytes as a whole number, with K, M, G or T for powers of 1024");
+  }
+  return number << shift;
+}
+
 // Restores the light before it was multiplied by the exposure.
 void undoExposure(const std::string& path, ImageFile& file) {
   if (file.exposure == 1) return;
@@ -85,6 +106,16 @@ const Writer& writerOf(const std::string& path) {
 }
 
 }  // namespace
+
+void checkDecodedSize(const std::string& path, uint64_t width, uint64_t height, uint64_t fileBytes) {
+  const uint64_t bytes = 3 * sizeof(float) * width * height, limit = imageLimit();
+  if (bytes <= std::max(limit, kPlainRatio * fileBytes)) return;
+  throw ImageError(path,
+                   "file of " + std::to_string(fileBytes) + " bytes unpacks to " + std::to_string(width) + "x" +
+                       std::to_string(height) + " pixels, " + std::to_string(bytes >> 20) + " MiB",
+                   "expected at most " + std::to_string(limit >> 20) + " MiB; " + kImageLimitVariable + "=" +
+                       std::to_string((bytes >> 30) + 1) + "G would read it");
+}
 
 ImageFile readImage(const std::string& path) {
   // An unknown extension is an error before the file is opened.
@@ -128,6 +159,7 @@ void checkSize(const std::string& path, uint64_t width, uint64_t height, uint64_
     throw ImageError(path, "file of " + std::to_string(fileBytes) + " bytes ends before its " + size + " pixels",
                      "expected at least " + std::to_string(leastBytes) + " bytes");
   }
+  if (fileBytes > 0) checkDecodedSize(path, width, height, fileBytes);
 }
 
 std::string quoted(const std::string& text) {

@@ -5,6 +5,7 @@
 // write a temporary name beside the target, flush it to the device and rename it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <span>
@@ -17,6 +18,15 @@
 namespace wavecrest {
 
 using Metadata = std::map<std::string, std::string>;
+
+// What a decoded image may take as floats, unless the variable WAVECREST_MAX_IMAGE says otherwise ("8G"). Images that
+// take at most kPlainRatio times the bytes of their file are always read: only those that a small file unpacks to are
+// suspicious.
+constexpr const char* kImageLimitVariable = "WAVECREST_MAX_IMAGE";
+constexpr uint64_t kImageLimit = uint64_t{2} << 30, kPlainRatio = 16;
+
+// Refuses an image of three channels that is larger than this. Throws ImageError, also where the variable is no size.
+void checkDecodedSize(const std::string& path, uint64_t width, uint64_t height, uint64_t fileBytes);
 
 // Three channels, top row first. The exposure of a Radiance file is undone. Throws ImageError.
 ImageFile readImage(const std::string& path);

@@ -89,6 +89,23 @@ TEST(MemoryPlan, severalIterationsAreUnderWayWhereOneIsTooLittleForAllThreads) {
   EXPECT_EQ(atOnce(kSmall, 64), 1u) << "light paths alone give all threads work";
 }
 
+// With one light path per pixel no photon would be found.
+TEST(MemoryPlan, methodsThatOnlyMergeHaveLightPathsOnAFilmOfOnePixel) {
+  const Scene scene = sceneFile("cornell-diffuse", 1, 1);
+  const auto lightPaths = [&](RenderSettings settings) { return planMemory(scene, settings).lightPaths; };
+  for (const Method method : {Method::ppm, Method::bpm}) {
+    RenderSettings settings = settingsFor(method);
+    EXPECT_EQ(lightPaths(settings), kLeastLightPaths);
+    const RenderStatistics statistics = statisticsOf(scene, settings, 3);
+    EXPECT_EQ(statistics.paths, 3u);
+    EXPECT_EQ(statistics.lightPaths, 3 * kLeastLightPaths);
+    settings.lightPaths = 7;
+    EXPECT_EQ(lightPaths(settings), 7u);
+  }
+  EXPECT_EQ(lightPaths(settingsFor(Method::vcm)), 1u);
+  EXPECT_EQ(lightPaths(settingsFor(Method::bpt)), 1u);
+}
+
 // A map and stores for each iteration under way.
 TEST(MemoryPlan, holdsAllIterationsUnderWay) {
   const Scene scene = sceneFile("cornell-mirror", 160, 120);

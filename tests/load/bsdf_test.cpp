@@ -35,6 +35,44 @@ TEST(Bsdf, ConductorDefaultsToAPerfectMirror) {
   EXPECT_EQ(conductor.alpha.value, 0);
 }
 
+// Mitsuba 0.6: copper in air, whose constants single parameters replace.
+TEST(Bsdf, ConductorOfOldFilesDefaultsToCopper) {
+  const auto conductorOf = [](const std::string& version, const std::string& type, const std::string& content) {
+    const Scene scene = load(sceneXml(
+        "<shape type=\"sphere\"><bsdf type=\"" + type + "\">" + content + "</bsdf></shape>" + std::string(kSensor),
+        version));
+    return std::get<Conductor>(scene.materials.at(0).kind);
+  };
+  const Conductor copper = conductorOf("3.0.0", "conductor", R"(<string name="material" value="Cu"/>)");
+  const auto inAir = [](double index) { return index / 1.000277; };
+  for (const char* type : {"conductor", "roughconductor"}) {
+    const Conductor old = conductorOf("0.6.0", type, "");
+    const Conductor ofEta = conductorOf("0.6.0", type, R"(<spectrum name="eta" value="2"/>)");
+    for (size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(old.eta[c], inAir(copper.eta[c]), 1e-12);
+      EXPECT_NEAR(old.k[c], inAir(copper.k[c]), 1e-12);
+      EXPECT_NEAR(ofEta.eta[c], inAir(2), 1e-12);
+      EXPECT_NEAR(ofEta.k[c], inAir(copper.k[c]), 1e-12);
+    }
+  }
+  EXPECT_TRUE(conductorOf("0.6.0", "conductor", R"(<string name="material" value="none"/>)").perfectMirror);
+}
+
+TEST(Bsdf, LenientReplacesThoseOfOldFilesByTheNearest) {
+  const auto scene = [](const std::string& bsdf) {
+    return loadBody("<shape type=\"sphere\">" + bsdf + "</shape>", {.lenient = true});
+  };
+  const Scene rough = scene(
+      R"(<bsdf type="roughdiffuse"><float name="alpha" value="0.3"/><rgb name="reflectance" value="0.2"/></bsdf>)");
+  EXPECT_EQ(std::get<Diffuse>(rough.materials.at(0).kind).reflectance.value, (Rgb{0.2, 0.2, 0.2}));
+  EXPECT_EQ(rough.warnings.size(), 1u);
+  const Scene ward =
+      scene(R"(<bsdf type="ward"><float name="alpha_u" value="0.2"/><float name="alpha_v" value="0.1"/></bsdf>)");
+  EXPECT_NEAR(std::get<Phong>(ward.materials.at(0).kind).exponent, 100, 1e-9);
+  // Without roughness it is diffuse.
+  EXPECT_TRUE(scene(R"(<bsdf type="roughdiffuse"><float name="alpha" value="0"/></bsdf>)").warnings.empty());
+}
+
 TEST(Bsdf, ConductorMaterialNoneIsAPerfectMirror) {
   EXPECT_TRUE(
       kindOf<Conductor>(R"(<bsdf type="conductor"><string name="material" value="none"/></bsdf>)").perfectMirror);
@@ -323,14 +361,20 @@ TEST(Bsdf, CoatsOverDiffuseArePlastic) {
 }
 
 TEST(Bsdf, MistakesAreErrors) {
-  expectBsdfError(R"(<bsdf type="ward"/>)", "bsdf \"ward\" is not supported");
+  expectBsdfError(R"(<bsdf type="ward"/>)",
+                  "bsdf \"ward\" of Mitsuba 0.6 is not supported; expected a bsdf \"phong\" of the same reflectances "
+                  "and of exponent 200, the nearest");
+  expectBsdfError(R"(<bsdf type="roughdiffuse"/>)",
+                  "bsdf \"roughdiffuse\" of Mitsuba 0.6 is not supported; expected a bsdf \"diffuse\"");
+  expectBsdfError(R"(<bsdf type="roughconductor"><string name="distribution" value="phong"/></bsdf>)",
+                  "distribution \"phong\" of Mitsuba 0.6 is not supported; expected beckmann of the same alpha");
   expectBsdfError(R"(<bsdf type="conductor"><string name="material" value="Xx"/></bsdf>)", "unknown conductor \"Xx\"");
   expectBsdfError(R"(<bsdf type="conductor"><string name="material" value="Al"/><rgb name="k" value="1"/></bsdf>)",
                   "eta and k stand beside a material");
   expectBsdfError(R"(<bsdf type="dielectric"><string name="int_ior" value="mud"/></bsdf>)",
                   "unknown substance \"mud\"");
   expectBsdfError(R"(<bsdf type="dielectric"><float name="int_ior" value="0"/></bsdf>)", "not positive");
-  expectBsdfError(R"(<bsdf type="roughconductor"><string name="distribution" value="phong"/></bsdf>)",
+  expectBsdfError(R"(<bsdf type="roughconductor"><string name="distribution" value="cosine"/></bsdf>)",
                   "unknown distribution");
   expectBsdfError(R"(<bsdf type="roughconductor"><float name="alpha_u" value="1"/></bsdf>)", "alpha_u and alpha_v");
   expectBsdfError(

@@ -56,6 +56,46 @@ TEST(Color, UniformSpectrumAsEmissionHasTheColourOfIlluminantE) {
   expectRgb(intensityOf(R"(<spectrum name="intensity" value="2"/>)"), {2.40959, 1.89658, 1.81783}, kPrinted);
 }
 
+TEST(Color, UniformSpectrumOfOldFilesIsGrey) {
+  for (const char* version : {"0.5.0", "0.6.0"}) {
+    const Scene scene = load(sceneXml(R"(<emitter type="point"><spectrum name="intensity" value="2"/></emitter>)" +
+                                          std::string(kSensor) + std::string(kSphere),
+                                      version));
+    expectRgb(std::get<PointEmitter>(scene.emitters.at(0).kind).intensity, {2, 2, 2}, 0);
+  }
+}
+
+TEST(Color, SpectraAreTheSameInAllForms) {
+  const Rgb pairs = intensityOf(R"(<spectrum name="intensity" value="400:0.1, 500:0.5, 600:0.8, 700:0.2"/>)");
+  expectRgb(pairs, {0.858937, 0.620227, 0.236591}, kPrinted);
+  expectRgb(intensityOf(R"(<spectrum name="intensity" type="irregular">
+      <string name="wavelengths" value="400, 500, 600, 700"/><string name="values" value="0.1, 0.5, 0.8, 0.2"/>
+      </spectrum>)"),
+            pairs, 0);
+  expectRgb(intensityOf(R"(<spectrum name="intensity" type="regular"><float name="wavelength_min" value="400"/>
+      <float name="wavelength_max" value="700"/><string name="values" value="0.1, 0.5, 0.8, 0.2"/></spectrum>)"),
+            pairs, 1e-15);
+  const Folder folder;
+  folder.write("lamp.spd", "# nm, W\n400 0.1\n500 0.5 # green\n\n600 0.8\n700 0.2");
+  const Scene scene =
+      loadBody(folder, R"(<emitter type="point"><spectrum name="intensity" filename="lamp.spd"/></emitter>)");
+  expectRgb(std::get<PointEmitter>(scene.emitters.at(0).kind).intensity, pairs, 0);
+}
+
+// Mitsuba 3.9, scalar_rgb, from pairs of Planck's law every nm.
+TEST(Color, BlackbodiesHavePlancksRadiance) {
+  const Rgb expected{733.1098, 349.5687, 112.7105};
+  constexpr double kTolerance = 0.003;  // of the quadratures, 1e-5 of the values
+  expectRgb(intensityOf(R"(<spectrum name="intensity" type="blackbody"><float name="temperature" value="3000"/>
+      </spectrum>)"),
+            expected, kTolerance);
+  const Scene scene =
+      load(sceneXml(R"(<emitter type="point"><blackbody name="intensity" temperature="3000K" scale="1"/></emitter>)" +
+                        std::string(kSensor) + std::string(kSphere),
+                    "0.6.0"));
+  expectRgb(std::get<PointEmitter>(scene.emitters.at(0).kind).intensity, expected, kTolerance);
+}
+
 TEST(Color, TabulatedSpectrumAsReflectanceIsSeenUnderD65) {
   expectRgb(reflectanceOf(R"(<spectrum name="reflectance" value="400:0.1, 500:0.3, 600:0.9, 700:0.5"/>)"),
             {0.950523, 0.558094, 0.154806}, kPrinted);
@@ -95,7 +135,13 @@ TEST(Color, BadOnesAreErrors) {
   expectColorError(R"(<spectrum name="reflectance" value="400:1, 300:1"/>)", "do not increase");
   expectColorError(R"(<spectrum name="reflectance" value="400:1, 500"/>)", "expected wavelength:value");
   expectColorError(R"(<string name="reflectance" value="red"/>)", "<string> given for a colour");
-  expectColorError(R"(<spectrum name="reflectance" type="blackbody"/>)", "not supported");
+  expectColorError(R"(<spectrum name="reflectance" type="volume"/>)", "not supported");
+  expectColorError(
+      R"(<spectrum name="reflectance" type="blackbody"><float name="temperature" value="3000"/></spectrum>)",
+      "for what does not emit");
+  expectColorError(R"(<spectrum name="reflectance" type="irregular"><string name="wavelengths" value="400 500 600"/>
+                      <string name="values" value="1 0"/></spectrum>)",
+                   "3 wavelengths and 2 values");
 }
 
 TEST(Color, NegativeRadianceIsAnError) {

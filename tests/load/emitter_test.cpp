@@ -182,15 +182,15 @@ TEST(EnvironmentMap, KeepsPixelsScaleAndTransform) {
   EXPECT_EQ(sky.toWorld[0][0], -1);
 }
 
-TEST(EnvironmentMap, NegativeAndNonFiniteValuesAreBlackAndCounted) {
+TEST(EnvironmentMap, TexelsOfNegativeLuminanceAndNonFiniteValuesAreBlackAndCounted) {
   const Folder folder;
   writeExr((folder.path() / "sky.exr").string(),
            {.width = 2, .height = 1, .channels = 3, .pixels = {1, -1, 1, NAN, 2, -3}});
   const Scene scene = loadBody(folder, R"(<emitter type="envmap"><string name="filename" value="sky.exr"/></emitter>)");
-  EXPECT_EQ(std::get<EnvmapEmitter>(scene.emitters.at(0).kind).bitmap->pixels, (std::vector<float>{1, 0, 1, 0, 2, 0}));
+  EXPECT_EQ(std::get<EnvmapEmitter>(scene.emitters.at(0).kind).bitmap->pixels, (std::vector<float>{0, 0, 0, 0, 2, -3}));
   ASSERT_EQ(scene.notes.size(), 2u);
   EXPECT_EQ(scene.notes[0].what, "values in \"sky.exr\" that are not finite: 1");
-  EXPECT_EQ(scene.notes[1].what, "negative values in the environment \"sky.exr\": 2");
+  EXPECT_EQ(scene.notes[1].what, "texels of negative luminance in the environment \"sky.exr\": 1");
 }
 
 TEST(EnvironmentMap, MayScaleUnevenlyWithANoteButNotShearOrFlatten) {

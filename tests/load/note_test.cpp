@@ -60,6 +60,12 @@ TEST(Notes, SamplersAndFiltersThatAreReplaced) {
   expectNote(loadBody(R"(<sensor type="perspective"><film type="ldrfilm"/></sensor>)"), "ldrfilm", "hdrfilm");
 }
 
+TEST(Notes, UnknownParametersOfOldFiles) {
+  const std::string body = R"(<shape type="sphere"><float name="wobble" value="1"/></shape>)" + std::string(kSensor);
+  expectNote(load(sceneXml(body, "0.6.0")), "parameter \"wobble\" of shape \"sphere\"", "left out");
+  expectError(sceneXml(body), 1, "unknown parameter \"wobble\"");
+}
+
 // Mitsuba 3 takes the axis as it is: its matrix is no rotation then.
 TEST(Notes, RotationsAboutAnAxisOfAnotherLength) {
   const auto scene = [](const std::string& axis) {

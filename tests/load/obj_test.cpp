@@ -98,13 +98,14 @@ TEST(Obj, ErrorsNameTheirLine) {
   expectObjError(std::string(kQuad) + "f 1 2 99999999999999999999\n", 5, "bad integer");
 }
 
-TEST(Obj, WithoutFacesHasNoArea) {
+TEST(Obj, WithoutFacesIsLeftOut) {
   const Folder folder;
   folder.write("mesh.obj", kQuad);
-  expectError(
-      folder,
-      sceneXml("\n<shape type=\"obj\"><string name=\"filename\" value=\"mesh.obj\"/></shape>" + std::string(kSensor)),
-      2, "has no area");
+  const Scene scene = load(folder, sceneXml(R"(<shape type="obj"><string name="filename" value="mesh.obj"/></shape>)" +
+                                            std::string(kSensor) + std::string(kSphere)));
+  EXPECT_EQ(scene.shapes.size(), 1u);
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_EQ(scene.notes[0].what, "shape \"obj\" without area");
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ TEST(Ply, AMissingVertexAmongManyTriangles) {
   };
   expectPlyError(binaryStrip(kNoPolygon, negative), kBodyLine, "face refers to vertex -1; expected 0 to 40001");
   const std::string whole = binaryStrip(kNoPolygon, cornerOfStrip);
-  expectPlyError(whole.substr(0, whole.size() - 1), kBodyLine, "face has 3 corners but the file ends");
+  expectPlyError(whole.substr(0, whole.size() - 1), kBodyLine, "list has 3 items but the file ends");
 }
 
 TEST(Ply, GzippedByContentWhateverTheName) { expectQuad(meshOf(gzip(kQuadPly))); }
@@ -162,7 +162,7 @@ TEST(Ply, BodyErrorsNameTheirLine) {
   expectPlyError(vertexLine(4, "3 0 1 4"), 15, "refers to vertex 4; expected 0 to 3");
   expectPlyError(vertexLine(4, "3 0 1 -1"), 15, "refers to vertex -1");
   expectPlyError(vertexLine(4, "2 0 1"), 15, "face has 2 corners");
-  expectPlyError(vertexLine(5, "200 0 1 2"), 16, "face has 200 corners but the file ends");
+  expectPlyError(vertexLine(5, "200 0 1 2"), 16, "list has 200 items but the file ends");
   expectPlyError(vertexLine(5, "3 1 3"), 16, "file ends");
   expectPlyError(std::string(kQuadPly) + "1\n", 17, "goes on after its last element");
 }
@@ -194,10 +194,55 @@ TEST(Ply, CompressionBombIsStopped) {
   expectPlyError(gzip(std::string(size_t{64} << 20, ' ')), 0, "inflates to more than");
 }
 
-TEST(Ply, NothingButTrianglesWithoutAreaIsAnError) {
-  const Folder folder;
-  folder.write("mesh.ply", vertexLine(2, "2 0 0").replace(kQuadPly.find("1 1 0"), 5, "3 0 0"));
-  expectError(folder, sceneXml("\n" + kShape), 2, "has no area");
+TEST(Ply, NothingButTrianglesWithoutAreaIsLeftOut) {
+  const Scene scene =
+      loadPly(vertexLine(2, "2 0 0").replace(kQuadPly.find("1 1 0"), 5, "3 0 0"), kShape + std::string(kSphere));
+  EXPECT_EQ(scene.shapes.size(), 1u);
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_EQ(scene.notes[0].what, "shape \"ply\" without area");
+}
+
+// ---- texture coordinates of corners ---------------------------------------------------------------------------------
+
+// Two triangles of a bent square, whose properties stand as in a file of MeshLab.
+std::string cornerUvPly(std::string_view rows, std::string_view properties = "") {
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" +
+         std::string(properties) +
+         "element face 2\nproperty list uchar int vertex_indices\nproperty uchar flags\nproperty list uchar float "
+         "texcoord\nproperty int texnumber\nend_header\n0 0 0\n1 0 0\n1 1 1\n0 1 0\n" +
+         std::string(rows);
+}
+const char* const kCornerUvRows = "3 0 1 2 0 6 0 0 1 0 1 1 0\n3 0 2 3 0 6 0.5 0 1 1 0 1 0\n";
+
+TEST(Ply, CornersThatDifferInTextureCoordinatesAreSplit) {
+  const Mesh mesh = meshOf(cornerUvPly(kCornerUvRows));
+  EXPECT_EQ(mesh.triangles, (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {4, 2, 3}}));
+  EXPECT_EQ(mesh.positions[4], mesh.positions[0]);
+  EXPECT_EQ(mesh.uvs, (std::vector<Float2>{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5f, 0}}));
+}
+
+TEST(Ply, SplitCornersKeepTheNormalOfTheirVertex) {
+  const Mesh mesh = meshOf(cornerUvPly(kCornerUvRows));
+  EXPECT_EQ(mesh.normals[4], mesh.normals[0]);
+  EXPECT_LT(mesh.normals[0][0], 0);  // of both triangles, and not of one alone
+  EXPECT_LT(mesh.normals[0][1], 0);
+}
+
+TEST(Ply, FacesWithoutTextureCoordinatesHaveZeros) {
+  const Mesh mesh = meshOf(cornerUvPly("3 0 1 2 0 6 1 0 1 0 1 1 0\n3 0 2 3 0 0 0\n"));
+  EXPECT_EQ(mesh.uvs[mesh.triangles[1][1]], (Float2{0, 0}));
+}
+
+TEST(Ply, TextureCoordinatesOfCornersAreChecked) {
+  expectPlyError(cornerUvPly("3 0 1 2 0 4 0 0 1 0 0\n3 0 2 3 0 6 0 0 1 1 0 1 0\n"), 17,
+                 "face of 3 corners has 4 texture coordinates; expected u and v for each corner");
+}
+
+TEST(Ply, ConcavePolygonIsCutIntoEars) {
+  const Mesh mesh = meshOf(
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face "
+      "1\nproperty list uchar int vertex_indices\nend_header\n-1 -1 0\n0 0 0\n1 -1 0\n0 1 0\n4 0 1 2 3\n");
+  EXPECT_EQ(mesh.triangles, (std::vector<std::array<uint32_t, 3>>{{3, 0, 1}, {3, 1, 2}}));
 }
 
 }  // namespace

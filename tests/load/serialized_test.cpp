@@ -92,5 +92,23 @@ TEST(Serialized, MoreThanTheBytesCanHoldIsRefused) {
   expectSerializedError(serializedMeshOf(body), "mesh announces 1099511627776");
 }
 
+TEST(Serialized, UnpacksToAHundredTimesItsSizeAtMost) {
+  std::string body;
+  appendValue<uint32_t>(body, 0x1000, false);
+  body += '\0';
+  const uint64_t count = 1'000'000;  // zeros, which shrink a thousandfold
+  appendValue<uint64_t>(body, count, false);
+  appendValue<uint64_t>(body, count, false);
+  body += std::string(count * 24, '\0');
+  expectSerializedError(serializedMeshOf(body), "mesh announces 1000000 vertices and 1000000 triangles");
+}
+
+TEST(Serialized, NamesWithoutEndAreRefused) {
+  std::string body;
+  appendValue<uint32_t>(body, 0x1000, false);
+  body += std::string(size_t{1} << 20, 'a');
+  expectSerializedError(serializedMeshOf(body), "name of a mesh has no end");
+}
+
 }  // namespace
 }  // namespace wavecrest::testing

@@ -47,17 +47,15 @@ TEST(Rectangle, MirroringTransformLeavesItFacingZ) {
   EXPECT_EQ(r.corner[0] + r.edgeU[0], 1);  // texture (0, 0) moved to x = 1
 }
 
-TEST(Rectangle, WithoutAreaIsAnError) {
-  expectShapeError("rectangle", R"(<transform name="to_world"><scale x="0"/></transform>)", "has no area");
-}
-
-TEST(Rectangle, LightWithoutAreaIsAnErrorEvenWithLenient) {
-  expectError(
-      Folder(),
-      sceneXml(
-          std::string(kSensor) + "\n" +
-          R"(<shape type="rectangle"><transform name="to_world"><scale x="0"/></transform><emitter type="area"/></shape>)"),
-      2, "a light, has no area", "scene.xml", {.lenient = true});
+TEST(Rectangle, WithoutAreaIsLeftOutWithItsLight) {
+  for (const char* light : {"", R"(<emitter type="area" id="light"/>)"}) {
+    const Scene scene = loadBody(R"(<shape type="rectangle"><transform name="to_world"><scale x="0"/></transform>)" +
+                                 std::string(light) + "</shape>" + std::string(kSphere));
+    EXPECT_EQ(scene.shapes.size(), 1u);
+    EXPECT_TRUE(scene.emitters.empty());
+    ASSERT_EQ(scene.notes.size(), 1u);
+    EXPECT_EQ(scene.notes[0].what, "shape \"rectangle\" without area");
+  }
 }
 
 TEST(Disk, HasRadiusOneAndFacesZ) {
@@ -128,7 +126,10 @@ TEST(Cylinder, AngleTurnsWithTheTransform) {
   EXPECT_NEAR(c.phi90[0], -1, 1e-15);
 }
 
-TEST(Cylinder, MirroringTransformTurnsItInsideOut) { EXPECT_TRUE(shapeOf<Cylinder>("cylinder", kMirror).flipNormals); }
+TEST(Cylinder, IsItsOwnMirrorImage) {
+  EXPECT_FALSE(shapeOf<Cylinder>("cylinder", kMirror).flipNormals);
+  EXPECT_TRUE(shapeOf<Cylinder>("cylinder", std::string(kFlip) + std::string(kMirror)).flipNormals);
+}
 
 TEST(Cylinder, MistakesAreErrors) {
   expectShapeError("cylinder", R"(<point name="p1" x="0" y="0" z="0"/>)", "no length");

@@ -1,5 +1,6 @@
 // Textures: image files of each kind, their colour treatment, and the options of a bitmap.
 #include <cmath>
+#include <cstdlib>
 
 #include "metrics/image/image_io.h"
 #include "tests/load/mesh_text.h"
@@ -263,6 +264,18 @@ TEST(Bitmap, TgaRunRepeatsItsColour) {
   const Folder folder;
   folder.write("run.tga", bytes);
   EXPECT_EQ(bitmapOf(folder, "run.tga").bitmap->pixels, (std::vector<float>{1, 0, 0, 1, 0, 0}));
+}
+
+TEST(Bitmap, WhatATgaUnpacksToIsBounded) {
+  std::string bytes = tgaOf(true, true).substr(0, 18);
+  bytes[12] = 64;
+  bytes += "\xff" + std::string("\0\0\xff", 3);  // 64 x 2 pixels are 1536 bytes as floats
+  const Folder folder;
+  folder.write("run.tga", bytes);
+  EXPECT_EQ(bitmapOf(folder, "run.tga").bitmap->width, 64u);
+  setenv(kImageLimitVariable, "1K", 1);
+  expectTextureError(folder, R"(<string name="filename" value="run.tga"/>)", "unpacks to 64x2 pixels");
+  unsetenv(kImageLimitVariable);
 }
 
 TEST(Bitmap, DamagedBmpAndTgaAreErrors) {

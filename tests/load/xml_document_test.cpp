@@ -231,7 +231,7 @@ TEST(Structure, UnknownShapeIsLeftOutWithLenient) {
 }
 
 TEST(Structure, UnknownBsdfBecomesDiffuseWithLenient) {
-  const Scene scene = loadBody(R"(<shape type="sphere"><bsdf type="ward"/></shape>)", {.lenient = true});
+  const Scene scene = loadBody(R"(<shape type="sphere"><bsdf type="hk"/></shape>)", {.lenient = true});
   EXPECT_TRUE(std::holds_alternative<Diffuse>(scene.materials.at(0).kind));
   EXPECT_EQ(scene.warnings.size(), 1u);
 }

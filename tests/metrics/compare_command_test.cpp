@@ -274,6 +274,42 @@ TEST_F(CompareCommand, BadInputIsExitCode3WithOneClearLine) {
   EXPECT_PRED2(contains, complaint(golden("ref"), files_.path("missing.exr")), "No such file");
 }
 
+TEST_F(CompareCommand, DataWindowsThatBeginElsewhereAreNoted) {
+  const Image light{4, 4, 3, std::vector<float>(48, 0.5f)};
+  writeExr(files_.path("a.exr"), light);
+  writeExr(files_.path("b.exr"), light);
+  // Moves the data window of b to the right: x of its corners is the first and the third number of the box.
+  const auto bytes = readFileBytes(files_.path("a.exr"));
+  std::string moved(bytes.begin(), bytes.end());
+  const size_t box = moved.find(std::string("dataWindow\0box2i\0", 17)) + 17 + 4;
+  moved[box] = static_cast<char>(moved[box] + 2);
+  moved[box + 8] = static_cast<char>(moved[box + 8] + 2);
+  files_.write("moved.exr", moved);
+  const auto notes = [&](const std::string& test) {
+    const auto run = runCompare({files_.path("a.exr"), files_.path(test), "--metrics", "rmse"});
+    EXPECT_EQ(run.exitCode, kExitDone);
+    return run.error;
+  };
+  EXPECT_EQ(notes("b.exr"), "");
+  EXPECT_NE(notes("moved.exr").find("begins at 0,0 and that of " + files_.path("moved.exr") + " at 2,0"),
+            std::string::npos);
+}
+
+TEST_F(CompareCommand, LightBeyondPu21IsNoted) {
+  Image light{4, 4, 3, std::vector<float>(48, 0.5f)};
+  writeExr(files_.path("dim.exr"), light);
+  light.pixels[4] = 101;  // 10100 cd/m2
+  writeExr(files_.path("bright.exr"), light);
+  const auto notes = [&](const std::string& test, const std::string& metric, const std::string& exposure) {
+    return runCompare({files_.path("dim.exr"), files_.path(test), "--metrics", metric, "--exposure", exposure}).error;
+  };
+  EXPECT_NE(notes("bright.exr", "pu21psnr", "0").find("1 of 16 pixels of " + files_.path("bright.exr")),
+            std::string::npos);
+  EXPECT_EQ(notes("bright.exr", "pu21psnr", "-1"), "");
+  EXPECT_EQ(notes("bright.exr", "rmse", "0"), "");
+  EXPECT_EQ(notes("dim.exr", "pu21psnr", "0"), "");
+}
+
 TEST_F(CompareCommand, OnePixelImagesAreComparedByTheMetricsThatCan) {
   writePng(files_.path("a.png"), test::patternImage(1, 1));
   const auto run = runCompare({files_.path("a.png"), files_.path("a.png"), "--json", "--metrics", "rmse,relmse,flip"});

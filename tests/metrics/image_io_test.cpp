@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -204,6 +205,35 @@ TEST_F(ImageFiles, AnExrGoesThroughAPipe) {
 
 TEST_F(ImageFiles, AnExrForWhichThereIsNoRoomIsAnError) {
   EXPECT_THROW(writeExr("/dev/full", tallImage()), ImageError);
+}
+
+// Decoded sizes, by files that need not hold their pixels: the size is checked before them.
+TEST_F(ImageFiles, WhatSmallFilesUnpackToIsBounded) {
+  EXPECT_NO_THROW(checkDecodedSize("a.png", 16384, 8192, 1000));
+  EXPECT_THROW(checkDecodedSize("a.png", 16384, 16384, 1000), ImageError);
+  // Files that are as large as their pixels are always read.
+  EXPECT_NO_THROW(checkDecodedSize("a.pfm", 16384, 16384, size_t{3} << 30));
+  setenv(kImageLimitVariable, "4G", 1);
+  EXPECT_NO_THROW(checkDecodedSize("a.png", 16384, 16384, 1000));
+  setenv(kImageLimitVariable, "48K", 1);
+  EXPECT_NO_THROW(checkDecodedSize("a.png", 64, 64, 1000));
+  EXPECT_THROW(checkDecodedSize("a.png", 65, 64, 1000), ImageError);
+  for (const char* wrong : {"many", "4GB", "-1", "0", "99999999999T"}) {
+    setenv(kImageLimitVariable, wrong, 1);
+    EXPECT_THROW(checkDecodedSize("a.png", 1, 1, 1000), ImageError) << wrong;
+  }
+  unsetenv(kImageLimitVariable);
+}
+
+TEST_F(ImageFiles, ExrAttributesLargerThanTheFileAreRefused) {
+  writeExr(path("a.exr"), testImage(), {{"comment", "twelve bytes"}});
+  std::ifstream in(path("a.exr"), std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const size_t value = bytes.find("twelve bytes");
+  ASSERT_NE(value, std::string::npos);
+  bytes.replace(value - 4, 4, std::string("\x00\x00\x00\x6e", 4));  // 1.8 GB
+  writeText("large.exr", bytes);
+  EXPECT_NE(complaint("large.exr").find("an attribute of 1845493760 bytes"), std::string::npos);
 }
 
 TEST(Srgb, CodeIsTheRoundedCurveAtEveryThreshold) {
