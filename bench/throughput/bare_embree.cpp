@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "bench/throughput/cpu_timer.h"
@@ -22,10 +23,10 @@ constexpr size_t kRepeats = 3;  // of each timing; the median counts
 // Rays of one kind over all waves and depths, and the CPU time of each intersector for them.
 struct Total {
   uint64_t rays = 0;
-  double bare = 0, embreeStage = 0, usedStage = 0;  // seconds
+  double bare = 0, notRobust = 0, embreeStage = 0, usedStage = 0;  // seconds
   RayRates rates() const {
     const auto rate = [&](double seconds) { return rays == 0 ? 0 : static_cast<double>(rays) / seconds; };
-    return {rays, rate(bare), rate(embreeStage), rate(usedStage)};
+    return {rays, rate(bare), rate(notRobust), rate(embreeStage), rate(usedStage)};
   }
 };
 
@@ -50,6 +51,7 @@ class Comparison {
   Comparison(const Scene& scene, const RenderSettings& settings)
       : used_(scene, settings),
         embree_(scene, onEmbree(settings)),
+        notRobust_(compileScene<float>(scene, Accel::embree, false, settings.instancing)),
         wave_(used_.makeWave()),
         scratch_(used_.makeWave()) {
     // All stages run in the context of used_, so its scene needs Embree's scene as well.
@@ -102,17 +104,21 @@ class Comparison {
   void addExtend(uint32_t depth, const Wave<float>& wave) {
     Query query;
     closest_.rays += wave.rays.size;
-    closest_.bare += bareSeconds(
-        rayHits_, wave.rays.size,
-        [&](RayHits& packet, size_t first) {
-          // Rays have no end.
-          setSegment(std::numeric_limits<float>::infinity(), packet.ray);
-          copyRays<float>(wave.rays, first, packet.ray);
-          setNoHit(packet);
-        },
-        [&](const int* valid, RayHits& packet) {
-          query(Packet<kEmbreePacket>::intersect, valid, static_cast<RTCScene>(scene_), packet);
-        });
+    const auto secondsOn = [&](void* scene) {
+      return bareSeconds(
+          rayHits_, wave.rays.size,
+          [&](RayHits& packet, size_t first) {
+            // Rays have no end.
+            setSegment(std::numeric_limits<float>::infinity(), packet.ray);
+            copyRays<float>(wave.rays, first, packet.ray);
+            setNoHit(packet);
+          },
+          [&](const int* valid, RayHits& packet) {
+            query(Packet<kEmbreePacket>::intersect, valid, static_cast<RTCScene>(scene), packet);
+          });
+    };
+    closest_.bare += secondsOn(scene_);
+    closest_.notRobust += secondsOn(notRobust_->view.embree);
     closest_.embreeStage += stageSeconds(extendEmbree<float>, depth, wave);
     closest_.usedStage += stageSeconds(stageNamed("extend"), depth, wave);
   }
@@ -120,16 +126,20 @@ class Comparison {
   void addOcclude(uint32_t depth, const Wave<float>& wave) {
     Query query;
     anyHit_.rays += wave.shadowRays.size;
-    anyHit_.bare += bareSeconds(
-        segments_, wave.shadowRays.size,
-        [&](Segments& packet, size_t first) {
-          // A shadow ray's direction spans its segment. Hits count in [0, 1).
-          setSegment(std::nextafter(1.0f, 0.0f), packet);
-          copyRays<float>(wave.shadowRays, first, packet);
-        },
-        [&](const int* valid, Segments& packet) {
-          query(Packet<kEmbreePacket>::occluded, valid, static_cast<RTCScene>(scene_), packet);
-        });
+    const auto secondsOn = [&](void* scene) {
+      return bareSeconds(
+          segments_, wave.shadowRays.size,
+          [&](Segments& packet, size_t first) {
+            // A shadow ray's direction spans its segment. Hits count in [0, 1).
+            setSegment(std::nextafter(1.0f, 0.0f), packet);
+            copyRays<float>(wave.shadowRays, first, packet);
+          },
+          [&](const int* valid, Segments& packet) {
+            query(Packet<kEmbreePacket>::occluded, valid, static_cast<RTCScene>(scene), packet);
+          });
+    };
+    anyHit_.bare += secondsOn(scene_);
+    anyHit_.notRobust += secondsOn(notRobust_->view.embree);
     anyHit_.embreeStage += stageSeconds(occludeEmbree<float>, depth, wave);
     anyHit_.usedStage += stageSeconds(stageNamed("occlude"), depth, wave);
   }
@@ -143,6 +153,7 @@ class Comparison {
   }
 
   WaveCapture<float> used_, embree_;
+  std::unique_ptr<CompiledScene<float>> notRobust_;
   Wave<float> wave_, scratch_;
   void* scene_ = nullptr;
   std::vector<RayHits> rayHits_;

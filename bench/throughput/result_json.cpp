@@ -84,6 +84,7 @@ Json speedJson(const Speed& speed) {
 Json ratesJson(const RayRates& rates) {
   return {{"rays", rates.rays},
           {"bare_rays_per_second", rates.bare},
+          {"bare_not_robust_rays_per_second", rates.notRobust},
           {"embree_stage_rays_per_second", rates.embreeStage},
           {"used_stage_rays_per_second", rates.usedStage}};
 }

@@ -58,18 +58,18 @@ void addSpeed(Text& text, const Speed& speed, uint32_t threads) {
 
 // Rays per second of one core. The last line compares all rays of the render, shading included, with Embree alone.
 void addBareEmbree(Text& text, const BareEmbree& embree, const Speed& speed) {
-  line(text, "\n  {:<12} {:>12} {:>12} {:>8} {:>12} {:>8}", "M rays/s core", "bare Embree", "Embree stage", "ratio",
-       "stage used", "ratio");
+  line(text, "\n  {:<12} {:>12} {:>11} {:>13} {:>11} {:>10} {:>11}", "M rays/s core", "bare Embree", "not robust",
+       "Embree stage", "stage used", "/ robust", "/ not robust");
   const auto row = [&](const char* name, const RayRates& rates) {
     if (rates.rays == 0) return;
-    line(text, "  {:<12} {:>13.2f} {:>12.2f} {:>8.2f} {:>12.2f} {:>8.2f}", name, millions(rates.bare),
-         millions(rates.embreeStage), rates.embreeStage / rates.bare, millions(rates.usedStage),
-         rates.usedStage / rates.bare);
+    line(text, "  {:<12} {:>13.2f} {:>11.2f} {:>13.2f} {:>11.2f} {:>10.2f} {:>12.2f}", name, millions(rates.bare),
+         millions(rates.notRobust), millions(rates.embreeStage), millions(rates.usedStage),
+         rates.usedStage / rates.bare, rates.usedStage / rates.notRobust);
   };
   row("closest hit", embree.closest);
   row("any hit", embree.anyHit);
-  line(text, "  {:<12} {:>13.2f} {:>12} {:>8} {:>12.2f} {:>8.2f}", "whole render", millions(embree.raysPerSecond()), "",
-       "", millions(speed.raysPerCpuSecond.value), speed.raysPerCpuSecond.value / embree.raysPerSecond());
+  line(text, "  {:<12} {:>13.2f} {:>11} {:>13} {:>11.2f} {:>10.2f}", "whole render", millions(embree.raysPerSecond()),
+       "", "", millions(speed.raysPerCpuSecond.value), speed.raysPerCpuSecond.value / embree.raysPerSecond());
 }
 
 // Differences are relative to the image of double precision.

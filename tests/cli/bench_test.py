@@ -59,6 +59,9 @@ class Bench(CommandTest):
                 low, high = entry[name + "_interval"]
                 self.assertTrue(0 < low <= entry[name] <= high, f"{entry['method']}: {name}")
             self.assertEqual("bare_embree" in entry, entry["method"] == "pt", entry["method"])
+            for rates in (entry["bare_embree"][kind] for kind in ("closest", "any_hit") if "bare_embree" in entry):
+                self.assertGreater(rates["bare_rays_per_second"], 0)
+                self.assertGreater(rates["bare_not_robust_rays_per_second"], 0)
 
     def test_a_stored_result_equals_itself_and_is_slower_than_a_faster_one(self):
         before = self.path("before.json")
