@@ -22,6 +22,7 @@ inline D3 cross(const D3& a, const D3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 inline double length(const D3& a) { return std::sqrt(dot(a, a)); }
+inline D3 normalized(const D3& a) { return a * (1 / length(a)); }
 // |a0 b0| + |a1 b1| + |a2 b2|: rounding of dot(a, b) is bounded by a few units of it.
 inline double absDot(const D3& a, const D3& b) {
   return std::abs(a[0] * b[0]) + std::abs(a[1] * b[1]) + std::abs(a[2] * b[2]);

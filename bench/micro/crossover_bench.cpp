@@ -20,7 +20,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr double kAllowedDifference = 1e-2;  // at the many edges the intersectors may see either neighbour
+constexpr double kAllowedAtEdges = 1e-2;  // at the many edges the intersectors may see either neighbour
 
 void addQuad(Scene& scene, const Double3& corner, const Double3& edgeU, const Double3& edgeV) {
   Shape shape;
@@ -97,7 +97,7 @@ void measure(benchmark::State& state, size_t quads, bool extend, Accel accel) {
   twin(context, expected);
   run(context, wave);
   const Agreement agreement = compareWaves(expected, wave, 1e-2);
-  if (agreement.differingFraction() > kAllowedDifference) {
+  if (agreement.differingFraction() > kAllowedAtEdges) {
     state.SkipWithError(fmt::format("{} of {} paths differ", agreement.differing, agreement.items).c_str());
     return;
   }

@@ -25,7 +25,7 @@ namespace wavecrest {
 namespace {
 
 // Lanes that may take another turn than the scalar twin's. Measured: below 1e-3 for float against float.
-constexpr double kAllowedDifference = 4e-3;
+constexpr double kAllowedOnWalks = 4e-3;
 
 constexpr uint32_t kFirstDepth = 1, kLaterDepth = 3;  // camera rays are coherent, later ones are not
 constexpr size_t kUsualWave = 2048;
@@ -92,7 +92,7 @@ void measure(benchmark::State& state, const StageUnderTest<S>& stage, Precision 
   stage.twin(context, expected);
   stage.run(context, wave);
   const Agreement agreement = compareWaves(expected, wave, stage.tolerance);
-  if (agreement.differingFraction() > kAllowedDifference) {
+  if (agreement.differingFraction() > kAllowedOnWalks) {
     state.SkipWithError(
         fmt::format("{} of {} paths differ from the scalar twin", agreement.differing, agreement.items).c_str());
     return;

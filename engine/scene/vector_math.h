@@ -6,7 +6,6 @@
 
 namespace wavecrest {
 
-inline Double3 normalized(const Double3& a) { return a * (1 / length(a)); }
 inline Double3 widened(const Float3& a) { return {a[0], a[1], a[2]}; }
 
 // The linear part of a matrix applied to a vector, and the whole matrix applied to a point.

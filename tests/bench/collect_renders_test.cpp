@@ -24,10 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr uint32_t kSide = 16;
+constexpr uint32_t kRenderSide = 16;
 
 // All pixels 0.5, every second one brighter and the others darker by the deviation: RMSE against 0.5 is the deviation.
-Image speckled(float deviation, uint32_t side = kSide) {
+Image speckled(float deviation, uint32_t side = kRenderSide) {
   Image image{.width = side, .height = side, .channels = 3, .pixels = {}};
   for (uint32_t i = 0; i < side * side; ++i) {
     for (int c = 0; c < 3; ++c) image.pixels.push_back(0.5F + (i % 2 == 0 ? deviation : -deviation));
@@ -136,7 +136,7 @@ TEST_F(CollectRenders, measuresTheMetricsOfTheList) {
   const ComparedImage test = reference.prepareTest("test", readImage((folder / "box.pt.000.exr").string()));
   for (size_t m = 0; m < found.size(); ++m) {
     const Metric& metric = *reportedMetrics()[m];
-    if (kSide < metric.smallestSide) {
+    if (kRenderSide < metric.smallestSide) {
       EXPECT_TRUE(std::isnan(point.values[m])) << found[m];
     } else {
       EXPECT_EQ(point.values[m], mainScore(metric, metric.measure(reference, test, false))) << found[m];
@@ -151,7 +151,7 @@ TEST_F(CollectRenders, showsTheLastImageAndItsErrorMapOnTheScenesScale) {
   writeExr((folder / "b.001.exr").string(), speckled(0));
   const ReportScene scene = collectRenders(folder).scenes[0];
   const ReportSeries &noisy = scene.series[0], &perfect = scene.series[1];
-  EXPECT_EQ(noisy.finalImage.width, kSide);
+  EXPECT_EQ(noisy.finalImage.width, kRenderSide);
   EXPECT_EQ(noisy.finalImage.rgb[0], srgbCode(0.6F));
   EXPECT_EQ(perfect.finalImage.rgb, scene.reference.rgb);
   // Black where nothing differs; the worst series reaches the scale's end.

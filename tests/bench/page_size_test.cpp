@@ -10,7 +10,7 @@
 namespace wavecrest {
 namespace {
 
-size_t count(const std::string& text, const std::string& part) {
+size_t occurrences(const std::string& text, const std::string& part) {
   size_t found = 0;
   for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++found;
   return found;
@@ -54,7 +54,7 @@ ConvergenceReport largeReport(size_t snapshots, uint32_t width, uint32_t height)
 TEST(PageSize, staysBelowEightMegabytesForAStudyOfTheFullSize) {
   const std::string page = renderReport(largeReport(300, 512, 384));
   EXPECT_LT(page.size(), 8'000'000U);
-  EXPECT_GT(count(page, "data:image/jpeg"), 0U);
+  EXPECT_GT(occurrences(page, "data:image/jpeg"), 0U);
 }
 
 TEST(PageSize, doesNotGrowWithTheNumberOfSnapshots) {
@@ -66,7 +66,7 @@ TEST(PageSize, doesNotGrowWithTheNumberOfSnapshots) {
 TEST(PageSize, embedsEachImageOnce) {
   const ConvergenceReport report = largeReport(5, 16, 12);
   // The reference, and of each method its last picture and error map.
-  EXPECT_EQ(count(renderReport(report), "data:image/"), 9U * (1 + 2 * 7));
+  EXPECT_EQ(occurrences(renderReport(report), "data:image/"), 9U * (1 + 2 * 7));
 }
 
 }  // namespace

@@ -265,7 +265,7 @@ TEST_P(ChainTwinTest, proposalsAreThoseOfTheScalarTwin) {
   }
 }
 
-std::string nameOf(const testing::TestParamInfo<ChainCase>& instance) {
+std::string nameOfChains(const testing::TestParamInfo<ChainCase>& instance) {
   std::string name = instance.param.scene;
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == '-' || c == '/'; }, '_');
@@ -281,9 +281,9 @@ const std::vector<ChainCase> kPaths{{"cornell-diffuse", MetropolisVariant::paths
                                     {"cornell-mirror", MetropolisVariant::pathspace},
                                     {"features/roughplastic", MetropolisVariant::pathspace},
                                     {"features/envmap", MetropolisVariant::pathspace}};
-INSTANTIATE_TEST_SUITE_P(Engine, ChainTest, testing::ValuesIn(kPrimarySamples), nameOf);
-INSTANTIATE_TEST_SUITE_P(PrimarySamples, ChainTwinTest, testing::ValuesIn(kPrimarySamples), nameOf);
-INSTANTIATE_TEST_SUITE_P(Paths, ChainTwinTest, testing::ValuesIn(kPaths), nameOf);
+INSTANTIATE_TEST_SUITE_P(Engine, ChainTest, testing::ValuesIn(kPrimarySamples), nameOfChains);
+INSTANTIATE_TEST_SUITE_P(PrimarySamples, ChainTwinTest, testing::ValuesIn(kPrimarySamples), nameOfChains);
+INSTANTIATE_TEST_SUITE_P(Paths, ChainTwinTest, testing::ValuesIn(kPaths), nameOfChains);
 
 }  // namespace
 }  // namespace wavecrest

@@ -13,8 +13,8 @@
 namespace wavecrest {
 namespace {
 
-constexpr uint32_t kWidth = 32, kHeight = 24;
-constexpr MisSettings kBpt{.emission = true, .nextEvent = true, .connect = true, .camera = true};
+constexpr uint32_t kFilmWidth = 32, kFilmHeight = 24;
+constexpr MisSettings kWithoutMerging{.emission = true, .nextEvent = true, .connect = true, .camera = true};
 
 // What each connection of some iterations carries, by its largest channel.
 class Carried : public WalkVisitor<float> {
@@ -28,14 +28,14 @@ class Carried : public WalkVisitor<float> {
 };
 
 std::vector<double> carried(const Scene& scene, float rouletteBelow) {
-  BidirectionalWalk<float> walk(scene, {.rouletteBelow = rouletteBelow}, kBpt);
+  BidirectionalWalk<float> walk(scene, {.rouletteBelow = rouletteBelow}, kWithoutMerging);
   Carried carried;
   for (uint32_t iteration = 0; iteration < 8; ++iteration) walk.run(iteration, carried);
   return carried.values;
 }
 
 TEST(ConnectionRoulette, joinsInProportionAndKeepsTheSum) {
-  const Scene scene = sceneFile("cornell-glossy", kWidth, kHeight);
+  const Scene scene = sceneFile("cornell-glossy", kFilmWidth, kFilmHeight);
   const std::vector<double> all = carried(scene, 0);
   ASSERT_GT(all.size(), 1000u);
   const double limit = 0.05;
@@ -63,16 +63,16 @@ TEST(ConnectionRoulette, joinsInProportionAndKeepsTheSum) {
   EXPECT_NEAR(static_cast<double>(aboveOfSome), static_cast<double>(above), 2) << "all of those above are joined";
 }
 
-RenderSettings settingsOf(Method method) {
+RenderSettings settingsWithRoulette(Method method) {
   RenderSettings settings = settingsFor({Precision::floating, SamplerKind::independent, Accel::bvh});
   settings.method = method;
   return settings;
 }
 
 TEST(ConnectionRoulette, changesNoMean) {
-  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const Scene scene = sceneFile("cornell-diffuse", kFilmWidth, kFilmHeight);
   for (const Method method : {Method::bpt, Method::vcm}) {
-    RenderSettings settings = settingsOf(method);
+    RenderSettings settings = settingsWithRoulette(method);
     settings.connectionRoulette = 0;
     const SeedMeans all = renderSeeds(scene, settings, 24);
     settings.connectionRoulette = 1;
@@ -87,8 +87,8 @@ uint64_t shadowRays(const Scene& scene, const RenderSettings& settings) {
 }
 
 TEST(ConnectionRoulette, savesShadowRaysOfLargeScenesOnly) {
-  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
-  RenderSettings settings = settingsOf(Method::bpt), all = settings;
+  const Scene scene = sceneFile("cornell-diffuse", kFilmWidth, kFilmHeight);
+  RenderSettings settings = settingsWithRoulette(Method::bpt), all = settings;
   all.connectionRoulette = 0;
   EXPECT_LT(shadowRays(scene, settings), 0.9 * static_cast<double>(shadowRays(scene, all)));
   settings.accel = all.accel = Accel::small;
@@ -97,8 +97,8 @@ TEST(ConnectionRoulette, savesShadowRaysOfLargeScenesOnly) {
 
 // Which are joined does not depend on threads and waves. All is diffuse there, so images have the same bits.
 TEST(ConnectionRoulette, isTheSameWhateverTheThreads) {
-  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
-  RenderSettings settings = settingsOf(Method::bpt);
+  const Scene scene = sceneFile("cornell-diffuse", kFilmWidth, kFilmHeight);
+  RenderSettings settings = settingsWithRoulette(Method::bpt);
   settings.threads = 1;
   settings.waveSize = 256;
   const RgbImage one = render(scene, settings, 3);
@@ -108,7 +108,7 @@ TEST(ConnectionRoulette, isTheSameWhateverTheThreads) {
 }
 
 double brightnessOf(const Scene& scene) {
-  const RenderSettings settings = settingsOf(Method::bpt);
+  const RenderSettings settings = settingsWithRoulette(Method::bpt);
   const RenderPlan<float> plan = planRender<float>(scene, settings);
   return typicalBrightness(plan, settings, filmArea(scene.film));
 }

@@ -12,7 +12,7 @@ namespace wavecrest {
 namespace {
 
 constexpr uint32_t kWidth = 40, kHeight = 27;  // 1080 pixels: no multiple of any wave size below
-constexpr uint64_t kIterations = 3;
+constexpr uint64_t kFewIterations = 3;
 
 bool sameBits(const RgbImage& a, const RgbImage& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
@@ -76,46 +76,46 @@ class DeterminismTest : public testing::TestWithParam<MethodVariant> {
 
 TEST_P(DeterminismTest, anyNumberOfThreadsGivesTheSameImage) {
   RenderSettings chosen = settings();
-  const RgbImage one = render(scene_, chosen, kIterations);
+  const RgbImage one = render(scene_, chosen, kFewIterations);
   for (const uint32_t threads : {2u, 3u}) {
     chosen.threads = threads;
-    EXPECT_TRUE(sameBits(one, render(scene_, chosen, kIterations))) << threads << " threads";
+    EXPECT_TRUE(sameBits(one, render(scene_, chosen, kFewIterations))) << threads << " threads";
   }
 }
 
 TEST_P(DeterminismTest, anySizeOfWavesGivesTheSameImage) {
   RenderSettings chosen = settings();
-  const RgbImage expected = render(scene_, chosen, kIterations);
+  const RgbImage expected = render(scene_, chosen, kFewIterations);
   for (const uint32_t waveSize : {64u, 1000u, 2048u}) {
     chosen.waveSize = waveSize;
-    EXPECT_TRUE(sameBits(expected, render(scene_, chosen, kIterations))) << "waves of " << waveSize;
+    EXPECT_TRUE(sameBits(expected, render(scene_, chosen, kFewIterations))) << "waves of " << waveSize;
   }
 }
 
 TEST_P(DeterminismTest, iterationsInSeveralCallsGiveTheImageOfOne) {
   const auto session = Session::create(scene_, settings());
-  for (uint64_t iterations = 1; iterations <= kIterations; ++iterations) {
+  for (uint64_t iterations = 1; iterations <= kFewIterations; ++iterations) {
     session->renderUntil(iterations, std::nullopt);
     EXPECT_EQ(session->statistics().iterations, iterations);
   }
-  session->renderUntil(kIterations, std::nullopt);  // nothing left to do
-  EXPECT_TRUE(sameBits(render(scene_, settings(), kIterations), session->film().resolve()));
+  session->renderUntil(kFewIterations, std::nullopt);  // nothing left to do
+  EXPECT_TRUE(sameBits(render(scene_, settings(), kFewIterations), session->film().resolve()));
 }
 
 // A stop by the clock falls anywhere; what has been done is not done again.
 TEST_P(DeterminismTest, stopsByTheClockChangeNothing) {
   const auto session = Session::create(scene_, settings());
-  for (int stop = 1; stop <= 5; ++stop) session->renderUntil(kIterations, 1e-3 * stop);
-  session->renderUntil(kIterations, std::nullopt);
-  EXPECT_TRUE(sameBits(render(scene_, settings(), kIterations), session->film().resolve()));
+  for (int stop = 1; stop <= 5; ++stop) session->renderUntil(kFewIterations, 1e-3 * stop);
+  session->renderUntil(kFewIterations, std::nullopt);
+  EXPECT_TRUE(sameBits(render(scene_, settings(), kFewIterations), session->film().resolve()));
 }
 
 TEST_P(DeterminismTest, seedsDiffer) {
   RenderSettings chosen = settings();
   chosen.radius = 0.05;  // so that pure merging finds photons at most pixels
-  const RgbImage first = render(scene_, chosen, kIterations);
+  const RgbImage first = render(scene_, chosen, kFewIterations);
   chosen.seed = 6;
-  EXPECT_GT(differentPixels(first, render(scene_, chosen, kIterations)), kWidth * kHeight / 2);
+  EXPECT_GT(differentPixels(first, render(scene_, chosen, kFewIterations)), kWidth * kHeight / 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Engine, DeterminismTest, testing::ValuesIn(methodVariants()),

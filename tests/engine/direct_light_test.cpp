@@ -14,7 +14,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr uint32_t kWidth = 24, kHeight = 18;
+constexpr uint32_t kFilmWidth = 24, kFilmHeight = 18;
 constexpr double kAlbedo = 0.7;
 constexpr Rgb kRadiance{5, 3, 1};
 
@@ -24,7 +24,7 @@ Scene planeScene() {
   scene.name = "plane";
   const uint32_t material = addDiffuse(scene, kAlbedo, kAlbedo, kAlbedo);
   addShape(scene, Rectangle{{-20, 0, 20}, {40, 0, 0}, {0, 0, -40}}, material);
-  setCamera(scene, {0.3, 0.6, 2}, 40, kWidth, kHeight);
+  setCamera(scene, {0.3, 0.6, 2}, 40, kFilmWidth, kFilmHeight);
   const double tilt = 0.5;  // looks down
   scene.sensor.toWorld[1] = {0, std::cos(tilt), -std::sin(tilt), 0.6};
   scene.sensor.toWorld[2] = {0, std::sin(tilt), -std::cos(tilt), 2};

@@ -33,7 +33,7 @@ Scene furnishedRoom() {
   return scene;
 }
 
-RenderSettings settingsOf(Method method, Instancing instancing) {
+RenderSettings settingsOfInstances(Method method, Instancing instancing) {
   RenderSettings settings = defaults();
   settings.method = method;
   settings.accel = Accel::bvh;
@@ -47,15 +47,15 @@ class InstanceImagesTest : public testing::TestWithParam<Method> {};
 TEST_P(InstanceImagesTest, areThoseOfCopies) {
   const Scene scene = furnishedRoom();
   const uint64_t count = GetParam() == Method::mlt ? 64 : effort(16, 4);
-  const SeedMeans kept = renderSeeds(scene, settingsOf(GetParam(), Instancing::kept), count, 1000);
-  const SeedMeans copied = renderSeeds(scene, settingsOf(GetParam(), Instancing::expanded), count, 2000);
+  const SeedMeans kept = renderSeeds(scene, settingsOfInstances(GetParam(), Instancing::kept), count, 1000);
+  const SeedMeans copied = renderSeeds(scene, settingsOfInstances(GetParam(), Instancing::expanded), count, 2000);
   expectSameTruth(kept, copied, std::string(toString(GetParam())));
 }
 // Chains of paths trace their vertices anew.
 TEST(InstanceImages, ofPathSpaceAreThoseOfCopies) {
   const Scene scene = furnishedRoom();
-  RenderSettings kept = settingsOf(Method::mlt, Instancing::kept),
-                 copied = settingsOf(Method::mlt, Instancing::expanded);
+  RenderSettings kept = settingsOfInstances(Method::mlt, Instancing::kept),
+                 copied = settingsOfInstances(Method::mlt, Instancing::expanded);
   kept.metropolis.variant = copied.metropolis.variant = MetropolisVariant::pathspace;
   expectSameTruth(renderSeeds(scene, kept, 64, 1000), renderSeeds(scene, copied, 64, 2000), "pathspace");
 }
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Engine, InstanceImagesTest,
 TEST(InstanceImages, doNotDependOnThreadsAndWaves) {
   const Scene scene = furnishedRoom();
   for (const Precision precision : {Precision::floating, Precision::doubled}) {
-    RenderSettings settings = settingsOf(Method::pt, Instancing::kept);
+    RenderSettings settings = settingsOfInstances(Method::pt, Instancing::kept);
     settings.precision = precision;
     settings.threads = 1;
     settings.waveSize = 4096;

@@ -12,7 +12,7 @@ namespace {
 
 // A floor seen from above.
 Scene floorUnder(const std::string& emitters) {
-  return testing::loadBody(
+  return loadBody(
       "<sensor type=\"perspective\"><float name=\"fov\" value=\"20\"/><transform name=\"to_world\">"
       "<lookat origin=\"0, 0, 5\" target=\"0, 0, 0\" up=\"0, 1, 0\"/></transform>"
       "<film type=\"hdrfilm\"><integer name=\"width\" value=\"32\"/><integer name=\"height\" value=\"24\"/></film>"

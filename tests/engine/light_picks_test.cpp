@@ -14,8 +14,8 @@ namespace {
 
 // A floor of side 2 h, and emitters.
 Scene floorWith(const std::string& emitters, double h = 1) {
-  return testing::loadBody("<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"" +
-                           std::to_string(h) + "\"/></transform></shape>" + emitters);
+  return loadBody("<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"" + std::to_string(h) +
+                  "\"/></transform></shape>" + emitters);
 }
 std::string lamp(double side, double radiance, const std::string& shape = "rectangle") {
   return "<shape type=\"" + shape + "\"><transform name=\"to_world\"><scale value=\"" + std::to_string(side / 2) +

@@ -11,7 +11,7 @@
 namespace wavecrest {
 namespace {
 
-RenderSettings settingsFor(Method method) {
+RenderSettings plannedSettings(Method method) {
   RenderSettings settings;
   settings.method = method;
   settings.isa = bestIsa();
@@ -37,7 +37,7 @@ TEST_P(MemoryPlanTest, isExactForOneWave) {
   for (const char* name : {"cornell-diffuse", "cornell-mirror", "features/checkerboard", "features/envmap"}) {
     const Scene scene = sceneFile(name, 40, 30);
     for (const Precision precision : {Precision::floating, Precision::doubled}) {
-      RenderSettings settings = settingsFor(GetParam());
+      RenderSettings settings = plannedSettings(GetParam());
       settings.precision = precision;
       const MemoryPlan plan = planMemory(scene, settings);
       const RenderStatistics held = statisticsOf(scene, settings, 1);
@@ -55,7 +55,7 @@ TEST_P(MemoryPlanTest, isExactForOneWave) {
 
 TEST_P(MemoryPlanTest, isNearForManyWavesAndIterations) {
   const Scene scene = sceneFile("cornell-mirror", 160, 120);
-  RenderSettings settings = settingsFor(GetParam());
+  RenderSettings settings = plannedSettings(GetParam());
   settings.waveSize = 1024;
   const MemoryUse plan = planMemory(scene, settings).use;
   const MemoryUse held = statisticsOf(scene, settings, 4).memory;
@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, MemoryPlanTest, testing::ValuesIn([] {
 
 TEST(MemoryPlan, severalIterationsAreUnderWayWhereOneIsTooLittleForAllThreads) {
   constexpr size_t kSmall = 256 * 192, kLarge = 1024 * 768;
-  RenderSettings settings = settingsFor(Method::vcm);
+  RenderSettings settings = plannedSettings(Method::vcm);
   const auto atOnce = [&](size_t pixels, uint32_t threads) {
     settings.threads = threads;
     return iterationsAtOnce(withPieces(settings, FilmSettings{}, pixels), pixels);
@@ -94,7 +94,7 @@ TEST(MemoryPlan, methodsThatOnlyMergeHaveLightPathsOnAFilmOfOnePixel) {
   const Scene scene = sceneFile("cornell-diffuse", 1, 1);
   const auto lightPaths = [&](RenderSettings settings) { return planMemory(scene, settings).lightPaths; };
   for (const Method method : {Method::ppm, Method::bpm}) {
-    RenderSettings settings = settingsFor(method);
+    RenderSettings settings = plannedSettings(method);
     EXPECT_EQ(lightPaths(settings), kLeastLightPaths);
     const RenderStatistics statistics = statisticsOf(scene, settings, 3);
     EXPECT_EQ(statistics.paths, 3u);
@@ -102,14 +102,14 @@ TEST(MemoryPlan, methodsThatOnlyMergeHaveLightPathsOnAFilmOfOnePixel) {
     settings.lightPaths = 7;
     EXPECT_EQ(lightPaths(settings), 7u);
   }
-  EXPECT_EQ(lightPaths(settingsFor(Method::vcm)), 1u);
-  EXPECT_EQ(lightPaths(settingsFor(Method::bpt)), 1u);
+  EXPECT_EQ(lightPaths(plannedSettings(Method::vcm)), 1u);
+  EXPECT_EQ(lightPaths(plannedSettings(Method::bpt)), 1u);
 }
 
 // A map and stores for each iteration under way.
 TEST(MemoryPlan, holdsAllIterationsUnderWay) {
   const Scene scene = sceneFile("cornell-mirror", 160, 120);
-  RenderSettings settings = settingsFor(Method::vcm);
+  RenderSettings settings = plannedSettings(Method::vcm);
   const MemoryUse one = planMemory(scene, settings).use;
   settings.threads = 16;
   const MemoryUse many = planMemory(scene, settings).use;
@@ -122,7 +122,7 @@ TEST(MemoryPlan, holdsAllIterationsUnderWay) {
 
 TEST(MemoryPlan, growsWithThreads) {
   const Scene scene = sceneFile("cornell-diffuse", 40, 30);
-  RenderSettings settings = settingsFor(Method::lt);
+  RenderSettings settings = plannedSettings(Method::lt);
   const MemoryUse one = planMemory(scene, settings).use;
   settings.threads = 3;
   const MemoryUse three = planMemory(scene, settings).use;
@@ -140,7 +140,7 @@ TEST(MemoryPlan, growsWithThreads) {
 TEST(MemoryBudget, lowersTheNumberOfLightPathsAndIsKept) {
   const Scene scene = sceneFile("cornell-mirror", 160, 120);
   for (const Method method : {Method::ppm, Method::bpm, Method::vcm}) {
-    RenderSettings settings = settingsFor(method);
+    RenderSettings settings = plannedSettings(method);
     settings.waveSize = 512;
     const MemoryPlan whole = planMemory(scene, settings);
     EXPECT_EQ(whole.lightPaths, 160u * 120);
@@ -160,7 +160,7 @@ TEST(MemoryBudget, lowersTheNumberOfLightPathsAndIsKept) {
 TEST(MemoryBudget, thatSufficesChangesNothing) {
   const Scene scene = sceneFile("cornell-diffuse", 80, 60);
   for (const MethodEntry& entry : kMethods) {
-    RenderSettings settings = settingsFor(entry.method);
+    RenderSettings settings = plannedSettings(entry.method);
     const MemoryPlan whole = planMemory(scene, settings);
     settings.memoryBytes = whole.use.total();
     EXPECT_EQ(planMemory(scene, settings).lightPaths, whole.lightPaths) << entry.name;
@@ -170,7 +170,7 @@ TEST(MemoryBudget, thatSufficesChangesNothing) {
 TEST(MemoryBudget, thatIsTooSmallIsRefused) {
   const Scene scene = sceneFile("cornell-diffuse", 80, 60);
   for (const MethodEntry& entry : kMethods) {
-    RenderSettings settings = settingsFor(entry.method);
+    RenderSettings settings = plannedSettings(entry.method);
     settings.memoryBytes = 100'000;  // less than the film
     EXPECT_THROW(planMemory(scene, settings), MemoryBudgetError) << entry.name;
     EXPECT_THROW(Session::create(scene, settings), MemoryBudgetError) << entry.name;
@@ -179,7 +179,7 @@ TEST(MemoryBudget, thatIsTooSmallIsRefused) {
 
 TEST(MemoryBudget, ofMethodsWithoutAPhotonMapLeavesTheirLightPathsAlone) {
   const Scene scene = sceneFile("cornell-diffuse", 80, 60);
-  RenderSettings settings = settingsFor(Method::bpt);
+  RenderSettings settings = plannedSettings(Method::bpt);
   settings.lightPaths = 1000;
   EXPECT_THROW(planMemory(scene, settings), std::invalid_argument);
 }

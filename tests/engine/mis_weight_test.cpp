@@ -16,8 +16,9 @@ struct Strategies {
   const char* name;
   MisSettings mis;
 };
-constexpr Strategies kBpt{"bpt", {.emission = true, .nextEvent = true, .connect = true, .camera = true}};
-constexpr Strategies kVcm{"vcm", {.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true}};
+constexpr Strategies kBptStrategies{"bpt", {.emission = true, .nextEvent = true, .connect = true, .camera = true}};
+constexpr Strategies kVcmStrategies{
+    "vcm", {.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true}};
 constexpr Strategies kPt{"pt", {.emission = true, .nextEvent = true}};
 constexpr Strategies kBpm{"bpm", {.emission = false, .nextEvent = false, .merge = true}};
 
@@ -105,10 +106,10 @@ std::vector<WeightCase> weightCases() {
   std::vector<WeightCase> cases;
   for (size_t light = 0; light < kRoomLightNames.size(); ++light) {
     Room room{.light = static_cast<RoomLight>(light), .width = 32, .height = 24};
-    cases.push_back({room, kBpt});
+    cases.push_back({room, kBptStrategies});
     room.materials = RoomMaterials::mixed;
     room.tiltedNormals = true;
-    cases.push_back({room, kVcm});
+    cases.push_back({room, kVcmStrategies});
   }
   const Room mixed{
       .light = RoomLight::quad, .materials = RoomMaterials::mixed, .tiltedNormals = true, .width = 32, .height = 24};
@@ -161,10 +162,10 @@ TEST(MisWeight, underParallelRaysIsTheOneComputedFromScratch) {
   Scene scene = roomScene({.light = RoomLight::quad, .materials = RoomMaterials::mixed, .width = 32, .height = 24});
   scene.sensor.kind = Sensor::Kind::orthographic;
   WalkSettings settings{.lightPaths = 3000, .radius = 0.06};
-  const Comparison single = compareWeights<float>(scene, settings, kVcm.mis, 1e-4);
+  const Comparison single = compareWeights<float>(scene, settings, kVcmStrategies.mis, 1e-4);
   EXPECT_GT(std::min({single.nextEvent, single.connection, single.camera, single.merge}), 30u);
   settings.precision = Precision::doubled;
-  EXPECT_GT(compareWeights<double>(scene, settings, kVcm.mis, 1e-5).camera, 30u);
+  EXPECT_GT(compareWeights<double>(scene, settings, kVcmStrategies.mis, 1e-5).camera, 30u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Engine, MisWeightTest, testing::ValuesIn(weightCases()),

@@ -193,10 +193,11 @@ TEST(ReferenceMethod, saysWhy) {
 // A point light between a white floor at z = 0 and a mirror at z = 2, with a black screen that keeps its direct light
 // from the floor: all light is a caustic, as from a second light at z = 3. The camera looks at the floor (S = false) or
 // at the mirror, which shows the floor.
-constexpr double kAlbedo = 0.6, kIntensity = 10;
+constexpr double kFloorAlbedo = 0.6, kIntensity = 10;
 Scene causticScene(bool throughMirror) {
   Scene scene;
-  const uint32_t white = addDiffuse(scene, kAlbedo, kAlbedo, kAlbedo), black = addDiffuse(scene, 0, 0, 0);
+  const uint32_t white = addDiffuse(scene, kFloorAlbedo, kFloorAlbedo, kFloorAlbedo),
+                 black = addDiffuse(scene, 0, 0, 0);
   addShape(scene, Rectangle{{-5, -5, 0}, {10, 0, 0}, {0, 10, 0}}, white);
   addShape(scene, Rectangle{{-0.5, -0.5, 0.9}, {1, 0, 0}, {0, 1, 0}}, black);
   Material mirror;
@@ -224,7 +225,7 @@ double causticMean(bool throughMirror) {
     for (int k = 0; k < kGrid; ++k) {
       const double x = 2 + half * (2 * (i + 0.5) / kGrid - 1), y = half * (2 * (k + 0.5) / kGrid - 1);
       const double dist2 = x * x + y * y + 9;
-      sum += kAlbedo / std::numbers::pi * kIntensity * 3 / (dist2 * std::sqrt(dist2));
+      sum += kFloorAlbedo / std::numbers::pi * kIntensity * 3 / (dist2 * std::sqrt(dist2));
     }
   }
   return sum / (kGrid * kGrid);

@@ -7,12 +7,12 @@
 namespace wavecrest {
 namespace {
 
-constexpr uint32_t kWidth = 32, kHeight = 24;
+constexpr uint32_t kRoomWidth = 32, kRoomHeight = 24;
 
 RenderSettings defaults() { return settingsFor({Precision::floating, SamplerKind::independent, Accel::small}); }
 
 TEST(Roulette, changesNoMeanWhereverItBegins) {
-  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const Scene scene = sceneFile("cornell-diffuse", kRoomWidth, kRoomHeight);
   RenderSettings settings = defaults();
   settings.limits.rouletteDepth = 20;
   const SeedMeans latest = renderSeeds(scene, settings, 48);
@@ -24,7 +24,7 @@ TEST(Roulette, changesNoMeanWhereverItBegins) {
 }
 
 TEST(Roulette, shortensPaths) {
-  const Scene scene = sceneFile("validation/closed-box", kWidth, kHeight);
+  const Scene scene = sceneFile("validation/closed-box", kRoomWidth, kRoomHeight);
   RenderSettings settings = defaults();
   uint64_t previous = UINT64_MAX;
   for (const uint32_t depth : {kUnlimitedDepth, 20u, 5u, 1u}) {
@@ -39,7 +39,7 @@ TEST(Roulette, shortensPaths) {
 
 // METHODS 1.1: K counts edges. K = 1 shows emitters alone and asks for no shadow; K = 2 adds direct light.
 TEST(MaxDepth, oneShowsOnlyEmitters) {
-  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const Scene scene = sceneFile("cornell-diffuse", kRoomWidth, kRoomHeight);
   RenderSettings settings = defaults();
   settings.limits.maxDepth = 1;
   const auto session = Session::create(scene, settings);
@@ -54,16 +54,16 @@ TEST(MaxDepth, oneShowsOnlyEmitters) {
     EXPECT_NEAR(std::remainder(image[i], 51.0 / 4), 0, 1e-4);
   }
   EXPECT_GT(lit, 3u);
-  EXPECT_LT(lit, kWidth * kHeight / 10);
+  EXPECT_LT(lit, kRoomWidth * kRoomHeight / 10);
   EXPECT_EQ(session->statistics().counters.raysShadow, 0u);
-  EXPECT_EQ(session->statistics().counters.raysClosest, 4u * kWidth * kHeight);
+  EXPECT_EQ(session->statistics().counters.raysClosest, 4u * kRoomWidth * kRoomHeight);
 }
 
 TEST(MaxDepth, eachEdgeMoreAddsLight) {
-  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const Scene scene = sceneFile("cornell-diffuse", kRoomWidth, kRoomHeight);
   RenderSettings settings = defaults();
   settings.limits.rouletteDepth = kUnlimitedDepth;  // so that all runs trace the same paths
-  RgbImage previous(3 * kWidth * kHeight, 0.0f);
+  RgbImage previous(3 * kRoomWidth * kRoomHeight, 0.0f);
   for (uint32_t maxDepth = 1; maxDepth <= 6; ++maxDepth) {
     settings.limits.maxDepth = maxDepth;
     const RgbImage image = render(scene, settings, 4);

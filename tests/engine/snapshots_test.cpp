@@ -149,10 +149,10 @@ TEST_P(SnapshotsTest, aSessionMayStartAtALaterIteration) {
   }
 }
 
-std::string nameOf(const testing::TestParamInfo<MethodEntry>& entry) { return std::string(entry.param.name); }
+std::string nameOfEntry(const testing::TestParamInfo<MethodEntry>& entry) { return std::string(entry.param.name); }
 
-INSTANTIATE_TEST_SUITE_P(Methods, SnapshotsTest, testing::ValuesIn(kMethods), nameOf);
-INSTANTIATE_TEST_SUITE_P(Methods, BootstrapTest, testing::Values(entryOf(Method::mlt)), nameOf);
+INSTANTIATE_TEST_SUITE_P(Methods, SnapshotsTest, testing::ValuesIn(kMethods), nameOfEntry);
+INSTANTIATE_TEST_SUITE_P(Methods, BootstrapTest, testing::Values(entryOf(Method::mlt)), nameOfEntry);
 
 }  // namespace
 }  // namespace wavecrest

@@ -9,8 +9,8 @@
 namespace wavecrest {
 namespace {
 
-constexpr uint32_t kWidth = 48, kHeight = 36;
-constexpr uint64_t kIterations = 2;
+constexpr uint32_t kImageWidth = 48, kImageHeight = 36;
+constexpr uint64_t kTwoIterations = 2;
 
 class SpecializationTest : public testing::TestWithParam<Variant> {
  protected:
@@ -21,12 +21,12 @@ class SpecializationTest : public testing::TestWithParam<Variant> {
     RenderSettings settings = settingsFor(GetParam());
     settings.method = method;
     settings.specialization = Specialization::general;
-    const RgbImage general = render(scene, settings, kIterations);
+    const RgbImage general = render(scene, settings, kTwoIterations);
     for (const Specialization specialization : list) {
       if (!isCompiled(GetParam().precision, specialization)) continue;
       settings.specialization = specialization;
       const auto session = Session::create(scene, settings);
-      session->renderUntil(kIterations, std::nullopt);
+      session->renderUntil(kTwoIterations, std::nullopt);
       EXPECT_EQ(session->statistics().specialization, specialization) << "the forced kernels ran";
       const RgbImage image = session->film().resolve();
       size_t different = 0;
@@ -39,7 +39,7 @@ class SpecializationTest : public testing::TestWithParam<Variant> {
 };
 
 TEST_P(SpecializationTest, diffuseSceneByEveryKernel) {
-  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const Scene scene = sceneFile("cornell-diffuse", kImageWidth, kImageHeight);
   expectSameImages(scene,
                    {Specialization::diffuse, Specialization::smooth, Specialization::plain, Specialization::complete});
   expectSameImages(scene,
@@ -57,21 +57,21 @@ void addLensAndFilter(Scene& scene) {
 
 // Cameras and filters are branches that a whole scene takes or not.
 TEST_P(SpecializationTest, diffuseSceneThroughALensByTheDiffuseKernels) {
-  Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  Scene scene = sceneFile("cornell-diffuse", kImageWidth, kImageHeight);
   addLensAndFilter(scene);
   expectSameImages(scene, {Specialization::diffuse});
   expectSameImages(scene, {Specialization::diffuseBidirectional}, Method::bpt);
 }
 
 TEST_P(SpecializationTest, specularSceneByTheKernelsThatCoverIt) {
-  expectSameImages(sceneFile("cornell-mirror", kWidth, kHeight), {Specialization::smooth});
-  expectSameImages(sceneFile("validation/furnace-glass", kWidth, kHeight), {Specialization::smooth});
+  expectSameImages(sceneFile("cornell-mirror", kImageWidth, kImageHeight), {Specialization::smooth});
+  expectSameImages(sceneFile("validation/furnace-glass", kImageWidth, kImageHeight), {Specialization::smooth});
 }
 
 // Sun, sky, a lens, a Gaussian filter and layered materials.
 TEST_P(SpecializationTest, plainSceneByTheKernelsThatCoverIt) {
-  Scene scene =
-      roomScene({.light = RoomLight::envmap, .materials = RoomMaterials::mixed, .width = kWidth, .height = kHeight});
+  Scene scene = roomScene(
+      {.light = RoomLight::envmap, .materials = RoomMaterials::mixed, .width = kImageWidth, .height = kImageHeight});
   addRoomLight(scene, RoomLight::directional);
   addLensAndFilter(scene);
   expectSameImages(scene, {Specialization::plain, Specialization::complete});

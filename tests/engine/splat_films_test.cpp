@@ -135,19 +135,19 @@ TEST_P(SplatSumsTest, holdAnHourOfLargeSplats) {
 
 // Any number of workers, at the same time, come to the same sums; and they share a bounded number of films.
 TEST(SplatFilms, areTheSameForAnyNumberOfWorkers) {
-  constexpr size_t kPixels = 1000, kCapacity = 256, kQueues = 200;
+  constexpr size_t kPixels = 1000, kQueueCapacity = 256, kQueues = 200;
   std::vector<unsigned char> expected;
   for (const size_t threads : {1u, 2u, 3u, 8u, 64u}) {
     SplatFilms films(kPixels, threads, 0x1p40);
     EXPECT_EQ(films.bytes(), SplatFilms::bytesFor(kPixels, std::min<size_t>(threads, kSplatFilms)));
     EXPECT_EQ(films.regions() > 1, threads > kSplatFilms);
     forEach(threads, [&](size_t worker) {
-      SplatWriter<float> writer(films, addSplatsOf<float>(bestIsa()), kCapacity);
-      Queue<float> queue(kCapacity);
+      SplatWriter<float> writer(films, addSplatsOf<float>(bestIsa()), kQueueCapacity);
+      Queue<float> queue(kQueueCapacity);
       StageCounters counters;
       for (size_t i = worker; i < kQueues; i += threads) {
         std::mt19937_64 random(i);
-        for (size_t k = 0; k < kCapacity; ++k) {
+        for (size_t k = 0; k < kQueueCapacity; ++k) {
           const auto bright = static_cast<float>(random() % 1'000'003) * 1e-3f;
           queue.push(static_cast<uint32_t>(random() % kPixels), bright, 1, 1e9f);
         }
@@ -186,10 +186,10 @@ TEST_P(AnyBrightness, isTheSameImage) {
     settings.metropolis.variant = MetropolisVariant::pssmlt;
     return render(scene, settings, iterations);
   };
-  constexpr uint64_t kIterations = 64;
-  const RgbImage expected = image(1, kIterations);
+  constexpr uint64_t kManyIterations = 64;
+  const RgbImage expected = image(1, kManyIterations);
   for (const int exponent : {-40, 17, 40}) {
-    const RgbImage scaled = image(std::ldexp(1.0, exponent), kIterations);
+    const RgbImage scaled = image(std::ldexp(1.0, exponent), kManyIterations);
     for (size_t i = 0; i < expected.size(); ++i) {
       ASSERT_EQ(std::ldexp(scaled[i], -exponent), expected[i]) << "2^" << exponent << ", value " << i;
     }

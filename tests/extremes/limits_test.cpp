@@ -15,7 +15,7 @@
 namespace wavecrest {
 namespace {
 
-RenderSettings settingsOf(Method method) {
+RenderSettings settingsWithin(Method method) {
   RenderSettings settings;
   settings.method = method;
   settings.isa = bestIsa();
@@ -30,7 +30,7 @@ std::unique_ptr<Session> rendered(const Scene& scene, const RenderSettings& sett
 }
 
 TEST(PathLimits, withoutOneNoPathIsCut) {
-  const auto session = rendered(shiningRoom(0.999), settingsOf(Method::pt), 8);
+  const auto session = rendered(shiningRoom(0.999), settingsWithin(Method::pt), 8);
   EXPECT_EQ(session->statistics().counters.cutPaths, 0u);
 }
 
@@ -38,7 +38,7 @@ TEST(PathLimits, withoutOneNoPathIsCut) {
 TEST(PathLimits, whatTheyCutIsCounted) {
   constexpr double kAlbedo = 0.9;
   constexpr uint32_t kEdges = 12;
-  RenderSettings settings = settingsOf(Method::pt);
+  RenderSettings settings = settingsWithin(Method::pt);
   settings.limits.maxDepth = kEdges;
   const RenderStatistics statistics = rendered(shiningRoom(kAlbedo), settings, 64)->statistics();
   EXPECT_GT(statistics.counters.cutPaths, 0u);
@@ -52,7 +52,7 @@ TEST(PhotonMapIterations, areFinishedWhereTimeRunsOut) {
   for (const Method method : {Method::vcm, Method::ppm}) {
     Scene scene = lampBox({});
     scene.film.width = scene.film.height = 96;
-    RenderSettings settings = settingsOf(method);
+    RenderSettings settings = settingsWithin(method);
     settings.waveSize = 256;
     const auto session = Session::create(scene, settings);
     double seconds = 0;
@@ -65,7 +65,7 @@ TEST(PhotonMapIterations, areFinishedWhereTimeRunsOut) {
 
 // METHODS 6.1: the exponent, by its values.
 TEST(MergeRadius, shrinksByItsExponent) {
-  RenderSettings settings = settingsOf(Method::vcm);
+  RenderSettings settings = settingsWithin(Method::vcm);
   settings.radius = 0.01;
   const auto radius = [&](double alpha, uint64_t iteration) {
     settings.radiusAlpha = alpha;
@@ -90,10 +90,10 @@ Scene sphereOfRadius(double radius) {
 
 TEST(SceneRange, whatSinglePrecisionCannotMultiplyIsRefused) {
   for (const double radius : {1e30, 1e14, 1e-30}) {
-    EXPECT_THROW(Session::create(sphereOfRadius(radius), settingsOf(Method::pt)), SceneError) << radius;
+    EXPECT_THROW(Session::create(sphereOfRadius(radius), settingsWithin(Method::pt)), SceneError) << radius;
   }
   for (const double radius : {1e12, 1e-12}) {
-    EXPECT_NO_THROW(Session::create(sphereOfRadius(radius), settingsOf(Method::pt))) << radius;
+    EXPECT_NO_THROW(Session::create(sphereOfRadius(radius), settingsWithin(Method::pt))) << radius;
   }
 }
 
@@ -101,10 +101,10 @@ TEST(PathNumbers, moreThanRandomNumbersTellApartAreRefused) {
   Scene scene = shiningRoom(0.5);
   scene.film.width = scene.film.height = 16385;  // 2^28 and some pixels, of which one is rendered
   scene.film.cropWidth = scene.film.cropHeight = 1;
-  EXPECT_THROW(Session::create(scene, settingsOf(Method::pt)), SceneError);
+  EXPECT_THROW(Session::create(scene, settingsWithin(Method::pt)), SceneError);
   scene.film.width = 16383;
-  EXPECT_NO_THROW(Session::create(scene, settingsOf(Method::pt)));
-  RenderSettings many = settingsOf(Method::ppm);
+  EXPECT_NO_THROW(Session::create(scene, settingsWithin(Method::pt)));
+  RenderSettings many = settingsWithin(Method::ppm);
   many.lightPaths = (uint64_t{1} << 28) + 1;
   EXPECT_THROW(Session::create(shiningRoom(0.5), many), SceneError);
 }
@@ -118,8 +118,8 @@ TEST(SceneRange, aSceneOfTinyFacesIsRefused) {
     addShape(scene, Rectangle{{0, 0, 0}, {side, 0, 0}, {0, side, 0}}, 0);
     return scene;
   };
-  EXPECT_THROW(Session::create(sceneOf(1e-14), settingsOf(Method::pt)), SceneError);
-  EXPECT_NO_THROW(Session::create(sceneOf(1e-11), settingsOf(Method::pt)));
+  EXPECT_THROW(Session::create(sceneOf(1e-14), settingsWithin(Method::pt)), SceneError);
+  EXPECT_NO_THROW(Session::create(sceneOf(1e-11), settingsWithin(Method::pt)));
 }
 
 // ---- environment maps of more texels than a number has bits ---------------------------------------------------------

@@ -288,11 +288,12 @@ TEST_P(BoxHitTest, openSidesLetRaysIn) {
   }
 }
 
-std::string nameOf(const testing::TestParamInfo<std::tuple<Intersector, Frame>>& instance) {
+std::string nameOfFrame(const testing::TestParamInfo<std::tuple<Intersector, Frame>>& instance) {
   return std::get<0>(instance.param).name + "_" + std::get<1>(instance.param).name;
 }
 INSTANTIATE_TEST_SUITE_P(Kernels, BoxHitTest,
-                         testing::Combine(testing::ValuesIn(smallIntersectors()), testing::ValuesIn(frames())), nameOf);
+                         testing::Combine(testing::ValuesIn(smallIntersectors()), testing::ValuesIn(frames())),
+                         nameOfFrame);
 
 }  // namespace
 }  // namespace wavecrest

@@ -7,10 +7,10 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kPaths = 2048, kIterations = 16;
+constexpr size_t kLightPaths = 2048, kIterations = 16;
 constexpr double kMostDeviations = 5;  // of six means at once: a false alarm in 3e5 runs, and the seed is fixed
 
-struct Body {
+struct LightBody {
   Point center;
   double radius;
 };
@@ -41,11 +41,11 @@ class DistantLightTest : public testing::TestWithParam<Isa> {
   // Calls function(ray's index) with each wave of paths.
   template <class Function>
   void forEachPath(const Function& function) {
-    Wave<float> wave(kPaths, columnNeedsOf(Specialization::complete));
+    Wave<float> wave(kLightPaths, columnNeedsOf(Specialization::complete));
     for (context_.sampler.iteration = 0; context_.sampler.iteration < kIterations; ++context_.sampler.iteration) {
-      wave.pathCount = kPaths;
+      wave.pathCount = kLightPaths;
       findStages<float>(GetParam(), Precision::floating, Specialization::complete).generateLightPaths(context_, wave);
-      for (size_t i = 0; i < kPaths; ++i) function(wave, i);
+      for (size_t i = 0; i < kLightPaths; ++i) function(wave, i);
     }
   }
   static Point originOf(const Wave<float>& wave, size_t i) {
@@ -69,10 +69,10 @@ INSTANTIATE_TEST_SUITE_P(Kernels, DistantLightTest, testing::ValuesIn(availableI
 // The flux through a sphere's cross section is pi r^2 times the irradiance across the light, or 4 pi times the radiance
 // from all around. Spheres near the middle, in a corner and at the end of the longest edge see different faces.
 TEST_P(DistantLightTest, bodiesGetTheFluxOfTheirCrossSection) {
-  const Body bodies[] = {{{0.4, -0.2, 5}, 0.38}, {{3.0, 0.0, 3.7}, 0.19}, {{-2.3, -0.2, 5.9}, 0.35}};
+  const LightBody bodies[] = {{{0.4, -0.2, 5}, 0.38}, {{3.0, 0.0, 3.7}, 0.19}, {{-2.3, -0.2, 5.9}, 0.35}};
   for (const LightKind kind : {LightKind::directional, LightKind::constant}) {
     setLight(kind, normalized({0.5, -0.6, 0.3}));
-    for (const Body& body : bodies) {
+    for (const LightBody& body : bodies) {
       double sum = 0, squares = 0;
       forEachPath([&](const Wave<float>& wave, size_t i) {
         const Point toBody = body.center - originOf(wave, i), d = directionOf(wave, i);
@@ -82,7 +82,7 @@ TEST_P(DistantLightTest, bodiesGetTheFluxOfTheirCrossSection) {
         sum += flux;
         squares += flux * flux;
       });
-      const double n = kPaths * kIterations, mean = sum / n;
+      const double n = kLightPaths * kIterations, mean = sum / n;
       const double error = std::sqrt((squares / n - mean * mean) / n);
       const double want =
           3.141592653589793 * body.radius * body.radius * (kind == LightKind::constant ? 12.566370614 : 1);

@@ -12,7 +12,7 @@ using Complex = std::complex<double>;
 class FresnelTest : public IsaTest {};
 WAVECREST_TEST_EVERY_ISA(FresnelTest);
 
-constexpr std::array kPrecisions{Precision::floating, Precision::doubled};
+constexpr std::array kBothPrecisions{Precision::floating, Precision::doubled};
 const std::vector<double> kCosines{1e-6, 1e-3, 0.01, 0.1, 0.3, 0.5, 0.7071, 0.9, 0.99, 0.9999, 1};
 
 // Mean of |r_s|^2 and |r_p|^2 (Born and Wolf, Principles of Optics, 1.5) for a complex index n of the far side.
@@ -28,7 +28,7 @@ double rounding(Precision precision) { return precision == Precision::doubled ? 
 TEST_P(FresnelTest, dielectricIsTheTextbooks) {
   for (const double eta : {1.0001, 1.0003, 1.33, 1.5, 2.4, 4.0, 1 / 1.0003, 1 / 1.5, 1 / 2.4}) {
     for (const double cosine : kCosines) {
-      for (const Precision precision : kPrecisions) {
+      for (const Precision precision : kBothPrecisions) {
         const double expected = textbook(cosine, eta);
         const double actual = entries<BsdfEntries>().fresnelDielectric(precision, cosine, eta);
         // eta^2 - 1 and the sine lose what eta and the cosine lost when they were rounded: an error of e in eta^2 - 1 +
@@ -44,7 +44,7 @@ TEST_P(FresnelTest, dielectricIsTheTextbooks) {
 TEST_P(FresnelTest, conductorIsTheTextbooks) {
   for (const auto& [eta, k] : {std::pair{0.2, 3.4}, {1.66, 9.22}, {0.05, 2.0}, {2.5, 0.5}, {1.0, 1e-3}, {4.0, 4.0}}) {
     for (const double cosine : kCosines) {
-      for (const Precision precision : kPrecisions) {
+      for (const Precision precision : kBothPrecisions) {
         const double expected = textbook(cosine, {eta, k});
         EXPECT_NEAR(entries<BsdfEntries>().fresnelConductor(precision, cosine, eta, k), expected,
                     64 * rounding(precision))
@@ -56,7 +56,7 @@ TEST_P(FresnelTest, conductorIsTheTextbooks) {
 
 TEST_P(FresnelTest, knownValues) {
   const BsdfEntries& kernel = entries<BsdfEntries>();
-  for (const Precision precision : kPrecisions) {
+  for (const Precision precision : kBothPrecisions) {
     const double tolerance = 8 * rounding(precision);
     EXPECT_NEAR(kernel.fresnelDielectric(precision, 1, 1.5), 0.04, tolerance);
     EXPECT_NEAR(kernel.fresnelDielectric(precision, 1, 1 / 1.5), 0.04, tolerance);

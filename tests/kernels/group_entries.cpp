@@ -9,7 +9,7 @@ namespace {
 
 WAVECREST_INLINE MaskGroup<8> maskOf(const uint32_t* present) { return loadGroup<8>(present) != 0; }
 
-constexpr GroupEntries kEntries = {
+constexpr GroupEntries kGroupEntries = {
     .appendWhere = [](const uint32_t* present, const uint32_t* items, uint32_t* out)
                        HWY_ATTR -> size_t { return appendWhere(maskOf(present), loadGroup<8>(items), out); },
     .appendByFallingKey = [](const uint32_t* present, const float* keys, const uint32_t* items, uint32_t* out)
@@ -22,7 +22,7 @@ constexpr GroupEntries kEntries = {
       return found.index;
     },
     .loadBytes = [](const uint8_t* bytes, float* out) HWY_ATTR { store(loadBytes<8>(bytes), out); }};
-WAVECREST_REGISTER_ENTRIES(GroupEntries, kEntries);
+WAVECREST_REGISTER_ENTRIES(GroupEntries, kGroupEntries);
 
 }  // namespace
 WAVECREST_SIMD_END

@@ -101,7 +101,7 @@ const LaneOperation<uint32_t> kUIntOperations[] = {
 
 Mask maskFromFlags(const uint32_t* flags) { return loadUnaligned(flags) != UInt(0u); }
 
-constexpr LanesEntries kEntries = {
+constexpr LanesEntries kLanesEntries = {
     .target = HWY_STR(HWY_NAMESPACE),
     .targetBit = HWY_TARGET,
     .lanes = kLanes,
@@ -188,7 +188,7 @@ constexpr LanesEntries kEntries = {
     .laneIndex = [](uint32_t start, uint32_t* out) HWY_ATTR { storeUnaligned(laneIndex(start), out); },
 };
 
-WAVECREST_REGISTER_ENTRIES(LanesEntries, kEntries);
+WAVECREST_REGISTER_ENTRIES(LanesEntries, kLanesEntries);
 
 }  // namespace
 WAVECREST_SIMD_END

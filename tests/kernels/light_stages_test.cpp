@@ -11,7 +11,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kPaths = 192;
+constexpr size_t kWalks = 192;
 
 // What only t = 1 reads of a camera.
 void completeCamera(CameraView& camera) {
@@ -30,7 +30,7 @@ template <class S>
 struct LightState {
   Wave<S> wave;
   LightStore<S> store;
-  explicit LightState(const ColumnNeeds& needs) : wave(kPaths, needs), store(kPaths, needs, {}) {}
+  explicit LightState(const ColumnNeeds& needs) : wave(kWalks, needs), store(kWalks, needs, {}) {}
 };
 
 template <class S>
@@ -74,7 +74,7 @@ class LightComparison {
     context_.sampler = {.kind = SamplerKind::independent, .seed = 11, .iteration = 3};
     context_.limits = {.maxDepth = 7, .rouletteDepth = 4};
     context_.film = {0, 0, scene_.view.camera.width, scene_.view.camera.height};
-    context_.mis = {.connect = true, .camera = true, .lightPaths = kPaths};
+    context_.mis = {.connect = true, .camera = true, .lightPaths = kWalks};
   }
 
   void compare(const LightCase<S>& stage) {
@@ -110,7 +110,7 @@ class LightComparison {
 
   // The twin's light walk up to a depth's stage, or to its end.
   void walkLight(LightState<S>& state, const LightCase<S>* until) {
-    state.wave.pathCount = kPaths;
+    state.wave.pathCount = kWalks;
     state.store.clear();
     context_.walk = Walk::light;
     context_.depth = 0;
@@ -165,9 +165,9 @@ class LightComparison {
     std::vector<const LightStore<S>*> stores{&from};
     to.clear();
     if (stage.walk == Walk::camera) {
-      to.collect(stores, kPaths, 0, kPaths);
+      to.collect(stores, kWalks, 0, kWalks);
     } else {
-      to.beginDepth(kPaths);
+      to.beginDepth(kWalks);
     }
   }
 

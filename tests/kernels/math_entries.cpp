@@ -31,8 +31,8 @@ namespace {
 const MathFunction<float> kFloats[] = {WAVECREST_FUNCTIONS(float)};
 const MathFunction<double> kDoubles[] = {WAVECREST_FUNCTIONS(double)};
 
-constexpr MathEntries kEntries = {.lanes = kLanes, .floats = kFloats, .doubles = kDoubles};
-WAVECREST_REGISTER_ENTRIES(MathEntries, kEntries);
+constexpr MathEntries kMathEntries = {.lanes = kLanes, .floats = kFloats, .doubles = kDoubles};
+WAVECREST_REGISTER_ENTRIES(MathEntries, kMathEntries);
 
 }  // namespace
 WAVECREST_SIMD_END

@@ -12,7 +12,7 @@ namespace wavecrest {
 namespace {
 
 using Long = long double;
-constexpr Long kPi = 3.14159265358979323846264338327950288L;
+constexpr Long kLongPi = 3.14159265358979323846264338327950288L;
 
 // A range of arguments, evenly spread, or evenly spread in magnitude (the logarithm) between low and high.
 struct Range {
@@ -48,8 +48,8 @@ const Case kCases[] = {
      1.3,
      {-0.785398, 0.785398},
      {-0.785398, 0.785398}},
-    {"sin2Pi", [](Long a, Long) { return std::sin(2 * kPi * a); }, Measure::absolute, 1, 1, {0, 1}, {0, 1}},
-    {"cos2Pi", [](Long a, Long) { return std::cos(2 * kPi * a); }, Measure::absolute, 1, 1, {0, 1}, {0, 1}},
+    {"sin2Pi", [](Long a, Long) { return std::sin(2 * kLongPi * a); }, Measure::absolute, 1, 1, {0, 1}, {0, 1}},
+    {"cos2Pi", [](Long a, Long) { return std::cos(2 * kLongPi * a); }, Measure::absolute, 1, 1, {0, 1}, {0, 1}},
     {"sin", [](Long a, Long) { return std::sin(a); }, Measure::absolute, 1, 1, {-8192, 8192}, {-1e6, 1e6}},
     {"cos", [](Long a, Long) { return std::cos(a); }, Measure::absolute, 1, 1, {-8192, 8192}, {-1e6, 1e6}},
     {"log", [](Long a, Long) { return std::log(a); }, Measure::ulp, 1, 1, {1e-37, 1e38, true}, {1e-300, 1e300, true}},
@@ -172,8 +172,8 @@ void checkExactValues(const MathEntries& entries, std::span<const MathFunction<T
     return out.back();
   };
   for (const T quarter : {T(0), T(0.25), T(0.5), T(0.75), T(1)}) {
-    EXPECT_EQ(value("sin2Pi", quarter), std::round(std::sin(2 * static_cast<T>(kPi) * quarter)));
-    EXPECT_EQ(value("cos2Pi", quarter), std::round(std::cos(2 * static_cast<T>(kPi) * quarter)));
+    EXPECT_EQ(value("sin2Pi", quarter), std::round(std::sin(2 * static_cast<T>(kLongPi) * quarter)));
+    EXPECT_EQ(value("cos2Pi", quarter), std::round(std::cos(2 * static_cast<T>(kLongPi) * quarter)));
   }
   EXPECT_EQ(value("sin", 0), T(0));
   EXPECT_EQ(value("cos", 0), T(1));
@@ -186,9 +186,9 @@ void checkExactValues(const MathEntries& entries, std::span<const MathFunction<T
   EXPECT_EQ(value("acos", 1), T(0));
   EXPECT_EQ(value("atan2", 0, 0), T(0));
   EXPECT_EQ(value("atan2", 0, 1), T(0));
-  EXPECT_EQ(value("atan2", 0, -1), static_cast<T>(kPi));
-  EXPECT_EQ(value("atan2", 1, 0), static_cast<T>(kPi / 2));
-  EXPECT_EQ(value("atan2", -1, 0), static_cast<T>(-kPi / 2));
+  EXPECT_EQ(value("atan2", 0, -1), static_cast<T>(kLongPi));
+  EXPECT_EQ(value("atan2", 1, 0), static_cast<T>(kLongPi / 2));
+  EXPECT_EQ(value("atan2", -1, 0), static_cast<T>(-kLongPi / 2));
   EXPECT_EQ(value("pow", 0, 2), T(0));
   EXPECT_EQ(value("pow", 0, 0), T(1));
   EXPECT_EQ(value("pow", 1, 1000000), T(1));

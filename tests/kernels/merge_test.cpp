@@ -186,12 +186,12 @@ std::vector<MergeCase> cases() {
   }
   return all;
 }
-std::string nameOf(const testing::TestParamInfo<MergeCase>& test) {
+std::string nameOfMerge(const testing::TestParamInfo<MergeCase>& test) {
   return std::string(toString(test.param.isa)) + "_" +
          std::string(kPrecisionNames[static_cast<size_t>(test.param.precision)]);
 }
 class MergeTest : public testing::TestWithParam<MergeCase> {};
-INSTANTIATE_TEST_SUITE_P(Kernels, MergeTest, testing::ValuesIn(cases()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Kernels, MergeTest, testing::ValuesIn(cases()), nameOfMerge);
 
 // Merges the photons at the cloud's vertices, into the wave's radiance; how many of them.
 template <class S>

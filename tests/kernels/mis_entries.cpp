@@ -50,9 +50,9 @@ struct Steps {
   static constexpr MisKernels<S> kKernels = {scatter, scatterSpecular, connection, merge};
 };
 
-constexpr MisEntries kEntries = {
+constexpr MisEntries kMisEntries = {
     .lanes = kLanes, .floating = Steps<FloatPrecision>::kKernels, .doubled = Steps<DoublePrecision>::kKernels};
-WAVECREST_REGISTER_ENTRIES(MisEntries, kEntries);
+WAVECREST_REGISTER_ENTRIES(MisEntries, kMisEntries);
 
 }  // namespace
 WAVECREST_SIMD_END

@@ -16,12 +16,12 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kPaths = 512;
+constexpr size_t kMisPaths = 512;
 
 // One value per path, padded for the widest lanes.
 template <class S>
 struct Values : std::vector<S> {
-  Values() : std::vector<S>(kPaths + 16, S(1)) {}
+  Values() : std::vector<S>(kMisPaths + 16, S(1)) {}
 };
 
 // x_i of every path. Towards the light and towards the camera: density of sampling that direction given the other, per
@@ -31,20 +31,20 @@ struct SyntheticVertex {
   Values<S> pdfToLight, pdfToCamera;
   Values<S> normalToLight, normalToCamera, shadingToLight, shadingToCamera, etaToLight, etaToCamera;
   Values<S> dist2;  // to x_{i+1}
-  std::vector<char> specular = std::vector<char>(kPaths, 0);
+  std::vector<char> specular = std::vector<char>(kMisPaths, 0);
 };
 
 template <class S>
 struct SyntheticPaths {
   std::vector<SyntheticVertex<S>> x;              // x_0 .. x_k
   Values<S> direct, position, direction, camera;  // densities of the ends, per area or solid angle as they are sampled
-  std::vector<char> delta = std::vector<char>(kPaths, 0), infinite = std::vector<char>(kPaths, 0);
+  std::vector<char> delta = std::vector<char>(kMisPaths, 0), infinite = std::vector<char>(kMisPaths, 0);
 
   SyntheticPaths(size_t k, std::mt19937_64& random) : x(k + 1) {
     const auto between = [&](double low, double high) {  // uniform in the logarithm
       return static_cast<S>(low * std::pow(high / low, std::uniform_real_distribution<double>()(random)));
     };
-    for (size_t path = 0; path < kPaths; ++path) {
+    for (size_t path = 0; path < kMisPaths; ++path) {
       for (size_t i = 0; i <= k; ++i) {
         SyntheticVertex<S>& v = x[i];
         v.specular[path] = i >= 1 && i < k && random() % 3 == 0;
@@ -92,7 +92,7 @@ void scatter(const MisKernels<S>& kernels, const MisSettings& mis, uint32_t dept
   const Values<S>& woNormal = light ? v.normalToCamera : v.normalToLight;
   Sums<S> over = sums;
   Values<S> jacobian;
-  for (size_t path = 0; path < kPaths; ++path) {
+  for (size_t path = 0; path < kMisPaths; ++path) {
     const S wiShading = light ? v.shadingToLight[path] : v.shadingToCamera[path],
             woShading = light ? v.shadingToCamera[path] : v.shadingToLight[path],
             wiEta = light ? v.etaToLight[path] : v.etaToCamera[path],
@@ -100,9 +100,9 @@ void scatter(const MisKernels<S>& kernels, const MisSettings& mis, uint32_t dept
     const S eta = wiEta / woEta;
     jacobian[path] = reverse[path] / forward[path] * woNormal[path] * wiShading / woShading * eta * eta;
   }
-  kernels.scatterSpecular(kPaths, jacobian.data(), over.columns());
-  kernels.scatter(mis, depth, kPaths, forward.data(), reverse.data(), woNormal.data(), sums.columns());
-  for (size_t path = 0; path < kPaths; ++path) {
+  kernels.scatterSpecular(kMisPaths, jacobian.data(), over.columns());
+  kernels.scatter(mis, depth, kMisPaths, forward.data(), reverse.data(), woNormal.data(), sums.columns());
+  for (size_t path = 0; path < kMisPaths; ++path) {
     if (v.specular[path] == 0) continue;
     sums.dVCM[path] = over.dVCM[path];
     sums.dVC[path] = over.dVC[path];
@@ -115,7 +115,7 @@ template <class S>
 std::vector<Sums<S>> walkLight(const MisKernels<S>& kernels, const MisSettings& mis, const SyntheticPaths<S>& p) {
   std::vector<Sums<S>> out(p.k());
   Sums<S> sums;
-  for (size_t path = 0; path < kPaths; ++path) {
+  for (size_t path = 0; path < kMisPaths; ++path) {
     const S emission = p.position[path] * p.direction[path];
     const S n0 = p.infinite[path] != 0 ? S(1) : p.x[0].normalToCamera[path];
     sums.dVCM[path] = mis.nextEvent ? p.direct[path] / emission : S(0);
@@ -123,7 +123,7 @@ std::vector<Sums<S>> walkLight(const MisKernels<S>& kernels, const MisSettings& 
     sums.dVM[path] = sums.dVC[path] * static_cast<S>(mis.vcWeight);
   }
   for (size_t i = 1; i < p.k(); ++i) {
-    for (size_t path = 0; path < kPaths; ++path) {
+    for (size_t path = 0; path < kMisPaths; ++path) {
       const bool fromInfinity = i == 1 && p.infinite[path] != 0;
       sums.divide(path, fromInfinity ? S(1) : p.x[i - 1].dist2[path], p.x[i].normalToLight[path]);
     }
@@ -138,12 +138,12 @@ template <class S>
 std::vector<Sums<S>> walkCamera(const MisKernels<S>& kernels, const MisSettings& mis, const SyntheticPaths<S>& p) {
   std::vector<Sums<S>> out(p.k());
   Sums<S> sums;
-  for (size_t path = 0; path < kPaths; ++path) {
+  for (size_t path = 0; path < kMisPaths; ++path) {
     sums.dVCM[path] = mis.camera ? static_cast<S>(mis.lightPaths) / p.camera[path] : S(0);
     sums.dVC[path] = sums.dVM[path] = 0;
   }
   for (size_t i = p.k(); i-- > 0;) {
-    for (size_t path = 0; path < kPaths; ++path) {
+    for (size_t path = 0; path < kMisPaths; ++path) {
       if (i == 0 && p.infinite[path] != 0) continue;  // values before arrival
       sums.divide(path, p.x[i].dist2[path], p.x[i].normalToCamera[path]);
     }
@@ -158,25 +158,26 @@ template <class S>
 std::vector<double> weights(const MisKernels<S>& kernels, const MisSettings& mis, const SyntheticPaths<S>& p, size_t s,
                             bool merge, std::vector<Sums<S>>& light, std::vector<Sums<S>>& camera) {
   const size_t k = p.k();
-  std::vector<double> out(kPaths, 0);
+  std::vector<double> out(kMisPaths, 0);
   Values<S> behindLight, behindCamera;
   const auto lightDepth = [&](size_t i) { return static_cast<uint32_t>(i); };
   const auto cameraDepth = [&](size_t i) { return static_cast<uint32_t>(k - i); };
   if (merge) {
-    kernels.behindMerge(mis, lightDepth(s), kPaths, light[s].columns(), p.x[s].pdfToLight.data(), behindLight.data());
-    kernels.behindMerge(mis, cameraDepth(s), kPaths, camera[s].columns(), p.x[s].pdfToCamera.data(),
+    kernels.behindMerge(mis, lightDepth(s), kMisPaths, light[s].columns(), p.x[s].pdfToLight.data(),
+                        behindLight.data());
+    kernels.behindMerge(mis, cameraDepth(s), kMisPaths, camera[s].columns(), p.x[s].pdfToCamera.data(),
                         behindCamera.data());
   } else {
     if (s >= 2) {
-      kernels.behindConnection(mis, lightDepth(s - 1), kPaths, light[s - 1].columns(), p.x[s - 1].pdfToLight.data(),
+      kernels.behindConnection(mis, lightDepth(s - 1), kMisPaths, light[s - 1].columns(), p.x[s - 1].pdfToLight.data(),
                                behindLight.data());
     }
     if (s >= 1 && s < k) {
-      kernels.behindConnection(mis, cameraDepth(s), kPaths, camera[s].columns(), p.x[s].pdfToCamera.data(),
+      kernels.behindConnection(mis, cameraDepth(s), kMisPaths, camera[s].columns(), p.x[s].pdfToCamera.data(),
                                behindCamera.data());
     }
   }
-  for (size_t path = 0; path < kPaths; ++path) {
+  for (size_t path = 0; path < kMisPaths; ++path) {
     const bool infinite = p.infinite[path] != 0, delta = p.delta[path] != 0;
     const auto specular = [&](size_t i) { return i >= 1 && i < k && p.x[i].specular[path] != 0; };
     const S n0 = infinite ? S(1) : p.x[0].normalToCamera[path], d2 = infinite ? S(1) : p.x[0].dist2[path];
@@ -299,11 +300,11 @@ class MisTest : public IsaTest {
         const SyntheticPaths<S> p(k, random);
         std::vector<Sums<S>> light = walkLight(kernels, mis, p), camera = walkCamera(kernels, mis, p);
         std::vector<Densities<S>> densities;
-        for (size_t path = 0; path < kPaths; ++path) densities.emplace_back(p, path, mis);
-        std::vector<double> sums(kPaths, 0);
+        for (size_t path = 0; path < kMisPaths; ++path) densities.emplace_back(p, path, mis);
+        std::vector<double> sums(kMisPaths, 0);
         const auto compare = [&](size_t s, bool merge) {
           const std::vector<double> w = weights(kernels, mis, p, s, merge, light, camera);
-          for (size_t path = 0; path < kPaths; ++path) {
+          for (size_t path = 0; path < kMisPaths; ++path) {
             const Densities<S>& d = densities[path];
             const double density = (merge ? d.merge : d.connect)[s];
             if (density == 0) continue;
@@ -315,7 +316,7 @@ class MisTest : public IsaTest {
         };
         for (size_t s = 0; s <= k; ++s) compare(s, false);
         for (size_t i = 1; i < k; ++i) compare(i, true);
-        for (size_t path = 0; path < kPaths; ++path) {
+        for (size_t path = 0; path < kMisPaths; ++path) {
           if (densities[path].sum > 0) {
             ASSERT_NEAR(sums[path], 1, tolerance) << set.name << ", k = " << k;
           }

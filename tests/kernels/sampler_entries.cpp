@@ -38,8 +38,8 @@ std::array<uint32_t, 4> philox10(const std::array<uint32_t, 4>& x, uint64_t key,
   return lastLanes(philox4x32<10>(PhiloxBlock{a, x[1], x[2], x[3]}, philoxKey(key)));
 }
 
-constexpr SamplerEntries kEntries = {.lanes = kLanes, .fill = fill, .philox10 = philox10};
-WAVECREST_REGISTER_ENTRIES(SamplerEntries, kEntries);
+constexpr SamplerEntries kSamplerEntries = {.lanes = kLanes, .fill = fill, .philox10 = philox10};
+WAVECREST_REGISTER_ENTRIES(SamplerEntries, kSamplerEntries);
 
 }  // namespace
 WAVECREST_SIMD_END

@@ -12,7 +12,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr size_t kPaths = 1024;
+constexpr size_t kRayCount = 1024;
 
 // Where a room is and how large.
 struct Placement {
@@ -38,7 +38,7 @@ struct Fixture {
     context.pixels = scene.pixels.data();
     context.limits = {.maxDepth = 1000, .rouletteDepth = 1000};
     context.counters = &counters;
-    wave.pathCount = kPaths;
+    wave.pathCount = kRayCount;
   }
   static constexpr Precision precision() {
     return sizeof(S) == sizeof(double) ? Precision::doubled : Precision::floating;
@@ -55,7 +55,7 @@ struct Fixture {
   Stage<S> extend = nullptr;
   StageCounters counters;
   StageContext<S> context;
-  Wave<S> wave{kPaths, {}};
+  Wave<S> wave{kRayCount, {}};
 };
 
 class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersector, Placement>> {
@@ -82,7 +82,7 @@ class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersecto
     };
     for (uint32_t iteration = 0; iteration < effort(8, 1); ++iteration) {
       f.begin(iteration);
-      std::vector<uint32_t> previous(kPaths, kMiss);
+      std::vector<uint32_t> previous(kRayCount, kMiss);
       for (f.context.depth = 1; f.context.depth <= 24; ++f.context.depth) {
         f.extend(f.context, f.wave);
         for (size_t i = 0; i < f.wave.rays.size; ++i) {
@@ -97,7 +97,7 @@ class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersecto
         f.stages.arrive(f.context, f.wave);
         f.stages.scatter(f.context, f.wave);
       }
-      ASSERT_EQ(f.wave.rays.size, kPaths) << "paths were lost";
+      ASSERT_EQ(f.wave.rays.size, kRayCount) << "paths were lost";
       ASSERT_EQ(f.counters.misses, 0u);
     }
   }
@@ -111,14 +111,14 @@ class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersecto
     const double error = 64 * 0x1p-24 * (length(center()) + radius);
     f.begin(0);
     for (f.context.depth = 1; f.context.depth <= 24; ++f.context.depth) {
-      std::vector<double> chords(kPaths, -1);
-      for (size_t i = 0; f.context.depth > 1 && i < kPaths; ++i) {
+      std::vector<double> chords(kRayCount, -1);
+      for (size_t i = 0; f.context.depth > 1 && i < kRayCount; ++i) {
         const Point d{f.wave.rays.directionX[i], f.wave.rays.directionY[i], f.wave.rays.directionZ[i]};
         const Point n{f.wave.surfaces.normalX[i], f.wave.surfaces.normalY[i], f.wave.surfaces.normalZ[i]};
         chords[i] = 2 * radius * dot(d, n);
       }
       f.extend(f.context, f.wave);
-      for (size_t i = 0; i < kPaths; ++i) {
+      for (size_t i = 0; i < kRayCount; ++i) {
         ASSERT_EQ(f.wave.hits.primitive[i], 0u) << "depth " << f.context.depth << " item " << i;
         const double t = f.wave.hits.u[i];
         // Grazing chords are ill-conditioned: an end off by `error` moves the other by error / cos(theta).
@@ -129,7 +129,7 @@ class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersecto
       }
       f.stages.arrive(f.context, f.wave);
       f.stages.scatter(f.context, f.wave);
-      ASSERT_EQ(f.wave.rays.size, kPaths);
+      ASSERT_EQ(f.wave.rays.size, kRayCount);
     }
   }
 
@@ -142,7 +142,7 @@ class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersecto
       f.context.depth = 1;
       f.extend(f.context, f.wave);
       f.stages.arrive(f.context, f.wave);
-      ASSERT_GT(f.wave.rays.size, kPaths / 8);
+      ASSERT_GT(f.wave.rays.size, kRayCount / 8);
       f.stages.scatter(f.context, f.wave);
       f.context.depth = 2;
       f.extend(f.context, f.wave);
@@ -197,14 +197,14 @@ auto placements(size_t count) {
   const std::vector<Placement> first(kPlacements.begin(), kPlacements.begin() + count);
   return testing::Combine(testing::ValuesIn(fastestIntersectors()), testing::ValuesIn(first));
 }
-std::string nameOf(const testing::TestParamInfo<std::tuple<Intersector, Placement>>& instance) {
+std::string nameOfPlacement(const testing::TestParamInfo<std::tuple<Intersector, Placement>>& instance) {
   return std::get<0>(instance.param).name + "_" + std::get<1>(instance.param).name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionOfQuadsTest, placements(4), nameOf);
-INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionOfTrianglesTest, placements(5), nameOf);
-INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionTest, placements(7), nameOf);
-INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionOfTowersTest, placements(7), nameOf);
+INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionOfQuadsTest, placements(4), nameOfPlacement);
+INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionOfTrianglesTest, placements(5), nameOfPlacement);
+INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionTest, placements(7), nameOfPlacement);
+INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionOfTowersTest, placements(7), nameOfPlacement);
 
 }  // namespace
 }  // namespace wavecrest

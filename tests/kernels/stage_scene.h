@@ -21,8 +21,6 @@ namespace wavecrest {
 
 using Point = D3;
 
-inline Point normalized(const Point& a) { return a * (1 / length(a)); }
-
 // A square film whose raster (x, y) is seen in the direction corner + x across + y down. What only t = 1 reads is left
 // out.
 inline CameraView pinholeCamera(const Point& origin, const Point& corner, const Point& across, const Point& down,

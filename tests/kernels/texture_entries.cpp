@@ -7,9 +7,9 @@
 WAVECREST_SIMD_BEGIN
 namespace {
 
-constexpr TextureEntries kEntries = {.evaluate = [](const TextureRecord* textures, const float* texels, uint32_t id,
-                                                    const float* u, const float* v, float* value, float* slopeU,
-                                                    float* slopeV) HWY_ATTR {
+constexpr TextureEntries kTextureEntries = {.evaluate = [](const TextureRecord* textures, const float* texels,
+                                                           uint32_t id, const float* u, const float* v, float* value,
+                                                           float* slopeU, float* slopeV) HWY_ATTR {
   for (size_t i = 0; i < TextureEntries::kMost; i += kLanes) {
     const Float atU = loadUnaligned(u + i), atV = loadUnaligned(v + i);
     storeUnaligned(evalTexture(textures, texels, UInt(id), atU, atV).x, value + i);
@@ -18,7 +18,7 @@ constexpr TextureEntries kEntries = {.evaluate = [](const TextureRecord* texture
     storeUnaligned(slopes.v, slopeV + i);
   }
 }};
-WAVECREST_REGISTER_ENTRIES(TextureEntries, kEntries);
+WAVECREST_REGISTER_ENTRIES(TextureEntries, kTextureEntries);
 
 }  // namespace
 WAVECREST_SIMD_END

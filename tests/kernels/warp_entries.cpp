@@ -49,9 +49,9 @@ constexpr WarpFunctions<T> makeFunctions() {
       .uniformTriangle = WAVECREST_WARP(planar(uniformTriangle(u, v)), uniformTrianglePdfA(p))};
 }
 
-constexpr WarpEntries kEntries = {
+constexpr WarpEntries kWarpEntries = {
     .lanes = kLanes, .floats = makeFunctions<float>(), .doubles = makeFunctions<double>()};
-WAVECREST_REGISTER_ENTRIES(WarpEntries, kEntries);
+WAVECREST_REGISTER_ENTRIES(WarpEntries, kWarpEntries);
 
 }  // namespace
 WAVECREST_SIMD_END

@@ -13,7 +13,7 @@ namespace wavecrest {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr size_t kSamples = effort(1 << 18, 1 << 14);
+constexpr size_t kWarped = effort(1 << 18, 1 << 14);
 
 template <class T>
 struct Points {
@@ -40,7 +40,7 @@ class WarpTest : public IsaTest {
   }
   template <class T>
   Points<T> sample(Warp<T> warp, T parameter = 0) {
-    const SampleColumns uniform = drawPaths({.kind = SamplerKind::independent, .seed = 11, .iteration = 0}, kSamples);
+    const SampleColumns uniform = drawPaths({.kind = SamplerKind::independent, .seed = 11, .iteration = 0}, kWarped);
     return apply<T>(warp, {uniform[0].begin(), uniform[0].end()}, {uniform[1].begin(), uniform[1].end()}, parameter);
   }
 };
@@ -76,7 +76,7 @@ double deviations(const Points<T>& points, const Grid& grid) {
     for (size_t i = 0; i < kCells * kFine; ++i) {
       const double s = grid.sLow + (static_cast<double>(i) + 0.5) * ds;
       const double t = grid.tLow + (static_cast<double>(j) + 0.5) * dt;
-      expected[j / kFine * kCells + i / kFine] += grid.density(s, t) * ds * dt * static_cast<double>(kSamples);
+      expected[j / kFine * kCells + i / kFine] += grid.density(s, t) * ds * dt * static_cast<double>(kWarped);
     }
   }
   return chiSquareDeviations(counts, expected);

@@ -15,11 +15,11 @@
 namespace wavecrest {
 namespace {
 
-enum class Body { quad, triangles, box, openBox };
+enum class WideBody { quad, triangles, box, openBox };
 
 struct View {
   const char* name;
-  Body body;
+  WideBody body;
   double side, distance, tilt;  // of the eye from the body, and of the body in degrees
 };
 
@@ -32,7 +32,7 @@ Point tilted(const Point& p, double degrees) {
 std::vector<Point> cornersOf(const View& view) {
   std::vector<Point> corners;
   const double h = view.side / 2;
-  const bool flat = view.body == Body::quad || view.body == Body::triangles;
+  const bool flat = view.body == WideBody::quad || view.body == WideBody::triangles;
   for (const double z : {h, -h}) {
     if (flat && z < 0) break;
     for (const auto& [x, y] : {std::pair{-h, -h}, std::pair{h, -h}, std::pair{-h, h}, std::pair{h, h}}) {
@@ -47,17 +47,17 @@ std::vector<PrimitiveRecord<double>> sceneOf(const View& view) {
   std::vector<PrimitiveRecord<double>> list;
   const auto quad = [&](size_t p, size_t u, size_t v) { list.push_back(quadPrimitive(c[p], c[u], c[v])); };
   switch (view.body) {
-    case Body::quad:
+    case WideBody::quad:
       quad(0, 1, 2);
       break;
-    case Body::triangles:
+    case WideBody::triangles:
       list.push_back(trianglePrimitive(c[0], c[1], c[2]));
       list.push_back(trianglePrimitive(c[3], c[2], c[1]));
       break;
-    case Body::box:
+    case WideBody::box:
       quad(4, 6, 5);
       [[fallthrough]];
-    case Body::openBox:
+    case WideBody::openBox:
       quad(0, 1, 2);
       quad(0, 4, 1);
       quad(2, 3, 6);
@@ -105,7 +105,7 @@ TEST_P(WidthTest, facesCoverTheirAreaAndNoMore) {
   const auto& [intersector, view] = GetParam();
   const StageScene<float> scene(sceneOf(view));
   const auto wall = static_cast<uint32_t>(scene.precise.size() - 1);
-  const uint32_t wallIndex = view.body == Body::triangles ? 0 : wall;  // quads come first
+  const uint32_t wallIndex = view.body == WideBody::triangles ? 0 : wall;  // quads come first
   const auto seen = seenFrom(view.distance, cornersOf(view));
   double half[2] = {};
   for (const auto& p : seen) {
@@ -136,17 +136,17 @@ TEST_P(WidthTest, facesCoverTheirAreaAndNoMore) {
   EXPECT_LT(noise, kFullSpeed ? 1e-3 : 1e-2) << "what is asked for";
 }
 
-constexpr View kViews[] = {{"quad", Body::quad, 1e-3, 4, 0},
-                           {"tinyQuad", Body::quad, 1e-4, 4, 0},
-                           {"tinyQuadNear", Body::quad, 1e-4, 0.5, 0},
-                           {"tinyQuadFar", Body::quad, 1e-4, 400, 0},
-                           {"tinyQuadTilted", Body::quad, 1e-4, 4, 80},
-                           {"tinyTriangles", Body::triangles, 1e-4, 4, 0},
-                           {"tinyTrianglesTilted", Body::triangles, 1e-4, 4, 80},
-                           {"tinyBox", Body::box, 1e-4, 4, 0},
-                           {"tinyBoxTilted", Body::box, 1e-4, 4, 80},
-                           {"tinyOpenBox", Body::openBox, 1e-4, 4, 0},
-                           {"tinyOpenBoxTilted", Body::openBox, 1e-4, 4, 80}};
+constexpr View kViews[] = {{"quad", WideBody::quad, 1e-3, 4, 0},
+                           {"tinyQuad", WideBody::quad, 1e-4, 4, 0},
+                           {"tinyQuadNear", WideBody::quad, 1e-4, 0.5, 0},
+                           {"tinyQuadFar", WideBody::quad, 1e-4, 400, 0},
+                           {"tinyQuadTilted", WideBody::quad, 1e-4, 4, 80},
+                           {"tinyTriangles", WideBody::triangles, 1e-4, 4, 0},
+                           {"tinyTrianglesTilted", WideBody::triangles, 1e-4, 4, 80},
+                           {"tinyBox", WideBody::box, 1e-4, 4, 0},
+                           {"tinyBoxTilted", WideBody::box, 1e-4, 4, 80},
+                           {"tinyOpenBox", WideBody::openBox, 1e-4, 4, 0},
+                           {"tinyOpenBoxTilted", WideBody::openBox, 1e-4, 4, 80}};
 INSTANTIATE_TEST_SUITE_P(Kernels, WidthTest,
                          testing::Combine(testing::ValuesIn(fastestIntersectors()), testing::ValuesIn(kViews)),
                          [](const auto& instance) {

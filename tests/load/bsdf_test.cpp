@@ -1,7 +1,7 @@
 // BSDFs: the defaults of every plugin, its parameters, the adapters around it, and what is refused.
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 Material materialOf(std::string_view bsdf) {
@@ -395,4 +395,4 @@ TEST(Bsdf, MistakesAreErrors) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

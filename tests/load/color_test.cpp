@@ -1,7 +1,7 @@
 // Colours. Expected values of spectra: what Mitsuba 3.9's scalar_rgb variant reports for the same XML.
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 Rgb reflectanceOf(std::string_view element) {
@@ -149,4 +149,4 @@ TEST(Color, NegativeRadianceIsAnError) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

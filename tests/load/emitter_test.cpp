@@ -4,7 +4,7 @@
 #include "metrics/image/image_io.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 template <class Kind>
@@ -220,4 +220,4 @@ TEST(Light, SamplingWeightIsAccepted) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

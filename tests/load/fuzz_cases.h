@@ -18,7 +18,7 @@
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 
 constexpr int kFewCases = 1'000;  // of a test that nobody asked for more
 constexpr double kSecondsPerCase = 5;
@@ -343,4 +343,4 @@ inline std::pair<int, int> casesToRun() {
   return {start, start + (count != nullptr ? std::atoi(count) : kFewCases)};
 }
 
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -16,7 +16,7 @@ extern "C" const char* __asan_default_options();
 // NOLINTNEXTLINE(readability-identifier-naming,bugprone-reserved-identifier)
 extern "C" const char* __asan_default_options() { return "max_allocation_size_mb=1024:quarantine_size_mb=16"; }
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 struct Outcome {
@@ -88,4 +88,4 @@ TEST(Fuzz, TheUndamagedFilesLoad) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -11,7 +11,7 @@
 
 extern char** environ;
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 struct Ending {
@@ -70,4 +70,4 @@ TEST(InspectFuzz, DamagedFilesEndInStatus0Or3) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -4,7 +4,7 @@
 
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 // Two triangles; the first has no area, so that what faces have must follow those that stay.
@@ -128,4 +128,4 @@ TEST(MeshAttribute, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

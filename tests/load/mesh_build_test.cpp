@@ -9,7 +9,7 @@
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 // A corner of a cube: two triangles at a right angle sharing only vertex 0.
@@ -22,14 +22,14 @@ constexpr std::string_view kBackward =
     "property float ny\nproperty float nz\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0 0 0 -1\n1 0 0 0 0 -1\n0 1 0 0 0 -1\n3 0 1 2\n";
 
-Scene sceneOf(std::string_view ply, std::string_view options) {
+Scene sceneOfMesh(std::string_view ply, std::string_view options) {
   const Folder folder;
   folder.write("mesh.ply", ply);
   return load(folder, sceneXml(R"(<shape type="ply"><string name="filename" value="mesh.ply"/>)" +
                                std::string(options) + "</shape>" + std::string(kSensor)));
 }
 Mesh meshOf(std::string_view ply, std::string_view options = "") {
-  return std::get<Mesh>(sceneOf(ply, options).shapes.at(0).kind);
+  return std::get<Mesh>(sceneOfMesh(ply, options).shapes.at(0).kind);
 }
 // z of the geometric normal of triangle 0, up to a positive factor.
 float facingZ(const Mesh& mesh) {
@@ -39,8 +39,8 @@ float facingZ(const Mesh& mesh) {
 }
 
 constexpr std::string_view kFaceNormals = R"(<boolean name="face_normals" value="true"/>)";
-constexpr std::string_view kFlip = R"(<boolean name="flip_normals" value="true"/>)";
-constexpr std::string_view kMirror = R"(<transform name="to_world"><scale x="-1"/></transform>)";
+constexpr std::string_view kFlipped = R"(<boolean name="flip_normals" value="true"/>)";
+constexpr std::string_view kMirrored = R"(<transform name="to_world"><scale x="-1"/></transform>)";
 
 TEST(MeshNormals, AreMadeFromFacesWeightedByAngle) {
   const Mesh mesh = meshOf(kCorner);
@@ -113,36 +113,36 @@ TEST(MeshNormals, ZeroNormalOfTheFileIsReplacedByTheSmoothOne) {
 
 TEST(MeshOrientation, WindingDecidesWithoutNormals) {
   EXPECT_GT(facingZ(meshOf(kCorner)), 0);
-  EXPECT_LT(facingZ(meshOf(kCorner, kFlip)), 0);
+  EXPECT_LT(facingZ(meshOf(kCorner, kFlipped)), 0);
 }
 
 TEST(MeshOrientation, MirrorTurnsAMeshWithoutNormalsInsideOut) {
-  EXPECT_LT(facingZ(meshOf(kCorner, kMirror)), 0);
-  EXPECT_LT(meshOf(kCorner, kMirror).normals[1][2], 0);
-  EXPECT_LT(facingZ(meshOf(kCorner, std::string(kMirror) + std::string(kFaceNormals))), 0);
+  EXPECT_LT(facingZ(meshOf(kCorner, kMirrored)), 0);
+  EXPECT_LT(meshOf(kCorner, kMirrored).normals[1][2], 0);
+  EXPECT_LT(facingZ(meshOf(kCorner, std::string(kMirrored) + std::string(kFaceNormals))), 0);
 }
 
 TEST(MeshOrientation, NormalsOfTheFileDecide) {
   EXPECT_LT(facingZ(meshOf(kBackward)), 0);
-  EXPECT_LT(facingZ(meshOf(kBackward, kMirror)), 0);
-  EXPECT_GT(facingZ(meshOf(kBackward, kFlip)), 0);
+  EXPECT_LT(facingZ(meshOf(kBackward, kMirrored)), 0);
+  EXPECT_GT(facingZ(meshOf(kBackward, kFlipped)), 0);
 }
 
 TEST(MeshOrientation, FaceNormalsForgetTheNormalsOfTheFile) { EXPECT_GT(facingZ(meshOf(kBackward, kFaceNormals)), 0); }
 
 TEST(MeshOrientation, FlipNormalsTurnsVertexNormalsToo) {
-  EXPECT_EQ(meshOf(kBackward, kFlip).normals[0], (Float3{0, 0, 1}));
+  EXPECT_EQ(meshOf(kBackward, kFlipped).normals[0], (Float3{0, 0, 1}));
 }
 
 TEST(MeshTriangles, WithoutAreaAreLeftOutAndCounted) {
-  const Scene scene = sceneOf(withLine(kQuadPly, kQuadPlyVertexLine + 5, "3 1 3 1"), "");
+  const Scene scene = sceneOfMesh(withLine(kQuadPly, kQuadPlyVertexLine + 5, "3 1 3 1"), "");
   EXPECT_EQ(std::get<Mesh>(scene.shapes.at(0).kind).triangles.size(), 1u);
   EXPECT_EQ(scene.droppedTriangles, 1u);
 }
 
 TEST(MeshTriangles, OnOneLineHaveNoArea) {
   // 0.1, 0.2, 0.3 are not exact in float, so the cross product is a rounding residue.
-  const Scene scene = sceneOf(
+  const Scene scene = sceneOfMesh(
       withLine(withLine(withLine(kQuadPly, kQuadPlyVertexLine, "0.1 0.1 0.1"), kQuadPlyVertexLine + 1, "0.2 0.2 0.2"),
                kQuadPlyVertexLine + 2, "0.3 0.3 0.3"),
       "");
@@ -150,7 +150,7 @@ TEST(MeshTriangles, OnOneLineHaveNoArea) {
 }
 
 TEST(MeshTriangles, ThinOnesStay) {
-  EXPECT_EQ(sceneOf(withLine(kQuadPly, kQuadPlyVertexLine + 2, "0 1e-6 0"), "").droppedTriangles, 0u);
+  EXPECT_EQ(sceneOfMesh(withLine(kQuadPly, kQuadPlyVertexLine + 2, "0 1e-6 0"), "").droppedTriangles, 0u);
 }
 
 TEST(MeshPositions, BeyondFloatRangeAreAnError) {
@@ -164,4 +164,4 @@ TEST(MeshPositions, BeyondFloatRangeAreAnError) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace wavecrest::testing {
+namespace wavecrest {
 
 // Two triangles in the plane z = 0 that share the edge from (1, 0, 0) to (0, 1, 0).
 constexpr std::string_view kQuadPly =
@@ -132,4 +132,4 @@ inline std::string withLine(std::string_view text, int number, std::string_view 
   return std::string(text.substr(0, begin)) + std::string(line) + std::string(text.substr(text.find('\n', begin)));
 }
 
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -4,7 +4,7 @@
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 std::string triangle(int number) {
@@ -69,4 +69,4 @@ TEST_F(MeshesAheadTest, TheFirstErrorInTheOrderOfShapesIsReported) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -1,7 +1,7 @@
 // Notes: what a scene asks for that is approximated or left out is listed, and nothing else is.
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 void expectNote(const Scene& scene, std::string_view what, std::string_view effect) {
@@ -77,4 +77,4 @@ TEST(Notes, RotationsAboutAnAxisOfAnotherLength) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

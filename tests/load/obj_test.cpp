@@ -2,12 +2,12 @@
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 constexpr std::string_view kQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-Mesh meshOf(std::string_view content, std::string_view options = "") {
+Mesh meshOfObj(std::string_view content, std::string_view options = "") {
   const Folder folder;
   folder.write("mesh.obj", content);
   const Scene scene = load(folder, sceneXml(R"(<shape type="obj"><string name="filename" value="mesh.obj"/>)" +
@@ -24,42 +24,42 @@ void expectObjError(std::string_view content, int line, std::string_view text) {
 }
 
 TEST(Obj, QuadIsCutAsMitsubaCutsIt) {
-  EXPECT_EQ(meshOf(std::string(kQuad) + "f 1 2 3 4\n").triangles,
+  EXPECT_EQ(meshOfObj(std::string(kQuad) + "f 1 2 3 4\n").triangles,
             (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}}));
 }
 
-TEST(Obj, Gzipped) { EXPECT_EQ(meshOf(gzip(std::string(kQuad) + "f 1 2 3\n")).triangles.size(), 1u); }
+TEST(Obj, Gzipped) { EXPECT_EQ(meshOfObj(gzip(std::string(kQuad) + "f 1 2 3\n")).triangles.size(), 1u); }
 
 TEST(Obj, NegativeIndicesCountBackwards) {
-  const Mesh mesh = meshOf(std::string(kQuad) + "f -4 -3 -1\n");
+  const Mesh mesh = meshOfObj(std::string(kQuad) + "f -4 -3 -1\n");
   EXPECT_EQ(mesh.positions, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
 TEST(Obj, CornersThatDifferInTextureCoordinatesAreSplit) {
-  const Mesh mesh = meshOf(std::string(kQuad) + "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/1\n");
+  const Mesh mesh = meshOfObj(std::string(kQuad) + "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/1\n");
   EXPECT_EQ(mesh.positions.size(), 5u);  // vertex 1 twice, vertex 3 shared
   EXPECT_EQ(mesh.uvs.size(), 5u);
 }
 
 TEST(Obj, TextureCoordinatesAreFlippedByDefault) {
   const std::string text = std::string(kQuad) + "vt 0.25 0.25\nf 1/1 2/1 3/1\n";
-  EXPECT_EQ(meshOf(text).uvs[0], (Float2{0.25f, 0.75f}));
-  EXPECT_EQ(meshOf(text, R"(<boolean name="flip_tex_coords" value="false"/>)").uvs[0], (Float2{0.25f, 0.25f}));
+  EXPECT_EQ(meshOfObj(text).uvs[0], (Float2{0.25f, 0.75f}));
+  EXPECT_EQ(meshOfObj(text, R"(<boolean name="flip_tex_coords" value="false"/>)").uvs[0], (Float2{0.25f, 0.25f}));
 }
 
 TEST(Obj, NormalsOfTheFileAreUsed) {
-  const Mesh mesh = meshOf(std::string(kQuad) + "vn 0 0.6 0.8\nf 1//1 2//1 3//1\n");
+  const Mesh mesh = meshOfObj(std::string(kQuad) + "vn 0 0.6 0.8\nf 1//1 2//1 3//1\n");
   EXPECT_FLOAT_EQ(mesh.normals[0][1], 0.6f);
 }
 
 TEST(Obj, CornerWithoutNormalAmongOthersGetsTheSmoothOne) {
-  const Mesh mesh = meshOf(std::string(kQuad) + "vn 0 0.6 0.8\nf 1//1 2//1 3\n");
+  const Mesh mesh = meshOfObj(std::string(kQuad) + "vn 0 0.6 0.8\nf 1//1 2//1 3\n");
   EXPECT_EQ(mesh.normals[2], (Float3{0, 0, 1}));
 }
 
 TEST(Obj, OtherLinesAreSkipped) {
   EXPECT_EQ(
-      meshOf("# a comment\nmtllib x.mtl\no thing\ng part\ns off\n" + std::string(kQuad) + "usemtl red\n\nf 1 2 3\n")
+      meshOfObj("# a comment\nmtllib x.mtl\no thing\ng part\ns off\n" + std::string(kQuad) + "usemtl red\n\nf 1 2 3\n")
           .triangles.size(),
       1u);
 }
@@ -67,14 +67,14 @@ TEST(Obj, OtherLinesAreSkipped) {
 TEST(Obj, IndexThatIsMissingAfterASlashIsAbsent) {
   const std::string text = std::string(kQuad) + "vt 0.25 0.5\nvn 0 0.6 0.8\n";
   for (const char* face : {"f 1/1/ 2/1/ 3/1/\n", "f 1/1 2/1 3/1/ \n"}) {
-    const Mesh mesh = meshOf(text + face);
+    const Mesh mesh = meshOfObj(text + face);
     EXPECT_EQ(mesh.uvs, (std::vector<Float2>(3, {0.25f, 0.5f}))) << face;
     EXPECT_EQ(mesh.normals, (std::vector<Float3>(3, {0, 0, 1}))) << face;
   }
-  EXPECT_TRUE(meshOf(text + "f 1/ 2/ 3/\n").uvs.empty());
+  EXPECT_TRUE(meshOfObj(text + "f 1/ 2/ 3/\n").uvs.empty());
 }
 
-TEST(Obj, FaceEndsAtAComment) { EXPECT_EQ(meshOf(std::string(kQuad) + "f 1 2 3 # 4 tail\n").triangles.size(), 1u); }
+TEST(Obj, FaceEndsAtAComment) { EXPECT_EQ(meshOfObj(std::string(kQuad) + "f 1 2 3 # 4 tail\n").triangles.size(), 1u); }
 
 TEST(Obj, FacesOfFewerThanThreeCornersAreDroppedAndCounted) {
   const Folder folder;
@@ -109,4 +109,4 @@ TEST(Obj, WithoutFacesIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -2,7 +2,7 @@
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 const std::string kShape =
@@ -13,7 +13,7 @@ Scene loadPly(std::string_view content, const std::string& shape = kShape) {
   folder.write("mesh.ply", content);
   return load(folder, sceneXml(shape));
 }
-Mesh meshOf(std::string_view content, const std::string& shape = kShape) {
+Mesh meshOfPly(std::string_view content, const std::string& shape = kShape) {
   return std::get<Mesh>(loadPly(content, shape).shapes.at(0).kind);
 }
 void expectPlyError(std::string_view content, int line, std::string_view text) {
@@ -31,19 +31,19 @@ std::string vertexLine(int index, std::string_view line) {
   return withLine(kQuadPly, kQuadPlyVertexLine + index, line);
 }
 
-TEST(Ply, Ascii) { expectQuad(meshOf(kQuadPly)); }
+TEST(Ply, Ascii) { expectQuad(meshOfPly(kQuadPly)); }
 
 TEST(Ply, AsciiWithWindowsLineEnds) {
   std::string text(kQuadPly);
   for (size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2) text.replace(i, 1, "\r\n");
-  expectQuad(meshOf(text));
+  expectQuad(meshOfPly(text));
 }
 
-TEST(Ply, AsciiWithoutFinalNewline) { expectQuad(meshOf(kQuadPly.substr(0, kQuadPly.size() - 1))); }
+TEST(Ply, AsciiWithoutFinalNewline) { expectQuad(meshOfPly(kQuadPly.substr(0, kQuadPly.size() - 1))); }
 
-TEST(Ply, BinaryLittleEndian) { expectQuad(meshOf(binaryQuadPly(false))); }
+TEST(Ply, BinaryLittleEndian) { expectQuad(meshOfPly(binaryQuadPly(false))); }
 
-TEST(Ply, BinaryBigEndian) { expectQuad(meshOf(binaryQuadPly(true))); }
+TEST(Ply, BinaryBigEndian) { expectQuad(meshOfPly(binaryQuadPly(true))); }
 
 // A zigzag of triangles in binary, more than a thread reads at once. corner(face, k): the k-th index of a face.
 constexpr uint32_t kStripFaces = 40000;
@@ -66,7 +66,7 @@ constexpr uint32_t kNoPolygon = kStripFaces;
 uint32_t cornerOfStrip(uint32_t face, uint32_t k) { return face + k; }
 
 TEST(Ply, ManyTriangles) {
-  const Mesh mesh = meshOf(binaryStrip(kNoPolygon, cornerOfStrip));
+  const Mesh mesh = meshOfPly(binaryStrip(kNoPolygon, cornerOfStrip));
   ASSERT_EQ(mesh.triangles.size(), kStripFaces);
   for (uint32_t i = 0; i < kStripFaces; ++i) {
     ASSERT_EQ(mesh.triangles[i], (std::array<uint32_t, 3>{i, i + 1, i + 2}));
@@ -75,7 +75,7 @@ TEST(Ply, ManyTriangles) {
 
 TEST(Ply, APolygonAmongManyTriangles) {
   // The last face but one is a polygon of four, which makes two triangles.
-  const Mesh mesh = meshOf(binaryStrip(kStripFaces - 2, cornerOfStrip));
+  const Mesh mesh = meshOfPly(binaryStrip(kStripFaces - 2, cornerOfStrip));
   ASSERT_EQ(mesh.triangles.size(), kStripFaces + 1);
   EXPECT_EQ(mesh.triangles[kStripFaces - 2], (std::array<uint32_t, 3>{kStripFaces - 2, kStripFaces - 1, kStripFaces}));
   EXPECT_EQ(mesh.triangles[kStripFaces - 1], (std::array<uint32_t, 3>{kStripFaces - 2, kStripFaces, kStripFaces + 1}));
@@ -96,18 +96,18 @@ TEST(Ply, AMissingVertexAmongManyTriangles) {
   expectPlyError(whole.substr(0, whole.size() - 1), kBodyLine, "list has 3 items but the file ends");
 }
 
-TEST(Ply, GzippedByContentWhateverTheName) { expectQuad(meshOf(gzip(kQuadPly))); }
+TEST(Ply, GzippedByContentWhateverTheName) { expectQuad(meshOfPly(gzip(kQuadPly))); }
 
-TEST(Ply, GzipOfSeveralMembers) { expectQuad(meshOf(gzip(kQuadPly.substr(0, 100)) + gzip(kQuadPly.substr(100)))); }
+TEST(Ply, GzipOfSeveralMembers) { expectQuad(meshOfPly(gzip(kQuadPly.substr(0, 100)) + gzip(kQuadPly.substr(100)))); }
 
 TEST(Ply, PolygonBecomesAFan) {
   const std::string text = withLine(withLine(kQuadPly, 8, "element face 1"), kQuadPlyVertexLine + 4, "4 0 1 3 2");
-  EXPECT_EQ(meshOf(text.substr(0, text.rfind("3 1 3 2"))).triangles,
+  EXPECT_EQ(meshOfPly(text.substr(0, text.rfind("3 1 3 2"))).triangles,
             (std::vector<std::array<uint32_t, 3>>{{0, 1, 3}, {0, 3, 2}}));
 }
 
 TEST(Ply, TextureCoordinatesAndNormalsAreRead) {
-  const Mesh mesh = meshOf(
+  const Mesh mesh = meshOfPly(
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
       "nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nelement face 1\nproperty list "
       "uchar int vertex_index\nend_header\n0 0 0 0 0 2 .25 .5\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n");
@@ -116,7 +116,7 @@ TEST(Ply, TextureCoordinatesAndNormalsAreRead) {
 }
 
 TEST(Ply, FlipTexCoords) {
-  const Mesh mesh = meshOf(
+  const Mesh mesh = meshOfPly(
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
       "u\nproperty float v\nelement face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0 .25 .25\n1 0 0 0 "
       "0\n0 1 0 0 0\n3 0 1 2\n",
@@ -126,7 +126,7 @@ TEST(Ply, FlipTexCoords) {
 }
 
 TEST(Ply, OtherElementsAndPropertiesAreSkipped) {
-  expectQuad(meshOf(
+  expectQuad(meshOfPly(
       "ply\nformat ascii 1.0\nelement camera 1\nproperty list uchar float pose\nproperty float f\nelement vertex 4\n"
       "property float confidence\nproperty float x\nproperty float y\nproperty list uchar int near\nproperty float z\n"
       "element face 2\nproperty uchar flag\nproperty list uchar int vertex_indices\nproperty list uchar float w\n"
@@ -215,21 +215,21 @@ std::string cornerUvPly(std::string_view rows, std::string_view properties = "")
 const char* const kCornerUvRows = "3 0 1 2 0 6 0 0 1 0 1 1 0\n3 0 2 3 0 6 0.5 0 1 1 0 1 0\n";
 
 TEST(Ply, CornersThatDifferInTextureCoordinatesAreSplit) {
-  const Mesh mesh = meshOf(cornerUvPly(kCornerUvRows));
+  const Mesh mesh = meshOfPly(cornerUvPly(kCornerUvRows));
   EXPECT_EQ(mesh.triangles, (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {4, 2, 3}}));
   EXPECT_EQ(mesh.positions[4], mesh.positions[0]);
   EXPECT_EQ(mesh.uvs, (std::vector<Float2>{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5f, 0}}));
 }
 
 TEST(Ply, SplitCornersKeepTheNormalOfTheirVertex) {
-  const Mesh mesh = meshOf(cornerUvPly(kCornerUvRows));
+  const Mesh mesh = meshOfPly(cornerUvPly(kCornerUvRows));
   EXPECT_EQ(mesh.normals[4], mesh.normals[0]);
   EXPECT_LT(mesh.normals[0][0], 0);  // of both triangles, and not of one alone
   EXPECT_LT(mesh.normals[0][1], 0);
 }
 
 TEST(Ply, FacesWithoutTextureCoordinatesHaveZeros) {
-  const Mesh mesh = meshOf(cornerUvPly("3 0 1 2 0 6 1 0 1 0 1 1 0\n3 0 2 3 0 0 0\n"));
+  const Mesh mesh = meshOfPly(cornerUvPly("3 0 1 2 0 6 1 0 1 0 1 1 0\n3 0 2 3 0 0 0\n"));
   EXPECT_EQ(mesh.uvs[mesh.triangles[1][1]], (Float2{0, 0}));
 }
 
@@ -239,11 +239,11 @@ TEST(Ply, TextureCoordinatesOfCornersAreChecked) {
 }
 
 TEST(Ply, ConcavePolygonIsCutIntoEars) {
-  const Mesh mesh = meshOf(
+  const Mesh mesh = meshOfPly(
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face "
       "1\nproperty list uchar int vertex_indices\nend_header\n-1 -1 0\n0 0 0\n1 -1 0\n0 1 0\n4 0 1 2 3\n");
   EXPECT_EQ(mesh.triangles, (std::vector<std::array<uint32_t, 3>>{{3, 0, 1}, {3, 1, 2}}));
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

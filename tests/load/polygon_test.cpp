@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 // Sum of the signed areas of the triangles, seen along z.
@@ -94,4 +94,4 @@ TEST(Polygon, TooManyConcaveCornersAreRefused) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

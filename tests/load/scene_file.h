@@ -12,7 +12,7 @@
 
 #include "engine/load/load.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 
 class Folder {
  public:
@@ -90,4 +90,4 @@ inline void expectErrorOnLine2(std::string_view body, std::string_view text) {
   expectError(sceneXml("\n" + std::string(body) + "\n" + std::string(kSensor) + std::string(kSphere)), 2, text);
 }
 
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -2,7 +2,7 @@
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 const std::string kBase =
@@ -55,4 +55,4 @@ TEST(SceneHash, ChangesWithTheContentOfAMeshFile) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

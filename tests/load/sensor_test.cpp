@@ -4,7 +4,7 @@
 
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 Scene sceneOf(std::string_view sensorContent, std::string_view type = "perspective", const LoadOptions& options = {}) {
@@ -240,4 +240,4 @@ TEST(Sampler, CountIsKept) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -2,7 +2,7 @@
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 std::string serializedShape(std::string_view options = "") {
@@ -21,7 +21,7 @@ void expectSerializedError(const std::string& content, std::string_view text, st
   expectError(folder, serializedShape(options), 0, text, "mesh.serialized");
 }
 
-void expectQuad(const Mesh& mesh) {
+void expectSerializedQuad(const Mesh& mesh) {
   EXPECT_EQ(mesh.positions, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
   EXPECT_EQ(mesh.normals, (std::vector<Float3>(4, {0, 0, 1})));
   EXPECT_EQ(mesh.uvs, (std::vector<Float2>{{0, 0}, {1, 0}, {0, 1}, {1, 1}}));
@@ -32,14 +32,16 @@ TEST(Serialized, BothVersionsAndPrecisions) {
   for (const uint16_t version : {uint16_t{3}, uint16_t{4}}) {
     for (const bool isDouble : {false, true}) {
       SCOPED_TRACE(std::to_string(version) + (isDouble ? " double" : " float"));
-      expectQuad(serializedMesh(serializedQuad({.version = version, .isDouble = isDouble})));
+      expectSerializedQuad(serializedMesh(serializedQuad({.version = version, .isDouble = isDouble})));
     }
   }
 }
 
-TEST(Serialized, ColorsAreSkipped) { expectQuad(serializedMesh(serializedQuad({.colors = true}))); }
+TEST(Serialized, ColorsAreSkipped) { expectSerializedQuad(serializedMesh(serializedQuad({.colors = true}))); }
 
-TEST(Serialized, NormalsThatAreMissingAreMade) { expectQuad(serializedMesh(serializedQuad({.normals = false}))); }
+TEST(Serialized, NormalsThatAreMissingAreMade) {
+  expectSerializedQuad(serializedMesh(serializedQuad({.normals = false})));
+}
 
 TEST(Serialized, FacetsByParameterAndInOldScenesByFlag) {
   EXPECT_TRUE(serializedMesh(serializedQuad(), R"(<boolean name="face_normals" value="true"/>)").normals.empty());
@@ -111,4 +113,4 @@ TEST(Serialized, NamesWithoutEndAreRefused) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -3,7 +3,7 @@
 
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 template <class Kind>
@@ -225,4 +225,4 @@ TEST(Instance, MustReferToAGroup) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -5,7 +5,7 @@
 #include "engine/scene/vector_math.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 constexpr double kTokyoHeight = 0.720308;  // of the sun at the default place and time, Mitsuba 3.9.1
@@ -118,4 +118,4 @@ TEST(Sunsky, NotesWhatItLeavesOut) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -6,7 +6,7 @@
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 // A folder with one image of a single pixel, code 128 of 255.
@@ -396,4 +396,4 @@ TEST(Texture, IsReadOnceHoweverOftenItIsReferenced) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

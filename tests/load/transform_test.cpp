@@ -3,7 +3,7 @@
 
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 // to_world as the spot light keeps it.
@@ -19,8 +19,8 @@ void expectMatrix(const Matrix4& m, const Matrix4& expected, double tolerance) {
   }
 }
 
-constexpr double kRounding = 1e-15;  // a few ulp of numbers near 1
-constexpr double kPrinted = 1e-6;    // digits that Mitsuba prints
+constexpr double kFewUlps = 1e-15;   // a few ulp of numbers near 1
+constexpr double kSixDigits = 1e-6;  // digits that Mitsuba prints
 
 TEST(Transform, Translate) {
   expectMatrix(transformOf(R"(<translate x="1" y="2" z="3"/>)"),
@@ -42,20 +42,20 @@ TEST(Transform, ScaleByOneValueIsUniform) {
 
 TEST(Transform, RotateTurnsCounterClockwiseAboutItsAxis) {
   expectMatrix(transformOf(R"(<rotate z="1" angle="90"/>)"),
-               {{{0, -1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, kRounding);
+               {{{0, -1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, kFewUlps);
   expectMatrix(transformOf(R"(<rotate x="1" angle="90"/>)"),
-               {{{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}}, kRounding);
+               {{{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}}, kFewUlps);
 }
 
 TEST(Transform, RotateNormalisesItsAxis) {
   // 120 degrees about the diagonal permutes the axes.
   expectMatrix(transformOf(R"(<rotate x="5" y="5" z="5" angle="120"/>)"),
-               {{{0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}}, kRounding);
+               {{{0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}}, kFewUlps);
 }
 
 TEST(Transform, LookAtPutsLeftUpForward) {
   expectMatrix(transformOf(R"(<lookat origin="1,2,3" target="4,6,3" up="0,0,1"/>)"),
-               {{{-0.8, 0, 0.6, 1}, {0.6, 0, 0.8, 2}, {0, 1, 0, 3}, {0, 0, 0, 1}}}, kRounding);
+               {{{-0.8, 0, 0.6, 1}, {0.6, 0, 0.8, 2}, {0, 1, 0, 3}, {0, 0, 0, 1}}}, kFewUlps);
 }
 
 TEST(Transform, LookAtWithoutUpChoosesMitsubasOne) {
@@ -64,7 +64,7 @@ TEST(Transform, LookAtWithoutUpChoosesMitsubasOne) {
                  {-0.851662, -0.111254, 0.512148, 2},
                  {0.512148, -0.384111, 0.768221, 3},
                  {0, 0, 0, 1}}},
-               kPrinted);
+               kSixDigits);
 }
 
 TEST(Transform, MatrixOfSixteen) {
@@ -104,4 +104,4 @@ TEST(Transform, BadOperationsAreErrors) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

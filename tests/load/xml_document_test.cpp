@@ -4,7 +4,7 @@
 #include "tests/load/mesh_text.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 const Sphere& onlySphere(const Scene& scene) {
@@ -338,4 +338,4 @@ TEST(Upgrade, LookAtAndTextureScalesAreUnderstood) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

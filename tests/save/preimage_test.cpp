@@ -7,7 +7,7 @@
 
 #include "engine/scene/vector_math.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 constexpr int kCases = 2000;
@@ -47,4 +47,4 @@ TEST(Preimage, AUnitVectorIsFoundAndLittleLonger) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

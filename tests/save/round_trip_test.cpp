@@ -7,7 +7,7 @@
 #include "tests/load/mesh_text.h"
 #include "tests/save/saved_scene.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 void expectSame(const Folder& folder, const std::string& body) {
@@ -284,4 +284,4 @@ TEST(RoundTrip, IdsAreKeptAndMadeUnique) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -4,7 +4,7 @@
 #include "engine/save/save.h"
 #include "tests/load/scene_file.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 
 inline Scene savedAndLoaded(const Scene& scene) {
   const Folder folder;
@@ -12,4 +12,4 @@ inline Scene savedAndLoaded(const Scene& scene) {
   return loadScene(folder.path() / "saved.xml", {.keepAll = true});
 }
 
-}  // namespace wavecrest::testing
+}  // namespace wavecrest

@@ -5,7 +5,7 @@
 #include "scenes/scene_list.h"
 #include "tests/save/saved_scene.h"
 
-namespace wavecrest::testing {
+namespace wavecrest {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,4 +41,4 @@ TEST_P(SceneFiles, ReadsBackWithTheSameHash) {
 }
 
 }  // namespace
-}  // namespace wavecrest::testing
+}  // namespace wavecrest
