@@ -20,8 +20,9 @@ static_assert(std::atomic<Session*>::is_always_lock_free && std::atomic<int64_t>
 // Set before the handlers are installed. Handlers only read it.
 std::string endLine;
 
-// A Ctrl-C that comes more than this after the first request ends the program at once.
-constexpr int64_t kImpatience = 1000;  // milliseconds
+// A signal that comes more than this after the first request ends the program at once. What comes sooner is the same
+// request, as a terminal, a shell and a scheduler may all send theirs.
+constexpr int64_t kImpatience = 250;  // milliseconds
 
 // Time on the monotonic clock; never 0, which means that there was no request.
 int64_t milliseconds() {
@@ -40,8 +41,7 @@ void onStop(int signal) {
   // The first request is noted. Where there was one before, `none` then holds its time.
   int64_t none = 0;
   const int64_t now = milliseconds();
-  if (!firstRequest.compare_exchange_strong(none, now) && signal == SIGINT && session != nullptr &&
-      now - none > kImpatience) {
+  if (!firstRequest.compare_exchange_strong(none, now) && signal != SIGXCPU && now - none > kImpatience) {
     _exit(kExitInterrupted);
   }
   // Otherwise the session returns once the waves under way are done.

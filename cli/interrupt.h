@@ -1,9 +1,10 @@
-// Signals as wishes. While a guard lives, SIGINT, SIGTERM and SIGHUP ask the session that renders to return, so that
-// what there is can be saved; SIGUSR1 asks it to pause for a save. SIGPIPE never ends the program (main.cpp).
+// Signals as wishes. While a guard lives, SIGINT, SIGTERM, SIGHUP and SIGXCPU ask the session that renders to return,
+// so that what there is can be saved; SIGUSR1 asks it to pause for a save. SIGPIPE never ends the program (main.cpp).
 //
-// A signal that comes while files are written changes nothing: what was to be saved is saved. Several of them in one
-// second count as one, as a terminal, a shell and a scheduler may all send theirs; a later Ctrl-C ends the program if
-// it renders on nevertheless.
+// The first signal that comes while files are written changes nothing: what was to be saved is saved. Several of them
+// within a quarter of a second count as one, as a terminal, a shell and a scheduler may all send theirs. A later one
+// ends the program at once, with kExitInterrupted, whatever it does; but not SIGXCPU, which the system repeats each
+// second from a soft limit of CPU time to the hard one.
 #pragma once
 
 #include <csignal>
@@ -37,8 +38,8 @@ class InterruptGuard {
   void goOn();
 
  private:
-  static constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
-  struct sigaction previous_[4]{};
+  static constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1};
+  struct sigaction previous_[5]{};
 };
 
 }  // namespace wavecrest

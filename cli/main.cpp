@@ -88,6 +88,12 @@ void openStandardStreams() {
   }
 }
 
+// At a limit of CPU time, where a command has nothing to save.
+void onCpuLimit(int) {
+  writeStderr("wavecrest: interrupted at the limit of CPU time\n");
+  _exit(kExitInterrupted);
+}
+
 int run(std::vector<std::string> arguments) {
   int exitCode = kExitDone;
   try {
@@ -122,7 +128,9 @@ int run(std::vector<std::string> arguments) {
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away ends no render
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond a limit is an error of writing
   std::signal(SIGUSR1, SIG_IGN);  // before there is anything to save; commands that save set their own
+  std::signal(SIGXCPU, wavecrest::onCpuLimit);
   std::set_terminate(wavecrest::onTerminate);
   wavecrest::openStandardStreams();
   return wavecrest::run({argv + 1, argv + argc});

@@ -9,6 +9,7 @@
 #include "bench/campaign/file_lock.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
+#include "bench/results/within_folder.h"
 #include "library/campaign_options.h"
 #include "library/errors.h"
 #include "scenes/scene_list.h"
@@ -69,6 +70,8 @@ std::optional<CampaignOptions> extended(const CampaignOptions& before, const std
 }  // namespace
 
 void resumeCampaign(CampaignOptions& options, const std::filesystem::path& results) {
+  // The folder may have come from others.
+  withinFolder(results.parent_path(), results.filename());
   const FileLock lock(results);
   // Makes the tables where an earlier process died before it had made them.
   const ResultsStore whole(results);

@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 
 namespace wavecrest {
 namespace {
@@ -29,19 +30,37 @@ std::string readHolder(int descriptor) {
 bool isCurrent(int descriptor, const std::filesystem::path& path) {
   struct stat opened {
   }, named{};
-  return fstat(descriptor, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+  return fstat(descriptor, &opened) == 0 && lstat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
          opened.st_dev == named.st_dev;
+}
+
+// The name that all links to the file lead to.
+std::filesystem::path realName(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
+  return error ? file : real;
+}
+
+// An empty or former lock, opened. Throws FileLockError.
+int openLock(const std::filesystem::path& path) {
+  const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+  struct stat info {};
+  if (descriptor < 0 && errno != ELOOP) {
+    throw FileLockError(
+        fmt::format("{}: cannot be made: {}; expected a writable folder", path.string(), std::strerror(errno)));
+  }
+  if (descriptor >= 0 && fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode) && info.st_nlink <= 1) {
+    return descriptor;
+  }
+  if (descriptor >= 0) close(descriptor);
+  throw FileLockError(fmt::format("{}: is a link or no plain file; expected the lock of a wavecrest", path.string()));
 }
 
 }  // namespace
 
-FileLock::FileLock(const std::filesystem::path& file) : path_(file.string() + ".lock") {
+FileLock::FileLock(const std::filesystem::path& file) : path_(realName(file).string() + ".lock") {
   for (;;) {
-    descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) {
-      throw FileLockError(
-          fmt::format("{}: cannot be made: {}; expected a writable folder", path_.string(), std::strerror(errno)));
-    }
+    descriptor_ = openLock(path_);
     if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       const std::string holder = readHolder(descriptor_);
       close(descriptor_);

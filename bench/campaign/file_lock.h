@@ -2,6 +2,9 @@
 //
 // It is a file of its own beside it, NAME.lock, held by flock: the kernel lets go of it however the process ends, so a
 // lock never has to be removed by hand. It says who holds it. File systems that know no locks are taken to be free.
+//
+// Whatever links lead to a file, its lock is beside the real one. What lies in the place of the lock and is no plain
+// file of a single name is refused: others may have put it there to have another file overwritten.
 #pragma once
 
 #include <filesystem>

@@ -14,6 +14,7 @@
 #include "bench/campaign/scene_reference.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
+#include "bench/results/within_folder.h"
 #include "engine/inspect/path_classes.h"
 #include "engine/load/load.h"
 #include "engine/scene/hash_text.h"
@@ -82,6 +83,10 @@ class Campaign {
 
   bool run(const std::map<std::string, std::string>& keys) {
     if (!settings_.leftOut.empty()) hooks_.say(settings_.leftOut);
+    // The folder may have come from others.
+    for (const fs::path& name : {resultsFile(settings_).filename(), fs::path("images"), fs::path("references")}) {
+      withinFolder(settings_.out, name);
+    }
     // Opens or makes the results file. plan() throws where the campaign cannot run, so a new campaign makes its folder
     // only afterwards.
     if (fs::exists(resultsFile(settings_))) {

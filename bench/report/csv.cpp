@@ -9,10 +9,13 @@
 namespace wavecrest {
 namespace {
 
-// Quoted where a comma, a quote or a line end would be misread.
+// Quoted where a comma, a quote or a line end would be misread. A spreadsheet takes what begins like a formula for one,
+// so such a text gets an apostrophe in front.
 std::string field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
+  const bool formula = !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  const std::string_view mark = formula ? "'" : "";
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(mark).append(text);
+  std::string quoted = std::string("\"").append(mark);
   for (const char character : text) {
     if (character == '"') quoted += '"';
     quoted += character;

@@ -5,6 +5,7 @@
 
 #include "bench/report/scene_plots.h"
 #include "bench/report/series_values.h"
+#include "bench/results/within_folder.h"
 #include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
@@ -29,7 +30,7 @@ std::vector<std::filesystem::path> writePlotFiles(const ConvergenceReport& repor
   for (const ReportScene& scene : report.scenes) {
     for (const ScenePlot& plot : scenePlots(report, scene)) {
       const std::string svg = renderPlotFile(plot.plot, colours);
-      paths.push_back(folder / (fileName(scene.name) + "." + fileName(plot.key) + ".svg"));
+      paths.push_back(withinFolder(folder, fileName(scene.name) + "." + fileName(plot.key) + ".svg"));
       writeFileAtomically(paths.back().string(), svg);
     }
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "bench/results/within_folder.h"
+
 namespace wavecrest {
 namespace {
 
@@ -48,7 +50,7 @@ fs::path locate(const fs::path& stats, const std::string& name) {
   const fs::path file(name);
   for (const fs::path& candidate : {file.is_relative() ? file : file.filename(), file.filename()}) {
     fs::path beside = stats.parent_path() / candidate;
-    if (fs::is_regular_file(beside)) return beside;
+    if (isWithinFolder(stats.parent_path(), candidate) && fs::is_regular_file(beside)) return beside;
   }
   fail(stats, fmt::format("snapshot '{}' does not exist", name), "an image beside this file");
 }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "bench/results/schema.h"
+#include "bench/results/within_folder.h"
 
 namespace wavecrest {
 namespace {
@@ -12,9 +13,10 @@ namespace fs = std::filesystem;
 
 // ---- one file -------------------------------------------------------------------------------------------------------
 
-// A path that is relative to the folder of the results file, resolved. An empty path stays empty.
+// A path that is relative to the folder of the results file, resolved. An empty path stays empty. Throws
+// ResultsFileError where the path leads out of the folder.
 std::string resolved(const fs::path& results, const std::string& file) {
-  return file.empty() ? file : (results.parent_path() / file).lexically_normal().string();
+  return file.empty() ? file : withinFolder(results.parent_path(), file).lexically_normal().string();
 }
 
 std::map<std::string, std::string> readCampaign(Database& database) {
@@ -188,7 +190,7 @@ std::vector<fs::path> shardFiles(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("results.") && name.ends_with(".sqlite") && name.find("-of-") != std::string::npos) {
-      files.push_back(entry.path());
+      files.push_back(withinFolder(folder, name));
     }
   }
   std::sort(files.begin(), files.end());
@@ -198,7 +200,7 @@ std::vector<fs::path> shardFiles(const fs::path& folder) {
 }  // namespace
 
 CampaignResults readResults(const fs::path& path) {
-  const fs::path file = fs::is_directory(path) ? path / kResultsFile : path;
+  const fs::path file = fs::is_directory(path) ? withinFolder(path, kResultsFile) : path;
   // A folder without a results file may have those of shards.
   if (fs::is_directory(path) && !fs::exists(file)) {
     if (const std::vector<fs::path> shards = shardFiles(path); !shards.empty()) return readResults(shards);

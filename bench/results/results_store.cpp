@@ -1,6 +1,7 @@
 #include "bench/results/results_store.h"
 
 #include "bench/results/schema.h"
+#include "bench/results/within_folder.h"
 
 namespace wavecrest {
 namespace {
@@ -137,7 +138,10 @@ std::optional<ResultsStore::KnownRun> ResultsStore::findRun(const std::string& s
                .images = {}};
   Statement images(database_, "SELECT file FROM snapshot WHERE run = ? AND file <> ''");
   images.bind(query.integer(2));
-  while (images.step()) run.images.push_back(images.text(0));
+  while (images.step()) {
+    run.images.push_back(images.text(0));
+    withinFolder(database_.path().parent_path(), run.images.back());
+  }
   return run;
 }
 

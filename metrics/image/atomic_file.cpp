@@ -64,6 +64,17 @@ bool isSpecial(const std::string& target) {
   return ::stat(target.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
+// Where the system names the files of this process, if it does.
+constexpr const char* kDescriptors = "/proc/self/fd/";
+
+// A descriptor of a new file without a name in the folder of `temporary`, which vanishes with this process; -1 where
+// the file system has no such files.
+int createUnnamed(const std::string& temporary) {
+  if (::access(kDescriptors, X_OK) != 0) return -1;
+  const fs::path folder = fs::path(temporary).parent_path();
+  return ::open(folder.empty() ? "." : folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+}
+
 // A descriptor of a new file. An existing file of that name is an error. path is for the message.
 int createTemporary(const std::string& path, const std::string& temporary) {
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -141,14 +152,17 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(targetOf(
     if (descriptor_ < 0) failWriting(path, "opening", errno);
     return;
   }
+  // A file without a name leaves nothing behind if the process is killed.
   const std::string temporary = temporaryName(target_);
-  descriptor_ = createTemporary(path, temporary);
+  descriptor_ = createUnnamed(temporary);
+  named_ = descriptor_ < 0;
+  if (named_) descriptor_ = createTemporary(path, temporary);
   temporary_ = temporary;
 }
 
 AtomicFile::~AtomicFile() {
   ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (named_) ::unlink(temporary_.c_str());
 }
 
 void AtomicFile::write(std::span<const unsigned char> bytes) {
@@ -163,7 +177,15 @@ void AtomicFile::commit() {
   // The bytes reach the device before the name does, so a crash in between leaves the old file.
   if (temporary_.empty()) return;
   if (::fsync(descriptor_) != 0) failWriting(path_, "flushing", errno);
+  if (!named_) {
+    const std::string unnamed = kDescriptors + std::to_string(descriptor_);
+    if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0) {
+      failWriting(path_, "naming the file", errno);
+    }
+    named_ = true;
+  }
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0) failWriting(path_, "renaming", errno);
+  named_ = false;
   temporary_.clear();
 }
 

@@ -14,10 +14,10 @@ namespace wavecrest {
 // The file's bytes. Throws ImageError when it is missing, unreadable or not a regular file.
 std::vector<unsigned char> readFileBytes(const std::string& path);
 
-// A file that is replaced as a whole. write() fills a temporary file in the same folder; commit() flushes that to the
-// device and renames it over the target. Whoever is destroyed without commit() leaves the target as it was. If the
-// target is a symbolic link, the file that it points to is replaced. Devices and pipes are written to directly. Every
-// member throws ImageError where it fails.
+// A file that is replaced as a whole. write() fills a temporary file in the same folder, without a name where the file
+// system has such files; commit() flushes it to the device and renames it over the target. Whoever is destroyed without
+// commit() leaves the target as it was. If the target is a symbolic link, the file that it points to is replaced.
+// Devices and pipes are written to directly. Every member throws ImageError where it fails.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path);
@@ -34,6 +34,7 @@ class AtomicFile {
  private:
   std::string path_, target_;
   std::string temporary_;  // empty: committed, or written to as it is
+  bool named_ = false;     // the temporary file has its name
   int descriptor_ = -1;
 };
 

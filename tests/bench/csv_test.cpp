@@ -37,6 +37,16 @@ TEST(Csv, quotesNamesThatWouldBeMisread) {
   EXPECT_NE(measurementsAsCsv(report).find("\n\"a \"\"box\"\", big\",pt,"), std::string::npos);
 }
 
+TEST(Csv, holdsNoFormulas) {
+  for (const std::string name : {"=cmd|' /C calc'!A0", "+1", "-1", "@SUM(1)", "\t=1"}) {
+    ConvergenceReport report = sampleReport();
+    report.scenes[0].name = name;
+    EXPECT_NE(measurementsAsCsv(report).find("\n'" + name + ",pt,"), std::string::npos) << name;
+    report.scenes[0].name = name + ",";
+    EXPECT_NE(measurementsAsCsv(report).find("\n\"'" + name + ",\",pt,"), std::string::npos) << name;
+  }
+}
+
 TEST(Csv, summaryHasEachSeriesAtItsEnd) {
   ConvergenceReport report = sampleReport();
   ReportScene& scene = report.scenes[0];

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import struct
 import subprocess
 import tempfile
@@ -50,11 +51,16 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(result.returncode, expect, f"{arguments}\n{result.stdout}\n{result.stderr}")
         return result
 
-    def start(self, *arguments, stdin=None):
-        """Begins to run; the process is killed at the end of the test."""
+    def start(self, *arguments, stdin=None, limits=None):
+        """Begins to run, with limits as {resource.RLIMIT_...: (soft, hard)}; the process is killed at the end of the test."""
+
+        def limit():
+            for kind, values in (limits or {}).items():
+                resource.setrlimit(kind, values)
+
         process = subprocess.Popen(
             [WAVECREST, *map(str, arguments)], cwd=self.folder, stdin=stdin, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE, text=True,
+            stderr=subprocess.PIPE, text=True, preexec_fn=limit,
         )  # fmt: skip
         self.addCleanup(process.kill)
         return process

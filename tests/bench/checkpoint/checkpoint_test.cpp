@@ -1,7 +1,9 @@
 // Checkpoint files: what comes back, what is refused and in which words, and that no damage goes unnoticed.
 #include "bench/checkpoint/checkpoint.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <functional>
 #include <random>
@@ -177,7 +179,15 @@ TEST_F(CheckpointTest, otherFilesAreNoCheckpoints) {
   EXPECT_THROW(Checkpoint(folder_.folder().string()), ImageError);
 }
 
-// Whoever is killed or fails while writing leaves the file as it was, and at most a temporary one beside it.
+// Whether the folder's file system has files without names.
+bool hasUnnamedFiles(const std::filesystem::path& folder) {
+  const int file = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+  if (file >= 0) ::close(file);
+  return file >= 0;
+}
+
+// Whoever is killed or fails while writing leaves the file as it was. A temporary one is beside it only where it needs
+// a name.
 TEST_F(CheckpointTest, anUnfinishedWriteLeavesTheLastFile) {
   const std::string file = fileOf(settingsOf(Method::pt));
   const Bytes before = readFileBytes(file);
@@ -189,7 +199,7 @@ TEST_F(CheckpointTest, anUnfinishedWriteLeavesTheLastFile) {
     AtomicFile unfinished(file);
     unfinished.write(before);
     unfinished.write(before);
-    EXPECT_EQ(filesInFolder(), 2);
+    EXPECT_EQ(filesInFolder(), hasUnnamedFiles(folder_.folder()) ? 1 : 2);
   }
   EXPECT_EQ(filesInFolder(), 1);
   EXPECT_EQ(readFileBytes(file), before);
