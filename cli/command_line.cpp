@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -80,6 +81,18 @@ Option addNumber(CLI::App& app, const std::string& name, Number& value, const st
   return Option(option);
 }
 
+// An empty word is never the name of anything, and file systems have no good words for it.
+CLI::Option* notEmpty(CLI::Option* option) {
+  return option->check([](const std::string& word) { return word.empty() ? "is empty; expected a value" : ""; });
+}
+
+// What is wrong with a settings file; empty if nothing is. Pipes and devices may have no end.
+std::string checkSettingsFile(const std::string& file) {
+  std::error_code ignored;
+  const bool special = std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored);
+  return special ? fmt::format("{} is not a regular file; expected a settings file", file) : "";
+}
+
 // Turns CLI11's "--spp: 1 required UINT missing" into "--spp: expected a value". Other texts stay as they are.
 std::string withoutTypes(const CLI::ArgumentMismatch& error) {
   std::string text = error.what();
@@ -112,10 +125,10 @@ Option Option::checkedBy(std::function<std::string(const std::string&)> check) c
 bool Option::given() const { return option_->count() > 0; }
 
 Option Command::add(const std::string& name, std::string& value, const std::string& description) const {
-  return Option(withVariable(app_->add_option(name, value, description), name));
+  return Option(notEmpty(withVariable(app_->add_option(name, value, description), name)));
 }
 Option Command::add(const std::string& name, std::vector<std::string>& value, const std::string& description) const {
-  return Option(withVariable(app_->add_option(name, value, description), name));
+  return Option(notEmpty(withVariable(app_->add_option(name, value, description), name)));
 }
 Option Command::add(const std::string& name, int& value, const std::string& description) const {
   return addNumber(*app_, name, value, description);
@@ -139,7 +152,8 @@ CommandLine::CommandLine(const std::string& description, const std::string& name
     : app_(std::make_unique<CLI::App>(description, name)) {
   app_->require_subcommand(1);
   // An unknown key in the settings file is an error, so that misspelt options are noticed.
-  app_->set_config("--config", "", "settings file (TOML): options of COMMAND under [COMMAND]");
+  app_->set_config("--config", "", "settings file (TOML): options of COMMAND under [COMMAND]")
+      ->check(checkSettingsFile);
   app_->allow_config_extras(CLI::config_extras_mode::error);
 }
 CommandLine::~CommandLine() = default;

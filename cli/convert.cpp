@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 struct ConvertOptions {
   SceneOptions scene{.keepAll = true};
   std::string output, progress = "auto";
+  bool quiet = false;
 };
 
 // Throws UsageError where the folder for meshes and bitmaps exists as a file. Files in an existing folder are replaced.
@@ -36,7 +37,8 @@ int runConvert(const ConvertOptions& options) {
   if (output.extension() != ".xml") {
     throw UsageError(fmt::format("-o {}: expected a name that ends in .xml", options.output));
   }
-  const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  const ProgressKind kind =
+      quietIf(options.quiet, static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)));
   FileCheck files;
   files.input("the scene", findScene(options.scene.scene));
   files.output("-o", output);
@@ -71,6 +73,7 @@ void addConvertCommand(CommandLine& program, int& exitCode) {
            "FILE.xml; meshes (PLY) and bitmaps (PNG, EXR) go into the folder FILE-files beside it")
       .required();
   command.add("--progress", options->progress, "auto, bar, jsonl or none: how notes are told").showDefault();
+  command.addFlag("--quiet", options->quiet, "tell no notes");
   command.run([options, &exitCode] { exitCode = runConvert(*options); });
 }
 

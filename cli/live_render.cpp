@@ -61,7 +61,7 @@ void addLiveOptions(const Command& command, LiveOptions& options) {
 
 void tellPage(ProgressKind kind, const std::string& url) {
   // Without the address nobody could open the page, so it is shown even where progress is off.
-  noteLine(kind == ProgressKind::none ? ProgressKind::automatic : kind, {{"view", url}}, "view: " + url);
+  noteLine(showsProgress(kind) ? kind : ProgressKind::automatic, {{"view", url}}, "view: " + url);
 }
 
 LiveRender::LiveRender(const LiveOptions& options, const Scene& scene, const RenderSettings& settings,

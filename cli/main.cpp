@@ -9,12 +9,15 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "bench/against/child_render.h"
 #include "bench/checkpoint/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
@@ -56,6 +59,13 @@ int report(const std::exception_ptr& thrown) {
     return line(kExitInput, error.what());
   } catch (const InputError& error) {
     return line(kExitInput, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return line(kExitInput, fmt::format("{}: {}; expected a file or folder that can be reached", error.path1().string(),
+                                        error.code().message()));
+  } catch (const nlohmann::json::exception&) {
+    return line(kExitInput, "JSON of an input is not as wavecrest writes it; expected it unchanged");
+  } catch (const ChildStopped& error) {
+    return line(kExitInterrupted, error.what());
   } catch (const std::bad_alloc&) {
     writeStderr(kOutOfMemory);
     writeStderr("\n");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -20,6 +21,25 @@ ProgressKind resolved(ProgressKind kind) {
   return isatty(STDERR_FILENO) != 0 ? ProgressKind::bar : ProgressKind::none;
 }
 
+// What was noted, from any thread.
+struct NoteList {
+  std::mutex mutex;
+  std::vector<std::string> notes;
+};
+NoteList& noteList() {
+  static NoteList list;
+  return list;
+}
+
+void keepNote(const std::string& text) {
+  NoteList& list = noteList();
+  const std::lock_guard<std::mutex> lock(list.mutex);
+  if (std::find(list.notes.begin(), list.notes.end(), text) == list.notes.end()) list.notes.push_back(text);
+}
+
+// The kind of progress by which notes are said where there is no progress.
+ProgressKind told(ProgressKind kind) { return showsProgress(kind) ? kind : ProgressKind::automatic; }
+
 // Time between two updates. Columns of the longest bar, and of the text beside it.
 constexpr auto kInterval = std::chrono::milliseconds(250);
 constexpr size_t kWidestBar = 40, kTextWidth = 40;
@@ -34,19 +54,30 @@ size_t barWidth() {
 }  // namespace
 
 void noteLine(ProgressKind kind, const nlohmann::ordered_json& line, const std::string& text) {
-  if (kind == ProgressKind::none) return;
+  if (!showsProgress(kind)) return;
   writeStderr(kind == ProgressKind::jsonl ? jsonText(line) + "\n" : "wavecrest: " + text + "\n");
 }
 
+void note(ProgressKind kind, const std::string& text) {
+  keepNote(text);
+  if (kind != ProgressKind::quiet) noteLine(told(kind), {{"note", text}}, "note: " + text);
+}
+
 void warn(ProgressKind kind, const std::string& text) {
-  // Warnings are shown even where progress is off.
-  noteLine(kind == ProgressKind::none ? ProgressKind::automatic : kind, {{"warning", text}}, "warning: " + text);
+  keepNote(text);
+  noteLine(told(kind), {{"warning", text}}, "warning: " + text);
+}
+
+std::vector<std::string> notesSoFar() {
+  NoteList& list = noteList();
+  const std::lock_guard<std::mutex> lock(list.mutex);
+  return list.notes;
 }
 
 Progress::Progress(ProgressKind kind, const Session& session, std::optional<double> seconds,
                    std::optional<uint64_t> paths)
     : kind_(resolved(kind)), session_(session), seconds_(seconds), paths_(paths) {
-  if (kind_ == ProgressKind::none) return;
+  if (!showsProgress(kind_)) return;
   thread_ = std::thread([this] {
     // Sleeps in short steps, so that the destructor does not wait for a whole interval.
     while (!done_.load()) {
@@ -96,7 +127,7 @@ WritingProgress::~WritingProgress() {
 void WritingProgress::show(double fraction) {
   const auto now = std::chrono::steady_clock::now();
   // Skips updates that come too early. The last update of a file that was shown before is never skipped.
-  if (kind_ == ProgressKind::none || (now < next_ && !(shown_ && fraction >= 1))) return;
+  if (!showsProgress(kind_) || (now < next_ && !(shown_ && fraction >= 1))) return;
   next_ = now + kInterval;
   shown_ = true;
   if (kind_ == ProgressKind::jsonl) {

@@ -9,18 +9,26 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "engine/session/session.h"
 
 namespace wavecrest {
 
-enum class ProgressKind { automatic, bar, jsonl, none };
+// quiet: --quiet, which leaves out notes as well.
+enum class ProgressKind { automatic, bar, jsonl, none, quiet };
+inline ProgressKind quietIf(bool quiet, ProgressKind kind) { return quiet ? ProgressKind::quiet : kind; }
+inline bool showsProgress(ProgressKind kind) { return kind != ProgressKind::none && kind != ProgressKind::quiet; }
 constexpr std::array<std::string_view, 4> kProgressNames{"auto", "bar", "jsonl", "none"};
 
 // A line beside the progress: with jsonl an object {key: value}, else "wavecrest: TEXT".
 void noteLine(ProgressKind kind, const nlohmann::ordered_json& line, const std::string& text);
+// The same of a note, which says what was approximated, ignored or clamped: unless quiet, whatever the progress.
+void note(ProgressKind kind, const std::string& text);
 // The same of a warning, which is said in any case.
 void warn(ProgressKind kind, const std::string& text);
+// All notes and warnings of this process so far, said or not, each once: for its statistics.
+std::vector<std::string> notesSoFar();
 
 class Progress {
  public:

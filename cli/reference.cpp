@@ -52,7 +52,7 @@ class AdvanceLine {
   AdvanceLine& operator=(const AdvanceLine&) = delete;
 
   void show(const ReferenceInfo& info) {
-    if (kind_ == ProgressKind::none) return;
+    if (!showsProgress(kind_)) return;
     if (kind_ == ProgressKind::jsonl) {
       tell(R"({{"render_seconds":{:.3f},"iterations":{},"relative_error":{:.6g}}})", info.renderSeconds,
            info.iterations, info.relativeError);
@@ -165,8 +165,8 @@ int runReference(const ReferenceOptions& options) {
   if (!options.agreeWith.empty()) files.input("--agree-with", options.agreeWith);
   if (!options.larger.empty()) files.input("--from", options.larger);
   const ReferenceGoal goal = goalOf(options);
-  const auto asked = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
-  const ProgressKind kind = options.quiet ? ProgressKind::none : asked;
+  const ProgressKind kind =
+      quietIf(options.quiet, static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)));
   // Loads the scene and chooses the method.
   InterruptGuard guard("wavecrest: interrupted while loading; " + output + " is as it was");
   const Scene scene = loadScene(options.scene, kind);
@@ -258,7 +258,7 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   command.add("--agree-with", options->agreeWith,
               "another reference of the scene: fail with exit code 4 where a z-test says that they differ in truth");
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
-  command.addFlag("--quiet", options->quiet, "print the result only; as --progress none");
+  command.addFlag("--quiet", options->quiet, "print the result only: neither progress nor notes");
   command.run([options, &exitCode] { exitCode = runReference(*options); });
 }
 

@@ -16,6 +16,7 @@
 #include "cli/render_options.h"
 #include "cli/render_outputs.h"
 #include "engine/load/load.h"
+#include "engine/pilot/finished_plan.h"
 #include "engine/plan/render_plan.h"
 #include "engine/session/session.h"
 #include "engine/session/snapshots.h"
@@ -36,10 +37,11 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   return settings;
 }
 
-// Makes the session. A memory budget that is too small is a UsageError of --memory.
-std::unique_ptr<Session> createSession(const Scene& scene, const RenderSettings& settings) {
+// What `make` makes: a session or a plan. A memory budget that is too small is a UsageError of --memory.
+template <class Make>
+auto withinMemory(Make make) {
   try {
-    return Session::create(scene, settings);
+    return make();
   } catch (const MemoryBudgetError& error) {
     throw UsageError(fmt::format("--memory: {}", error.what()));
   }
@@ -59,6 +61,18 @@ UntilGoal untilGoal(const RenderOptions& options, const RenderSettings& settings
   return {options.until, settings, film};
 }
 
+// Before a render: the memory plan, with --memory and for photon maps, whose size depends on the number of light paths,
+// and warnings of settings. spreads: the film.
+void tellPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, ProgressKind kind,
+              const MemoryPlan& memory, bool spreads) {
+  if (settings.memoryBytes || memory.use.photonMap > 0) showMemory(kind, memory);
+  warnOfLimits(kind, settings);
+  warnOfFilter(kind, scene, settings, spreads);
+  if (options.until.relativeError > 0 && strategiesOf(settings.method).merge) {
+    warn(kind, "--until-relative-error leaves out the bias of merging, which falls with --radius and with time");
+  }
+}
+
 enum class Ending { complete, stopped, stoppedBeforeAnyPath };
 
 // With --resume: restores the session and the outputs from the checkpoint, if there is one, and tells at which
@@ -68,7 +82,12 @@ void goOn(const std::unique_ptr<Checkpoint>& earlier, const CheckpointOptions& o
   if (!options.resume) return;
   if (earlier) {
     earlier->restore(scene, settings, session);
-    outputs.goOnFrom(earlier->notes(), session);
+    try {
+      outputs.goOnFrom(earlier->notes(), session);
+    } catch (const nlohmann::json::exception&) {
+      throw InputError(options.file +
+                       ": has notes that are none; expected a checkpoint as `render --checkpoint` left it");
+    }
   }
   const uint64_t iterations = session.statistics().iterations;
   noteLine(kind, {{"checkpoint", options.file}, {"resumed_from", iterations}},
@@ -135,7 +154,8 @@ std::string defaultOutput(const std::string& scene) {
 int runRender(const RenderOptions& options) {
   // Checks options and output names before anything takes time.
   const SnapshotSchedule schedule = parseSnapshotSchedule("--snapshot-every", options.snapshotEvery);
-  const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
+  const ProgressKind kind =
+      quietIf(options.quiet, static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)));
   const OutputNames names{options.outputs, options.stats, options.snapshotEvery, options.checkpoint.file,
                           options.exposure};
   const std::string nothing = "wavecrest: interrupted before anything was rendered; no image was written";
@@ -155,26 +175,21 @@ int runRender(const RenderOptions& options) {
   printNotes(scene, kind);
   checkOutputs(names, scene.files, options.until.reference);
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  // Makes the session. Where the image depends on it, light paths are cut into waves as the checkpoint says.
+  // Makes the session, or only plans it. Where the image depends on it, light paths are cut into waves as the
+  // checkpoint says.
   RenderSettings settings = resolved(options, scene);
   if (earlier) earlier->cutAlike(settings);
   if (options.pin) settings.placement = pinnedPlacement(settings.threads, kind);
-  std::unique_ptr<Session> session = createSession(scene, settings);
-  // The memory plan is shown with --memory and for photon maps, whose size depends on the number of light paths.
-  if (settings.memoryBytes || session->memoryPlan().use.photonMap > 0) {
-    showMemory(kind, session->memoryPlan());
-  }
-  warnOfLimits(kind, settings);
-  warnOfFilter(kind, scene, settings, *session);
-  if (options.until.relativeError > 0 && strategiesOf(settings.method).merge) {
-    warn(kind, "--until-relative-error leaves out the bias of merging, which falls with --radius and with time");
-  }
   std::optional<UntilGoal> until;
-  if (options.until.any()) until.emplace(untilGoal(options, settings, session->film().area()));
+  if (options.until.any()) until.emplace(untilGoal(options, settings, filmOutline(scene.film)));
   if (options.dryRun) {
-    showPlan(options, scene, settings, *session);
+    const DryPlan plan = withinMemory([&] { return planWithoutSession(scene, settings); });
+    tellPlan(options, scene, settings, kind, plan.memory, plan.spreads);
+    showPlan(options, scene, settings, plan);
     return kExitDone;
   }
+  std::unique_ptr<Session> session = withinMemory([&] { return Session::create(scene, settings); });
+  tellPlan(options, scene, settings, kind, session->memoryPlan(), session->film().spreads());
   // Connects viewers and outputs, and goes on from the checkpoint.
   LiveRender live(options.live, scene, settings, kind, session);
   RenderOutputs outputs(names, scene, settings, loadSeconds, kind);
@@ -192,6 +207,7 @@ int runRender(const RenderOptions& options) {
     return kExitInterrupted;
   }
   live.look(true);
+  warnOfLosses(kind, settings, session->statistics());
   outputs.writeCheckpoint(*session);
   outputs.write(*session);
   if (!outputs.failed()) live.showFile(options.outputs.front());

@@ -33,28 +33,6 @@ std::string describe(const MemoryPlan& plan) {
   return text;
 }
 
-// Warns of what the image lacks: pixels without samples, samples that were not finite, clamped splats, and paths that
-// were cut.
-void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const RenderStatistics& statistics) {
-  const StageCounters& counters = statistics.counters;
-  if (statistics.iterations == 0 && settings.method != Method::mlt) {  // which has no samples of pixels
-    warn(kind, "the render ended before all pixels had a sample; those without are black");
-  }
-  if (counters.nonFinite != 0) {
-    warn(kind, fmt::format("{} samples were not finite and count as black", counters.nonFinite));
-  }
-  if (counters.saturatedSplats != 0) {
-    warn(kind, fmt::format("{} splats were too large for the film's sums", counters.saturatedSplats));
-  }
-  // A limit of depth that was asked for needs no warning. cutThroughput is in units of what a path begins with.
-  if (counters.cutPaths != 0 && settings.limits.maxDepth == kUnlimitedDepth) {
-    const double paths = static_cast<double>(statistics.paths + statistics.lightPaths);
-    warn(kind,
-         fmt::format("{} paths were cut after {} edges; they carried {:.2g} of what all began with", counters.cutPaths,
-                     withinDepthOfMethod(settings).limits.maxDepth, counters.cutThroughput / paths));
-  }
-}
-
 // The memory plan as a line of --progress jsonl.
 nlohmann::ordered_json toJson(const MemoryPlan& plan) {
   nlohmann::ordered_json memory = memoryJson(plan.use);
@@ -79,8 +57,7 @@ void warnOfLimits(ProgressKind kind, const RenderSettings& settings) {
   }
 }
 
-void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, const Session& session) {
-  const bool spreads = session.film().spreads();
+void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, bool spreads) {
   if (scene.film.filter == ReconstructionFilter::box || settings.filterMode != FilterMode::spread || spreads) return;
   if (settings.method == Method::mlt) return;  // chains choose one pixel each
   warn(kind,
@@ -91,14 +68,12 @@ void showMemory(ProgressKind kind, const MemoryPlan& plan) {
   noteLine(kind, toJson(plan), "memory: " + describe(plan));
 }
 
-void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
-              const Session& session) {
-  const RenderStatistics statistics = session.statistics();
-  fmt::print("scene    {}, {}x{} pixels, scene_hash {}\n", scene.name, session.film().area().width,
-             session.film().area().height, hashText(scene.hash));
+void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, const DryPlan& plan) {
+  const uint32_t width = scene.film.imageWidth(), height = scene.film.imageHeight();
+  fmt::print("scene    {}, {}x{} pixels, scene_hash {}\n", scene.name, width, height, hashText(scene.hash));
   fmt::print("method   {}, {} kernels on {}, {} intersector, {} threads\n", toString(settings.method),
-             kSpecializationNames[static_cast<size_t>(statistics.specialization)], toString(statistics.isa),
-             kAccelNames[static_cast<size_t>(statistics.accel)], settings.threads);
+             kSpecializationNames[static_cast<size_t>(plan.specialization)], toString(plan.isa),
+             kAccelNames[static_cast<size_t>(plan.accel)], settings.threads);
   std::vector<std::string> ends;
   if (settings.iterations) ends.push_back(fmt::format("after {} spp", *settings.iterations));
   if (settings.seconds) ends.push_back(fmt::format("after {:g} s", *settings.seconds));
@@ -107,12 +82,12 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
     ends.push_back(fmt::format("once the relative error is {:g}", options.until.relativeError));
   }
   fmt::print("ends     {}\n", fmt::join(ends, " or "));
-  fmt::print("memory   {}\n", describe(session.memoryPlan()));
+  fmt::print("memory   {}\n", describe(plan.memory));
   // Memory that writing an EXR takes besides the plan.
   const auto isExr = [](const std::string& output) { return output.ends_with(".exr"); };
   if (std::any_of(options.outputs.begin(), options.outputs.end(), isExr)) {
     // The file is written block by block and is never in memory as a whole.
-    const size_t bytes = exrWritingBytes(session.film().area().width, session.film().area().height);
+    const size_t bytes = exrWritingBytes(width, height);
     fmt::print("         and {:.1f} MB for the blocks of an EXR while they are compressed\n",
                static_cast<double>(bytes) / 1e6);
   }
@@ -121,10 +96,31 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
   if (!options.stats.empty()) fmt::print("writes   {}\n", options.stats);
 }
 
+// Pixels without samples, samples that were not finite, clamped splats, and paths that
+// were cut.
+void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const RenderStatistics& statistics) {
+  const StageCounters& counters = statistics.counters;
+  if (statistics.iterations == 0 && settings.method != Method::mlt) {  // which has no samples of pixels
+    warn(kind, "the render ended before all pixels had a sample; those without are black");
+  }
+  if (counters.nonFinite != 0) {
+    warn(kind, fmt::format("{} samples were not finite and count as black", counters.nonFinite));
+  }
+  if (counters.saturatedSplats != 0) {
+    warn(kind, fmt::format("{} splats were too large for the film's sums", counters.saturatedSplats));
+  }
+  // A limit of depth that was asked for needs no warning. cutThroughput is in units of what a path begins with.
+  if (counters.cutPaths != 0 && settings.limits.maxDepth == kUnlimitedDepth) {
+    const double paths = static_cast<double>(statistics.paths + statistics.lightPaths);
+    warn(kind,
+         fmt::format("{} paths were cut after {} edges; they carried {:.2g} of what all began with", counters.cutPaths,
+                     withinDepthOfMethod(settings).limits.maxDepth, counters.cutThroughput / paths));
+  }
+}
+
 void showSummary(const RenderOptions& options, const RenderSettings& settings, ProgressKind kind,
                  const Session& session) {
   const RenderStatistics statistics = session.statistics();
-  warnOfLosses(kind, settings, statistics);
   std::string files;
   for (const std::string& output : options.outputs) files += (files.empty() ? "" : ", ") + output;
   // The speed of lt is that of its light paths.

@@ -3,6 +3,7 @@
 
 #include "cli/progress.h"
 #include "cli/render_options.h"
+#include "engine/pilot/finished_plan.h"
 #include "engine/session/session.h"
 
 namespace wavecrest {
@@ -11,12 +12,14 @@ namespace wavecrest {
 void warnOfLimits(ProgressKind kind, const RenderSettings& settings);
 // Where samples add to one pixel each although --filter-mode asks to spread them, because the scene's filter is too
 // wide.
-void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, const Session& session);
+void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, bool spreads);
 // The memory plan, in one line.
 void showMemory(ProgressKind kind, const MemoryPlan& plan);
 // What --dry-run prints on stdout: scene, kernels, end, memory and outputs of the render.
-void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, const Session& session);
-// After a render: warnings, and one line with its outputs, its iterations and its speed.
+void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, const DryPlan& plan);
+// After a render: what the image lacks.
+void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const RenderStatistics& statistics);
+// One line with its outputs, its iterations and its speed.
 void showSummary(const RenderOptions& options, const RenderSettings& settings, ProgressKind kind,
                  const Session& session);
 

@@ -77,6 +77,7 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command.add("--stats", options.stats, "write statistics as JSON; - for stdout");
   command.addFlag("--dry-run", options.dryRun, "print plan, memory and outputs, and render nothing");
   command.add("--progress", options.progress, "auto, bar, jsonl or none").showDefault();
+  command.addFlag("--quiet", options.quiet, "neither progress nor notes on stderr; --stats has the notes");
 }
 
 }  // namespace wavecrest

@@ -19,7 +19,7 @@ struct RenderOptions : api::RenderOptions {
   std::string snapshotEvery, stats, progress = "auto";
   std::vector<std::string> outputs;
   double exposure = 0;  // stops, of PNG
-  bool dryRun = false, pin = false;
+  bool dryRun = false, pin = false, quiet = false;
   CheckpointOptions checkpoint;
   UntilRequest until;
   LiveOptions live;

@@ -185,6 +185,7 @@ double RenderOutputs::wallSeconds() const {
 nlohmann::ordered_json RenderOutputs::stats(const RenderStatistics& statistics) const {
   auto stats = renderStats(scene_, settings_, statistics, loadSeconds_, wallSeconds(), snapshots_);
   if (!names_.checkpoint.empty()) stats["resumed_from"] = resumedFrom_;
+  stats["notes"] = notesSoFar();
   return stats;
 }
 

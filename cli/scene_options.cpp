@@ -32,7 +32,7 @@ Scene loadScene(const SceneOptions& options, ProgressKind kind) {
 }
 
 void printNotes(const std::vector<Note>& notes, ProgressKind kind) {
-  for (const Note& note : notes) noteLine(kind, {{"note", toString(note)}}, "note: " + toString(note));
+  for (const Note& one : notes) note(kind, toString(one));
 }
 
 std::string toString(const Note& note) {

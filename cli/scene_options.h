@@ -23,7 +23,7 @@ void addSceneOptions(const Command& command, SceneOptions& options);
 // scene that cannot be read.
 Scene loadScene(const SceneOptions& options, ProgressKind kind = ProgressKind::automatic);
 
-// One a line on stderr.
+// One a line on stderr, unless quiet.
 void printNotes(const std::vector<Note>& notes, ProgressKind kind);
 inline void printNotes(const Scene& scene, ProgressKind kind) { printNotes(scene.notes, kind); }
 

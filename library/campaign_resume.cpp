@@ -84,7 +84,11 @@ void resumeCampaign(CampaignOptions& options, const std::filesystem::path& resul
   const auto folder = before.campaign.find("reference_folder");
   if (options.reference.empty() && folder != before.campaign.end()) options.reference = folder->second;
   CampaignOptions all = options;
-  all.defining = nlohmann::json::parse(stored->second).get<std::map<std::string, Words>>();
+  try {
+    all.defining = nlohmann::json::parse(stored->second).get<std::map<std::string, Words>>();
+  } catch (const nlohmann::json::exception&) {
+    throw ResultsFileError(results.string() + ": its options are none; expected an intact results file of a campaign");
+  }
   const std::map<std::string, Words> begun = all.defining;
   // Each option that is given again must be the same, or make the campaign larger.
   for (const auto& [name, words] : options.defining) {

@@ -2,15 +2,19 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 namespace wavecrest {
 namespace {
@@ -27,27 +31,74 @@ std::string lastLine(const fs::path& file) {
   return last;
 }
 
-// Runs a program to its end with its error output in a file; the exit code, or 128 + the signal that ended it.
-int runProgram(const std::vector<std::string>& arguments, const fs::path& errors) {
-  // Arguments end with a null pointer. posix_spawn does not write to them.
+// In the child between fork and exec: only what is safe in a signal handler. It dies with the thread that started it,
+// and has a process group of its own, so that what it starts can be ended with it.
+[[noreturn]] void becomeProgram(char* const* words, const char* errors, int failure) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setpgid(0, 0);
+  // No input, no output, and errors in the file.
+  const int nothing = ::open("/dev/null", O_RDWR), log = ::open(errors, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  if (nothing >= 0 && log >= 0 && dup2(nothing, STDIN_FILENO) >= 0 && dup2(nothing, STDOUT_FILENO) >= 0 &&
+      dup2(log, STDERR_FILENO) >= 0) {
+    ::close(nothing);
+    ::close(log);
+    execv(words[0], words);
+  }
+  const int error = errno;
+  [[maybe_unused]] const ssize_t told = ::write(failure, &error, sizeof error);
+  _exit(127);
+}
+
+// Starts a program. Throws ChildError where that fails.
+pid_t startProgram(const std::vector<std::string>& arguments, const fs::path& errors) {
+  // Arguments end with a null pointer. execv does not write to them.
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
-  // No input, no output, and errors in the file.
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  // Start the program and wait for its end. A signal may interrupt waitpid.
-  pid_t child = 0;
-  const int failed = posix_spawn(&child, words.front(), &actions, nullptr, words.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) throw ChildError(fmt::format("{}: {}", arguments.front(), std::strerror(failed)));
+  const auto fail = [&](int error) {
+    throw ChildError(fmt::format("{}: {}", arguments.front(), std::strerror(error)));
+  };
+  // The pipe tells why exec failed. Where it did not, the pipe closes without a word.
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) fail(errno);
+  const pid_t child = fork();
+  if (child == 0) becomeProgram(words.data(), errors.c_str(), ends[1]);
+  int error = child < 0 ? errno : 0;
+  ::close(ends[1]);
+  if (child > 0 && ::read(ends[0], &error, sizeof error) > 0) waitpid(child, nullptr, 0);
+  ::close(ends[0]);
+  if (error != 0) fail(error);
+  return child;
+}
+
+// Waits for a child's end; false where the time is over or a signal asks to stop, and the child was ended.
+bool waitFor(pid_t child, double patience, int& status) {
+  using Seconds = std::chrono::duration<double>;
+  const auto begin = std::chrono::steady_clock::now();
+  for (auto pause = std::chrono::milliseconds(1);; pause = std::min(2 * pause, std::chrono::milliseconds(20))) {
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child) return true;
+    const bool over = Seconds(std::chrono::steady_clock::now() - begin).count() > patience;
+    if (over || StopSignals::came() || (ended < 0 && errno != EINTR)) {
+      kill(-child, SIGKILL);
+      waitpid(child, &status, 0);
+      return false;
+    }
+    std::this_thread::sleep_for(pause);
+  }
+}
+
+// Runs a program to its end with its error output in a file; the exit code, or 128 + the signal that ended it. Throws
+// ChildStopped after a signal, ChildError where it takes more than `patience` seconds.
+int runProgram(const std::vector<std::string>& arguments, const fs::path& errors, double patience) {
+  const pid_t child = startProgram(arguments, errors);
   int status = 0;
-  while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw ChildError(fmt::format("{}: {}", arguments.front(), std::strerror(errno)));
+  if (!waitFor(child, patience, status)) {
+    if (StopSignals::came()) throw ChildStopped("interrupted; what was running was ended, and nothing was written");
+    throw ChildError(
+        fmt::format("{}: did not end within {:.0f} s; expected a wavecrest that is not much slower than this",
+                    arguments.front(), patience));
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
@@ -65,7 +116,8 @@ ScratchFolder::~ScratchFolder() {
   fs::remove_all(path_, ignored);
 }
 
-nlohmann::json renderInChild(const fs::path& binary, const ChildRequest& request, const ScratchFolder& folder) {
+nlohmann::json renderInChild(const fs::path& binary, const ChildRequest& request, const ScratchFolder& folder,
+                             double patience) {
   const fs::path stats = folder.path() / "stats.json", errors = folder.path() / "errors.txt";
   // The folder may have the statistics of an earlier run.
   fs::remove(stats);
@@ -90,7 +142,7 @@ nlohmann::json renderInChild(const fs::path& binary, const ChildRequest& request
   arguments.insert(arguments.end(), {"--output", image});
   arguments.insert(arguments.end(), request.more.begin(), request.more.end());
   // Run the program, and report its last error line if it fails.
-  const int code = runProgram(arguments, errors);
+  const int code = runProgram(arguments, errors, patience);
   if (code != 0) {
     throw ChildError(fmt::format("{}: render {} --method {} ended with code {}: {}", binary.string(),
                                  request.scene.filename().string(), request.method, code, lastLine(errors)));

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "bench/against/stop_signals.h"
 
 namespace wavecrest {
 
@@ -15,7 +18,7 @@ struct ChildError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// A folder for what children write, deleted with everything in it.
+// A folder for what children write, deleted with everything in it, also after a stop signal.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -25,6 +28,7 @@ class ScratchFolder {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  const StopSignals signals_;
   std::filesystem::path path_;
 };
 
@@ -39,9 +43,10 @@ struct ChildRequest {
   std::optional<std::string> imageFile;  // where the image goes, if anywhere
 };
 
-// Runs `BINARY render` to its end and returns its --stats.
+// Runs `BINARY render` to its end and returns its --stats. patience: seconds after which it is ended. Throws
+// ChildError, and ChildStopped after a stop signal.
 nlohmann::json renderInChild(const std::filesystem::path& binary, const ChildRequest& request,
-                             const ScratchFolder& folder);
+                             const ScratchFolder& folder, double patience = std::numeric_limits<double>::infinity());
 
 // Paths per second of as many processes of this program that render the same at the same time, on one thread each, with
 // seeds from 0 on: their sum.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr const char* kNoResult = "is not a result of wavecrest bench; expected one written by --json";
+
 // CPU seconds per path of each slice on one thread, by "scene method WxH".
 using Series = std::map<std::string, std::vector<double>>;
 
@@ -22,7 +25,10 @@ std::vector<double> slicesOfOneThread(const Json& method) {
   for (const Json& row : method.at("scaling")) {
     if (row.at("threads") != 1) continue;
     for (const Json& slice : row.at("slices")) {
-      values.push_back(slice.at("cpu_seconds").get<double>() / slice.at("paths").get<double>());
+      const double seconds = slice.at("cpu_seconds").get<double>(), paths = slice.at("paths").get<double>();
+      const double perPath = seconds / paths;
+      if (!(perPath > 0 && std::isfinite(perPath))) throw StoredMismatch(kNoResult);
+      values.push_back(perPath);
     }
   }
   return values;
@@ -43,7 +49,7 @@ Series seriesOf(const Json& result) {
       }
     }
   } catch (const Json::exception&) {
-    throw StoredMismatch("is not a result of wavecrest bench; expected one written by --json");
+    throw StoredMismatch(kNoResult);
   }
   return series;
 }
@@ -51,8 +57,12 @@ Series seriesOf(const Json& result) {
 // Processor and number of cores. Only times of equal machines are compared.
 std::string machineOf(const Json& result) {
   if (!result.contains("machine")) throw StoredMismatch("does not say which machine it comes from");
-  const Json& machine = result.at("machine");
-  return fmt::format("{}, {} cores", machine.value("cpu", "?"), machine.value("cores", 0));
+  try {
+    const Json& machine = result.at("machine");
+    return fmt::format("{}, {} cores", machine.value("cpu", "?"), machine.value("cores", 0));
+  } catch (const Json::exception&) {
+    throw StoredMismatch(kNoResult);
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "metrics/metric_list.h"
 #include "metrics/noise_floor.h"
@@ -94,7 +95,13 @@ struct FromMetadata {
   template <class Number>
   void operator()(const char* name, Number& value) const {
     const auto entry = metadata.find(std::string(kPrefix) + name);
-    if (entry != metadata.end()) parse(entry->first, entry->second, value);
+    if (entry == metadata.end()) return;
+    parse(entry->first, entry->second, value);
+    // Unlike noise floors, none of these may be just any number.
+    if (!(value >= 0 && static_cast<double>(value) < std::numeric_limits<double>::infinity())) {
+      throw ImageError(path.string(), fmt::format("attribute {} is {}", entry->first, entry->second),
+                       "expected a finite number, 0 or more");
+    }
   }
   template <class Number>
   void parse(const std::string& name, const std::string& text, Number& value) const {

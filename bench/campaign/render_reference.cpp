@@ -93,6 +93,18 @@ bool reached(const ReferenceGoal& goal, const ReferenceInfo& info) {
          (goal.iterations && info.iterations >= *goal.iterations);
 }
 
+// A pixel that is not finite would stay so, however long the reference goes on. Throws ReferenceMismatch.
+void requireFinite(const std::filesystem::path& file, const Reference& reference) {
+  for (const Image* image : {&reference.mean, &reference.difference.value()}) {
+    const auto count = std::ranges::count_if(image->pixels, [](float value) { return !std::isfinite(value); });
+    if (count == 0) continue;
+    throw ReferenceMismatch(
+        fmt::format("{}: {} of its values are not finite; expected a reference to go on with, or no "
+                    "file",
+                    file.string(), count));
+  }
+}
+
 // Iterations until the next look at the goal: no more than the goal leaves, and about a tenth of the time so far,
 // within kShortestLook and kLongestLook, so that Ctrl-C does not wait long. done and seconds: of this process.
 uint64_t nextIterations(const ReferenceGoal& goal, const ReferenceInfo& info, uint64_t done, double seconds) {
@@ -182,6 +194,7 @@ void beginReference(const Scene& scene, const RenderSettings& settings, const st
   }
   try {
     const Reference shrunk = shrunkReference(readReference(larger), scene);
+    requireFinite(larger, shrunk);
     requireSame(larger, shrunk.info, describe(scene, settings, shrunk.info.methodReason));
     writeReference(file, shrunk);
   } catch (const ShrinkError& error) {
@@ -203,6 +216,7 @@ Reference renderReference(const Scene& scene, const RenderSettings& settings, co
           fmt::format("{}: {}; expected a reference to go on with, or no file", file.string(), wrong));
     }
     requireSame(file, reference.info, wanted);
+    requireFinite(file, reference);
     if (reached(goal, reference.info)) return reference;
     reference.info.version = wanted.version;
     reference.info.commit = wanted.commit;

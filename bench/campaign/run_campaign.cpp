@@ -143,12 +143,18 @@ class Campaign {
   bool isDone(const CampaignScene& scene, const CampaignMethod& method, uint64_t seed) {
     const std::optional<ResultsStore::KnownRun> run = knownRun(scene, method, seed);
     if (!run || run->state == RunState::refused) return run.has_value();
-    const nlohmann::json stats = nlohmann::json::parse(run->stats);
-    if (settings_.iterations) return stats.value("iterations", uint64_t{0}) >= *settings_.iterations;
-    // Results files without the key say only how long the run took, which may be a little less than it was asked for.
-    const auto asked = stats.find("asked_seconds");
-    if (asked != stats.end()) return asked->get<double>() >= scene.effort.seconds;
-    return stats.value("render_seconds", 0.0) >= 0.95 * scene.effort.seconds;
+    try {
+      const nlohmann::json stats = nlohmann::json::parse(run->stats);
+      if (settings_.iterations) return stats.value("iterations", uint64_t{0}) >= *settings_.iterations;
+      // Results files without the key say only how long the run took, which may be a little less than it was asked for.
+      const auto asked = stats.find("asked_seconds");
+      if (asked != stats.end()) return asked->get<double>() >= scene.effort.seconds;
+      return stats.value("render_seconds", 0.0) >= 0.95 * scene.effort.seconds;
+    } catch (const nlohmann::json::exception&) {
+      throw ResultsFileError(
+          fmt::format("{}: statistics of {} by {}, seed {}, are none; expected an intact results file",
+                      resultsFile(settings_).string(), scene.name, method.name(), seed));
+    }
   }
   // Counts the runs and references that are missing. Loads their scenes, so that a scene or reference that cannot be
   // used throws before the first run.

@@ -46,6 +46,9 @@ Json chainIdentity(const MetropolisSettings& chains) {
           {"direct_pass", chains.directPass}};
 }
 
+// More than any render may have.
+constexpr uint32_t kMostThreads = 4096;
+
 // A value for messages, strings without their quotes.
 std::string wordOf(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
@@ -136,8 +139,9 @@ Checkpoint::Checkpoint(const std::string& file) : file_(file), bytes_(readFileBy
   try {
     const Json parsed = Json::parse(header.begin(), header.end());
     render_ = parsed.at("render");
-    cut_ = parsed.at("cut");
     notes_ = parsed.at("notes");
+    threads_ = parsed.at("cut").at("threads").get<uint32_t>();
+    if (!render_.is_object() || threads_ < 1 || threads_ > kMostThreads) fail("has a header that is none", kIntact);
   } catch (const nlohmann::json::exception&) {
     fail("has a header that is none", kIntact);
   }
@@ -148,7 +152,7 @@ void Checkpoint::fail(const std::string& wrong, const std::string& expected) con
 }
 
 void Checkpoint::cutAlike(RenderSettings& settings) const {
-  if (dependsOnWaves(settings.method)) settings.piecesForThreads = cut_.value("threads", settings.threads);
+  if (dependsOnWaves(settings.method)) settings.piecesForThreads = threads_;
 }
 
 // Throws with the first difference in the order of renderIdentity: the method before its settings, the size before the

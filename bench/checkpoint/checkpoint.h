@@ -55,7 +55,8 @@ class Checkpoint {
   std::string file_;
   std::vector<unsigned char> bytes_;
   std::span<const unsigned char> state_;  // within the bytes
-  nlohmann::ordered_json render_, cut_, notes_;
+  nlohmann::ordered_json render_, notes_;
+  uint32_t threads_ = 0;  // for which its work is cut
 };
 
 }  // namespace wavecrest

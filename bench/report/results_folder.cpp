@@ -23,8 +23,9 @@ constexpr const char* kCommonReference = "reference.exr";
 
 // The JSON of a stats file. Throws ResultsError if the file cannot be read or parsed.
 json parseFile(const fs::path& path) {
-  std::ifstream file(path);
-  if (!file) fail(path, "cannot be read", "a stats file");
+  std::ifstream file;
+  if (fs::is_regular_file(path)) file.open(path);
+  if (!file.is_open()) fail(path, "cannot be read", "a stats file");
   try {
     return json::parse(file);
   } catch (const json::parse_error& error) {

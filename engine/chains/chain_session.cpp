@@ -134,7 +134,7 @@ void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   // The random numbers of a sample follow from its index and the epoch.
   for (size_t i = 0; i < count; ++i) {
     state.columns.source[i] = static_cast<uint32_t>(first + i);
-    state.columns.length[i] = epochs_.plan().length[first + i];
+    state.columns.length[i] = epochs_.plan().lengthOf(first + i);
   }
   StageContext<S> context = chainContext(plan_, settings_, film_.area());
   context.sampler.iteration = epoch;
@@ -325,7 +325,7 @@ RenderStatistics ChainSession<S>::statistics() const {
   out.counters.cutPaths = 0;
   out.counters.cutThroughput = 0;
   out.memory.splats = film_.splats().bytes();
-  out.memory.chains = chains.bytes;
+  out.memory.chains = chains.bytes + epochs_.targets.size() * kBootstrapSampleBytes;
   return out;
 }
 

@@ -54,7 +54,7 @@ void ChainWaves<S>::start(size_t wave, uint64_t epoch, const BootstrapPlan& boot
   for (size_t i = 0; i < count; ++i) {
     const uint32_t sample = starts[layout_.chainAt(wave, i)];
     chains.source[i] = sample;
-    chains.length[i] = bootstrap.length[sample];
+    chains.length[i] = bootstrap.lengthOf(sample);
     chains.target[i] = 0;
     chains.weight[i] = 0;
   }

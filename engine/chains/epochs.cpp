@@ -10,7 +10,7 @@ namespace wavecrest {
 std::vector<BlockSums> Epochs::begin() {
   std::vector<BlockSums> blocks = sumsOf(plan_, targets);
   for (size_t i = 0; i < blocks.size(); ++i) {
-    const uint32_t length = plan_.length[plan_.blocks[i]];
+    const uint32_t length = plan_.length[i];
     sums_.count[length] += plan_.blocks[i + 1] - plan_.blocks[i];
     sums_.sum[length] += blocks[i].sum;
     sums_.squares[length] += blocks[i].squares;

@@ -18,7 +18,7 @@ class Epochs {
   std::vector<float> targets;  // of the bootstrap samples of the epoch that is to begin
 
   Epochs() = default;
-  explicit Epochs(BootstrapPlan plan) : targets(plan.length.size()), plan_(std::move(plan)) {}
+  explicit Epochs(BootstrapPlan plan) : targets(plan.samples()), plan_(std::move(plan)) {}
 
   // The same for every epoch.
   const BootstrapPlan& plan() const { return plan_; }

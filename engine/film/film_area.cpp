@@ -10,41 +10,40 @@ namespace {
 // A square tile of camera rays fills 16 blocks of 16 lanes.
 constexpr uint32_t kTile = kFilmTile;
 
-// Interleaves the bits of x and y below kTile: neighbours in order are neighbours in the image.
-uint32_t mortonInTile(uint32_t x, uint32_t y) {
-  uint32_t code = 0;
-  for (uint32_t bit = 0; bit < 4; ++bit) {
-    code |= ((x >> bit) & 1u) << (2 * bit) | ((y >> bit) & 1u) << (2 * bit + 1);
-  }
-  return code;
+// The column or row of a pixel within its tile, from its place in the tile's order: neighbours in order are neighbours
+// in the image (Morton). row: 0 or 1.
+uint32_t placeInTile(uint32_t code, uint32_t row) {
+  uint32_t place = 0;
+  for (uint32_t bit = 0; bit < 4; ++bit) place |= ((code >> (2 * bit + row)) & 1u) << bit;
+  return place;
 }
 
 }  // namespace
 
 FilmArea FilmArea::make(uint32_t x0, uint32_t y0, uint32_t width, uint32_t height) {
   FilmArea area{.width = width, .height = height, .x0 = x0, .y0 = y0, .pixels = {}, .tiles = {}};
-  struct Key {
-    uint64_t order;
-    uint32_t pixel;
-  };
-  std::vector<Key> keys;
-  keys.reserve(size_t{width} * height);
-  const uint32_t tilesAcross = (width + kTile - 1) / kTile;
-  for (uint32_t y = 0; y < height; ++y) {
-    for (uint32_t x = 0; x < width; ++x) {
-      const uint64_t tile = uint64_t{y / kTile} * tilesAcross + x / kTile;
-      keys.push_back({tile * kTile * kTile + mortonInTile(x % kTile, y % kTile), (y0 + y) << 16 | (x0 + x)});
+  area.pixels.reserve(area.size() + kColumnPadding);
+  area.tiles.reserve(tilesOf(width, height) + 1);
+  for (uint32_t top = 0; top < height; top += kTile) {
+    for (uint32_t left = 0; left < width; left += kTile) {
+      area.tiles.push_back(area.pixels.size());
+      for (uint32_t code = 0; code < kTilePixels; ++code) {
+        const uint32_t x = left + placeInTile(code, 0), y = top + placeInTile(code, 1);
+        if (x < width && y < height) area.pixels.push_back((y0 + y) << 16 | (x0 + x));
+      }
     }
   }
-  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) { return a.order < b.order; });
-  area.pixels.reserve(keys.size() + kColumnPadding);
-  for (size_t i = 0; i < keys.size(); ++i) {
-    const uint64_t tile = keys[i].order / kTilePixels;
-    if (i == 0 || keys[i - 1].order / kTilePixels != tile) area.tiles.push_back(i);
-    area.pixels.push_back(keys[i].pixel);
-  }
-  area.tiles.push_back(keys.size());
+  area.tiles.push_back(area.pixels.size());
   return area;
+}
+
+size_t FilmArea::tilesOf(uint32_t width, uint32_t height) {
+  const auto across = [](uint32_t side) { return (size_t{side} + kTile - 1) / kTile; };
+  return across(width) * across(height);
+}
+
+size_t FilmArea::bytesFor(uint32_t width, uint32_t height) {
+  return size_t{width} * height * sizeof(uint32_t) + (tilesOf(width, height) + 1) * sizeof(size_t);
 }
 
 std::vector<size_t> FilmArea::pieces(size_t most, bool wholeTiles) const {

@@ -58,7 +58,8 @@ SpreadSums::SpreadSums(const CameraView& camera, const FilmArea& area)
 
 size_t SpreadSums::bytesFor(const CameraView& camera, const FilmArea& area) {
   const size_t rowSize = kFilmTile + 2 * marginOf(camera);
-  return (3 * rowSize * rowSize * (area.tiles.size() - 1) + kTileSumsSlack) * sizeof(double) + area.pixels.size();
+  return (3 * rowSize * rowSize * FilmArea::tilesOf(area.width, area.height) + kTileSumsSlack) * sizeof(double) +
+         area.size();
 }
 
 double SpreadSums::filterAt(double distance) const {

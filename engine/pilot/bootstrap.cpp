@@ -19,11 +19,18 @@ constexpr uint32_t kBlockChains = 1024;
 
 }  // namespace
 
+uint32_t BootstrapPlan::lengthOf(size_t sample) const {
+  const auto after = std::upper_bound(blocks.begin(), blocks.end(), sample);
+  return length[static_cast<size_t>(after - blocks.begin()) - 1];
+}
+
 void BootstrapPlan::add(uint32_t ofLength, uint32_t count) {
-  length.insert(length.end(), count, ofLength);
-  share.insert(share.end(), count, 1.0 / count);
-  if (blocks.empty()) blocks.push_back(0);
-  while (blocks.back() != length.size()) blocks.push_back(std::min(blocks.back() + kBlockSamples, length.size()));
+  const size_t end = samples() + count;
+  while (samples() != end) {
+    blocks.push_back(std::min(samples() + kBlockSamples, end));
+    length.push_back(ofLength);
+    share.push_back(1.0 / count);
+  }
 }
 
 BootstrapPlan plainBootstrap(uint32_t samples) {
@@ -45,8 +52,8 @@ BootstrapPlan bootstrapByLength(uint32_t samples, uint32_t minLength, uint32_t m
 }
 
 std::vector<BlockSums> sumsOf(const BootstrapPlan& plan, const std::vector<float>& targets) {
-  assert(plan.length.size() == targets.size());
-  std::vector<BlockSums> blocks(plan.blocks.empty() ? 0 : plan.blocks.size() - 1);
+  assert(plan.samples() == targets.size());
+  std::vector<BlockSums> blocks(plan.length.size());
   forEach(blocks.size(), [&](size_t block) {
     BlockSums sums;
     const size_t begin = plan.blocks[block], end = plan.blocks[block + 1];
@@ -74,9 +81,9 @@ Brightness brightnessOf(const BootstrapPlan& plan, const std::vector<BlockSums>&
   double largest = 0, variance = 0;
   for (size_t block = 0; block < blocks.size();) {
     // The blocks of one length together (Chan, Golub, LeVeque 1979).
-    const uint32_t length = plan.length[plan.blocks[block]];
+    const uint32_t length = plan.length[block];
     double count = 0, sum = 0, deviations = 0, most = 0;
-    for (; block < blocks.size() && plan.length[plan.blocks[block]] == length; ++block) {
+    for (; block < blocks.size() && plan.length[block] == length; ++block) {
       const auto added = static_cast<double>(plan.blocks[block + 1] - plan.blocks[block]);
       const double difference = count == 0 ? 0 : blocks[block].sum / added - sum / count;
       deviations += blocks[block].deviations + difference * difference * count * added / (count + added);
@@ -126,7 +133,7 @@ std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<
   std::vector<double> before(blocks.size() + 1);
   size_t lastLit = 0;
   for (size_t block = 0; block < blocks.size(); ++block) {
-    before[block + 1] = before[block] + plan.share[plan.blocks[block]] * blocks[block].sum;
+    before[block + 1] = before[block] + plan.share[block] * blocks[block].sum;
     if (blocks[block].sum > 0) lastLit = block;
   }
   assert(before.back() > 0);
@@ -147,7 +154,7 @@ std::vector<uint32_t> startSamples(const BootstrapPlan& plan, const std::vector<
         sample = plan.blocks[block];
         reached = before[block];
       }
-      const double share = plan.share[plan.blocks[block]];
+      const double share = plan.share[block];
       // Add up weights in the block until the sum passes the goal.
       const auto weight = [&] { return share * static_cast<double>(targets[sample]); };
       while (sample < blocks[block].lastLit && reached + weight() <= goal) {

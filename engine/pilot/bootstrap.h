@@ -12,13 +12,15 @@
 
 namespace wavecrest {
 
-// Samples to draw, in the order of path lengths: the length of each (0 where chains have none), and the share of the
-// whole that it stands for, one over the number of samples of its length. Threads go through them by blocks.
+// Samples to draw, in the order of path lengths. They lie in blocks of one length each, by which threads go through
+// them; what samples of a block have in common is kept once, as samples may be hundreds of millions.
 struct BootstrapPlan {
-  std::vector<uint32_t> length;
-  std::vector<double> share;
-  std::vector<size_t> blocks;  // where each block begins, and the end; samples of a block have one length
+  std::vector<size_t> blocks{0};  // where each block begins, and the end
+  std::vector<uint32_t> length;   // of the paths of a block; 0 where chains have none
+  std::vector<double> share;  // of the whole that a sample of a block stands for: one over the samples of its length
 
+  size_t samples() const { return blocks.back(); }
+  uint32_t lengthOf(size_t sample) const;
   // count samples more, of one length.
   void add(uint32_t ofLength, uint32_t count);
 };

@@ -14,6 +14,15 @@ MemoryPlan memoryOf(const RenderPlan<S>& plan, const RenderSettings& settings, c
   return planMemory(plan, settings, area, walks ? walkLightPaths(plan, settings, area) : LightPilot{});
 }
 
+template <class S>
+DryPlan dryPlan(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
+  return {.memory = memoryOf(plan, settings, area),
+          .specialization = plan.specialization,
+          .isa = plan.isa,
+          .accel = plan.accel(),
+          .spreads = spreadsSamples(plan, settings)};
+}
+
 }  // namespace
 
 template <class S>
@@ -28,12 +37,16 @@ RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, c
 template RenderPlan<float> finishedPlan(const Scene&, const RenderSettings&, const FilmArea&);
 template RenderPlan<double> finishedPlan(const Scene&, const RenderSettings&, const FilmArea&);
 
-MemoryPlan planMemory(const Scene& scene, const RenderSettings& settings) {
+DryPlan planWithoutSession(const Scene& scene, const RenderSettings& settings) {
   const RenderSettings limited = withinDepthOfMethod(settings);
-  const FilmArea area = filmArea(scene.film);
-  const RenderSettings cut = withPieces(limited, scene.film, area.pixels.size());
-  return settings.precision == Precision::doubled ? memoryOf(planRender<double>(scene, cut), cut, area)
-                                                  : memoryOf(planRender<float>(scene, cut), cut, area);
+  const FilmArea area = filmOutline(scene.film);
+  const RenderSettings cut = withPieces(limited, scene.film, area.size());
+  return settings.precision == Precision::doubled ? dryPlan(planRender<double>(scene, cut), cut, area)
+                                                  : dryPlan(planRender<float>(scene, cut), cut, area);
+}
+
+MemoryPlan planMemory(const Scene& scene, const RenderSettings& settings) {
+  return planWithoutSession(scene, settings).memory;
 }
 
 }  // namespace wavecrest

@@ -12,8 +12,17 @@ namespace wavecrest {
 template <class S>
 RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, const FilmArea& area);
 
-// What a session with these settings will hold. Compiles the scene and walks a few waves of light paths; throws as
-// finishedPlan does.
+// What a session with these settings would be. Nothing of the film's size is allocated.
+struct DryPlan {
+  MemoryPlan memory;
+  Specialization specialization{};
+  Isa isa{};
+  Accel accel{};
+  bool spreads = false;  // camera samples, over the filter's footprint
+};
+// Compiles the scene and walks a few waves of light paths; throws as finishedPlan does.
+DryPlan planWithoutSession(const Scene& scene, const RenderSettings& settings);
+// Its memory alone.
 MemoryPlan planMemory(const Scene& scene, const RenderSettings& settings);
 
 }  // namespace wavecrest

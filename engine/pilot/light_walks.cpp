@@ -12,14 +12,13 @@ namespace wavecrest {
 template <class S>
 LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
   const FlushToZero flushToZero;
-  const size_t lightPaths = lightPathsWanted(settings, area.pixels.size());
+  const size_t lightPaths = lightPathsWanted(settings, area.size());
   // A wave, a light store and a context, as a worker has them.
   Wave<S> wave(settings.waveSize, plan.needs);
   LightStore<S> store(settings.waveSize, plan.needs, plan.lightUse);
   StageCounters counters;
   StageContext<S> context;
   context.scene = &plan.scene->view;
-  context.pixels = area.pixels.data();
   context.sampler = {settings.sampler, settings.seed, 0};
   context.limits = settings.limits;
   context.mis = misSettings(plan.pipeline.lightPass()->strategies, settings, plan.scene->view.radius, lightPaths, 0);

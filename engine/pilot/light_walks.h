@@ -7,7 +7,8 @@
 
 namespace wavecrest {
 
-// Walks the first light paths of iteration 0, at most kPilotLightPaths. Splats are counted and reach no film.
+// Walks the first light paths of iteration 0, at most kPilotLightPaths. Splats are counted and reach no film. area: its
+// list of pixels may be empty.
 constexpr size_t kPilotLightPaths = 8192;
 template <class S>
 LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);

@@ -41,6 +41,9 @@ class ChainLayout {
 template <class S>
 ChainState::Kept keptSamples(const Pipeline<S>& pipeline, const SceneView<S>& scene, uint32_t maxDepth);
 
+// Of a bootstrap sample: its target.
+constexpr size_t kBootstrapSampleBytes = sizeof(float);
+
 // Waves that a worker holds where walks are joined: the walks', and those of WalkEnds.
 constexpr size_t kWavesOfJoinedWalks = 4;
 

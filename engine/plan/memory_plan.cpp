@@ -37,7 +37,7 @@ class Planner {
   }
 
   MemoryPlan run() {
-    const size_t pixels = area_.pixels.size();
+    const size_t pixels = area_.size();
     MemoryUse& use = memory_.use;
     // Count scene, waves, film and image, which every method has.
     use.scene = sceneBytes(*plan_.scene);
@@ -72,6 +72,7 @@ class Planner {
       use.waves *= kWavesOfJoinedWalks;
       use.lightVertices = settings_.threads * emptyStore_.bytesFor(settings_.waveSize);
     }
+    use.chains += settings_.metropolis.bootstrapSamples * kBootstrapSampleBytes;
     const auto kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
     const ChainLayout layout(settings_);
     for (size_t wave = 0; wave < layout.waves(); ++wave) {
@@ -100,7 +101,7 @@ class Planner {
   size_t vertexBytes(size_t lightPaths) const {
     const size_t waves = piecesOf(lightPaths, settings_.waveSize);
     const size_t stores =
-        plan_.pipeline.has(Fold::photonMap) ? lightStores(settings_, area_.pixels.size(), waves) : settings_.threads;
+        plan_.pipeline.has(Fold::photonMap) ? lightStores(settings_, area_.size(), waves) : settings_.threads;
     return stores * emptyStore_.bytesFor(memory_.verticesPerWave);
   }
   size_t photons(size_t lightPaths) const {
@@ -108,7 +109,7 @@ class Planner {
     return static_cast<size_t>(std::llround(perPath * static_cast<double>(lightPaths)));
   }
   size_t photonBytes(size_t lightPaths) const {
-    return iterationsAtOnce(settings_, area_.pixels.size()) * PhotonMap<S>::bytesFor(photons(lightPaths));
+    return iterationsAtOnce(settings_, area_.size()) * PhotonMap<S>::bytesFor(photons(lightPaths));
   }
 
   // The most light paths, up to those wanted, that leave the plan within the budget.

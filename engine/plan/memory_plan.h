@@ -37,8 +37,8 @@ struct LightPilot {
   int64_t splats = 0, exponents = 0;
 };
 
-// What a session with this plan and these settings will hold. pilot: of a method whose light paths are not those of
-// chains. Throws MemoryBudgetError where it does not fit the settings' budget.
+// What a session with this plan and these settings will hold. area: its list of pixels may be empty. pilot: of a method
+// whose light paths are not those of chains. Throws MemoryBudgetError where it does not fit the settings' budget.
 template <class S>
 MemoryPlan planMemory(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
                       const LightPilot& pilot);

@@ -217,9 +217,19 @@ RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film,
   return cut;
 }
 
+FilmArea filmOutline(const FilmSettings& film) {
+  if (!film.isCropped()) return {.width = film.width, .height = film.height, .pixels = {}, .tiles = {}};
+  return {.width = film.cropWidth,
+          .height = film.cropHeight,
+          .x0 = film.cropX,
+          .y0 = film.cropY,
+          .pixels = {},
+          .tiles = {}};
+}
+
 FilmArea filmArea(const FilmSettings& film) {
-  if (!film.isCropped()) return FilmArea::make(0, 0, film.width, film.height);
-  return FilmArea::make(film.cropX, film.cropY, film.cropWidth, film.cropHeight);
+  const FilmArea outline = filmOutline(film);
+  return FilmArea::make(outline.x0, outline.y0, outline.width, outline.height);
 }
 
 }  // namespace wavecrest

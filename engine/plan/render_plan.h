@@ -90,5 +90,7 @@ RenderSettings withPieces(const RenderSettings& settings, const FilmSettings& fi
 
 // The rectangle of the film that is rendered: its crop window, or all of it.
 FilmArea filmArea(const FilmSettings& film);
+// The same without its list of pixels.
+FilmArea filmOutline(const FilmSettings& film);
 
 }  // namespace wavecrest

@@ -107,7 +107,8 @@ void removeFiles(const fs::path& folder, Chooses chooses) {
 
 // The file is read up to the size that it has when it is opened.
 std::vector<unsigned char> readFileBytes(const std::string& path) {
-  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // Without O_NONBLOCK opening a pipe would wait for a writer. It makes no difference for regular files.
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0) failReading(path, errno);
   struct stat info {};
   if (::fstat(file.get(), &info) != 0) failReading(path, errno);

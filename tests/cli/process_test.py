@@ -13,7 +13,7 @@ import time
 import unittest
 
 from campaign_harness import TINY
-from harness import DONE, INPUT, INTERRUPTED, CommandTest, read_exr_header
+from harness import DONE, INPUT, INTERRUPTED, USAGE, CommandTest, read_exr_header
 from view_harness import SMALL, Viewed
 
 IMPATIENT = 0.5  # seconds between two signals that are two requests
@@ -125,6 +125,18 @@ class Limits(CommandTest):
         self.end(process, INTERRUPTED)
         read_exr_header(self.path("x.exr"))
         self.assertTrue((self.folder / "c").exists())
+
+
+    def test_a_plan_needs_no_memory_for_the_film(self):
+        # The film's list of pixels alone is 1 GB, its sums are 6 GB.
+        process = self.start("render", "cornell-diffuse", "--size", "16384x16384", "--threads", "2", "--dry-run",
+                             limits={resource.RLIMIT_AS: (1 << 30, 1 << 30)})  # fmt: skip
+        output, _ = self.end(process, DONE)
+        self.assertIn("16384x16384 pixels", output)
+
+    def test_the_budget_of_memory_covers_the_bootstrap(self):
+        result = self.render("-m", "mlt", "--bootstrap", "268435456", "--time", "1s", "--memory", "1G", expect=USAGE)
+        self.assert_one_error_line(result, r"--memory: this scene needs \d+ MB at least by mlt")
 
 
 class Locks(CommandTest):

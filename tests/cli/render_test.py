@@ -32,7 +32,7 @@ STATS = {
     "build_seconds": NUMBER, "render_seconds": NUMBER, "wall_seconds": NUMBER, "cpu_seconds": NUMBER,
     "paths_per_second": NUMBER, "rays_per_second": NUMBER, "bytes_per_path": int, "peak_memory_bytes": int,
     "nonfinite_samples": int, "close_pairs": int, "paths_cut": int, "throughput_cut": NUMBER, "cut_energy": NUMBER,
-    "saturated_splats": int, "stages": list, "snapshots": list,
+    "saturated_splats": int, "stages": list, "snapshots": list, "notes": list,
 }  # fmt: skip
 
 

@@ -203,6 +203,19 @@ class Usage(CommandTest):
         self.assertIn("wavecrest: cornell-diffuse.exr: 1 spp in", self.render("--spp", "1").stderr)
         self.assertEqual(self.render("--spp", "1", "--progress", "none").stderr, "")
 
+    def test_notes_are_told_whatever_the_progress_and_go_into_the_statistics(self):
+        scene = self.write("scene.xml", '<scene version="3.0.0"><integrator type="bdpt"/><emitter type="constant"/></scene>')
+        for words, told in ((["--progress", "none"], True), ([], True), (["--quiet"], False)):
+            result = self.render("--spp", "1", *words, "--stats", "stats.json", scene=scene)
+            self.assertEqual("note: " in result.stderr, told, words)
+            (note,) = read_json(self.path("stats.json"))["notes"]
+            self.assertIn('integrator "bdpt"', note)
+        self.assertEqual(result.stderr, "")
+        result = self.render("--spp", "1", "-m", "vcm", "--radius", "1e-9", "--quiet", "--stats", "-")
+        self.assertIn("--radius 1e-09 is below what positions resolve", json.loads(result.stdout)["notes"][0])
+        self.assertEqual(self.render("--spp", "1", "--stats", "stats.json", "--quiet").stderr, "")
+        self.assertEqual(read_json(self.path("stats.json"))["notes"], [])
+
     def test_settings_come_from_arguments_then_a_file_then_variables(self):
         def seed(*arguments, **variables):
             return json.loads(

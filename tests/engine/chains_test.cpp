@@ -18,12 +18,18 @@ namespace {
 TEST(Bootstrap, hasSamplesOfEveryLengthThatStandForItsWhole) {
   const BootstrapPlan plan = bootstrapByLength(20'000, 1, 64);
   ASSERT_EQ(plan.length.size(), plan.share.size());
+  ASSERT_EQ(plan.length.size() + 1, plan.blocks.size());
   EXPECT_TRUE(std::is_sorted(plan.length.begin(), plan.length.end()));
   std::vector<double> whole(65, 0);
-  for (size_t i = 0; i < plan.length.size(); ++i) whole[plan.length[i]] += plan.share[i];
+  for (size_t i = 0; i < plan.length.size(); ++i) {
+    const size_t first = plan.blocks[i], end = plan.blocks[i + 1];
+    whole[plan.length[i]] += plan.share[i] * static_cast<double>(end - first);
+    EXPECT_EQ(plan.lengthOf(first), plan.length[i]);
+    EXPECT_EQ(plan.lengthOf(end - 1), plan.length[i]);
+  }
   EXPECT_EQ(whole[0], 0);
   for (size_t length = 1; length <= 64; ++length) EXPECT_NEAR(whole[length], 1, 1e-9) << length;
-  EXPECT_NEAR(static_cast<double>(plan.length.size()), 20'000, 2'500);
+  EXPECT_NEAR(static_cast<double>(plan.samples()), 20'000, 2'500);
 }
 
 TEST(Bootstrap, leavesOutTheShortestIfAsked) {
@@ -91,7 +97,9 @@ TEST(Bootstrap, blocksMakeNoDifference) {
 
   constexpr uint32_t kChains = 5'000;
   constexpr double kOffset = 0.37;
-  const auto weight = [&](size_t i) { return plan.share[i] * static_cast<double>(targets[i]); };
+  const auto weight = [&](size_t i) {
+    return (i < 20'000 ? 1.0 / 20'000 : 1.0 / 9'000) * static_cast<double>(targets[i]);
+  };
   for (size_t i = 0; i < targets.size(); ++i) sum += weight(i);
   const std::vector<uint32_t> starts = startSamples(plan, targets, blocks, kChains, kOffset);
   ASSERT_EQ(starts.size(), kChains);
@@ -142,8 +150,8 @@ TEST(Epochs, weighTheirBrightnessBySteps) {
   EXPECT_DOUBLE_EQ(film.largestShare, 0.75);
   // Six samples of three bootstraps, and two more.
   LargeStepSums largeSteps;
-  largeSteps.add(epochs.plan().length[0], 7);
-  largeSteps.add(epochs.plan().length[0], 11);
+  largeSteps.add(epochs.plan().lengthOf(0), 7);
+  largeSteps.add(epochs.plan().lengthOf(0), 11);
   EXPECT_DOUBLE_EQ(epochs.pooledWith(largeSteps, false).mean, (0 + 0 + 1 + 3 + 5 + 5 + 7 + 11) / 8.0);
 }
 

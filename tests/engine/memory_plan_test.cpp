@@ -73,6 +73,18 @@ INSTANTIATE_TEST_SUITE_P(Methods, MemoryPlanTest, testing::ValuesIn([] {
                          }()),
                          [](const auto& instance) { return std::string(toString(instance.param)); });
 
+TEST(MemoryPlan, coversTheBootstrap) {
+  const Scene scene = sceneFile("cornell-diffuse", 40, 30);
+  RenderSettings settings = settingsFor(Method::mlt);
+  const size_t few = planMemory(scene, settings).use.chains;
+  constexpr uint32_t kMore = 300'000;
+  settings.metropolis.bootstrapSamples += kMore;
+  const size_t many = planMemory(scene, settings).use.chains;
+  EXPECT_EQ(many - few, kMore * sizeof(float));
+  // Numbers of samples are rounded for each length of paths.
+  EXPECT_NEAR(static_cast<double>(statisticsOf(scene, settings, 1).memory.chains), static_cast<double>(many), 1e4);
+}
+
 TEST(MemoryPlan, severalIterationsAreUnderWayWhereOneIsTooLittleForAllThreads) {
   constexpr size_t kSmall = 256 * 192, kLarge = 1024 * 768;
   RenderSettings settings = plannedSettings(Method::vcm);
