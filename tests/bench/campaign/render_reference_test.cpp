@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "tests/bench/campaign/small_references.h"
@@ -111,6 +112,23 @@ TEST(RenderReference, anotherReferenceIsNotContinued) {
   EXPECT_THROW(renderReference(scene, settingsOf(Method::bpt), "test", iterations(2), file, {}), ReferenceMismatch);
   EXPECT_THROW(renderReference(tinyScene("cornell-mirror"), settingsOf(Method::pt), "test", iterations(2), file, {}),
                ReferenceMismatch);
+}
+
+TEST(RenderReference, valuesThatAreNotFiniteDoNotGoOn) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.path("r.exr");
+  const Scene scene = tinyScene();
+  const Reference whole = renderReference(scene, settingsOf(Method::pt), "test", iterations(1), file, {});
+  for (const float value : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    Reference broken = whole;
+    broken.mean.pixels[7] = value;
+    writeReference(file, broken);
+    EXPECT_THROW(renderReference(scene, settingsOf(Method::pt), "test", iterations(2), file, {}), ReferenceMismatch);
+    broken = whole;
+    broken.difference->pixels[7] = value;
+    writeReference(file, broken);
+    EXPECT_THROW(renderReference(scene, settingsOf(Method::pt), "test", iterations(2), file, {}), ReferenceMismatch);
+  }
 }
 
 TEST(RenderReference, hasSeedsThatNoCampaignHas) {
