@@ -51,7 +51,7 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(result.returncode, result.returncode if expect is None else expect, f"{arguments}\n{result.stdout}\n{result.stderr}")
         return result
 
-    def start(self, *arguments, stdin=None, limits=None):
+    def start(self, *arguments, stdin=None, limits=None, variables=None):
         """Begins to run, with limits as {resource.RLIMIT_...: (soft, hard)}; the process is killed at the end of the test."""
 
         def limit():
@@ -61,6 +61,7 @@ class CommandTest(unittest.TestCase):
         process = subprocess.Popen(
             [WAVECREST, *map(str, arguments)], cwd=self.folder, stdin=stdin, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, text=True, preexec_fn=limit,
+            env=os.environ | (variables or {}),
         )  # fmt: skip
         self.addCleanup(process.kill)
         return process

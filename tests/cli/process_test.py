@@ -168,6 +168,49 @@ class Locks(CommandTest):
         self.assertEqual(pathlib.Path(self.path("precious")).read_text(), "text")
 
 
+class Children(CommandTest):
+    """`bench --against` with a program that hangs, and what it has started itself."""
+
+    def against(self):
+        self.write("hangs", "#!/bin/sh\nsleep 1000 &\necho $$ $! > pids\nwait\n")
+        os.chmod(self.path("hangs"), 0o755)
+        os.mkdir(self.path("tmp"))
+        process = self.start("bench", "cornell-diffuse", "--methods", "pt", "--size", "16x16", "--duration", "1s",
+                             "--against", "hangs", variables={"TMPDIR": self.path("tmp")})  # fmt: skip
+        self.wait_for(lambda: (self.folder / "pids").exists() and (self.folder / "pids").read_text().endswith("\n"))
+        return process, [int(word) for word in (self.folder / "pids").read_text().split()]
+
+    def assert_gone(self, pids):
+        self.wait_for(lambda: not any(is_running(pid) for pid in pids))
+
+    def test_one_that_hangs_is_ended(self):
+        process, pids = self.against()
+        _, error = self.end(process, INPUT)
+        self.assertRegex(error, r"^wavecrest: error: .*did not end within \d+ s; expected")
+        self.assert_gone(pids)
+        self.assertEqual(os.listdir(self.path("tmp")), [])
+
+    def test_it_ends_with_the_bench(self):
+        for number, code in ((signal.SIGTERM, INTERRUPTED), (signal.SIGINT, INTERRUPTED), (signal.SIGKILL, -signal.SIGKILL)):
+            process, pids = self.against()
+            process.send_signal(number)
+            self.end(process, code)
+            self.assert_gone(pids if number != signal.SIGKILL else pids[:1])
+            if number == signal.SIGKILL:
+                os.kill(pids[1], signal.SIGKILL)  # nobody is left who could
+            else:
+                self.assertEqual(os.listdir(self.path("tmp")), [])
+            shutil.rmtree(self.path("tmp"))
+            os.remove(self.path("pids"))
+
+
+def is_running(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
 class Received(CommandTest):
     """A campaign's folder that somebody else has made."""
 
