@@ -112,6 +112,7 @@ class Stored(CommandTest):
     def test_checkpoints_made_by_hand(self):
         for method in ("pt", "ppm", "vcm", "mlt"):
             render = ["render", "cornell-diffuse", *SMALL, "-m", method, "--wave", "256", "-o", "a.pfm"]
+            (self.folder / "whole.ck").unlink(missing_ok=True)
             self.run_wavecrest(*render, "--spp", "2", "--checkpoint", "whole.ck")
             for key in ("wall_seconds", "snapshot_every", "snapshots"):
                 for value in ("text", [1], [[1, 2, 3, 4]], {"a": 1}, None):

@@ -204,7 +204,8 @@ class Usage(CommandTest):
         self.assertEqual(self.render("--spp", "1", "--progress", "none").stderr, "")
 
     def test_notes_are_told_whatever_the_progress_and_go_into_the_statistics(self):
-        scene = self.write("scene.xml", '<scene version="3.0.0"><integrator type="bdpt"/><emitter type="constant"/></scene>')
+        scene = self.write("scene.xml", '<scene version="3.0.0"><integrator type="bdpt"/>'
+                           '<sensor type="perspective"/><emitter type="constant"/><shape type="sphere"/></scene>')
         for words, told in ((["--progress", "none"], True), ([], True), (["--quiet"], False)):
             result = self.render("--spp", "1", *words, "--stats", "stats.json", scene=scene)
             self.assertEqual("note: " in result.stderr, told, words)
