@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, MemoryPlanTest, testing::ValuesIn([] {
 
 TEST(MemoryPlan, coversTheBootstrap) {
   const Scene scene = sceneFile("cornell-diffuse", 40, 30);
-  RenderSettings settings = settingsFor(Method::mlt);
+  RenderSettings settings = plannedSettings(Method::mlt);
   const size_t few = planMemory(scene, settings).use.chains;
   constexpr uint32_t kMore = 300'000;
   settings.metropolis.bootstrapSamples += kMore;
