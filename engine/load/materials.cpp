@@ -5,6 +5,7 @@
 #include "engine/load/color.h"
 #include "engine/load/plugins.h"
 #include "engine/load/values.h"
+#include "engine/scene/vector_math.h"
 
 namespace wavecrest {
 
@@ -12,17 +13,23 @@ namespace {
 
 bool isTexture(const XmlElement& element) { return element.isObject() && element.tag == "texture"; }
 
-// The smallest and the largest value of a texture.
+// The smallest and the largest value of a texture. Negative channels of a picture whose luminances are not negative
+// count as 0: they are those of colours outside of Rec. 709.
 std::pair<double, double> rangeOf(const Texture& texture) {
   if (const auto* const board = std::get_if<CheckerboardTexture>(&texture.kind)) {
     const auto [least0, most0] = std::ranges::minmax(board->color0);
     const auto [least1, most1] = std::ranges::minmax(board->color1);
     return {std::min(least0, least1), std::max(most0, most1)};
   }
-  const std::vector<float>& pixels = std::get<BitmapTexture>(texture.kind).bitmap->pixels;
+  const Bitmap& bitmap = *std::get<BitmapTexture>(texture.kind).bitmap;
+  const std::vector<float>& pixels = bitmap.pixels;
   if (pixels.empty()) return {0, 0};
   const auto [least, most] = std::ranges::minmax(pixels);
-  return {least, most};
+  if (least >= 0 || bitmap.channels != 3 || pixels.size() == 3) return {least, most};
+  for (size_t i = 0; i < pixels.size(); i += 3) {
+    if (luminance({pixels[i], pixels[i + 1], pixels[i + 2]}) < 0) return {least, most};
+  }
+  return {0, most};
 }
 
 // Textures that reflect more than arrives are taken as they are, as in Mitsuba; less than nothing is refused.

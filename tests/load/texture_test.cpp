@@ -266,6 +266,19 @@ TEST(Bitmap, TgaRunRepeatsItsColour) {
   EXPECT_EQ(bitmapOf(folder, "run.tga").bitmap->pixels, (std::vector<float>{1, 0, 0, 1, 0, 0}));
 }
 
+TEST(Bitmap, ColoursOutsideOfRec709KeepTheirNegativeChannels) {
+  const Folder folder;
+  const auto write = [&](std::vector<float> pixels) {
+    writeExr((folder.path() / "wide.exr").string(),
+             {.width = 2, .height = 1, .channels = 3, .pixels = std::move(pixels)});
+  };
+  write({-0.1f, 0.5f, 0.5f, 0, 0, 0});
+  EXPECT_EQ(bitmapOf(folder, "wide.exr").bitmap->pixels[0], -0.1f);
+  write({0.1f, -0.5f, 0.1f, 0, 0, 0});
+  expectTextureError(folder, R"(<string name="filename" value="wide.exr"/>)",
+                     "reflectance texture has a value of -0.5");
+}
+
 TEST(Bitmap, WhatATgaUnpacksToIsBounded) {
   std::string bytes = tgaOf(true, true).substr(0, 18);
   bytes[12] = 64;
