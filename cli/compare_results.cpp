@@ -48,10 +48,13 @@ void printText(const std::vector<MeasuredTest>& tests) {
   }
 }
 
+double rangeOfMap(const Measured& score) {
+  return score.metric->mapRange != 0 ? score.metric->mapRange : quantile(score.measurement.map, 0.999);
+}
+
 ShownMap showMap(const Measured& score, uint32_t width, uint32_t height) {
-  const std::vector<float>& map = score.measurement.map;
-  const double range = score.metric->mapRange != 0 ? score.metric->mapRange : quantile(map, 0.999);
-  return {falseColour(map, width, height, range), range};
+  const double range = rangeOfMap(score);
+  return {falseColour(score.measurement.map, width, height, range), range};
 }
 
 std::filesystem::path mapFile(const std::filesystem::path& folder, const std::string& label, bool single,

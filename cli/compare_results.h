@@ -30,6 +30,7 @@ struct ShownMap {
   Image8 picture;
   double range = 0;
 };
+double rangeOfMap(const Measured& score);
 ShownMap showMap(const Measured& score, uint32_t width, uint32_t height);
 
 // Of one test FOLDER/METRIC.png, of several FOLDER/LABEL/METRIC.png.

@@ -50,6 +50,8 @@ void addReportCommand(CommandLine& program, int& exitCode) {
            "files are the parts of one campaign, reported in the first")
       .required();
   command.add("--reference", options->reference, "image that a folder of renders or images is measured against");
+  command.add("--baseline", options->files.baseline,
+              "method that speed-ups are over; default: the first, pt if it is there");
   command.addFlag("--csv", options->files.csv,
                   "also write DIR/measurements.csv, every score of every snapshot, and DIR/summary.csv and claims.csv");
   command.addFlag("--plots", options->files.plots, "also write each plot as DIR/plots/SCENE.METRIC.svg");

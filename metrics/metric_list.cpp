@@ -39,19 +39,23 @@ Image toUnitRange(const Image8& codes) {
   return image;
 }
 
-// Error of each pixel: the root mean square difference of its channels or, if relative, the mean of its squared
-// differences over the squared reference, as in relmse. Pixels that are not finite have no error. The others' errors
-// end at the largest float, so that quantiles of the map are finite.
-std::vector<float> errorMap(const ErrorPair& images, bool relative) {
+enum class MapOf { rmse, relmse, mape };
+
+// Error of each pixel: the root mean square difference of its channels, or the mean over its channels of what relmse or
+// mape is the mean of. Pixels that are not finite have no error. The others' errors end at the largest float, so that
+// quantiles of the map are finite.
+std::vector<float> errorMap(const ErrorPair& images, MapOf kind) {
   constexpr double kLargest = std::numeric_limits<float>::max();
   std::vector<float> map(images.reference.pixelCount());
   for (size_t i = 0; i < map.size(); ++i) {
     double sum = 0;
     for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
       const double r = images.reference.pixels[c], d = images.test.pixels[c] - r;
-      sum += relative ? d * d / (r * r + RelmseSettings{}.epsilon) : d * d;
+      sum += kind == MapOf::rmse     ? d * d
+             : kind == MapOf::relmse ? d * d / (r * r + RelmseSettings{}.epsilon)
+                                     : std::abs(d) / (std::abs(r) + kMapeEpsilon);
     }
-    const double value = relative ? sum / 3 : std::sqrt(sum / 3);
+    const double value = kind == MapOf::rmse ? std::sqrt(sum / 3) : sum / 3;
     map[i] = std::isfinite(value) ? static_cast<float>(std::min(value, kLargest)) : 0.0f;
   }
   return map;
@@ -65,28 +69,43 @@ Measurement measureRmse(const PreparedReference& reference, const ComparedImage&
   if (reference.settings().gammaCorrectedErrors || (bothCodes && reference.settings().exposure == 0)) {
     const Image8 &a = reference.image().codes, &b = test.codes;
     result.scores = {{"", rmse(a, b, CodeScale::gammaCorrected).rmse}};
-    if (withMap) result.map = errorMap({toUnitRange(a), toUnitRange(b)}, false);
+    if (withMap) result.map = errorMap({toUnitRange(a), toUnitRange(b)}, MapOf::rmse);
     return result;
   }
   onOneScale(reference, test, [&](const ErrorPair& images) {
     result.scores = {{"", rmse(images.reference, images.test).rmse}};
-    if (withMap) result.map = errorMap(images, false);
+    if (withMap) result.map = errorMap(images, MapOf::rmse);
   });
   return result;
 }
 
-Measurement measureRelmse(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
-  Measurement result;
-  const auto measure = [&](const ErrorPair& images) {
-    const RelmseResult errors = relmse(images.reference, images.test);
-    result.scores = {{"", errors.relmse}, {"trimmed", errors.trimmed}};
-    if (withMap) result.map = errorMap(images, true);
-  };
+// Calls measure with the pair, in codes where --gamma asks for that.
+template <class Function>
+void onOneScaleOrCodes(const PreparedReference& reference, const ComparedImage& test, Function measure) {
   if (reference.settings().gammaCorrectedErrors) {
-    measure({toUnitRange(reference.image().codes), toUnitRange(test.codes)});
+    const Image a = toUnitRange(reference.image().codes), b = toUnitRange(test.codes);
+    measure(ErrorPair{a, b});
   } else {
     onOneScale(reference, test, measure);
   }
+}
+
+Measurement measureRelmse(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  Measurement result;
+  onOneScaleOrCodes(reference, test, [&](const ErrorPair& images) {
+    const RelmseResult errors = relmse(images.reference, images.test);
+    result.scores = {{"", errors.relmse}, {"trimmed", errors.trimmed}};
+    if (withMap) result.map = errorMap(images, MapOf::relmse);
+  });
+  return result;
+}
+
+Measurement measureMape(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  Measurement result;
+  onOneScaleOrCodes(reference, test, [&](const ErrorPair& images) {
+    result.scores = {{"", mape(images.reference, images.test)}};
+    if (withMap) result.map = errorMap(images, MapOf::mape);
+  });
   return result;
 }
 
@@ -152,43 +171,47 @@ constexpr std::string_view kPu21Conditions = "PU21 banding_glare, linear 1.0 sho
 // scores follow no power law.
 constexpr std::array kMetrics{
     Metric{.name = "rmse", .symbol = "RMSE", .title = "root mean square error",
-           .basis = "linear radiance", .score = "", .higherIsBetter = false, .sampleExponent = -0.5,
+           .basis = "linear radiance", .formula = "√ mean (x - r)²", .score = "", .higherIsBetter = false, .sampleExponent = -0.5,
            .threshold = "max-rmse", .byDefault = true, .smallestSide = 1, .mapRange = 0,
            .measure = measureRmse},
     Metric{.name = "relmse", .symbol = "relMSE", .title = "relative mean square error",
-           .basis = "squared error over squared radiance", .score = "", .higherIsBetter = false, .sampleExponent = -1,
+           .basis = "squared error over squared radiance", .formula = "mean (x - r)² / (r² + 0.01)", .score = "", .higherIsBetter = false, .sampleExponent = -1,
            .threshold = "max-relmse", .byDefault = true, .smallestSide = 1, .mapRange = 0,
            .measure = measureRelmse},
+    Metric{.name = "mape", .symbol = "MAPE", .title = "mean absolute percentage error",
+           .basis = "error over radiance, 1 is 100 %", .formula = "mean |x - r| / (|r| + 0.01)", .score = "", .higherIsBetter = false,
+           .sampleExponent = -0.5, .threshold = "max-mape", .byDefault = true, .smallestSide = 1, .mapRange = 0,
+           .measure = measureMape},
     Metric{.name = "ssim", .symbol = "SSIM", .title = "structural similarity",
-           .basis = "structure of 8-bit sRGB", .score = "mean", .higherIsBetter = true, .sampleExponent = 0,
+           .basis = "structure of 8-bit sRGB", .formula = "Wang et al. 2004, windows of 11 x 11", .score = "mean", .higherIsBetter = true, .sampleExponent = 0,
            .threshold = "min-ssim", .byDefault = true, .smallestSide = kSsimSmallestSide, .mapRange = 1,
            .measure = measureSsim},
     Metric{.name = "hdrvdp2", .symbol = "Q_MOS", .title = "HDR-VDP-2.2 mean opinion score",
-           .basis = "predicted opinion of viewers, 8-bit sRGB", .score = "q_mos", .higherIsBetter = true, .sampleExponent = 0,
+           .basis = "predicted opinion of viewers, 8-bit sRGB", .formula = "Narwaria et al. 2015", .score = "q_mos", .higherIsBetter = true, .sampleExponent = 0,
            .threshold = "min-qmos", .byDefault = true, .smallestSide = kHdrVdp2SmallestSide, .mapRange = 1,
            .measure = measureHdrVdp2},
     Metric{.name = "flip", .symbol = "FLIP", .title = "LDR-FLIP",
-           .basis = "visible difference when flipping, 8-bit sRGB", .score = "", .higherIsBetter = false, .sampleExponent = 0,
+           .basis = "visible difference when flipping, 8-bit sRGB", .formula = "Andersson et al. 2020", .score = "", .higherIsBetter = false, .sampleExponent = 0,
            .threshold = "max-flip", .byDefault = true, .smallestSide = 1, .mapRange = 1,
            .measure = measureFlip},
     Metric{.name = "hdrflip", .symbol = "HDR-FLIP", .title = "HDR-FLIP",
-           .basis = "FLIP over a series of exposures", .score = "", .higherIsBetter = false, .sampleExponent = 0,
+           .basis = "FLIP over a series of exposures", .formula = "Andersson et al. 2021", .score = "", .higherIsBetter = false, .sampleExponent = 0,
            .threshold = "max-hdrflip", .byDefault = false, .smallestSide = 1, .mapRange = 1,
            .measure = measureHdrFlip},
     Metric{.name = "msssim", .symbol = "MS-SSIM", .title = "multi-scale structural similarity",
-           .basis = "structure of 8-bit sRGB at five scales", .score = "", .higherIsBetter = true, .sampleExponent = 0,
+           .basis = "structure of 8-bit sRGB at five scales", .formula = "Wang et al. 2003", .score = "", .higherIsBetter = true, .sampleExponent = 0,
            .threshold = "min-msssim", .byDefault = true, .smallestSide = kMsSsimSmallestSide, .mapRange = 1,
            .measure = measureMsSsim},
     Metric{.name = "pu21psnr", .symbol = "PU21-PSNR", .title = "PSNR in PU21",
-           .basis = "squared error of perceptually uniform light, dB", .score = "", .higherIsBetter = true, .sampleExponent = 0,
+           .basis = "squared error of perceptually uniform light, dB", .formula = "10 log₁₀ (256² / mean (PU(x) - PU(r))²)", .score = "", .higherIsBetter = true, .sampleExponent = 0,
            .threshold = "min-pu21psnr", .byDefault = true, .smallestSide = 1, .mapRange = 0,
            .measure = measurePu21Psnr, .conditions = kPu21Conditions},
     Metric{.name = "pu21ssim", .symbol = "PU21-SSIM", .title = "structural similarity in PU21",
-           .basis = "structure of perceptually uniform luminance", .score = "", .higherIsBetter = true, .sampleExponent = 0,
+           .basis = "structure of perceptually uniform luminance", .formula = "SSIM of PU(x) and PU(r)", .score = "", .higherIsBetter = true, .sampleExponent = 0,
            .threshold = "min-pu21ssim", .byDefault = true, .smallestSide = 1, .mapRange = 1,
            .measure = measurePu21Ssim, .conditions = kPu21Conditions},
     Metric{.name = "cvvdp", .symbol = "JOD", .title = "ColorVideoVDP 0.5.7",
-           .basis = "just-objectionable differences below 10, 8-bit sRGB", .score = "", .higherIsBetter = true, .sampleExponent = 0,
+           .basis = "just-objectionable differences below 10, 8-bit sRGB", .formula = "Mantiuk et al. 2024", .score = "", .higherIsBetter = true, .sampleExponent = 0,
            .threshold = "min-cvvdp", .byDefault = true, .smallestSide = kCvvdpSmallestSide, .mapRange = 0,
            .measure = measureCvvdp, .conditions = kCvvdpConditions},
 };

@@ -24,11 +24,12 @@ struct Measurement {
 };
 
 struct Metric {
-  std::string_view name;    // "ssim": of --metrics and of JSON keys
-  std::string_view symbol;  // for axes and table heads: "SSIM"
-  std::string_view title;   // for people
-  std::string_view basis;   // what it looks at, for people
-  std::string_view score;   // name of the score that curves and thresholds use; empty: the only one
+  std::string_view name;     // "ssim": of --metrics and of JSON keys
+  std::string_view symbol;   // for axes and table heads: "SSIM"
+  std::string_view title;    // for people
+  std::string_view basis;    // what it looks at, for people
+  std::string_view formula;  // of test x and reference r, or who defined it
+  std::string_view score;    // name of the score that curves and thresholds use; empty: the only one
   bool higherIsBetter;
   double sampleExponent;       // the score of a mean of n independent images goes as n to this; 0: by no power law
   std::string_view threshold;  // its command-line option: "min-ssim"

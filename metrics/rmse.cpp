@@ -54,6 +54,23 @@ RmseResult rmseOf(const AnyImage& reference, const AnyImage& test, Value value) 
   return result;
 }
 
+// Mean over channels of the error of each pixel. error(r, difference) is that of a sample.
+template <class Error>
+std::vector<double> pixelErrors(const Image& reference, const Image& test, Error error) {
+  std::vector<double> errors(reference.pixelCount());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, errors.size()), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+      double sum = 0;
+      for (size_t i = pixel * 3; i < pixel * 3 + 3; ++i) {
+        const double r = reference.pixels[i];
+        sum += error(r, test.pixels[i] - r);
+      }
+      errors[pixel] = sum / 3;
+    }
+  });
+  return errors;
+}
+
 }  // namespace
 
 RmseResult rmse(const Image& reference, const Image& test) {
@@ -69,17 +86,8 @@ RmseResult rmse(const Image8& reference, const Image8& test, CodeScale scale) {
 }
 
 RelmseResult relmse(const Image& reference, const Image& test, const RelmseSettings& settings) {
-  // Relative squared error of each pixel.
-  std::vector<double> errors(reference.pixelCount());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, errors.size()), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
-      double sum = 0;
-      for (size_t i = pixel * 3; i < pixel * 3 + 3; ++i) {
-        const double r = reference.pixels[i], difference = test.pixels[i] - r;
-        sum += difference * difference / (r * r + settings.epsilon);
-      }
-      errors[pixel] = sum / 3;
-    }
+  std::vector<double> errors = pixelErrors(reference, test, [&](double r, double difference) {
+    return difference * difference / (r * r + settings.epsilon);
   });
   RelmseResult result;
   // Pixels that are not finite are excluded.
@@ -95,6 +103,18 @@ RelmseResult relmse(const Image& reference, const Image& test, const RelmseSetti
   result.trimmed = kept / static_cast<double>(errors.size() - worst);
   result.relmse = std::accumulate(cut, errors.end(), kept) / static_cast<double>(errors.size());
   return result;
+}
+
+double mape(const Image& reference, const Image& test) {
+  double sum = 0, count = 0;
+  for (const double error : pixelErrors(reference, test, [](double r, double difference) {
+         return std::abs(difference) / (std::abs(r) + kMapeEpsilon);
+       })) {
+    if (!std::isfinite(error)) continue;
+    sum += error;
+    ++count;
+  }
+  return sum / count;
 }
 
 }  // namespace wavecrest

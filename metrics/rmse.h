@@ -1,4 +1,5 @@
-// Root mean square error and relative mean square error: the two metrics defined on numbers as they are read.
+// Root mean square error, relative mean square error and mean absolute percentage error: the metrics defined on numbers
+// as they are read.
 //
 // A pixel with a NaN or infinity in either image is excluded from every mean, and counted. All arithmetic is in double
 // and summed in a fixed order, so results do not depend on the number of threads.
@@ -36,5 +37,10 @@ struct RelmseResult {
 };
 
 RelmseResult relmse(const Image& reference, const Image& test, const RelmseSettings& settings = {});
+
+constexpr double kMapeEpsilon = 1e-2;  // as in relmse
+
+// Mean over pixels and channels of |test - reference| / (|reference| + epsilon): a part, not per cent.
+double mape(const Image& reference, const Image& test);
 
 }  // namespace wavecrest

@@ -14,6 +14,11 @@ namespace {
 
 using V = ClaimVerdict;
 
+// " ± 0.02"; nothing where no width is known, or where equal values have none.
+std::string plusMinus(double halfWidth) {
+  return std::isfinite(halfWidth) && halfWidth > 0 ? fmt::format(" \u00b1 {:.2g}", halfWidth) : "";
+}
+
 constexpr double kNearFloor = 2;      // times the loss that the reference's noise alone gives
 constexpr size_t kBiasSnapshots = 3;  // that must agree on a share of bias
 
@@ -128,7 +133,7 @@ class Judge {
       if (values.empty()) continue;
       const Band band = meanBand(values);
       line += fmt::format("{}{} {:.4g}", line.empty() ? "" : ", ", shown(method), band.mean);
-      if (std::isfinite(band.halfWidth)) line += fmt::format(" \u00b1 {:.2g}", band.halfWidth);
+      line += plusMinus(band.halfWidth);
     }
     if (const std::optional<double> floor = scene_.floorLoss(metric)) {
       line += fmt::format(" (noise floor {:.4g})", scoreOfLoss(metric, *floor));
@@ -335,7 +340,7 @@ class Judge {
       const std::vector<double> slopes = scene_.errorSlopes(method);
       if (slopes.empty()) continue;
       const Band band = slopeBand(slopes);
-      note(fmt::format("slope of {} {:.2f} \u00b1 {:.2f}", shown(method), band.mean, band.halfWidth));
+      note(fmt::format("slope of {} {:.2f}{}", shown(method), band.mean, plusMinus(band.halfWidth)));
       controls += fmt::format(", control {} {:.2f}", shown(method), band.mean);
       if (below(band, condition_.slope, "").verdict == V::holds) continue;
       add({V::notJudged, 0, fmt::format("the control, {}, may stall as well: slope {:.2f}", shown(method), band.mean)});
@@ -349,7 +354,7 @@ class Judge {
         continue;
       }
       const Band band = slopeBand(slopes);
-      note(fmt::format("slope of {} {:.2f} \u00b1 {:.2f}", shown(method), band.mean, band.halfWidth));
+      note(fmt::format("slope of {} {:.2f}{}", shown(method), band.mean, plusMinus(band.halfWidth)));
       add(above(band, condition_.slope,
                 fmt::format("error of {} goes as t^{:.2f}, limit {:g}{}", shown(method), band.mean, condition_.slope,
                             controls)));

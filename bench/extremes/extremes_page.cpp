@@ -18,6 +18,7 @@ Plot plotOf(const SweepResult& result) {
   Plot plot;
   plot.title = sweep.title;
   plot.xLabel = sweep.xLabel;
+  plot.yLabel = "error";
   plot.xScale = logarithmic ? AxisScale::kLogarithmic : AxisScale::kLinear;
   plot.yScale = AxisScale::kLinear;
   // A line where there is no error.

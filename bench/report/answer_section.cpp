@@ -8,6 +8,7 @@
 #include "bench/report/html_text.h"
 #include "bench/report/method_style.h"
 #include "bench/report/series_values.h"
+#include "bench/report/time_ahead.h"
 
 namespace wavecrest {
 namespace {
@@ -100,6 +101,8 @@ SceneAnswer answerFor(const ReportScene& scene, const ReportMetric& metric, size
       metricIndex < scene.noiseFloors.size() ? scene.noiseFloors[metricIndex] : std::nullopt;
   if (!first.time && floor && isBetter(metric, *metric.target, *floor)) {
     answer.figure += fmt::format("; the reference allows {}", formatSignificant(*floor));
+  } else if (const auto ahead = timeAhead(*first.series, metric, metricIndex, *metric.target, floor)) {
+    answer.figure += "; " + formatTimeAhead(*ahead);
   }
   if (!first.time || isClearlyFastest(scene, *first.series, metric, metricIndex, *metric.target)) return answer;
   // Noise leaves the order of the fastest open: add the methods whose times are level with the first.

@@ -46,8 +46,8 @@ void addFinalImages(ReportScene& scene, const PreparedReference& reference,
         fmt::format("{}, {} {}", series.label, metric.symbol, formatSignificant(mainScore(metric, measured[i]))),
         falseColour(measured[i].map, series.finalImage.width, series.finalImage.height, range));
   }
-  scene.errorMapScale = fmt::format("Error maps: {} of each pixel, from 0 (black) to {:.2g} and above (pale yellow).",
-                                    metric.symbol, range);
+  scene.errorMapScale = fmt::format("Error maps: {} of each pixel, all on one scale.", metric.symbol);
+  scene.errorMapRange = range;
 }
 
 }  // namespace wavecrest

@@ -13,6 +13,7 @@
 #include "bench/report/plain_page.h"
 #include "bench/report/scene_section.h"
 #include "bench/report/series_values.h"
+#include "bench/report/speedup_section.h"
 #include "bench/report/summary_section.h"
 
 namespace wavecrest {
@@ -78,13 +79,15 @@ std::string renderHeader(const ConvergenceReport& report, const EmbeddedImages& 
 // Where to go on a long page; a single scene needs none.
 std::string renderContents(const ConvergenceReport& report) {
   std::string html = "<nav><a href=\"#summary\">Summary</a> ";
-  if (!report.claims.empty()) html += "<a href=\"#claims\">Findings</a> ";
   for (size_t i = 0; i < report.scenes.size(); ++i)
     append(html, "<a href=\"#scene-{}\">{}</a> ", i, escapeHtml(report.scenes[i].name));
+  html += "<a href=\"#scores\">All scores</a> ";
+  if (!report.claims.empty()) html += "<a href=\"#claims\">Findings</a> ";
   return html + "<a href=\"#environment\">Environment</a></nav>\n";
 }
 
-// The whole document. A single scene needs no summary.
+// The whole document: the answer, the scenes with plots and pictures, then what compares them and judges the study. A
+// single scene needs no summary.
 std::string assemble(const ConvergenceReport& report, const EmbeddedImages& images) {
   const bool several = report.scenes.size() > 1;
   std::string html = pageHead(report.title, coloursOfOthers(report));
@@ -92,11 +95,17 @@ std::string assemble(const ConvergenceReport& report, const EmbeddedImages& imag
   if (several) html += renderContents(report);
   html += "<main>\n";
   if (several) {
-    html +=
-        "<section id=\"summary\"><h2>Summary</h2>\n" + renderHeatMaps(report) + renderRanking(report) + "</section>\n";
+    html += "<section id=\"summary\"><h2>Summary</h2>\n" + renderTargetMaps(report) + renderSpeedUps(report) +
+            "</section>\n";
+  }
+  for (size_t i = 0; i < report.scenes.size(); ++i) html += renderScene(report, i, images);
+  if (several) {
+    html += "<section id=\"scores\"><h2>All scores</h2>\n" + renderRanking(report) + renderHeatMaps(report) +
+            "</section>\n";
+  } else if (const std::string speedUps = renderSpeedUps(report); !speedUps.empty()) {
+    html += "<section id=\"speedups\">" + speedUps + "</section>\n";
   }
   html += renderClaims(report);
-  for (size_t i = 0; i < report.scenes.size(); ++i) html += renderScene(report, i, images);
   html += renderEnvironment(report);
   // The page is complete without the script, which only adds interaction.
   append(html, "</main>\n<script>\n{}</script>\n</body></html>\n", kReportJs);

@@ -16,12 +16,15 @@ struct ReportMetric {
   std::string key = {};          ///< as in `compare --metrics`, e.g. "rmse"
   std::string name = {};         ///< heading, e.g. "RMSE"
   std::string explanation = {};  ///< one line under the heading
+  std::string formula = {};      ///< of test x and reference r, or who defined it
   bool higherIsBetter = false;
   bool logarithmic = true;
   /// Exponent of time at which the error of an unbiased method falls; drawn as a guide.
   std::optional<double> idealSlope = {};
   /// A score that people ask "how long until" about; drawn as a line.
   std::optional<double> target = {};
+  /// The score of an image without error, where one is known that curves approach as a power of time.
+  std::optional<double> best = {};
 };
 
 struct NamedValue {
@@ -96,6 +99,7 @@ struct ReportScene {
   std::string referenceOrigin = {};                     ///< how the reference was made, one line
   std::vector<std::optional<double>> noiseFloors = {};  ///< per metric: score of a perfect image, where known
   std::string errorMapScale = {};                       ///< what the colours of the error maps mean, one line
+  double errorMapRange = 0;                             ///< value of the brightest colour; 0: there are no maps
   std::vector<ReportSeries> series = {};
   std::vector<ReportPathClass> pathClasses = {};
   std::vector<NamedValue> refusals = {};  ///< methods that cannot render this scene, and why
@@ -119,6 +123,7 @@ struct ConvergenceReport {
   std::vector<ReportScene> scenes = {};
   std::vector<ReportClaim> claims = {};
   std::vector<NamedValue> environment = {};
+  std::string baseline = {};  ///< method that speed-ups are over; empty: the first
 };
 
 }  // namespace wavecrest

@@ -59,10 +59,12 @@ std::string iterationsText(double iterations) {
 // A metric over render time: for each series the mean over seeds, with the extremes over seeds as its band.
 ScenePlot metricPlot(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex) {
   ScenePlot result{.key = metric.key, .heading = metric.name, .explanation = metric.explanation, .plot = {}};
+  if (!metric.formula.empty()) result.explanation = metric.formula + "; " + result.explanation;
   // Set up the axes, the noise floor, the target and the guide.
   Plot& plot = result.plot;
   plot.title = metric.name + " over render time, " + scene.name;
   plot.xLabel = kTimeLabel;
+  plot.yLabel = metric.name;
   plot.yScale = metric.logarithmic ? AxisScale::kLogarithmic : AxisScale::kLinear;
   if (scene.noiseFloors[metricIndex]) plot.floor = {*scene.noiseFloors[metricIndex], "noise of the reference"};
   plot.target = metric.target;
@@ -95,6 +97,7 @@ ScenePlot biasPlot(const ReportScene& scene) {
                    .plot = {}};
   result.plot.title = "share of bias over render time, " + scene.name;
   result.plot.xLabel = kTimeLabel;
+  result.plot.yLabel = "bias² / mean square error";
   result.plot.yScale = AxisScale::kLinear;
   for (const ReportSeries& series : scene.series) {
     PlotCurve curve = emptyCurve(scene, series);

@@ -3,37 +3,29 @@
 #include "bench/report/html_text.h"
 #include "bench/report/scene_plots.h"
 #include "bench/report/scene_tables.h"
+#include "bench/report/viewer_html.h"
 
 namespace wavecrest {
 namespace {
 
-// data-name tells the script which picture and which error map belong together.
-void appendPane(std::string& html, const ReportImage& image, const std::string& name, const EmbeddedImages& images) {
-  append(html,
-         "<figure class=\"pane\" data-name=\"{}\"><div class=\"frame\"><img src=\"{}\" width=\"{}\" height=\"{}\" "
-         "alt=\"{}\"></div>",
-         escapeHtml(name), images.uri(image), image.width, image.height, escapeHtml(image.label));
-  append(html, "<figcaption>{}</figcaption></figure>\n", escapeHtml(image.label));
+std::string paneOf(const ReportImage& image, const std::string& name, const EmbeddedImages& images) {
+  return viewerPane(
+      {.name = name, .label = image.label, .uri = images.uri(image), .width = image.width, .height = image.height});
 }
 
-// Two rows of panes: pictures, with the reference first, and below them the error map of each.
+// Pictures, with the reference first, and the error map of each.
 std::string renderImages(const ReportScene& scene, const EmbeddedImages& images) {
   if (scene.reference.rgb.empty()) return "";
-  std::string html =
-      "<h3>Pictures at the end</h3>\n"
-      "<div class=\"viewer\"><div class=\"panes\" data-kind=\"Pictures\">\n";
-  appendPane(html, scene.reference, "reference", images);
-  std::string maps;
+  std::string pictures = paneOf(scene.reference, "reference", images), maps;
   for (const ReportSeries& series : scene.series) {
-    if (!series.finalImage.rgb.empty()) appendPane(html, series.finalImage, series.label, images);
-    if (!series.errorMap.rgb.empty()) appendPane(maps, series.errorMap, series.label, images);
+    if (!series.finalImage.rgb.empty()) pictures += paneOf(series.finalImage, series.label, images);
+    if (!series.errorMap.rgb.empty()) maps += paneOf(series.errorMap, series.label, images);
   }
-  html += "</div>\n";
+  std::string groups = viewerGroup("Pictures", "", pictures);
   if (!maps.empty()) {
-    append(html, "<p class=\"facts maps\">{}</p><div class=\"panes\" data-kind=\"Error maps\">\n{}</div>\n",
-           escapeHtml(scene.errorMapScale), maps);
+    groups += viewerGroup("Error maps", escapeHtml(scene.errorMapScale) + colourBar(scene.errorMapRange), maps);
   }
-  return html + "</div>\n";
+  return "<h3>Pictures at the end</h3>\n" + viewer(groups);
 }
 
 std::string renderPlots(const ConvergenceReport& report, const ReportScene& scene) {
@@ -53,8 +45,8 @@ std::string renderScene(const ConvergenceReport& report, size_t index, const Emb
   append(html, "<section id=\"scene-{}\"><h2>{}</h2><p class=\"facts\">{} × {} pixels. Reference: {}.</p>\n", index,
          escapeHtml(scene.name), scene.width, scene.height, escapeHtml(scene.referenceOrigin));
   html += "<h3>Error over time</h3>\n" + renderPlots(report, scene);
-  html += "<h3>At the end</h3>\n" + renderResults(report, scene);
   html += renderImages(scene, images);
+  html += "<h3>At the end</h3>\n" + renderResults(report, scene);
   html += renderBias(scene) + renderPathClasses(scene) + renderStages(scene) + renderSettings(scene);
   return html + "</section>\n";
 }

@@ -9,6 +9,7 @@
 #include "bench/report/html_text.h"
 #include "bench/report/method_style.h"
 #include "bench/report/series_values.h"
+#include "bench/report/time_ahead.h"
 
 namespace wavecrest {
 namespace {
@@ -31,22 +32,89 @@ std::string methodCell(const ReportSeries& series) {
 // A dash for zero, which other programs leave open.
 std::string countCell(double count) { return count > 0 ? formatCount(count) : "–"; }
 
-// "12 s", or for a method that never got there a dash.
+// "12 s", or for a method that never got there a dash and how much longer it would take.
 std::string targetCell(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
                        size_t metricIndex) {
   const std::optional<TargetTime> time = timeToReach(series, metric, metricIndex, *metric.target);
   const bool fastest = isClearlyFastest(scene, series, metric, metricIndex, *metric.target);
-  return fmt::format("<td class=\"n{}\">{}", fastest ? " best" : "", time ? formatTime(*time) : "–");
+  std::string text = time ? formatTime(*time) : "–";
+  const std::optional<double> floor = scene.noiseFloors[metricIndex];
+  if (const auto ahead = timeAhead(series, metric, metricIndex, *metric.target, floor)) {
+    text += fmt::format(" <small>{}</small>", formatTimeAhead(*ahead));
+  }
+  return fmt::format("<td class=\"n{}\">{}", fastest ? " best" : "", text);
 }
 
-// The columns, in the order in which renderResults writes cells.
-std::string resultHead(const ConvergenceReport& report) {
-  std::string html = "<thead><tr><th>method<th class=\"n\">seeds<th class=\"n\">time<th class=\"n\">iterations";
-  for (const ReportMetric& metric : report.metrics) append(html, "<th class=\"n\">{}", escapeHtml(metric.name));
+// Another score of the last snapshots, such as that of a metric without its worst pixels: mean over runs, NaN if none
+// has it.
+double finalFurther(const ReportSeries& series, const std::string& name) {
+  double sum = 0, count = 0;
+  for (const ReportRun& run : series.runs) {
+    if (run.points.empty()) continue;
+    for (const NamedNumber& score : run.points.back().further) {
+      if (score.name != name) continue;
+      sum += score.value;
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+// relMSE without the 0.1 % of the pixels with the largest errors: fireflies do not decide it.
+constexpr const char* kTrimmedScore = "relmse_trimmed";
+constexpr const char* kTrimmedMetric = "relmse";
+
+// One column for each metric; relMSE has a second one without its worst pixels.
+std::string renderScores(const ConvergenceReport& report, const ReportScene& scene,
+                         const std::vector<const ReportSeries*>& order) {
+  const bool trimmed = std::ranges::any_of(
+      order, [](const ReportSeries* series) { return std::isfinite(finalFurther(*series, kTrimmedScore)); });
+  std::string html = "<div class=\"scroll\"><table class=\"scores\"><thead><tr><th>method";
+  for (const ReportMetric& metric : report.metrics) {
+    append(html, "<th class=\"n\" title=\"{}\">{}", escapeHtml(metric.formula), escapeHtml(metric.name));
+    if (trimmed && metric.key == kTrimmedMetric) {
+      append(html, "<th class=\"n\" title=\"without the 0.1 % of the pixels with the largest errors\">{} of 99.9 %",
+             escapeHtml(metric.name));
+    }
+  }
+  html += "</thead><tbody>";
+  const auto scoreText = [](double value) { return std::isnan(value) ? std::string("–") : formatSignificant(value); };
+  for (const ReportSeries* series : order) {
+    html += "<tr>" + methodCell(*series);
+    for (size_t m = 0; m < report.metrics.size(); ++m) {
+      const bool best = isClearlyBest(scene, *series, report.metrics[m], m);
+      append(html, "<td class=\"n{}\">{}", best ? " best" : "", scoreText(finalValue(*series, m)));
+      if (trimmed && report.metrics[m].key == kTrimmedMetric) {
+        append(html, "<td class=\"n\">{}", scoreText(finalFurther(*series, kTrimmedScore)));
+      }
+    }
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+// What the scores took: time, iterations, speed, and the time to each target.
+std::string renderCosts(const ConvergenceReport& report, const ReportScene& scene,
+                        const std::vector<const ReportSeries*>& order) {
+  std::string html =
+      "<div class=\"scroll\"><table class=\"costs\"><thead><tr><th>method<th class=\"n\">seeds<th class=\"n\">time"
+      "<th class=\"n\">iterations<th class=\"n\">paths/s<th class=\"n\">CPU time";
   for (const ReportMetric& metric : report.metrics) {
     if (metric.target) append(html, "<th class=\"n\">{} {} after", escapeHtml(metric.name), *metric.target);
   }
-  return html + "<th class=\"n\">paths/s<th class=\"n\">CPU time</thead>";
+  html += "</thead><tbody>";
+  for (const ReportSeries* series : order) {
+    // Iterations are those of the first run. Time and scores are means over runs.
+    const ReportRun& run = series->runs.front();
+    const ReportPoint last = run.points.empty() ? ReportPoint{} : run.points.back();
+    append(html, "<tr>{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}",
+           methodCell(*series), series->runs.size(), formatSeconds(finalSeconds(*series)),
+           countCell(static_cast<double>(last.iterations)), countCell(series->pathsPerSecond),
+           series->cpuSeconds > 0 ? formatSeconds(series->cpuSeconds) : "–");
+    for (size_t m = 0; m < report.metrics.size(); ++m) {
+      if (report.metrics[m].target) html += targetCell(scene, *series, report.metrics[m], m);
+    }
+  }
+  return html + "</tbody></table></div>\n";
 }
 
 // A bar of stage shares and, below it, the figures: nanoseconds an item tell which kernel to look at.
@@ -82,28 +150,8 @@ std::string renderStagesOf(const ReportSeries& series) {
 }  // namespace
 
 std::string renderResults(const ConvergenceReport& report, const ReportScene& scene) {
-  std::string html = "<div class=\"scroll\"><table>" + resultHead(report) + "<tbody>";
-  for (const ReportSeries* series : ranked(report, scene)) {
-    // Iterations are those of the first run. Time and scores are means over runs.
-    const ReportRun& run = series->runs.front();
-    const ReportPoint last = run.points.empty() ? ReportPoint{} : run.points.back();
-    append(html, "<tr>{}<td class=\"n\">{}<td class=\"n\">{}", methodCell(*series), series->runs.size(),
-           formatSeconds(finalSeconds(*series)));
-    append(html, "<td class=\"n\">{}", countCell(static_cast<double>(last.iterations)));
-    // One column for each metric.
-    for (size_t m = 0; m < report.metrics.size(); ++m) {
-      const double value = finalValue(*series, m);
-      const bool best = isClearlyBest(scene, *series, report.metrics[m], m);
-      append(html, "<td class=\"n{}\">{}", best ? " best" : "", std::isnan(value) ? "–" : formatSignificant(value));
-    }
-    // One column for each metric with a target.
-    for (size_t m = 0; m < report.metrics.size(); ++m) {
-      if (report.metrics[m].target) html += targetCell(scene, *series, report.metrics[m], m);
-    }
-    append(html, "<td class=\"n\">{}<td class=\"n\">{}", countCell(series->pathsPerSecond),
-           series->cpuSeconds > 0 ? formatSeconds(series->cpuSeconds) : "–");
-  }
-  html += "</tbody></table></div>\n";
+  const std::vector<const ReportSeries*> order = ranked(report, scene);
+  std::string html = renderScores(report, scene, order) + renderCosts(report, scene, order);
   // Methods that cannot render the scene stand below the table.
   for (const NamedValue& refusal : scene.refusals)
     append(html, "<p class=\"facts\"><b>{}</b> was refused: {}</p>\n", escapeHtml(refusal.name),
@@ -141,12 +189,17 @@ std::string renderPathClasses(const ReportScene& scene) {
   for (const NamedValue& verdict : scene.pathClasses.front().verdicts)
     append(html, "<th><i class=\"swatch m-{0}\"></i>{0}", escapeHtml(verdict.name));
   html += "</thead><tbody>";
+  // Signatures are those of `wavecrest inspect`.
+  const std::string legend =
+      "<p class=\"facts\">A: area light or sky, P: point light or direction, D: diffuse or glossy surface, S: mirror "
+      "or "
+      "glass, S+: one or more of them, D D: two or more in a row, E: eye.</p>\n";
   for (const ReportPathClass& pathClass : scene.pathClasses) {
     append(html, "<tr><th><code>{}</code>", escapeHtml(pathClass.name));
     for (const NamedValue& verdict : pathClass.verdicts)
       append(html, "<td class=\"v-{}\">{}", escapeHtml(verdict.value), escapeHtml(verdict.value));
   }
-  return html + "</tbody></table></div>\n";
+  return html + "</tbody></table></div>\n" + legend;
 }
 
 std::string renderStages(const ReportScene& scene) {

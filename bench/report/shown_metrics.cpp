@@ -17,12 +17,20 @@ ReportMetric shownMetric(const Metric& metric) {
   shown.key = scoreName(metric, metric.score);
   shown.name = metric.symbol;
   shown.explanation = fmt::format("{}; {} is better", metric.basis, metric.higherIsBetter ? "higher" : "lower");
+  shown.formula = metric.formula;
   shown.higherIsBetter = metric.higherIsBetter;
   // Errors fall by orders of magnitude; scores that rise approach their ceiling.
   shown.logarithmic = !metric.higherIsBetter;
   if (metric.sampleExponent != 0) shown.idealSlope = metric.sampleExponent;
-  if (metric.name == "ssim") shown.target = kGoodSsim;
-  if (shown.key == "q_mos") shown.target = kGoodMos;
+  if (!metric.higherIsBetter) shown.best = 0;
+  if (metric.name == "ssim") {
+    shown.target = kGoodSsim;
+    shown.best = 1;
+  }
+  if (shown.key == "q_mos") {
+    shown.target = kGoodMos;
+    shown.best = 100;
+  }
   return shown;
 }
 

@@ -117,16 +117,14 @@ std::string renderHeatMap(const ConvergenceReport& report, const HeatMap& map) {
 // How a method fares over the scenes that it was run on.
 struct Standing {
   std::string method;
-  std::vector<double> ranks;   // mean rank by metric
+  std::vector<double> ranks;   // mean rank over scenes, by metric
   std::vector<double> factor;  // by metric: geometric mean of its score over the best one's, where that makes sense
   size_t wins = 0;             // scenes where it is first by the first metric
-  double meanRank = kNan;      // over metrics
 };
 
 // Ranks count from 1. Methods with equal scores share the better rank.
 Standing standingOf(const ConvergenceReport& report, const std::string& method) {
   Standing standing{.method = method, .ranks = {}, .factor = {}};
-  double total = 0, counted = 0;
   for (size_t m = 0; m < report.metrics.size(); ++m) {
     const ReportMetric& metric = report.metrics[m];
     // Sum ranks and logarithms over the scenes that the method was run on.
@@ -146,12 +144,7 @@ Standing standingOf(const ConvergenceReport& report, const std::string& method) 
     // Take means. Ratios of scores only make sense for logarithmic metrics.
     standing.ranks.push_back(scenes > 0 ? rankSum / scenes : kNan);
     standing.factor.push_back(scenes > 0 && metric.logarithmic ? std::exp(logSum / scenes) : kNan);
-    if (scenes > 0) {
-      total += rankSum / scenes;
-      ++counted;
-    }
   }
-  if (counted > 0) standing.meanRank = total / counted;
   return standing;
 }
 
@@ -183,42 +176,49 @@ std::string renderClaim(const ReportClaim& claim) {
 
 }  // namespace
 
-std::string renderHeatMaps(const ConvergenceReport& report) {
+std::string renderTargetMaps(const ConvergenceReport& report) {
   std::string html = "<div class=\"heatmaps\">\n";
-  for (size_t m = 0; m < report.metrics.size(); ++m) html += renderHeatMap(report, metricMap(report.metrics[m], m));
   for (size_t m = 0; m < report.metrics.size(); ++m) {
     if (report.metrics[m].target) html += renderHeatMap(report, targetMap(report.metrics[m], m));
   }
+  return html + "</div>\n";
+}
+
+std::string renderHeatMaps(const ConvergenceReport& report) {
+  std::string html = "<div class=\"heatmaps\">\n";
+  for (size_t m = 0; m < report.metrics.size(); ++m) html += renderHeatMap(report, metricMap(report.metrics[m], m));
   return html +
          "</div><p class=\"facts\">The stronger the tint, the further behind the best of its row, which is bold where "
          "seeds tell it from all others.</p>\n";
 }
 
 std::string renderRanking(const ConvergenceReport& report) {
-  // Order methods by mean rank. Methods without any score come last.
+  // Order methods by their rank in the first metric. Those without a score come last.
   std::vector<Standing> standings;
   for (const std::string& method : methodsOf(report)) standings.push_back(standingOf(report, method));
   std::stable_sort(standings.begin(), standings.end(), [](const Standing& a, const Standing& b) {
-    return std::isnan(b.meanRank) ? !std::isnan(a.meanRank) : a.meanRank < b.meanRank;
+    const double x = a.ranks.front(), y = b.ranks.front();
+    return std::isnan(y) ? !std::isnan(x) : x < y;
   });
-  // Write the head: mean rank, rank by each metric, wins and mean ratio by the first metric.
+  // Write the head: rank by each metric, wins and mean ratio by the first metric.
   const ReportMetric& first = report.metrics.front();
-  std::string html = "<h3>Ranking</h3><div class=\"scroll\"><table><thead><tr><th>method<th class=\"n\">mean rank";
+  std::string html = "<h3>Ranking</h3><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>method";
   for (const ReportMetric& metric : report.metrics) append(html, "<th class=\"n\">by {}", escapeHtml(metric.name));
   append(html, "<th class=\"n\">first by {0}<th class=\"n\">{0} over best</thead><tbody>", escapeHtml(first.name));
   // Write a row for each method.
   for (const Standing& standing : standings) {
     append(html, "<tr><th><i class=\"swatch m-{0}\"></i>{0} <small>{1}</small>", escapeHtml(standing.method),
            escapeHtml(methodStyle(standing.method).name));
-    html += numberCell(standing.meanRank, "");
     for (const double rank : standing.ranks) html += numberCell(rank, "");
     append(html, "<td class=\"n\">{} of {}", standing.wins, report.scenes.size());
     html += numberCell(standing.factor.front(), " ×");
   }
   return html +
-         "</tbody></table></div><p class=\"facts\">Ranks at equal time, means over the scenes that a method was run "
-         "on; "
-         "the last column is the geometric mean over scenes.</p>\n";
+         fmt::format(
+             "</tbody></table></div><p class=\"facts\">Ranks at equal time by one metric each, means over the "
+             "scenes that a method was run on. In the order of {}; a click on another metric ranks by it. The last "
+             "column is the geometric mean over scenes.</p>\n",
+             escapeHtml(first.name));
 }
 
 std::string renderClaims(const ConvergenceReport& report) {
@@ -238,14 +238,14 @@ std::string renderClaims(const ConvergenceReport& report) {
     append(html, "{} cannot be judged by this campaign, which counts neither for nor against them.",
            judged == 0 ? fmt::format("All {}", count("not judged")) : std::to_string(count("not judged")));
   }
+  html += "</p>";
+  if (judged == 0) return html + "</section>\n";
   html +=
-      "</p><div class=\"scroll\"><table class=\"claims\"><thead><tr><th>scene<th>finding<th>verdict<th>why</thead>"
+      "<div class=\"scroll\"><table class=\"claims\"><thead><tr><th>scene<th>finding<th>verdict<th>why</thead>"
       "<tbody>";
-  // What was decided comes first; the order of scenes stays within.
-  std::vector<const ReportClaim*> order;
-  for (const ReportClaim& claim : report.claims) order.push_back(&claim);
-  std::stable_partition(order.begin(), order.end(), [](const ReportClaim* c) { return c->verdict != "not judged"; });
-  for (const ReportClaim* claim : order) html += renderClaim(*claim);
+  for (const ReportClaim& claim : report.claims) {
+    if (claim.verdict != "not judged") html += renderClaim(claim);
+  }
   return html + "</tbody></table></div></section>\n";
 }
 

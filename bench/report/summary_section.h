@@ -7,13 +7,17 @@
 
 namespace wavecrest {
 
-/// Heat maps of scenes x methods, one for each metric and for the time to its target. For several scenes.
+/// Heat maps of scenes x methods of the time to the target of each metric that has one. For several scenes.
+std::string renderTargetMaps(const ConvergenceReport& report);
+
+/// Heat maps of scenes x methods, one for each metric. For several scenes.
 std::string renderHeatMaps(const ConvergenceReport& report);
 
-/// Methods in the order of their mean rank over scenes and metrics. For several scenes.
+/// Methods in the order of their mean rank over scenes by the first metric, with their ranks by the others. For several
+/// scenes.
 std::string renderRanking(const ConvergenceReport& report);
 
-/// The study's findings with verdicts; empty text if there are none.
+/// The study's findings that the results can judge, with verdicts; empty text if there are none at all.
 std::string renderClaims(const ConvergenceReport& report);
 
 }  // namespace wavecrest

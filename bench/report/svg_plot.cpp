@@ -16,6 +16,7 @@ namespace {
 constexpr double kWidth = 460, kHeight = 320;
 constexpr double kTop = 12, kBottom = kHeight - 46;
 constexpr double kLeastLeft = 50, kTickGap = 7;  // the margin at the left, and what is between a label and the axis
+constexpr double kNameRoom = 17;                 // at the left of tick labels, for the name of the y axis
 constexpr double kMarkRoom = 18;                 // between the plot and the text of an end label
 constexpr double kLeastMargin = 44, kGreatestMargin = 190;  // at the right
 constexpr double kLabelSpacing = 15;
@@ -94,10 +95,12 @@ Frame frameAround(const Plot& plot, const std::vector<PlotCurve>& curves) {
   for (const PlotCurve& curve : curves) longest = std::max(longest, labelWidth(curve.label));
   const double margin = kMarkRoom + longest;
   const Axis y(plot.yScale, low, high);
-  return {Axis(plot.xScale, left, right), y, leftMargin(y), kWidth - std::clamp(margin, kLeastMargin, kGreatestMargin)};
+  const double name = plot.yLabel.empty() ? 0 : kNameRoom;
+  return {Axis(plot.xScale, left, right), y, name + leftMargin(y),
+          kWidth - std::clamp(margin, kLeastMargin, kGreatestMargin)};
 }
 
-// Grid lines, tick labels, axis lines and the label of the x axis.
+// Grid lines, tick labels, axis lines and the names of both axes.
 void drawGrid(std::string& svg, const Plot& plot, const Frame& frame) {
   // Vertical lines, with labels below.
   for (const AxisTick& tick : frame.x.ticks()) {
@@ -119,19 +122,33 @@ void drawGrid(std::string& svg, const Plot& plot, const Frame& frame) {
              y + 4, tick.label);
     }
   }
-  // The two axes and the name of the x axis.
+  // The two axes and their names.
   append(svg, "<path class=\"axis\" d=\"M{:.1f} {}V{}H{:.1f}\"/>", frame.left, kTop, kBottom, frame.right);
   append(svg, "<text class=\"axis-label\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
          0.5 * (frame.left + frame.right), kHeight - 8, escapeHtml(plot.xLabel));
+  if (plot.yLabel.empty()) return;
+  append(svg,
+         "<text class=\"axis-label\" transform=\"translate(13 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+         0.5 * (kTop + kBottom), escapeHtml(plot.yLabel));
+}
+
+// Whether a horizontal line lies within the y axis.
+bool isWithin(const PlotLine& line, AxisScale scale, const Frame& frame) {
+  return showable(scale, line.y) && frame.y.position(line.y) >= 0 && frame.y.position(line.y) <= 1;
 }
 
 // A horizontal line across the plot, unless it lies outside the y axis.
 void drawLine(std::string& svg, const PlotLine& line, const char* cssClass, AxisScale scale, const Frame& frame) {
-  if (!showable(scale, line.y) || frame.y.position(line.y) < 0 || frame.y.position(line.y) > 1) return;
+  if (!isWithin(line, scale, frame)) return;
   const double y = frame.pixelY(line.y);
   append(svg, "<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", cssClass, frame.left, y,
          frame.right, y);
-  if (line.label.empty()) return;
+}
+
+// Its label, which curves drawn before do not hide.
+void drawLineLabel(std::string& svg, const PlotLine& line, AxisScale scale, const Frame& frame) {
+  if (line.label.empty() || !isWithin(line, scale, frame)) return;
+  const double y = frame.pixelY(line.y);
   // Above the line, or below it where there is no room.
   append(svg, "<text class=\"note\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", frame.left + 6,
          y - kTop < 18 ? y + 14 : y - 5, escapeHtml(line.label));
@@ -238,8 +255,8 @@ void drawEndLabels(std::string& svg, const std::vector<PlotCurve>& curves, const
     labels[i].y = std::min(labels[i].y, limit);
   }
   for (const Label& label : labels) {
-    append(svg, "<g class=\"curve {}\"><path class=\"mark\" d=\"{}\"/>", label.curve->cssClass,
-           markPath(label.curve->mark, frame.right + 10, label.y, 3.2));
+    append(svg, "<g class=\"curve end {}\" data-label=\"{}\"><path class=\"mark\" d=\"{}\"/>", label.curve->cssClass,
+           escapeHtml(label.curve->label), markPath(label.curve->mark, frame.right + 10, label.y, 3.2));
     append(svg, "<text class=\"end-label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text></g>", frame.right + kMarkRoom,
            label.y + 4, escapeHtml(label.curve->label));
   }
@@ -281,6 +298,7 @@ std::string drawPlot(const Plot& plot) {
   if (plot.floor) drawLine(svg, *plot.floor, "floor", plot.yScale, frame);
   for (const PlotCurve& curve : curves) drawCurve(svg, curve, frame);
   drawGuide(svg, plot, frame, curves);
+  if (plot.floor) drawLineLabel(svg, *plot.floor, plot.yScale, frame);
   drawEndLabels(svg, curves, frame);
   return svg;
 }

@@ -32,7 +32,7 @@ struct PlotLine {
 
 struct Plot {
   std::string title;  ///< for screen readers
-  std::string xLabel;
+  std::string xLabel, yLabel;
   AxisScale xScale = AxisScale::kLogarithmic, yScale = AxisScale::kLogarithmic;
   std::vector<PlotCurve> curves;
   std::optional<PlotLine> floor;     ///< what cannot be passed; the axis is extended to show it

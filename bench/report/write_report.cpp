@@ -1,12 +1,18 @@
 #include "bench/report/write_report.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bench/report/collect.h"
 #include "bench/report/csv.h"
 #include "bench/report/html_page.h"
 #include "bench/report/plot_files.h"
+#include "bench/report/results_folder.h"
+#include "bench/report/series_values.h"
 #include "bench/results/within_folder.h"
 #include "metrics/image/atomic_file.h"
 
@@ -22,10 +28,20 @@ fs::path write(const fs::path& folder, const char* name, const std::string& text
   return path;
 }
 
+// Throws ResultsError unless a method, if any is named, is in the report.
+void requireMethod(const ConvergenceReport& report, const std::string& method) {
+  const std::vector<std::string> known = methodsOf(report);
+  if (method.empty() || std::find(known.begin(), known.end(), method) != known.end()) return;
+  throw ResultsError(
+      fmt::format("--baseline {}: is not in the report; expected one of {}", method, fmt::join(known, ", ")));
+}
+
 }  // namespace
 
 WrittenReport writeReport(std::span<const fs::path> paths, const ReportFiles& files) {
   ConvergenceReport report = collectReport(paths, files.reference);
+  requireMethod(report, files.baseline);
+  report.baseline = files.baseline;
   const fs::path folder = fs::is_directory(paths[0]) ? paths[0] : paths[0].parent_path();
   std::vector<fs::path> written{write(folder, "report.html", renderReport(report))};
   if (files.csv) {

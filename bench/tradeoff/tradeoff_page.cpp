@@ -16,6 +16,7 @@ Plot plotOf(const TradeResult& result) {
   plot.title =
       fmt::format("{}, {}: time to a relative error of 1 % against bias", result.scene, toString(result.method));
   plot.xLabel = "CPU seconds to 1 %";
+  plot.yLabel = "bias";
   for (const TradeRow& row : result.rows) {
     if (!row.refusal.empty()) continue;
     // A curve for each knob.

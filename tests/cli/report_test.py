@@ -72,7 +72,7 @@ class OtherPrograms(CommandTest):
     def assert_as_compared(self, scores, image, reference="box/reference.exr"):
         told = json.loads(self.run_wavecrest("compare", reference, image, "--json").stdout)
         for name, value in (
-            ("rmse", told["rmse"]), ("relmse", told["relmse"]), ("ssim", told["ssim"]["mean"]),
+            ("rmse", told["rmse"]), ("relmse", told["relmse"]), ("mape", told["mape"]), ("ssim", told["ssim"]["mean"]),
             ("q_mos", told["hdrvdp2"]["q_mos"]), ("flip", told["flip"]),
         ):  # fmt: skip
             self.assertEqual(float(scores[name]), value, name)  # the same numbers, to the last digit
@@ -115,6 +115,13 @@ class OtherPrograms(CommandTest):
                 f"box/{method}.exr",
             )  # fmt: skip
         self.assertEqual({name for name, _ in self.scores("box")}, {"pt", "bpt"})
+
+    def test_speed_ups_are_over_the_baseline(self):
+        self.scores("box", "--baseline", "path")
+        page = (self.folder / "box" / "report.html").read_text()
+        self.assertIn('name="speedup" open><summary>over path<', page)
+        result = self.run_wavecrest("report", "box", "--baseline", "ptah", expect=INPUT)
+        self.assert_one_error_line(result, r"--baseline ptah: is not in the report; expected one of ")
 
     def test_what_cannot_be_read_is_told(self):
         def told(*arguments):

@@ -224,8 +224,12 @@ TEST_F(CompareCommand, ThePageHoldsScoresImagesAndMaps) {
   size_t images = 0;
   for (size_t at = text.find("<img "); at != std::string::npos; at = text.find("<img ", at + 1)) ++images;
   EXPECT_EQ(images, 1u + 2 * (1 + 2)) << "the reference, and of each test itself and a map for each metric";
-  EXPECT_NE(text.find("<td>0.0516611</td><td class=\"best\">0</td>"), std::string::npos);
+  EXPECT_NE(text.find("<td class=\"n\">0.0516611</td><td class=\"n best\">0</td>"), std::string::npos);
   EXPECT_EQ(text.find("src=\"http"), std::string::npos) << "it opens offline";
+  EXPECT_NE(text.find("<div class=\"viewer\">"), std::string::npos) << "as reports have";
+  EXPECT_NE(text.find("data-kind=\"FLIP\""), std::string::npos);
+  EXPECT_NE(text.find("<div class=\"facts head\">FLIP: Andersson et al. 2020<span class=\"scale\">"),
+            std::string::npos);
   const auto onStdout =
       runCompare({golden("ref"), golden("test"), "--metrics", "rmse", "--html", "-", "--map", files_.path("maps")});
   EXPECT_EQ(onStdout.output.find("<!"), 0u) << "a page on stdout is alone there";

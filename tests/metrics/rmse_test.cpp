@@ -55,6 +55,14 @@ TEST(Relmse, DividesByTheSquaredReferencePlusEpsilon) {
   EXPECT_NEAR(relmse(a, b, {.epsilon = 1}).relmse, (0.25 + 1.0 / 5) / 3, 1e-12);
 }
 
+TEST(Mape, DividesByTheReferencePlusEpsilon) {
+  const Image a{1, 1, 3, {0, 1, 2}}, b{1, 1, 3, {0.5, 1, 1}};
+  EXPECT_NEAR(mape(a, b), (0.5 / 0.01 + 0 + 1 / 2.01) / 3, 1e-12);
+  EXPECT_EQ(mape(a, a), 0);
+  const Image c{2, 1, 3, {std::numeric_limits<float>::infinity(), 0, 0, 1, 1, 1}}, d{2, 1, 3, {0, 0, 0, 2, 2, 2}};
+  EXPECT_NEAR(mape(c, d), 1 / 1.01, 1e-12) << "pixels that are not finite are excluded";
+}
+
 TEST(Relmse, OfBlackReferencesIsTheSquaredErrorOverEpsilon) {
   const Image black{2, 2, 3, std::vector<float>(12, 0.0f)}, grey{2, 2, 3, std::vector<float>(12, 0.1f)};
   EXPECT_EQ(relmse(black, black).relmse, 0.0);

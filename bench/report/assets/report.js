@@ -39,6 +39,48 @@ function addTooltips(plot) {
   plot.addEventListener("pointerleave", () => highlight(null));
 }
 
+// One curve in front of the others: while the pointer is on its end label, and after a click on that until the next.
+function addFocus(plot) {
+  let kept = null;
+  const show = (label) => {
+    plot.classList.toggle("focus", label !== null);
+    for (const curve of plot.querySelectorAll(".curve")) curve.classList.toggle("front", curve.dataset.label === label);
+  };
+  for (const end of plot.querySelectorAll(".end")) {
+    end.addEventListener("pointerenter", () => show(end.dataset.label));
+    end.addEventListener("pointerleave", () => show(kept));
+    end.addEventListener("click", () => show(kept = kept === end.dataset.label ? null : end.dataset.label));
+  }
+}
+
+// Tables whose rows become blocks on narrow screens: each cell takes the name of its column along.
+function nameCells(table) {
+  const names = [...table.querySelectorAll("thead th")].map((head) => head.textContent.trim());
+  if (names.length < 4 || table.classList.contains("claims")) return;
+  for (const row of table.tBodies[0].rows) {
+    [...row.cells].forEach((cell, i) => { cell.dataset.column = names[i] ?? ""; });
+  }
+  table.classList.add("stacked");
+}
+
+// A click on the head of a column sorts the rows by its numbers; rows without one come last.
+function addSorting(table) {
+  const heads = [...table.querySelectorAll("thead th")], body = table.tBodies[0];
+  const mark = (chosen) => heads.forEach((head, i) => (i === chosen ? head.setAttribute("aria-sort", "ascending") : head.removeAttribute("aria-sort")));
+  const number = (row, i) => { const value = parseFloat(row.cells[i].textContent); return isNaN(value) ? Infinity : value; };
+  heads.forEach((head, i) => {
+    if (!head.textContent.startsWith("by ")) return;
+    head.tabIndex = 0;
+    const sort = () => {
+      body.append(...[...body.rows].sort((a, b) => number(a, i) - number(b, i)));
+      mark(i);
+    };
+    head.addEventListener("click", sort);
+    head.addEventListener("keydown", (event) => { if (event.key === "Enter") sort(); });
+  });
+  mark(1);
+}
+
 // Images: all panes of a scene share one view {zoom, x, y}: x and y are the image point, in 0..1, at the pane's corner.
 // A viewer has groups of panes (pictures, error maps), one of which is on show; panes of one name belong together.
 class Viewer {
@@ -76,6 +118,8 @@ class Viewer {
     if (this.groupButtons.length) gap();
     this.sideButton = button("Side by side", () => this.flip(false));
     this.flipButton = button("Flip", () => this.flip(true));
+    this.wiping = false;
+    this.wipeButton = button("Wipe", () => this.setWipe(!this.wiping));
     gap();
     for (const zoom of [1, 2, 4, 8]) button(zoom + "×", () => this.zoomTo(zoom, 0.5, 0.5));
     gap();
@@ -85,7 +129,7 @@ class Viewer {
     this.makeButton = button;
     const hint = document.createElement("span");
     hint.className = "hint";
-    hint.textContent = "click an image: wheel zooms, drag moves, keys 1–9 and arrows flip, m maps";
+    hint.textContent = "click an image: wheel zooms, drag moves, keys 1–9 and arrows flip, w wipes, m maps, + and − zoom";
     tools.append(hint);
     this.root.prepend(tools);
   }
@@ -96,7 +140,6 @@ class Viewer {
     this.group = index;
     this.groups.forEach((group, i) => group.classList.toggle("away", i !== index));
     this.groupButtons.forEach((element, i) => element.setAttribute("aria-pressed", i === index));
-    this.root.classList.toggle("on-maps", index > 0);
     this.names.replaceChildren();
     this.paneButtons = this.panes.map((pane, i) =>
       this.makeButton(i + 1 + " " + pane.dataset.name, () => { this.flip(true); this.show(i); }, this.names));
@@ -105,6 +148,7 @@ class Viewer {
 
   flip(on) {
     this.root.classList.toggle("flip", on);
+    if (!on) this.wiping = false;
     this.sideButton.setAttribute("aria-pressed", !on);
     this.flipButton.setAttribute("aria-pressed", on);
     this.show(this.shown);
@@ -116,11 +160,33 @@ class Viewer {
     const flipping = this.root.classList.contains("flip");
     panes.forEach((pane, i) => pane.classList.toggle("shown", i === this.shown));
     this.paneButtons.forEach((button, i) => button.setAttribute("aria-pressed", flipping && i === this.shown));
+    this.updateWipe();
+  }
+
+  // The reference over the pane on show, at the left of an edge that follows the pointer.
+  setWipe(on) {
+    this.wiping = on;
+    if (on && !this.root.classList.contains("flip")) this.flip(true);
+    if (on && this.group === 0 && this.shown === 0 && this.panes.length > 1) this.show(1);
+    this.updateWipe();
+  }
+
+  updateWipe() {
+    this.root.querySelectorAll(".over").forEach((element) => element.remove());
+    this.wipeButton.setAttribute("aria-pressed", this.wiping);
+    if (!this.wiping) return;
+    const over = document.createElement("div");
+    over.className = "over";
+    over.append(this.groups[0].querySelector(".frame img").cloneNode());
+    this.panes[this.shown].querySelector(".frame").append(over);
+    this.apply();
   }
 
   onKey(event) {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     const digit = Number(event.key);
+    if (event.key === "w") return this.setWipe(!this.wiping);
+    if (event.key === "+" || event.key === "-") return this.zoomTo(this.view.zoom * (event.key === "+" ? 2 : 0.5), 0.5, 0.5);
     if (event.key === "m" && this.groups.length > 1) return this.showGroup((this.group + 1) % this.groups.length);
     if (step) this.show(this.shown + step);
     else if (digit >= 1 && digit <= this.panes.length) this.show(digit - 1);
@@ -171,6 +237,10 @@ class Viewer {
       this.root.focus({ preventScroll: true });
     });
     frame.addEventListener("pointermove", (event) => {
+      // While it wipes, the pointer moves the edge; a finger does so until the image is zoomed.
+      if (this.wiping && (!pointers.size || this.view.zoom === 1)) {
+        this.root.style.setProperty("--split", `${100 * Math.min(Math.max(place(event)[0], 0), 1)}%`);
+      }
       const before = pointers.get(event.pointerId);
       if (!before) return;
       const [u, v, box] = place(event);
@@ -213,6 +283,9 @@ function addHeatMapTools(root) {
 
 document.querySelectorAll(".heatmaps").forEach(addHeatMapTools);
 document.querySelectorAll("svg.plot").forEach(addTooltips);
+document.querySelectorAll("svg.plot").forEach(addFocus);
+document.querySelectorAll(".scroll > table").forEach(nameCells);
+document.querySelectorAll(".sortable").forEach(addSorting);
 document.querySelectorAll(".viewer").forEach((root) => new Viewer(root));
 // Print shows what was measured; settings stay on the screen.
 addEventListener("beforeprint", () => {

@@ -1,0 +1,32 @@
+// How much longer a method that has missed a target would need, by the slope of its own curve.
+//
+// A score's loss, its distance from the best possible one, falls about as a power of time: a straight line in the
+// logarithms of both. It is fitted to the last part of each run, from a quarter of its time on, and followed to the
+// target.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "bench/report/report_data.h"
+#include "bench/report/series_values.h"
+
+namespace wavecrest {
+
+/// Seconds after the end of the runs, with the ends of the 95 % interval: over seeds, or with one seed of its fitted
+/// line alone, whose snapshots are not independent, so that it is too narrow rather than too wide.
+struct TimeAhead {
+  double seconds = 0;
+  Range interval;  ///< high may be infinite
+};
+
+/// Nothing where the target was reached, no score of the metric is the best, a run has fewer than three snapshots in
+/// that part or does not get better there, or the target is more than 100 times the render time away. floor: the score
+/// of a perfect image against this reference; a target beyond it is out of reach.
+std::optional<TimeAhead> timeAhead(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
+                                   double target, std::optional<double> floor);
+
+/// "about 9 s more (7 s to 14 s)".
+std::string formatTimeAhead(const TimeAhead& ahead);
+
+}  // namespace wavecrest

@@ -1,0 +1,30 @@
+#include "bench/report/viewer_html.h"
+
+#include <fmt/format.h>
+
+#include "bench/report/html_text.h"
+
+namespace wavecrest {
+
+std::string viewerPane(const ViewerPane& pane) {
+  return fmt::format(
+      "<figure class=\"pane\" data-name=\"{}\"><div class=\"frame\"><img src=\"{}\" width=\"{}\" height=\"{}\" "
+      "alt=\"{}\"></div><figcaption>{}</figcaption></figure>\n",
+      escapeHtml(pane.name), pane.uri, pane.width, pane.height, escapeHtml(pane.label), escapeHtml(pane.label));
+}
+
+std::string viewerGroup(std::string_view kind, std::string_view head, std::string_view panes) {
+  std::string html = fmt::format("<div class=\"panes\" data-kind=\"{}\">\n", escapeHtml(kind));
+  if (!head.empty()) append(html, "<div class=\"facts head\">{}</div>\n", head);
+  append(html, "{}</div>\n", panes);
+  return html;
+}
+
+std::string viewer(std::string_view groups) { return fmt::format("<div class=\"viewer\">{}</div>\n", groups); }
+
+std::string colourBar(double range) {
+  return fmt::format("<span class=\"scale\"><i></i><b><span>0</span><span>{}</span><span>{} and more</span></b></span>",
+                     formatSignificant(range / 2), formatSignificant(range));
+}
+
+}  // namespace wavecrest

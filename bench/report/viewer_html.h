@@ -1,0 +1,27 @@
+// The markup of an image viewer, which report.js makes interactive: groups of panes on show one at a time, pictures
+// first. Panes of one name in several groups belong together; the first pane of the first group is the reference.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace wavecrest {
+
+struct ViewerPane {
+  std::string name;   ///< on its button
+  std::string label;  ///< below it
+  std::string_view uri;
+  uint32_t width = 0, height = 0;
+};
+std::string viewerPane(const ViewerPane& pane);
+
+/// A group of panes; kind: plain text on its button; head: HTML above the panes, or nothing.
+std::string viewerGroup(std::string_view kind, std::string_view head, std::string_view panes);
+
+std::string viewer(std::string_view groups);
+
+/// The colours of maps (metrics/false_colour.h) with their values.
+std::string colourBar(double range);
+
+}  // namespace wavecrest
