@@ -179,7 +179,7 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   defining("--spp", "iterations of each run instead of time; snapshots after 1, 2, 4, ...").oneValue();
   defining("--seeds", "runs of each method, seeds 1 to N; default: the profile's").oneValue();
   defining("--size", "film size, WIDTHxHEIGHT; default: the profile's").oneValue();
-  defining("--precision", "float, double, or fast: float with Embree's faster tests; default: float").oneValue();
+  defining("--precision", "float or double; default: float").oneValue();
   defining("--sampler", "independent or sobol; default: independent").oneValue();
   defining("--images", "keep images of 'all' snapshots, or of the 'last' of each run; default: all").oneValue();
   defining("--radius", "first merge radius of ppm, bpm and vcm, relative to the bounding sphere; default: 0.001")

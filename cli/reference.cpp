@@ -242,8 +242,7 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   command.add("--threads", options->threads, "worker threads; default: all cores").between(kThreadRange);
   command.add("--seed", options->seed, "seed of both halves, which differ in its high word").between(0, 0xffffffff);
   command.add("--sampler", options->sampler, "independent or sobol").showDefault();
-  command.add("--precision", options->precision, "float, double, or fast: float with Embree's faster tests")
-      .showDefault();
+  command.add("--precision", options->precision, "float or double").showDefault();
   command.add("--isa", options->isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--radius", options->radius, "first merge radius of ppm, bpm and vcm")
       .showDefault()

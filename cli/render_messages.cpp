@@ -43,9 +43,6 @@ nlohmann::ordered_json toJson(const MemoryPlan& plan) {
 }  // namespace
 
 void warnOfLimits(ProgressKind kind, const RenderSettings& settings) {
-  if (settings.precision == Precision::fast && settings.accel != Accel::embree) {
-    warn(kind, "--precision fast is float's but for --accel embree");
-  }
   // The merge radius, relative to the scene's radius.
   if (!strategiesOf(settings.method).merge) return;
   if (settings.radius < kSmallestRadius) {

@@ -27,8 +27,7 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
       .between(kDepthRange.least, kDepthRange.most, -1);
   command.add("--rr-depth", options.rrDepth, "first vertex where roulette may end a path").between(kRouletteDepthRange);
   // Kernels and intersector.
-  command.add("--precision", options.precision, "float, double, or fast: float with Embree's faster tests")
-      .showDefault();
+  command.add("--precision", options.precision, "float or double").showDefault();
   command.add("--isa", options.isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
   command.add("--accel", options.accel, "intersector: auto, small, bvh or embree").showDefault();
   command.add("--instances", options.instances, "of shape groups: auto, expand into copies, or keep").showDefault();

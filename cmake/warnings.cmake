@@ -34,8 +34,8 @@ function(optimize_fully)
     COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-if(WAVECREST_ONLY_GENERAL_KERNELS)
-  target_compile_definitions(wavecrest_options INTERFACE WAVECREST_ONLY_GENERAL_KERNELS)
+if(WAVECREST_ONLY_COMPLETE_KERNELS)
+  target_compile_definitions(wavecrest_options INTERFACE WAVECREST_ONLY_COMPLETE_KERNELS)
 endif()
 if(WAVECREST_SANITIZE)
   # Without optimisation but in lanes (kernel_library.cmake), and lines but no variables for the debugger: the checks

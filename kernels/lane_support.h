@@ -281,12 +281,10 @@ WAVECREST_INLINE Uniform4 draw(const StageContext<S>& context, UInt path, Block 
 WAVECREST_SIMD_END
 
 // Compiles STAGE<Precision, features> for every precision and specialisation of isCompiled() (kernels/stages.h).
-#ifdef WAVECREST_ONLY_GENERAL_KERNELS
+#ifdef WAVECREST_ONLY_COMPLETE_KERNELS
 #define WAVECREST_INSTANTIATE_PLAIN(STAGE)
 #define WAVECREST_INSTANTIATE_BIDIRECTIONAL(STAGE)
-#define WAVECREST_INSTANTIATE_GENERAL(STAGE)
 #else
-#define WAVECREST_INSTANTIATE_GENERAL(STAGE) WAVECREST_INSTANTIATE(STAGE, FloatPrecision, general)
 #define WAVECREST_INSTANTIATE_PLAIN(STAGE)              \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, diffuse) \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, smooth)  \
@@ -297,7 +295,6 @@ WAVECREST_SIMD_END
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, plainBidirectional)
 #endif
 #define WAVECREST_INSTANTIATE_ALL_FEATURES(STAGE)        \
-  WAVECREST_INSTANTIATE_GENERAL(STAGE)                   \
   WAVECREST_INSTANTIATE(STAGE, FloatPrecision, complete) \
   WAVECREST_INSTANTIATE(STAGE, DoublePrecision, complete)
 #define WAVECREST_INSTANTIATE_STAGE(STAGE)   \

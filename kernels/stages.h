@@ -21,17 +21,10 @@
 
 namespace wavecrest {
 
-// How numbers are kept and computed. Users trade speed for accuracy: `floating` is the default; `doubled` does shading,
-// throughput, densities and MIS weights in double and recomputes hit points in double; `fast` is `floating` that,
-// where a render asks for Embree, lets it intersect without its watertight tests: of random rays in a closed mesh of
-// 871,000 triangles one in a million then slips through an edge.
-enum class Precision { floating, doubled, fast };
-constexpr std::array<std::string_view, 3> kPrecisionNames{"float", "double", "fast"};
-
-// Whose kernels a precision runs.
-constexpr Precision arithmeticOf(Precision precision) {
-  return precision == Precision::fast ? Precision::floating : precision;
-}
+// How numbers are kept and computed: `doubled` does shading, throughput, densities and MIS weights in double and
+// recomputes hit points in double.
+enum class Precision { floating, doubled };
+constexpr std::array<std::string_view, 2> kPrecisionNames{"float", "double"};
 
 // Bits of a feature set. What a set lacks costs nothing in its kernels.
 enum Feature : uint32_t {
@@ -48,8 +41,8 @@ enum Feature : uint32_t {
 };
 
 // What kernels are instantiated for: feature sets, in the order in which a scene and method try them; the last has all.
-// plain: general without textures and shading normals, which are what makes each vertex dearer (kernels/README.md).
-// general: what most scenes are made of. complete: the rest as well.
+// plain: what most scenes are made of but textures and shading normals, which are what makes each vertex dearer
+// (kernels/README.md). complete: everything.
 enum class Specialization {
   diffuse,
   smooth,
@@ -57,16 +50,13 @@ enum class Specialization {
   diffuseBidirectional,
   smoothBidirectional,
   plainBidirectional,
-  general,
   complete
 };
-constexpr size_t kSpecializationCount = 8;
+constexpr size_t kSpecializationCount = 7;
 constexpr std::array<std::string_view, kSpecializationCount> kSpecializationNames{
-    "diffuse", "smooth",  "plain", "diffuse-bidirectional", "smooth-bidirectional", "plain-bidirectional",
-    "general", "complete"};
+    "diffuse", "smooth", "plain", "diffuse-bidirectional", "smooth-bidirectional", "plain-bidirectional", "complete"};
 constexpr uint32_t kAllFeatures = 1023;
-constexpr uint32_t kGeneralFeatures = kAllFeatures & ~(kCompoundBsdfs | kInstances);
-constexpr uint32_t kPlainFeatures = kGeneralFeatures & ~(kTextures | kShadingNormals | kNormalMaps | kBidirectional);
+constexpr uint32_t kPlainFeatures = kSpecularBsdfs | kLayeredBsdfs | kCurvedShapes | kRareLights;
 constexpr uint32_t kSmoothFeatures = kSpecularBsdfs | kCurvedShapes;
 constexpr std::array<uint32_t, kSpecializationCount> kSpecializationFeatures{0,
                                                                              kSmoothFeatures,
@@ -74,7 +64,6 @@ constexpr std::array<uint32_t, kSpecializationCount> kSpecializationFeatures{0,
                                                                              kBidirectional,
                                                                              kSmoothFeatures | kBidirectional,
                                                                              kPlainFeatures | kBidirectional,
-                                                                             kGeneralFeatures,
                                                                              kAllFeatures};
 
 constexpr uint32_t featuresOf(Specialization specialization) {
@@ -82,14 +71,14 @@ constexpr uint32_t featuresOf(Specialization specialization) {
 }
 
 // float is specialised for every feature set, double for the complete one alone: its users wait for accuracy anyway,
-// and each instantiation is paid for in compile time on every instruction set. With WAVECREST_ONLY_GENERAL_KERNELS
+// and each instantiation is paid for in compile time on every instruction set. With WAVECREST_ONLY_COMPLETE_KERNELS
 // (CMakeLists.txt) every scene and method runs on the complete kernels.
 constexpr bool isCompiled(Precision precision, Specialization specialization) {
   if (specialization == Specialization::complete) return true;
-#ifdef WAVECREST_ONLY_GENERAL_KERNELS
+#ifdef WAVECREST_ONLY_COMPLETE_KERNELS
   return false;
 #endif
-  return arithmeticOf(precision) == Precision::floating;
+  return precision == Precision::floating;
 }
 
 // The first specialisation compiled for the precision that covers these features.

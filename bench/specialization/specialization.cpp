@@ -4,12 +4,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "bench/against/child_render.h"
-#include "bench/specialization/code_size.h"
 #include "bench/throughput/turns.h"
 #include "engine/film/film.h"
 #include "engine/plan/render_plan.h"
-#include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
 namespace {
@@ -145,8 +142,7 @@ SpecializationResult measureSpecialization(const Scene& scene, const RenderSetti
                               .needs = namesOf(features),
                               .rows = {},
                               .machine = {}};
-  // A row for each feature set, with what is known before rendering. The program's own symbols tell the size of code.
-  const std::vector<unsigned char> program = readFileBytes(ownBinary());
+  // A row for each feature set, with what is known before rendering.
   const Specialization chosen = chooseSpecialization(features, base.precision);
   std::vector<RenderSettings> settings;
   for (const Specialization set : covering(features, base.precision)) {
@@ -158,7 +154,6 @@ SpecializationResult measureSpecialization(const Scene& scene, const RenderSetti
                            .paysFor = namesOf(featuresOf(set) & ~features),
                            .pathsPerCpuSecond = {},
                            .speedup = {},
-                           .codeBytes = codeBytes(program, base.isa, base.precision, featuresOf(set)),
                            .mean = {},
                            .worstBlock = {}});
   }

@@ -2,11 +2,10 @@
 //
 // Every feature set that covers a scene and method renders the same iterations with the same random numbers, in turn
 // and on one thread. Its image must be that of the complete kernels, bit for bit or but for rounding; what it gains is
-// speed, memory and code.
+// speed and memory.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,11 +24,10 @@ struct FeatureSetRow {
   Estimate pathsPerCpuSecond;
   Estimate speedup;  // over the complete kernels, round by round
   size_t bytesPerPath = 0;
-  std::optional<uint64_t> codeBytes;  // where the program has symbols
-  bool sameBits = false;              // the image is the complete kernels'
-  double pixelDifference = 0;         // root mean square over samples, relative to the image's
-  Bias mean, worstBlock;              // against the complete kernels, over seeds
-  bool differs = false;               // beyond chance and rounding
+  bool sameBits = false;       // the image is the complete kernels'
+  double pixelDifference = 0;  // root mean square over samples, relative to the image's
+  Bias mean, worstBlock;       // against the complete kernels, over seeds
+  bool differs = false;        // beyond chance and rounding
 };
 
 struct SpecializationResult {

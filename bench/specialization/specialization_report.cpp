@@ -31,21 +31,19 @@ Json biasJson(const Bias& bias) {
 
 }  // namespace
 
-// A star marks the kernels that scene and method render with. A size of code of "?" means a program without symbols.
+// A star marks the kernels that scene and method render with.
 std::string toText(const SpecializationResult& result) {
   TextLines text;
   line(text, "{} {} {}x{}: needs {}", result.scene, toString(result.method), result.width, result.height,
        listed(result.needs));
   for (const std::string& doubt : doubtsAbout(result.machine)) line(text, "  doubt: {}", doubt);
-  line(text, "  {:<23} {:>9} {:>14} {:>10} {:>9}   {:<24} {}", "kernels", "M paths/s", "speed-up", "bytes/path",
-       "code kB", "image", "pays for");
+  line(text, "  {:<23} {:>9} {:>14} {:>10}   {:<24} {}", "kernels", "M paths/s", "speed-up", "bytes/path", "image",
+       "pays for");
   // One line for each feature set.
   for (const FeatureSetRow& row : result.rows) {
-    const std::string code = row.codeBytes ? fmt::format("{:.0f}", 1e-3 * static_cast<double>(*row.codeBytes)) : "?";
-    line(text, "{} {:<23} {:>9.3f} {:>7.3f} +-{:.3f} {:>10} {:>9}   {:<24} {}", row.chosen ? '*' : ' ',
+    line(text, "{} {:<23} {:>9.3f} {:>7.3f} +-{:.3f} {:>10}   {:<24} {}", row.chosen ? '*' : ' ',
          enumeratorName(kSpecializationNames, row.specialization), 1e-6 * row.pathsPerCpuSecond.value,
-         row.speedup.value, row.speedup.interval.halfWidth(), row.bytesPerPath, code, imageInWords(row),
-         listed(row.paysFor));
+         row.speedup.value, row.speedup.interval.halfWidth(), row.bytesPerPath, imageInWords(row), listed(row.paysFor));
   }
   return fmt::to_string(text);
 }
@@ -66,7 +64,7 @@ std::string specializationSummary(const std::vector<SpecializationResult>& resul
 Json toJson(const SpecializationResult& result) {
   Json rows = Json::array();
   for (const FeatureSetRow& row : result.rows) {
-    // Intervals are pairs of their ends. code_bytes is null for a program without symbols.
+    // Intervals are pairs of their ends.
     const auto estimate = [](const Estimate& e) { return Json{e.interval.low, e.interval.high}; };
     rows.push_back({{"kernels", enumeratorName(kSpecializationNames, row.specialization)},
                     {"chosen", row.chosen},
@@ -76,7 +74,6 @@ Json toJson(const SpecializationResult& result) {
                     {"speedup", row.speedup.value},
                     {"speedup_interval", estimate(row.speedup)},
                     {"bytes_per_path", row.bytesPerPath},
-                    {"code_bytes", row.codeBytes ? Json(*row.codeBytes) : Json()},
                     {"same_bits", row.sameBits},
                     {"pixel_difference", row.pixelDifference},
                     {"bias", biasJson(row.mean)},

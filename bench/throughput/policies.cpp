@@ -29,7 +29,7 @@ Sums sumsOf(const std::vector<float>& image, const std::vector<float>& reference
   return sums;
 }
 
-// Sessions for each instruction set, the best first: double, float, and float with the general kernels where the scene
+// Sessions for each instruction set, the best first: double, float, and float with the complete kernels where the scene
 // chooses others. rows gets one row for each session.
 // One thread each: CPU time of threads that share caches would blur the comparison.
 std::vector<std::unique_ptr<Session>> makeSessions(const Scene& scene, RenderSettings settings,
@@ -48,9 +48,9 @@ std::vector<std::unique_ptr<Session>> makeSessions(const Scene& scene, RenderSet
       settings.isa = *isa;
       settings.precision = precision;
       add();
-      // Only below the general kernels is there anything to compare them with.
-      if (precision != Precision::floating || rows.back().specialization >= Specialization::general) continue;
-      settings.specialization = Specialization::general;
+      // Only below the complete kernels is there anything to compare them with.
+      if (precision != Precision::floating || rows.back().specialization >= Specialization::complete) continue;
+      settings.specialization = Specialization::complete;
       add();
       settings.specialization.reset();
     }

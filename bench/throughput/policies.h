@@ -1,5 +1,5 @@
 // What accuracy costs: speed, difference from double and memory of every precision policy on every instruction set; and
-// what specialisation saves: the general kernels, as far as others were chosen.
+// what specialisation saves: the complete kernels, as far as others were chosen.
 //
 // All render the same iterations with the same random numbers, so the difference of two images is rounding and what
 // follows from it (a path that takes another turn), not Monte Carlo noise.

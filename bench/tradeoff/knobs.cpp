@@ -36,7 +36,7 @@ void addArithmetic(Variants& variants, const RenderSettings& base) {
   for (const Isa isa : availableIsas()) {
     if (isa != base.isa) variants.add("--isa", toString(isa), true).isa = isa;
   }
-  variants.add("kernels", "general", true).specialization = Specialization::general;
+  variants.add("kernels", "complete", true).specialization = Specialization::complete;
   for (const uint32_t wave : {512u, 8192u}) {
     variants.add("--wave", std::to_string(wave), true).waveSize = wave;
   }
@@ -47,10 +47,6 @@ void addTracing(Variants& variants) {
   for (const Accel accel : {Accel::small, Accel::bvh, Accel::embree}) {
     variants.add("--accel", enumeratorName(kAccelNames, accel), true).accel = accel;
   }
-  // All that `fast` changes: it leaves out Embree's watertight tests.
-  RenderSettings& fastEmbree = variants.add("--accel", "embree --precision fast", true);
-  fastEmbree.accel = Accel::embree;
-  fastEmbree.precision = Precision::fast;
 }
 
 // What changes the paths of every method. A depth limit is varied downwards only.

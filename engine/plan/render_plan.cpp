@@ -108,7 +108,7 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   // Compile the scene for the kernels that it gets.
   plan.specialization = specializationFor(scene, settings);
   if (inPathSpace) refuseDeltaBlends(scene);
-  plan.scene = compileScene<S>(scene, settings.accel, settings.precision != Precision::fast, settings.instancing);
+  plan.scene = compileScene<S>(scene, settings.accel, true, settings.instancing);
   plan.needs = columnNeeds(scene, plan.specialization, plan.scene->view.instances != nullptr);
   // Clips are left in the compiled camera only where they hide a surface.
   const CameraView& camera = plan.scene->view.camera;

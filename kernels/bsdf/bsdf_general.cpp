@@ -7,9 +7,9 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// The feature set that stands for all with the same BSDFs.
+// Features of every BSDF here, with and without textures.
 template <bool kTextured>
-constexpr uint32_t kAll = featuresOf(kTextured ? Specialization::general : Specialization::plain);
+constexpr uint32_t kAll = kSpecularBsdfs | kLayeredBsdfs | (kTextured ? kTextures : 0u);
 
 }  // namespace
 
@@ -34,7 +34,7 @@ BsdfSample<typename P::Real> sampleGeneral(const BsdfInput<P, kTextured>& input,
                                              const Uniform4&);
 WAVECREST_INSTANTIATE_BSDFS(FloatPrecision, true)
 WAVECREST_INSTANTIATE_BSDFS(DoublePrecision, true)
-#ifndef WAVECREST_ONLY_GENERAL_KERNELS
+#ifndef WAVECREST_ONLY_COMPLETE_KERNELS
 WAVECREST_INSTANTIATE_BSDFS(FloatPrecision, false)
 #endif
 #undef WAVECREST_INSTANTIATE_BSDFS

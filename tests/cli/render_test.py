@@ -188,14 +188,6 @@ class Statistics(CommandTest):
             self.assertEqual((stats["isa"], stats["accel"]), ("scalar", accel))
         self.assertEqual(self.stats("--spp", "1")["specialization"], "diffuse")
 
-    def test_fast_is_float_and_says_so_where_embree_does_not_trace(self):
-        self.render("--spp", "2", "-o", "float.pfm")
-        result = self.render("--spp", "2", "--precision", "fast", "-o", "fast.pfm")
-        self.assertIn("--precision fast is float's but for --accel embree", result.stderr)
-        self.assertEqual(read_pfm(self.path("fast.pfm")), read_pfm(self.path("float.pfm")))
-        result = self.render("--spp", "2", "--precision", "fast", "--accel", "embree", "-o", "fast.pfm")
-        self.assertNotIn("warning", result.stderr)
-
     def test_a_large_diffuse_render_stays_under_300_megabytes(self):
         self.run_wavecrest("render", "cornell-diffuse", "--size", "1024x768", "--spp", "1", "--stats", "stats.json",
                            "-o", "image.exr", "-o", "image.png")

@@ -114,7 +114,8 @@ class Usage(CommandTest):
             self.assert_one_error_line(result, r"WAVECREST_SCENES is '/nowhere'; expected a folder of scenes")
 
     def test_words_of_a_list_name_the_choices(self):
-        self.assertIn("float, double, fast", self.render("--precision", "half", expect=USAGE).stderr)
+        for word in ("half", "fast"):
+            self.assertRegex(self.render("--precision", word, expect=USAGE).stderr, r"float, double\b(?!, )")
         self.assertIn("auto, embree, small", self.render("--accel", "kd", expect=USAGE).stderr)
 
     def test_numbers_that_an_option_does_not_take_are_answered_with_those_that_it_takes(self):

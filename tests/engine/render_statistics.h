@@ -168,12 +168,11 @@ inline std::string nameOf(const Variant& v) {
 
 inline std::vector<Variant> allVariants() {
   std::vector<Variant> list;
-  for (const Precision precision : {Precision::floating, Precision::doubled, Precision::fast}) {
+  for (const Precision precision : {Precision::floating, Precision::doubled}) {
     for (const SamplerKind sampler : kAllSamplerKinds) {
       for (const Accel accel : {Accel::embree, Accel::small, Accel::bvh}) {
-        // Embree knows no precision but that of the columns, and `fast` nothing but Embree.
+        // Embree knows no precision but that of the columns.
         if (accel == Accel::embree && precision == Precision::doubled) continue;
-        if (accel != Accel::embree && precision == Precision::fast) continue;
         list.push_back({precision, sampler, accel});
       }
     }

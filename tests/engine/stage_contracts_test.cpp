@@ -48,7 +48,7 @@ class StageContractsTest : public testing::Test {
     RenderSettings settings;
     settings.method = Method::bpt;
     settings.isa = bestIsa();
-    settings.specialization = Specialization::general;
+    settings.specialization = Specialization::complete;
     return settings;
   }();
   const RenderPlan<float> plan_ = planRender<float>(scene_, settings_);

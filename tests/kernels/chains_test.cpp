@@ -27,7 +27,7 @@ class ToyChains {
   ToyChains(Isa isa, size_t count, Target target)
       : stages_(findStages<float>(isa, Precision::floating,
                                   chooseSpecialization(featuresOf(Specialization::diffuse), Precision::floating))),
-        // Every column: where only the general kernels are compiled they stand in for these.
+        // Every column: where only the complete kernels are compiled they stand in for these.
         wave_(count, {.shadingNormals = true, .textures = true, .rouletteScale = true, .connections = true}),
         state(count, kept()),
         sums(kPixels, 0),

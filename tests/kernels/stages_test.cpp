@@ -153,9 +153,8 @@ TEST_P(StageTest, equalsScalarTwin) {
 TEST(Roulette, scaleUndoesTheCompressionOfRadiance) {
   for (const Isa isa : availableIsas()) {
     const StageScene<float> scene = makeRoom<float>(true, true, false);
-    const Specialization general = chooseSpecialization(kGeneralFeatures, Precision::floating);
-    const Stages<float>& stages = findStages<float>(isa, Precision::floating, general);
-    Wave<float> wave(kPaths, columnNeedsOf(general));
+    const Stages<float>& stages = findStages<float>(isa, Precision::floating, Specialization::complete);
+    Wave<float> wave(kPaths, columnNeedsOf(Specialization::complete));
     StageCounters counters;
     StageContext<float> context;
     context.scene = &scene.view;

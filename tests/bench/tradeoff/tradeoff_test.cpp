@@ -50,8 +50,8 @@ TEST(Knobs, canBeChosenByNameAndAreComparedWithTheSame) {
     for (const Variant& v : chooseVariants(all, words)) told += v.knob + " " + v.value + "; ";
     return told;
   };
-  EXPECT_EQ(chosen({"kernels"}), "baseline float; --precision double; kernels general; ");
-  EXPECT_EQ(chosen({"--precision", "kernels"}), "baseline float; --precision double; kernels general; ");
+  EXPECT_EQ(chosen({"kernels"}), "baseline float; --precision double; kernels complete; ");
+  EXPECT_EQ(chosen({"--precision", "kernels"}), "baseline float; --precision double; kernels complete; ");
   EXPECT_EQ(chosen({"precision"}), chosen({"--precision"}));
   EXPECT_THROW(chosen({"radius"}), std::invalid_argument) << "path tracing has none";
   EXPECT_THROW(chosen({""}), std::invalid_argument);
@@ -63,7 +63,7 @@ TEST(Tradeoff, rendersAsManySeedsAsAskedFor) {
       measureTrade(smallBox(48, 32), settingsOf(Method::pt), {.seconds = 1, .seeds = 3, .knobs = {"kernels"}});
   EXPECT_EQ(result.seeds, 3u);
   ASSERT_EQ(result.rows.size(), 3u);
-  const TradeRow& row = rowOf(result, "kernels", "general");
+  const TradeRow& row = rowOf(result, "kernels", "complete");
   EXPECT_GT(row.speed.value, 0);
   EXPECT_EQ(row.mean.value, rowOf(result, "baseline", "float").mean.value) << "the same bits as the set's own kernels";
 }
