@@ -14,6 +14,7 @@ void addInspectCommand(CommandLine& program, int& exitCode);
 void addConvertCommand(CommandLine& program, int& exitCode);
 void addConvergeCommand(CommandLine& program, int& exitCode);
 void addDescribeCommand(CommandLine& program, int& exitCode);
+void addMergeCommand(CommandLine& program, int& exitCode);
 void addRecommendCommand(CommandLine& program, int& exitCode);
 void addReferenceCommand(CommandLine& program, int& exitCode);
 void addRenderCommand(CommandLine& program, int& exitCode);

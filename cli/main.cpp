@@ -113,6 +113,7 @@ int run(std::vector<std::string> arguments) {
     addConvergeCommand(program, exitCode);
     addReferenceCommand(program, exitCode);
     addRenderCommand(program, exitCode);
+    addMergeCommand(program, exitCode);
     addInspectCommand(program, exitCode);
     addRecommendCommand(program, exitCode);
     addConvertCommand(program, exitCode);

@@ -27,6 +27,25 @@
 namespace wavecrest {
 namespace {
 
+// The share of a render that --part asks for. Throws UsageError where there is none.
+RenderSettings settingsOfPart(const RenderOptions& options, const RenderSettings& settings) {
+  const auto [part, parts] = parsePart("--part", options.part);
+  if (options.checkpoint.file.empty()) {
+    throw UsageError("--part: its result is a checkpoint; expected --checkpoint FILE");
+  }
+  if (!settings.iterations) throw UsageError("--part: a part of how many iterations is not known; expected --spp N");
+  const bool mlt = settings.method == Method::mlt;
+  if (mlt && !options.outputs.empty()) {
+    throw UsageError("--part: some of the chains of mlt make no image; expected no -o, but `wavecrest merge -o`");
+  }
+  const uint64_t most = mlt ? settings.metropolis.chains : *settings.iterations;
+  if (parts > most) {
+    throw UsageError(fmt::format("--part {}: there are {} {}; expected no more parts than that", options.part, most,
+                                 mlt ? "chains" : "iterations"));
+  }
+  return settingsOfShare(settings, part - 1, parts);
+}
+
 // The engine's settings: what the options leave open comes from the scene and the machine. Stages are timed only where
 // statistics are written.
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
@@ -34,7 +53,7 @@ RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   // A goal ends the render, not the scene's number of samples.
   if (options.spp == 0 && options.until.any()) settings.iterations.reset();
   settings.measureStages = !options.stats.empty();
-  return settings;
+  return options.part.empty() ? settings : settingsOfPart(options, settings);
 }
 
 // What `make` makes: a session or a plan. A memory budget that is too small is a UsageError of --memory.
@@ -83,7 +102,7 @@ void goOn(const std::unique_ptr<Checkpoint>& earlier, const CheckpointOptions& o
   if (earlier) {
     earlier->restore(scene, settings, session);
     try {
-      outputs.goOnFrom(earlier->notes(), session);
+      outputs.goOnFrom(earlier->header().notes, session);
     } catch (const nlohmann::json::exception&) {
       throw InputError(options.file +
                        ": has notes that are none; expected a checkpoint as `render --checkpoint` left it");
@@ -121,7 +140,11 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
   // From here on signals interrupt the session.
   guard.watch(&live.interruptible(session));
   std::optional<uint64_t> goalPaths;
-  if (settings.iterations) goalPaths = pathsOf(*settings.iterations, session.film().area());
+  if (settings.iterations) {
+    // Of mlt a part has some of the chains of all iterations.
+    const uint64_t parts = settings.method == Method::mlt ? settings.share.parts : 1;
+    goalPaths = pathsOf(*settings.iterations, session.film().area()) / parts;
+  }
   {
     // Progress lives in a block of its own: its end completes the line on the terminal.
     const Progress progress(kind, session, settings.seconds, goalPaths);

@@ -69,6 +69,8 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command.add("--until-ssim", options.until.ssim, "stop when the SSIM against --reference is S").between(1e-9, 1.0);
   command.add("--reference", options.until.reference, "image that --until-ssim compares with");
   addCheckpointOptions(command, options.checkpoint);
+  command.add("--part", options.part,
+              "I/N: render the I-th of N parts of --spp into --checkpoint; `wavecrest merge` adds them up");
   addLiveOptions(command, options.live);
   command.add("-o,--output", options.outputs, "image file: .exr, .png or .pfm; repeatable; default: SCENE.exr")
       .repeatable();

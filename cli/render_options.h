@@ -16,7 +16,7 @@ namespace wavecrest {
 // The library's options of a render, and those that only the command line has.
 struct RenderOptions : api::RenderOptions {
   SceneOptions scene;
-  std::string snapshotEvery, stats, progress = "auto";
+  std::string part, snapshotEvery, stats, progress = "auto";
   std::vector<std::string> outputs;
   double exposure = 0;  // stops, of PNG
   bool dryRun = false, pin = false, quiet = false;

@@ -144,13 +144,15 @@ void RenderOutputs::write(const Session& session, const std::string& statsFile) 
 
 void RenderOutputs::writeCheckpoint(const Session& session) {
   if (names_.checkpoint.empty() || session.statistics().paths == 0) return;
-  // The notes are what goOnFrom reads: time, schedule and snapshots so far.
+  // The notes are what goOnFrom reads, time, schedule and snapshots so far, and the statistics for `merge`.
   nlohmann::ordered_json snapshots = nlohmann::ordered_json::array();
   for (const SnapshotRecord& snapshot : snapshots_) {
     snapshots.push_back({snapshot.number, snapshot.renderSeconds, snapshot.iterations, snapshot.file});
   }
-  const nlohmann::ordered_json notes = {
-      {"wall_seconds", wallSeconds()}, {"snapshot_every", names_.snapshotEvery}, {"snapshots", snapshots}};
+  const nlohmann::ordered_json notes = {{"wall_seconds", wallSeconds()},
+                                        {"snapshot_every", names_.snapshotEvery},
+                                        {"snapshots", snapshots},
+                                        {"stats", stats(session.statistics())}};
   attempt([&] { wavecrest::writeCheckpoint(names_.checkpoint, scene_, settings_, session, notes); });
 }
 

@@ -78,13 +78,8 @@ uint32_t parseCount(const char* option, const std::string& text) {
 
 // "i/n" with i from 1 to n, or UsageError.
 Shard parseShard(const std::string& text) {
-  const size_t slash = text.find('/');
-  if (slash == std::string::npos) throw UsageError(fmt::format("--shard {}: expected i/n", text));
-  const Shard shard{countOf(text.substr(0, slash)), countOf(text.substr(slash + 1))};
-  if (shard.index == 0 || shard.index > shard.count) {
-    throw UsageError(fmt::format("--shard {}: expected i/n with i from 1 to n", text));
-  }
-  return shard;
+  const auto [index, count] = parsePart("--shard", text);
+  return {index, count};
 }
 
 // The profile that was named; by default quick.

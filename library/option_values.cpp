@@ -98,6 +98,19 @@ Isa parseIsaOption(const std::string& word) {
   return isa;
 }
 
+std::array<uint32_t, 2> parsePart(const std::string& option, const std::string& text) {
+  std::array<uint32_t, 2> part{};
+  const char* const end = text.data() + text.size();
+  const auto [slash, indexError] = std::from_chars(text.data(), end, part[0]);
+  if (indexError == std::errc() && slash != end && *slash == '/') {
+    const auto [rest, countError] = std::from_chars(slash + 1, end, part[1]);
+    const bool valid = part[0] >= 1 && part[0] <= part[1] && part[1] <= kMostShares;
+    if (countError == std::errc() && rest == end && valid) return part;
+  }
+  throw UsageError(
+      fmt::format("{} '{}': no part; expected I/N with I from 1 to N, and N up to {}", option, text, kMostShares));
+}
+
 std::array<uint32_t, 2> parseSize(const std::string& option, const std::string& text) {
   std::array<uint32_t, 2> size{};
   const char* const end = text.data() + text.size();

@@ -37,6 +37,10 @@ std::vector<std::string_view> isaNames();
 // "auto" for the best there is, or the name of one that this machine and build have; UsageError otherwise.
 Isa parseIsaOption(const std::string& word);
 
+// "2/8": which part, from 1 on, of how many; UsageError otherwise.
+constexpr uint32_t kMostShares = 100000;
+std::array<uint32_t, 2> parsePart(const std::string& option, const std::string& text);
+
 // "1024x768": both 1 to 65535, or UsageError.
 std::array<uint32_t, 2> parseSize(const std::string& option, const std::string& text);
 

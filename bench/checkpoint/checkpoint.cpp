@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include "bench/enumerator_name.h"
 #include "bench/json_text.h"
@@ -11,6 +14,7 @@
 #include "engine/state/state_stream.h"
 #include "engine/version.h"
 #include "metrics/image/atomic_file.h"
+#include "metrics/image/image.h"
 
 namespace wavecrest {
 namespace {
@@ -19,8 +23,9 @@ using Bytes = std::span<const unsigned char>;
 using Json = nlohmann::ordered_json;
 
 // kMagic marks checkpoints of all versions, kFormat those of this one.
-constexpr std::string_view kMagic = "wavecrest checkpoint ", kFormat = "wavecrest checkpoint 1\n";
-constexpr const char* kIntact = "expected one as `render --checkpoint` left it";
+constexpr std::string_view kMagic = "wavecrest checkpoint ", kFormat = "wavecrest checkpoint 2\n";
+// What stands before the header and after the state.
+constexpr size_t kFrame = kFormat.size() + sizeof(uint64_t), kSum = sizeof(uint32_t);
 
 Bytes bytesOf(std::string_view text) { return {reinterpret_cast<const unsigned char*>(text.data()), text.size()}; }
 
@@ -48,6 +53,41 @@ Json chainIdentity(const MetropolisSettings& chains) {
 
 // More than any render may have.
 constexpr uint32_t kMostThreads = 4096;
+
+bool startsWith(Bytes bytes, std::string_view text) {
+  return bytes.size() >= text.size() && std::memcmp(bytes.data(), text.data(), text.size()) == 0;
+}
+
+// The bytes of the header, from the file's first kFrame bytes. Throws where it is of no format or longer than the file.
+uint64_t headerBytes(const std::string& file, Bytes frame, uint64_t fileBytes) {
+  if (!startsWith(frame, kMagic)) failCheckpoint(file, "is no checkpoint", kIntactCheckpoint);
+  if (!startsWith(frame, kFormat)) {
+    failCheckpoint(file, "is damaged, or a checkpoint of another version", kIntactCheckpoint);
+  }
+  uint64_t bytes = 0;
+  if (frame.size() >= kFrame) std::memcpy(&bytes, frame.data() + kFormat.size(), sizeof(bytes));
+  if (fileBytes < kFrame + kSum || bytes > fileBytes - kFrame - kSum) {
+    failCheckpoint(file, "is damaged or cut short", kIntactCheckpoint);
+  }
+  return bytes;
+}
+
+CheckpointHeader parseHeader(const std::string& file, Bytes text) {
+  try {
+    const Json parsed = Json::parse(text.begin(), text.end());
+    const auto threads = parsed.at("cut").at("threads").get<uint32_t>();
+    if (!parsed.at("render").is_object() || !parsed.at("notes").is_object() || threads < 1 || threads > kMostThreads) {
+      failCheckpoint(file, "has a header that is none", kIntactCheckpoint);
+    }
+    return {.scene = parsed.at("scene").get<std::string>(),
+            .render = parsed.at("render"),
+            .cut = parsed.at("cut"),
+            .notes = parsed.at("notes"),
+            .holds = holdingsFrom(parsed.at("holds"))};
+  } catch (const nlohmann::json::exception&) {
+    failCheckpoint(file, "has a header that is none", kIntactCheckpoint);
+  }
+}
 
 // A value for messages, strings without their quotes.
 std::string wordOf(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
@@ -84,17 +124,31 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
   }
   if (dependsOnWaves(settings.method)) identity["wave"] = settings.waveSize;
   if (hasConnectionRoulette(settings.method)) identity["connection_roulette"] = settings.connectionRoulette;
-  if (settings.method == Method::mlt) identity.update(chainIdentity(settings.metropolis));
+  if (settings.method == Method::mlt) {
+    identity.update(chainIdentity(settings.metropolis));
+    identity["part"] = fmt::format("{}/{}", settings.share.part + 1, settings.share.parts);
+  }
   return identity;
 }
 
 void writeCheckpoint(const std::string& file, const Scene& scene, const RenderSettings& settings,
                      const Session& session, const Json& notes) {
-  const Json header = {{"scene", scene.name},
-                       {"render", renderIdentity(scene, settings, session)},
-                       {"cut", {{"threads", settings.cutForThreads()}}},
-                       {"notes", notes}};
-  const std::string text = jsonText(header);
+  writeCheckpoint(file,
+                  {.scene = scene.name,
+                   .render = renderIdentity(scene, settings, session),
+                   .cut = {{"threads", settings.cutForThreads()}},
+                   .notes = notes,
+                   .holds = holdingsOf(settings, session)},
+                  [&](StateWriter& out) { session.save(out); });
+}
+
+void writeCheckpoint(const std::string& file, const CheckpointHeader& header,
+                     const std::function<void(StateWriter&)>& save) {
+  const std::string text = jsonText(Json{{"scene", header.scene},
+                                         {"render", header.render},
+                                         {"holds", toJson(header.holds)},
+                                         {"cut", header.cut},
+                                         {"notes", header.notes}});
   AtomicFile out(file);
   uint32_t sum = 0;
   // The checksum covers every byte that is written before it.
@@ -107,72 +161,72 @@ void writeCheckpoint(const std::string& file, const Scene& scene, const RenderSe
   write(bytesOf(uint64_t{text.size()}));
   write(bytesOf(std::string_view(text)));
   StateWriter state(write);
-  session.save(state);
+  save(state);
   state.flush();
   out.write(bytesOf(sum));
   out.commit();
 }
 
-Checkpoint::Checkpoint(const std::string& file) : file_(file), bytes_(readFileBytes(file)) {
-  const Bytes all = bytes_;
-  const auto startsWith = [&](std::string_view text) {
-    return all.size() >= text.size() && std::memcmp(all.data(), text.data(), text.size()) == 0;
+CheckpointHeader readCheckpointHeader(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::error_code error;
+  const uint64_t size = std::filesystem::file_size(file, error);
+  if (!in || error) throw ImageError(file, "cannot be read", "expected a readable file");
+  const auto read = [&](uint64_t count) {
+    std::vector<unsigned char> bytes(count);
+    in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
+    bytes.resize(static_cast<size_t>(in.gcount()));
+    return bytes;
   };
-  // The format.
-  if (!startsWith(kMagic)) fail("is no checkpoint", kIntact);
-  if (!startsWith(kFormat)) fail("is damaged, or a checkpoint of another version", kIntact);
-  // Sizes are checked before they are used, then the checksum of everything.
-  constexpr size_t kFrame = kFormat.size() + sizeof(uint64_t), kSum = sizeof(uint32_t);
-  uint64_t headerBytes = 0;
-  uint32_t sum = 0;
-  if (all.size() >= kFrame + kSum) {
-    std::memcpy(&headerBytes, all.data() + kFormat.size(), sizeof(headerBytes));
-    std::memcpy(&sum, all.data() + all.size() - kSum, sizeof(sum));
-  }
-  if (all.size() < kFrame + kSum || headerBytes > all.size() - kFrame - kSum ||
-      sum != checksum(0, all.first(all.size() - kSum))) {
-    fail("is damaged or cut short", kIntact);
-  }
-  // The header. The state stays as bytes until a session is there to take it.
-  const Bytes header = all.subspan(kFrame, headerBytes);
-  state_ = all.subspan(kFrame + headerBytes, all.size() - kFrame - kSum - headerBytes);
-  try {
-    const Json parsed = Json::parse(header.begin(), header.end());
-    render_ = parsed.at("render");
-    notes_ = parsed.at("notes");
-    threads_ = parsed.at("cut").at("threads").get<uint32_t>();
-    if (!render_.is_object() || threads_ < 1 || threads_ > kMostThreads) fail("has a header that is none", kIntact);
-  } catch (const nlohmann::json::exception&) {
-    fail("has a header that is none", kIntact);
-  }
+  const std::vector<unsigned char> frame = read(kFrame);
+  return parseHeader(file, read(headerBytes(file, frame, size)));
 }
 
-void Checkpoint::fail(const std::string& wrong, const std::string& expected) const {
-  throw CheckpointError(fmt::format("{}: {}; {}", file_, wrong, expected));
+Checkpoint::Checkpoint(const std::string& file) : file_(file), bytes_(readFileBytes(file)) {
+  const Bytes all = bytes_;
+  // Sizes are checked before they are used, then the checksum of everything.
+  const uint64_t header = headerBytes(file, all.first(std::min(all.size(), kFrame)), all.size());
+  uint32_t sum = 0;
+  std::memcpy(&sum, all.data() + all.size() - kSum, sizeof(sum));
+  if (sum != checksum(0, all.first(all.size() - kSum))) {
+    failCheckpoint(file_, "is damaged or cut short", kIntactCheckpoint);
+  }
+  // The state stays as bytes until somebody is there to take it.
+  header_ = parseHeader(file_, all.subspan(kFrame, header));
+  state_ = all.subspan(kFrame + header, all.size() - kFrame - kSum - header);
+}
+
+void failCheckpoint(const std::string& file, const std::string& wrong, const std::string& expected) {
+  throw CheckpointError(fmt::format("{}: {}; {}", file, wrong, expected));
 }
 
 void Checkpoint::cutAlike(RenderSettings& settings) const {
-  if (dependsOnWaves(settings.method)) settings.piecesForThreads = threads_;
+  if (dependsOnWaves(settings.method)) settings.piecesForThreads = header_.cut.at("threads").get<uint32_t>();
 }
 
-// Throws with the first difference in the order of renderIdentity: the method before its settings, the size before the
-// hash.
-void Checkpoint::requireSame(const Json& wanted) const {
+void requireSameRender(const std::string& file, const Json& found, const Json& wanted,
+                       std::span<const std::string_view> except) {
   for (const auto& [key, value] : wanted.items()) {
-    const auto found = render_.find(key);
-    if (found != render_.end() && *found == value) continue;
-    fail(fmt::format("its {} is {}, not {}", key, found == render_.end() ? "unknown" : wordOf(*found), wordOf(value)),
-         "expected the scene and settings that it was made with, or another file");
+    if (std::find(except.begin(), except.end(), key) != except.end()) continue;
+    const auto own = found.find(key);
+    if (own != found.end() && *own == value) continue;
+    failCheckpoint(
+        file, fmt::format("its {} is {}, not {}", key, own == found.end() ? "unknown" : wordOf(*own), wordOf(value)),
+        "expected the scene and settings that it was made with, or another file");
   }
 }
 
 void Checkpoint::restore(const Scene& scene, const RenderSettings& settings, Session& session) const {
-  requireSame(renderIdentity(scene, settings, session));
+  if (!header_.holds.goesOn()) {
+    failCheckpoint(file_, "is a sum of parts that no render goes on from",
+                   "expected a checkpoint of `render`, or a sum of iterations without gaps; not of mlt");
+  }
+  requireSameRender(file_, header_.render, renderIdentity(scene, settings, session));
   try {
     StateReader in(state_);
     session.restore(in);
   } catch (const StateError& error) {
-    fail(error.what(), kIntact);
+    failCheckpoint(file_, error.what(), kIntactCheckpoint);
   }
 }
 

@@ -1,22 +1,25 @@
 // Checkpoints: files from which a render goes on bit for bit, in another process and with any number of threads.
 //
-//   "wavecrest checkpoint 1\n"   the format
+//   "wavecrest checkpoint 2\n"   the format
 //   uint64                       bytes of the header
 //   header                       JSON: `scene`, its name; `render`, everything that decides the image's bits
-//                                (renderIdentity); `cut`, how light paths of merging methods are cut into waves;
-//                                `notes`, the caller's own
-//   state                        Session::save
+//                                (renderIdentity); `holds`, which share of the image (Holdings); `cut`, how light
+//                                paths of merging methods are cut into waves; `notes`, the caller's own
+//   state                        Session::save: the film, what was done, and what only the method's session reads
 //   uint32                       CRC-32 (zlib's) of all bytes before
 //
 // Numbers are little-endian. A file is replaced as a whole: whoever is killed while it is written leaves the last one.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "bench/checkpoint/holdings.h"
 #include "engine/scene/scene.h"
 #include "engine/session/session.h"
 
@@ -36,6 +39,29 @@ nlohmann::ordered_json renderIdentity(const Scene& scene, const RenderSettings& 
 void writeCheckpoint(const std::string& file, const Scene& scene, const RenderSettings& settings,
                      const Session& session, const nlohmann::ordered_json& notes);
 
+// What a checkpoint says of itself.
+struct CheckpointHeader {
+  std::string scene;
+  nlohmann::ordered_json render, cut, notes;
+  Holdings holds;
+};
+
+// The header alone, without the checksum of what follows. Throws as Checkpoint does.
+CheckpointHeader readCheckpointHeader(const std::string& file);
+
+// Replaces the file by a checkpoint with this header. save writes the state.
+void writeCheckpoint(const std::string& file, const CheckpointHeader& header,
+                     const std::function<void(StateWriter&)>& save);
+
+// Throws CheckpointError: FILE: WRONG; EXPECTED.
+[[noreturn]] void failCheckpoint(const std::string& file, const std::string& wrong, const std::string& expected);
+// Throws with the first difference of what a checkpoint was made of, in the order of renderIdentity: the method before
+// its settings, the size before the hash. Keys in `except` may differ.
+void requireSameRender(const std::string& file, const nlohmann::ordered_json& found,
+                       const nlohmann::ordered_json& wanted, std::span<const std::string_view> except = {});
+// What is expected of a file that is damaged.
+constexpr const char* kIntactCheckpoint = "expected one as `render --checkpoint` or `merge --checkpoint` left it";
+
 class Checkpoint {
  public:
   // Throws CheckpointError where the file is damaged or no checkpoint, ImageError where it cannot be read.
@@ -46,17 +72,14 @@ class Checkpoint {
   // Restores the session's state; it must be new. Throws CheckpointError with the first difference where scene or
   // settings are others than those of the checkpoint.
   void restore(const Scene& scene, const RenderSettings& settings, Session& session) const;
-  const nlohmann::ordered_json& notes() const { return notes_; }
+  const CheckpointHeader& header() const { return header_; }
+  std::span<const unsigned char> state() const { return state_; }
 
  private:
-  [[noreturn]] void fail(const std::string& wrong, const std::string& expected) const;
-  void requireSame(const nlohmann::ordered_json& wanted) const;
-
   std::string file_;
   std::vector<unsigned char> bytes_;
   std::span<const unsigned char> state_;  // within the bytes
-  nlohmann::ordered_json render_, notes_;
-  uint32_t threads_ = 0;  // for which its work is cut
+  CheckpointHeader header_;
 };
 
 }  // namespace wavecrest

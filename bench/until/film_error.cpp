@@ -16,28 +16,6 @@ constexpr double kMostDeviation = 0.5;
 // below a goal picks one that is low by chance. This factor makes up for both: tests/bench/until/film_error_test.cpp.
 constexpr double kWidening = 1.4;
 
-// 1 / brightness^2 of each sample.
-std::vector<float> weightsOf(std::span<const float> film, size_t width) {
-  const PixelBlocks blocks = PixelBlocks::of(film.size(), width);
-  std::vector<double> sums(blocks.count()), counts(blocks.count());
-  double all = 0;
-  for (size_t i = 0; i < film.size(); ++i) {
-    const double value = std::max(film[i], 0.0f);
-    const size_t block = blocks.ofSample(i);
-    sums[block] += value;
-    ++counts[block];
-    all += value;
-  }
-  const double darkest = kDarkest * all / static_cast<double>(film.size());
-  std::vector<float> weights(film.size());
-  for (size_t i = 0; i < film.size(); ++i) {
-    const size_t block = blocks.ofSample(i);
-    const double brightness = std::max(sums[block] / counts[block], darkest);
-    weights[i] = static_cast<float>(brightness > 0 ? 1 / (brightness * brightness) : 0);
-  }
-  return weights;
-}
-
 std::vector<float> meanFilm(std::span<const std::vector<float>> slices) {
   std::vector<float> mean(slices.front().size());
   for (size_t i = 0; i < mean.size(); ++i) {
@@ -52,7 +30,7 @@ std::vector<float> meanFilm(std::span<const std::vector<float>> slices) {
 class Products {
  public:
   Products(std::span<const std::vector<float>> slices, size_t width) : count_(slices.size()), values_(count_ * count_) {
-    const std::vector<float> mean = meanFilm(slices), weights = weightsOf(mean, width);
+    const std::vector<float> mean = meanFilm(slices), weights = errorWeights(mean, width);
     const auto samples = static_cast<double>(mean.size());
     for (size_t j = 0; j < count_; ++j) {
       for (size_t k = j; k < count_; ++k) {
@@ -97,9 +75,30 @@ double squaredCrossProduct(const Products& products) {
 
 }  // namespace
 
+std::vector<float> errorWeights(std::span<const float> film, size_t width) {
+  const PixelBlocks blocks = PixelBlocks::of(film.size(), width);
+  std::vector<double> sums(blocks.count()), counts(blocks.count());
+  double all = 0;
+  for (size_t i = 0; i < film.size(); ++i) {
+    const double value = std::max(film[i], 0.0f);
+    const size_t block = blocks.ofSample(i);
+    sums[block] += value;
+    ++counts[block];
+    all += value;
+  }
+  const double darkest = kDarkest * all / static_cast<double>(film.size());
+  std::vector<float> weights(film.size());
+  for (size_t i = 0; i < film.size(); ++i) {
+    const size_t block = blocks.ofSample(i);
+    const double brightness = std::max(sums[block] / counts[block], darkest);
+    weights[i] = static_cast<float>(brightness > 0 ? 1 / (brightness * brightness) : 0);
+  }
+  return weights;
+}
+
 double relativeFilmError(std::span<const float> film, std::span<const float> expectation, size_t width) {
   assert(film.size() == expectation.size());
-  const std::vector<float> weights = weightsOf(film, width);
+  const std::vector<float> weights = errorWeights(film, width);
   double sum = 0;
   for (size_t i = 0; i < film.size(); ++i) {
     sum += double{weights[i]} * std::pow(double{film[i]} - double{expectation[i]}, 2);

@@ -36,6 +36,8 @@ struct FilmError {
 // row.
 double relativeFilmError(std::span<const float> film, std::span<const float> expectation, size_t width);
 constexpr double kDarkest = 0.01;
+// 1 / brightness^2 of each sample of the film.
+std::vector<float> errorWeights(std::span<const float> film, size_t width);
 
 // slices: independent images of one size and of equal numbers of iterations; the film is their mean. Nothing where
 // slices are fewer than kFewestSlices or too uneven to tell: black images, or one sample that outshines the rest.

@@ -56,7 +56,9 @@ class ChainSession final : public PlannedSession<S> {
 
   ChainWorker<S>& worker();
   uint64_t stepsFor(uint64_t iterations) const;
-  uint64_t mutations() const { return step_ * settings_.metropolis.chains; }
+  // Of the chains of this session, and of all chains of the render.
+  uint64_t mutations() const { return step_ * settings_.chainsOfShare(); }
+  uint64_t mutationsOfAll() const { return step_ * settings_.metropolis.chains; }
   bool direct() const { return hasDirectPass(plan_, settings_); }
 
   // Whether a render is to end: its time is over, or it was interrupted. Checked before every wave.
@@ -76,7 +78,7 @@ class ChainSession final : public PlannedSession<S> {
   std::optional<ChainWaves<S>> chains_;  // from the plan on
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<ChainWorker<S>>> workers_;
   std::vector<char> bootstrapped_;  // which waves of the next epoch's bootstrap samples are traced
-  uint64_t directDone_ = 0;         // direct light samples of each pixel; some may have more
+  uint64_t directDone_ = 0;         // direct light samples of each pixel, of this share; some may have more
   uint64_t step_ = 0;               // steps that every chain has taken
   double stepSeconds_ = 0;          // that the latest took
   std::vector<StuckChain> stuck_;   // at the ends of epochs
@@ -192,13 +194,17 @@ void ChainSession<S>::advance(uint64_t steps) {
   });
 }
 
-// One direct sample of each pixel for every so many mutations of it, beginning with the first step. One level of
-// samples after the other, so that whatever stops it leaves all pixels with about as many.
+// One direct sample of each pixel for every so many mutations of it, beginning with the first step; where several
+// sessions share the chains, they take turns. One level of samples after the other, so that whatever stops it leaves
+// all pixels with about as many.
 template <class S>
 bool ChainSession<S>::traceDirect(const Stop& stop) {
   const FilmArea& area = film_.area();
   const uint64_t perIteration = kMutationsPerDirect * area.pixels.size(),
-                 goal = (mutations() + perIteration - 1) / perIteration;
+                 all = (mutationsOfAll() + perIteration - 1) / perIteration;
+  // This share has samples part, part + parts, ... of all.
+  const uint64_t part = settings_.share.part, parts = settings_.share.parts,
+                 goal = all > part ? (all - part - 1) / parts + 1 : 0;
   while (directDone_ < goal && !stop()) {
     const std::vector<PixelRun> runs = film_.runsBelow(directDone_ + 1, settings_.waveSize);
     forEach(runs.size(), [&](size_t index) {
@@ -206,7 +212,7 @@ bool ChainSession<S>::traceDirect(const Stop& stop) {
       const FlushToZero flushToZero;
       const PixelRun& run = runs[index];
       StageContext<S> context = chainContext(plan_, settings_, area);
-      context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(run.samples), nullptr};
+      context.sampler = {settings_.sampler, settings_.seed, static_cast<uint32_t>(part + parts * run.samples), nullptr};
       context.sharedPlace = film_.spreads();
       ChainWorker<S>& mine = worker();
       mine.traceDirect(context, area, run.first, run.count);
@@ -243,10 +249,7 @@ void ChainSession<S>::updateFilm() {
   chains_->addPending(pending);
   film_.setPending(std::move(pending));
   // b N_pix / M
-  const double factor =
-      step_ == 0 ? 0
-                 : epochs_.unit() * static_cast<double>(film_.area().pixels.size()) / static_cast<double>(mutations());
-  film_.setSplatFactor(factor);
+  film_.weighSplats(epochs_.unit() * static_cast<double>(film_.area().pixels.size()), mutations());
 }
 
 template <class S>
@@ -286,7 +289,8 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
 template <class S>
 RenderStatistics ChainSession<S>::statistics() const {
   RenderStatistics out = this->plannedStatistics();
-  out.iterations = mutations() / film_.area().pixels.size();
+  // Of the whole render, of which a share has some of the chains.
+  out.iterations = mutationsOfAll() / film_.area().pixels.size();
   out.paths = mutations();
   // Make the rows of the stages, and add up what all workers have counted.
   for (std::string& name : stageNames(plan_.pipeline)) out.stages.push_back({std::move(name)});

@@ -111,6 +111,7 @@ void ChainWaves<S>::addPending(std::vector<PendingSplat>& splats) const {
       // `weight` is the number of expected visits that are not on the film yet.
       const double visits = static_cast<double>(chains.weight[i]) * static_cast<double>(state.splatFactor);
       splats.push_back({chains.pixel[i],
+                        static_cast<uint32_t>(layout_.chainAt(wave, i)),
                         {visits * static_cast<double>(chains.red[i]), visits * static_cast<double>(chains.green[i]),
                          visits * static_cast<double>(chains.blue[i])}});
     }

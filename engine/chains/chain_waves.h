@@ -17,7 +17,7 @@ class StateWriter;
 template <class S>
 class ChainWaves {
  public:
-  // As many chains as the settings say, in waves of at most their size, which are nowhere at first. All three must
+  // The chains of the settings' share, in waves of at most their size, which are nowhere at first. All three must
   // outlive them.
   ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
 

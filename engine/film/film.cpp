@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -58,6 +59,7 @@ std::vector<float> Film::resolve() const {
   for (const PendingSplat& splat : pending_) {
     for (size_t c = 0; c < 3; ++c) pending[3 * size_t{splat.pixel} + c] += splat.rgb[c];
   }
+  const double splatFactor = splatCount_ == 0 ? 0 : splatUnit_ / static_cast<double>(splatCount_);
   // Pixels are in wave order, the image is row by row.
   for (size_t i = 0; i < area_.pixels.size(); ++i) {
     // x and y count from the corner of the rendered rectangle.
@@ -71,10 +73,10 @@ std::vector<float> Film::resolve() const {
       } else if (samples_[i] != 0) {
         value = sums_[3 * i + c] / static_cast<double>(samples_[i]);
       }
-      // Add the splats of all films and those that chains owe. splatFactor_ turns the sum into radiance.
+      // Add the splats of all films and those that chains owe. The factor turns the sum into radiance.
       double splats = splats_ ? splats_->total(pixel + c) / splats_->scale() : 0;
       if (!pending.empty()) splats += pending[pixel + c];
-      value += splats * splatFactor_;
+      value += splats * splatFactor;
       image[pixel + c] = static_cast<float>(value);
     }
   }
@@ -121,9 +123,22 @@ size_t Film::bytes() const {
          (spread_ ? spread_->bytes() : 0);
 }
 
+Film::Kind Film::kind() const {
+  return {.x0 = area_.x0,
+          .y0 = area_.y0,
+          .width = area_.width,
+          .height = area_.height,
+          .spreads = spread_ ? 1u : 0u,
+          .filter = spread_ ? static_cast<uint32_t>(spread_->filter()) : 0u,
+          .filterScale = spread_ ? spread_->filterScale() : 0,
+          .splatScale = splats_ ? splats_->scale() : 0};
+}
+
 void Film::save(StateWriter& out) const {
-  // The order is sums of tiles or of pixels, numbers of samples, splats. restore() reads the same order.
-  out.value(uint64_t{area_.pixels.size()});
+  static_assert(sizeof(Kind) == 6 * sizeof(uint32_t) + 2 * sizeof(double), "padding would be written");
+  static_assert(sizeof(PendingSplat) == 4 * sizeof(double), "padding would be written");
+  // The order is kind, sums of tiles or of pixels, numbers of samples, splats. restoreSums() reads the same order.
+  out.value(kind());
   if (spread_) {
     spread_->save(out);
   } else {
@@ -131,10 +146,35 @@ void Film::save(StateWriter& out) const {
   }
   out.items(samples_.data(), samples_.size());
   if (splats_) splats_->save(out);
+  out.value(splatUnit_);
+  out.value(splatCount_);
+  out.list(pending_);
 }
 
 void Film::restore(StateReader& in) {
-  in.expect(area_.pixels.size(), "pixels");
+  if (in.value<Kind>() != kind()) throw StateError("its film is of another kind");
+  restoreSums(in);
+}
+
+std::unique_ptr<Film> Film::fromState(StateReader& in) {
+  const auto kind = in.value<Kind>();
+  // The film is not larger than what follows of the state, so that a wrong size takes no memory.
+  if (uint64_t{kind.width} * kind.height > in.left() / sizeof(uint64_t)) throw StateError("its state ends too early");
+  auto film = std::make_unique<Film>(FilmArea::make(kind.x0, kind.y0, kind.width, kind.height));
+  if (kind.spreads != 0) {
+    CameraView camera{};
+    camera.filter = static_cast<FilterKind>(kind.filter);
+    camera.filterScale = kind.filterScale;
+    if (!canSpread(camera)) throw StateError("its filter cannot be spread");
+    film->spreadBy(camera);
+  }
+  if (kind.splatScale > 0) film->makeSplats(1, kind.splatScale);
+  if (film->kind() != kind) throw StateError("its film is of no kind");
+  film->restoreSums(in);
+  return film;
+}
+
+void Film::restoreSums(StateReader& in) {
   if (spread_) {
     spread_->restore(in);
   } else {
@@ -142,6 +182,34 @@ void Film::restore(StateReader& in) {
   }
   in.items(samples_.data(), samples_.size());
   if (splats_) splats_->restore(in);
+  splatUnit_ = in.value<double>();
+  splatCount_ = in.value<uint64_t>();
+  pending_ = in.list<PendingSplat>();
+  const size_t pixels = area_.pixels.size();
+  if (std::any_of(pending_.begin(), pending_.end(), [&](const auto& splat) { return splat.pixel >= pixels; })) {
+    throw StateError("its splats are beyond the film");
+  }
+}
+
+void Film::add(const Film& other) {
+  if (other.kind() != kind()) throw StateError("its film is of another kind");
+  // Without light there is no unit. All films that found some have the same.
+  if (splatUnit_ != other.splatUnit_ && splatUnit_ != 0 && other.splatUnit_ != 0) {
+    throw StateError("its splats are scaled otherwise");
+  }
+  if (spread_) {
+    spread_->add(*other.spread_);
+  } else {
+    std::transform(sums_.begin(), sums_.end(), other.sums_.begin(), sums_.begin(), std::plus<>());
+  }
+  std::transform(samples_.begin(), samples_.end(), other.samples_.begin(), samples_.begin(), std::plus<>());
+  if (splats_) splats_->add(*other.splats_);
+  splatUnit_ = std::max(splatUnit_, other.splatUnit_);
+  splatCount_ += other.splatCount_;
+  // In the order of chains, as one render has them.
+  pending_.insert(pending_.end(), other.pending_.begin(), other.pending_.end());
+  std::stable_sort(pending_.begin(), pending_.end(),
+                   [](const PendingSplat& a, const PendingSplat& b) { return a.chain < b.chain; });
 }
 
 }  // namespace wavecrest

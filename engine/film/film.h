@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -21,6 +22,7 @@ namespace wavecrest {
 // A splat of one pixel of the rendered rectangle, counted row by row.
 struct PendingSplat {
   uint32_t pixel;
+  uint32_t chain;  // which owes it
   double rgb[3];
 };
 
@@ -50,9 +52,13 @@ class Film {
   void makeSplats(size_t threads, double scale) { splats_.emplace(area_.pixels.size(), threads, scale); }
   SplatFilms& splats() { return *splats_; }
   const SplatFilms& splats() const { return *splats_; }
-  // What makes the sum of all splats radiance: for light paths one over their number.
-  void setSplatFactor(double factor) { splatFactor_ = factor; }
-  // Splats that belong to the image of now but not to the sums: those that Markov chains owe.
+  // The sum of all splats times unit / count is radiance. count: of the light paths or mutations that made them.
+  void weighSplats(double unit, uint64_t count) {
+    splatUnit_ = unit;
+    splatCount_ = count;
+  }
+  uint64_t splatCount() const { return splatCount_; }
+  // Splats that belong to the image of now but not to the sums: those that Markov chains owe, in the order of chains.
   void setPending(std::vector<PendingSplat> pending) { pending_ = std::move(pending); }
 
   // The image, row by row from the top, RGB: the mean of each pixel's samples (black where there are none) plus the
@@ -74,19 +80,38 @@ class Film {
   // Of the list of pixels, sums and numbers of samples, without splats.
   size_t bytes() const;
 
-  // Samples and splats, for checkpoints; and back into a film without any. Factor and pending splats are not among
-  // them.
+  // Everything that resolve() takes, for checkpoints; and back into a film of the same kind without any samples.
   void save(StateWriter& out) const;
   void restore(StateReader& in);
+  // A film of the kind that the state says, with what it holds: for whoever has no scene.
+  static std::unique_ptr<Film> fromState(StateReader& in);
+
+  // Adds what another film holds of the same render: other samples, other splats. Sums of splats are integers, so their
+  // total does not depend on the order of films; sums of samples are doubles, whose last bits do. Throws StateError
+  // where the other film is of another kind.
+  void add(const Film& other);
 
  private:
+  // What films that can be added have in common, as it stands at the head of a state. Without padding.
+  struct Kind {
+    uint32_t x0, y0, width, height;
+    uint32_t spreads;    // 1 or 0
+    uint32_t filter;     // FilterKind, 0 where samples are not spread
+    double filterScale;  // 0 where samples are not spread
+    double splatScale;   // 0 without splats
+    bool operator==(const Kind&) const = default;
+  };
+  Kind kind() const;
+  void restoreSums(StateReader& in);
+
   FilmArea area_;
   std::vector<double> sums_;          // RGB, in wave order
   std::vector<uint64_t> samples_;     // in wave order
   std::optional<SpreadSums> spread_;  // in the place of sums_
   std::optional<SplatFilms> splats_;
   std::vector<PendingSplat> pending_;
-  double splatFactor_ = 0;
+  double splatUnit_ = 0;
+  uint64_t splatCount_ = 0;
 };
 
 }  // namespace wavecrest

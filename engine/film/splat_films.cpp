@@ -57,14 +57,24 @@ void SplatFilms::save(StateWriter& out) const {
   for (size_t channel = 0; channel < 3 * pixels_; ++channel) out.value(sum(channel));
 }
 
-// The first film takes the sums of all. High halves that are zero are not written, so that their pages stay unused.
+void SplatFilms::setFirst(size_t channel, __int128 sum) {
+  const SplatSums& sums = films_.front()->sums();
+  sums.low[channel] = static_cast<uint64_t>(sum);
+  if (const auto high = static_cast<uint64_t>(sum >> 64); high != sums.high[channel]) sums.high[channel] = high;
+}
+
+// The first film takes the sums of all.
 void SplatFilms::restore(StateReader& in) {
   if (in.value<double>() != scale_) throw StateError("its splats are in other units");
-  const SplatSums& sums = films_.front()->sums();
+  for (size_t channel = 0; channel < 3 * pixels_; ++channel) setFirst(channel, in.value<__int128>());
+}
+
+// Sums are within kSplatLimit and a splat, so those of two films do not overflow; the total is kept within it as well.
+void SplatFilms::add(const SplatFilms& other) {
+  constexpr auto kLimit = static_cast<__int128>(kSplatLimit);
   for (size_t channel = 0; channel < 3 * pixels_; ++channel) {
-    const auto sum = in.value<__int128>();
-    sums.low[channel] = static_cast<uint64_t>(sum);
-    if (const auto high = static_cast<uint64_t>(sum >> 64); high != 0) sums.high[channel] = high;
+    const __int128 total = splatSum(films_.front()->sums(), channel) + other.sum(channel);
+    setFirst(channel, std::clamp(total, -kLimit, kLimit));
   }
 }
 

@@ -55,6 +55,9 @@ class SplatFilms {
   // One splat more; rgb: finite.
   void add(uint32_t pixel, const double (&rgb)[3]);
 
+  // Adds the sums of another film of the same size and scale. No worker may be adding.
+  void add(const SplatFilms& other);
+
   // The sum of a channel over all films, in units of 1 / scale. No worker may be adding.
   double total(size_t channel) const { return static_cast<double>(sum(channel)); }
   // The sums of all films together, for checkpoints; and back into films without splats. No worker may be adding.
@@ -66,6 +69,8 @@ class SplatFilms {
 
  private:
   __int128 sum(size_t channel) const;
+  // Sets the first film's sum. High halves that stay zero are not written, so that their pages stay unused.
+  void setFirst(size_t channel, __int128 sum);
 
   size_t pixels_;
   double scale_;

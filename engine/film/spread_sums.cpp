@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 
 #include "engine/state/state_stream.h"
 
@@ -142,6 +143,10 @@ std::vector<double> SpreadSums::resolve(std::span<const uint64_t> samples) const
     }
   }
   return image;
+}
+
+void SpreadSums::add(const SpreadSums& other) {
+  std::transform(sums_.begin(), sums_.end(), other.sums_.begin(), sums_.begin(), std::plus<>());
 }
 
 void SpreadSums::save(StateWriter& out) const { out.items(sums_.data(), sums_.size()); }

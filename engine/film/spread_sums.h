@@ -34,6 +34,11 @@ class SpreadSums {
   // The image, row by row, RGB. samples: of each pixel in wave order; all pixels of a tile have the same number.
   std::vector<double> resolve(std::span<const uint64_t> samples) const;
 
+  // Adds the sums of another film of the same size and filter.
+  void add(const SpreadSums& other);
+  FilterKind filter() const { return filter_; }
+  double filterScale() const { return filterScale_; }
+
   void save(StateWriter& out) const;
   void restore(StateReader& in);
   static size_t bytesFor(const CameraView& camera, const FilmArea& area);

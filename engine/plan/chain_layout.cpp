@@ -12,14 +12,16 @@ constexpr uint32_t bit(Block block) { return 1u << static_cast<uint32_t>(block);
 size_t groupSizeFor(const RenderSettings& settings) {
   constexpr size_t kFewWaves = 8;  // of a thread
   const uint32_t threads = settings.cutForThreads();
-  const bool few = piecesOf(settings.metropolis.chains, settings.waveSize) < kFewWaves * threads;
+  const bool few = piecesOf(settings.chainsOfShare(), settings.waveSize) < kFewWaves * threads;
   return threads > 1 && few ? std::min<size_t>(kColumnPadding, settings.waveSize) : settings.waveSize;
 }
 
 }  // namespace
 
 ChainLayout::ChainLayout(const RenderSettings& settings)
-    : chains_(settings.metropolis.chains),
+    : part_(settings.share.part),
+      parts_(settings.share.parts),
+      chains_(settings.chainsOfShare()),
       groupSize_(groupSizeFor(settings)),
       groups_(piecesOf(chains_, groupSize_)),
       waves_(piecesOf(groups_, settings.waveSize / groupSize_)) {}

@@ -18,7 +18,7 @@ namespace wavecrest {
 // paths of all lengths. Where there are many waves, or one thread, nobody waits long, and a group is a whole wave.
 class ChainLayout {
  public:
-  // The settings' number of chains, in waves of at most their size.
+  // The chains of the settings' share, in waves of at most the settings' size.
   explicit ChainLayout(const RenderSettings& settings);
 
   size_t waves() const { return waves_; }
@@ -28,12 +28,13 @@ class ChainLayout {
   size_t chainsOfGroup(size_t group) const;
   // The chains of a wave.
   size_t chainsOf(size_t wave) const;
-  // The chain in a lane of a wave.
+  // The number, among the chains of all shares, of that in a lane of a wave.
   size_t chainAt(size_t wave, size_t lane) const {
-    return (wave + lane / groupSize_ * waves_) * groupSize_ + lane % groupSize_;
+    return part_ + parts_ * ((wave + lane / groupSize_ * waves_) * groupSize_ + lane % groupSize_);
   }
 
  private:
+  size_t part_, parts_;
   size_t chains_, groupSize_, groups_, waves_;
 };
 

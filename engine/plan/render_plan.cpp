@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -207,7 +208,7 @@ RenderSettings withPieces(const RenderSettings& asked, const FilmSettings& film,
   // the end; with one, several iterations are under way.
   constexpr uint32_t kLeastWithLight = 256, kLeastWithMap = 512;
   if (page.hasChains()) {
-    cut.waveSize = pieceSize(std::max<size_t>(settings.metropolis.chains, 1), threads, settings.waveSize);
+    cut.waveSize = pieceSize(std::max<size_t>(settings.chainsOfShare(), 1), threads, settings.waveSize);
   } else {
     const size_t paths = std::max(pixels, lightPathsWanted(settings, pixels));
     cut.waveSize =
@@ -225,6 +226,21 @@ FilmArea filmOutline(const FilmSettings& film) {
           .y0 = film.cropY,
           .pixels = {},
           .tiles = {}};
+}
+
+uint64_t beginOfShare(uint64_t iterations, uint32_t part, uint32_t parts) {
+  return static_cast<uint64_t>(static_cast<unsigned __int128>(iterations) * part / parts);
+}
+
+RenderSettings settingsOfShare(RenderSettings settings, uint32_t part, uint32_t parts) {
+  assert(settings.iterations && part < parts);
+  const uint64_t all = *settings.iterations;
+  settings.share = {.part = part, .parts = parts, .iterations = all};
+  // Chains of every share take all steps.
+  if (settings.method == Method::mlt) return settings;
+  settings.firstIteration = beginOfShare(all, part, parts);
+  settings.iterations = beginOfShare(all, part + 1, parts) - settings.firstIteration;
+  return settings;
 }
 
 FilmArea filmArea(const FilmSettings& film) {

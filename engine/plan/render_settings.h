@@ -32,6 +32,14 @@ struct MetropolisSettings {
   bool directPass = true;  // mmlt, pathspace: emitters in view and direct light by path tracing, the rest by chains
 };
 
+// What one session renders of an image that several render together; the films of all shares add up to the image
+// (Film::add). A share is a run of iterations, RenderSettings::firstIteration and iterations. Of mlt it is the chains
+// whose number is `part` modulo `parts`, in all iterations; all shares start from the same bootstraps.
+struct RenderShare {
+  uint32_t part = 0, parts = 1;        // no more than chains
+  std::optional<uint64_t> iterations;  // of the whole image; unset: those of the settings
+};
+
 // Mutations to a bootstrap sample. The error of b falls only with the number of bootstraps, so they get a fixed part of
 // a render, however long it is: a sixteenth costs little and is no longer what limits an image
 // (engine/chains/README.md).
@@ -63,6 +71,7 @@ constexpr std::array<std::string_view, 2> kFilterModeNames{"spread", "sample"};
 struct RenderSettings {
   Method method = Method::pt;
   MetropolisSettings metropolis;
+  RenderShare share;
   Precision precision = Precision::floating;
   Isa isa = Isa::scalar;
   Accel accel = Accel::automatic;
@@ -95,6 +104,7 @@ struct RenderSettings {
   Placement placement;  // of the threads and the memory that they share; images do not depend on it
 
   uint32_t cutForThreads() const { return piecesForThreads.value_or(threads); }
+  uint32_t chainsOfShare() const { return (metropolis.chains - share.part + share.parts - 1) / share.parts; }
 };
 
 // Whether connections of the method are subject to roulette. Those of chains are not: what they carry is what chains
@@ -104,6 +114,12 @@ inline bool hasConnectionRoulette(Method method) { return method != Method::mlt 
 // Whether the last bits of the method's images depend on how paths are cut into waves: photons are summed, and pairs of
 // vertices joined, in an order that follows from the waves.
 inline bool dependsOnWaves(Method method) { return strategiesOf(method).merge || hasConnectionRoulette(method); }
+
+// The settings of one share of what they render. part: from 0 on. Their iterations must be set, and be no fewer than
+// parts (of mlt the chains).
+RenderSettings settingsOfShare(RenderSettings settings, uint32_t part, uint32_t parts);
+// The first iteration of a share, and with part + 1 the end of it.
+uint64_t beginOfShare(uint64_t iterations, uint32_t part, uint32_t parts);
 
 // The settings with the longest path that their method can make, where they ask for longer ones.
 inline RenderSettings withinDepthOfMethod(RenderSettings settings) {

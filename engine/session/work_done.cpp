@@ -32,19 +32,42 @@ void WorkDone::save(StateWriter& out) const {
 }
 
 void WorkDone::restore(StateReader& in, std::vector<RenderStatistics::StageRow> rows) {
+  restore(in);
+  // Stages are saved without names, in the order of this session's rows.
+  if (stages.size() != rows.size()) throw StateError("it has other stages than this render");
+  for (size_t i = 0; i < rows.size(); ++i) stages[i].name = std::move(rows[i].name);
+}
+
+void WorkDone::restore(StateReader& in) {
+  constexpr uint64_t kMostStages = 1000;
   paths = in.value<uint64_t>();
   lightPaths = in.value<uint64_t>();
   counters = in.value<StageCounters>();
   renderSeconds = in.value<double>();
   cpuSeconds = in.value<double>();
-  // Stages are saved without names, in the order of this session's rows.
-  stages = std::move(rows);
-  in.expect(stages.size(), "stages");
+  const auto count = in.value<uint64_t>();
+  if (count > kMostStages) throw StateError("it has other stages than any render");
+  stages.resize(count);
   for (RenderStatistics::StageRow& row : stages) {
     row.items = in.value<uint64_t>();
     row.laneSlots = in.value<uint64_t>();
     row.seconds = in.value<double>();
   }
+}
+
+WorkDone& WorkDone::operator+=(const WorkDone& other) {
+  if (stages.size() != other.stages.size()) throw StateError("it has other stages");
+  paths += other.paths;
+  lightPaths += other.lightPaths;
+  counters += other.counters;
+  renderSeconds += other.renderSeconds;
+  cpuSeconds += other.cpuSeconds;
+  for (size_t i = 0; i < stages.size(); ++i) {
+    stages[i].items += other.stages[i].items;
+    stages[i].laneSlots += other.stages[i].laneSlots;
+    stages[i].seconds += other.stages[i].seconds;
+  }
+  return *this;
 }
 
 void WorkDone::addTo(RenderStatistics& statistics) const {

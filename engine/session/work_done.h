@@ -19,6 +19,10 @@ struct WorkDone {
   void save(StateWriter& out) const;
   // rows: the stages of this session. Throws StateError if the state has another number of them.
   void restore(StateReader& in, std::vector<RenderStatistics::StageRow> rows);
+  // For whoever has no session: stages remain without names.
+  void restore(StateReader& in);
+  // The work of both, of equal stages.
+  WorkDone& operator+=(const WorkDone& other);
   // Adds everything to the statistics of the work since then, but clocks, which a session itself goes on with.
   void addTo(RenderStatistics& statistics) const;
 };

@@ -1,7 +1,5 @@
 #include "engine/state/state_stream.h"
 
-#include <string>
-
 namespace wavecrest {
 
 void StateWriter::bytes(std::span<const unsigned char> bytes) {
@@ -16,12 +14,6 @@ void StateWriter::bytes(std::span<const unsigned char> bytes) {
 void StateWriter::flush() {
   if (!waiting_.empty()) sink_(waiting_);
   waiting_.clear();
-}
-
-void StateReader::expect(uint64_t expected, const char* what) {
-  const auto found = value<uint64_t>();
-  if (found == expected) return;
-  throw StateError("it has " + std::to_string(found) + " " + what + ", this render " + std::to_string(expected));
 }
 
 void StateReader::finish() const {

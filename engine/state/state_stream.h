@@ -77,8 +77,8 @@ class StateReader {
     items(values.data(), count);
     return values;
   }
-  // Reads a number that must be the one expected of this render.
-  void expect(uint64_t expected, const char* what);
+  // Bytes that are left.
+  size_t left() const { return left_.size(); }
   // Nothing may be left.
   void finish() const;
 

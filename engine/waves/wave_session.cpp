@@ -303,7 +303,7 @@ template <class S>
 void WaveSession<S>::countLightPaths() {
   uint64_t lightPaths = earlier_.lightPaths;
   for (const auto& worker : workers_) lightPaths += worker->lightPaths;
-  film_.setSplatFactor(lightPaths == 0 ? 0 : 1 / static_cast<double>(lightPaths));
+  film_.weighSplats(1, lightPaths);
 }
 
 template <class S>

@@ -71,7 +71,7 @@ TEST_F(CheckpointTest, aRenderGoesOnFromItsFile) {
   for (const MethodEntry& entry : kMethods) {
     const RenderSettings settings = settingsOf(entry.method);
     const Checkpoint checkpoint(fileOf(settings));
-    EXPECT_EQ(checkpoint.notes().at("mine"), 7);
+    EXPECT_EQ(checkpoint.header().notes.at("mine"), 7);
     RenderSettings other = settings;
     other.threads = 3;
     checkpoint.cutAlike(other);

@@ -1,0 +1,251 @@
+"""`render --part` and `merge`: parts of a render add up to the render, and nothing else does.
+
+Parts add their samples in double, each in an order of its own, and splats as integers. So the image of merged parts is
+that of one render, up to the last bit of a float: of n samples the sums differ by n 2^-52 of themselves at most, which
+moves a rounding to the next float where the sum lies that close to the middle of two. Images of splats alone are equal.
+"""
+
+import pathlib
+import random
+import struct
+import unittest
+import zlib
+
+from harness import CHECK, DONE, INPUT, USAGE, CommandTest, read_exr_header, read_json, read_pfm
+
+PARTS = 4
+CHAINS, RADIUS = ["--chains", "50", "--bootstrap", "400"], ["--radius", "0.05"]
+# mlt restarts its chains within the render: an epoch has 128 steps of 50 chains.
+METHODS = {"pt": [], "lt": [], "bpt": [], "mlt": CHAINS, "ppm": RADIUS, "bpm": RADIUS, "vcm": RADIUS}
+COUNTS = ("iterations", "camera_paths", "light_paths", "mutations", "nonfinite_samples", "scene_hash", "seed")
+SPP = 18  # no multiple of the number of parts
+
+
+def bits(value):
+    return struct.unpack("<i", struct.pack("<f", value))[0]
+
+
+class PartsTest(CommandTest):
+    def arguments(self, method, *more, spp=SPP, scene="cornell-diffuse", seed=3, size="24x17"):
+        return ["render", scene, "--size", size, "--threads", "1", "--seed", seed, "-m", method, "--spp", spp,
+                "--progress", "none", *METHODS[method], *more]  # fmt: skip
+
+    def part(self, index, method="pt", *more, name="part", parts=PARTS, expect=DONE, **keywords):
+        file = f"{name}{index}"
+        self.run_wavecrest(*self.arguments(method, "--part", f"{index}/{parts}", "--checkpoint", file, *more, **keywords), expect=expect)  # fmt: skip
+        return file
+
+    def all_parts(self, *arguments, parts=PARTS, **keywords):
+        return [self.part(index, *arguments, parts=parts, **keywords) for index in range(1, parts + 1)]
+
+    def merge(self, *arguments, expect=DONE):
+        return self.run_wavecrest("merge", *arguments, expect=expect)
+
+    def image(self, name):
+        return read_pfm(self.path(name))
+
+    def assert_equal_but_for_rounding(self, one, other, said):
+        self.assertEqual(one[:2], other[:2], said)
+        worst = max(abs(bits(a) - bits(b)) for a, b in zip(one[2], other[2]))
+        self.assertLessEqual(worst, 1, said)
+        self.assertGreater(sum(one[2]), 0, said)
+
+
+class Sums(PartsTest):
+    def test_parts_of_each_method_add_up_to_one_render(self):
+        for method in METHODS:
+            self.run_wavecrest(*self.arguments(method, "-o", "whole.pfm", "--stats", "whole.json"))
+            files = self.all_parts(method, name=method)
+            random.Random(1).shuffle(files)
+            result = self.merge(*files, "-o", "merged.pfm", "-o", "merged.exr", "--stats", "merged.json", "--complete")
+            self.assertNotIn("missing", result.stderr)
+            self.assert_equal_but_for_rounding(self.image("merged.pfm"), self.image("whole.pfm"), method)
+            whole, merged = read_json(self.path("whole.json")), read_json(self.path("merged.json"))
+            for count in COUNTS:
+                self.assertEqual(merged[count], whole[count], f"{method}: {count}")
+            self.assertEqual(merged["parts"], PARTS)
+            self.assertEqual(read_exr_header(self.path("merged.exr"))["wavecrest:iterations"], str(SPP))
+
+    def test_sums_of_splats_are_equal_to_the_bit(self):
+        for variant in ("mmlt", "pathspace", "pssmlt"):
+            more = ["--mlt", variant, *(["--no-direct-pass"] if variant != "pssmlt" else [])]
+            self.run_wavecrest(*self.arguments("mlt", *more, "-o", "whole.pfm"))
+            files = self.all_parts("mlt", *more, name=variant)
+            self.merge(*files, "-o", "merged.pfm")
+            self.assertEqual(self.image("merged.pfm"), self.image("whole.pfm"), variant)
+
+    def test_other_samples_add_up(self):
+        for more in (["--filter-mode", "sample"], ["--sampler", "sobol"], ["--precision", "double"]):
+            name = more[1]
+            self.run_wavecrest(*self.arguments("pt", *more, "-o", "whole.pfm"))
+            self.merge(*self.all_parts("pt", *more, name=name), "-o", "merged.pfm")
+            self.assert_equal_but_for_rounding(self.image("merged.pfm"), self.image("whole.pfm"), name)
+
+    def test_sums_add_up_again_and_in_any_cut(self):
+        for method in ("bpt", "mlt"):
+            files = self.all_parts(method, name=method)
+            self.merge(*files, "-o", "all.pfm")
+            self.merge(files[0], files[2], "--checkpoint", "some", "-o", "some.pfm")
+            # The other half of the parts, cut into half as many: of mlt by the remainder of a chain's number.
+            if method == "mlt":
+                others = [self.part(2, method, name="other", parts=2)]
+            else:
+                others = [files[1], files[3]]
+            self.merge("some", *others, "-o", "again.pfm", "--complete")
+            self.assert_equal_but_for_rounding(self.image("again.pfm"), self.image("all.pfm"), method)
+
+    def test_a_render_goes_on_from_a_sum_without_gaps(self):
+        for method in ("pt", "vcm"):
+            sum_ = f"sum-{method}"
+            self.merge(*self.all_parts(method, name=method), "--checkpoint", sum_)
+            self.run_wavecrest(*self.arguments(method, "--checkpoint", sum_, "--resume", "-o", "parts.pfm", spp=2 * SPP))
+            self.run_wavecrest(*self.arguments(method, "-o", "whole.pfm", spp=2 * SPP))
+            self.assert_equal_but_for_rounding(self.image("parts.pfm"), self.image("whole.pfm"), method)
+
+    def test_a_longer_render_takes_what_there_is_and_the_second_half_of_its_own_parts(self):
+        first = self.all_parts("pt")
+        second = [self.part(index, "pt", name="more", parts=4, spp=2 * SPP) for index in (3, 4)]
+        self.merge(*first, *second, "-o", "merged.pfm", "--complete")
+        self.run_wavecrest(*self.arguments("pt", "-o", "whole.pfm", spp=2 * SPP))
+        self.assert_equal_but_for_rounding(self.image("merged.pfm"), self.image("whole.pfm"), "pt")
+
+    def test_a_part_that_was_ended_goes_on(self):
+        for method in ("pt", "mlt"):
+            spp = 4000
+            files = [self.part(1, method, name=method, parts=2, spp=spp)]
+            files.append(self.part(2, method, "--time", "0.02s", name=method, parts=2, spp=spp))
+            self.assertIn("missing are", self.merge(*files).stderr)
+            self.part(2, method, "--resume", name=method, parts=2, spp=spp)
+            self.merge(*files, "-o", "merged.pfm", "--complete")
+            self.run_wavecrest(*self.arguments(method, "-o", "whole.pfm", spp=spp))
+            self.assert_equal_but_for_rounding(self.image("merged.pfm"), self.image("whole.pfm"), method)
+
+    def test_the_error_is_that_of_the_image(self):
+        parts, spp = 16, 64
+        files = self.all_parts("pt", parts=parts, spp=spp)
+        self.merge(*files, "-o", "merged.pfm", "--stats", "merged.json")
+        self.run_wavecrest(*self.arguments("pt", "-o", "truth.pfm", seed=9, spp=20000))
+        (width, height, merged), (_, _, truth) = self.image("merged.pfm"), self.image("truth.pfm")
+        # As bench/until/film_error.h says: relative to the mean brightness of blocks of 8 x 8 pixels.
+        rows = [merged[3 * width * row : 3 * width * (row + 1)] for row in range(height)][::-1]
+        true_rows = [truth[3 * width * row : 3 * width * (row + 1)] for row in range(height)][::-1]
+        blocks = {}
+        for y, row in enumerate(rows):
+            for i, value in enumerate(row):
+                blocks.setdefault((y // 8, i // 3 // 8), []).append(value)
+        darkest = 0.01 * sum(merged) / len(merged)
+        square = 0
+        for y, (row, true_row) in enumerate(zip(rows, true_rows)):
+            for i, (value, true_value) in enumerate(zip(row, true_row)):
+                block = blocks[y // 8, i // 3 // 8]
+                square += ((value - true_value) / max(sum(block) / len(block), darkest)) ** 2
+        error = (square / len(merged)) ** 0.5
+        # Channels of a pixel go together: some 400 independent errors, whose mean square is uncertain by a tenth or so
+        # with the tails that bright samples have; its root by half of that. Four of these.
+        told = read_json(self.path("merged.json"))["relative_error"]
+        self.assertLess(abs(told / error - 1), 0.2, f"{told} instead of {error}")
+        # Points of one sequence depend on each other, and one part says nothing.
+        self.merge(*self.all_parts("pt", "--sampler", "sobol", name="sobol"), "--stats", "merged.json")
+        self.assertNotIn("relative_error", read_json(self.path("merged.json")))
+        self.merge(files[0], "--stats", "merged.json")
+        self.assertNotIn("relative_error", read_json(self.path("merged.json")))
+
+
+class Missing(PartsTest):
+    def test_what_is_missing_is_said(self):
+        files = self.all_parts("pt")
+        for left, said in (
+            ([0, 1, 3], r"iterations 9 to 12 of 18 \(part 3/4\)"),
+            ([3], r"iterations 0 to 12 of 18 \(parts 1/4, 2/4, 3/4\)"),
+            ([0, 2], r"iterations 4 to 8, 13 to 17 of 18 \(parts 2/4, 4/4\)"),
+        ):
+            result = self.merge(*(files[index] for index in left), "-o", "some.pfm", "--stats", "some.json")
+            self.assertRegex(result.stderr, "missing are " + said)
+            self.assertRegex(read_json(self.path("some.json"))["missing"], said)
+        chains = self.all_parts("mlt", name="chains")
+        self.assertIn("missing are the chains of part 2/4", self.merge(chains[0], *chains[2:]).stderr)
+
+    def test_an_image_that_has_to_be_complete_is_not_written(self):
+        files = self.all_parts("pt")
+        result = self.merge(*files[:3], "-o", "some.pfm", "--complete", expect=CHECK)
+        self.assert_one_error_line(result, r"--complete: missing are iterations 13 to 17 of 18 \(part 4/4\)")
+        self.assertFalse((self.folder / "some.pfm").exists())
+
+    def test_no_render_goes_on_from_a_sum_with_gaps(self):
+        files = self.all_parts("pt")
+        self.merge(files[0], files[2], "--checkpoint", "sum")
+        result = self.run_wavecrest(*self.arguments("pt", "--checkpoint", "sum", "--resume"), expect=INPUT)
+        self.assert_one_error_line(result, "sum: is a sum of parts that no render goes on from")
+
+
+class Refused(PartsTest):
+    def refuse(self, said, *files):
+        result = self.merge(*files, "-o", "refused.pfm", expect=INPUT)
+        self.assert_one_error_line(result, said)
+        self.assertFalse((self.folder / "refused.pfm").exists())
+
+    def test_parts_of_another_render(self):
+        first = self.part(1, "bpt")
+        for name, method, more, keywords, said in (
+            ("seed", "bpt", [], {"seed": 4}, "its seed is 4, not 3"),
+            ("method", "pt", [], {}, "its method is pt, not bpt"),
+            ("depth", "bpt", ["--max-depth", "3"], {}, "its max_depth is 3, not "),
+            ("size", "bpt", [], {"size": "24x18"}, "its size is 24x18, not 24x17"),
+            ("scene", "bpt", [], {"scene": "cornell-mirror"}, "its scene_hash is "),
+        ):
+            other = self.part(2, method, *more, name=name, **keywords)
+            self.refuse(f"{other}: {said}", first, other)
+
+    def test_a_part_of_another_version(self):
+        first, second = self.part(1), self.part(2)
+        data = bytearray(pathlib.Path(self.path(second)).read_bytes())
+        at = data.index(b'"version":"') + len(b'"version":"')
+        data[at : at + 1] = b"9"
+        data[-4:] = struct.pack("<I", zlib.crc32(data[:-4]))
+        self.write("other", bytes(data))
+        self.refuse("other: its version is 9", first, "other")
+
+    def test_a_part_that_is_there_twice(self):
+        files = self.all_parts("pt")
+        self.refuse("part2: holds iterations 4 to 8, as part2 does", *files, files[1])
+        self.run_wavecrest(*self.arguments("pt", "--checkpoint", "whole"))
+        self.refuse("whole: holds iterations 0 to 3, as part1 does", *files, "whole")
+        chains = self.all_parts("mlt", name="chains")
+        half = self.part(1, "mlt", name="half", parts=2)
+        self.refuse("half1: holds chains of part 1/4, as chains1 does", *chains, half)
+
+    def test_parts_that_are_damaged(self):
+        first, second = self.part(1), self.part(2)
+        whole = pathlib.Path(self.path(second)).read_bytes()
+        for data in (b"", whole[:5], whole[: len(whole) // 3], whole[:-1], whole[:-9] + b"\0" + whole[-8:] + b"\0"):
+            self.write("damaged", data)
+            self.refuse("damaged: is (damaged|no checkpoint)", first, "damaged")
+        self.refuse("nowhere: cannot be read", first, "nowhere")
+
+    def test_options_that_do_not_fit(self):
+        for method, arguments, said in (
+            ("pt", ["--part", "2/4"], "--part: its result is a checkpoint"),
+            ("pt", ["--part", "5/4", "--checkpoint", "c"], "--part '5/4': no part"),
+            ("pt", ["--part", "two", "--checkpoint", "c"], "--part 'two': no part"),
+            ("pt", ["--part", "1/19", "--checkpoint", "c"], "--part 1/19: there are 18 iterations"),
+            ("mlt", ["--part", "1/51", "--checkpoint", "c"], "--part 1/51: there are 50 chains"),
+            ("mlt", ["--part", "1/2", "--checkpoint", "c", "-o", "a.pfm"], "--part: some of the chains of mlt"),
+        ):
+            result = self.run_wavecrest(*self.arguments(method, *arguments), expect=USAGE)
+            self.assert_one_error_line(result, said)
+        arguments = ["render", "cornell-diffuse", "--time", "1s", "--part", "1/2", "--checkpoint", "c"]
+        self.assert_one_error_line(self.run_wavecrest(*arguments, expect=USAGE), "--part: .*expected --spp")
+        first = self.part(1)
+        self.assert_one_error_line(self.merge(first, "--checkpoint", first, expect=USAGE), "--checkpoint part1: is the file")
+        self.assert_one_error_line(self.merge("-o", "a.pfm", expect=USAGE), ".*PART")
+
+    def test_a_part_goes_on_as_what_it_was(self):
+        self.part(2)
+        result = self.run_wavecrest(
+            *self.arguments("pt", "--part", "3/4", "--checkpoint", "part2", "--resume"), expect=INPUT
+        )
+        self.assert_one_error_line(result, "part2: its first_iteration is 4, not 9")
+
+
+if __name__ == "__main__":
+    unittest.main()
