@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "bench/campaign/merged_reference.h"
 #include "bench/campaign/render_stats.h"
 #include "bench/checkpoint/merge.h"
 #include "bench/json_text.h"
@@ -18,7 +19,7 @@ namespace {
 
 struct MergeOptions {
   std::vector<std::string> parts, outputs;
-  std::string checkpoint, stats, progress = "auto";
+  std::string checkpoint, reference, stats, progress = "auto";
   bool complete = false;
 };
 
@@ -36,6 +37,7 @@ void checkFiles(const MergeOptions& options) {
   }
   if (options.checkpoint == kStandardStream) throw UsageError("--checkpoint -: expected a file");
   if (!options.checkpoint.empty()) files.output("--checkpoint", options.checkpoint);
+  if (!options.reference.empty()) files.output("--reference", options.reference);
   if (!options.stats.empty()) files.output("--stats", options.stats);
 }
 
@@ -47,7 +49,7 @@ std::string errorInWords(const MergedParts& merged) {
 int runMerge(const MergeOptions& options) {
   const auto kind = static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames));
   checkFiles(options);
-  const MergedParts merged = mergeParts(options.parts);
+  const MergedParts merged = mergeParts(options.parts, !options.reference.empty());
   const nlohmann::ordered_json& stats = merged.header.notes.at("stats");
   // What is missing is said before anything is written.
   if (!merged.missing.empty()) {
@@ -57,7 +59,11 @@ int runMerge(const MergeOptions& options) {
     }
     warn(kind, "missing are " + merged.missing);
   }
-  // Images, checkpoint and statistics.
+  if (!merged.whyNoHalves.empty()) {
+    throw InputError(
+        fmt::format("--reference: {}; expected an even number of equal, independent parts", merged.whyNoHalves));
+  }
+  // Images, reference, checkpoint and statistics.
   if (!options.outputs.empty()) {
     const FilmArea& area = merged.film->area();
     const Image image{.width = area.width, .height = area.height, .channels = 3, .pixels = merged.film->resolve()};
@@ -66,6 +72,7 @@ int runMerge(const MergeOptions& options) {
       writeImage(name, image, statsMetadata(stats), [&](double fraction) { progress.show(fraction); });
     }
   }
+  if (!options.reference.empty()) writeReference(options.reference, mergedReference(merged));
   if (!options.checkpoint.empty()) writeSum(options.checkpoint, merged);
   if (!options.stats.empty()) writeText(options.stats, jsonText(stats, 2) + "\n");
   noteLine(kind,
@@ -88,6 +95,8 @@ void addMergeCommand(CommandLine& program, int& exitCode) {
   command.add("PART", options->parts, "checkpoints of parts, or sums of some").required();
   command.add("-o,--output", options->outputs, "image file: .exr, .png or .pfm; repeatable").repeatable();
   command.add("--checkpoint", options->checkpoint, "write the sum as a checkpoint, to be merged with further parts");
+  command.add("--reference", options->reference,
+              "EXR file: a reference for `converge`, whose halves are every other part and those between");
   command.add("--stats", options->stats, "write statistics as JSON; - for stdout");
   command.addFlag("--complete", options->complete, "write nothing and end with 4 where anything is missing");
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();

@@ -126,6 +126,16 @@ double relativeError(const Image& mean, const Image& difference) {
   return std::sqrt(relmse(mean, half).relmse);
 }
 
+void setHalves(Reference& reference, const Image& a, const Image& b) {
+  reference.mean = a;
+  reference.difference = a;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    reference.mean.pixels[i] = 0.5f * (a.pixels[i] + b.pixels[i]);
+    reference.difference->pixels[i] = 0.5f * (a.pixels[i] - b.pixels[i]);
+  }
+  reference.info.relativeError = relativeError(reference.mean, *reference.difference);
+}
+
 void measureNoiseFloors(Reference& reference) {
   reference.noiseFloors.clear();
   if (!reference.difference) return;

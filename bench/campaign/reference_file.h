@@ -59,6 +59,9 @@ double relativeError(const Image& mean, const Image& difference);
 // Fills the noise floor of every metric that the image is large enough for, under its scoreName.
 void measureNoiseFloors(Reference& reference);
 
+// Sets mean, half difference and relative error from the halves A and B.
+void setHalves(Reference& reference, const Image& a, const Image& b);
+
 // Why an image cannot serve as a reference: a plain render has no halves, and another program's says of no scene that
 // it is its own. Empty: it can.
 std::string whyNoReference(const Reference& image);

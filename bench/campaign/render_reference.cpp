@@ -74,17 +74,6 @@ Image joined(const Image& before, uint64_t n0, const Image& now, uint64_t n) {
   return all;
 }
 
-// Sets mean, half difference and relative error from the halves A and B.
-void setHalves(Reference& reference, const Image& a, const Image& b) {
-  reference.mean = a;
-  reference.difference = a;
-  for (size_t i = 0; i < a.pixels.size(); ++i) {
-    reference.mean.pixels[i] = 0.5f * (a.pixels[i] + b.pixels[i]);
-    reference.difference->pixels[i] = 0.5f * (a.pixels[i] - b.pixels[i]);
-  }
-  reference.info.relativeError = relativeError(reference.mean, *reference.difference);
-}
-
 // Whether any part of the goal is reached. Without an iteration nothing is.
 bool reached(const ReferenceGoal& goal, const ReferenceInfo& info) {
   if (info.iterations == 0) return false;

@@ -142,6 +142,11 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
                   {"light_paths_per_iteration", lightPathsWanted(settings, pixels)}});
     if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
   }
+  // What a share of an image is of it.
+  if (settings.share.parts > 1) {
+    stats["part"] = std::to_string(settings.share.part + 1) + "/" + std::to_string(settings.share.parts);
+    stats["first_iteration"] = settings.firstIteration;
+  }
   if (hasConnectionRoulette(settings.method)) stats["connection_roulette"] = settings.connectionRoulette;
   if (statistics.chains) stats.update(chainStats(settings, *statistics.chains));
   return stats;

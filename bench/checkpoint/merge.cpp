@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <numeric>
 #include <string_view>
+#include <utility>
 
 #include "bench/until/film_error.h"
 #include "engine/state/state_stream.h"
@@ -19,19 +21,24 @@ using Json = nlohmann::ordered_json;
 // What says which share of the image a checkpoint is of; the rest of its identity is common to all.
 constexpr std::array<std::string_view, 2> kShareKeys{"first_iteration", "part"};
 
-// How far the images of parts lie apart.
+// How far the images of parts lie apart; and the means of every other one, where halves are asked for.
 class Spread {
  public:
+  explicit Spread(bool halves) : halves_(halves) {}
   // weight: iterations of the image.
   void add(const std::vector<float>& image, double weight) {
     sums_.resize(image.size());
     squares_.resize(image.size());
+    if (halves_) first_.resize(image.size());
+    const double first = halves_ && parts_ % 2 == 0 ? weight : 0;
     for (size_t i = 0; i < image.size(); ++i) {
       const double value = image[i];
       sums_[i] += weight * value;
       squares_[i] += weight * value * value;
+      if (first != 0) first_[i] += first * value;
     }
     weight_ += weight;
+    firstWeight_ += first;
     ++parts_;
   }
   // Of the mean of all. Parts of n_k of n iterations have variances in proportion to 1 / n_k, so that of the mean m is
@@ -48,9 +55,22 @@ class Spread {
     return std::sqrt(sum / static_cast<double>(mean.size()));
   }
 
+  // Whether both halves have as many iterations.
+  bool isEven() const { return 2 * firstWeight_ == weight_; }
+  std::array<std::vector<float>, 2> halves() const {
+    std::array<std::vector<float>, 2> images;
+    for (size_t i = 0; i < sums_.size(); ++i) {
+      images[0].push_back(static_cast<float>(first_[i] / firstWeight_));
+      images[1].push_back(static_cast<float>((sums_[i] - first_[i]) / (weight_ - firstWeight_)));
+    }
+    return images;
+  }
+
  private:
+  bool halves_;
   std::vector<double> sums_, squares_;  // of each sample, weighted
-  double weight_ = 0;
+  std::vector<double> first_;           // the sums of the first, third, ... part
+  double weight_ = 0, firstWeight_ = 0;
   size_t parts_ = 0;
 };
 
@@ -106,6 +126,17 @@ uint64_t iterationsOf(const Holdings& holdings) {
   return std::min_element(holdings.chains.begin(), holdings.chains.end(), less)->iterations;
 }
 
+// Whether the iterations of different parts are independent of each other.
+bool areIndependent(const CheckpointHeader& header) { return header.render.value("sampler", "") != "sobol"; }
+
+// Why the parts are no halves of a reference; empty: they are.
+std::string whyNoHalves(const MergedParts& merged, const Spread& spread) {
+  if (!merged.header.holds.chains.empty()) return "all parts of mlt share the error of b";
+  if (!areIndependent(merged.header)) return "points of one Sobol sequence depend on each other";
+  if (!merged.missing.empty()) return "missing are " + merged.missing;
+  return spread.isEven() ? "" : "every other part does not have half of the iterations";
+}
+
 std::vector<CheckpointHeader> readHeaders(const std::vector<std::string>& files) {
   std::vector<CheckpointHeader> headers;
   for (const std::string& file : files) {
@@ -121,9 +152,10 @@ std::vector<CheckpointHeader> readHeaders(const std::vector<std::string>& files)
   return headers;
 }
 
-// The film and the work of one part. The header is the one that was read before.
-std::unique_ptr<Film> readPart(const std::string& file, const CheckpointHeader& header, WorkDone& work) {
-  const Checkpoint part(file);
+// The film and the work of one part. header: that was read before. The part is done with.
+std::unique_ptr<Film> takeFilm(const std::string& file, const std::unique_ptr<Checkpoint> read,
+                               const CheckpointHeader& header, WorkDone& work) {
+  const Checkpoint& part = *read;
   if (part.header().holds != header.holds || part.header().render != header.render) {
     failCheckpoint(file, "was replaced while parts were read", "expected parts whose renders are over");
   }
@@ -139,28 +171,38 @@ std::unique_ptr<Film> readPart(const std::string& file, const CheckpointHeader& 
 
 }  // namespace
 
-MergedParts mergeParts(const std::vector<std::string>& files) {
+MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
   const std::vector<CheckpointHeader> headers = readHeaders(files);
   std::vector<size_t> order(files.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return beginOf(headers[a].holds) < beginOf(headers[b].holds); });
   MergedParts merged;
-  Spread spread;
+  Spread spread(halves);
   bool comparable = true;
   Json stats;
   double seconds = 0;
-  for (const size_t index : order) {
+  // The next part is read while this one is added.
+  const auto read = [&](size_t place) {
+    return std::async(std::launch::async, [&, place] { return std::make_unique<Checkpoint>(files[order[place]]); });
+  };
+  std::future<std::unique_ptr<Checkpoint>> next = read(0);
+  for (size_t place = 0; place < order.size(); ++place) {
+    const size_t index = order[place];
     const CheckpointHeader& header = headers[index];
+    std::unique_ptr<Checkpoint> part = next.get();
+    if (place + 1 < order.size()) next = read(place + 1);
     WorkDone work;
-    std::unique_ptr<Film> film = readPart(files[index], header, work);
+    std::unique_ptr<Film> film = takeFilm(files[index], std::move(part), header, work);
     // The image of the part alone, weighted by what made it.
     const uint64_t weight = film->splatCount() != 0 ? film->splatCount() : film->maxSamples();
     if (files.size() > 1) spread.add(film->resolve(), static_cast<double>(weight));
     // Pixels of a part without samples are black whatever the image.
     comparable = comparable && (film->minSamples() != 0 || film->maxSamples() == 0);
     if (!merged.film) {
-      merged = {.header = header, .film = std::move(film), .work = std::move(work), .missing = {}, .relativeError = {}};
+      merged.header = header;
+      merged.film = std::move(film);
+      merged.work = std::move(work);
       stats = statsOf(header);
     } else {
       comparable = comparable && (film->maxSamples() == 0) == (merged.film->maxSamples() == 0);
@@ -178,7 +220,9 @@ MergedParts mergeParts(const std::vector<std::string>& files) {
   const Holdings& holds = merged.header.holds;
   stats["iterations"] = iterationsOf(holds);
   merged.missing = holds.missing(merged.header.render.value("chains", uint64_t{0}));
-  if (comparable && merged.header.render.value("sampler", "") != "sobol") {
+  if (halves) merged.whyNoHalves = whyNoHalves(merged, spread);
+  if (halves && merged.whyNoHalves.empty()) merged.halves = spread.halves();
+  if (comparable && areIndependent(merged.header)) {
     merged.relativeError = spread.relativeError(merged.film->resolve(), merged.film->area().width);
   }
   if (merged.relativeError) stats["relative_error"] = *merged.relativeError;

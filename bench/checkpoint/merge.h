@@ -7,6 +7,7 @@
 // few pixels, the next number.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,11 +26,15 @@ struct MergedParts {
   // The image's relative RMSE as relativeFilmError has it, from how far the parts lie apart. Nothing for one part, and
   // where parts depend on each other. Leaves out what all parts share: the bias of merging, and the error of mlt's b.
   std::optional<double> relativeError;
+  // The images of every other part and of those between: independent halves, as references have them (RGB, row by row).
+  // Empty unless asked for, and where whyNoHalves says why there are none.
+  std::array<std::vector<float>, 2> halves;
+  std::string whyNoHalves;
 };
 
 // Throws CheckpointError where a file is damaged or no checkpoint, of another render than the first, or holds what
 // another one holds; ImageError where it cannot be read.
-MergedParts mergeParts(const std::vector<std::string>& files);
+MergedParts mergeParts(const std::vector<std::string>& files, bool halves = false);
 
 // Writes the sum, which merges like any part. A render goes on from it where it has no gaps (Holdings::goesOn).
 void writeSum(const std::string& file, const MergedParts& merged);

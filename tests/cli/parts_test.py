@@ -151,6 +151,35 @@ class Sums(PartsTest):
         self.assertNotIn("relative_error", read_json(self.path("merged.json")))
 
 
+class References(PartsTest):
+    def test_parts_make_a_reference_for_campaigns(self):
+        files = self.all_parts("pt", spp=1000, size="64x48")
+        self.merge(*files, "--reference", "references/cornell-diffuse.exr", expect=USAGE)  # there is no such folder
+        (self.folder / "references").mkdir()
+        self.merge(*files, "--reference", "references/cornell-diffuse.exr", "--stats", "merged.json")
+        attributes = read_exr_header(self.path("references/cornell-diffuse.exr"))
+        self.assertEqual(attributes["wavecrest:iterations"], "500")
+        # Both are root mean squares of relative errors, each relative to a brightness of its own kind.
+        told = read_json(self.path("merged.json"))["relative_error"]
+        self.assertLess(0.3 * told, float(attributes["wavecrest:relative_error"]))
+        self.assertLess(float(attributes["wavecrest:relative_error"]), 3 * told)
+        campaign = ["converge", "cornell-diffuse", "--methods", "pt", "--size", "64x48", "--spp", "4", "--out", "out"]
+        self.run_wavecrest(*campaign, "--reference", "references", "--progress", "none")
+
+    def test_parts_that_are_no_halves_are_refused(self):
+        for method, more, spp, said in (
+            ("pt", [], SPP, "every other part does not have half"),
+            ("pt", ["--sampler", "sobol"], 16, "points of one Sobol sequence"),
+            ("mlt", [], 16, "all parts of mlt share the error of b"),
+        ):
+            files = self.all_parts(method, *more, name=f"{method}{len(more)}-", spp=spp)
+            result = self.merge(*files, "--reference", "a.exr", expect=INPUT)
+            self.assert_one_error_line(result, f"--reference: {said}")
+        result = self.merge(*self.all_parts("pt", name="some", spp=16)[:2], "--reference", "a.exr", expect=INPUT)
+        self.assertIn("error: --reference: missing are iterations 8 to 15 of 16", result.stderr)
+        self.assertFalse((self.folder / "a.exr").exists())
+
+
 class Missing(PartsTest):
     def test_what_is_missing_is_said(self):
         files = self.all_parts("pt")

@@ -117,5 +117,40 @@ class Recipe(unittest.TestCase):
             self.assertEqual(counted, sorted(counted), said)
 
 
+    def test_parts_that_are_requeued_add_up_to_one_render(self):
+        out, count = self.folder / "parts", 2
+        render = "cornell-diffuse -m pt --size 64x48 --threads 1 --spp 20000"
+        variables = {"WAVECREST": WAVECREST, "OUT": str(out), "PARTS": str(count), "OPTIONS": render}
+        parts = self.cluster.submit(f"--array=1-{count}", RECIPE / "parts.sbatch", **variables)
+        image = out / "image.pfm"
+        merge = self.cluster.submit(
+            f"--dependency=afterok:{parts}", "--wrap",
+            f"{WAVECREST} merge {out}/part-*-of-{count} --complete -o {image}",
+        )  # fmt: skip
+        self.cluster.wait((out / f"part-1-of-{count}.lock").exists, SECONDS, "the first part")
+        self.requeue(f"{parts}_1")
+        said = self.assert_completed(parts, restarts=1)
+        self.assertIn("resumed_from", said)
+        self.assert_completed(merge)
+        whole = self.folder / "whole.pfm"
+        self.cluster.run(WAVECREST, "render", *render.split(), "--progress", "none", "-o", whole)
+        # But for the last bits of some pixels: a hundred of 24 bits in a thousand million.
+        same = sum(a == b for a, b in zip(image.read_bytes(), whole.read_bytes(), strict=True))
+        self.assertGreater(same / len(whole.read_bytes()), 0.999)
+
+    def test_a_part_that_meets_its_time_limit_goes_back_into_the_queue(self):
+        out = self.folder / "limit"
+        variables = {"WAVECREST": WAVECREST, "OUT": str(out), "PARTS": "1"}
+        # A minute is the least time limit. The signal comes within a minute of when it is due, so at once.
+        render = "cornell-diffuse -m pt --size 64x48 --threads 1 --time 1h --spp 1000000000"
+        job = self.cluster.submit(
+            "--array=1", "--time=1", "--signal=B:USR2@50", RECIPE / "parts.sbatch", OPTIONS=render, **variables
+        )
+        restarted = lambda: any(int(task["Restarts"]) >= 1 for task in self.cluster.facts(job))  # noqa: E731
+        self.cluster.wait(restarted, SECONDS, "the requeue")
+        self.assertTrue((out / "part-1-of-1").exists())
+        self.cluster.run("scancel", job)
+
+
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], "-v", *sys.argv[1:]])

@@ -1,0 +1,136 @@
+// Sessions that each render a share of an image: their films add up to that of one session.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <memory>
+
+#include "tests/engine/render_statistics.h"
+#include "tests/engine/saved_state.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr uint32_t kWidth = 40, kHeight = 27, kShares = 3;
+constexpr uint64_t kIterations = 7;  // not the same number for each share
+
+struct ShareCase {
+  Method method;
+  MetropolisVariant metropolis = MetropolisVariant::mmlt;
+  Precision precision = Precision::floating;
+  bool directPass = true;
+  bool spreads = false;  // the scene's filter is no box
+};
+
+RenderSettings settingsOf(const ShareCase& one) {
+  RenderSettings settings;
+  settings.method = one.method;
+  settings.precision = one.precision;
+  settings.isa = bestIsa();
+  settings.waveSize = 64;
+  settings.seed = 5;
+  settings.radius = 0.05;  // so that merging finds photons
+  settings.metropolis.variant = one.metropolis;
+  settings.metropolis.chains = 500;
+  settings.metropolis.bootstrapSamples = 4000;
+  settings.metropolis.restartSteps = 4;  // so that iterations lie across a restart
+  settings.metropolis.directPass = one.directPass;
+  settings.iterations = kIterations;
+  return settings;
+}
+
+std::unique_ptr<Session> rendered(const Scene& scene, const RenderSettings& settings) {
+  auto session = Session::create(scene, settings);
+  session->renderUntil(settings.iterations, std::nullopt);
+  return session;
+}
+
+std::unique_ptr<Film> filmOf(const Session& session) {
+  const std::vector<unsigned char> state = savedState(session);
+  StateReader in(state);
+  return Film::fromState(in);
+}
+
+// The sum of the films of all shares, added in an order that is not theirs.
+std::unique_ptr<Film> sumOfShares(const Scene& scene, const RenderSettings& settings) {
+  const auto share = [&](uint32_t part) { return filmOf(*rendered(scene, settingsOfShare(settings, part, kShares))); };
+  std::unique_ptr<Film> sum = share(1);
+  sum->add(*share(2));
+  sum->add(*share(0));
+  return sum;
+}
+
+// Floats between both, at most over all samples.
+int64_t worstDistance(const RgbImage& a, const RgbImage& b) {
+  int64_t worst = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    worst = std::max<int64_t>(worst, std::abs(int64_t{std::bit_cast<int32_t>(a[i])} - std::bit_cast<int32_t>(b[i])));
+  }
+  return worst;
+}
+
+// Sums of seven samples in another order differ by 7 x 2^-52 of themselves at most, so images in float by a unit.
+TEST(SharesTest, filmsAddUpToThatOfOneSession) {
+  std::vector<ShareCase> cases{{.method = Method::pt, .spreads = true}, {.method = Method::bpt, .spreads = true}};
+  for (const MethodEntry& entry : kMethods) {
+    for (const Precision precision : {Precision::floating, Precision::doubled}) {
+      cases.push_back({.method = entry.method, .precision = precision});
+    }
+  }
+  for (const ShareCase& one : cases) {
+    Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+    if (one.spreads) scene.film.filter = ReconstructionFilter::gaussian;
+    const RenderSettings settings = settingsOf(one);
+    const std::unique_ptr<Session> whole = rendered(scene, settings);
+    EXPECT_EQ(whole->film().spreads(), one.spreads);
+    const std::unique_ptr<Film> sum = sumOfShares(scene, settings);
+    EXPECT_EQ(sum->allSamples(), whole->film().allSamples());
+    EXPECT_EQ(sum->splatCount(), whole->film().splatCount());
+    EXPECT_LE(worstDistance(sum->resolve(), whole->film().resolve()), 1) << toString(one.method);
+  }
+}
+
+// Chains add splats alone, which are integers.
+TEST(SharesTest, filmsOfChainsAddUpToTheBit) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  for (const MetropolisVariant variant :
+       {MetropolisVariant::mmlt, MetropolisVariant::pathspace, MetropolisVariant::pssmlt}) {
+    const RenderSettings settings =
+        settingsOf({.method = Method::mlt, .metropolis = variant, .directPass = variant == MetropolisVariant::pssmlt});
+    const std::unique_ptr<Session> whole = rendered(scene, settings);
+    EXPECT_EQ(sumOfShares(scene, settings)->resolve(), whole->film().resolve());
+  }
+}
+
+// A share that is broken goes on as what it was, with other threads and waves.
+TEST(SharesTest, aShareOfChainsThatIsBrokenGoesOn) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  RenderSettings settings = settingsOfShare(settingsOf({.method = Method::mlt}), 1, kShares);
+  const std::unique_ptr<Session> whole = rendered(scene, settings);
+  const auto first = Session::create(scene, settings);
+  first->renderUntil(3, std::nullopt);
+  settings.threads = 3;
+  settings.waveSize = 200;
+  const auto second = Session::create(scene, settings);
+  restoreState(*second, savedState(*first));
+  second->renderUntil(settings.iterations, std::nullopt);
+  EXPECT_EQ(second->film().resolve(), whole->film().resolve());
+  EXPECT_EQ(second->statistics().iterations, kIterations);
+  EXPECT_EQ(second->statistics().chains->directPaths, whole->statistics().chains->directPaths);
+}
+
+TEST(SharesTest, filmsOfOtherKindsAreNotAdded) {
+  const auto film = [](Method method, uint32_t width, bool spreads) {
+    Scene scene = sceneFile("cornell-diffuse", width, kHeight);
+    if (spreads) scene.film.filter = ReconstructionFilter::gaussian;
+    return filmOf(*rendered(scene, settingsOf({.method = method})));
+  };
+  const std::unique_ptr<Film> one = film(Method::pt, kWidth, false);
+  EXPECT_THROW(one->add(*film(Method::pt, kWidth + 1, false)), StateError);
+  EXPECT_THROW(one->add(*film(Method::pt, kWidth, true)), StateError);
+  EXPECT_THROW(one->add(*film(Method::lt, kWidth, false)), StateError);
+}
+
+}  // namespace
+}  // namespace wavecrest
