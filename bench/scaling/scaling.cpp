@@ -6,12 +6,15 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "bench/against/child_render.h"
 #include "bench/scaling/list_schedule.h"
 #include "bench/throughput/turns.h"
 #include "engine/plan/render_plan.h"
+#include "engine/session/render_clock.h"
 #include "engine/session/session.h"
+#include "engine/state/state_stream.h"
 #include "engine/tasks/task_recorder.h"
 
 namespace wavecrest {
@@ -83,6 +86,35 @@ class RecordedRender {
   double longest_ = 0;
 };
 
+// Measures what a part of this render is: its bytes, and the time to read it, to make its image, from which the error
+// is estimated, and to add it. All machines' parts are alike.
+std::vector<PartsScaling> partsScaling(const Session& session) {
+  constexpr int kRepetitions = 3;
+  std::vector<unsigned char> state;
+  StateWriter out([&](std::span<const unsigned char> bytes) { state.insert(state.end(), bytes.begin(), bytes.end()); });
+  session.save(out);
+  out.flush();
+  const auto filmOf = [&] {
+    StateReader in(state);
+    return Film::fromState(in);
+  };
+  const std::unique_ptr<Film> sum = filmOf();
+  std::vector<double> seconds;
+  for (int i = 0; i < kRepetitions; ++i) {
+    const auto begin = Clock::now();
+    const std::unique_ptr<Film> part = filmOf();
+    part->resolve();
+    sum->add(*part);
+    seconds.push_back(secondsSince(begin));
+  }
+  std::vector<PartsScaling> rows;
+  for (const uint32_t machines : powersOfTwo(2, kMostPredictedMachines)) {
+    rows.push_back(
+        {.machines = machines, .bytes = machines * state.size(), .mergeSeconds = machines * median(seconds)});
+  }
+  return rows;
+}
+
 }  // namespace
 
 ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& file, const RenderSettings& settings,
@@ -147,6 +179,7 @@ ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& fi
                                .processSpeedup = processes / oneProcess});
     watch.look();
   }
+  result.parts = partsScaling(*sessions.front());
   result.machine = watch.state();
   return result;
 }

@@ -29,15 +29,23 @@ struct PredictedScaling {
   Estimate speedup;        // of the schedule
 };
 
+// An image of parts on so many machines (`render --part`, `merge`).
+struct PartsScaling {
+  uint32_t machines = 2;
+  uint64_t bytes = 0;       // of all parts at one time, a snapshot of the render
+  double mergeSeconds = 0;  // to add them up on one machine, once they are in its memory
+};
+
 struct ScalingResult {
   std::string scene;
   Method method{};
   uint32_t width = 0, height = 0;
   std::vector<MeasuredScaling> measured;    // 1, 2, 4, ... and settings.threads
   std::vector<PredictedScaling> predicted;  // 2, 4, ... kMostPredictedThreads
+  std::vector<PartsScaling> parts;          // 2, 4, ... kMostPredictedMachines
   MachineState machine;                     // meanwhile
 };
-constexpr uint32_t kMostPredictedThreads = 256;
+constexpr uint32_t kMostPredictedThreads = 256, kMostPredictedMachines = 64;
 
 // Measures and records in turn for about `seconds` of render time. Tasks are recorded on one thread while the work is
 // cut as for the number of threads in question. file: the scene's, for the processes, which run this program.

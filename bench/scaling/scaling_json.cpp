@@ -13,7 +13,7 @@ Json pair(const Interval& interval) { return {interval.low, interval.high}; }
 }  // namespace
 
 Json toJson(const ScalingResult& result) {
-  Json measured = Json::array(), predicted = Json::array();
+  Json measured = Json::array(), predicted = Json::array(), parts = Json::array();
   for (const MeasuredScaling& row : result.measured) {
     measured.push_back({{"threads", row.threads},
                         {"paths_per_second", row.pathsPerSecond.value},
@@ -31,13 +31,13 @@ Json toJson(const ScalingResult& result) {
                          {"tasks", row.tasks},
                          {"longest_task_seconds", row.longestTask}});
   }
-  return {{"scene", result.scene},
-          {"method", std::string(toString(result.method))},
-          {"width", result.width},
-          {"height", result.height},
-          {"measured", measured},
-          {"predicted", predicted},
-          {"doubts", doubtsAbout(result.machine)}};
+  for (const PartsScaling& row : result.parts) {
+    parts.push_back({{"machines", row.machines}, {"snapshot_bytes", row.bytes}, {"merge_seconds", row.mergeSeconds}});
+  }
+  return {{"scene", result.scene}, {"method", std::string(toString(result.method))},
+          {"width", result.width}, {"height", result.height},
+          {"measured", measured},  {"predicted", predicted},
+          {"parts", parts},        {"doubts", doubtsAbout(result.machine)}};
 }
 
 }  // namespace wavecrest

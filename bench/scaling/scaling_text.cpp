@@ -43,6 +43,10 @@ std::string toText(const ScalingResult& result) {
     }
     line(text, "  {:>7} {}{}", threads, left, right);
   }
+  line(text, "  {:>8} {:>13} {:>10}", "machines", "snapshot, MB", "merge, s");
+  for (const PartsScaling& row : result.parts) {
+    line(text, "  {:>8} {:>13.1f} {:>10.3f}", row.machines, 1e-6 * static_cast<double>(row.bytes), row.mergeSeconds);
+  }
   return fmt::to_string(text);
 }
 

@@ -121,6 +121,11 @@ class Scaling(CommandTest):
         for row in result["results"]:
             self.assertEqual([measured["threads"] for measured in row["measured"]], [1, 2])
             self.assertEqual([predicted["threads"] for predicted in row["predicted"]], [2**k for k in range(1, 9)])
+            self.assertEqual([parts["machines"] for parts in row["parts"]], [2**k for k in range(1, 7)])
+            # Three sums and a count of samples for each of 48x32 pixels; vcm also three sums of splats.
+            least = 48 * 32 * (32 if row["method"] == "pt" else 80)
+            self.assertGreater(row["parts"][0]["snapshot_bytes"], 2 * least)
+            self.assertLess(row["parts"][0]["snapshot_bytes"], 2 * (least + 10000))
             self.assertEqual(row["measured"][0]["speedup"], 1)
             for predicted in row["predicted"]:
                 # How large is for the tests of bench/scaling, whose tasks take made-up times: those here depend on the machine.

@@ -134,7 +134,7 @@ class Recipe(unittest.TestCase):
         self.assert_completed(merge)
         whole = self.folder / "whole.pfm"
         self.cluster.run(WAVECREST, "render", *render.split(), "--progress", "none", "-o", whole)
-        # But for the last bits of some pixels: a hundred of 24 bits in a thousand million.
+        # But for the last place of few pixels (tests/cli/parts_test.py).
         same = sum(a == b for a, b in zip(image.read_bytes(), whole.read_bytes(), strict=True))
         self.assertGreater(same / len(whole.read_bytes()), 0.999)
 
