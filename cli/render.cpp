@@ -179,6 +179,9 @@ int runRender(const RenderOptions& options) {
   const SnapshotSchedule schedule = parseSnapshotSchedule("--snapshot-every", options.snapshotEvery);
   const ProgressKind kind =
       quietIf(options.quiet, static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)));
+  if (options.outputs.empty() && !options.snapshotEvery.empty()) {
+    throw UsageError("--snapshot-every: snapshots of a part are named after its image; expected -o FILE.exr");
+  }
   const OutputNames names{options.outputs, options.stats, options.snapshotEvery, options.checkpoint.file,
                           options.exposure};
   const std::string nothing = "wavecrest: interrupted before anything was rendered; no image was written";
@@ -233,7 +236,7 @@ int runRender(const RenderOptions& options) {
   warnOfLosses(kind, settings, session->statistics());
   outputs.writeCheckpoint(*session);
   outputs.write(*session);
-  if (!outputs.failed()) live.showFile(options.outputs.front());
+  if (!options.outputs.empty() && !outputs.failed()) live.showFile(options.outputs.front());
   showSummary(options, settings, kind, *session);
   if (outputs.failed()) return kExitInput;
   return ending == Ending::stopped ? kExitInterrupted : kExitDone;
@@ -246,7 +249,8 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
   const Command command = program.add("render", "render a scene by one method");
   addRenderOptions(command, *options);
   command.run([options, &exitCode] {
-    if (options->outputs.empty()) options->outputs = {defaultOutput(options->scene.scene)};
+    // A part is a checkpoint; it has an image only where one is asked for.
+    if (options->outputs.empty() && options->part.empty()) options->outputs = {defaultOutput(options->scene.scene)};
     exitCode = runRender(*options);
   });
 }

@@ -120,6 +120,7 @@ void showSummary(const RenderOptions& options, const RenderSettings& settings, P
   const RenderStatistics statistics = session.statistics();
   std::string files;
   for (const std::string& output : options.outputs) files += (files.empty() ? "" : ", ") + output;
+  if (files.empty()) files = options.checkpoint.file;
   // The speed of lt is that of its light paths.
   const uint64_t paths = settings.method == Method::lt ? statistics.lightPaths : statistics.paths;
   const double seconds = statistics.renderSeconds;

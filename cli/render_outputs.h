@@ -19,7 +19,7 @@
 namespace wavecrest {
 
 struct OutputNames {
-  std::vector<std::string> images;  // at least one
+  std::vector<std::string> images;  // at least one, but of a part
   std::string stats;                // empty: none; - is stdout
   std::string snapshotEvery;        // empty: no snapshots; they are named after the first image
   std::string checkpoint;           // empty: none

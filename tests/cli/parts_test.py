@@ -32,7 +32,8 @@ class PartsTest(CommandTest):
 
     def part(self, index, method="pt", *more, name="part", parts=PARTS, expect=DONE, **keywords):
         file = f"{name}{index}"
-        self.run_wavecrest(*self.arguments(method, "--part", f"{index}/{parts}", "--checkpoint", file, *more, **keywords), expect=expect)  # fmt: skip
+        share = ["--part", f"{index}/{parts}", "--checkpoint", file]
+        self.run_wavecrest(*self.arguments(method, *share, *more, **keywords), expect=expect)
         return file
 
     def all_parts(self, *arguments, parts=PARTS, **keywords):
@@ -98,7 +99,8 @@ class Sums(PartsTest):
         for method in ("pt", "vcm"):
             sum_ = f"sum-{method}"
             self.merge(*self.all_parts(method, name=method), "--checkpoint", sum_)
-            self.run_wavecrest(*self.arguments(method, "--checkpoint", sum_, "--resume", "-o", "parts.pfm", spp=2 * SPP))
+            more = ["--checkpoint", sum_, "--resume", "-o", "parts.pfm"]
+            self.run_wavecrest(*self.arguments(method, *more, spp=2 * SPP))
             self.run_wavecrest(*self.arguments(method, "-o", "whole.pfm", spp=2 * SPP))
             self.assert_equal_but_for_rounding(self.image("parts.pfm"), self.image("whole.pfm"), method)
 
@@ -256,6 +258,7 @@ class Refused(PartsTest):
             ("pt", ["--part", "2/4"], "--part: its result is a checkpoint"),
             ("pt", ["--part", "5/4", "--checkpoint", "c"], "--part '5/4': no part"),
             ("pt", ["--part", "two", "--checkpoint", "c"], "--part 'two': no part"),
+            ("pt", ["--part", "1/4", "--checkpoint", "c", "--snapshot-every", "1s"], "--snapshot-every: .*expected -o"),
             ("pt", ["--part", "1/19", "--checkpoint", "c"], "--part 1/19: there are 18 iterations"),
             ("mlt", ["--part", "1/51", "--checkpoint", "c"], "--part 1/51: there are 50 chains"),
             ("mlt", ["--part", "1/2", "--checkpoint", "c", "-o", "a.pfm"], "--part: some of the chains of mlt"),
@@ -264,8 +267,11 @@ class Refused(PartsTest):
             self.assert_one_error_line(result, said)
         arguments = ["render", "cornell-diffuse", "--time", "1s", "--part", "1/2", "--checkpoint", "c"]
         self.assert_one_error_line(self.run_wavecrest(*arguments, expect=USAGE), "--part: .*expected --spp")
+        self.assertEqual([file.name for file in self.folder.iterdir()], [])
         first = self.part(1)
-        self.assert_one_error_line(self.merge(first, "--checkpoint", first, expect=USAGE), "--checkpoint part1: is the file")
+        self.assertEqual([file.name for file in self.folder.iterdir()], [first])
+        result = self.merge(first, "--checkpoint", first, expect=USAGE)
+        self.assert_one_error_line(result, "--checkpoint part1: is the file")
         self.assert_one_error_line(self.merge("-o", "a.pfm", expect=USAGE), ".*PART")
 
     def test_a_part_goes_on_as_what_it_was(self):
