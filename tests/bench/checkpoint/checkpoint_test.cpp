@@ -99,7 +99,7 @@ TEST_F(CheckpointTest, theFirstSettingThatDiffersIsNamed) {
       {Method::pt, "its rr_depth is 5, not 2", [](RenderSettings& s) { s.limits.rouletteDepth = 2; }},
       {Method::vcm, "its radius is 0.001, not 0.5", [](RenderSettings& s) { s.radius = 0.5; }},
       {Method::ppm, "its radius_alpha is 0.75, not 0.5", [](RenderSettings& s) { s.radiusAlpha = 0.5; }},
-      {Method::bpm, "its light_paths is 20, not 10", [](RenderSettings& s) { s.lightPaths = 10; }},
+      {Method::bpm, "its light_paths is 4096, not 10", [](RenderSettings& s) { s.lightPaths = 10; }},
       {Method::vcm, "its wave is 64, not 128", [](RenderSettings& s) { s.waveSize = 128; }},
       {Method::bpt, "its wave is 64, not 128", [](RenderSettings& s) { s.waveSize = 128; }},
       {Method::mlt, "its specialization is",
