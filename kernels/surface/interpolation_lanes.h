@@ -17,7 +17,7 @@ struct Interpolated {
 
 namespace {
 
-// Derivatives of the position by the texture coordinates; dpDu is zero where the coordinates do not span the surface.
+// Derivatives of the position by the texture coordinates.
 template <class Real>
 struct Tangents {
   Vec3<Real> dpDu, dpDv;
@@ -118,6 +118,13 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
     const Vec3<Real> e1 = tangents.dpDu, e2 = tangents.dpDv;
     tangents.dpDu = select(spans, (e1 * v2 - e2 * v1) * inverse, e1);
     tangents.dpDv = select(spans, (e2 * u1 - e1 * u2) * inverse, e2);
+    // Where they do not span the plane of the coordinates, Mitsuba takes any frame of the face.
+    const Mask folded = andNot(attributed, spans);
+    if (any(folded)) {
+      const auto face = Frame<Real>::fromNormal(surface.normal);
+      tangents.dpDu = select(folded, face.s, tangents.dpDu);
+      tangents.dpDv = select(folded, face.t, tangents.dpDv);
+    }
   }
 
   if constexpr (has(kFeatures, kTextures) && has(kFeatures, kCurvedShapes)) {
