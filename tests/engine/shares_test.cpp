@@ -12,8 +12,8 @@
 namespace wavecrest {
 namespace {
 
-constexpr uint32_t kWidth = 40, kHeight = 27, kShares = 3;
-constexpr uint64_t kIterations = 7;  // not the same number for each share
+constexpr uint32_t kShareWidth = 40, kShareHeight = 27, kShares = 3;
+constexpr uint64_t kShareIterations = 7;  // not the same number for each share
 
 struct ShareCase {
   Method method;
@@ -36,7 +36,7 @@ RenderSettings settingsOf(const ShareCase& one) {
   settings.metropolis.bootstrapSamples = 4000;
   settings.metropolis.restartSteps = 4;  // so that iterations lie across a restart
   settings.metropolis.directPass = one.directPass;
-  settings.iterations = kIterations;
+  settings.iterations = kShareIterations;
   return settings;
 }
 
@@ -79,7 +79,7 @@ TEST(SharesTest, filmsAddUpToThatOfOneSession) {
     }
   }
   for (const ShareCase& one : cases) {
-    Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+    Scene scene = sceneFile("cornell-diffuse", kShareWidth, kShareHeight);
     if (one.spreads) scene.film.filter = ReconstructionFilter::gaussian;
     const RenderSettings settings = settingsOf(one);
     const std::unique_ptr<Session> whole = rendered(scene, settings);
@@ -93,7 +93,7 @@ TEST(SharesTest, filmsAddUpToThatOfOneSession) {
 
 // Chains add splats alone, which are integers.
 TEST(SharesTest, filmsOfChainsAddUpToTheBit) {
-  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const Scene scene = sceneFile("cornell-diffuse", kShareWidth, kShareHeight);
   for (const MetropolisVariant variant :
        {MetropolisVariant::mmlt, MetropolisVariant::pathspace, MetropolisVariant::pssmlt}) {
     const RenderSettings settings =
@@ -105,7 +105,7 @@ TEST(SharesTest, filmsOfChainsAddUpToTheBit) {
 
 // A share that is broken goes on as what it was, with other threads and waves.
 TEST(SharesTest, aShareOfChainsThatIsBrokenGoesOn) {
-  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const Scene scene = sceneFile("cornell-diffuse", kShareWidth, kShareHeight);
   RenderSettings settings = settingsOfShare(settingsOf({.method = Method::mlt}), 1, kShares);
   const std::unique_ptr<Session> whole = rendered(scene, settings);
   const auto first = Session::create(scene, settings);
@@ -116,20 +116,20 @@ TEST(SharesTest, aShareOfChainsThatIsBrokenGoesOn) {
   restoreState(*second, savedState(*first));
   second->renderUntil(settings.iterations, std::nullopt);
   EXPECT_EQ(second->film().resolve(), whole->film().resolve());
-  EXPECT_EQ(second->statistics().iterations, kIterations);
+  EXPECT_EQ(second->statistics().iterations, kShareIterations);
   EXPECT_EQ(second->statistics().chains->directPaths, whole->statistics().chains->directPaths);
 }
 
 TEST(SharesTest, filmsOfOtherKindsAreNotAdded) {
   const auto film = [](Method method, uint32_t width, bool spreads) {
-    Scene scene = sceneFile("cornell-diffuse", width, kHeight);
+    Scene scene = sceneFile("cornell-diffuse", width, kShareHeight);
     if (spreads) scene.film.filter = ReconstructionFilter::gaussian;
     return filmOf(*rendered(scene, settingsOf({.method = method})));
   };
-  const std::unique_ptr<Film> one = film(Method::pt, kWidth, false);
-  EXPECT_THROW(one->add(*film(Method::pt, kWidth + 1, false)), StateError);
-  EXPECT_THROW(one->add(*film(Method::pt, kWidth, true)), StateError);
-  EXPECT_THROW(one->add(*film(Method::lt, kWidth, false)), StateError);
+  const std::unique_ptr<Film> one = film(Method::pt, kShareWidth, false);
+  EXPECT_THROW(one->add(*film(Method::pt, kShareWidth + 1, false)), StateError);
+  EXPECT_THROW(one->add(*film(Method::pt, kShareWidth, true)), StateError);
+  EXPECT_THROW(one->add(*film(Method::lt, kShareWidth, false)), StateError);
 }
 
 }  // namespace
