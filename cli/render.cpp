@@ -1,6 +1,7 @@
 // wavecrest render: one scene, one method, images and statistics out.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <memory>
@@ -92,7 +93,7 @@ void tellPlan(const RenderOptions& options, const Scene& scene, const RenderSett
   }
 }
 
-enum class Ending { complete, stopped, stoppedBeforeAnyPath };
+enum class Ending { complete, stopped };
 
 // With --resume: restores the session and the outputs from the checkpoint, if there is one, and tells at which
 // iteration the render goes on.
@@ -133,7 +134,11 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
     if (stopped) return false;
     const bool save = guard.takeSaveRequest();
     if (guard.takePauseRequest() || save) outputs.writeCheckpoint(session);
-    if (save && session.statistics().paths > 0) outputs.save(session);
+    if (save && outputs.hasImage(session)) {
+      outputs.save(session);
+    } else if (save) {
+      noteLine(kind, {{"left_out", "save"}}, "not saved, as there was no whole pass over the film yet");
+    }
     guard.goOn();
     return true;
   };
@@ -163,10 +168,34 @@ Ending render(Session& session, const RenderSettings& settings, const SnapshotSc
           goesOn, outputs.nextSnapshot(schedule, session));
     }
   }
-  // Signals find no session from here on. An image is worth saving if it has any path.
+  // Signals find no session from here on.
   guard.watch(nullptr);
-  if (!stopped) return Ending::complete;
-  return session.statistics().paths > 0 ? Ending::stopped : Ending::stoppedBeforeAnyPath;
+  return stopped ? Ending::stopped : Ending::complete;
+}
+
+// The end of a render that has no whole image: nothing takes the place of an image that may be there. The checkpoint
+// keeps what has been rendered.
+int endWithoutImage(Ending ending, const Session& session, const CheckpointOptions& checkpoint,
+                    RenderOutputs& outputs) {
+  outputs.writeCheckpoint(session);
+  outputs.writeStats(session);
+  const RenderStatistics statistics = session.statistics();
+  const std::string when =
+      statistics.paths == 0 ? "before anything was rendered" : "before one whole pass over the film";
+  if (ending == Ending::stopped) {
+    tell("wavecrest: interrupted {}; no image was written", when);
+    return kExitInterrupted;
+  }
+  // A pass takes about as much longer as pixels are missing.
+  std::string longer = "a longer time";
+  if (statistics.paths > 0) {
+    const double passes =
+        static_cast<double>(statistics.paths) / static_cast<double>(session.film().area().pixels.size());
+    longer = fmt::format("more than {:.1g} s", statistics.renderSeconds / std::min(passes, 1.0));
+  }
+  tell("wavecrest: error: --time: {:.2g} s ended {}; no image was written; expected {}{}{}", statistics.renderSeconds,
+       when, longer, checkpoint.file.empty() ? "" : " with --resume", statistics.paths == 0 ? "" : ", or --partial");
+  return kExitInput;
 }
 
 // Where the image goes without -o: SCENE.exr in the working directory.
@@ -182,8 +211,8 @@ int runRender(const RenderOptions& options) {
   if (options.outputs.empty() && !options.snapshotEvery.empty()) {
     throw UsageError("--snapshot-every: snapshots of a part are named after its image; expected -o FILE.exr");
   }
-  const OutputNames names{options.outputs, options.stats, options.snapshotEvery, options.checkpoint.file,
-                          options.exposure};
+  const OutputNames names{options.outputs,         options.stats,    options.snapshotEvery,
+                          options.checkpoint.file, options.exposure, options.partial};
   const std::string nothing = "wavecrest: interrupted before anything was rendered; no image was written";
   InterruptGuard guard(nothing);
   checkOutputs(names, {findScene(options.scene.scene)}, options.until.reference);
@@ -227,11 +256,10 @@ int runRender(const RenderOptions& options) {
   const Ending ending = render(*session, settings, schedule, until, kind, guard, outputs, live);
   timer.reset();
   if (until) noteLine(kind, {{"until", outputs.until()}}, UntilGoal::describe(outputs.until()));
-  // Without any path there is nothing to write. Else checkpoint and outputs are written, however the render ended.
-  if (ending == Ending::stoppedBeforeAnyPath) {
-    tell("{}", nothing);
-    return kExitInterrupted;
-  }
+  // Checkpoint and outputs are written however the render ended, images from the first whole one on. A part without an
+  // image of its own needs no whole pass: its checkpoint is what it is for.
+  const bool refuses = !options.outputs.empty() || (ending == Ending::stopped && session->statistics().paths == 0);
+  if (refuses && !outputs.hasImage(*session)) return endWithoutImage(ending, *session, options.checkpoint, outputs);
   live.look(true);
   warnOfLosses(kind, settings, session->statistics());
   outputs.writeCheckpoint(*session);

@@ -97,8 +97,8 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
 // were cut.
 void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const RenderStatistics& statistics) {
   const StageCounters& counters = statistics.counters;
-  if (statistics.iterations == 0 && settings.method != Method::mlt) {  // which has no samples of pixels
-    warn(kind, "the render ended before all pixels had a sample; those without are black");
+  if (!statistics.hasWholeImage()) {
+    warn(kind, "--partial: there was no whole pass over the film; pixels without a sample are black");
   }
   if (counters.nonFinite != 0) {
     warn(kind, fmt::format("{} samples were not finite and count as black", counters.nonFinite));

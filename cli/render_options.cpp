@@ -75,6 +75,7 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command.add("-o,--output", options.outputs, "image file: .exr, .png or .pfm; repeatable; default: SCENE.exr")
       .repeatable();
   command.add("--exposure", options.exposure, "stops by which PNG images are brighter").between(kExposureRange);
+  command.addFlag("--partial", options.partial, "write images even before there was a whole pass over the film");
   command.add("--stats", options.stats, "write statistics as JSON; - for stdout");
   command.addFlag("--dry-run", options.dryRun, "print plan, memory and outputs, and render nothing");
   command.add("--progress", options.progress, "auto, bar, jsonl or none").showDefault();

@@ -19,7 +19,7 @@ struct RenderOptions : api::RenderOptions {
   std::string part, snapshotEvery, stats, progress = "auto";
   std::vector<std::string> outputs;
   double exposure = 0;  // stops, of PNG
-  bool dryRun = false, pin = false, quiet = false;
+  bool dryRun = false, pin = false, quiet = false, partial = false;
   CheckpointOptions checkpoint;
   UntilRequest until;
   LiveOptions live;

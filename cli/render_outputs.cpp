@@ -102,9 +102,20 @@ void RenderOutputs::attempt(Step step) {
   }
 }
 
+bool RenderOutputs::hasImage(const Session& session) const {
+  const RenderStatistics statistics = session.statistics();
+  return statistics.hasWholeImage() || (names_.partial && statistics.paths > 0);
+}
+
 void RenderOutputs::writeSnapshot(const Session& session, unsigned number) {
   const std::string file = snapshotFile(names_.images.front(), number);
   const RenderStatistics statistics = session.statistics();
+  if (!hasImage(session)) {
+    noteLine(kind_, {{"left_out", file}, {"render_seconds", statistics.renderSeconds}},
+             fmt::format("{}: left out, as there was no whole pass over the film in {:.2g} s", file,
+                         statistics.renderSeconds));
+    return;
+  }
   snapshots_.push_back(
       {.number = number, .renderSeconds = statistics.renderSeconds, .iterations = statistics.iterations, .file = file});
   // A snapshot that cannot be written leaves no record. For that, failed_ tells of this attempt alone for a moment.
@@ -115,14 +126,16 @@ void RenderOutputs::writeSnapshot(const Session& session, unsigned number) {
   failed_ |= failedBefore;
 }
 
-void RenderOutputs::write(const Session& session) { write(session, names_.stats); }
+void RenderOutputs::write(const Session& session) { write(session, names_.stats, true); }
+
+void RenderOutputs::writeStats(const Session& session) { write(session, names_.stats, false); }
 
 // Stdout takes one JSON object, the last.
 void RenderOutputs::save(const Session& session) {
-  write(session, names_.stats == kStandardStream ? "" : names_.stats);
+  write(session, names_.stats == kStandardStream ? "" : names_.stats, true);
 }
 
-void RenderOutputs::write(const Session& session, const std::string& statsFile) {
+void RenderOutputs::write(const Session& session, const std::string& statsFile, bool images) {
   // The statistics go into the images as attributes, and into a file of their own.
   nlohmann::ordered_json all;
   attempt([&] {
@@ -130,8 +143,10 @@ void RenderOutputs::write(const Session& session, const std::string& statsFile) 
     if (!until_.is_null()) all["until"] = until_;
   });
   const Metadata metadata = statsMetadata(all);
-  const Image image = filmImage(session);
-  for (const std::string& name : names_.images) {
+  const std::vector<std::string> none;
+  const std::vector<std::string>& names = images ? names_.images : none;
+  const Image image = names.empty() ? Image() : filmImage(session);
+  for (const std::string& name : names) {
     attempt([&] {
       WritingProgress progress(kind_, name);
       const bool brighter = names_.exposure != 0 && isPng(name);

@@ -24,6 +24,7 @@ struct OutputNames {
   std::string snapshotEvery;        // empty: no snapshots; they are named after the first image
   std::string checkpoint;           // empty: none
   double exposure = 0;              // stops, of PNG images
+  bool partial = false;             // images are written before there is a whole one
 };
 
 // Throws UsageError where a name cannot be written, or is that of an input (a file of the scene, or the reference of
@@ -37,9 +38,14 @@ class RenderOutputs {
                 ProgressKind kind)
       : names_(names), scene_(scene), settings_(settings), loadSeconds_(loadSeconds), kind_(kind) {}
 
+  // Before there is a whole image, a line says that the snapshot is left out.
   void writeSnapshot(const Session& session, unsigned number);
+  // Whether there is an image to write: a whole one, or any with --partial.
+  bool hasImage(const Session& session) const;
   // Images and statistics at the end of the render.
   void write(const Session& session);
+  // Statistics alone.
+  void writeStats(const Session& session);
   // Images and statistics so far, while the render goes on; no statistics on stdout.
   void save(const Session& session);
   // The checkpoint, if one was asked for and there are paths to keep.
@@ -58,7 +64,7 @@ class RenderOutputs {
  private:
   nlohmann::ordered_json stats(const RenderStatistics& statistics) const;
   double wallSeconds() const;
-  void write(const Session& session, const std::string& statsFile);  // statsFile: empty for none
+  void write(const Session& session, const std::string& statsFile, bool images);  // statsFile: empty for none
   // Runs a step that writes one file.
   template <class Step>
   void attempt(Step step);

@@ -1,6 +1,8 @@
 // Renders of the interface.
 #include "wavecrest/render.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +10,7 @@
 #include "bench/film_image.h"
 #include "bench/json_text.h"
 #include "engine/session/session.h"
+#include "library/errors.h"
 #include "library/image_conversion.h"
 #include "library/render_settings.h"
 #include "library/scene_data.h"
@@ -22,6 +25,11 @@ struct Render::Data {
   std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   std::unique_ptr<Session> session;
 
+  wavecrest::Image wholeImage() const {
+    if (session->statistics().hasWholeImage()) return filmImage(*session);
+    throw InputError(fmt::format("render: no whole pass over the film after {:.2g} s; expected a longer time",
+                                 session->progressSeconds()));
+  }
   nlohmann::ordered_json stats() const {
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return renderStats(scene->scene, settings, session->statistics(), scene->loadSeconds, wall, {});
@@ -51,11 +59,11 @@ void Render::stop() noexcept { data_->session->interrupt(); }
 bool Render::stopped() const noexcept { return data_->session->interrupted(); }
 
 double Render::seconds() const { return data_->session->progressSeconds(); }
-uint64_t Render::iterations() const { return data_->session->film().minSamples(); }
+uint64_t Render::iterations() const { return data_->session->statistics().iterations; }
 
 Image Render::image() const {
   return translated([&]() -> Image {
-    wavecrest::Image image = filmImage(*data_->session);
+    wavecrest::Image image = data_->wholeImage();
     return {.width = image.width, .height = image.height, .pixels = std::move(image.pixels)};
   });
 }
@@ -67,7 +75,7 @@ std::string Render::stats() const {
 void Render::write(const std::string& file) const {
   translated([&] {
     checkImageTarget(file);
-    writeImage(file, filmImage(*data_->session), statsMetadata(data_->stats()));
+    writeImage(file, data_->wholeImage(), statsMetadata(data_->stats()));
   });
 }
 

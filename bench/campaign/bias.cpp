@@ -54,18 +54,19 @@ std::optional<double> unbiasedMse(const Image& image, const Reference& reference
 std::vector<BiasRecord> measureBiases(std::span<const RunRecord* const> runs, const Reference& reference) {
   std::vector<BiasRecord> biases;
   if (runs.size() < 2) return biases;
-  // Snapshots that all runs have.
-  for (size_t k = 0;; ++k) {
-    if (std::any_of(runs.begin(), runs.end(), [&](const RunRecord* run) { return k >= run->snapshots.size(); })) break;
+  for (const SnapshotRecord& first : runs[0]->snapshots) {
+    // The images of this number. Runs begin and end with different ones, and some are not kept.
     std::vector<Image> images;
     for (const RunRecord* run : runs) {
-      if (!run->snapshots[k].file.empty()) images.push_back(readImage(run->snapshots[k].file).image);
+      const auto own = std::ranges::find(run->snapshots, first.number, &SnapshotRecord::number);
+      if (own == run->snapshots.end() || own->file.empty()) break;
+      images.push_back(readImage(own->file).image);
     }
-    if (images.size() < runs.size()) continue;  // images of intermediate snapshots were not kept
+    if (images.size() < runs.size()) continue;
     const ErrorParts parts = errorParts(images, reference);
     biases.push_back({.scene = runs[0]->scene,
                       .method = runs[0]->method,
-                      .number = runs[0]->snapshots[k].number,
+                      .number = first.number,
                       .seeds = static_cast<unsigned>(runs.size()),
                       .meanSquareError = parts.meanSquareError,
                       .variance = parts.variance,

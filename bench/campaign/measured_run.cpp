@@ -43,8 +43,12 @@ class SnapshotTaker {
       : request_(request), run_(run), session_(session) {}
 
   void take(unsigned number) {
-    // The record.
+    // The record. An image counts from its first whole pass on.
     const RenderStatistics statistics = session_.statistics();
+    if (!statistics.hasWholeImage()) {
+      ++leftOut_;
+      return;
+    }
     paths_ = session_.progressPaths();
     SnapshotRecord& snapshot = run_.snapshots.emplace_back();
     snapshot.number = number;
@@ -85,6 +89,7 @@ class SnapshotTaker {
     all.erase("snapshots");
     all["cpu"] = cpuName();
     if (request_.settings.seconds) all["asked_seconds"] = *request_.settings.seconds;
+    all["snapshots_left_out"] = leftOut_;
     return all;
   }
 
@@ -94,6 +99,7 @@ class SnapshotTaker {
   const Session& session_;
   const Clock::time_point begin_ = Clock::now();
   uint64_t paths_ = 0;
+  unsigned leftOut_ = 0;  // snapshots that were due before the first whole image
 };
 
 }  // namespace
@@ -145,6 +151,11 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHoo
   if (taker.outdated()) taker.take(count);
   const RenderStatistics statistics = session->statistics();
   run.stats = taker.stats(statistics).dump();
+  if (!statistics.hasWholeImage()) {
+    run.state = RunState::refused;
+    run.reason = fmt::format("{:.2g} s are too short for one whole image", statistics.renderSeconds);
+    return run;
+  }
   for (const auto& stage : statistics.stages) run.stages.push_back({stage.name, stage.items, stage.seconds});
   return run;
 }

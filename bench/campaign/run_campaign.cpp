@@ -138,11 +138,11 @@ class Campaign {
                                                  uint64_t seed) {
     return store_ ? store_->findRun(scene.name, method.name(), seed) : std::nullopt;
   }
-  // Whether a run is stored that was asked for at least the present time or iterations. A refused run is done: the
-  // method would be refused again.
+  // Whether a run is stored that was asked for at least the present time or iterations. A refused run without stats is
+  // done: the method would be refused again. One with stats had no time for a whole image.
   bool isDone(const CampaignScene& scene, const CampaignMethod& method, uint64_t seed) {
     const std::optional<ResultsStore::KnownRun> run = knownRun(scene, method, seed);
-    if (!run || run->state == RunState::refused) return run.has_value();
+    if (!run || (run->state == RunState::refused && run->stats.empty())) return run.has_value();
     try {
       const nlohmann::json stats = nlohmann::json::parse(run->stats);
       if (settings_.iterations) return stats.value("iterations", uint64_t{0}) >= *settings_.iterations;

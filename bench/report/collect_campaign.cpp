@@ -48,7 +48,8 @@ double valueOf(const MetricValues& values, const std::string& key) {
 
 // One snapshot: the scores of the metrics shown, and all other scores as further ones.
 ReportPoint pointOf(const SnapshotRecord& snapshot, const std::vector<ReportMetric>& metrics) {
-  ReportPoint point{.seconds = snapshot.renderSeconds, .iterations = snapshot.iterations, .values = {}};
+  ReportPoint point{
+      .number = snapshot.number, .seconds = snapshot.renderSeconds, .iterations = snapshot.iterations, .values = {}};
   for (const ReportMetric& metric : metrics) point.values.push_back(valueOf(snapshot.values, metric.key));
   for (const auto& [name, value] : snapshot.values) {
     const bool shown = std::any_of(metrics.begin(), metrics.end(),

@@ -120,7 +120,8 @@ SceneReference readReference(const std::vector<fs::path>& files, const std::stri
 
 // Measures one snapshot. A metric that needs a larger image gets NaN; scores besides the main one go into `further`.
 ReportPoint measure(const SnapshotFile& snapshot, const PreparedReference& reference) {
-  ReportPoint point{.seconds = snapshot.seconds, .iterations = snapshot.iterations, .values = {}};
+  ReportPoint point{
+      .number = snapshot.number, .seconds = snapshot.seconds, .iterations = snapshot.iterations, .values = {}};
   const std::string path = snapshot.image.string();
   const ComparedImage image = reference.prepareTest(path, readImage(path));
   for (const Metric* metric : reportedMetrics()) {

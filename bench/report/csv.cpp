@@ -35,12 +35,11 @@ std::string measurementsAsCsv(const ConvergenceReport& report) {
       // The fields that all lines of a series begin with.
       const std::string start = fmt::format("{},{},{}", field(scene.name), field(series.method), field(series.label));
       for (const ReportRun& run : series.runs) {
-        for (size_t k = 0; k < run.points.size(); ++k) {
-          const ReportPoint& point = run.points[k];
+        for (const ReportPoint& point : run.points) {
           // A line for each metric of the report, then one for each further score.
           const auto add = [&](const std::string& metric, double value) {
-            append(csv, "{},{},{},{},{},{},{}\n", start, run.seed, k, number(point.seconds), point.iterations,
-                   field(metric), number(value));
+            append(csv, "{},{},{},{},{},{},{}\n", start, run.seed, point.number, number(point.seconds),
+                   point.iterations, field(metric), number(value));
           };
           for (size_t m = 0; m < report.metrics.size(); ++m) add(report.metrics[m].key, point.values[m]);
           for (const NamedNumber& score : point.further) add(score.name, score.value);

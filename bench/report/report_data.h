@@ -38,7 +38,8 @@ struct NamedNumber {
 
 /// One measured snapshot.
 struct ReportPoint {
-  double seconds = 0;  ///< render clock
+  unsigned number = 0;  ///< of the snapshot, from 0 on; the first whole image of a run may have a later one
+  double seconds = 0;   ///< render clock
   uint64_t iterations = 0;
   std::vector<double> values = {};        ///< per metric; NaN where it was not measured
   std::vector<NamedNumber> further = {};  ///< other scores, for exports: those of single channels, for example

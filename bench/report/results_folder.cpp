@@ -61,7 +61,9 @@ std::vector<SnapshotFile> readSnapshots(const fs::path& path, const json& stats)
   std::vector<SnapshotFile> snapshots;
   for (const json& entry : require<json>(path, stats, "snapshots")) {
     if (!entry.is_object()) fail(path, "a snapshot is " + entry.dump(), "an object");
-    snapshots.push_back({.seconds = require<double>(path, entry, "render_seconds"),
+    const auto number = static_cast<unsigned>(snapshots.size());
+    snapshots.push_back({.number = entry.contains("index") ? require<unsigned>(path, entry, "index") : number,
+                         .seconds = require<double>(path, entry, "render_seconds"),
                          .iterations = require<uint64_t>(path, entry, "iterations"),
                          .image = locate(path, require<std::string>(path, entry, "file"))});
   }
@@ -71,8 +73,10 @@ std::vector<SnapshotFile> readSnapshots(const fs::path& path, const json& stats)
   const auto iterations = require<uint64_t>(path, stats, "iterations");
   const fs::path final = fs::path(path).replace_extension(".exr");
   if (fs::is_regular_file(final) && (snapshots.empty() || snapshots.back().iterations < iterations)) {
-    snapshots.push_back(
-        {.seconds = require<double>(path, stats, "render_seconds"), .iterations = iterations, .image = final});
+    snapshots.push_back({.number = snapshots.empty() ? 0 : snapshots.back().number + 1,
+                         .seconds = require<double>(path, stats, "render_seconds"),
+                         .iterations = iterations,
+                         .image = final});
   }
   if (snapshots.empty()) fail(path, "has no snapshot and no final image", final.filename().string() + " beside it");
   return snapshots;

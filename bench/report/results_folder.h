@@ -20,6 +20,7 @@ struct ResultsError : std::runtime_error {
 };
 
 struct SnapshotFile {
+  unsigned number = 0;
   double seconds = 0;  ///< render clock
   uint64_t iterations = 0;
   std::filesystem::path image;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "bench/report/html_text.h"
 #include "bench/report/method_style.h"
@@ -11,29 +12,27 @@
 namespace wavecrest {
 
 std::vector<CurvePoint> meanCurve(const ReportSeries& series, size_t metric) {
-  // Runs may have different numbers of snapshots. The curve is as long as the longest run.
-  size_t longest = 0;
-  for (const ReportRun& run : series.runs) longest = std::max(longest, run.points.size());
-  std::vector<CurvePoint> curve;
-  for (size_t k = 0; k < longest; ++k) {
-    // Average the k-th snapshots of all runs that have a finite value there.
-    CurvePoint point{.low = std::numeric_limits<double>::infinity(), .high = -std::numeric_limits<double>::infinity()};
-    double count = 0;
-    for (const ReportRun& run : series.runs) {
-      if (k >= run.points.size() || !std::isfinite(run.points[k].values[metric])) continue;
-      const double value = run.points[k].values[metric];
-      point.seconds += run.points[k].seconds;
-      point.iterations += static_cast<double>(run.points[k].iterations);
-      point.mean += value;
-      point.low = std::min(point.low, value);
-      point.high = std::max(point.high, value);
-      ++count;
+  // Snapshots of one number belong together. Runs may begin and end with different ones.
+  std::map<unsigned, std::vector<const ReportPoint*>> byNumber;
+  for (const ReportRun& run : series.runs) {
+    for (const ReportPoint& point : run.points) {
+      if (std::isfinite(point.values[metric])) byNumber[point.number].push_back(&point);
     }
-    if (count == 0) continue;
-    point.seconds /= count;
-    point.iterations /= count;
-    point.mean /= count;
-    curve.push_back(point);
+  }
+  // Average what all runs have of a number.
+  std::vector<CurvePoint> curve;
+  for (const auto& [number, points] : byNumber) {
+    CurvePoint mean{.low = std::numeric_limits<double>::infinity(), .high = -std::numeric_limits<double>::infinity()};
+    const auto count = static_cast<double>(points.size());
+    for (const ReportPoint* point : points) {
+      const double value = point->values[metric];
+      mean.seconds += point->seconds / count;
+      mean.iterations += static_cast<double>(point->iterations) / count;
+      mean.mean += value / count;
+      mean.low = std::min(mean.low, value);
+      mean.high = std::max(mean.high, value);
+    }
+    curve.push_back(mean);
   }
   return curve;
 }

@@ -31,6 +31,7 @@ NoisyReference renderReference(const Scene& scene, const RenderSettings& setting
     own.seed = kReferenceSeeds[i];
     const auto session = Session::create(scene, own);
     session->renderUntil(std::nullopt, seconds / 2);
+    session->renderUntil(1, std::nullopt);  // a whole image, however long that takes
     halves[i] = filmImage(*session);
   }
   NoisyReference reference{.image = halves[0], .noise = 0, .seconds = seconds};
@@ -59,6 +60,7 @@ std::vector<ErrorRow> measureEqualTime(const Scene& scene, const RenderSettings&
   for (const double part : {0.25, 0.5, 1.0}) {
     for (size_t i = 0; i < sessions.size(); ++i) {
       sessions[i]->renderUntil(std::nullopt, part * seconds);
+      sessions[i]->renderUntil(1, std::nullopt);  // a whole image, whose time is told
       rows[i].points.push_back(errorNow(*sessions[i], reference));
     }
   }

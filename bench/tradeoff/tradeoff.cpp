@@ -36,6 +36,7 @@ OneRender render(const Scene& scene, const RenderSettings& settings, std::option
   const auto session = Session::create(scene, settings);
   const std::optional<double> energy = packageJoules();
   session->renderUntil(iterations, seconds);
+  session->renderUntil(1, std::nullopt);  // a whole image, however long that takes
   const std::optional<double> energyAfter = packageJoules();
   const RenderStatistics statistics = session->statistics();
   OneRender done{.film = session->film().resolve(),

@@ -194,14 +194,14 @@ void ChainSession<S>::advance(uint64_t steps) {
   });
 }
 
-// One direct sample of each pixel for every so many mutations of it, beginning with the first step; where several
-// sessions share the chains, they take turns. One level of samples after the other, so that whatever stops it leaves
-// all pixels with about as many.
+// One direct sample of each pixel for every so many mutations of it, the first before the first step: an image with
+// mutations has direct light. Where several sessions share the chains, they take turns. One level of samples after the
+// other, so that whatever stops it leaves all pixels with about as many.
 template <class S>
 bool ChainSession<S>::traceDirect(const Stop& stop) {
   const FilmArea& area = film_.area();
   const uint64_t perIteration = kMutationsPerDirect * area.pixels.size(),
-                 all = (mutationsOfAll() + perIteration - 1) / perIteration;
+                 all = std::max<uint64_t>(1, (mutationsOfAll() + perIteration - 1) / perIteration);
   // This share has samples part, part + parts, ... of all.
   const uint64_t part = settings_.share.part, parts = settings_.share.parts,
                  goal = all > part ? (all - part - 1) / parts + 1 : 0;

@@ -48,7 +48,10 @@ struct ChainStatistics {
 // Numbers of a render so far, as --stats reports them.
 struct RenderStatistics {
   uint64_t iterations = 0;  // whole iterations in the film (the least over pixels)
-  uint64_t paths = 0;       // camera paths
+  // Whether the film is an image: each pixel has a sample, or chains have made as many mutations as there are pixels.
+  // Before that it is black in places, which no reader of it can tell from shadow.
+  bool hasWholeImage() const { return iterations > 0; }
+  uint64_t paths = 0;  // camera paths
   uint64_t lightPaths = 0;
   StageCounters counters;
   double buildSeconds = 0, renderSeconds = 0, cpuSeconds = 0;  // renderSeconds: by the clock of the settings

@@ -38,9 +38,10 @@ class SnapshotSchedule {
 };
 
 // Renders to the iterations or the time of the settings, whichever comes first, or to an interrupt. On the way calls
-// onSnapshot with the number of each snapshot once it is due; the clock stands still meanwhile. After an interrupt it
-// goes on if goesOn, which has to call resume(), returns true. first: the number of the first snapshot; where a session
-// was restored, earlier ones have been taken. Returns how many snapshots there were, with those before the first.
+// onSnapshot with the number of each snapshot once it is due; the clock stands still meanwhile. Whether there is a
+// whole image by then, onSnapshot has to ask (RenderStatistics::hasWholeImage). After an interrupt it goes on if
+// goesOn, which has to call resume(), returns true. first: the number of the first snapshot; where a session was
+// restored, earlier ones have been taken. Returns how many snapshots there were, with those before the first.
 unsigned renderWithSnapshots(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
                              const std::function<void(unsigned number)>& onSnapshot,
                              const std::function<bool()>& goesOn = {}, unsigned first = 0);

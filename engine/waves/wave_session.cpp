@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
+#include <tuple>
 
 #include "engine/plan/memory_plan.h"
 #include "engine/session/add_samples.h"
@@ -66,6 +68,7 @@ class WaveSession final : public PlannedSession<S> {
   // A restored film may have stopped within an iteration. Renders until all its pixels have as many samples as the one
   // that has most.
   void levelPixels(const Finished& finished);
+  std::vector<size_t> wavesInTurn() const;
   // Iterations of a method whose waves are independent.
   void renderWaves(const Finished& finished);
   // Iterations of a method with a photon map. end: the time when no other iteration may begin.
@@ -223,10 +226,25 @@ void WaveSession<S>::traceStretch(const Stretch<S>& stretch, size_t piece, Worke
   }
 }
 
-// A turn is an iteration of a piece, or several of some of its pixels.
+// The camera waves, those that are furthest behind first. A render that stops often, for snapshots, would otherwise
+// begin each time with the same pixels, and the last ones would have their first samples late.
+template <class S>
+std::vector<size_t> WaveSession<S>::wavesInTurn() const {
+  std::vector<size_t> order(camera_.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return std::tie(camera_[a].next, camera_[a].pixels) < std::tie(camera_[b].next, camera_[b].pixels);
+  });
+  return order;
+}
+
+// A turn is an iteration of a piece, or several of some of its pixels. A first iteration takes one turn of a piece, so
+// all pieces have it before any begins the second.
 template <class S>
 void WaveSession<S>::renderWaves(const Finished& finished) {
-  takeTurns(camera_.size(), settings_.threads, [&](size_t wave) {
+  const std::vector<size_t> order = wavesInTurn();
+  takeTurns(camera_.size(), settings_.threads, [&](size_t turn) {
+    const size_t wave = order[turn];
     if (finished(camera_[wave].next)) return false;
     traceStretch(plan_.pipeline.stretches.front(), wave, worker());
     return !finished(camera_[wave].next);

@@ -38,12 +38,13 @@ class WAVECREST_EXPORT Render {
 
   // Not while it runs. The clock of seconds() stands still between runs.
   double seconds() const;
-  uint64_t iterations() const;  // the least over pixels
+  uint64_t iterations() const;  // whole ones, of all pixels
+  // Of iterations() > 0: before that, pixels without any sample would be black. Throws Error.
   Image image() const;
   // Numbers so far: the object that `wavecrest render --stats` writes. With times of single stages if that was asked
   // for before the render began, which costs some percent.
   std::string stats() const;
-  // By extension: .exr with the scalar stats as attributes, .pfm or .png. Throws Error.
+  // The image, by extension: .exr with the scalar stats as attributes, .pfm or .png. Throws Error.
   void write(const std::string& file) const;
 
  private:

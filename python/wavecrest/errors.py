@@ -30,7 +30,7 @@ class FaultError(Error, RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a render. `result` is what there was by then; nothing of it is lost."""
+    """Ctrl-C during a render. `result` is what there was by then; None before the first whole pass over the film."""
 
     def __init__(self, result: Result | None = None) -> None:
         super().__init__("interrupted")

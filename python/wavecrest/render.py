@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pathlib
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -123,11 +124,9 @@ class Scene:
         far.
         """
         native = self._begin(method, {"time": time, "spp": spp, "seed": seed, "threads": threads, **options})
-        interrupted = native.run()
-        result = _result(native)
-        if interrupted:
-            raise Interrupted(result)
-        return result
+        if native.run():
+            raise Interrupted(_result_so_far(native))
+        return _result(native)
 
     def snapshots(
         self,
@@ -141,7 +140,8 @@ class Scene:
     ) -> Iterator[Result]:
         """One render, looked at after each of these render times (seconds) or iterations, in growing order.
 
-        The render stands still while the caller works with a snapshot, and its clock with it.
+        The render stands still while the caller works with a snapshot, and its clock with it. Snapshots before the first
+        whole pass over the film are left out with a warning.
         """
         if (times is None) == (iterations is None):
             raise UsageError("snapshots: expected times or iterations, and not both")
@@ -172,13 +172,21 @@ def _result(native: _native.Render) -> Result:
     return Result(native.image(), json.loads(native.stats()))
 
 
+def _result_so_far(native: _native.Render) -> Result | None:
+    """None before the first whole pass over the film."""
+    return _result(native) if native.iterations > 0 else None
+
+
 def _snapshots(native: _native.Render, due: Sequence[float], in_time: bool) -> Iterator[Result]:
     for at in due:
         interrupted = native.run_until(seconds=at) if in_time else native.run_until(iterations=int(at))
-        result = _result(native)
+        result = _result_so_far(native)
         if interrupted:
             raise Interrupted(result)
-        yield result
+        if result is None:
+            warnings.warn(f"the snapshot at {at:g} s is left out: no whole pass over the film yet", stacklevel=2)
+        else:
+            yield result
 
 
 def load(

@@ -39,7 +39,10 @@ ConvergenceReport largeReport(size_t snapshots, uint32_t width, uint32_t height)
         ReportRun run{.seed = seed};
         for (size_t k = 1; k <= snapshots; ++k) {
           const double value = (1 + 0.1 * static_cast<double>(seed)) / std::sqrt(static_cast<double>(k));
-          run.points.push_back({.seconds = 6.0 * static_cast<double>(k), .iterations = k, .values = {}});
+          run.points.push_back({.number = static_cast<unsigned>(k),
+                                .seconds = 6.0 * static_cast<double>(k),
+                                .iterations = k,
+                                .values = {}});
           run.points.back().values.assign(report.metrics.size(), value);
         }
         series.runs.push_back(std::move(run));

@@ -34,7 +34,8 @@ ReportSeries sampleSeries(const std::string& method, double start, double bias) 
       const double seconds = 0.1 * std::pow(10, k / 3.0);
       const double scatter = seed == 1 ? 0.94 : 1.06;
       const double rmse = std::hypot(scatter * start / std::sqrt(seconds), bias);
-      run.points.push_back({.seconds = seconds,
+      run.points.push_back({.number = static_cast<unsigned>(k),
+                            .seconds = seconds,
                             .iterations = static_cast<uint64_t>(30 * seconds),
                             .values = {rmse, 20 * rmse * rmse, 1 / (1 + 4 * rmse)},
                             .further = {{"ssim_r", 0.5}}});

@@ -18,8 +18,10 @@ ReportSeries seriesOf(const std::vector<std::vector<std::pair<double, double>>>&
   series.method = series.label = "pt";
   for (const auto& points : runs) {
     ReportRun run;
-    for (const auto& [seconds, value] : points)
-      run.points.push_back({.seconds = seconds, .iterations = 10, .values = {value}});
+    for (const auto& [seconds, value] : points) {
+      const auto number = static_cast<unsigned>(run.points.size());
+      run.points.push_back({.number = number, .seconds = seconds, .iterations = 10, .values = {value}});
+    }
     series.runs.push_back(run);
   }
   return series;
@@ -40,6 +42,19 @@ TEST(MeanCurve, isMeanAndExtremesOverTheRunsThatGotThere) {
   EXPECT_DOUBLE_EQ(curve[0].high, 6);
   EXPECT_DOUBLE_EQ(curve[2].seconds, 4);
   EXPECT_DOUBLE_EQ(curve[2].low, curve[2].high);
+}
+
+// A run whose first whole image comes late has no snapshot of the first number.
+TEST(MeanCurve, joinsSnapshotsOfOneNumber) {
+  ReportSeries series = seriesOf({{{1, 4}, {2, 2}, {4, 1}}, {{2, 6}, {4, 3}}});
+  for (ReportPoint& point : series.runs[1].points) ++point.number;
+  const auto curve = meanCurve(series, 0);
+  ASSERT_EQ(curve.size(), 3U);
+  const double seconds[] = {1, 2, 4}, means[] = {4, 4, 2};
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_DOUBLE_EQ(curve[i].seconds, seconds[i]);
+    EXPECT_DOUBLE_EQ(curve[i].mean, means[i]);
+  }
 }
 
 TEST(MeanCurve, leavesOutWhatIsNoNumber) {

@@ -189,6 +189,19 @@ class Extending(Converge):
         self.assertGreaterEqual(end, 0.2)
         self.assertLess(end, 2)
 
+    def test_a_run_too_short_for_an_image_is_told_and_made_longer(self):
+        options = ["--methods", "pt,bpt,mlt", "--size", "32x24", "--seeds", "1", "--time", "0.000000001s"]
+        result = self.converge("cornell-diffuse", *options, "--out", "a", expect=INPUT)  # there is nothing to report
+        self.assertEqual(result.stderr.count("too short for one whole image"), 3, result.stderr)
+        database = sqlite3.connect(self.results("a"))
+        self.assertEqual(database.execute("SELECT COUNT(*) FROM snapshot").fetchall(), [(0,)])
+        database.close()
+        self.converge("--out", "a", "--resume", "--time", "0.3s")
+        database = sqlite3.connect(self.results("a"))
+        self.assertEqual(database.execute("SELECT DISTINCT state FROM run").fetchall(), [("done",)])
+        self.assertEqual(database.execute("SELECT MIN(iterations) > 0 FROM snapshot").fetchall(), [(1,)])
+        database.close()
+
     def test_shards_are_not_divided_anew(self):
         self.tiny("a", "--shard", "1/2")
         result = self.converge("--out", "a", "--resume", "--shard", "1/2", "--methods", "bpt", expect=USAGE)

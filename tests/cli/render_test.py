@@ -11,6 +11,7 @@ import unittest
 
 from harness import (
     DONE,
+    INPUT,
     INTERRUPTED,
     TIMEOUT_SECONDS,
     USAGE,
@@ -202,10 +203,33 @@ class Clock(CommandTest):
     # A loaded machine may keep a wave of a few milliseconds waiting; a render that ignores the clock takes minutes.
     OVERSHOOT_SECONDS = 0.5
 
-    def test_a_time_too_short_for_all_pixels_is_told(self):
-        arguments = ["render", "cornell-diffuse", "--size", "640x480", "--time", "0.001s", "-o", "image.exr"]
-        self.assertIn("before all pixels had a sample", self.run_wavecrest(*arguments).stderr)
-        self.assertNotIn("before all pixels", self.render("--spp", "1", "-o", "image.exr").stderr)
+    def test_an_image_counts_from_its_first_whole_pass_on(self):
+        self.write("image.exr", "good")
+        for method in ("pt", "lt", "bpt", "mlt"):
+            arguments = ["render", "cornell-diffuse", "-m", method, "--size", "640x480", "--time", "0.001s"]
+            arguments += ["--snapshot-every", "0.0005s", "-o", "image.exr", "--stats", "stats.json"]
+            result = self.run_wavecrest(*arguments, expect=INPUT)
+            self.assertIn("no image was written; expected", result.stderr.splitlines()[-1])
+            self.assertIn("image.0000.exr: left out", result.stderr)
+            self.assertEqual((self.folder / "image.exr").read_text(), "good", "never replaced by a partial one")
+            stats = read_json(self.path("stats.json"))
+            self.assertEqual((stats["iterations"], stats["snapshots"]), (0, []))
+        self.assertEqual(list(self.folder.glob("image.0*")), [])
+
+    def test_a_partial_image_is_written_on_request(self):
+        size = ["--size", "640x480", "--threads", "1"]
+        arguments = ["render", "cornell-diffuse", *size, "--time", "0.02s", "--partial", "-o", "image.exr"]
+        self.assertIn("no whole pass over the film", self.run_wavecrest(*arguments).stderr)
+        self.assertEqual(read_exr_header(self.path("image.exr"))["wavecrest:iterations"], "0")
+        self.assertNotIn("whole pass", self.render("--spp", "1", "--partial", "-o", "image.exr").stderr)
+
+    def test_a_checkpoint_keeps_what_is_no_image_yet(self):
+        options = ["cornell-diffuse", "--size", "640x480", "--threads", "1", "--checkpoint", "state", "-o", "image.pfm"]
+        result = self.run_wavecrest("render", *options, "--time", "0.02s", expect=INPUT)
+        self.assertRegex(result.stderr, r"expected more than [0-9.e-]+ s with --resume, or --partial")
+        self.run_wavecrest("render", *options, "--resume", "--spp", "1")
+        self.run_wavecrest("render", *options[:5], "--spp", "1", "-o", "whole.pfm")
+        self.assertEqual(read_pfm(self.path("image.pfm")), read_pfm(self.path("whole.pfm")))
 
     def test_time_is_kept(self):
         self.render("--time", "0.5s", "--stats", "stats.json")

@@ -88,6 +88,33 @@ TEST_P(SnapshotsTest, noWaveStartsAfterTheEnd) {
   EXPECT_EQ(items(after), items(before));
 }
 
+class BootstrapTest : public SnapshotsTest {};
+
+// However often a render stops, all pixels have a first sample before any has a second.
+TEST_P(SnapshotsTest, theFirstPassGoesThroughAllPixels) {
+  settings_.threads = 1;
+  settings_.waveSize = 64;
+  const auto own = session();
+  unsigned calls = 0;
+  for (; own->film().minSamples() == 0; ++calls) {
+    ASSERT_LE(own->film().maxSamples(), 1u);
+    own->renderUntil(std::nullopt, own->progressSeconds() + 1e-5);
+  }
+  // Iterations with a photon map that have begun are finished.
+  if (!strategiesOf(GetParam().method).merge) {
+    EXPECT_GT(calls, 3u);
+  }
+}
+
+// Chains render what the direct pass leaves out: without that pass their image would lack it.
+TEST_P(BootstrapTest, mutationsComeAfterDirectLight) {
+  const auto own = session();
+  while (own->statistics().iterations == 0) {
+    own->renderUntil(std::nullopt, own->progressSeconds() + 1e-4);
+    EXPECT_TRUE(own->progressPaths() == 0 || own->film().minSamples() > 0);
+  }
+}
+
 // What a method does before its first path of the image, Metropolis' bootstrap above all, ends with the time as well.
 TEST_P(SnapshotsTest, preparationsKeepToTheTime) {
   settings_.metropolis.bootstrapSamples = 1 << 18;
@@ -100,7 +127,6 @@ TEST_P(SnapshotsTest, preparationsKeepToTheTime) {
 }
 
 // A bootstrap that is stopped, over and over, is that of an unbroken render.
-class BootstrapTest : public SnapshotsTest {};
 TEST_P(BootstrapTest, goesOnWhereItStopped) {
   settings_.metropolis.bootstrapSamples = 1 << 16;
   const auto whole = session(), own = session();

@@ -23,6 +23,10 @@ class MeasuredRunTest : public testing::Test {
     std::filesystem::create_directories(folder_.folder() / "images");
   }
   std::optional<RunRecord> run(Method method, uint64_t iterations, bool keepImages = true) {
+    return run(method, iterations, std::nullopt, SnapshotSchedule::doubling(), keepImages);
+  }
+  std::optional<RunRecord> run(Method method, std::optional<uint64_t> iterations, std::optional<double> seconds,
+                               const SnapshotSchedule& schedule, bool keepImages = true) {
     RenderSettings settings;
     settings.method = method;
     settings.metropolis.variant = variant_;
@@ -30,10 +34,12 @@ class MeasuredRunTest : public testing::Test {
     settings.isa = bestIsa();
     settings.threads = 2;
     settings.measureStages = true;
+    settings.waveSize = 64;
     settings.iterations = iterations;
+    settings.seconds = seconds;
     std::optional<RunRecord> run = measuredRun({.scene = scene_,
                                                 .settings = settings,
-                                                .schedule = SnapshotSchedule::doubling(),
+                                                .schedule = schedule,
                                                 .reference = reference_,
                                                 .out = folder_.folder(),
                                                 .keepImages = keepImages},
@@ -115,6 +121,26 @@ TEST_F(MeasuredRunTest, aRefusalSaysWhy) {
   EXPECT_EQ(run.state, RunState::refused);
   EXPECT_NE(run.reason.find("pathspace needs a pinhole"), std::string::npos) << run.reason;
   EXPECT_TRUE(run.snapshots.empty());
+}
+
+// The first snapshot is due before a wave of 64 paths can be over.
+TEST_F(MeasuredRunTest, snapshotsBeginWithTheFirstWholeImage) {
+  const RunRecord run = this->run(Method::bpt, 1, std::nullopt, SnapshotSchedule::every(5e-5)).value();
+  ASSERT_FALSE(run.snapshots.empty());
+  EXPECT_GT(run.snapshots.front().number, 0u);
+  for (const SnapshotRecord& snapshot : run.snapshots) EXPECT_GT(snapshot.iterations, 0u) << snapshot.number;
+  EXPECT_EQ(nlohmann::json::parse(run.stats).at("snapshots_left_out"), run.snapshots.front().number);
+}
+
+TEST_F(MeasuredRunTest, aTimeTooShortForOneImageIsRefusedAndTold) {
+  for (const MethodEntry& method : kMethods) {
+    const RunRecord run = this->run(method.method, std::nullopt, 1e-9, SnapshotSchedule::every(5e-10)).value();
+    EXPECT_EQ(run.state, RunState::refused) << method.name;
+    EXPECT_TRUE(run.snapshots.empty()) << method.name;
+    EXPECT_NE(run.reason.find("too short for one whole image"), std::string::npos) << run.reason;
+    EXPECT_EQ(nlohmann::json::parse(run.stats).at("asked_seconds"), 1e-9) << "a longer run is another one";
+  }
+  EXPECT_EQ(imageCount(), 0u);
 }
 
 TEST_F(MeasuredRunTest, anInterruptedRunIsNone) {
