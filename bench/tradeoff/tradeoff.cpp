@@ -9,6 +9,7 @@
 #include "bench/tradeoff/block_means.h"
 #include "bench/until/film_error.h"
 #include "engine/inspect/path_classes.h"
+#include "engine/plan/render_plan.h"
 #include "engine/scene/scene_error.h"
 #include "engine/session/session.h"
 
@@ -145,8 +146,9 @@ TradeRow rowOf(const Variant& variant, const Measured& own, const Measured& base
 }
 
 // A verdict for the mean and one for the blocks of every row, together at kTradeLevel (Bonferroni).
-void judge(std::vector<TradeRow>& rows) {
-  const auto verdicts = 2 * static_cast<double>(rows.size());
+void judge(std::vector<TradeRow>& rows, uint32_t seeds) {
+  if (!tellsBias(seeds)) return;
+  const auto verdicts = static_cast<double>(verdictsOf(rows));
   for (TradeRow& row : rows) {
     for (const Bias& bias : {row.mean, row.worstBlock}) {
       row.biased |= bias.probability < kTradeLevel / verdicts && std::abs(bias.value) > kNegligibleBias;
@@ -205,7 +207,7 @@ TradeResult measureTrade(const Scene& scene, const RenderSettings& base, const T
     result.rows.push_back(
         rowOf(variants[i], measured[i], measured.front(), measured[static_cast<size_t>(doubled)], reference));
   }
-  judge(result.rows);
+  judge(result.rows, effort.seeds);
   result.machine = watch.state();
   return result;
 }

@@ -5,6 +5,7 @@
 // precision is compared with it seed by seed, so that the bias is free of noise; any other with a reference in double.
 #pragma once
 
+#include <algorithm>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -35,7 +36,7 @@ struct TradeRow {
   size_t bytes = 0;
   std::optional<double> joulesPerPath;
 
-  // Whether bias was found, at the family level of the whole table.
+  // Whether bias was found, at the family level of the whole table; never where seeds are too few (tellsBias).
   bool biased = false;
 };
 
@@ -52,6 +53,13 @@ struct TradeResult {
 // rounded the same way is statistically significant.
 constexpr double kNegligibleBias = 1e-4;
 constexpr double kTradeLevel = 0.01;  // probability that any verdict of bias in a table is false
+// Of fewer images the spread is hardly known: two that happen to be alike make any difference look significant.
+constexpr uint32_t kFewestSeedsForBias = 4;
+inline bool tellsBias(uint32_t seeds) { return seeds >= kFewestSeedsForBias; }
+// Verdicts in a table: one on the mean and one on the worst block of each setting that was rendered.
+inline size_t verdictsOf(const std::vector<TradeRow>& rows) {
+  return 2 * static_cast<size_t>(std::ranges::count_if(rows, [](const TradeRow& row) { return row.refusal.empty(); }));
+}
 
 struct TradeEffort {
   double seconds = 60;               // render time of everything, about
@@ -64,6 +72,8 @@ std::string toText(const TradeResult& result);
 nlohmann::ordered_json toJson(const TradeResult& result);
 // One page with a plot for each result: time to a relative error of 1 % against bias.
 std::string tradePage(const std::vector<TradeResult>& results);
+// What `biased` means in this table, with its error rate, or that there are too few seeds.
+std::string biasVerdictsInWords(const TradeResult& result);
 // What to do with this scene, in a sentence or two.
 std::string adviceOf(const TradeResult& result);
 

@@ -46,6 +46,8 @@ Json toJson(const TradeResult& result) {
           {"seeds", result.seeds},
           {"iterations", result.iterations},
           {"level", kTradeLevel},
+          {"verdicts", verdictsOf(result.rows)},
+          {"bias_told", tellsBias(result.seeds)},
           {"rows", rows},
           {"advice", adviceOf(result)},
           {"doubts", doubtsAbout(result.machine)}};

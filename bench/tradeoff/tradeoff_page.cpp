@@ -70,8 +70,8 @@ std::string tableOf(const TradeResult& result) {
 std::string tradePage(const std::vector<TradeResult>& results) {
   std::string sections;
   for (const TradeResult& result : results) {
-    append(sections, "<section><h2>{}, {}</h2>\n<p>{}</p>\n", escapeHtml(result.scene), toString(result.method),
-           escapeHtml(adviceOf(result)));
+    append(sections, "<section><h2>{}, {}</h2>\n<p>{}</p>\n<p class=\"facts\">{}</p>\n", escapeHtml(result.scene),
+           toString(result.method), escapeHtml(adviceOf(result)), escapeHtml(biasVerdictsInWords(result)));
     append(
         sections,
         "<p class=\"facts\">{} iterations of {}x{} pixels with {} seeds. Speed and efficiency are over the baseline's; "

@@ -23,13 +23,18 @@ std::string percent(const Bias& bias) {
   return fmt::format("{:+.2g} +-{:.1g} %", 100 * bias.value, 100 * bias.standardError);
 }
 
-// The bias that was found, or else an upper limit: the measured difference and three standard errors.
-std::string biasInWords(const TradeRow& row) {
-  if (row.biased) {
-    return fmt::format("bias {:+.2g} %, in a block {:+.2g} %", 100 * row.mean.value, 100 * row.worstBlock.value);
-  }
-  return fmt::format("no bias found, below {:.1g} %",
-                     100 * 3 * row.mean.standardError + 100 * std::abs(row.mean.value));
+// Whether the mean is off by more than is acceptable, by two standard errors.
+bool isTooBiased(const TradeRow& row) {
+  const double error = row.biased ? 0 : 2 * row.mean.standardError;
+  return std::abs(row.mean.value) - error > kMostBias;
+}
+
+// The verdict and the figures of the table that it follows from.
+std::string biasInWords(const TradeRow& row, uint32_t seeds) {
+  const std::string mean = percent(row.mean);
+  if (row.biased) return fmt::format("biased by {}, in a block {}", mean, percent(row.worstBlock));
+  if (!tellsBias(seeds)) return fmt::format("{} seeds cannot tell whether its mean, off by {}, is biased", seeds, mean);
+  return fmt::format("no bias told from chance, its mean being off by {}", mean);
 }
 
 }  // namespace
@@ -38,8 +43,7 @@ std::string adviceOf(const TradeResult& result) {
   // Settings whose whole interval of efficiency is worth naming, and whose bias is not too large.
   std::vector<const TradeRow*> gains;
   for (const TradeRow& row : result.rows) {
-    const bool acceptable = !row.biased || std::abs(row.mean.value) <= kMostBias;
-    if (row.refusal.empty() && acceptable && row.efficiency.interval.low > kWorthNaming) gains.push_back(&row);
+    if (row.refusal.empty() && !isTooBiased(row) && row.efficiency.interval.low > kWorthNaming) gains.push_back(&row);
   }
   const std::string where = fmt::format("{}, {}: ", result.scene, toString(result.method));
   if (gains.empty()) return where + "nothing here is worth more than its cost; the defaults are as good as any.";
@@ -50,9 +54,19 @@ std::string adviceOf(const TradeResult& result) {
   std::string text = where;
   for (const TradeRow* row : gains) {
     text += fmt::format("{}{}: {:.2g} times the efficiency, {}", row == gains.front() ? "" : "; ", nameOf(*row),
-                        row->efficiency.value, biasInWords(*row));
+                        row->efficiency.value, biasInWords(*row, result.seeds));
   }
   return text + ".";
+}
+
+std::string biasVerdictsInWords(const TradeResult& result) {
+  if (!tellsBias(result.seeds)) {
+    return fmt::format("bias: {} seeds cannot tell; expected --seeds {} or more", result.seeds, kFewestSeedsForBias);
+  }
+  return fmt::format(
+      "biased: more than {:g} % off, where chance alone would make any of the {} verdicts of this table false with a "
+      "probability of {:g} % (family-wise, Bonferroni)",
+      100 * kNegligibleBias, verdictsOf(result.rows), 100 * kTradeLevel);
 }
 
 std::string toText(const TradeResult& result) {
@@ -76,6 +90,7 @@ std::string toText(const TradeResult& result) {
   const bool energy = std::any_of(result.rows.begin(), result.rows.end(),
                                   [](const TradeRow& row) { return row.joulesPerPath.has_value(); });
   if (!energy) line(text, "  energy: this machine does not tell (powercap)");
+  line(text, "  {}", biasVerdictsInWords(result));
   line(text, "\n  {}", adviceOf(result));
   return fmt::to_string(text);
 }

@@ -68,6 +68,48 @@ TEST(Tradeoff, rendersAsManySeedsAsAskedFor) {
   EXPECT_EQ(row.mean.value, rowOf(result, "baseline", "float").mean.value) << "the same bits as the set's own kernels";
 }
 
+// A table as of `seeds` images, with one setting beside the baseline that is worth naming.
+TradeResult tableWith(const Bias& mean, bool biased, uint32_t seeds) {
+  TradeResult result{.scene = "box", .method = Method::pt, .seeds = seeds, .rows = {}, .machine = {}};
+  result.rows.resize(2);
+  result.rows[0].knob = "baseline";
+  result.rows[1].knob = "--rr-depth";
+  result.rows[1].value = "2";
+  result.rows[1].efficiency = {.value = 1.4, .interval = {1.3, 1.5}};
+  result.rows[1].mean = mean;
+  result.rows[1].biased = biased;
+  return result;
+}
+
+TEST(Advice, followsFromTheTable) {
+  const Bias far{.value = -0.078, .standardError = 0.01, .probability = 0.02};
+  EXPECT_EQ(adviceOf(tableWith(far, false, 6)).find("--rr-depth"), std::string::npos) << "too far off to be named";
+  const Bias near{.value = -0.004, .standardError = 0.003, .probability = 0.2};
+  const std::string told = adviceOf(tableWith(near, false, 6));
+  EXPECT_NE(
+      told.find("--rr-depth 2: 1.4 times the efficiency, no bias told from chance, its mean being off by -0.4 +-0.3 %"),
+      std::string::npos)
+      << told;
+  EXPECT_NE(adviceOf(tableWith(near, true, 6)).find("biased by -0.4 +-0.3 %"), std::string::npos);
+  EXPECT_NE(
+      toText(tableWith(near, false, 6)).find("any of the 4 verdicts of this table false with a probability of 1 %"),
+      std::string::npos);
+}
+
+TEST(Advice, saysThatFewSeedsCannotTell) {
+  const Bias near{.value = -0.004, .standardError = 1e-9, .probability = 1e-9};
+  EXPECT_NE(adviceOf(tableWith(near, false, 2)).find("2 seeds cannot tell whether its mean"), std::string::npos);
+  EXPECT_NE(toText(tableWith(near, false, 2)).find("2 seeds cannot tell; expected --seeds 4 or more"),
+            std::string::npos);
+}
+
+// Two images by Sobol points may be alike by chance.
+TEST(Tradeoff, givesNoVerdictOfBiasWithTwoSeeds) {
+  const TradeResult result = measureTrade(smallBox(48, 32), settingsOf(Method::pt),
+                                          {.seconds = 1, .seeds = 2, .knobs = {"max-depth", "sampler"}});
+  for (const TradeRow& row : result.rows) EXPECT_FALSE(row.biased) << row.knob << " " << row.value;
+}
+
 TEST(Tradeoff, doesNotTestEveryPrimitiveOfALargeScene) {
   Scene scene = smallBox(48, 32);
   const Shape some = scene.shapes.front();
