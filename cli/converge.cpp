@@ -81,8 +81,10 @@ void showRun(ProgressKind kind, const RunRecord& run, const CampaignProgress& pr
       const auto value = last.values.find(name);
       if (value != last.values.end()) outcome += fmt::format(", {} {:.4g}", name, value->second);
     }
-    const auto leftOut = json::parse(run.stats).value("snapshots_left_out", 0U);
+    const json stats = json::parse(run.stats);
+    const auto leftOut = stats.value("snapshots_left_out", 0U);
     if (leftOut > 0) outcome += fmt::format("; {} snapshots before the first whole image left out", leftOut);
+    for (const json& doubt : stats.value("doubts", json::array())) outcome += "; doubt: " + doubt.get<std::string>();
   }
   tell("[{}/{}] {} left  {} {} seed {}: {}", progress.done, progress.total, durationText(progress.secondsLeft),
        run.scene, run.method, run.seed, outcome);

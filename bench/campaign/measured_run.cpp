@@ -9,6 +9,7 @@
 #include "bench/campaign/environment.h"
 #include "bench/campaign/render_stats.h"
 #include "bench/film_image.h"
+#include "bench/machine/machine_watch.h"
 #include "engine/scene/scene_error.h"
 #include "metrics/image/image_io.h"
 #include "metrics/metric_list.h"
@@ -88,7 +89,10 @@ class SnapshotTaker {
     all.erase("stages");
     all.erase("snapshots");
     all["cpu"] = cpuName();
-    if (request_.settings.seconds) all["asked_seconds"] = *request_.settings.seconds;
+    if (request_.settings.seconds) {
+      all["asked_seconds"] = *request_.settings.seconds;
+      all["doubts"] = doubtsAbout(machine_.state());
+    }
     all["snapshots_left_out"] = leftOut_;
     return all;
   }
@@ -99,6 +103,7 @@ class SnapshotTaker {
   const Session& session_;
   const Clock::time_point begin_ = Clock::now();
   uint64_t paths_ = 0;
+  const MachineWatch machine_;
   unsigned leftOut_ = 0;  // snapshots that were due before the first whole image
 };
 

@@ -31,7 +31,8 @@ struct RunRequest {
 // The run, whose images are named as unfinished ones until placeImages(): what an earlier, shorter run has stays as it
 // is. Nothing if the run was interrupted; then its images are removed. A method that cannot render the scene gives a
 // run that is refused, and so does a time that is too short for one whole image; then its stats say which time.
-// Snapshots before the first whole image are left out, and the stats say how many (snapshots_left_out).
+// Snapshots before the first whole image are left out, and the stats say how many (snapshots_left_out). Those of a
+// timed run also say what disturbed it (doubts).
 std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHooks& hooks);
 
 // Gives the images of a run the names that its record says, out/images/SCENE.METHOD.SEED.NUMBER.exr, in place of those

@@ -195,6 +195,26 @@ std::pair<double, double> askedSeconds(const CampaignResults& results, const std
   return {shortest, longest};
 }
 
+// Which runs of a scene something disturbed, and by what; empty if none was.
+std::string disturbedRuns(const CampaignResults& results, const std::string& scene) {
+  constexpr size_t kMostNamed = 3;
+  size_t runs = 0, disturbed = 0;
+  std::string named;
+  for (const RunRecord& run : results.runs) {
+    if (run.scene != scene || run.state != RunState::done) continue;
+    ++runs;
+    const nlohmann::json stats = nlohmann::json::parse(run.stats, nullptr, false);
+    const auto doubts = stats.is_object() ? stats.find("doubts") : stats.end();
+    if (doubts == stats.end() || !doubts->is_array() || doubts->empty() || !doubts->front().is_string()) continue;
+    if (++disturbed > kMostNamed) continue;
+    named += fmt::format("{}{} seed {} ({})", named.empty() ? "" : ", ", run.method, run.seed,
+                         doubts->front().get<std::string>());
+  }
+  if (disturbed == 0) return "";
+  if (disturbed > kMostNamed) named += ", ...";
+  return fmt::format("{}: {} of {} runs were disturbed: {}.", scene, disturbed, runs, named);
+}
+
 // One scene with its series, and with its images as far as the files exist. Adds remarks to the report.
 ReportScene collectScene(const CampaignResults& results, const SceneRecord& record, ConvergenceReport& report) {
   ReportScene scene;
@@ -222,6 +242,7 @@ ReportScene collectScene(const CampaignResults& results, const SceneRecord& reco
     report.remarks.push_back(fmt::format("{}: runs of {} and of {} stand side by side; go on with the campaign.",
                                          record.name, formatSeconds(shortest), formatSeconds(longest)));
   }
+  if (const std::string remark = disturbedRuns(results, record.name); !remark.empty()) report.remarks.push_back(remark);
   addRefusals(scene, results);
   // Measurements come from the results file. Pictures need the image files.
   if (!fs::is_regular_file(record.referenceFile)) {

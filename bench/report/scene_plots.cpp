@@ -102,6 +102,7 @@ ScenePlot biasPlot(const ReportScene& scene) {
   for (const ReportSeries& series : scene.series) {
     PlotCurve curve = emptyCurve(scene, series);
     for (const ReportBias& bias : thinned(series.bias)) {
+      if (bias.seeds < kFewestSeedsForShare) continue;
       const double share = bias.bias2 / bias.meanSquareError;
       curve.points.push_back({.x = bias.seconds,
                               .y = share,
@@ -130,8 +131,9 @@ std::string seriesClass(const ReportScene& scene, const ReportSeries& series) {
 std::vector<ScenePlot> scenePlots(const ConvergenceReport& report, const ReportScene& scene) {
   std::vector<ScenePlot> plots;
   for (size_t m = 0; m < report.metrics.size(); ++m) plots.push_back(metricPlot(scene, report.metrics[m], m));
-  const bool anyBias = std::any_of(scene.series.begin(), scene.series.end(),
-                                   [](const ReportSeries& series) { return !series.bias.empty(); });
+  const bool anyBias = std::any_of(scene.series.begin(), scene.series.end(), [](const ReportSeries& series) {
+    return !series.bias.empty() && series.bias.back().seeds >= kFewestSeedsForShare;
+  });
   if (anyBias) plots.push_back(biasPlot(scene));
   return plots;
 }

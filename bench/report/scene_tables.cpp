@@ -165,16 +165,18 @@ std::string renderBias(const ReportScene& scene) {
     if (series.bias.empty()) continue;
     // The table shows the last snapshot, the plot of bias shows all of them.
     const ReportBias& last = series.bias.back();
-    const double share = 100 * last.bias2 / last.meanSquareError;
-    append(rows,
-           "<tr>{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{:.1f} %",
+    const bool told = last.seeds >= kFewestSeedsForShare;
+    const std::string share = told ? fmt::format("{:.1f} %", 100 * last.bias2 / last.meanSquareError) : "–";
+    append(rows, "<tr>{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}<td class=\"n\">{}",
            methodCell(series), last.seeds, formatSignificant(last.meanSquareError), formatSignificant(last.variance),
            formatSignificant(last.bias2), share);
   }
   if (rows.empty()) return "";
   return "<h3>Bias and variance at the end</h3><p class=\"facts\">Mean square error over several seeds, without the "
          "noise of the reference. Variance falls with more samples, bias does not; a bias² around zero, of either "
-         "sign, is none that these seeds could show.</p><div class=\"scroll\"><table><thead><tr><th>method"
+         "sign, is none that these seeds could show. Of fewer than four seeds the share of bias is not told: it would "
+         "come "
+         "from too few pairs.</p><div class=\"scroll\"><table><thead><tr><th>method"
          "<th class=\"n\">seeds<th class=\"n\">MSE<th class=\"n\">variance<th class=\"n\">bias²"
          "<th class=\"n\">share of bias</thead><tbody>" +
          rows + "</tbody></table></div>\n";

@@ -68,4 +68,8 @@ std::string coloursOfOthers(const ConvergenceReport& report);
 /// The first series of a method in a scene, or null.
 const ReportSeries* seriesOf(const ReportScene& scene, const std::string& method);
 
+// Seeds from which a share of bias is shown. It comes from pairs of seeds: two have one, and its error is as large as
+// itself.
+constexpr size_t kFewestSeedsForShare = 4;
+
 }  // namespace wavecrest
