@@ -2,15 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bench/pixel_blocks.h"
+#include "metrics/image/srgb.h"
 
 namespace wavecrest {
 namespace {
 
 constexpr double kSignificant = 4;  // standard errors; of thousands of blocks hardly one is above by chance
-constexpr int kBisections = 24;     // of the logarithm of time, over nine decades: to a few parts in a million
+constexpr int kBisections = 14;     // of the logarithm of time, over nine decades: to a part in a thousand
 constexpr double kFirstSeconds = 1e-2;
+constexpr int kWindow = 3;  // a window of 7 x 7 pixels, about that of SSIM
+
+// What no sample of the noise tells: rare paths that a pilot has not met, and a speed that changes. Natural logarithm
+// of time, at the pilot's own time and for each factor e beyond it (bench/recommend/judge).
+constexpr double kModelError = 0.1, kModelErrorPerE = 0.06;
 
 // Signs of the four parts in each of the three independent samples of their mean's noise.
 constexpr std::array<std::array<int, 4>, 3> kContrasts{{{1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}}};
@@ -24,6 +31,14 @@ Image combined(const Pilot& pilot, const std::array<int, 4>& signs) {
     image.pixels[i] = static_cast<float>(0.25 * sum);
   }
   return image;
+}
+
+Image meanOf(const Pilot& pilot) { return combined(pilot, {1, 1, 1, 1}); }
+
+NoiseSamples noisesOf(const Pilot& pilot) {
+  NoiseSamples noises;
+  for (size_t i = 0; i < noises.size(); ++i) noises[i] = combined(pilot, kContrasts[i]);
+  return noises;
 }
 
 // Calls visit with the indices of the samples of each block and channel.
@@ -47,22 +62,75 @@ void forEachBlock(const Image& image, Visit&& visit) {
 }
 
 // Mean minus reference, averaged over each block, where that is more than noise of either explains; zero elsewhere.
-Image significantBias(const Image& mean, const Image& reference, const std::array<Image, 3>& noises,
-                      const Image& referenceNoise) {
+Image significantBias(const Image& mean, const NoiseSamples& noises, const PilotReference& reference) {
   Image bias = mean;
   forEachBlock(mean, [&](const std::vector<size_t>& samples) {
     // Difference of the sums over the block, and the variance that noise gives it.
     double difference = 0, variance = 0;
     for (const size_t i : samples) {
-      difference += static_cast<double>(mean.pixels[i]) - static_cast<double>(reference.pixels[i]);
+      difference += static_cast<double>(mean.pixels[i]) - static_cast<double>(reference.mean.pixels[i]);
       for (const Image& noise : noises) variance += std::pow(static_cast<double>(noise.pixels[i]), 2) / 3;
-      variance += std::pow(static_cast<double>(referenceNoise.pixels[i]), 2);
+      for (const Image& noise : reference.noises) variance += std::pow(static_cast<double>(noise.pixels[i]), 2) / 3;
     }
     const bool significant = std::abs(difference) > kSignificant * std::sqrt(variance);
     const double value = significant ? difference / static_cast<double>(samples.size()) : 0;
     for (const size_t i : samples) bias.pixels[i] = static_cast<float>(value);
   });
   return bias;
+}
+
+double encoded(double linear) { return srgbEncode(std::clamp(linear, 0.0, 1.0)); }
+
+// The mean of four images with a part of its local variance taken away: of the noise's share. power: 0.5 leaves the
+// variance that the truth has, 1 is Wiener's filter. Works on codes, as SSIM does; what is too bright for them stays.
+Image withLessNoise(const Image& mean, const NoiseSamples& noises, double power) {
+  const size_t count = mean.pixels.size();
+  std::vector<double> codes(count), noise(count, 0.0);
+  for (size_t i = 0; i < count; ++i) {
+    const double value = mean.pixels[i];
+    codes[i] = encoded(value);
+    for (const Image& sample : noises) {
+      const double off = static_cast<double>(sample.pixels[i]);
+      noise[i] += std::pow(0.5 * (encoded(value + off) - encoded(value - off)), 2) / 3;
+    }
+  }
+  Image out = mean;
+  const int width = static_cast<int>(mean.width), height = static_cast<int>(mean.height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int channel = 0; channel < 3; ++channel) {
+        const auto at = [&](int column, int row) {
+          return 3 * (static_cast<size_t>(row) * mean.width + static_cast<size_t>(column)) +
+                 static_cast<size_t>(channel);
+        };
+        // Mean and variance of the window, and how much of the latter is noise.
+        double sum = 0, squares = 0, variance = 0, n = 0;
+        for (int row = std::max(0, y - kWindow); row <= std::min(height - 1, y + kWindow); ++row) {
+          for (int column = std::max(0, x - kWindow); column <= std::min(width - 1, x + kWindow); ++column) {
+            const size_t i = at(column, row);
+            sum += codes[i];
+            squares += codes[i] * codes[i];
+            variance += noise[i];
+            ++n;
+          }
+        }
+        const double middle = sum / n, all = std::max(squares / n - middle * middle, 0.0);
+        const double gain = all > 0 ? std::pow(std::max(all - variance / n, 0.0) / all, power) : 1;
+        const size_t i = at(x, y);
+        if (codes[i] < 1) out.pixels[i] = static_cast<float>(srgbDecode(middle + gain * (codes[i] - middle)));
+      }
+    }
+  }
+  return out;
+}
+
+PreparedReference prepared(const char* name, Image image) {
+  return PreparedReference(name, {std::move(image), Encoding::linear, {}});
+}
+
+double ssimOf(const PreparedReference& reference, Image image) {
+  const ComparedImage test = reference.prepareTest("prediction", {std::move(image), Encoding::linear, {}});
+  return reference.ssim().compare(test.codes).mean;
 }
 
 // SSIM of the image as it will be.
@@ -80,8 +148,7 @@ class Future {
     for (size_t i = 0; i < image.pixels.size(); ++i) {
       image.pixels[i] += static_cast<float>(bias * bias_.pixels[i] + noise * noise_.pixels[i]);
     }
-    const ComparedImage test = reference_.prepareTest("prediction", {std::move(image), Encoding::linear, {}});
-    return reference_.ssim().compare(test.codes).mean;
+    return ssimOf(reference_, std::move(image));
   }
 
   // Seconds until the target, by bisection, as SSIM grows with time; nothing beyond kLongestSeconds.
@@ -101,37 +168,64 @@ class Future {
   const Image &bias_, &noise_;
 };
 
-}  // namespace
-
-Prediction predict(const PreparedReference& reference, const Image& referenceNoise, const Pilot& pilot,
-                   double targetSsim) {
-  // Mean, noise and bias of the pilot.
-  const Image truth = linearLight(reference.image().file);
-  const Image mean = combined(pilot, {1, 1, 1, 1});
-  std::array<Image, 3> noises;
-  for (size_t i = 0; i < noises.size(); ++i) noises[i] = combined(pilot, kContrasts[i]);
-  const Image bias = significantBias(mean, truth, noises, referenceNoise);
-
-  // SSIM of the pilot, and what is left of bias after kLongestSeconds.
-  Prediction result;
-  const ComparedImage now = reference.prepareTest("pilot", {mean, Encoding::linear, {}});
-  result.ssimNow = reference.ssim().compare(now.codes).mean;
-  result.ssimLimit = Future(reference, pilot, bias, noises[0]).ssimAt(kLongestSeconds);
-  // Seconds until the target with each sample of the noise. The target must be reached with every sample.
-  double sum = 0, squares = 0;
-  for (const Image& noise : noises) {
-    const std::optional<double> seconds = Future(reference, pilot, bias, noise).secondsUntil(targetSsim);
-    if (!seconds) return result;
-    sum += std::log(*seconds);
-    squares += std::pow(std::log(*seconds), 2);
-  }
-  // Student's t with two degrees of freedom, over the logarithms of three times.
+// The interval of a time that three samples of the noise gave, by Student's t with two degrees of freedom over their
+// logarithms.
+Interval ofThree(double meanLogarithm, double meanSquare) {
   constexpr double kStudent = 4.303;
   static_assert(kIntervalLevel == 0.95);
   // deviation is the standard error of the mean of three logarithms.
-  const double middle = sum / 3, deviation = std::sqrt(std::max(squares / 3 - middle * middle, 0.0) / 2);
-  result.seconds = std::exp(middle);
-  result.interval = {std::exp(middle - kStudent * deviation), std::exp(middle + kStudent * deviation)};
+  const double deviation = std::sqrt(std::max(meanSquare - meanLogarithm * meanLogarithm, 0.0) / 2);
+  return {std::exp(meanLogarithm - kStudent * deviation), std::exp(meanLogarithm + kStudent * deviation)};
+}
+
+}  // namespace
+
+PilotReference::PilotReference(const Pilot& pilot)
+    : mean(meanOf(pilot)),
+      noises(noisesOf(pilot)),
+      noisy(prepared("reference", mean)),
+      likely(prepared("reference", withLessNoise(mean, noises, 0.5))),
+      smooth(prepared("reference", withLessNoise(mean, noises, 1))) {
+  Image again = mean;
+  for (size_t i = 0; i < again.pixels.size(); ++i) again.pixels[i] += noises[0].pixels[i];
+  ssim = ssimOf(noisy, std::move(again));
+}
+
+Prediction predict(const PilotReference& reference, const Pilot& pilot, double targetSsim) {
+  // Mean, noise and bias of the pilot.
+  const Image mean = meanOf(pilot);
+  const NoiseSamples noises = noisesOf(pilot);
+  Image bias = mean;
+  if (pilot.biased) {
+    bias = significantBias(mean, noises, reference);
+  } else {
+    std::fill(bias.pixels.begin(), bias.pixels.end(), 0.0f);
+  }
+  // SSIM of the pilot, and what is left of bias after kLongestSeconds.
+  Prediction result;
+  result.ssimNow = ssimOf(reference.noisy, mean);
+  result.ssimLimit = Future(reference.likely, pilot, bias, noises[0]).ssimAt(kLongestSeconds);
+  // Seconds until the target with each sample of the noise. The target must be reached with every sample.
+  double sum = 0, squares = 0;
+  for (const Image& noise : noises) {
+    const std::optional<double> seconds = Future(reference.likely, pilot, bias, noise).secondsUntil(targetSsim);
+    if (!seconds) return result;
+    sum += std::log(*seconds) / 3;
+    squares += std::pow(std::log(*seconds), 2) / 3;
+  }
+  result.seconds = std::exp(sum);
+  result.interval = ofThree(sum, squares);
+  // The other readings of the reference.
+  const auto reading = [&](const PreparedReference& other) {
+    return Future(other, pilot, bias, noises[0])
+        .secondsUntil(targetSsim)
+        .value_or(std::numeric_limits<double>::infinity());
+  };
+  const double early = reading(reference.noisy), late = reading(reference.smooth);
+  const double beyond = std::max(std::log(*result.seconds / pilot.seconds), 0.0);
+  const double model = std::exp(kModelError + kModelErrorPerE * beyond);
+  result.interval.low = std::min({result.interval.low, early, late}) / model;
+  result.interval.high = std::max({result.interval.high, early, late}) * model;
   return result;
 }
 

@@ -24,7 +24,12 @@ class Recommend(CommandTest):
 
     def test_the_text_is_a_paragraph_and_a_table(self):
         told = self.recommend("--budget", "1s", "--target-ssim", "0.5", "--methods", "pt")
-        self.assertRegex(told.stdout, r"cornell-diffuse: use pt\. It gets to an SSIM of 0\.5 in about")
+        self.assertRegex(told.stdout, r"(?m)^cornell-diffuse: use pt\. It gets to an SSIM of 0\.5 in about")
+
+    def test_without_whole_images_it_cannot_tell(self):
+        told = self.run_wavecrest("recommend", "lafortune-room", "--size", "640x480", "--threads", "2", "--budget", "0.1s")
+        self.assertRegex(told.stdout, r"^lafortune-room: cannot tell within 0\.1 s; try --budget [0-9]+[smh]\. ")
+        self.assertNotIn("never", told.stdout)
 
     def test_a_second_can_be_one_of_cpu_time(self):
         told = self.recommend("--budget", "1s", "--target-ssim", "0.5", "--methods", "pt,vcm", "--clock", "cpu", "--json")
