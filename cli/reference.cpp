@@ -12,6 +12,7 @@
 #include "bench/campaign/reference_agreement.h"
 #include "bench/campaign/render_reference.h"
 #include "bench/results/noise_floors.h"
+#include "bench/statistics/chains_mislead.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/interrupt.h"
@@ -140,6 +141,7 @@ void showReference(const std::string& output, const Reference& reference, Progre
     fmt::print("biased by merging within {:g} of the scene's radius; compare it with one of half of that\n",
                reference.info.radius);
   }
+  if (reference.info.method == toString(Method::mlt)) warn(kind, fmt::format("{}: {}", output, kChainsMislead));
   for (const std::string& floor : unmetFloors(reference.noiseFloors)) {
     warn(kind, fmt::format("{}: {}; render it for longer", output, floor));
   }

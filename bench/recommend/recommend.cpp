@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bench/recommend/duration_words.h"
+#include "bench/statistics/chains_mislead.h"
 #include "engine/inspect/path_classes.h"
 #include "engine/scene/scene_error.h"
 
@@ -89,6 +90,7 @@ void judgeRows(Recommendation& all) {
     all.doubts.push_back(fmt::format("{} may be as soon, in {} at the earliest", toString(row.method),
                                      durationWords(row.prediction.interval.low)));
   }
+  if (first->method == Method::mlt) all.doubts.emplace_back(kChainsMislead);
   if (all.referenceSsim < all.targetSsim) {
     all.doubts.push_back(
         fmt::format("the reference that all were compared with ({}) is itself known to an SSIM of {:.3f} only",

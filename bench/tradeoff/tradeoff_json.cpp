@@ -1,6 +1,7 @@
 // A TradeResult as JSON (bench/schema.json).
 #include <nlohmann/json.hpp>
 
+#include "bench/statistics/chains_mislead.h"
 #include "bench/tradeoff/tradeoff.h"
 
 namespace wavecrest {
@@ -36,6 +37,8 @@ Json rowJson(const TradeRow& row) {
 }  // namespace
 
 Json toJson(const TradeResult& result) {
+  std::vector<std::string> doubts = doubtsAbout(result.machine);
+  if (result.method == Method::mlt && result.seeds < kFewestChainRenders) doubts.emplace_back(kChainsMislead);
   Json rows = Json::array();
   for (const TradeRow& row : result.rows) rows.push_back(rowJson(row));
   return {{"scene", result.scene},
@@ -50,7 +53,7 @@ Json toJson(const TradeResult& result) {
           {"bias_told", tellsBias(result.seeds)},
           {"rows", rows},
           {"advice", adviceOf(result)},
-          {"doubts", doubtsAbout(result.machine)}};
+          {"doubts", doubts}};
 }
 
 }  // namespace wavecrest

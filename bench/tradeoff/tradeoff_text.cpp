@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/statistics/chains_mislead.h"
 #include "bench/text_lines.h"
 #include "bench/tradeoff/tradeoff.h"
 
@@ -91,6 +92,7 @@ std::string toText(const TradeResult& result) {
                                   [](const TradeRow& row) { return row.joulesPerPath.has_value(); });
   if (!energy) line(text, "  energy: this machine does not tell (powercap)");
   line(text, "  {}", biasVerdictsInWords(result));
+  if (result.method == Method::mlt && result.seeds < kFewestChainRenders) line(text, "  doubt: {}", kChainsMislead);
   line(text, "\n  {}", adviceOf(result));
   return fmt::to_string(text);
 }

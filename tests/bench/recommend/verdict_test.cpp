@@ -65,6 +65,10 @@ TEST(Verdict, comesAfterItsDoubts) {
   EXPECT_TRUE(text.starts_with("Doubt: bpt may be as soon, in 26 s at the earliest.\nbox: use pt.")) << text;
 }
 
+TEST(Verdict, onMltSaysWhatItsErrorsAreWorth) {
+  EXPECT_TRUE(toText(judged({rowOf(Method::mlt, 30, 25, 40)})).starts_with("Doubt: errors of mlt from few renders"));
+}
+
 TEST(Verdict, neverSaysNever) {
   RecommendRow blind = rowWithout(Method::pt, true);
   blind.leavesOut = "A S D E";

@@ -103,6 +103,13 @@ TEST(Advice, saysThatFewSeedsCannotTell) {
             std::string::npos);
 }
 
+TEST(Advice, saysThatErrorsOfFewChainRendersMislead) {
+  TradeResult result = tableWith({.value = 0.01, .standardError = 0.02, .probability = 0.6}, false, 6);
+  EXPECT_EQ(toText(result).find("errors of mlt"), std::string::npos);
+  result.method = Method::mlt;
+  EXPECT_NE(toText(result).find("doubt: errors of mlt from few renders are too small"), std::string::npos);
+}
+
 // Two images by Sobol points may be alike by chance.
 TEST(Tradeoff, givesNoVerdictOfBiasWithTwoSeeds) {
   const TradeResult result = measureTrade(smallBox(48, 32), settingsOf(Method::pt),
