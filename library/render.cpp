@@ -10,12 +10,12 @@
 #include "bench/film_image.h"
 #include "bench/json_text.h"
 #include "engine/session/session.h"
-#include "library/errors.h"
 #include "library/image_conversion.h"
 #include "library/render_settings.h"
 #include "library/scene_data.h"
 #include "library/translate.h"
 #include "metrics/image/image_io.h"
+#include "wavecrest/error.h"
 
 namespace wavecrest::api {
 
@@ -27,8 +27,9 @@ struct Render::Data {
 
   wavecrest::Image wholeImage() const {
     if (session->statistics().hasWholeImage()) return filmImage(*session);
-    throw InputError(fmt::format("render: no whole pass over the film after {:.2g} s; expected a longer time",
-                                 session->progressSeconds()));
+    throw Error(ErrorKind::input,
+                fmt::format("render: no whole pass over the film after {:.2g} s; expected a longer time",
+                            session->progressSeconds()));
   }
   nlohmann::ordered_json stats() const {
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -37,10 +37,9 @@ Part renderPart(const Scene& scene, const RenderSettings& settings, double secon
   const auto session = Session::create(scene, settings);
   const auto now = [&] { return secondsBy(clock, *session, settings.threads); };
   // The first whole image, if it comes in time. What comes before it is done once in a render.
-  constexpr int kLooks = 8;
-  for (int look = 1; look <= kLooks && !session->statistics().hasWholeImage(); ++look) {
-    session->renderUntil(1, session->statistics().renderSeconds + kMostOverrun * seconds / kLooks);
-    if (now() > kMostOverrun * seconds) break;
+  const double limit = kMostOverrun * seconds;
+  while (!session->statistics().hasWholeImage() && now() < limit) {
+    session->renderUntil(1, session->statistics().renderSeconds + limit - now());
   }
   Part part;
   const uint64_t first = session->statistics().iterations;

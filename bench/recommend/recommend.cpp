@@ -21,8 +21,6 @@ constexpr uint64_t kReferenceSeed = 0x7265666572656e63, kPilotSeed = 0x70696c6f7
 
 // The widest interval that is called an answer: its ends are a factor of the square root away from the middle.
 constexpr double kWidestInterval = 4;
-// A method that may be this much sooner than the first one is a doubt.
-constexpr double kWorthSaying = 1.25;
 
 // Methods that reach the target come first, by time; the others follow, by their limit; last those not told.
 bool sooner(const RecommendRow& a, const RecommendRow& b) {
@@ -86,7 +84,7 @@ void judgeRows(Recommendation& all) {
   }
   for (const RecommendRow& row : all.rows) {
     if (&row == first || !row.prediction.seconds) continue;
-    if (kWorthSaying * row.prediction.interval.low > *first->prediction.seconds) continue;
+    if (row.prediction.interval.low > *first->prediction.seconds) continue;
     all.doubts.push_back(fmt::format("{} may be as soon, in {} at the earliest", toString(row.method),
                                      durationWords(row.prediction.interval.low)));
   }

@@ -90,6 +90,7 @@ std::vector<RunFile> runsOf(const std::vector<OtherImage>& images) {
   for (RunFile& run : runs) {
     std::stable_sort(run.snapshots.begin(), run.snapshots.end(),
                      [](const SnapshotFile& a, const SnapshotFile& b) { return a.seconds < b.seconds; });
+    for (size_t i = 0; i < run.snapshots.size(); ++i) run.snapshots[i].number = static_cast<unsigned>(i);
   }
   return runs;
 }
