@@ -1,6 +1,7 @@
 #include "engine/compile/lights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <unordered_map>
@@ -325,11 +326,10 @@ template Lights<double> compileLights(const Scene&, const BoundingSphere&, Primi
 template <class S>
 void setPicks(Lights<S>& lights, const std::vector<double>& shares) {
   std::vector<double> picks(lights.records.size());
-  for (size_t i = 0; i < picks.size(); ++i) {
-    picks[i] = lights.withinEmitter[i] * shares[lights.emitterOf[i]];
-    lights.records[i].pick = static_cast<S>(picks[i]);
-  }
+  for (size_t i = 0; i < picks.size(); ++i) picks[i] = lights.withinEmitter[i] * shares[lights.emitterOf[i]];
   const std::vector<AliasEntry> table = makeAliasTable(picks);
+  const std::vector<double> drawn = sharesOf(table);
+  for (size_t i = 0; i < drawn.size(); ++i) lights.records[i].pick = static_cast<S>(drawn[i]);
   lights.table.resize(table.size());
   std::copy(table.begin(), table.end(), lights.table.begin());
 }
@@ -349,6 +349,8 @@ std::vector<double> evenedShares(const std::vector<double>& weights, double even
 }
 
 std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights) {
+  // Kernels compare `keep` with random numbers of 24 bits. On the same grid its probability is exact.
+  constexpr double kNumberGrid = 0x1p24;
   const size_t count = weights.size();
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   // Scale the weights to a mean of 1, and tell those below 1 from the others.
@@ -364,14 +366,26 @@ std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights) {
   while (!small.empty() && !large.empty()) {
     const uint32_t less = small.back(), more = large.back();
     small.pop_back();
-    table[less] = {static_cast<float>(scaled[less]), more};
-    scaled[more] -= 1 - scaled[less];
+    const double keep = std::ceil(scaled[less] * kNumberGrid) / kNumberGrid;
+    table[less] = {static_cast<float>(keep), more};
+    scaled[more] -= 1 - keep;
     if (scaled[more] < 1) {
       large.pop_back();
       small.push_back(more);
     }
   }
   return table;  // what is left over differs from 1 by rounding only
+}
+
+std::vector<double> sharesOf(const std::vector<AliasEntry>& table) {
+  std::vector<double> shares(table.size(), 0);
+  const auto count = static_cast<double>(table.size());
+  for (size_t i = 0; i < table.size(); ++i) {
+    const auto keep = static_cast<double>(table[i].keep);
+    shares[i] += keep / count;
+    shares[table[i].other] += (1 - keep) / count;
+  }
+  return shares;
 }
 
 }  // namespace wavecrest

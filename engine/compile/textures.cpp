@@ -118,14 +118,11 @@ Environment compileEnvironment(const EnvmapEmitter& emitter, const SourceLocatio
     }
   }
   out.meanLuminance /= solidAngle;
-  if (!(total > 0)) {  // black: sampled evenly, to no effect
-    std::fill(weights.begin(), weights.end(), 1.0);
-    total = static_cast<double>(weights.size());
-  }
+  if (!(total > 0)) std::fill(weights.begin(), weights.end(), 1.0);  // black: sampled evenly, to no effect
   // The alias table and the probabilities. Kernels take columns and rows, so the table names those.
   out.table = makeAliasTable(weights);
+  for (const double share : sharesOf(out.table)) out.probability.push_back(static_cast<float>(share));
   for (AliasEntry& entry : out.table) entry.other = entry.other % width | entry.other / width << kTexelBits;
-  for (const double weight : weights) out.probability.push_back(static_cast<float>(weight / total));
 
   // The view, and the rotation to the map's frame.
   out.view = {.texels = out.texels.data(),

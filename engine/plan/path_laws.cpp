@@ -57,12 +57,16 @@ void PathLaws::addDeletions(uint32_t edges) {
   std::vector<double> weights;
   for (const uint32_t range : kept) {
     const uint32_t deleted = (range >> 16) + 1 - (range & 0xffffu);
-    const double share = deletionWeight(deleted) / sum / counts[deleted];
-    deletionShare_[size_t{edges} * (maxEdges_ + 3) + deleted] = static_cast<float>(share);
-    weights.push_back(share);
+    weights.push_back(deletionWeight(deleted) / sum / counts[deleted]);
   }
-  // Entries of the alias table name each other relative to the first deletion of this length.
+  // Entries of the alias table name each other relative to the first deletion of this length. Shares are those of the
+  // table; ranges that delete the same number of edges have the same, but for rounding.
   const std::vector<AliasEntry> table = makeAliasTable(weights);
+  const std::vector<double> shares = sharesOf(table);
+  for (size_t i = 0; i < kept.size(); ++i) {
+    const uint32_t deleted = (kept[i] >> 16) + 1 - (kept[i] & 0xffffu);
+    deletionShare_[size_t{edges} * (maxEdges_ + 3) + deleted] = static_cast<float>(shares[i]);
+  }
   deletions_.insert(deletions_.end(), table.begin(), table.end());
   ranges_.insert(ranges_.end(), kept.begin(), kept.end());
 }

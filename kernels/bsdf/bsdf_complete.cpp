@@ -204,17 +204,13 @@ WAVECREST_NOINLINE BsdfSample<typename P::Real> sampleParts(const Blend<P>& blen
   if (input.lobes == Lobes::specularOnly || none(finite)) return sample;
 
   // A direction of another lobe may come from any part, so f and densities are those of the whole blend. The direction
-  // counts if the part that was taken did make it: a rough dielectric fails where it reflects to the far side or
-  // refracts to the near one. A weight of zero is no sign of failure, for a black part has it always.
-  const Real sides = wi.z * sample.wo.z;
-  const Mask bent = (sample.etaRatio > Real(1)) | (sample.etaRatio < Real(1));
-  const Mask sheet = isAmong(part.input.kind, bitOf(BsdfKind::principledThin));
-  const Mask made = (sample.pdf > zero) & (sheet | (select(bent, -sides, sides) > zero));
+  // counts if the part that was taken did make it.
   Real own;
   const BsdfValue<Real> value = evalParts(blend, wi, sample.wo, chosen, own);
   const Real scale = abs(sample.wo.z) / max(value.pdf, Real(1e-30f));
-  sample.weight = select(finite, zeroUnless(made & (own > zero), value.f * scale), sample.weight);
-  sample.pdf = select(finite, value.pdf, sample.pdf);
+  const Mask made = (sample.pdf > zero) & (own > zero);
+  sample.weight = select(finite, zeroUnless(made, value.f * scale), sample.weight);
+  sample.pdf = select(finite, zeroUnless(made, value.pdf), sample.pdf);
   sample.pdfReverse = select(finite, value.pdfReverse, sample.pdfReverse);
   return sample;
 }

@@ -17,7 +17,8 @@
 //   static BsdfSample<Real> sample(const BsdfInput<P, kTextured>&, Vec3<Real> wi, const Uniform4& u);
 // in a file of its own, and a place in bsdf_list.h. eval covers the non-delta lobes only. sample uses u.a, u.b and u.c;
 // u.d is left to roulette. Where wi or wo lie on sides that the BSDF does not join, the weight and f are zero and the
-// densities are meaningless but finite.
+// densities are meaningless but finite. A draw that fails, because it leads to the wrong side, has a pdf of zero; a
+// weight of zero does not tell, for black lobes have it always.
 #pragma once
 
 #include <type_traits>

@@ -46,7 +46,7 @@ struct RoughConductor {
     const Real shadowing = Real(2) * wo.z * byWo * normals.weightFactor(wi);
     return {.wo = wo,
             .weight = zeroUnless(front, conductorReflectance(input, cosine) * shadowing),
-            .pdf = density * byWi * normals.densityFactor(wi),
+            .pdf = zeroUnless(front, density * byWi * normals.densityFactor(wi)),
             .pdfReverse = density * byWo * normals.densityFactor(wo),
             .etaRatio = Real(1),
             .specular = noLanes()};

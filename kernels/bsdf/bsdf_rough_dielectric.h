@@ -84,7 +84,7 @@ struct RoughDielectric {
     wo.z = wo.z * copySign(one, wi.z);
     return {.wo = wo,
             .weight = zeroUnless(possible, tint * (shadowing * radianceScale(input, inverseStretch))),
-            .pdf = twoK * stretch * stretch * byWi * normals.densityFactor(wi),
+            .pdf = zeroUnless(possible, twoK * stretch * stretch * byWi * normals.densityFactor(wi)),
             .pdfReverse = twoK * byWo * normals.densityFactor(wo),
             .etaRatio = inverseStretch,
             .specular = noLanes()};

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "kernels/columns/light_vertices.h"
+#include "kernels/connect/roulette_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/vertex_row_lanes.h"
@@ -97,13 +98,7 @@ constexpr uint32_t kAnyLightDepth = 2;
 // How many pairs ahead rows of light vertices are prefetched: the caches do not hold those of a whole iteration.
 constexpr size_t kRowsAhead = 128;
 
-// The probability that a connection is joined at all, by what it carries.
-template <class Real>
-WAVECREST_INLINE Real chanceOf(Vec3<Real> contribution, Real rouletteBelow) {
-  return min(Real(1), maxComponent(contribution) / rouletteBelow);
-}
-
-// A number for each pair. Those of a camera vertex are spread evenly over the depths of the light vertices.
+// A number for each pair.
 template <class S>
 WAVECREST_INLINE Float rouletteNumbers(const StageContext<S>& context, const Wave<S>& wave, UInt lane, UInt light) {
   UInt depth(1u);
@@ -111,10 +106,7 @@ WAVECREST_INLINE Float rouletteNumbers(const StageContext<S>& context, const Wav
     const Mask shallower = light < UInt(static_cast<uint32_t>(context.light->firstOf(d)));
     depth = depth + select(shallower, UInt(0u), UInt(1u));
   }
-  constexpr float kGoldenRatio = 0.61803399f;
-  const Float number =
-      draw(context, pathOf(context, wave, lane), Block::opacity).d + toFloat(depth) * Float(kGoldenRatio);
-  return number - floor(number);
+  return rouletteNumber(draw(context, pathOf(context, wave, lane), Block::opacity).d, depth);
 }
 
 // Weighted contributions of a block of pairs of vertices that have BSDFs of kBsdfs; shadow rays from `out` on; where
@@ -163,7 +155,7 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
   if (any(tooClose)) context.counters->closePairs += countTrue(tooClose);
   Mask lit = andNot(carries, tooClose);
   if (context.rouletteBelow > 0) {
-    const Real chance = chanceOf(contribution, Real(context.rouletteBelow));
+    const Real chance = rouletteChance(maxComponent(contribution), Real(context.rouletteBelow));
     if (any(lit & (chance < Real(1)))) {
       const UInt light = load(pairs.light, i);
       lit = lit & (to<Real>(rouletteNumbers(context, wave, load(lanes), light)) < chance);

@@ -217,12 +217,13 @@ struct ShadingLanes {
     sample.pdf = select(delta, sample.pdf * drawn, sample.pdf);
 
     // Other lobes: either normal may have led to this direction, so weight and densities come from scattering(). The
-    // quotient of cosines to this frame undoes that of scatter.
-    const Mask finite = andNot(mapped, sample.specular);
+    // quotient of cosines to this frame undoes that of scatter. A draw that failed keeps its weight of zero, as the
+    // density counts only draws that succeed.
+    const Mask finite = andNot(mapped, sample.specular), made = sample.pdf > Real(0);
     if (any(finite)) {
       const Scattering<Real> all = scattering(finite, direction);
       const Real scale = all.lightCosine * abs(wo.z) / max(abs(wi.z) * all.pdf, tiny);
-      sample.weight = select(finite, all.f * scale, sample.weight);
+      sample.weight = select(finite, zeroUnless(made, all.f * scale), sample.weight);
       sample.pdfReverse = select(finite, all.pdfReverse, sample.pdfReverse);
       sample.pdf = select(finite, all.pdf, sample.pdf);
     }

@@ -86,27 +86,15 @@ TEST(Agreement, onSpecularSurfacesInAShiningShell) {
       {Method::lt, Method::bpt, Method::vcm});
 }
 
-Texture wavesTexture() {
-  auto bitmap = std::make_shared<Bitmap>();
-  bitmap->width = bitmap->height = 16;
-  bitmap->channels = 1;
-  for (uint32_t i = 0; i < 16 * 16; ++i) {
-    const uint32_t x = i % 16, y = i / 16;
-    bitmap->pixels.push_back(0.5f +
-                             0.5f * std::sin(0.8f * static_cast<float>(x)) * std::cos(0.4f * static_cast<float>(y)));
-  }
-  return {.kind = BitmapTexture{.bitmap = bitmap}, .toUv = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}};
-}
-
 Scene bumpyRoom(double scale) {
   Scene scene =
       roomScene({.light = RoomLight::quad, .materials = RoomMaterials::rough, .width = kWidth, .height = kHeight});
-  scene.textures.push_back(wavesTexture());
+  const uint32_t waves = addWaves(scene);
   for (Material& material : scene.materials) {
-    material.bumpTexture = 0;
+    material.bumpTexture = waves;
     material.bumpScale = scale;
     if (auto* diffuse = std::get_if<Diffuse>(&material.kind); diffuse != nullptr && diffuse->reflectance.value[0] > 0) {
-      diffuse->reflectance.texture = 0;
+      diffuse->reflectance.texture = waves;
     }
   }
   return scene;

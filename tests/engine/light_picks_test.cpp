@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/compile/compiled_scene.h"
+#include "engine/compile/lights.h"
 #include "tests/load/scene_file.h"
 
 namespace wavecrest {
@@ -33,6 +34,49 @@ std::vector<double> picksOf(const Scene& scene) {
   return picks;
 }
 
+// Drawn by numbers k 2^-24: each share is that of the numbers that lead to it.
+TEST(AliasTable, drawsTheSmallestSharesAsOftenAsItSays) {
+  const std::vector<double> weights{1, 1e-9, 1e-8, 2, 3e-7, 0, 0.5};
+  const std::vector<AliasEntry> table = makeAliasTable(weights);
+  const std::vector<double> shares = sharesOf(table);
+  std::vector<double> drawn(weights.size(), 0);
+  for (size_t i = 0; i < table.size(); ++i) {
+    const double kept = std::ceil(static_cast<double>(table[i].keep) * 0x1p24) * 0x1p-24;
+    drawn[i] += kept / static_cast<double>(table.size());
+    drawn[table[i].other] += (1 - kept) / static_cast<double>(table.size());
+  }
+  double sum = 0;
+  for (const double weight : weights) sum += weight;
+  for (size_t i = 0; i < weights.size(); ++i) {
+    EXPECT_NEAR(shares[i], drawn[i], 1e-6 * drawn[i]) << i;
+    EXPECT_NEAR(shares[i], weights[i] / sum, 0x1p-24) << i << ": each entry is rounded by less than 2^-24 / count";
+  }
+  EXPECT_EQ(shares[5], 0) << "what has no weight is never drawn";
+}
+
+// Of an environment that is dark but for a sun, each texel is drawn as often as its density says.
+TEST(AliasTable, ofAnEnvironmentIsWhatItsDensitySays) {
+  auto bitmap = std::make_shared<Bitmap>();
+  bitmap->width = 32;
+  bitmap->height = 16;
+  bitmap->channels = 1;
+  bitmap->pixels.assign(size_t{32} * 16, 1e-8f);
+  bitmap->pixels[5 * 32 + 7] = 100;
+  EnvmapEmitter emitter;
+  emitter.bitmap = bitmap;
+  const Environment environment = compileEnvironment(emitter);
+  std::vector<double> drawn(size_t{32} * 16, 0);
+  for (size_t i = 0; i < drawn.size(); ++i) {
+    const double kept = std::ceil(static_cast<double>(environment.table[i].keep) * 0x1p24) * 0x1p-24;
+    const uint32_t other = environment.table[i].other, mask = (1u << kTexelBits) - 1;
+    drawn[i] += kept / 512;
+    drawn[(other >> kTexelBits) * 32 + (other & mask)] += (1 - kept) / 512;
+  }
+  for (size_t i = 0; i < drawn.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(environment.probability[i]), drawn[i], 1e-6 * drawn[i]) << i;
+  }
+}
+
 TEST(LightPicks, areHalfByPowerAndHalfEven) {
   // pi A L = 4 pi 3 and 4 pi I = 4 pi: three fourths and one fourth of the power.
   const std::vector<double> picks = picksOf(floorWith(lamp(2, 3) + pointLight(1)));
@@ -45,7 +89,7 @@ TEST(LightPicks, ofTheFacesOfOneLampAddUpToThoseOfOneEmitter) {
   const std::vector<double> picks = picksOf(floorWith(lamp(2, 1, "cube") + pointLight(1000)));
   ASSERT_EQ(picks.size(), 7u);
   const double byPower = 24 / (24 + 4000.0);  // over pi
-  for (size_t face = 0; face < 6; ++face) EXPECT_NEAR(picks[face], (0.5 * byPower + 0.25) / 6, 1e-9) << face;
+  for (size_t face = 0; face < 6; ++face) EXPECT_NEAR(picks[face], (0.5 * byPower + 0.25) / 6, 0x1p-24) << face;
 }
 
 TEST(LightPicks, countWhatLightFromFarAwaySendsOntoTheScenesBox) {

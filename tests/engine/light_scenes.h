@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -60,6 +61,20 @@ inline uint32_t addPicture(Scene& scene) {
   }
   scene.textures.push_back({.kind = BitmapTexture{.bitmap = bitmap, .wrap = Wrap::clamp},
                             .toUv = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}});
+  return static_cast<uint32_t>(scene.textures.size() - 1);
+}
+
+// Smooth waves of 16 x 16 pixels, 0 to 1.
+inline float waveHeight(uint32_t x, uint32_t y) {
+  return 0.5f + 0.5f * std::sin(0.8f * static_cast<float>(x)) * std::cos(0.4f * static_cast<float>(y));
+}
+inline uint32_t addWaves(Scene& scene) {
+  auto bitmap = std::make_shared<Bitmap>();
+  bitmap->width = bitmap->height = 16;
+  bitmap->channels = 1;
+  for (uint32_t i = 0; i < 16 * 16; ++i) bitmap->pixels.push_back(waveHeight(i % 16, i / 16));
+  scene.textures.push_back(
+      {.kind = BitmapTexture{.bitmap = bitmap}, .toUv = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}});
   return static_cast<uint32_t>(scene.textures.size() - 1);
 }
 

@@ -1,0 +1,167 @@
+// Methods against path tracing under bump and normal maps: each kind of BSDF under both, each kind of light among them,
+// every method. A light walk draws one of a map's two normals (METHODS 1.2), a camera walk has one only.
+//
+// 16 seeds of 16 x 12 pixels each. False alarms as in render_statistics.h: 5e-6 for each comparison, of which there are
+// about 200; merging alone may differ by a few per cent of the mean, its bias by the radius.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/effort.h"
+#include "tests/engine/light_scenes.h"
+#include "tests/engine/render_statistics.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr uint32_t kWidth = 16, kHeight = 12;
+
+enum class MapKind { bump, normal };
+
+struct MappedCase {
+  const char* name;
+  decltype(Material::kind) kind;
+  bool twoSided = false, masked = false;
+  bool smooth = false;  // delta lobes: path tracing needs a light that is met by chance
+};
+
+std::vector<MappedCase> mappedCases() {
+  const auto metal = [](double alpha, Distribution distribution, std::optional<TexturedFloat> alphaV = {}) {
+    return Conductor{.eta = {1.657, 0.88, 0.521},
+                     .k = {9.224, 6.27, 4.837},
+                     .alpha = {alpha},
+                     .distribution = distribution,
+                     .alphaV = alphaV};
+  };
+  const auto glass = [](double alpha, Distribution distribution, std::optional<TexturedFloat> alphaV = {}) {
+    return Dielectric{.intIor = 1.5, .extIor = 1, .alpha = {alpha}, .distribution = distribution, .alphaV = alphaV};
+  };
+  const auto plastic = [](double alpha, Distribution distribution) {
+    return Plastic{.intIor = 1.5, .extIor = 1, .alpha = {alpha}, .distribution = distribution};
+  };
+  using enum Distribution;
+  const TexturedFloat across{0.8};
+  return {
+      {"diffuse", Diffuse{{{0.7, 0.6, 0.5}}}},
+      {"ggxMetal", metal(0.8, ggx)},
+      {"beckmannMetal", metal(0.6, beckmann)},
+      {"anisotropicMetal", metal(0.3, ggx, across)},
+      {"anisotropicBeckmannMetal", metal(0.3, beckmann, across)},
+      {"ggxGlass", glass(0.6, ggx)},
+      {"beckmannGlass", glass(0.5, beckmann)},
+      {"anisotropicGlass", glass(0.3, ggx, across)},
+      {"anisotropicBeckmannGlass", glass(0.3, beckmann, across)},
+      {"ggxPlastic", plastic(0.6, ggx)},
+      {"beckmannPlastic", plastic(0.5, beckmann)},
+      {"phong", Phong{.exponent = 6}},
+      {"principled", Principled{.roughness = {0.7}, .specTrans = {0.4}, .metallic = {0.4}, .clearcoat = {0.5}}},
+      {"principledThin", Principled{.thin = true, .roughness = {0.6}, .specTrans = {0.4}, .diffTrans = {0.8}}},
+      {"blend", Blend{}},
+      {"twoSidedMetal", metal(0.8, ggx), true},
+      {"maskedMetal", metal(0.8, ggx), false, true},
+      {"mirror", metal(0, ggx), false, false, true},
+      {"glass", glass(0, ggx), false, false, true},
+      {"pane", Dielectric{.intIor = 1.5, .extIor = 1, .thin = true}, false, false, true},
+      {"plastic", plastic(0, ggx), false, false, true},
+  };
+}
+
+uint32_t addNormalMap(Scene& scene) {
+  auto bitmap = std::make_shared<Bitmap>();
+  bitmap->width = bitmap->height = 16;
+  for (uint32_t i = 0; i < 16 * 16; ++i) {
+    const float x = 0.9f * (waveHeight(i % 16, i / 16) - 0.5f), y = 0.9f * (waveHeight(i / 16, i % 16) - 0.5f);
+    for (const float value : {x, y, std::sqrt(1 - x * x - y * y)}) bitmap->pixels.push_back(0.5f + 0.5f * value);
+  }
+  scene.textures.push_back(
+      {.kind = BitmapTexture{.bitmap = bitmap}, .toUv = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}});
+  return static_cast<uint32_t>(scene.textures.size() - 1);
+}
+
+// The room with the material on its floor.
+Scene mappedRoom(const MappedCase& mapped, MapKind map, RoomLight light) {
+  Scene scene = roomScene({.light = light, .width = kWidth, .height = kHeight});
+  Material material;
+  material.kind = mapped.kind;
+  if (std::holds_alternative<Blend>(mapped.kind)) {
+    const uint32_t metal = addMaterial(scene, Conductor{.eta = {1.6, 0.9, 0.5}, .k = {9, 6, 5}, .alpha = {0.8}});
+    material.kind = Blend{.materials = {metal, addDiffuse(scene, 0.6, 0.5, 0.4)}, .weights = {0.7, 0.3}};
+  }
+  material.twoSided = mapped.twoSided;
+  if (mapped.masked) material.opacity = TexturedFloat{0.6};
+  if (map == MapKind::bump) {
+    material.bumpTexture = addWaves(scene);
+    material.bumpScale = 0.4;
+  } else {
+    material.normalTexture = addNormalMap(scene);
+  }
+  scene.materials.push_back(material);
+  scene.shapes[0].material = static_cast<uint32_t>(scene.materials.size() - 1);
+  return scene;
+}
+
+RenderSettings settingsOf(Method method, MetropolisVariant variant = MetropolisVariant::pssmlt) {
+  RenderSettings settings = settingsFor({Precision::floating, SamplerKind::independent, Accel::small});
+  settings.method = method;
+  settings.waveSize = 256;
+  settings.radius = 0.01;
+  settings.metropolis.variant = variant;
+  settings.metropolis.chains = 256;
+  settings.metropolis.bootstrapSamples = 8192;
+  return settings;
+}
+
+uint64_t iterations() { return effort(48, 2); }
+
+// Mean of merging alone against the reference. Allowed: what discs lose at edges.
+void expectSameMean(const SeedMeans& reference, const SeedMeans& found, double allowed, const std::string& where) {
+  const auto difference = [&](size_t s, size_t i) -> std::optional<double> {
+    return found.images[s][i] - reference.images[s][i];
+  };
+  double mean = 0;
+  for (const double value : reference.mean) mean += value / static_cast<double>(reference.mean.size());
+  const TileStatistics statistics = tileStatistics(reference.width, reference.mean.size(), difference, allowed * mean);
+  EXPECT_LE(statistics.imageT, 4) << where << ": " << statistics.describe();
+}
+
+class MappedAgreementTest : public testing::TestWithParam<size_t> {
+ protected:
+  static RoomLight lightOf(const MappedCase& mapped, size_t turn) {
+    if (mapped.smooth) return turn % 2 == 0 ? RoomLight::shell : RoomLight::constant;
+    return static_cast<RoomLight>(turn % kRoomLightNames.size());
+  }
+};
+
+TEST_P(MappedAgreementTest, everyMethod) {
+  const MappedCase mapped = mappedCases()[GetParam()];
+  for (const MapKind map : {MapKind::bump, MapKind::normal}) {
+    const RoomLight light = lightOf(mapped, 2 * GetParam() + (map == MapKind::bump ? 0 : 1));
+    const Scene scene = mappedRoom(mapped, map, light);
+    const SeedMeans reference = renderSeeds(scene, settingsOf(Method::pt), 2 * iterations());
+    const auto where = [&](const char* method) {
+      return std::string(method) + (map == MapKind::bump ? ", bump map, " : ", normal map, ") +
+             kRoomLightNames[static_cast<size_t>(light)];
+    };
+    for (const Method method : {Method::lt, Method::bpt, Method::vcm}) {
+      // From a mirror to the lens, lt has nothing.
+      if (mapped.smooth && method == Method::lt) continue;
+      expectSameTruth(reference, renderSeeds(scene, settingsOf(method), iterations(), 5000),
+                      where(std::string(toString(method)).c_str()));
+    }
+    for (const Method method : {Method::ppm, Method::bpm}) {
+      expectSameMean(reference, renderSeeds(scene, settingsOf(method), 2 * iterations(), 6000), 0.02,
+                     where(std::string(toString(method)).c_str()));
+    }
+    for (const MetropolisVariant variant : {MetropolisVariant::mmlt, MetropolisVariant::pathspace}) {
+      expectSameTruth(reference, renderSeeds(scene, settingsOf(Method::mlt, variant), iterations(), 7000),
+                      where(variant == MetropolisVariant::mmlt ? "mlt of numbers" : "mlt of paths"));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Engine, MappedAgreementTest, testing::Range<size_t>(0, 21),
+                         [](const auto& instance) { return std::string(mappedCases()[instance.param].name); });
+
+}  // namespace
+}  // namespace wavecrest
