@@ -80,6 +80,9 @@ enum MaterialFlags : uint32_t {
   kFlipsNormals = 32,
   kSoftensTerminator = 64,
   kMirrorsBack = 128,  // instead of kTwoSided where two-sidedness is around the map
+  // Light goes straight on through it: its PassageRecord says how much. Its BSDF is that of the rest of the surface,
+  // with an opacity of 1.
+  kPasses = 256,
 };
 
 // Roughness below which a surface is treated as smooth: lobes narrower than about 0.1 degrees.
@@ -134,6 +137,15 @@ struct alignas(64) CompoundRecord {
   uint32_t partCount, part[kMostParts];
   float weight[kMostParts];
   uint32_t weightTexture;
+};
+
+// How much light goes straight on through a material of kPasses that is no blend (METHODS 3.10): what the opacity
+// leaves; and where `matched` is 1, for it is a boundary between equal indices, the rest as well, times the tint.
+struct alignas(32) PassageRecord {
+  float opacity;  // 1 where it has a texture
+  uint32_t opacityTexture;
+  float tint[3];
+  uint32_t tintTexture, matched;
 };
 
 // A vertex keeps its material and its depth in one number of 32 bits.
@@ -235,6 +247,10 @@ struct EnvironmentView {
   double sunRadiance[3]{};
 };
 
+template <class S>
+struct StageContext;  // kernels/stages.h
+template <class S>
+struct Wave;            // kernels/columns/wave.h
 struct SmallSceneView;  // kernels/extend/small_scene.h
 struct BvhView;         // kernels/extend/bvh.h
 
@@ -245,6 +261,11 @@ struct SceneView {
   const InstanceRecord<S>* instances = nullptr;  // null in scenes without instances, or where they are copies
   const MaterialRecord* materials = nullptr;
   const CompoundRecord* compounds = nullptr;  // of each material; null in scenes without compound BSDFs
+  // Of each material; null in scenes through whose surfaces no light goes straight on.
+  const PassageRecord* passages = nullptr;
+  // Of scenes with passages: extend and occlude of the scene's intersector, which those with passages are made of.
+  void (*closestHits)(const StageContext<S>&, Wave<S>&) = nullptr;
+  void (*blockedRays)(const StageContext<S>&, Wave<S>&) = nullptr;
   // The same, if they are few; of primitives in float alone.
   const PrimitiveTable* primitiveTable = nullptr;
   const MaterialTable* materialTable = nullptr;

@@ -31,6 +31,8 @@ enum class StageFamily : uint8_t { featured, bidirectional, common };
   STAGE(occludeBvh, "occlude", shadowRays, common, block)       /* occlude_bvh.cpp */                              \
   STAGE(extendInstances, "extend", live, common, block)         /* extend_instances.cpp */                         \
   STAGE(occludeInstances, "occlude", shadowRays, common, block) /* occlude_instances.cpp */                        \
+  STAGE(extendPassing, "extend", live, common, block)           /* pass_surfaces.cpp */                            \
+  STAGE(occludePassing, "occlude", shadowRays, common, block)   /* pass_surfaces.cpp */                            \
   /* shade/ */                                                                                                     \
   STAGE(arrive, "arrive", live, featured, block)                    /* arrive.cpp */                               \
   STAGE(scatter, "scatter", live, featured, block)                  /* scatter.cpp */                              \

@@ -270,15 +270,15 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
 
   // Lights, materials and textures.
   compiled->lights = compileLights(scene, bounds, primitives, origin);
-  if (scene.materials.size() > kMaxMaterials) {
-    throw SceneError(SourceLocation{scene.name}, "more than " + std::to_string(kMaxMaterials) + " materials");
-  }
-  for (const Material& material : scene.materials) compiled->materials.push_back(compileMaterial(material, scene));
-  if ((features & kCompoundBsdfs) != 0) {
-    for (const Material& material : scene.materials) {
-      compiled->compounds.push_back(compileCompound(material));
+  CompiledMaterials materials = compileMaterials(scene, (features & kCompoundBsdfs) != 0);
+  if (materials.withoutPassages != 0) {
+    for (size_t i = 0; i < primitives.shapeOf.size(); ++i) {
+      if (primitives.shapeOf[i] != kNone) primitives.records[i].material += materials.withoutPassages;
     }
   }
+  compiled->materials = std::move(materials.records);
+  compiled->compounds = std::move(materials.compounds);
+  compiled->passages = std::move(materials.passages);
 
   compiled->textures = compileTextures(scene);
   bindLightTextures(scene, primitives, compiled->lights, compiled->textures);
@@ -296,6 +296,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   view.instanceCount = static_cast<uint32_t>(compiled->instances.size());
   view.materials = compiled->materials.data();
   if (!compiled->compounds.empty()) view.compounds = compiled->compounds.data();
+  if (!compiled->passages.empty()) view.passages = compiled->passages.data();
   view.materialCount = static_cast<uint32_t>(compiled->materials.size());
   view.bsdfKinds = 0;
   for (const MaterialRecord& material : compiled->materials) view.bsdfKinds |= 1u << material.kind;

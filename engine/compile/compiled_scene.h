@@ -6,6 +6,7 @@
 
 #include "engine/compile/instances.h"
 #include "engine/compile/lights.h"
+#include "engine/compile/passages.h"
 #include "engine/compile/primitives.h"
 #include "engine/compile/textures.h"
 #include "kernels/extend/bvh.h"
@@ -32,6 +33,7 @@ struct CompiledScene {
   RecordArray<InstanceRecord<S>> instances;  // if the scene keeps its instances
   std::vector<MaterialRecord> materials;
   std::vector<CompoundRecord> compounds;           // of each material, if one is a compound BSDF
+  std::vector<PassageRecord> passages;             // of each material, if light goes straight on through one
   std::unique_ptr<PrimitiveTable> primitiveTable;  // if they are few, and in float
   std::unique_ptr<MaterialTable> materialTable;    // if they are few
   Textures textures;

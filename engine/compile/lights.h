@@ -44,8 +44,8 @@ template <class S>
 void bindLightTextures(const Scene& scene, const Primitives<S>& primitives, Lights<S>& lights, Textures& textures);
 
 // Entries such that picking one uniformly and keeping it with its probability, else taking its alias, yields each index
-// nearly in proportion to its weight (Vose 1991). Weights must be >= 0 with a positive sum. Probabilities are rounded up
-// to 2^-24, the grid of random numbers, so each index is drawn with its share exactly: the weight's, off by at most
+// nearly in proportion to its weight (Vose 1991). Weights must be >= 0 with a positive sum. Probabilities are rounded
+// up to 2^-24, the grid of random numbers, so each index is drawn with its share exactly: the weight's, off by at most
 // 2^-24 of an entry, which is much for the smallest.
 std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights);
 std::vector<double> sharesOf(const std::vector<AliasEntry>& table);

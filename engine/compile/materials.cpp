@@ -67,20 +67,22 @@ BsdfKind kindOf(const Principled& principled) {
 }
 
 uint32_t lobesOf(BsdfKind kind);
-BsdfKind kindOf(const Material& material, const Scene& scene);
+BsdfKind kindOf(const Material& material, const Scene& scene, bool passes = false);
 
-// The lobes of all parts of a blend together: kHasDelta and kHasFinite.
-uint32_t lobesOf(const Blend& blend, const Scene& scene) {
+// The lobes of all parts of a blend together: kHasDelta and kHasFinite. passes: without what lets light straight on.
+uint32_t lobesOf(const Blend& blend, const Scene& scene, bool passes) {
   uint32_t lobes = 0;
-  for (const uint32_t part : blend.materials) {
-    lobes |= lobesOf(kindOf(scene.materials[part], scene)) | (scene.materials[part].opacity ? kHasDelta : 0u);
+  for (const uint32_t index : blend.materials) {
+    const Material& part = scene.materials[index];
+    if (passes && isIndexMatched(part)) continue;
+    lobes |= lobesOf(kindOf(part, scene)) | (part.opacity && !passes ? kHasDelta : 0u);
   }
   return lobes;
 }
-BsdfKind kindOf(const Material& material, const Scene& scene) {
+BsdfKind kindOf(const Material& material, const Scene& scene, bool passes) {
   return std::visit(Overloaded{[&](const Blend& blend) {
-                                 return (lobesOf(blend, scene) & kHasFinite) != 0 ? BsdfKind::blend
-                                                                                  : BsdfKind::deltaBlend;
+                                 return (lobesOf(blend, scene, passes) & kHasFinite) != 0 ? BsdfKind::blend
+                                                                                          : BsdfKind::deltaBlend;
                                },
                                [](const auto& bsdf) { return kindOf(bsdf); }},
                     material.kind);
@@ -156,7 +158,7 @@ void assignTextured(float& out, uint32_t& texture, const TexturedFloat& value) {
 // Fills in the fields of one material; the kind is already set.
 class Compiler {
  public:
-  Compiler(MaterialRecord& record, const Scene& scene) : record_(record), scene_(scene) {}
+  Compiler(MaterialRecord& record, const Scene& scene, bool passes) : record_(record), scene_(scene), passes_(passes) {}
 
   void operator()(const Diffuse& diffuse) {
     assignTextured(record_.reflectance, record_.reflectanceTexture, diffuse.reflectance);
@@ -183,7 +185,7 @@ class Compiler {
     assignTextured(record_.alpha, record_.alphaTexture, principled.roughness);
   }
 
-  void operator()(const Blend& blend) { record_.flags |= lobesOf(blend, scene_); }
+  void operator()(const Blend& blend) { record_.flags |= lobesOf(blend, scene_, passes_); }
 
   void operator()(const Plastic& plastic) {
     const double eta = plastic.intIor / plastic.extIor;
@@ -230,6 +232,7 @@ class Compiler {
 
   MaterialRecord& record_;
   const Scene& scene_;
+  const bool passes_;
 };
 
 bool hasNormalMap(const Material& material) { return material.bumpTexture != kNone || material.normalTexture != kNone; }
@@ -276,6 +279,12 @@ bool isSmooth(const Conductor& conductor) { return !conductor.alphaV && isNearly
 bool isSmooth(const Dielectric& dielectric) { return !dielectric.alphaV && isNearlyZero(dielectric.alpha); }
 bool isSmooth(const Plastic& plastic) { return isNearlyZero(plastic.alpha); }
 
+bool isIndexMatched(const Material& material) {
+  const auto* dielectric = std::get_if<Dielectric>(&material.kind);
+  return dielectric != nullptr && (dielectric->thin || isSmooth(*dielectric)) &&
+         static_cast<float>(relativeIor(*dielectric)) == 1.0f;
+}
+
 bool isAnisotropic(const Material& material, const Scene& scene) {
   const auto part = [&](uint32_t index) { return isAnisotropic(scene.materials[index], scene); };
   return std::visit(
@@ -296,9 +305,9 @@ uint32_t materialFeatures(const Material& material, const Scene& scene) {
   return features;
 }
 
-MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
+MaterialRecord compileMaterial(const Material& material, const Scene& scene, bool passes) {
   MaterialRecord record{};
-  const BsdfKind kind = kindOf(material, scene);
+  const BsdfKind kind = kindOf(material, scene, passes);
   record.kind = static_cast<uint32_t>(kind);
   // Flags, and no textures yet.
   record.flags = lobesOf(kind);
@@ -312,13 +321,14 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene) {
   record.bumpScale = static_cast<float>(material.bumpScale);
   // Opacity: what passes straight through is a delta lobe.
   record.opacity = 1;
-  if (material.opacity) {
+  if (passes) record.flags |= kPasses;
+  if (material.opacity && !passes) {
     assignTextured(record.opacity, record.opacityTexture, *material.opacity);
     record.opacity = std::clamp(record.opacity, 0.0f, 1.0f);
     if (record.opacity < 1 || record.opacityTexture != kNone) record.flags |= kHasDelta;
   }
   // The fields of this kind of BSDF.
-  std::visit(Compiler(record, scene), material.kind);
+  std::visit(Compiler(record, scene, passes), material.kind);
   return record;
 }
 

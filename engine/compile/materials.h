@@ -18,10 +18,14 @@ bool isSmooth(const Conductor& conductor);
 bool isSmooth(const Dielectric& dielectric);
 bool isSmooth(const Plastic& plastic);
 
-// The scene is read for the means of textures, which decide how often a lobe is sampled.
-MaterialRecord compileMaterial(const Material& material, const Scene& scene);
+// The scene is read for the means of textures, which decide how often a lobe is sampled. passes: light goes straight on
+// through it (passages.h), so the record is that of the rest of the surface.
+MaterialRecord compileMaterial(const Material& material, const Scene& scene, bool passes = false);
 // Parameters that only compound BSDFs have; empty for other materials.
 CompoundRecord compileCompound(const Material& material);
+
+// A smooth boundary between equal indices, which neither reflects nor bends light.
+bool isIndexMatched(const Material& material);
 
 // Reflectance of a smooth dielectric boundary for diffuse light: INT_0^1 F(c, eta) 2 c dc, by quadrature; eta is the
 // index beyond the boundary over the index on the light's side.

@@ -8,6 +8,7 @@
 #include "engine/scene/scene_error.h"
 #include "engine/scene/vector_math.h"
 #include "kernels/extend/leaves.h"
+#include "kernels/stages.h"
 
 namespace wavecrest {
 namespace {

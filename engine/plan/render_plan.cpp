@@ -38,10 +38,23 @@ void refuseDeltaBlends(const Scene& scene) {
     if (!std::holds_alternative<Blend>(material.kind)) continue;
     Material whole = material;
     whole.opacity.reset();
-    if ((compileMaterial(whole, scene).flags & kHasDelta) == 0) continue;
+    const bool passes = shape.emitter == kNone && hasPassage(material, scene);
+    if ((compileMaterial(whole, scene, passes).flags & kHasDelta) == 0) continue;
     throw SceneError(material.source,
                      "pathspace cannot tell the delta lobes of a blend apart; expected BSDFs without "
                      "them in it, or --mlt mmlt");
+  }
+}
+
+// Along an edge paths of path space are seen or not: they keep no colour of what it passes.
+void refuseTintedPassages(const Scene& scene) {
+  for (const Shape& shape : scene.shapes) {
+    if (shape.material == kNone || shape.emitter != kNone) continue;
+    const Material& material = scene.materials[shape.material];
+    if (!hasPassage(material, scene) || !tintsPassage(material, scene)) continue;
+    throw SceneError(material.source,
+                     "pathspace keeps no colour of light that goes straight on through a surface; expected surfaces "
+                     "that do not tint it, or --mlt mmlt");
   }
 }
 
@@ -72,12 +85,23 @@ Specialization specializationFor(const Scene& scene, const RenderSettings& setti
   return chooseSpecialization(featuresOf(*settings.specialization), settings.precision);
 }
 
+namespace {
+
 template <class S>
-Intersector<S> chooseIntersector(const Stages<S>& stages, const CompiledScene<S>& scene) {
+Intersector<S> intersectorOf(const Stages<S>& stages, const CompiledScene<S>& scene) {
   if (scene.accel() == Accel::small) return {stages.extendSmall, stages.occludeSmall, stages.lanes};
   if (scene.view.instances != nullptr) return {stages.extendInstances, stages.occludeInstances, stages.lanes};
   if (scene.accel() == Accel::bvh) return {stages.extendBvh, stages.occludeBvh, stages.lanes};
   return {extendEmbree<S>, occludeEmbree<S>, kEmbreePacket};
+}
+
+}  // namespace
+
+template <class S>
+Intersector<S> chooseIntersector(const Stages<S>& stages, const CompiledScene<S>& scene) {
+  const Intersector<S> intersector = intersectorOf(stages, scene);
+  if (scene.view.passages == nullptr) return intersector;
+  return {stages.extendPassing, stages.occludePassing, intersector.lanes};
 }
 template Intersector<float> chooseIntersector(const Stages<float>&, const CompiledScene<float>&);
 template Intersector<double> chooseIntersector(const Stages<double>&, const CompiledScene<double>&);
@@ -108,9 +132,13 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   }
   // Compile the scene for the kernels that it gets.
   plan.specialization = specializationFor(scene, settings);
-  if (inPathSpace) refuseDeltaBlends(scene);
+  if (inPathSpace) {
+    refuseDeltaBlends(scene);
+    refuseTintedPassages(scene);
+  }
   plan.scene = compileScene<S>(scene, settings.accel, true, settings.instancing);
   plan.needs = columnNeeds(scene, plan.specialization, plan.scene->view.instances != nullptr);
+  plan.needs.passages = plan.scene->view.passages != nullptr;
   // Clips are left in the compiled camera only where they hide a surface.
   const CameraView& camera = plan.scene->view.camera;
   const bool clipped = camera.nearClip > 0 || std::isfinite(camera.farClip);
@@ -123,6 +151,11 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   const Stages<S>& stages = findStages<S>(settings.isa, settings.precision, plan.specialization);
   plan.isa = stages.isa;
   plan.stages = &stages;
+  if (plan.needs.passages) {
+    const Intersector<S> intersector = intersectorOf(stages, *plan.scene);
+    plan.scene->view.closestHits = intersector.extend;
+    plan.scene->view.blockedRays = intersector.occlude;
+  }
   plan.pipeline = makePipeline(pageOf(settings), stages, chooseIntersector(stages, *plan.scene));
   plan.needs.splats = plan.pipeline.splats();
   // Without a photon map, light vertices are stored only to be connected.

@@ -7,6 +7,7 @@
 #include "kernels/bsdf/bsdf_lanes.h"
 #include "kernels/bsdf/compound_list.h"
 #include "kernels/bsdf/opacity_lanes.h"
+#include "kernels/bsdf/passage_lanes.h"
 
 WAVECREST_SIMD_BEGIN
 
@@ -85,6 +86,9 @@ struct Blend {
   UInt count;  // of parts
   Mask textured;
   Real texture;  // the weight of the second part where there is one
+  // Of blends that let light through, whose other vertices are where their parts are: the sum of the weights there.
+  Mask passes;
+  Real stopping;
 
   WAVECREST_INLINE Blend(const CompoundInput<P>& blend, Mask active) : input(blend), lanes(active) {
     const CompoundRecord& fields = *input.scene->compounds;
@@ -94,13 +98,30 @@ struct Blend {
     const Vec3<Float> value = textureFactor(input.scene->textures, input.scene->texels,
                                             select(textured, id, UInt(kNoIndex)), input.u, input.v);
     texture = to<Real>(min(max(value.x, Float(0)), Float(1)));
+    passes = noLanes();
+    if (input.scene->passages == nullptr) return;
+    passes = active & ((input.flags & UInt(kPasses)) == UInt(kPasses));
+    stopping = Real(0);
+    for (uint32_t k = 0; k < kMostParts && any(passes & has(k)); ++k) {
+      stopping = stopping + givenWeight(k) * stopOf(k);
+    }
   }
 
   WAVECREST_INLINE Mask has(uint32_t k) const { return lanes & (UInt(k) < count); }
   WAVECREST_INLINE UInt materialOf(uint32_t k) const {
     return select(has(k), input.compound(input.scene->compounds->part[k]), UInt(0u));
   }
+  // What a walk meets of part k, if it meets the blend.
   WAVECREST_INLINE Real weightOf(uint32_t k) const {
+    const Real weight = givenWeight(k);
+    if (none(passes)) return weight;
+    return select(passes, weight * stopOf(k) / max(stopping, Real(1e-30f)), weight);
+  }
+  WAVECREST_INLINE Real stopOf(uint32_t k) const { return passage(k).stop; }
+  WAVECREST_INLINE Passage<Real> passage(uint32_t k) const {
+    return passageOfOne<P>(*input.scene, materialOf(k), input.u, input.v);
+  }
+  WAVECREST_INLINE Real givenWeight(uint32_t k) const {
     const Real constant = to<Real>(input.compound(input.scene->compounds->weight[k]));
     return zeroUnless(has(k), select(textured, k == 0 ? Real(1) - texture : texture, constant));
   }
@@ -245,9 +266,40 @@ BsdfSample<typename P::Real> sampleComplete(const CompoundInput<P>& input, Mask 
   return select(blends, blended, sampleSingle(input, andNot(active, blends), wi, u));
 }
 
+template <class P>
+Passage<typename P::Real> passageOf(const SceneView<typename P::Storage>& scene, UInt material, Mask active, Float u,
+                                    Float v) {
+  using Real = typename P::Real;
+  const Real zero(0), one(1);
+  const Mask passes = active & passesLight(scene, material);
+  Passage<Real> passage{one, {zero, zero, zero}};
+  if (none(passes)) return passage;
+  Passage<Real> own = passageOfOne<P>(scene, material, u, v);
+  if (scene.compounds != nullptr && (scene.bsdfKinds & kBlendKinds) != 0) {
+    CompoundInput<P> input(scene, select(passes, material, UInt(0u)));
+    input.u = u;
+    input.v = v;
+    const Mask blends = passes & isAmong(input.kind, kBlendKinds);
+    if (any(blends)) {
+      // What the blend's own opacity leaves passes, and so does what its parts let through of the rest.
+      const Blend<P> blend(input, blends);
+      Vec3<Real> through{zero, zero, zero};
+      for (uint32_t k = 0; k < kMostParts && any(blend.has(k)); ++k) {
+        through = through + blend.passage(k).colour * blend.givenWeight(k);
+      }
+      own.colour = select(blends, own.colour + through * own.stop, own.colour);
+      own.stop = select(blends, own.stop * blend.stopping, own.stop);
+    }
+  }
+  passage.stop = select(passes, own.stop, passage.stop);
+  passage.colour = select(passes, own.colour, passage.colour);
+  return passage;
+}
+
 #define WAVECREST_INSTANTIATE_BSDFS(P)                                                                                 \
   template BsdfValue<P::Real> evalComplete(const CompoundInput<P>&, Mask, const Vec3<P::Real>&, const Vec3<P::Real>&); \
-  template BsdfSample<P::Real> sampleComplete(const CompoundInput<P>&, Mask, const Vec3<P::Real>&, const Uniform4&);
+  template BsdfSample<P::Real> sampleComplete(const CompoundInput<P>&, Mask, const Vec3<P::Real>&, const Uniform4&);   \
+  template Passage<P::Real> passageOf<P>(const SceneView<P::Storage>&, UInt, Mask, Float, Float);
 WAVECREST_INSTANTIATE_BSDFS(FloatPrecision)
 WAVECREST_INSTANTIATE_BSDFS(DoublePrecision)
 #undef WAVECREST_INSTANTIATE_BSDFS

@@ -69,9 +69,19 @@ struct ShadowRays : Columns<ShadowRays<S>> {
   Column<float> originX, originY, originZ, directionX, directionY, directionZ;
   Column<S> red, green, blue;  // contribution if visible, weight included
   Column<uint32_t> target;     // lane whose radiance it joins
+  // Densities of all other strategies, divided by this one's, which its weight was made from; dropped without passages.
+  Column<S> others;
   auto all() {
-    return std::tie(originX, originY, originZ, directionX, directionY, directionZ, red, green, blue, target);
+    return std::tie(originX, originY, originZ, directionX, directionY, directionZ, red, green, blue, target, others);
   }
+};
+
+// Of rays that have passed a surface: where they are in the wave, and the number that decides whether they pass the
+// next one. Scratch of extend and occlude; dropped without passages.
+struct PassageMarks : Columns<PassageMarks> {
+  Column<uint32_t> index;
+  Column<float> number;
+  auto all() { return std::tie(index, number); }
 };
 
 // Pairs of a camera vertex and a light vertex that connectVertices is about to join. Scratch of one stage call; dropped

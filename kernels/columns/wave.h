@@ -18,6 +18,8 @@ struct ColumnNeeds {
   // Room to sort vertices by their BSDFs, where not all are diffuse (kernels/shade/vertex_order_lanes.h).
   bool bsdfOrder = true;
   bool splats = true;
+  // Room for rays behind the surfaces that they have passed (kernels/extend/pass_surfaces.cpp).
+  bool passages = false;
 };
 
 // The front of paths, and what they carry, at their vertices.
@@ -59,6 +61,21 @@ struct Vertices {
   }
 };
 
+// Rays behind surfaces that they have passed, and what they meet there.
+template <class S>
+struct PassingRays {
+  Rays<S> rays;
+  Hits hits;
+  PassageMarks marks;
+
+  template <class Function>
+  void forEachQueue(Function&& function) {
+    function(rays);
+    function(hits);
+    function(marks);
+  }
+};
+
 template <class S>
 struct Wave : Vertices<S> {
   using Vertices<S>::rays, Vertices<S>::hits, Vertices<S>::surfaces, Vertices<S>::paths;
@@ -69,6 +86,7 @@ struct Wave : Vertices<S> {
   size_t openPairs = 0;
   Vertices<S> aside;  // scratch of arrive (kernels/shade/vertex_order_lanes.h); dropped where all BSDFs are diffuse
   ShadowRays<S> shadowRays;
+  PassingRays<S> passing;          // dropped without passages
   VertexPairs pairs, sortedPairs;  // sortedPairs: dropped where all BSDFs are diffuse
   VertexRows<S> vertexRows;
   Splats<S> splats;
@@ -86,6 +104,11 @@ struct Wave : Vertices<S> {
     aside.hits.instance.drop();
     aside.paths.light.drop();
     // Queues that this scene and method do not use.
+    if (!needs.instances) passing.hits.instance.drop();
+    if (!needs.passages) {
+      passing.forEachQueue([](auto& queue) { queue.drop(); });
+      shadowRays.others.drop();
+    }
     if (!needs.connections || !needs.bsdfOrder) sortedPairs.drop();
     if (!needs.bsdfOrder) aside.forEachQueue([](auto& queue) { queue.drop(); });
     if (!needs.splats) splats.drop();
@@ -142,6 +165,7 @@ struct Wave : Vertices<S> {
     Vertices<S>::forEachQueue(function);
     aside.forEachQueue(function);
     function(shadowRays);
+    passing.forEachQueue(function);
     function(pairs);
     function(sortedPairs);
     function(vertexRows);

@@ -81,6 +81,7 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
     } else {
       append(pixel, lit, shadow.target, out);
     }
+    if (scene.passages != nullptr) append(wLight, lit, shadow.others, out);
     out += countTrue(lit);
   }
   return out;

@@ -169,6 +169,7 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
   appendVec3(to<Float>(end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
   appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
   append(load(lanes), lit, shadow.target, out);
+  if (scene.passages != nullptr) append(wLight + wCamera, lit, shadow.others, out);
   return out + countTrue(lit);
 }
 

@@ -43,7 +43,8 @@ WAVECREST_NOINLINE size_t sampleLights(const StageContext<typename P::Storage>& 
       wCamera = sample.emissionPdf * abs(dot(sample.direction, shading.normal)) * inversePdf *
                 behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
     }
-    const Real scale = bsdf.lightCosine * inversePdf * reciprocal(Real(1) + others(context.mis, wLight + wCamera));
+    const Real other = wLight + wCamera;
+    const Real scale = bsdf.lightCosine * inversePdf * reciprocal(Real(1) + others(context.mis, other));
     const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     const Vec3<Real> contribution = throughput * bsdf.f * sample.radiance * scale;
 
@@ -54,6 +55,7 @@ WAVECREST_NOINLINE size_t sampleLights(const StageContext<typename P::Storage>& 
     appendVec3(to<Float>(sample.end - origin), lit, shadow.directionX, shadow.directionY, shadow.directionZ, out);
     appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
     append(lane, lit, shadow.target, out);
+    if (scene.passages != nullptr) append(other, lit, shadow.others, out);
     out += countTrue(lit);
   }
   return out;

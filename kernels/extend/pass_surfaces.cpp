@@ -28,7 +28,7 @@ constexpr size_t kMostPassages = 1u << 12;
 template <class P>
 struct MetSurface {
   using Real = typename P::Real;
-  Mask hit, passes;  // passes: its material lets light through; the rest is set where some lane of the block has that
+  Mask passes;  // its material lets light through; the rest is set where some lane of the block has such a material
   Passage<Real> passage;
   Vec3<Real> position, normal;
   Real offset;
@@ -39,17 +39,17 @@ WAVECREST_NOINLINE MetSurface<P> surfaceMet(const SceneView<typename P::Storage>
                                             const Rays<typename P::Storage>& rays, const Hits& hits, size_t i,
                                             Mask active) {
   const UInt primitive = load(hits.primitive, i);
-  MetSurface<P> met{.hit = andNot(active, primitive == UInt(kMiss))};
-  const auto at = primitivesOf(scene, select(met.hit, primitive, UInt(0u)));
+  const Mask hit = andNot(active, primitive == UInt(kMiss));
+  const auto at = primitivesOf(scene, select(hit, primitive, UInt(0u)));
   const UInt material = at(scene.primitives->material);
-  met.passes = met.hit & passesLight(scene, material);
+  MetSurface<P> met;
+  met.passes = hit & passesLight(scene, material);
   if (none(met.passes)) return met;
-  const InstanceLanes<P, kAllFeatures> instance(scene, hits, i, met.hit);
+  const InstanceLanes<P, kAllFeatures> instance(scene, hits, i, hit);
   const auto origin = loadVec3(rays.originX, rays.originY, rays.originZ, i);
   const auto direction = loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
-  const auto inGroup =
-      surfacePoint<P, kAllFeatures>(scene, at, instance.pointToGroup(origin), instance.vectorToGroup(direction),
-                                    load(hits.u, i), load(hits.v, i));
+  const auto inGroup = surfacePoint<P, kAllFeatures>(
+      scene, at, instance.pointToGroup(origin), instance.vectorToGroup(direction), load(hits.u, i), load(hits.v, i));
   const auto surface = instance.toWorld(inGroup);
   const auto details = interpolate<P, kAllFeatures>(scene, at, met.passes, inGroup, surface.normal, instance);
   met.passage = passageOf<P>(scene, material, met.passes, details.u, details.v);
@@ -220,7 +220,8 @@ void extendPassing(const StageContext<typename P::Storage>& context, Wave<typena
     if (none(met.passes)) continue;
     const UInt lane = select(met.passes, load(wave.paths.lane, i), UInt(0u));
     const auto direction = loadVec3(wave.rays.directionX, wave.rays.directionY, wave.rays.directionZ, i);
-    count = passOn(met, direction, laneIndex(static_cast<uint32_t>(i)), passageNumbers(context, wave, lane), wave, count);
+    count =
+        passOn(met, direction, laneIndex(static_cast<uint32_t>(i)), passageNumbers(context, wave, lane), wave, count);
   }
   // Trace those on, until each has met a surface that it stops at, or nothing.
   for (size_t round = 0; count != 0 && round < kMostPassages; ++round) {
@@ -232,8 +233,7 @@ void extendPassing(const StageContext<typename P::Storage>& context, Wave<typena
       const Float number = load(passing.marks.number, i);
       const auto met = surfaceMet<P>(scene, passing.rays, passing.hits, i, active);
       keepHits<P>(scene, active, index, wave, i);
-      const auto direction =
-          loadVec3(passing.rays.directionX, passing.rays.directionY, passing.rays.directionZ, i);
+      const auto direction = loadVec3(passing.rays.directionX, passing.rays.directionY, passing.rays.directionZ, i);
       if (any(met.passes)) out = passOn(met, direction, index, number, wave, out);
     }
     count = out;
@@ -251,8 +251,7 @@ void occludePassing(const StageContext<typename P::Storage>& context, Wave<typen
     for (size_t i = 0; i < count; i += kLanes) {
       const auto met = surfaceMet<P>(scene, passing.rays, passing.hits, i, firstLanes(count - i));
       if (none(met.passes)) continue;
-      const auto direction =
-          loadVec3(passing.rays.directionX, passing.rays.directionY, passing.rays.directionZ, i);
+      const auto direction = loadVec3(passing.rays.directionX, passing.rays.directionY, passing.rays.directionZ, i);
       out = passLight(context, met, direction, load(passing.marks.index, i), load(passing.marks.number, i), wave, out);
     }
     count = out;

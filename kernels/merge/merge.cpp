@@ -6,6 +6,7 @@
 // collisions. Quantised positions reject them; exact rows decide about the rest.
 #include <algorithm>
 
+#include "kernels/bsdf/passage_lanes.h"
 #include "kernels/merge/photon_grid_lanes.h"
 #include "kernels/merge/photon_map.h"
 #include "kernels/mis_lanes.h"
@@ -302,9 +303,25 @@ class Merger {
       const Real wCamera = behindMerge(context_.mis, 1, camera, bsdf.pdfReverse);
       weight = reciprocal(Real(1) + wLight + wCamera);
     }
-    const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine;
+    const Real scale = Real(context_.mis.mergeNorm) * weight * bsdf.lightCosine * inverseOfStop<kBsdfs>(active, i);
     const Vec3<Real> contribution = row.throughput * bsdf.f * (vec3(carried) * perCosine) * scale;
     addRadiance(wave_.radiance, load(lanes), accepted, contribution);
+  }
+
+  // Both walks have stopped at a surface that lets light through, each with its probability, where the light that the
+  // surface scatters has it once (METHODS 3.10).
+  template <uint32_t kBsdfs>
+  WAVECREST_INLINE Real inverseOfStop(Mask active, size_t i) const {
+    const auto& scene = *context_.scene;
+    if (scene.passages == nullptr) return Real(1);
+    const UInt vertex = select(active, load(nearVertex_ + i), UInt(0u));
+    const UInt material = materialOf(scene, gather(wave_.hits.primitive, vertex));
+    Float u(0), v(0);
+    if constexpr (has(kBsdfs, kTextures)) {
+      u = gather(wave_.surfaces.uvU, vertex);
+      v = gather(wave_.surfaces.uvV, vertex);
+    }
+    return Real(1) / max(passageOf<P>(scene, material, active, u, v).stop, Real(1e-6f));
   }
 
   // Lists have room for a whole vector beyond the count at which they are emptied, and for one more of zeros.

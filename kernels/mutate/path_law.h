@@ -36,6 +36,8 @@ struct PathLaw {
 // Block of a step's random numbers (ChainUse::step) that chooses the pixel among those whose filters reach a path;
 // proposePaths uses blocks 0 and 1.
 constexpr uint32_t kPixelBlock = 2;
+// The one that decides which surfaces the edge between both walks passes.
+constexpr uint32_t kPassageBlock = 3;
 
 // Raster perturbations: offsets between these, in pixels, the logarithm of the offset being uniform. The larger circle
 // has a twentieth of the image's area.

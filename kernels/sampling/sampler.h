@@ -55,7 +55,8 @@ enum class Block : uint32_t {
                 // direction (2), choice within the light
   light = 1,    // next event: light, choice within the light, position (2); of a light path's origin: position (2),
                 // face of the scene's box
-  opacity = 2,  // second lobe choice; (d) roulette of connections; of a multiplexed camera path's origin: strategy
+  opacity = 2,  // (a) which surfaces the edge to the vertex passes; (d) roulette of connections; of a multiplexed
+                // camera path's origin: strategy
   environment = 3  // texel of the environment map (2), place within (2)
 };
 
