@@ -97,7 +97,7 @@ class Words(CommandTest):
 
         for command, option, expected in (
             ("render", "--sampler", "independent sobol"),
-            ("render", "--precision", "float double fast"),
+            ("render", "--precision", "float double"),
             ("render", "--isa", "auto scalar sse4 avx2 avx512"),
             ("render", "--accel", "auto embree small bvh"),
             ("render", "--instances", "auto expand keep"),
