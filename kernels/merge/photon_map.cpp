@@ -12,8 +12,8 @@ namespace {
 // pass writes as many streams, whose pages are all at hand, the second stays within a core's caches for up to some
 // million photons.
 constexpr uint32_t kPartitions = 64;
-// What a cache line holds. Lines are prefetched before they are written: the next ones of each stream while those before
-// them are filled, and what a partition is sorted into at once.
+// What a cache line holds. Lines are prefetched before they are written: the next ones of each stream while those
+// before them are filled, and what a partition is sorted into at once.
 constexpr uint32_t kKeysPerLine = kColumnAlignment / sizeof(PhotonKey);
 constexpr uint32_t kNumbersPerLine = kColumnAlignment / sizeof(uint32_t);
 constexpr uint32_t kMinBuckets = 1u << 12;
