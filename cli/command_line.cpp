@@ -113,6 +113,7 @@ std::string oneLine(std::string text) {
 
 Option Option::required() const { return Option(option_->required()); }
 Option Option::showDefault() const { return Option(option_->capture_default_str()); }
+Option Option::showDefaultAs(const std::string& value) const { return Option(option_->default_str(value)); }
 Option Option::oneValue() const { return Option(option_->expected(1)); }
 Option Option::valueOr(const std::string& value) const { return Option(option_->expected(0, 1)->default_str(value)); }
 Option Option::repeatable() const { return Option(option_->allow_extra_args(false)); }

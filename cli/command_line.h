@@ -27,6 +27,7 @@ class Option {
   explicit Option(CLI::Option* option) : option_(option) {}
   Option required() const;
   Option showDefault() const;  // in --help: the value that the variable has now
+  Option showDefaultAs(const std::string& value) const;
   Option oneValue() const;
   // May stand without a value and is then `value`, which --help shows.
   Option valueOr(const std::string& value) const;
@@ -45,6 +46,11 @@ class Option {
   template <class Range>
   requires requires(const Range& range) { range.least, range.most; }
   Option between(const Range& range) const { return between(range.least, range.most); }
+  // The same, or the word auto, for which the variable gets 0; --help shows it as the default.
+  template <class Range>
+  Option betweenOrAuto(const Range& range) const {
+    return within(RealRange{range.least, range.most, true}).showDefaultAs("auto");
+  }
   // check returns what is wrong with a word, or nothing.
   Option checkedBy(std::function<std::string(const std::string&)> check) const;
   bool given() const;

@@ -186,7 +186,8 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   defining("--precision", "float or double; default: float").oneValue();
   defining("--sampler", "independent or sobol; default: independent").oneValue();
   defining("--images", "keep images of 'all' snapshots, or of the 'last' of each run; default: all").oneValue();
-  defining("--radius", "first merge radius of ppm, bpm and vcm, relative to the bounding sphere; default: 0.001")
+  defining("--radius",
+           "first merge radius of ppm, bpm and vcm, relative to the bounding sphere, or auto; default: the profile's")
       .oneValue();
   defining("--radius-alpha", "how slowly the radius shrinks, 0 to 1; default: 0.75").oneValue();
   defining("--light-paths",

@@ -84,6 +84,18 @@ void printMemory(const SceneInspection& facts) {
   }
 }
 
+// One row per method that merges.
+void printMerging(const SceneInspection& facts) {
+  fmt::print("\nfirst radius of merges (--radius auto), and the photons of an iteration that a search meets\n");
+  fmt::print("{:<6} {:>10} {:>12} {:>8} {:>8}\n", "method", "radius", "scene units", "pixels", "photons");
+  for (const MethodInspection& row : facts.methods) {
+    if (!row.mergeRadius) continue;
+    const MergeRadius& radius = *row.mergeRadius;
+    fmt::print("{:<6} {:>10.4g} {:>12.4g} {:>8.2f} {:>8.2f}\n", toString(row.method), radius.first, radius.at(0),
+               radius.inPixels(), radius.photonsPerSearch());
+  }
+}
+
 // One row per path class and one column per method. The last line names the method for references.
 void printClasses(const PathClassTable& table) {
   fmt::print("\npaths from light to eye (A lamp or sky, P point, spot or sun, D diffuse or rough, S smooth, E eye)\n");
@@ -115,6 +127,7 @@ int runInspect(const InspectOptions& options) {
   settings.isa = bestIsa();
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
+  settings.radius.reset();
   // Scene and facts.
   const Scene scene = loadScene(options.scene);
   const SceneInspection facts = inspectScene(scene, settings);
@@ -125,6 +138,7 @@ int runInspect(const InspectOptions& options) {
   }
   printFacts(scene, facts);
   printMemory(facts);
+  printMerging(facts);
   printClasses(facts.paths);
   printNoteList(scene.notes);
   return kExitDone;

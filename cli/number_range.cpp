@@ -58,7 +58,9 @@ std::string text(const WholeRange& range) {
   if (range.low > 0 && range.high == std::numeric_limits<uint64_t>::max()) return fmt::format("{} or more", range.low);
   return fmt::format("{} to {}{}", range.low, range.high, also);
 }
-std::string text(const RealRange& range) { return fmt::format("{:g} to {:g}", range.low, range.high); }
+std::string text(const RealRange& range) {
+  return fmt::format("{:g} to {:g}{}", range.low, range.high, range.orAuto ? ", or auto" : "");
+}
 
 constexpr const char* kind(const WholeRange&) { return "whole number"; }
 constexpr const char* kind(const RealRange&) { return "number"; }
@@ -70,6 +72,11 @@ std::string describe(const NumberRange& range) {
 }
 
 std::string checkNumber(const NumberRange& range, std::string& word) {
+  const auto* const real = std::get_if<RealRange>(&range);
+  if (real != nullptr && real->orAuto && word == "auto") {
+    word = "0";
+    return {};
+  }
   // from_chars takes no plus, so it is removed.
   const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
   if (plus) word.erase(0, 1);

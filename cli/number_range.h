@@ -17,6 +17,7 @@ struct WholeRange {
 };
 struct RealRange {
   double low = 0, high = 0;
+  bool orAuto = false;  // the word auto is allowed as well
 };
 using NumberRange = std::variant<WholeRange, RealRange>;
 
@@ -34,7 +35,7 @@ constexpr NumberRange rangeOf() {
 std::string describe(const NumberRange& range);
 
 // What is wrong with the word, or nothing. Takes a plus away, and leading zeros of whole numbers, which later readers
-// take for octal.
+// take for octal; makes auto a 0.
 std::string checkNumber(const NumberRange& range, std::string& word);
 
 }  // namespace wavecrest

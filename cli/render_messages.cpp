@@ -44,13 +44,12 @@ nlohmann::ordered_json toJson(const MemoryPlan& plan) {
 
 void warnOfLimits(ProgressKind kind, const RenderSettings& settings) {
   // The merge radius, relative to the scene's radius.
-  if (!strategiesOf(settings.method).merge) return;
-  if (settings.radius < kSmallestRadius) {
-    warn(kind,
-         fmt::format("--radius {:g} is below what positions resolve; {:g} is used", settings.radius, kSmallestRadius));
-  } else if (settings.radius >= 0.5) {
-    warn(kind,
-         fmt::format("--radius {:g} blurs over the whole scene; expected a small part of its radius", settings.radius));
+  if (!strategiesOf(settings.method).merge || !settings.radius) return;
+  const double radius = *settings.radius;
+  if (radius < kSmallestRadius) {
+    warn(kind, fmt::format("--radius {:g} is below what positions resolve; {:g} is used", radius, kSmallestRadius));
+  } else if (radius >= 0.5) {
+    warn(kind, fmt::format("--radius {:g} blurs over the whole scene; expected a small part of its radius", radius));
   }
 }
 
@@ -79,6 +78,12 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
     ends.push_back(fmt::format("once the relative error is {:g}", options.until.relativeError));
   }
   fmt::print("ends     {}\n", fmt::join(ends, " or "));
+  if (strategiesOf(settings.method).merge) {
+    const MergeRadius& radius = plan.mergeRadius;
+    fmt::print(
+        "merging  first within {:.4g} of the scene's radius: {:.4g} in its units, {:.2f} pixels, {:.2f} photons\n",
+        radius.first, radius.at(0), radius.inPixels(), radius.photonsPerSearch());
+  }
   fmt::print("memory   {}\n", describe(plan.memory));
   // Memory that writing an EXR takes besides the plan.
   const auto isExr = [](const std::string& output) { return output.ends_with(".exr"); };

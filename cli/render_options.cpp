@@ -33,9 +33,10 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command.add("--instances", options.instances, "of shape groups: auto, expand into copies, or keep").showDefault();
   command.add("--wave", options.wave, "paths per wave").showDefault().between(kWaveRange);
   // Merging, connections and memory.
-  command.add("--radius", options.radius, "first merge radius of ppm, bpm and vcm, relative to the bounding sphere")
-      .showDefault()
-      .between(kRadiusRange);
+  command
+      .add("--radius", options.radius,
+           "first merge radius of ppm, bpm and vcm, relative to the bounding sphere; auto: by the size of pixels")
+      .betweenOrAuto(kRadiusRange);
   command.add("--radius-alpha", options.radiusAlpha, "how slowly the radius shrinks, 0 to 1")
       .showDefault()
       .between(kRadiusAlphaRange);

@@ -101,9 +101,8 @@ void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSett
   if (const auto* definitions = given(words, "-D")) settings.definitions = parseDefinitions(*definitions);
   // Settings of merging methods, and the clock.
   RenderSettings& render = settings.render;
-  if (const auto* radius = given(words, "--radius")) {
-    render.radius = parseNumber("--radius", radius->front(), kRadiusRange);
-  }
+  render.radius = profile.radius;
+  if (const auto* radius = given(words, "--radius")) render.radius = parseRadius("--radius", radius->front());
   if (const auto* alpha = given(words, "--radius-alpha")) {
     render.radiusAlpha = parseNumber("--radius-alpha", alpha->front(), kRadiusAlphaRange);
   }
@@ -122,10 +121,9 @@ void refuseUnusedWords(const CampaignWords& words, const CampaignSettings& setti
     return std::any_of(settings.methods.begin(), settings.methods.end(), test);
   };
   // Options of merging methods.
-  const RenderSettings byDefault;
   const std::pair<const char*, bool> merging[] = {
-      {"--radius", settings.render.radius != byDefault.radius},
-      {"--radius-alpha", settings.render.radiusAlpha != byDefault.radiusAlpha},
+      {"--radius", given(words, "--radius") != nullptr},
+      {"--radius-alpha", settings.render.radiusAlpha != RenderSettings().radiusAlpha},
       {"--light-paths", given(words, "--light-paths") != nullptr}};
   const bool merges = anyRow([](const CampaignMethod& row) { return mergesPaths(row.method); });
   for (const auto& [name, chosen] : merging) {
@@ -158,7 +156,7 @@ void addRowKeys(const CampaignSettings& settings, std::map<std::string, std::str
   }
   keys["methods"] = methods;
   keys["clock"] = kClockNames[static_cast<size_t>(settings.render.clock)];
-  keys["radius"] = fmt::format("{:g}", settings.render.radius);
+  keys["radius"] = settings.render.radius ? fmt::format("{:g}", *settings.render.radius) : "auto";
   keys["radius_alpha"] = fmt::format("{:g}", settings.render.radiusAlpha);
   keys["light_paths"] = settings.render.lightPaths ? std::to_string(*settings.render.lightPaths) : "one per pixel";
   if (!definitions.empty()) keys["definitions"] = definitions;

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/campaign/render_stats.h"
 #include "bench/enumerator_name.h"
 
 namespace wavecrest {
@@ -33,11 +34,12 @@ ordered_json memoryJson(const MemoryUse& use) {
 
 ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts) {
   // Methods: kernels and memory of each.
-  ordered_json specializations, memory, classes = ordered_json::array();
+  ordered_json specializations, memory, merging = ordered_json::object(), classes = ordered_json::array();
   for (const MethodInspection& row : facts.methods) {
     const std::string method(toString(row.method));
     specializations[method] = enumeratorName(kSpecializationNames, row.specialization);
     memory[method] = toJson(row);
+    if (row.mergeRadius) merging[method] = mergeRadiusJson(*row.mergeRadius);
   }
   // Path classes: the verdict of each method.
   for (const PathClass& pathClass : facts.paths.classes) {
@@ -87,6 +89,7 @@ ordered_json inspectionJson(const Scene& scene, const SceneInspection& facts) {
           {"specializations", specializations},
           {"accel", enumeratorName(kAccelNames, facts.accel)},
           {"memory", memory},
+          {"merging", merging},
           {"path_classes", classes},
           {"reference_method", toString(facts.paths.reference.method)},
           {"reference_biased", facts.paths.reference.biased},

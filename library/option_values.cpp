@@ -51,6 +51,11 @@ template void requireInRange(const std::string&, double, const OptionRange<doubl
 template void requireInRange(const std::string&, uint64_t, const OptionRange<uint64_t>&, std::string_view);
 template void requireInRange(const std::string&, int, const OptionRange<int>&, std::string_view);
 
+std::optional<double> parseRadius(const std::string& option, const std::string& word) {
+  if (word == "auto") return std::nullopt;
+  return parseNumber(option, word, kRadiusRange);
+}
+
 double parseDuration(const std::string& option, const std::string& text) {
   const auto fail = [&]() -> double {
     throw UsageError(fmt::format("{} '{}': no duration; expected one like 6s, 100ms, 2m or 1h30m", option, text));

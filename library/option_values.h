@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,9 @@ Number parseNumber(const std::string& option, const std::string& word, const Opt
 template <class Number>
 void requireInRange(const std::string& option, std::type_identity_t<Number> number, const OptionRange<Number>& range,
                     std::string_view also = "");
+
+// "auto" for none, or a number of kRadiusRange; UsageError otherwise.
+std::optional<double> parseRadius(const std::string& option, const std::string& word);
 
 // "6s", "100ms", "2m", "1h30m", "0.5s", or plain seconds. Positive and finite, or UsageError.
 double parseDuration(const std::string& option, const std::string& text);

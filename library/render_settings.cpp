@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 #include <thread>
 
 #include "library/errors.h"
@@ -86,7 +87,7 @@ void refuseNumbersOutOfRange(const api::RenderOptions& options) {
   if (options.maxDepth != -1) unlessZero("--max-depth", options.maxDepth, kDepthRange, ", or -1");
   unlessZero("--rr-depth", options.rrDepth, kRouletteDepthRange);
   requireInRange("--wave", options.wave, kWaveRange);
-  requireInRange("--radius", options.radius, kRadiusRange);
+  unlessZero("--radius", options.radius, kRadiusRange, ", or 0");
   requireInRange("--radius-alpha", options.radiusAlpha, kRadiusAlphaRange);
   unlessZero("--light-paths", options.lightPaths, kLightPathRange);
   requireInRange("--connection-roulette", options.connectionRoulette, kConnectionRouletteRange);
@@ -110,7 +111,7 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
   settings.metropolis = chosenChains(options);
-  settings.radius = options.radius;
+  settings.radius = options.radius != 0 ? std::optional(options.radius) : std::nullopt;
   settings.radiusAlpha = options.radiusAlpha;
   settings.connectionRoulette = options.connectionRoulette;
   if (options.lightPaths != 0) settings.lightPaths = options.lightPaths;

@@ -35,6 +35,7 @@ constexpr std::array kProfiles{
             .ownReferences = false,
             .lightPaths = 0,
             .studyRows = false,
+            .radius = {},
             .effort = [](std::string_view) { return Effort{.seconds = 4}; }},
     Profile{.name = "standard",
             .description = "small images with error bands: an hour or two",
@@ -43,6 +44,7 @@ constexpr std::array kProfiles{
             .ownReferences = false,
             .lightPaths = kStudyLightPaths,
             .studyRows = true,
+            .radius = kStudyRadius,
             .effort = [](std::string_view) { return Effort{.seconds = 30}; }},
     Profile{.name = "study",
             .description = "the study's size, light paths and radius in a tenth of its time: ten hours a seed",
@@ -51,6 +53,7 @@ constexpr std::array kProfiles{
             .ownReferences = true,
             .lightPaths = kStudyLightPaths,
             .studyRows = true,
+            .radius = kStudyRadius,
             .effort = studyEffort},
     Profile{.name = "paper",
             .description = "the protocol of the study: 1024x768, 30 to 120 minutes a run",
@@ -59,6 +62,7 @@ constexpr std::array kProfiles{
             .ownReferences = true,
             .lightPaths = kStudyLightPaths,
             .studyRows = true,
+            .radius = kStudyRadius,
             .effort = paperEffort},
 };
 

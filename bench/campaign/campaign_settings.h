@@ -48,6 +48,7 @@ struct Profile {
   // with a direct pass as well.
   uint64_t lightPaths;
   bool studyRows;
+  std::optional<double> radius;  // of the first merges; unset: what the image needs
   Effort (*effort)(std::string_view scene);
 };
 

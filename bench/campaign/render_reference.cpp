@@ -37,7 +37,7 @@ ReferenceInfo describe(const Scene& scene, const RenderSettings& settings, const
           .seed = settings.seed,
           .maxDepth = settings.limits.maxDepth,
           .rouletteDepth = settings.limits.rouletteDepth,
-          .radius = merges ? settings.radius : 0,
+          .radius = merges ? settings.radius.value() : 0,
           .radiusAlpha = merges ? settings.radiusAlpha : 0,
           .methodReason = methodReason,
           .version = kVersion,

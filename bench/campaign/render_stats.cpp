@@ -137,9 +137,10 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
   // Keys of some methods only.
   if (strategiesOf(settings.method).merge) {
     const uint64_t pixels = uint64_t{scene.film.imageWidth()} * scene.film.imageHeight();
-    stats.update({{"radius", settings.radius},
+    stats.update({{"radius_choice", settings.radius ? "fixed" : "auto"},
                   {"radius_alpha", settings.radiusAlpha},
                   {"light_paths_per_iteration", lightPathsWanted(settings, pixels)}});
+    if (statistics.mergeRadius) stats.update(mergeRadiusJson(*statistics.mergeRadius));
     if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
   }
   // What a share of an image is of it.
@@ -150,6 +151,13 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
   if (hasConnectionRoulette(settings.method)) stats["connection_roulette"] = settings.connectionRoulette;
   if (statistics.chains) stats.update(chainStats(settings, *statistics.chains));
   return stats;
+}
+
+nlohmann::ordered_json mergeRadiusJson(const MergeRadius& radius) {
+  return {{"radius", radius.first},
+          {"radius_units", radius.at(0)},
+          {"radius_pixels", radius.inPixels()},
+          {"photons_per_search", radius.photonsPerSearch()}};
 }
 
 Metadata statsMetadata(const nlohmann::ordered_json& stats) {

@@ -17,6 +17,10 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
                                    const RenderStatistics& statistics, double loadSeconds, double wallSeconds,
                                    const std::vector<SnapshotRecord>& snapshots);
 
+// The first radius of merges, relative to the scene's radius, in units of the scene, in pixels and by the photons that
+// a search meets; the latter two where a typical camera path first merges.
+nlohmann::ordered_json mergeRadiusJson(const MergeRadius& radius);
+
 // Every scalar of a stats object as a string attribute of an image, its key after "wavecrest:".
 Metadata statsMetadata(const nlohmann::ordered_json& stats);
 

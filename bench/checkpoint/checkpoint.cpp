@@ -117,7 +117,7 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
   // Settings that matter only for some scenes and methods.
   if (!scene.instances.empty()) identity["instances"] = enumeratorName(kInstancingNames, settings.instancing);
   if (strategiesOf(settings.method).merge) {
-    identity.update({{"radius", settings.radius},
+    identity.update({{"radius", statistics.mergeRadius->first},
                      {"radius_alpha", settings.radiusAlpha},
                      {"light_paths", session.memoryPlan().lightPaths},
                      {"direct_pass", settings.directPass}});

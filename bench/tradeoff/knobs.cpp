@@ -74,7 +74,8 @@ void addFilter(Variants& variants, const RenderSettings& base) {
 // What decides the bias and noise of merging. Light paths are multiples of one per pixel.
 void addMerging(Variants& variants, const RenderSettings& base, uint64_t pixels) {
   for (const double factor : {0.25, 4.0}) {
-    variants.add("--radius", fmt::format("{:g}", factor * base.radius)).radius = factor * base.radius;
+    const double radius = factor * base.radius.value();
+    variants.add("--radius", fmt::format("{:g}", radius)).radius = radius;
     const auto paths = static_cast<uint64_t>(factor * static_cast<double>(pixels));
     variants.add("--light-paths", std::to_string(paths)).lightPaths = paths;
   }

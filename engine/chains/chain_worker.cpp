@@ -15,7 +15,7 @@ StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& se
   StageContext<S> context{.scene = &plan.scene->view,
                           .sampler = {.kind = SamplerKind::chain, .seed = settings.seed, .iteration = 0},
                           .limits = settings.limits,
-                          .mis = misSettings(pass.strategies, settings, plan.scene->view.radius, area.pixels.size(), 0),
+                          .mis = misSettings(pass.strategies, plan.mergeRadius, area.pixels.size(), 0),
                           .film = area.window(),
                           .splatting = false};  // contributions go to the chain's lane
   // A strategy's walks have their lengths; roulette would only lose some.

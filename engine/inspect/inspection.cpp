@@ -115,7 +115,9 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
     row.method = settings.method = entry.method;
     row.specialization = specializationFor(scene, settings);
     try {
-      row.memory = planMemory(scene, settings);
+      const DryPlan facts = planWithoutSession(scene, settings);
+      row.memory = facts.memory;
+      if (strategiesOf(entry.method).merge) row.mergeRadius = facts.mergeRadius;
     } catch (const SceneError& error) {
       row.refusal = error.what();
     }

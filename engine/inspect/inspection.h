@@ -3,11 +3,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/inspect/path_classes.h"
 #include "engine/plan/memory_use.h"
+#include "engine/plan/merge_radius.h"
 #include "engine/plan/render_settings.h"
 
 namespace wavecrest {
@@ -17,6 +19,7 @@ struct MethodInspection {
   std::string refusal;  // why the method cannot render the scene; empty: it can, and the rest is filled in
   Specialization specialization{};
   MemoryPlan memory;
+  std::optional<MergeRadius> mergeRadius;  // of methods that merge
 };
 
 struct SceneInspection {
@@ -35,8 +38,8 @@ struct SceneInspection {
   PathClassTable paths;
 };
 
-// settings: precision, accel, wave size and threads count; the method does not. Throws std::runtime_error where no
-// method can render the scene.
+// settings: precision, accel, wave size, threads and the radius of merges count; the method does not. Throws
+// std::runtime_error where no method can render the scene.
 SceneInspection inspectScene(const Scene& scene, RenderSettings settings);
 
 }  // namespace wavecrest

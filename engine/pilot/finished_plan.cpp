@@ -2,21 +2,25 @@
 
 #include "engine/pilot/light_picks.h"
 #include "engine/pilot/light_walks.h"
+#include "engine/pilot/merge_radius.h"
 #include "engine/pilot/typical_brightness.h"
 
 namespace wavecrest {
 namespace {
 
-// The memory of a plan. Walks light paths where their number of vertices matters.
+// Plans memory and the radius of merges. Walks light paths where their number of vertices matters.
 template <class S>
-MemoryPlan memoryOf(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
-  const bool walks = plan.pipeline.lightPass() && !plan.pipeline.chains;
-  return planMemory(plan, settings, area, walks ? walkLightPaths(plan, settings, area) : LightPilot{});
+void planLightPaths(RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
+  const bool walks = plan.pipeline.lightPass() != nullptr && !plan.pipeline.chains;
+  plan.memory = planMemory(plan, settings, area, walks ? walkLightPaths(plan, settings, area) : LightPilot{});
+  if (plan.pipeline.has(Fold::photonMap)) plan.mergeRadius = chosenRadius(plan, settings, area);
 }
 
 template <class S>
-DryPlan dryPlan(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
-  return {.memory = memoryOf(plan, settings, area),
+DryPlan dryPlan(RenderPlan<S> plan, const RenderSettings& settings, const FilmArea& area) {
+  planLightPaths(plan, settings, area);
+  return {.memory = plan.memory,
+          .mergeRadius = plan.mergeRadius,
           .specialization = plan.specialization,
           .isa = plan.isa,
           .accel = plan.accel(),
@@ -28,7 +32,7 @@ DryPlan dryPlan(const RenderPlan<S>& plan, const RenderSettings& settings, const
 template <class S>
 RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, const FilmArea& area) {
   RenderPlan<S> plan = planRender<S>(scene, settings);
-  plan.memory = memoryOf(plan, settings, area);
+  planLightPaths(plan, settings, area);
   // Path tracing picks its lights by what they give in view (METHODS 2.3).
   if (!plan.pipeline.lightPass() && !plan.pipeline.chains) pickLightsByView(plan, settings, area);
   plan.connectionRouletteBelow = connectionRouletteLimit(plan, settings, area);

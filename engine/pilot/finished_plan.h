@@ -6,15 +6,16 @@
 
 namespace wavecrest {
 
-// planRender's plan with its memory, its picks of lights and its limit for the roulette of connections. settings: cut
-// by withPieces. Throws std::runtime_error where the method cannot render the scene, MemoryBudgetError where it does
-// not fit the settings' budget.
+// planRender's plan with its memory, its radius of merges, its picks of lights and its limit for the roulette of
+// connections. settings: cut by withPieces. Throws std::runtime_error where the method cannot render the scene,
+// MemoryBudgetError where it does not fit the settings' budget.
 template <class S>
 RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, const FilmArea& area);
 
 // What a session with these settings would be. Nothing of the film's size is allocated.
 struct DryPlan {
   MemoryPlan memory;
+  MergeRadius mergeRadius;  // of methods that merge
   Specialization specialization{};
   Isa isa{};
   Accel accel{};

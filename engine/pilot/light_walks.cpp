@@ -21,7 +21,7 @@ LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& setti
   context.scene = &plan.scene->view;
   context.sampler = {settings.sampler, settings.seed, 0};
   context.limits = settings.limits;
-  context.mis = misSettings(plan.pipeline.lightPass()->strategies, settings, plan.scene->view.radius, lightPaths, 0);
+  context.mis = misSettings(plan.pipeline.lightPass()->strategies, plan.mergeRadius, lightPaths, 0);
   context.light = &store;
   context.film = area.window();
   context.counters = &counters;
@@ -45,6 +45,11 @@ LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& setti
     runPass<S>(*plan.pipeline.lightPass(), context, wave, nullptr, drain);
     pilot.paths += wave.pathCount;
     pilot.stored += store.vertices.size;
+    for (size_t i = 0; plan.pipeline.has(Fold::photonMap) && i < store.vertices.size; ++i) {
+      const S* const place = store.vertices.row[i].position;
+      pilot.photons.push_back(
+          {static_cast<float>(place[0]), static_cast<float>(place[1]), static_cast<float>(place[2])});
+    }
     pilot.room = std::max(pilot.room, store.roomUsed());
   }
   return pilot;

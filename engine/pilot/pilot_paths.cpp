@@ -33,7 +33,7 @@ std::vector<double> tracePilotPaths(const RenderPlan<S>& plan, const RenderSetti
                           .pixels = pixels.data(),
                           .sampler = {SamplerKind::independent, ~settings.seed, 0},
                           .limits = settings.limits,
-                          .mis = misSettings(strategies, settings, view.radius, 1, 0),
+                          .mis = misSettings(strategies, plan.mergeRadius, 1, 0),
                           .film = area.window(),
                           .counters = &counters};
   Wave<S> wave(static_cast<uint32_t>(pixels.size()), plan.needs);

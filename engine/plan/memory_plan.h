@@ -8,8 +8,10 @@
 // compared.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "engine/plan/render_plan.h"
 
@@ -35,6 +37,7 @@ struct LightPilot {
   size_t room = 0;  // of the largest store: of all vertices, and of those that it might have stored at last
   // Splats that are finite and not black, and the sum of their exponents: integers, which no order of sums changes.
   int64_t splats = 0, exponents = 0;
+  std::vector<std::array<float, 3>> photons{};  // of methods with a photon map: where the stored vertices are
 };
 
 // What a session with this plan and these settings will hold. area: its list of pixels may be empty. pilot: of a method

@@ -137,6 +137,8 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
     refuseTintedPassages(scene);
   }
   plan.scene = compileScene<S>(scene, settings.accel, true, settings.instancing);
+  plan.mergeRadius = {
+      .first = settings.radius.value_or(kFixedRadius), .alpha = settings.radiusAlpha, .scene = plan.scene->view.radius};
   plan.needs = columnNeeds(scene, plan.specialization, plan.scene->view.instances != nullptr);
   plan.needs.passages = plan.scene->view.passages != nullptr;
   // Clips are left in the compiled camera only where they hide a surface.
@@ -180,13 +182,10 @@ bool spreadsSamples(const RenderPlan<S>& plan, const RenderSettings& settings) {
 template bool spreadsSamples(const RenderPlan<float>&, const RenderSettings&);
 template bool spreadsSamples(const RenderPlan<double>&, const RenderSettings&);
 
-MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t count,
-                        uint64_t iteration) {
+MisSettings misSettings(MisSettings strategies, const MergeRadius& radius, size_t count, uint64_t iteration) {
   const auto lightPaths = static_cast<double>(count);
   strategies.lightPaths = lightPaths;
-  // The radius of METHODS 6.1, where iterations count from one.
-  const double shrink = std::pow(static_cast<double>(iteration + 1), (settings.radiusAlpha - 1) / 2);
-  strategies.radius = std::max(settings.radius * shrink, kSmallestRadius) * sceneRadius;
+  strategies.radius = radius.at(iteration);
   // `density` is eta. The other constants follow from it (METHODS 5.1).
   const double density = std::numbers::pi * strategies.radius * strategies.radius * lightPaths;
   strategies.mergeNorm = 1 / density;

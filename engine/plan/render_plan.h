@@ -10,6 +10,7 @@
 
 #include "engine/film/film.h"
 #include "engine/plan/memory_use.h"
+#include "engine/plan/merge_radius.h"
 #include "engine/plan/path_laws.h"
 #include "engine/plan/pipeline.h"
 #include "engine/plan/render_settings.h"
@@ -29,6 +30,7 @@ struct RenderPlan {
   PathLaws pathLaws;  // of chains in path space
   // What pilots decide (engine/pilot/finished_plan.h).
   MemoryPlan memory;
+  MergeRadius mergeRadius;        // of methods that merge
   S connectionRouletteBelow = 0;  // StageContext::rouletteBelow
 
   Accel accel() const { return scene->accel(); }
@@ -59,13 +61,9 @@ Specialization specializationFor(const Scene& scene, const RenderSettings& setti
 template <class S>
 Intersector<S> chooseIntersector(const Stages<S>& stages, const CompiledScene<S>& scene);
 
-// Of the scene's radius. Positions have 24 bits: of a smaller radius nothing would be left but their rounding.
-constexpr double kSmallestRadius = 16 * 0x1p-24;
-
 // A pass's switches with the constants of an iteration's densities (METHODS 5.1, 6.1): N_L light paths, and one camera
 // path per pixel.
-MisSettings misSettings(MisSettings strategies, const RenderSettings& settings, double sceneRadius, size_t lightPaths,
-                        uint64_t iteration);
+MisSettings misSettings(MisSettings strategies, const MergeRadius& radius, size_t lightPaths, uint64_t iteration);
 
 // The number of items, pixels or chains, that one task takes: `most`, or fewer if that would leave some of the threads
 // without a task. Images do not depend on it. Too few tasks leave threads idle at the end of a phase. Too small tasks

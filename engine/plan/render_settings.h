@@ -68,6 +68,9 @@ inline PathLimits pathLimits(int maxDepth, int rouletteDepth) {
 enum class FilterMode { spread, sample };
 constexpr std::array<std::string_view, 2> kFilterModeNames{"spread", "sample"};
 
+// The study's radius of the first merges, relative to the bounding sphere's.
+constexpr double kFixedRadius = 0.001;
+
 struct RenderSettings {
   Method method = Method::pt;
   MetropolisSettings metropolis;
@@ -82,7 +85,8 @@ struct RenderSettings {
   uint32_t threads = 1;
   uint32_t waveSize = 2048;  // paths
   PathLimits limits;
-  double radius = 0.001;      // of the first merges, relative to the bounding sphere's
+  // Of the first merges, relative to the bounding sphere's. Unset: what the image needs (engine/pilot/merge_radius.h).
+  std::optional<double> radius = kFixedRadius;
   double radiusAlpha = 0.75;  // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
   // bpt, vcm: Russian roulette of connections whose contribution is below this share of a typical pixel's brightness.
   // It saves shadow rays and changes no mean. 0: no roulette. Never used with Accel::small, where a shadow ray costs

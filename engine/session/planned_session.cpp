@@ -56,6 +56,7 @@ RenderStatistics PlannedSession<S>::plannedStatistics() const {
   out.accel = plan_.accel();
   // Filters that cannot be spread are sampled, whatever the settings say.
   out.filterMode = film_.spreads() ? FilterMode::spread : FilterMode::sample;
+  if (plan_.pipeline.has(Fold::photonMap)) out.mergeRadius = plan_.mergeRadius;
   out.memory.scene = sceneBytes(*plan_.scene);
   out.memory.film = film_.bytes();
   out.memory.image = film_.imageBytes();

@@ -12,6 +12,7 @@
 
 #include "engine/film/film.h"
 #include "engine/plan/memory_use.h"
+#include "engine/plan/merge_radius.h"
 #include "engine/plan/render_settings.h"
 #include "kernels/columns/chains.h"
 
@@ -66,10 +67,11 @@ struct RenderStatistics {
   Isa isa{};
   Specialization specialization{};
   Accel accel{};
-  FilterMode filterMode{};                // what the film does: boxes and very wide filters are never spread
-  size_t bytesPerPath = 0;                // of a wave's columns
-  MemoryUse memory;                       // of all threads that have worked
-  std::optional<ChainStatistics> chains;  // of mlt
+  FilterMode filterMode{};                 // what the film does: boxes and very wide filters are never spread
+  size_t bytesPerPath = 0;                 // of a wave's columns
+  MemoryUse memory;                        // of all threads that have worked
+  std::optional<MergeRadius> mergeRadius;  // of methods that merge
+  std::optional<ChainStatistics> chains;   // of mlt
 };
 
 class Session {

@@ -119,8 +119,7 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
   const FlushToZero flushToZero;
   const FilmArea& area = film_.area();
   // Weights and the merging radius are those of the iteration.
-  const MisSettings mis =
-      misSettings(pass.strategies, settings_, plan_.scene->view.radius, plan_.memory.lightPaths, iteration);
+  const MisSettings mis = misSettings(pass.strategies, plan_.mergeRadius, plan_.memory.lightPaths, iteration);
   StageContext<S> context{.scene = &plan_.scene->view,
                           .pixels = area.pixels.data(),
                           .sampler = {settings_.sampler, settings_.seed, iteration},
@@ -261,11 +260,9 @@ PhotonGrid<S> WaveSession<S>::photonGrid(double searchRadius) const {
 
 template <class S>
 void WaveSession<S>::buildPhotonMap(const ScheduledTask& task, Worker& worker) {
-  const MisSettings mis = misSettings(plan_.pipeline.lightPass()->strategies, settings_, plan_.scene->view.radius,
-                                      plan_.memory.lightPaths, task.iteration);
   const uint64_t begin = readTicks();
   // All tasks of a map share one row of the statistics. The map's photons are counted once.
-  photons_.buildMap(task, photonGrid(mis.radius), settings_.placement);
+  photons_.buildMap(task, photonGrid(plan_.mergeRadius.at(task.iteration)), settings_.placement);
   worker.photonTally.ticks += readTicks() - begin;
   if (photons_.phases()[task.phase].step == 0) worker.photonTally.items += photons_.mapOf(task.iteration)->size;
 }

@@ -20,8 +20,9 @@ struct RenderOptions {
   uint32_t wave = 2048;  // paths per wave
   std::string memory{};  // budget: "800M", "2GiB"; empty: none
 
-  // ppm, bpm, vcm: the first radius of merges, relative to the bounding sphere's, and how slowly it shrinks.
-  double radius = 0.001, radiusAlpha = 0.75;
+  // ppm, bpm, vcm: the first radius of merges, relative to the bounding sphere's (0: auto, what the image needs), and
+  // how slowly it shrinks.
+  double radius = 0, radiusAlpha = 0.75;
   uint64_t lightPaths = 0;  // of an iteration of ppm, bpm or vcm; 0: as many as pixels
   bool directPass = false;  // ppm: direct light by next event estimation
   // bpt, vcm: Russian roulette of connections whose contribution is below this share of a typical pixel's brightness.

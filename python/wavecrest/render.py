@@ -29,6 +29,13 @@ def scene_value(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
+def _option_value(name: str, value: Any) -> Any:
+    """The value as C++ has it: times are words, and a radius of 0 is chosen for the image."""
+    if name == "time":
+        return duration(value)
+    return 0 if name == "radius" and value == "auto" else value
+
+
 def _options(method: str, settings: Mapping[str, Any]) -> _native.RenderOptions:
     options = _native.RenderOptions()
     options.method = method
@@ -37,7 +44,7 @@ def _options(method: str, settings: Mapping[str, Any]) -> _native.RenderOptions:
             known = ", ".join(name for name in dir(options) if not name.startswith("_"))
             raise TypeError(f"unknown option {name!r}; expected some of {known}")
         if value is not None:
-            setattr(options, name, duration(value) if name == "time" else value)
+            setattr(options, name, _option_value(name, value))
     return options
 
 
@@ -118,8 +125,8 @@ class Scene:
         """Renders for so much time ("30s", or seconds) or so many iterations, whichever ends first.
 
         Further options are those of `wavecrest render`: sampler, filter_mode, precision, isa, accel, max_depth, rr_depth,
-        wave, memory, radius, radius_alpha, light_paths, direct_pass, connection_roulette, mlt, chains, bootstrap,
-        restart, no_direct_pass.
+        wave, memory, radius (a number, or "auto"), radius_alpha, light_paths, direct_pass, connection_roulette, mlt, chains,
+        bootstrap, restart, no_direct_pass.
         Other Python threads run meanwhile. Ctrl-C raises Interrupted, a KeyboardInterrupt whose `result` is the image so
         far.
         """

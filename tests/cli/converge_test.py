@@ -182,6 +182,22 @@ class Rows(Converge):
         self.converge("--out", "a", "--resume", "--methods", "mlt-pssmlt")
         self.assertIn("mlt-pssmlt", self.runs("a")[0])
 
+    def test_the_first_merge_radius_is_the_profiles(self):
+        tiny = ["cornell-diffuse", "--methods", "ppm", "--size", "16x12", "--spp", "1", "--seeds", "1", "--light-paths", "99"]
+        for profile, more, choice in (
+            ("quick", [], "auto"),
+            ("standard", [], "fixed"),
+            ("study", [], "fixed"),
+            ("study", ["--radius", "auto"], "auto"),
+        ):
+            folder = f"{profile}-{choice}"
+            self.converge(*tiny, "--profile", profile, *more, "--out", folder)
+            runs, campaign = self.runs(folder)
+            self.assertEqual(runs["ppm"]["radius_choice"], choice, profile)
+            self.assertEqual(campaign["radius"], "0.001" if choice == "fixed" else "auto")
+            if choice == "fixed":
+                self.assertEqual(runs["ppm"]["radius"], 0.001)
+
     def test_a_run_is_charged_by_the_clock_that_is_asked_for(self):
         arguments = ["--methods", "pt", "--size", "32x24", "--time", "0.2s", "--seeds", "1", "--threads", "2"]
         self.converge("cornell-diffuse", *arguments, "--clock", "cpu", "--out", "a")

@@ -72,6 +72,19 @@ class Inspect(CommandTest):
         self.assertEqual(caustic["methods"]["bpt"], "impossible")
         self.assertEqual(caustic["methods"]["vcm"], "sampled")
 
+    def test_the_radius_of_merges_is_the_one_that_a_render_takes(self):
+        merging = self.inspect("cornell-mirror")["merging"]
+        self.assertEqual(set(merging), {"ppm", "bpm", "vcm"})
+        for method, told in merging.items():
+            result = self.run_wavecrest("render", "cornell-mirror", "-m", method, "--size", "32x24", "--spp=1", "--stats=-")
+            stats = json.loads(result.stdout)
+            self.assertEqual({key: stats[key] for key in told}, told)
+            self.assertEqual(stats["radius_choice"], "auto")
+            self.assertGreater(told["radius_pixels"], 0)
+            self.assertGreater(told["photons_per_search"], 0)
+        text = self.run_wavecrest("inspect", "cornell-mirror", "--size", "32x24").stdout
+        self.assertRegex(text, rf"(?m)^ppm +{merging['ppm']['radius']:.4g} +{merging['ppm']['radius_units']:.4g} ")
+
     def test_the_reference_method_is_the_studys(self):
         for scene, method in (("cornell-diffuse", "pt"), ("cornell-mirror", "bpt"), ("cornell-glossy", "pt")):
             self.assertEqual(self.inspect(scene)["reference_method"], method, scene)

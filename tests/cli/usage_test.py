@@ -100,7 +100,7 @@ class Usage(CommandTest):
             with self.subTest(arguments):
                 self.assert_one_error_line(self.render("--dry-run", *arguments, expect=USAGE), answer)
         # Defaults fit every method, and the direct pass of mlt has a sampler.
-        self.render("--dry-run", "--radius", "0.001", "--chains", "16384", "--connection-roulette", "0.2", "--mlt", "mmlt")
+        self.render("--dry-run", "--radius", "auto", "--chains", "16384", "--connection-roulette", "0.2", "--mlt", "mmlt")
         self.render("--dry-run", "-m", "mlt", "--sampler", "sobol")
 
     def test_a_scene_may_follow_a_list_of_methods(self):
@@ -130,8 +130,8 @@ class Usage(CommandTest):
             ("--threads", "4097", "'4097' is out of range; expected 1 to 4096"),
             ("--max-depth", "-2", "'-2' is out of range; expected 1 to 4095, or -1"),
             ("--rr-depth", "3000000000", "'3000000000' is out of range; expected 1 to 2147483647"),
-            ("--radius", "nan", "'nan' is no number; expected 1e-09 to 10"),
-            ("--radius", "1e999", "'1e999' is out of range; expected 1e-09 to 10"),
+            ("--radius", "nan", "'nan' is no number; expected 1e-09 to 10, or auto"),
+            ("--radius", "1e999", "'1e999' is out of range; expected 1e-09 to 10, or auto"),
             ("--radius-alpha", "1.5", "'1.5' is out of range; expected 0 to 1"),
         ]:
             with self.subTest(option=option, value=value):

@@ -25,8 +25,8 @@ TEST(RenderSettings, numbersOutOfRangeAreRefusedByName) {
       {{.maxDepth = 4096}, "--max-depth 4096: expected a number from 1 to 4095, or -1"},
       {{.rrDepth = -3}, "--rr-depth -3: expected a number from 1 to 2147483647"},
       {{.wave = 0}, "--wave 0: expected a number from 16 to 1048576"},
-      {{.method = "vcm", .radius = nan}, "--radius nan: expected a number from 1e-09 to 10"},
-      {{.method = "vcm", .radius = -0.05}, "--radius -0.05: expected a number from 1e-09 to 10"},
+      {{.method = "vcm", .radius = nan}, "--radius nan: expected a number from 1e-09 to 10, or 0"},
+      {{.method = "vcm", .radius = -0.05}, "--radius -0.05: expected a number from 1e-09 to 10, or 0"},
       {{.method = "vcm", .radiusAlpha = -5}, "--radius-alpha -5: expected a number from 0 to 1"},
       {{.method = "vcm", .lightPaths = kMostPaths + uint64_t{1}},
        "--light-paths 268435457: expected a number from 1 to 268435456"},
@@ -48,6 +48,11 @@ TEST(RenderSettings, endsOfRangesAndDefaultsAreTaken) {
   EXPECT_NO_THROW(accepts({.threads = 4096, .maxDepth = kDepthRange.most, .rrDepth = 1, .wave = 16}));
   EXPECT_NO_THROW(accepts({.method = "vcm", .radius = 1e-9, .radiusAlpha = 1, .lightPaths = kMostPaths}));
   EXPECT_NO_THROW(accepts({.method = "mlt", .chains = 1, .bootstrap = 1, .restart = 1}));
+}
+
+TEST(RenderSettings, theRadiusIsLeftToTheImageUnlessItIsGiven) {
+  EXPECT_FALSE(renderSettings({.method = "vcm"}, Scene()).radius);
+  EXPECT_EQ(renderSettings({.method = "vcm", .radius = 0.001}, Scene()).radius, 0.001);
 }
 
 }  // namespace

@@ -147,8 +147,8 @@ result.save(again)
     def test_numbers_out_of_range_are_refused_as_by_the_program(self):
         for method, name, value, text in (
             ("mlt", "chains", 0, "--chains 0: expected a number from 1 to 16777216"),
-            ("vcm", "radius", float("nan"), "--radius nan: expected a number from 1e-09 to 10"),
-            ("vcm", "radius", -0.05, "--radius -0.05: expected a number from 1e-09 to 10"),
+            ("vcm", "radius", float("nan"), "--radius nan: expected a number from 1e-09 to 10, or 0"),
+            ("vcm", "radius", -0.05, "--radius -0.05: expected a number from 1e-09 to 10, or 0"),
             ("vcm", "radius_alpha", -5, "--radius-alpha -5: expected a number from 0 to 1"),
             ("pt", "wave", 0, "--wave 0: expected a number from 16 to 1048576"),
             ("pt", "max_depth", -7, "--max-depth -7: expected a number from 1 to 4095, or -1"),
@@ -156,6 +156,12 @@ result.save(again)
         ):
             with self.assertRaisesRegex(wc.UsageError, f"^{text}$"):
                 small().render(method, spp=4, **{name: value})
+
+    def test_a_radius_is_a_number_or_is_left_to_the_image(self):
+        by_default, automatic = (small().render("ppm", spp=1, **more).stats for more in ({}, {"radius": "auto"}))
+        self.assertEqual((by_default["radius_choice"], by_default["radius"]), ("auto", automatic["radius"]))
+        fixed = small().render("ppm", spp=1, radius=0.02).stats
+        self.assertEqual((fixed["radius_choice"], fixed["radius"]), ("fixed", 0.02))
 
     def test_a_scene_that_does_not_exist_is_no_file_and_maybe_a_misspelt_name(self):
         with self.assertRaisesRegex(wc.InputError, "^cornell-miror: no such file.*did you mean 'cornell-mirror'") as raised:

@@ -1,0 +1,190 @@
+#include "engine/pilot/merge_radius.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/pilot/light_walks.h"
+#include "engine/tasks/flush_to_zero.h"
+#include "engine/walks/run_walk.h"
+
+namespace wavecrest {
+namespace {
+
+using Position = std::array<float, 3>;
+
+constexpr uint64_t kPilotSeed = ~uint64_t{0};
+
+// Pixels in the middles of equal rectangles of the film.
+std::vector<uint32_t> spreadPixels(const CameraView& camera) {
+  constexpr uint32_t kAcross = 32, kDown = 32;
+  std::vector<uint32_t> pixels;
+  for (uint32_t y = 0; y < kDown; ++y) {
+    for (uint32_t x = 0; x < kAcross; ++x) {
+      const auto middle = [](uint32_t i, uint32_t count, uint32_t size) { return (2 * i + 1) * size / (2 * count); };
+      pixels.push_back(middle(y, kDown, camera.height) << 16 | middle(x, kAcross, camera.width));
+    }
+  }
+  return pixels;
+}
+
+// What the pilot keeps of each path, by lanes of the wave.
+struct CameraPath {
+  double place[3]{};   // of the latest vertex
+  double length = 0;   // so far
+  double density = 0;  // p_cam of METHODS 4.1, or of parallel rays per area
+  bool merged = false;
+};
+
+template <class S>
+void beginPaths(Wave<S>& wave, const CameraView& camera, std::vector<CameraPath>& paths) {
+  for (size_t i = 0; i < wave.rays.size; ++i) {
+    CameraPath& path = paths[wave.paths.lane[i]];
+    const double along = wave.rays.directionX[i] * camera.axis[0] + wave.rays.directionY[i] * camera.axis[1] +
+                         wave.rays.directionZ[i] * camera.axis[2];
+    path.density = camera.parallel ? std::sqrt(camera.inverseDu2 * camera.inverseDv2)
+                                   : camera.pixelDistance * camera.pixelDistance / (along * along * along);
+    path.place[0] = wave.rays.originX[i];
+    path.place[1] = wave.rays.originY[i];
+    path.place[2] = wave.rays.originZ[i];
+  }
+}
+
+// Goes on to the vertices of a depth. Adds a place for each path that can merge for the first time.
+template <class S>
+void visitVertices(Wave<S>& wave, bool parallel, std::vector<CameraPath>& paths, std::vector<MergePlace>& places) {
+  constexpr double kLeastCosine = 1e-3;
+  for (size_t i = 0; i < wave.rays.size; ++i) {
+    CameraPath& path = paths[wave.paths.lane[i]];
+    const double vertex[3] = {static_cast<double>(wave.rays.originX[i]), static_cast<double>(wave.rays.originY[i]),
+                              static_cast<double>(wave.rays.originZ[i])};
+    path.length += std::hypot(vertex[0] - path.place[0], vertex[1] - path.place[1], vertex[2] - path.place[2]);
+    std::copy_n(vertex, 3, path.place);
+    if (i >= wave.joinable || path.merged) continue;
+    path.merged = true;
+    // As if mirrors and glass on the way were flat.
+    const auto cosine = static_cast<double>(wave.rays.directionX[i] * wave.surfaces.normalX[i] +
+                                            wave.rays.directionY[i] * wave.surfaces.normalY[i] +
+                                            wave.rays.directionZ[i] * wave.surfaces.normalZ[i]);
+    const double across = (parallel ? 1 : path.length * path.length) / path.density;
+    MergePlace place{.pixel = std::sqrt(across / std::max(std::abs(cosine), kLeastCosine))};
+    for (size_t axis = 0; axis < 3; ++axis) place.position[axis] = static_cast<float>(vertex[axis]);
+    places.push_back(place);
+  }
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// METHODS 6.5, relative to the scene's radius. photonsPerArea: of an iteration with a light path for each pixel of the
+// whole film, or as many as the settings ask for.
+double radiusOfImage(const MergeRadius& found, double photonsPerArea, const PathStrategies& strategies) {
+  if (!(found.pixel > 0)) return kFixedRadius;
+  constexpr double kFirstVertex = 2.5, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
+  constexpr double kLeastPixels = 0.5, kMostPixels = 8;
+  const double photons = std::numbers::pi * found.pixel * found.pixel * photonsPerArea;
+  const double pixels = (strategies.mergeAtFirstVertex ? kFirstVertex : kAllVertices) * std::cbrt(1 / photons);
+  // Three digits: instruction sets and precisions differ in the last bits of what they find, and are to make the same
+  // choice all the same.
+  const double asked = std::clamp(pixels, kLeastPixels, kMostPixels) * found.pixel / found.scene;
+  const double unit = std::pow(10, std::floor(std::log10(asked)) - 2);
+  const double chosen = std::round(asked / unit) * unit;
+  // The weights of vcm take photons that share a camera path for independent ones: they pay for larger radii.
+  return strategies.connect ? std::min(chosen, kFixedRadius) : chosen;
+}
+
+}  // namespace
+
+template <class S>
+std::vector<MergePlace> findMergePlaces(const RenderPlan<S>& plan, const RenderSettings& settings) {
+  const FlushToZero flushToZero;
+  const SceneView<S>& view = plan.scene->view;
+  // A walk that gathers nothing and goes on by delta lobes alone.
+  using enum StageId;
+  const MethodPage page{{walk(Walk::camera, generateCameraPaths, {extend, arrive, scatterSpecular})}};
+  const Pass<S> pass = makePipeline(page, *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass();
+  const std::vector<uint32_t> pixels = spreadPixels(view.camera);
+  StageCounters counters;
+  StageContext<S> context{.scene = &view,
+                          .pixels = pixels.data(),
+                          .sampler = {SamplerKind::independent, kPilotSeed, 0},
+                          .limits = settings.limits,
+                          .mis = misSettings(pass.strategies, plan.mergeRadius, 1, 0),
+                          .film = {.x0 = 0, .y0 = 0, .width = view.camera.width, .height = view.camera.height},
+                          .counters = &counters};
+  Wave<S> wave(static_cast<uint32_t>(pixels.size()), plan.needs);
+  wave.pathCount = pixels.size();
+  // Depth by depth, as runPass does, with a look at the vertices that arrive leaves.
+  std::vector<CameraPath> paths(pixels.size());
+  std::vector<MergePlace> places;
+  runStage<S>(pass.generate, context, wave, nullptr);
+  beginPaths(wave, view.camera, paths);
+  for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {
+    for (size_t stage = 0; stage < pass.perDepth.size(); ++stage) {
+      if (stage + 1 == pass.perDepth.size()) visitVertices(wave, view.camera.parallel, paths, places);
+      runStage<S>(pass.perDepth[stage], context, wave, nullptr);
+    }
+  }
+  return places;
+}
+template std::vector<MergePlace> findMergePlaces(const RenderPlan<float>&, const RenderSettings&);
+template std::vector<MergePlace> findMergePlaces(const RenderPlan<double>&, const RenderSettings&);
+
+double photonDensity(std::span<const MergePlace> places, std::span<const Position> positions,
+                     double photonsPerPosition) {
+  // The disc to the kNearest-th position has kNearest - 1 in it and one at its rim.
+  constexpr size_t kNearest = 8, kMostPlaces = 256;
+  if (positions.size() < kNearest || places.empty()) return 0;
+  double areas = 0;
+  size_t count = 0;
+  const size_t step = std::max<size_t>(places.size() / kMostPlaces, 1);
+  for (size_t i = 0; i < places.size(); i += step) {
+    const Position& here = places[i].position;
+    // The least squared distances so far, in order.
+    std::array<float, kNearest> nearest;
+    nearest.fill(std::numeric_limits<float>::infinity());
+    for (const Position& there : positions) {
+      const float x = there[0] - here[0], y = there[1] - here[1], z = there[2] - here[2];
+      const float square = x * x + y * y + z * z;
+      if (!(square < nearest.back())) continue;
+      size_t k = kNearest - 1;
+      for (; k > 0 && square < nearest[k - 1]; --k) nearest[k] = nearest[k - 1];
+      nearest[k] = square;
+    }
+    areas += std::numbers::pi * nearest.back();
+    ++count;
+  }
+  // Of even positions the disc of the k-th has k / density in the mean.
+  return areas > 0 ? kNearest * photonsPerPosition * static_cast<double>(count) / areas : 0;
+}
+
+template <class S>
+MergeRadius chosenRadius(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
+  // Both walks have numbers of their own, so that renders of all seeds have one radius.
+  RenderSettings pilot = settings;
+  pilot.sampler = SamplerKind::independent;
+  pilot.seed = kPilotSeed;
+  pilot.lightPaths = kPilotLightPaths;
+  const LightPilot light = walkLightPaths(plan, pilot, area);
+  const std::vector<MergePlace> places = findMergePlaces(plan, settings);
+  std::vector<double> pixels;
+  for (const MergePlace& place : places) pixels.push_back(place.pixel);
+  MergeRadius radius = plan.mergeRadius;
+  radius.pixel = median(std::move(pixels));
+  const double ofPath = photonDensity(places, light.photons, 1 / static_cast<double>(std::max<size_t>(light.paths, 1)));
+  radius.photonsPerArea = ofPath * static_cast<double>(plan.memory.lightPaths);
+  if (settings.radius) return radius;
+  const CameraView& camera = plan.scene->view.camera;
+  const size_t lightPaths = lightPathsWanted(settings, size_t{camera.width} * camera.height);
+  radius.first = radiusOfImage(radius, ofPath * static_cast<double>(lightPaths), strategiesOf(settings.method));
+  return radius;
+}
+template MergeRadius chosenRadius(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);
+template MergeRadius chosenRadius(const RenderPlan<double>&, const RenderSettings&, const FilmArea&);
+
+}  // namespace wavecrest

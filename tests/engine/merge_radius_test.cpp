@@ -1,0 +1,221 @@
+// --radius auto: the first radius of merges follows from the size of pixels where camera paths first merge, and from
+// nothing that differs between renders of one image.
+#include "engine/pilot/merge_radius.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "engine/pilot/finished_plan.h"
+#include "tests/engine/render_statistics.h"
+#include "tests/engine/saved_state.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+RenderSettings automatic(Method method = Method::ppm) {
+  RenderSettings settings;
+  settings.method = method;
+  settings.isa = bestIsa();
+  settings.radius.reset();
+  return settings;
+}
+
+MergeRadius radiusOf(const Scene& scene, const RenderSettings& settings = automatic()) {
+  return planWithoutSession(scene, settings).mergeRadius;
+}
+
+// A floor of side 8 seen from above, so that each pixel covers a square of it. scale: of everything.
+constexpr double kHeight = 5, kFov = 20;
+constexpr uint32_t kWidth = 64;
+Scene floorFromAbove(double scale = 1, uint32_t width = kWidth) {
+  Scene scene;
+  Mesh floor;
+  const auto half = static_cast<float>(4 * scale);
+  floor.positions = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
+  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+  addShape(scene, floor, addDiffuse(scene, 0.5, 0.5, 0.5));
+  Emitter point;
+  point.kind = PointEmitter{.position = {0, 0, 1.5 * scale}, .intensity = {1, 1, 1}};
+  scene.emitters.push_back(point);
+  setCamera(scene, {0, 0, kHeight * scale}, kFov, width, width);
+  return scene;
+}
+double pixelOfFloor(double distance = kHeight, uint32_t width = kWidth) {
+  return 2 * distance * std::tan(kFov / 2 * std::numbers::pi / 180) / width;
+}
+
+// Rays to the corners of the film are longer and slant by up to 14 degrees: less than 5 % in the median.
+constexpr double kSlant = 0.05;
+
+TEST(AutoRadius, isAMultipleOfThePixel) {
+  const MergeRadius radius = radiusOf(floorFromAbove());
+  EXPECT_NEAR(radius.pixel / pixelOfFloor(), 1, kSlant);
+  EXPECT_GT(radius.inPixels(), 0.5);
+  EXPECT_LT(radius.inPixels(), 8) << "or the other tests see the limit alone";
+}
+
+// METHODS 6.5: the cube root of the photons, one and eight light paths a pixel.
+TEST(AutoRadius, halvesWithEightTimesTheLightPaths) {
+  RenderSettings settings = automatic();
+  settings.lightPaths = 64 * 64;
+  const MergeRadius few = radiusOf(floorFromAbove(), settings);
+  settings.lightPaths = 8 * 64 * 64;
+  const MergeRadius many = radiusOf(floorFromAbove(), settings);
+  EXPECT_NEAR(few.first / many.first, 2, 0.02) << "but for the rounding to three digits";
+  EXPECT_NEAR(many.photonsPerArea / few.photonsPerArea, 8, 1e-6);
+}
+
+TEST(AutoRadius, scalesWithTheScene) {
+  const MergeRadius one = radiusOf(floorFromAbove(1)), large = radiusOf(floorFromAbove(1024));
+  EXPECT_NEAR(large.at(0) / one.at(0), 1024, 1024 * 1e-4);
+  EXPECT_NEAR(large.first / one.first, 1, 1e-4);
+}
+
+TEST(AutoRadius, halvesOnAFilmOfTwiceTheSize) {
+  const double ratio = radiusOf(floorFromAbove(1, kWidth)).at(0) / radiusOf(floorFromAbove(1, 2 * kWidth)).at(0);
+  EXPECT_NEAR(ratio, 2, 0.05);
+}
+
+// What a camera does not see changes the scene's sphere, and no radius in units of the scene. So it makes no difference
+// whether the sphere contains the camera.
+TEST(AutoRadius, doesNotDependOnWhatIsOutOfView) {
+  const MergeRadius alone = radiusOf(floorFromAbove());
+  Scene scene = floorFromAbove();
+  addShape(
+      scene,
+      Sphere{.center = {0, 0, 60}, .radius = 1, .toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}},
+      0);
+  const MergeRadius within = radiusOf(scene);
+  EXPECT_GT(within.scene, 4 * alone.scene);
+  EXPECT_NEAR(within.at(0) / alone.at(0), 1, 0.01) << "but for the rounding to three digits";
+  EXPECT_LT(within.first, alone.first / 4);
+}
+
+TEST(AutoRadius, isThatOfTheWholeFilmUnderACrop) {
+  Scene scene = sceneFile("cornell-diffuse", 64, 48);
+  const MergeRadius whole = radiusOf(scene);
+  scene.film.cropX = 40;
+  scene.film.cropY = 8;
+  scene.film.cropWidth = 16;
+  scene.film.cropHeight = 12;
+  EXPECT_EQ(radiusOf(scene).first, whole.first);
+}
+
+// The image of the floor in a mirror above the camera: as large as pixels on all of the way.
+TEST(AutoRadius, followsMirrorsToTheFirstVertexThatMerges) {
+  Scene scene = floorFromAbove();
+  Material mirror;
+  mirror.kind = Conductor{.perfectMirror = true};
+  scene.materials.push_back(mirror);
+  Mesh ceiling;
+  ceiling.positions = {{-4, -4, 7}, {4, -4, 7}, {4, 4, 7}, {-4, 4, 7}};
+  ceiling.triangles = {{0, 2, 1}, {0, 3, 2}};
+  addShape(scene, ceiling, static_cast<uint32_t>(scene.materials.size() - 1));
+  scene.sensor.toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, kHeight}, {0, 0, 0, 1}}};
+  EXPECT_NEAR(radiusOf(scene).pixel / pixelOfFloor(2 + 7), 1, kSlant);
+}
+
+TEST(AutoRadius, isTheFixedOneWhereNothingCanMerge) {
+  Scene scene = floorFromAbove();
+  scene.sensor.toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, kHeight}, {0, 0, 0, 1}}};  // up, past the floor
+  const MergeRadius radius = radiusOf(scene);
+  EXPECT_EQ(radius.first, kFixedRadius);
+  EXPECT_EQ(radius.inPixels(), 0);
+}
+
+TEST(AutoRadius, isTheSameForAllSeedsThreadsAndWaves) {
+  const Scene scene = sceneFile("cornell-spheres", 40, 30);
+  const double first = radiusOf(scene).first;
+  for (const uint64_t seed : {1u, 77u}) {
+    for (const uint32_t threads : {1u, 3u}) {
+      RenderSettings settings = automatic();
+      settings.seed = seed;
+      settings.threads = threads;
+      settings.waveSize = threads == 1 ? 64 : 1000;
+      EXPECT_EQ(radiusOf(scene, settings).first, first) << seed << ", " << threads;
+    }
+  }
+}
+
+TEST(AutoRadius, leavesAFixedOneAlone) {
+  RenderSettings settings = automatic();
+  settings.radius = 0.0123;
+  const MergeRadius radius = radiusOf(sceneFile("cornell-diffuse", 40, 30), settings);
+  EXPECT_EQ(radius.first, 0.0123);
+  EXPECT_GT(radius.photonsPerSearch(), 0) << "is told of fixed ones as well";
+}
+
+// Its weights take photons that share a camera path for independent ones.
+TEST(AutoRadius, ofVcmIsNeverMoreThanTheFixedOne) {
+  EXPECT_EQ(radiusOf(sceneFile("cornell-diffuse", 40, 30), automatic(Method::vcm)).first, kFixedRadius);
+  const MergeRadius fine = radiusOf(sceneFile("cornell-diffuse", 8000, 24), automatic(Method::vcm));
+  EXPECT_LT(fine.first, kFixedRadius);
+}
+
+TEST(PhotonDensity, isThatOfEvenPhotons) {
+  // 64 x 64 positions on a unit square, each for three photons; places in its middle.
+  std::vector<std::array<float, 3>> positions;
+  for (int i = 0; i < 64 * 64; ++i) {
+    positions.push_back({(static_cast<float>(i % 64) + 0.5f) / 64, (static_cast<float>(i / 64) + 0.5f) / 64, 0});
+  }
+  const std::vector<MergePlace> places(5, MergePlace{.position = {0.51f, 0.52f, 0}, .pixel = 1});
+  // Positions on a grid: the eighth is off the even density's radius by up to half a step of three.
+  EXPECT_NEAR(photonDensity(places, positions, 3) / (3 * 64 * 64), 1, 0.4);
+  EXPECT_EQ(photonDensity({}, positions, 3), 0);
+  EXPECT_EQ(photonDensity(places, {}, 3), 0);
+}
+
+// ---- renders --------------------------------------------------------------------------------------------------------
+
+TEST(AutoRadius, givesTheImageOfOneThreadOnThree) {
+  const Scene scene = sceneFile("cornell-mirror", 40, 30);
+  for (const Method method : {Method::ppm, Method::bpm, Method::vcm}) {
+    RenderSettings settings = automatic(method);
+    settings.waveSize = 256;
+    settings.piecesForThreads = 1;  // photons are summed in the order of waves
+    const RgbImage one = render(scene, settings, 3);
+    settings.threads = 3;
+    EXPECT_EQ(render(scene, settings, 3), one) << toString(method);
+  }
+}
+
+TEST(AutoRadius, goesOnFromASavedState) {
+  const Scene scene = sceneFile("cornell-mirror", 40, 30);
+  const RenderSettings settings = automatic();
+  const auto whole = Session::create(scene, settings), part = Session::create(scene, settings),
+             rest = Session::create(scene, settings);
+  whole->renderUntil(5, std::nullopt);
+  part->renderUntil(2, std::nullopt);
+  restoreState(*rest, savedState(*part));
+  rest->renderUntil(5, std::nullopt);
+  EXPECT_EQ(rest->film().resolve(), whole->film().resolve());
+  ASSERT_TRUE(rest->statistics().mergeRadius);
+  EXPECT_EQ(rest->statistics().mergeRadius->first, whole->statistics().mergeRadius->first);
+}
+
+// Density estimation loses light at edges, in proportion to its radius: with the radius it goes.
+TEST(AutoRadius, agreesWithPathTracingAsItShrinks) {
+  const Scene scene = sceneFile("cornell-diffuse", 32, 24);
+  RenderSettings settings = automatic();
+  settings.radiusAlpha = 0;  // r_i = r_1 / sqrt(i)
+  const auto meanOf = [&](Method method, uint64_t first, uint64_t iterations) {
+    settings.method = method;
+    settings.firstIteration = first;
+    double sum = 0;
+    for (const float value : render(scene, settings, iterations)) sum += value;
+    return sum;
+  };
+  const double truth = meanOf(Method::pt, 0, 4096);
+  const double early = meanOf(Method::ppm, 0, 8) / truth - 1, late = meanOf(Method::ppm, 400, 4096) / truth - 1;
+  EXPECT_LT(early, -0.015) << "blurred, or this test shows nothing";
+  // Some 80,000 photons are merged: a standard error of 0.4 %. A tenth of the blur at first is less.
+  EXPECT_LT(std::abs(late), 0.01);
+}
+
+}  // namespace
+}  // namespace wavecrest
