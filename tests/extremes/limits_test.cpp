@@ -69,8 +69,8 @@ TEST(MergeRadius, shrinksByItsExponent) {
   settings.radius = 0.01;
   const auto radius = [&](double alpha, uint64_t iteration) {
     settings.radiusAlpha = alpha;
-    const MergeRadius radius{.first = *settings.radius, .alpha = settings.radiusAlpha, .scene = 2};
-    return misSettings({.merge = true}, radius, 100, iteration).radius / 2;
+    const MergeRadius merges{.first = *settings.radius, .alpha = settings.radiusAlpha, .scene = 2};
+    return misSettings({.merge = true}, merges, 100, iteration).radius / 2;
   };
   for (const double alpha : {0.0, 0.5, 0.75, 1.0}) {
     EXPECT_DOUBLE_EQ(radius(alpha, 0), 0.01) << alpha;
