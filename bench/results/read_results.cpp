@@ -47,13 +47,16 @@ std::vector<SceneRecord> readScenes(Database& database) {
   return scenes;
 }
 
-// Reads the stages and the measured snapshots of the run with this id.
+// Reads the stages and the measured snapshots of the run with this id. A snapshot without a whole iteration shows a
+// part of an image, and its scores are not those of the method: campaigns no longer keep any, and those of earlier ones
+// are left out.
 void readSnapshots(Database& database, int64_t id, RunRecord& run) {
   Statement stage(database, "SELECT name, items, seconds FROM stage WHERE run = ? ORDER BY position");
   stage.bind(id);
   while (stage.step()) run.stages.push_back({stage.text(0), stage.count(1), stage.real(2)});
   Statement row(database,
-                "SELECT number, render_seconds, iterations, file FROM snapshot WHERE run = ? ORDER BY number");
+                "SELECT number, render_seconds, iterations, file FROM snapshot WHERE run = ? AND iterations > 0 "
+                "ORDER BY number");
   Statement value(database, "SELECT metric, value FROM measurement WHERE run = ? AND number = ?");
   // Read the snapshots, each with its measurements.
   row.bind(id);

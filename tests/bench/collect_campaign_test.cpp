@@ -105,6 +105,16 @@ TEST_F(CollectCampaign, gathersSeedsIntoSeriesByMethod) {
   EXPECT_EQ(pt.stages.at(0).items, 200U);
 }
 
+TEST_F(CollectCampaign, leavesOutSnapshotsBeforeTheFirstWholeImage) {
+  RunRecord record = run("pt", 1, 0.2);
+  record.snapshots[0].iterations = 0;
+  writeStore("results.sqlite", {record});
+  const ConvergenceReport report = collect();
+  const ReportRun& shown = report.scenes.at(0).series.at(0).runs.at(0);
+  ASSERT_EQ(shown.points.size(), 1U);
+  EXPECT_EQ(shown.points[0].number, 1U);
+}
+
 TEST_F(CollectCampaign, showsMainScoresInTheOrderOfTheMetricListAndKeepsTheOthers) {
   writeStore("results.sqlite", {run("pt", 1, 0.2)});
   const ConvergenceReport report = collect();
