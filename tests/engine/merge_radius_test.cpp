@@ -30,9 +30,9 @@ MergeRadius radiusOf(const Scene& scene, const RenderSettings& settings = automa
 }
 
 // A floor of side 8 seen from above, so that each pixel covers a square of it. scale: of everything.
-constexpr double kHeight = 5, kFov = 20;
-constexpr uint32_t kWidth = 64;
-Scene floorFromAbove(double scale = 1, uint32_t width = kWidth) {
+constexpr double kRadiusHeight = 5, kFov = 20;
+constexpr uint32_t kRadiusWidth = 64;
+Scene floorFromAbove(double scale = 1, uint32_t width = kRadiusWidth) {
   Scene scene;
   Mesh floor;
   const auto half = static_cast<float>(4 * scale);
@@ -42,10 +42,10 @@ Scene floorFromAbove(double scale = 1, uint32_t width = kWidth) {
   Emitter point;
   point.kind = PointEmitter{.position = {0, 0, 1.5 * scale}, .intensity = {1, 1, 1}};
   scene.emitters.push_back(point);
-  setCamera(scene, {0, 0, kHeight * scale}, kFov, width, width);
+  setCamera(scene, {0, 0, kRadiusHeight * scale}, kFov, width, width);
   return scene;
 }
-double pixelOfFloor(double distance = kHeight, uint32_t width = kWidth) {
+double pixelOfFloor(double distance = kRadiusHeight, uint32_t width = kRadiusWidth) {
   return 2 * distance * std::tan(kFov / 2 * std::numbers::pi / 180) / width;
 }
 
@@ -77,7 +77,8 @@ TEST(AutoRadius, scalesWithTheScene) {
 }
 
 TEST(AutoRadius, halvesOnAFilmOfTwiceTheSize) {
-  const double ratio = radiusOf(floorFromAbove(1, kWidth)).at(0) / radiusOf(floorFromAbove(1, 2 * kWidth)).at(0);
+  const double ratio =
+      radiusOf(floorFromAbove(1, kRadiusWidth)).at(0) / radiusOf(floorFromAbove(1, 2 * kRadiusWidth)).at(0);
   EXPECT_NEAR(ratio, 2, 0.05);
 }
 
@@ -116,13 +117,13 @@ TEST(AutoRadius, followsMirrorsToTheFirstVertexThatMerges) {
   ceiling.positions = {{-4, -4, 7}, {4, -4, 7}, {4, 4, 7}, {-4, 4, 7}};
   ceiling.triangles = {{0, 2, 1}, {0, 3, 2}};
   addShape(scene, ceiling, static_cast<uint32_t>(scene.materials.size() - 1));
-  scene.sensor.toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, kHeight}, {0, 0, 0, 1}}};
+  scene.sensor.toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, kRadiusHeight}, {0, 0, 0, 1}}};
   EXPECT_NEAR(radiusOf(scene).pixel / pixelOfFloor(2 + 7), 1, kSlant);
 }
 
 TEST(AutoRadius, isTheFixedOneWhereNothingCanMerge) {
   Scene scene = floorFromAbove();
-  scene.sensor.toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, kHeight}, {0, 0, 0, 1}}};  // up, past the floor
+  scene.sensor.toWorld = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, kRadiusHeight}, {0, 0, 0, 1}}};  // up, past the floor
   const MergeRadius radius = radiusOf(scene);
   EXPECT_EQ(radius.first, kFixedRadius);
   EXPECT_EQ(radius.inPixels(), 0);
