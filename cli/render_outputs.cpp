@@ -149,9 +149,12 @@ void RenderOutputs::write(const Session& session, const std::string& statsFile, 
   for (const std::string& name : names) {
     attempt([&] {
       WritingProgress progress(kind_, name);
-      const bool brighter = names_.exposure != 0 && isPng(name);
-      writeImage(name, brighter ? exposed(image, names_.exposure) : image, metadata,
-                 [&](double fraction) { progress.show(fraction); });
+      const auto show = [&](double fraction) { progress.show(fraction); };
+      if (names_.exposure != 0 && isPng(name)) {
+        writeImage(name, exposed(image, names_.exposure), metadata, show);
+      } else {
+        writeImage(name, image, metadata, show);
+      }
     });
   }
   if (!statsFile.empty() && !all.is_null()) attempt([&] { writeText(statsFile, jsonText(all, 2) + "\n"); });

@@ -24,8 +24,9 @@ ReportSeries falling(double power, const std::vector<double>& scales, bool simil
   for (const double scale : scales) {
     ReportRun run{.seed = series.runs.size(), .points = {}};
     for (const double seconds : {1.0, 2.0, 4.0, 8.0, 16.0}) {
+      const auto number = static_cast<uint32_t>(run.points.size());
       const double loss = scale / std::pow(seconds, power);
-      run.points.push_back({.seconds = seconds, .values = {similarity ? 1 - loss : loss}});
+      run.points.push_back({.number = number, .seconds = seconds, .values = {similarity ? 1 - loss : loss}});
     }
     series.runs.push_back(std::move(run));
   }
