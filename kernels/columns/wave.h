@@ -18,7 +18,7 @@ struct ColumnNeeds {
   // Room to sort vertices by their BSDFs, where not all are diffuse (kernels/shade/vertex_order_lanes.h).
   bool bsdfOrder = true;
   bool splats = true;
-  // Room for rays behind the surfaces that they have passed (kernels/shade/pass_surfaces.cpp).
+  // Room for rays behind the surfaces that they have passed (kernels/pass/pass_surfaces.cpp).
   bool passages = false;
 };
 
