@@ -1,6 +1,6 @@
 // Opacity o, as Mitsuba 3's `mask`, of materials without passages (passage_lanes.h), such as those of surfaces that
-// shine: the surface is absent with probability 1 - o. That is one more delta lobe, which passes straight on; the others
-// are scaled by o.
+// shine: the surface is absent with probability 1 - o. That is one more delta lobe, which passes straight on; the
+// others are scaled by o.
 #pragma once
 
 #include "kernels/bsdf/bsdf_interface.h"
