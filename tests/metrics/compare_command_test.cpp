@@ -115,7 +115,7 @@ TEST_F(CompareCommand, ExposureBrightensBeforeTheConversionTo8Bits) {
 TEST_F(CompareCommand, MapsAreWrittenForEveryMetric) {
   const std::string folder = files_.path("maps");
   const auto run = runCompare({golden("ref"), golden("test"), "--map", folder, "--metrics",
-                               "rmse,relmse,ssim,hdrvdp2,flip,hdrflip,pu21psnr,pu21ssim,cvvdp"});
+                               "rmse,relmse,mape,ssim,hdrvdp2,flip,hdrflip,pu21psnr,pu21ssim,cvvdp"});
   ASSERT_EQ(run.exitCode, kExitDone) << run.error;
   for (const Metric& metric : metricList()) {
     if (metric.smallestSide > 128) continue;
@@ -136,7 +136,7 @@ TEST_F(CompareCommand, NonFinitePixelsAreExcludedCountedAndReported) {
   writeExr(files_.path("a.exr"), a);
   writeExr(files_.path("b.exr"), b);
   const auto json = runCompare({files_.path("a.exr"), files_.path("b.exr"), "--json", "--metrics",
-                                "rmse,relmse,ssim,hdrvdp2,flip,hdrflip,pu21psnr,pu21ssim,cvvdp"})
+                                "rmse,relmse,mape,ssim,hdrvdp2,flip,hdrflip,pu21psnr,pu21ssim,cvvdp"})
                         .json();
   EXPECT_EQ(json["nonfinite_pixels"], 3);
   EXPECT_EQ(json["rmse"], 0.0);
