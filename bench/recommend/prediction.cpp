@@ -16,7 +16,8 @@ constexpr double kFirstSeconds = 1e-2;
 constexpr int kWindow = 3;  // a window of 7 x 7 pixels, about that of SSIM
 
 // What no sample of the noise tells: rare paths that a pilot has not met, and a speed that changes. Natural logarithm
-// of time, at the pilot's own time and for each factor e beyond it (bench/recommend/judge).
+// of time, at the pilot's own time and for each factor e beyond it. Estimates: bench/recommend/judge can calibrate
+// them.
 constexpr double kModelError = 0.1, kModelErrorPerE = 0.06;
 
 // Signs of the four parts in each of the three independent samples of their mean's noise.

@@ -56,7 +56,7 @@ class ChainSession final : public PlannedSession<S> {
 
   ChainWorker<S>& worker();
   uint64_t stepsFor(uint64_t iterations) const;
-  // Of the chains of this session, and of all chains of the render.
+  // Mutations so far: by the chains of this share, and by those of all shares.
   uint64_t mutations() const { return step_ * settings_.chainsOfShare(); }
   uint64_t mutationsOfAll() const { return step_ * settings_.metropolis.chains; }
   bool direct() const { return hasDirectPass(plan_, settings_); }

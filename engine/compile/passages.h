@@ -18,8 +18,8 @@ struct CompiledMaterials {
   std::vector<MaterialRecord> records;
   std::vector<CompoundRecord> compounds;  // of each record, if asked for
   std::vector<PassageRecord> passages;    // of each record; empty where no shape lets light through
-  // Records with passages come a second time without, from here on: emission is met at vertices, so surfaces that shine
-  // let light through by a delta lobe. 0: no record comes twice.
+  // Emitting surfaces need a vertex, so they have no passages: they let light through by a delta lobe. Index of the
+  // first of the copies of all records, made without passages, for these surfaces. 0: there are no copies.
   uint32_t withoutPassages = 0;
 };
 CompiledMaterials compileMaterials(const Scene& scene, bool compounds);

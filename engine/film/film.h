@@ -86,8 +86,8 @@ class Film {
   // A film of the kind that the state says, with what it holds: for whoever has no scene.
   static std::unique_ptr<Film> fromState(StateReader& in);
 
-  // Adds what another film holds of the same render: other samples, other splats. Sums of splats are integers, so their
-  // total does not depend on the order of films; sums of samples are doubles, whose last bits do. Throws StateError
+  // Adds the samples and splats of another film of the same render. Splats are summed as integers: their total does not
+  // depend on the order of films. Samples are summed as doubles: their last bits do. Throws StateError
   // where the other film is of another kind.
   void add(const Film& other);
 

@@ -21,7 +21,7 @@ struct DryPlan {
   Accel accel{};
   bool spreads = false;  // camera samples, over the filter's footprint
 };
-// Compiles the scene and walks a few waves of light paths; throws as finishedPlan does.
+// Compiles the scene and traces a few thousand light paths. Throws what finishedPlan throws.
 DryPlan planWithoutSession(const Scene& scene, const RenderSettings& settings);
 // Its memory alone.
 MemoryPlan planMemory(const Scene& scene, const RenderSettings& settings);

@@ -1,5 +1,5 @@
-// A few light paths before a render begins: how many vertices and splats they leave decides about memory, and about the
-// unit of splats.
+// Traces a few light paths before a render. Memory is planned by how many vertices they leave, and the unit of the
+// film's integer splats by how bright their splats are.
 #pragma once
 
 #include "engine/film/film_area.h"

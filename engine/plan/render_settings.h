@@ -33,8 +33,8 @@ struct MetropolisSettings {
 };
 
 // What one session renders of an image that several render together; the films of all shares add up to the image
-// (Film::add). A share is a run of iterations, RenderSettings::firstIteration and iterations. Of mlt it is the chains
-// whose number is `part` modulo `parts`, in all iterations; all shares start from the same bootstraps.
+// (Film::add). A share is a run of iterations, RenderSettings::firstIteration and iterations. A share of mlt is chains
+// part, part + parts, part + 2 parts, ... in all iterations. All shares of mlt trace the same bootstrap samples.
 struct RenderShare {
   uint32_t part = 0, parts = 1;        // no more than chains
   std::optional<uint64_t> iterations;  // of the whole image; unset: those of the settings
@@ -94,8 +94,8 @@ struct RenderSettings {
   double connectionRoulette = 0.2;
   bool directPass = false;      // ppm: direct light by next event estimation, the rest from photons
   uint64_t firstIteration = 0;  // of this session: what came before was rendered by another
-  // N_L, the light paths of an iteration: one per pixel unless stated (lightPathsWanted). Only methods with a photon
-  // map may have another number; the others join each light path with its own camera path.
+  // N_L, the light paths of an iteration. Unset: one per pixel (lightPathsWanted). To be set for methods with a photon
+  // map only: all other methods trace one light path with each camera path.
   std::optional<uint64_t> lightPaths;
   std::optional<uint64_t> memoryBytes;           // budget; lowers N_L where that is what fills the memory
   std::optional<uint64_t> iterations;            // stop after this many,

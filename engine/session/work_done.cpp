@@ -33,7 +33,7 @@ void WorkDone::save(StateWriter& out) const {
 
 void WorkDone::restore(StateReader& in, std::vector<RenderStatistics::StageRow> rows) {
   restore(in);
-  // Stages are saved without names, in the order of this session's rows.
+  // Stages are saved by position, without names: both sessions have the same rows.
   if (stages.size() != rows.size()) throw StateError("it has other stages than this render");
   for (size_t i = 0; i < rows.size(); ++i) stages[i].name = std::move(rows[i].name);
 }

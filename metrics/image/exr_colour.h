@@ -43,7 +43,7 @@ class ExrChannelTarget {
 };
 
 // Converts pixels as stored to linear Rec. 709: by the primaries and the white point that the header gives, without
-// adaptation to another white, as Mitsuba does. An image of luminance has it in the first channel of three.
+// adaptation to another white, as Mitsuba does. Luminance alone is returned in the first of three channels.
 void convertExrColour(const std::string& path, const Imf::Header& header, ExrColour colour, Image& image);
 
 // OpenEXR allocates what an attribute of the header announces. Throws ImageError where that is more than the file has.

@@ -1,8 +1,8 @@
 // Methods against path tracing under bump and normal maps: each kind of BSDF under both, each kind of light among them,
 // every method. A light walk draws one of a map's two normals (METHODS 1.2), a camera walk has one only.
 //
-// 16 seeds of 16 x 12 pixels each. False alarms as in render_statistics.h: 5e-6 for each comparison, of which there are
-// about 200; merging alone may differ by a few per cent of the mean, its bias by the radius.
+// 16 seeds, 16 x 12 pixels. About 200 comparisons, each with a false-alarm rate of 5e-6 (render_statistics.h). Merging
+// alone may differ by a few per cent of the mean, its bias by the radius.
 #include <gtest/gtest.h>
 
 #include <string>
