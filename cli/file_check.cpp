@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "metrics/image/atomic_file.h"
 #include "metrics/image/image.h"
+#include "metrics/image/image_io.h"
 
 namespace wavecrest {
 namespace {
@@ -50,6 +51,15 @@ void FileCheck::output(const std::string& role, const fs::path& file) {
   } catch (const ImageError& error) {
     throw UsageError(fmt::format("{} {}", role, error.what()));
   }
+}
+
+void FileCheck::image(const std::string& role, const fs::path& file) {
+  try {
+    checkImageTarget(file.string());
+  } catch (const ImageError& error) {
+    throw UsageError(error.what());
+  }
+  output(role, file);
 }
 
 bool readerHasLeft() {

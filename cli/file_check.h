@@ -17,6 +17,8 @@ class FileCheck {
   void input(const std::string& role, const std::filesystem::path& file);
   // The folder must exist and be writable; the file may exist and is then replaced.
   void output(const std::string& role, const std::filesystem::path& file);
+  // An output whose format, that of its name's ending, must be one that images are written in.
+  void image(const std::string& role, const std::filesystem::path& file);
   // A file that is to be written, among others of its kind, in a folder that has been checked.
   void laterOutput(const std::string& role, const std::filesystem::path& file);
 

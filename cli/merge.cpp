@@ -27,14 +27,7 @@ struct MergeOptions {
 void checkFiles(const MergeOptions& options) {
   FileCheck files;
   for (const std::string& part : options.parts) files.input("a part", part);
-  for (const std::string& image : options.outputs) {
-    try {
-      checkImageTarget(image);
-    } catch (const ImageError& error) {
-      throw UsageError(error.what());
-    }
-    files.output("-o", image);
-  }
+  for (const std::string& image : options.outputs) files.image("-o", image);
   if (options.checkpoint == kStandardStream) throw UsageError("--checkpoint -: expected a file");
   if (!options.checkpoint.empty()) files.output("--checkpoint", options.checkpoint);
   if (!options.reference.empty()) files.output("--reference", options.reference);

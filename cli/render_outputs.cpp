@@ -67,14 +67,7 @@ void checkOutputs(const OutputNames& names, const std::vector<std::string>& inpu
   FileCheck files;
   for (const std::string& input : inputs) files.input("the scene", input);
   if (!reference.empty()) files.input("--reference", reference);
-  for (const std::string& image : names.images) {
-    try {
-      checkImageTarget(image);
-    } catch (const ImageError& error) {
-      throw UsageError(error.what());
-    }
-    files.output("-o", image);
-  }
+  for (const std::string& image : names.images) files.image("-o", image);
   if (!names.stats.empty()) files.output("--stats", names.stats);
   if (!names.checkpoint.empty()) files.output("--checkpoint", names.checkpoint);
   // How many snapshots there will be is not known, so no other file may have the name of any snapshot.

@@ -117,13 +117,18 @@ class BlockPool : public IlmThread::ThreadPoolProvider {
     const IlmThread::ThreadPool* pool = threads();
     return pool != nullptr ? pool->numThreads() : 0;
   }
+  // Where memory or processes are short, as many of them as start: the calling thread does what none of them can.
   void setNumThreads(int count) override {
     const std::lock_guard lock(starting_);
     if (process_ == 0) {
-      threads_ = new IlmThread::ThreadPool(static_cast<unsigned>(count));
+      threads_ = new IlmThread::ThreadPool(0);
       process_ = ::getpid();
-    } else if (IlmThread::ThreadPool* pool = threads()) {
-      pool->setNumThreads(count);
+    }
+    IlmThread::ThreadPool* pool = threads();
+    if (pool == nullptr) return;
+    try {
+      for (int n = std::min(count, pool->numThreads() + 1); n <= count; ++n) pool->setNumThreads(n);
+    } catch (const std::system_error&) {
     }
   }
   void addTask(IlmThread::Task* task) override {

@@ -205,20 +205,16 @@ class Resources(CommandTest):
         self.assert_one_error_line(result, r"out of memory; expected")
 
     def test_threads_that_cannot_be_started_are_one_clear_line(self):
-        # Not one more thread with a stack of 2 GB of address space fits into 2 GB. TBB starts threads as work comes: on a
-        # busy machine it may be that a short render is over before it has started one.
-        def limits():
-            resource.setrlimit(resource.RLIMIT_STACK, (2 << 30, 2 << 30))
-            resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
-
-        for _ in range(8):
-            result = subprocess.run(
-                [WAVECREST, "render", "cornell-diffuse", "--size", "256x256", "--wave", "16", "--spp", "32", "--threads",
-                 "400"],
-                cwd=self.folder, timeout=TIMEOUT_SECONDS, check=False, text=True, capture_output=True, preexec_fn=limits,
-            )  # fmt: skip
-            if result.returncode != DONE:
-                break
+        render = ["render", "cornell-diffuse", "--size", "64x64", "--wave", "16", "--spp", "4", "--output", "x.exr"]
+        # The least address space in which one thread renders, to 4 MB: no room for the stack of another.
+        step, low, high = 4 << 20, 0, 512
+        while high - low > 1:
+            middle = (low + high) // 2
+            done = self.limited(resource.RLIMIT_AS, middle * step, *render, "--threads", "1").returncode == DONE
+            low, high = (low, middle) if done else (middle, high)
+        result = self.limited(resource.RLIMIT_AS, high * step, *render, "--threads", "1")
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        result = self.limited(resource.RLIMIT_AS, high * step, *render, "--threads", "400")
         self.assertEqual(result.returncode, FAILURE, result.stderr)
         self.assert_one_error_line(result, r".*expected .*--threads")
 
