@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 #include "cli/progress.h"
 #include "engine/scene/scene.h"
 #include "engine/session/session.h"

@@ -30,8 +30,6 @@ endif()
 
 install(TARGETS wavecrest_shared EXPORT wavecrest)
 install(DIRECTORY include/wavecrest DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-# Beside the header that includes it, so that its path in quotes is found.
-install(FILES bench/results/results.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/wavecrest/bench/results)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/wavecrest)
 install(EXPORT wavecrest NAMESPACE wavecrest:: FILE wavecrestConfig.cmake DESTINATION ${package_folder})

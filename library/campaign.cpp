@@ -7,9 +7,9 @@
 #include "bench/campaign/run_campaign.h"
 #include "bench/report/write_report.h"
 #include "bench/results/read_results.h"
-#include "engine/session/session.h"
 #include "engine/version.h"
 #include "library/campaign_options.h"
+#include "library/stop_watch.h"
 #include "library/translate.h"
 #include "wavecrest/wavecrest.h"
 
@@ -22,16 +22,16 @@ const char* commit() { return kCommit; }
 void StopRequest::request() noexcept {
   requested_.store(true);
   requesting_.fetch_add(1);
-  if (Session* const session = session_.load()) session->interrupt();
+  if (void* const session = session_.load()) static_cast<Session*>(session)->interrupt();
   requesting_.fetch_sub(1);
 }
 
 // A request that begins after the store finds the new session. Earlier ones may hold the former, whose owner is about
 // to end it, so they are waited for.
-void StopRequest::watch(Session* session) noexcept {
-  session_.store(session);
-  while (requesting_.load() != 0) std::this_thread::yield();
-  if (session != nullptr && requested_.load()) session->interrupt();
+void StopWatch::watch(StopRequest& stop, Session* session) noexcept {
+  stop.session_.store(session);
+  while (stop.requesting_.load() != 0) std::this_thread::yield();
+  if (session != nullptr && stop.requested_.load()) session->interrupt();
 }
 
 bool converge(const CampaignOptions& options, const CampaignCallbacks& callbacks, StopRequest* stop) {
@@ -40,7 +40,7 @@ bool converge(const CampaignOptions& options, const CampaignCallbacks& callbacks
     const CampaignSettings settings = begunCampaign(asked);
     const CampaignHooks hooks{.session = {.watch =
                                               [&](Session* session) {
-                                                if (stop != nullptr) stop->watch(session);
+                                                if (stop != nullptr) StopWatch::watch(*stop, session);
                                               }},
                               .stopped = [&] { return stop != nullptr && stop->requested(); },
                               .planned = [](const CampaignPlan&) {},

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/campaign/reference_file.h"
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

@@ -10,7 +10,7 @@
 
 #include "bench/campaign/reference_file.h"
 #include "bench/campaign/session_hooks.h"
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 #include "engine/session/snapshots.h"
 #include "metrics/prepared_reference.h"
 

@@ -15,7 +15,7 @@
 #include <optional>
 #include <string>
 
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 #include "metrics/image/image_io.h"
 
 namespace wavecrest {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 #include "engine/scene/scene.h"
 #include "engine/session/session.h"
 #include "metrics/image/image_io.h"

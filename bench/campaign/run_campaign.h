@@ -17,7 +17,7 @@
 
 #include "bench/campaign/campaign_settings.h"
 #include "bench/campaign/session_hooks.h"
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/claims/claim_list.h"
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 #include "bench/statistics/bands.h"
 
 namespace wavecrest {

@@ -5,7 +5,7 @@
 
 #include "bench/campaign/run_campaign.h"
 #include "bench/live/live_server.h"
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

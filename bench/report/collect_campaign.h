@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bench/report/report_data.h"
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 #include "bench/results/results_error.h"
 
 namespace wavecrest {

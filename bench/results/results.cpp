@@ -1,4 +1,4 @@
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

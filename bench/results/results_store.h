@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/results/database.h"
-#include "bench/results/results.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

@@ -6,13 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/results/results.h"
 #include "wavecrest/campaign_options.h"
 #include "wavecrest/export.h"
-
-namespace wavecrest {
-class Session;
-}
+#include "wavecrest/results.h"
 
 namespace wavecrest::api {
 
@@ -36,13 +32,10 @@ class WAVECREST_EXPORT StopRequest {
   void request() noexcept;
   bool requested() const noexcept { return requested_.load(); }
 
-  // For converge(): the session that is to stop, or null while none renders. Once it returns no request holds the
-  // former session.
-  void watch(Session* session) noexcept;
-
  private:
+  friend struct StopWatch;  // library/stop_watch.h, which says what renders
   std::atomic<bool> requested_{false};
-  std::atomic<Session*> session_{nullptr};
+  std::atomic<void*> session_{nullptr};
   std::atomic<int> requesting_{0};  // requests under way
 };
 

@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "engine/session/session.h"
-#include "wavecrest/campaign.h"
+#include "library/stop_watch.h"
 
 namespace wavecrest {
 namespace {
@@ -28,13 +27,13 @@ class IdleSession : public Session {
 TEST(StopRequest, reachesTheSessionThatIsWatchedAndLaterOnes) {
   IdleSession first, second, after;
   api::StopRequest stop;
-  stop.watch(&first);
+  api::StopWatch::watch(stop, &first);
   EXPECT_FALSE(first.interrupted());
   stop.request();
   EXPECT_TRUE(first.interrupted());
-  stop.watch(&second);
+  api::StopWatch::watch(stop, &second);
   EXPECT_TRUE(second.interrupted());
-  stop.watch(nullptr);
+  api::StopWatch::watch(stop, nullptr);
   stop.request();
   EXPECT_FALSE(after.interrupted());
 }
@@ -49,10 +48,10 @@ TEST(StopRequest, noRequestHoldsASessionThatIsWatchedNoMore) {
   while (!stop.requested()) std::this_thread::yield();
   for (int round = 0; round < 2000; ++round) {
     const auto session = std::make_unique<IdleSession>();
-    stop.watch(session.get());
+    api::StopWatch::watch(stop, session.get());
     EXPECT_TRUE(session->interrupted());
     std::this_thread::yield();
-    stop.watch(nullptr);
+    api::StopWatch::watch(stop, nullptr);
   }
   done.store(true);
   other.join();
