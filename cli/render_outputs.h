@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "wavecrest/results.h"
 #include "cli/progress.h"
 #include "engine/scene/scene.h"
 #include "engine/session/session.h"
 #include "engine/session/snapshots.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

@@ -10,9 +10,9 @@
 
 #include "bench/campaign/reference_file.h"
 #include "bench/campaign/session_hooks.h"
-#include "wavecrest/results.h"
 #include "engine/session/snapshots.h"
 #include "metrics/prepared_reference.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

@@ -15,8 +15,8 @@
 #include <optional>
 #include <string>
 
-#include "wavecrest/results.h"
 #include "metrics/image/image_io.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

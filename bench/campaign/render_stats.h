@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "wavecrest/results.h"
 #include "engine/scene/scene.h"
 #include "engine/session/session.h"
 #include "metrics/image/image_io.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

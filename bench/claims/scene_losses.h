@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "wavecrest/results.h"
 #include "bench/statistics/bands.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

@@ -70,6 +70,7 @@ PilotRender renderPilot(const Scene& scene, RenderSettings settings, uint64_t fi
     if (!part.image) return result;
     pilot.parts[i] = std::move(*part.image);
     pilot.seconds += part.pace;
+    pilot.onceSeconds += std::max(part.seconds - part.pace, 0.0) / kParts;
   }
   const PathStrategies strategies = strategiesOf(settings.method);
   if (strategies.merge) pilot.biasExponent = biasDecay(settings.radiusAlpha);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "bench/pixel_blocks.h"
 #include "metrics/image/srgb.h"
@@ -134,17 +135,50 @@ double ssimOf(const PreparedReference& reference, Image image) {
   return reference.ssim().compare(test.codes).mean;
 }
 
+// What 1 - SSIM is on average with these samples of noise, times a factor, added to the reference.
+double meanLoss(const PreparedReference& reference, std::span<const Image> noises, double factor) {
+  double sum = 0;
+  for (const Image& noise : noises) {
+    Image image = linearLight(reference.image().file);
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += static_cast<float>(factor * noise.pixels[i]);
+    sum += 1 - ssimOf(reference, std::move(image));
+  }
+  return sum / static_cast<double>(noises.size());
+}
+
+// With twice the samples, noise of a smaller amplitude lies on more pixels. Logarithm of the factor by which that makes
+// up for amplitude, in the eyes of SSIM: noise of two parts, shrunken to the amplitude of four, is compared with that
+// of four. 0 for noise that is alike everywhere.
+double spreadOf(const PreparedReference& reference, const Pilot& pilot, const NoiseSamples& ofFour) {
+  constexpr double kStep = 1.2, kLeastLoss = 1e-5, kMost = 0.3;
+  std::array<Image, 2> ofTwo{pilot.parts[0], pilot.parts[2]};
+  for (size_t pair = 0; pair < 2; ++pair) {
+    const Image& other = pilot.parts[2 * pair + 1];
+    for (size_t i = 0; i < other.pixels.size(); ++i) {
+      float& value = ofTwo[pair].pixels[i];
+      value = static_cast<float>((static_cast<double>(value) - static_cast<double>(other.pixels[i])) / std::sqrt(8));
+    }
+  }
+  const double two = meanLoss(reference, ofTwo, 1), more = meanLoss(reference, ofTwo, kStep);
+  const double four = meanLoss(reference, ofFour, 1);
+  if (two < kLeastLoss || more <= two) return 0;
+  return std::clamp(std::log(four / two) * std::log(kStep) / std::log(more / two), 0.0, kMost);
+}
+
 // SSIM of the image as it will be.
 class Future {
  public:
-  Future(const PreparedReference& reference, const Pilot& pilot, const Image& bias, const Image& noise)
-      : reference_(reference), pilot_(pilot), bias_(bias), noise_(noise) {}
+  Future(const PreparedReference& reference, const Pilot& pilot, const Image& bias, const Image& noise, double spread)
+      : reference_(reference), pilot_(pilot), bias_(bias), noise_(noise), spread_(spread) {}
 
-  // SSIM after so many seconds: noise and bias fall with their own powers from what a part of the pilot has. The mean
-  // of its four parts has the bias of one, and half the noise.
+  // SSIM after so many seconds. Noise that spreads does so as excess kurtosis falls, with the inverse of time: as much
+  // is to come as was between two parts and four. Noise and bias fall with their own powers from what a part of the
+  // pilot has. The mean of its four parts has the bias of one, and half the noise.
   double ssimAt(double seconds) const {
     const double times = 0.25 * pilot_.seconds / seconds;
-    const double noise = 2 * std::pow(times, pilot_.noiseExponent), bias = std::pow(times, pilot_.biasExponent);
+    const double spread = std::exp(spread_ * std::max(0.0, 1 - pilot_.seconds / seconds));
+    const double noise = 2 * spread * std::pow(times, pilot_.noiseExponent);
+    const double bias = std::pow(times, pilot_.biasExponent);
     Image image = linearLight(reference_.image().file);
     for (size_t i = 0; i < image.pixels.size(); ++i) {
       image.pixels[i] += static_cast<float>(bias * bias_.pixels[i] + noise * noise_.pixels[i]);
@@ -167,6 +201,7 @@ class Future {
   const PreparedReference& reference_;
   const Pilot& pilot_;
   const Image &bias_, &noise_;
+  const double spread_;
 };
 
 // The interval of a time that three samples of the noise gave, by Student's t with two degrees of freedom over their
@@ -205,11 +240,11 @@ Prediction predict(const PilotReference& reference, const Pilot& pilot, double t
   // SSIM of the pilot, and what is left of bias after kLongestSeconds.
   Prediction result;
   result.ssimNow = ssimOf(reference.noisy, mean);
-  result.ssimLimit = Future(reference.likely, pilot, bias, noises[0]).ssimAt(kLongestSeconds);
+  result.ssimLimit = Future(reference.likely, pilot, bias, noises[0], 0).ssimAt(kLongestSeconds);
   // Seconds until the target with each sample of the noise. The target must be reached with every sample.
   double sum = 0, squares = 0;
   for (const Image& noise : noises) {
-    const std::optional<double> seconds = Future(reference.likely, pilot, bias, noise).secondsUntil(targetSsim);
+    const std::optional<double> seconds = Future(reference.likely, pilot, bias, noise, 0).secondsUntil(targetSsim);
     if (!seconds) return result;
     sum += std::log(*seconds) / 3;
     squares += std::pow(std::log(*seconds), 2) / 3;
@@ -217,16 +252,18 @@ Prediction predict(const PilotReference& reference, const Pilot& pilot, double t
   result.seconds = std::exp(sum);
   result.interval = ofThree(sum, squares);
   // The other readings of the reference.
-  const auto reading = [&](const PreparedReference& other) {
-    return Future(other, pilot, bias, noises[0])
+  const auto reading = [&](const PreparedReference& other, double spread) {
+    return Future(other, pilot, bias, noises[0], spread)
         .secondsUntil(targetSsim)
         .value_or(std::numeric_limits<double>::infinity());
   };
-  const double early = reading(reference.noisy), late = reading(reference.smooth);
+  const double early = reading(reference.noisy, 0),
+               late = reading(reference.smooth, spreadOf(reference.likely, pilot, noises));
   const double beyond = std::max(std::log(*result.seconds / pilot.seconds), 0.0);
   const double model = std::exp(kModelError + kModelErrorPerE * beyond);
-  result.interval.low = std::min({result.interval.low, early, late}) / model;
-  result.interval.high = std::max({result.interval.high, early, late}) * model;
+  result.interval.low = std::min({result.interval.low, early, late}) / model + pilot.onceSeconds;
+  result.interval.high = std::max({result.interval.high, early, late}) * model + pilot.onceSeconds;
+  *result.seconds += pilot.onceSeconds;
   return result;
 }
 

@@ -6,6 +6,10 @@
 // left between its mean and the reference, block by block of 8 x 8 pixels, where it is significant. The predicted image
 // at a later time is reference + bias + shrunken noise, and is compared with the reference as any image is.
 //
+// Rare bright samples spread: few pixels far off become many that are off a little, and SSIM, which a pixel can spoil
+// once only, may fall behind the power of time. By how much at most is measured on the pilot, between two parts and
+// four; the end of the interval has it.
+//
 // The reference has noise of its own. Noise looks like detail, and next to detail SSIM forgives errors, so a noisy
 // reference makes predicted times too short; a smoothed one makes them too long. The truth is between the two.
 #pragma once
@@ -21,6 +25,7 @@ namespace wavecrest {
 struct Pilot {
   std::array<Image, 4> parts;  // independent, of equal render time
   double seconds = 0;          // of all four together, without what a long render does once
+  double onceSeconds = 0;      // of that, in one render
   // Whether the method may have a bias. One that samples all paths of the scene has none: what its mean lacks is noise.
   bool biased = false;
   // Bias falls with time to this power: 0 for what a method never finds, above for merging (biasDecay).
@@ -54,8 +59,8 @@ struct Prediction {
   double ssimNow = 0;             // of the mean of the pilot's images
   double ssimLimit = 0;           // after kLongestSeconds: what bias leaves
   std::optional<double> seconds;  // until the target; nothing where that is not within kLongestSeconds
-  // Of seconds: by three samples of the noise, by the readings of the reference, and by how far the pilot is from the
-  // time predicted. high is infinite where one of them does not get to the target.
+  // Of seconds: by three samples of the noise, by the readings of the reference, the late one with noise that spreads,
+  // and by how far the pilot is from the time predicted. high is infinite where one of them does not get to the target.
   Interval interval;
 };
 constexpr double kLongestSeconds = 1e7;

@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "wavecrest/results.h"
 #include "bench/results/results_error.h"
+#include "wavecrest/results.h"
 
 namespace wavecrest {
 

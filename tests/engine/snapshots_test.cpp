@@ -90,8 +90,8 @@ TEST_P(SnapshotsTest, noWaveStartsAfterTheEnd) {
 
 class BootstrapTest : public SnapshotsTest {};
 
-// Renders in stretches as short as the machine allows: where it was too slow to trace anything in one, the next is twice
-// as long.
+// Renders in stretches as short as the machine allows: where it was too slow to trace anything in one, the next is
+// twice as long.
 class ShortStretches {
  public:
   explicit ShortStretches(Session& session) : session_(session) {}

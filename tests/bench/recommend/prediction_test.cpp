@@ -79,6 +79,41 @@ TEST_F(PredictionTest, noiseOfMergesFallsMoreSlowly) {
   EXPECT_NEAR(ssimOf(truth_, noisy(*p.seconds, 0, 77, pilot.noiseExponent)), 0.95, 0.003);
 }
 
+// Few samples are bright, as those of caustics.
+Image withFireflies(double seconds, unsigned seed) {
+  std::mt19937 random(seed);
+  constexpr double kRate = 0.1, kBright = 0.2;  // a second
+  std::poisson_distribution<int> number(kRate * seconds);
+  Image image = scene();
+  for (float& value : image.pixels) value += static_cast<float>(kBright * (number(random) / seconds - kRate));
+  return image;
+}
+
+TEST_F(PredictionTest, noiseOfFewBrightSamplesMaySpread) {
+  Pilot pilot{.parts = {}, .seconds = 1};
+  for (unsigned part = 0; part < 4; ++part) pilot.parts[part] = withFireflies(0.25, part);
+  const Prediction even = predict(reference_, pilotOf(1, 0), 0.95);
+  for (const double later : {4.0, 16.0}) {
+    const Prediction p = predict(reference_, pilot, ssimOf(truth_, withFireflies(later, 77)));
+    ASSERT_TRUE(p.seconds) << later;
+    EXPECT_NEAR(std::log(*p.seconds / later), 0, std::log(1.3)) << later;
+    EXPECT_LE(p.interval.low, later);
+    EXPECT_GE(p.interval.high, later);
+    EXPECT_GT(p.interval.high / *p.seconds, 1.2 * even.interval.high / *even.seconds) << later;
+  }
+}
+
+TEST_F(PredictionTest, whatIsDoneOnceIsAddedToTheTime) {
+  Pilot pilot = pilotOf(1, 0);
+  const Prediction without = predict(reference_, pilot, 0.95);
+  pilot.onceSeconds = 3;
+  const Prediction with = predict(reference_, pilot, 0.95);
+  ASSERT_TRUE(without.seconds && with.seconds);
+  EXPECT_DOUBLE_EQ(*with.seconds, *without.seconds + 3);
+  EXPECT_DOUBLE_EQ(with.interval.low, without.interval.low + 3);
+  EXPECT_DOUBLE_EQ(with.interval.high, without.interval.high + 3);
+}
+
 TEST_F(PredictionTest, doesNotDependOnHowLongThePilotWas) {
   const Prediction brief = predict(reference_, pilotOf(0.5, 0), 0.95);
   const Prediction longer = predict(reference_, pilotOf(4, 0), 0.95);
