@@ -103,6 +103,17 @@ TEST_F(PredictionTest, noiseOfFewBrightSamplesMaySpread) {
   }
 }
 
+TEST_F(PredictionTest, aBiasThatTheReferenceSharesIsNotSeen) {
+  Pilot pilot = pilotOf(1, 0), merged = exact();
+  pilot.biased = true;
+  const Prediction seen = predict(reference_, pilot, 0.95);
+  merged.biased = true;
+  const Prediction unseen = predict(PilotReference(merged), pilot, 0.95);
+  ASSERT_TRUE(seen.seconds && unseen.seconds);
+  EXPECT_DOUBLE_EQ(*unseen.seconds, *seen.seconds);
+  EXPECT_GT(unseen.interval.high, 1.3 * seen.interval.high);
+}
+
 TEST_F(PredictionTest, whatIsDoneOnceIsAddedToTheTime) {
   Pilot pilot = pilotOf(1, 0);
   const Prediction without = predict(reference_, pilot, 0.95);
