@@ -194,6 +194,8 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
            "light paths of an iteration of ppm, bpm and vcm; default: the profile's, or as many as pixels and of ppm "
            "and bpm at least 4096")
       .oneValue();
+  defining("--roulette", "what decides whether walks go on: throughput, albedo or efficiency; default: the profile's")
+      .oneValue();
   defining("--mlt", "rows of mlt: pathspace, mmlt, pssmlt, separated by commas; default: the profile's")
       .separatedByCommas()
       .repeatable();

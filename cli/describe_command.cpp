@@ -57,6 +57,7 @@ std::vector<CompletionWords> completionWords() {
           named({"--accel"}, kAccelNames),
           named({"--instances"}, kInstancingNames),
           named({"--filter-mode"}, kFilterModeNames),
+          named({"--roulette"}, kRouletteNames),
           named({"--mlt"}, kMetropolisVariantNames),
           named({"--clock"}, kClockNames),
           named({"--progress"}, kProgressNames),

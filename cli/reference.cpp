@@ -97,6 +97,7 @@ RenderSettings settingsFor(const ReferenceOptions& options, const Scene& scene, 
         fmt::format("--radius: {} does not merge; expected {}", toString(method), methodsWith(mergesPaths)));
   }
   settings.radius = options.radius;
+  settings.roulette = Roulette::efficiency;  // another roulette has the same limit, so any reference can go on
   return settings;
 }
 

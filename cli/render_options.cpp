@@ -26,6 +26,11 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command.add("--max-depth", options.maxDepth, "edges of the longest path; -1: unlimited")
       .between(kDepthRange.least, kDepthRange.most, -1);
   command.add("--rr-depth", options.rrDepth, "first vertex where roulette may end a path").between(kRouletteDepthRange);
+  command
+      .add("--roulette", options.roulette,
+           "what decides whether a walk goes on: throughput, albedo, or efficiency: throughput in the method's "
+           "proportion")
+      .showDefault();
   // Kernels and intersector.
   command.add("--precision", options.precision, "float or double").showDefault();
   command.add("--isa", options.isa, "auto, scalar, sse4, avx2 or avx512").showDefault();

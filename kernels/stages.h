@@ -126,6 +126,8 @@ struct PathMutations;  // kernels/columns/chain_paths.h
 template <class S>
 struct WalkEnds;  // kernels/columns/chains.h
 
+struct SurvivalRule;  // kernels/columns/survival.h
+
 struct PathLimits {
   uint32_t maxDepth = 64;      // K: edges of the longest path
   uint32_t rouletteDepth = 5;  // first vertex at which Russian roulette may end a path
@@ -170,6 +172,7 @@ struct StageContext {
   const uint32_t* lanes = nullptr;  // lanes in which light paths begin; none: the first ones
   SamplerSettings sampler;
   PathLimits limits;
+  const SurvivalRule* survival = nullptr;  // of Russian roulette; none: by throughput
   Walk walk = Walk::camera;
   MisSettings mis;
   uint32_t depth = 0;        // index of the vertex that the stage works on; 0 is the path's origin

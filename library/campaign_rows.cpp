@@ -106,6 +106,10 @@ void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSett
   if (const auto* alpha = given(words, "--radius-alpha")) {
     render.radiusAlpha = parseNumber("--radius-alpha", alpha->front(), kRadiusAlphaRange);
   }
+  render.roulette = profile.roulette;
+  if (const auto* roulette = given(words, "--roulette")) {
+    render.roulette = static_cast<Roulette>(parseChoice("--roulette", roulette->front(), kRouletteNames));
+  }
   // An option is stronger than the profile's choice.
   if (profile.lightPaths != 0) render.lightPaths = profile.lightPaths;
   if (const auto* paths = given(words, "--light-paths")) {
@@ -130,6 +134,11 @@ void refuseUnusedWords(const CampaignWords& words, const CampaignSettings& setti
     if (!chosen || merges) continue;
     throw UsageError(fmt::format("{}: no method of the campaign merges; expected {} among --methods", name,
                                  methodsWith(mergesPaths)));
+  }
+  const bool walks = anyRow([](const CampaignMethod& row) { return hasRouletteChoice(row.method); });
+  if (given(words, "--roulette") != nullptr && !walks) {
+    throw UsageError(fmt::format("--roulette: no method of the campaign has the choice; expected {} among --methods",
+                                 methodsWith(hasRouletteChoice)));
   }
   // Options that make rows of ppm and mlt.
   if (given(words, "--direct-pass") != nullptr && !anyRow([](const CampaignMethod& row) { return row.directPass; })) {
@@ -158,6 +167,7 @@ void addRowKeys(const CampaignSettings& settings, std::map<std::string, std::str
   keys["clock"] = kClockNames[static_cast<size_t>(settings.render.clock)];
   keys["radius"] = settings.render.radius ? fmt::format("{:g}", *settings.render.radius) : "auto";
   keys["radius_alpha"] = fmt::format("{:g}", settings.render.radiusAlpha);
+  keys["roulette"] = kRouletteNames[static_cast<size_t>(settings.render.roulette)];
   keys["light_paths"] = settings.render.lightPaths ? std::to_string(*settings.render.lightPaths) : "one per pixel";
   if (!definitions.empty()) keys["definitions"] = definitions;
 }

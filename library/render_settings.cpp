@@ -49,6 +49,7 @@ void refuseOptionsOfOtherMethods(const api::RenderOptions& options, Method metho
       {"--direct-pass", options.directPass, isPpm, "has no such choice"},
       {"--connection-roulette", options.connectionRoulette != byDefault.connectionRoulette, hasConnectionRoulette,
        "has no roulette of connections"},
+      {"--roulette", options.roulette != byDefault.roulette, hasRouletteChoice, "ends walks by throughput"},
       {"--mlt", otherMlt, isMlt, kNoChains},
       {"--chains", options.chains != byDefault.chains, isMlt, kNoChains},
       {"--bootstrap", options.bootstrap != byDefault.bootstrap, isMlt, kNoChains},
@@ -113,6 +114,7 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   settings.metropolis = chosenChains(options);
   settings.radius = options.radius != 0 ? std::optional(options.radius) : std::nullopt;
   settings.radiusAlpha = options.radiusAlpha;
+  settings.roulette = static_cast<Roulette>(parseChoice("--roulette", options.roulette, kRouletteNames));
   settings.connectionRoulette = options.connectionRoulette;
   if (options.lightPaths != 0) settings.lightPaths = options.lightPaths;
   settings.directPass = options.directPass;

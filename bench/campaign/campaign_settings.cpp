@@ -36,6 +36,7 @@ constexpr std::array kProfiles{
             .lightPaths = 0,
             .studyRows = false,
             .radius = {},
+            .roulette = Roulette::efficiency,
             .effort = [](std::string_view) { return Effort{.seconds = 4}; }},
     Profile{.name = "standard",
             .description = "small images with error bands: an hour or two",
@@ -45,6 +46,7 @@ constexpr std::array kProfiles{
             .lightPaths = kStudyLightPaths,
             .studyRows = true,
             .radius = kStudyRadius,
+            .roulette = Roulette::throughput,
             .effort = [](std::string_view) { return Effort{.seconds = 30}; }},
     Profile{.name = "study",
             .description = "the study's size, light paths and radius in a tenth of its time: ten hours a seed",
@@ -54,6 +56,7 @@ constexpr std::array kProfiles{
             .lightPaths = kStudyLightPaths,
             .studyRows = true,
             .radius = kStudyRadius,
+            .roulette = Roulette::throughput,
             .effort = studyEffort},
     Profile{.name = "paper",
             .description = "the protocol of the study: 1024x768, 30 to 120 minutes a run",
@@ -63,6 +66,7 @@ constexpr std::array kProfiles{
             .lightPaths = kStudyLightPaths,
             .studyRows = true,
             .radius = kStudyRadius,
+            .roulette = Roulette::throughput,
             .effort = paperEffort},
 };
 

@@ -37,7 +37,8 @@ struct Effort {
 };
 
 // A named choice of everything. quick and standard are for small images and use the references that come with the
-// scenes; study and paper have the study's size, light paths and radius, paper its run times too.
+// scenes; study and paper have the study's size, light paths, radius and
+// roulette, paper its run times too.
 struct Profile {
   std::string_view name;
   std::string_view description;  // one line
@@ -49,6 +50,7 @@ struct Profile {
   uint64_t lightPaths;
   bool studyRows;
   std::optional<double> radius;  // of the first merges; unset: what the image needs
+  Roulette roulette;
   Effort (*effort)(std::string_view scene);
 };
 

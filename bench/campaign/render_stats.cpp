@@ -148,6 +148,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
     stats["part"] = std::to_string(settings.share.part + 1) + "/" + std::to_string(settings.share.parts);
     stats["first_iteration"] = settings.firstIteration;
   }
+  if (hasRouletteChoice(settings.method)) stats["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
   if (hasConnectionRoulette(settings.method)) stats["connection_roulette"] = settings.connectionRoulette;
   if (statistics.chains) stats.update(chainStats(settings, *statistics.chains));
   return stats;

@@ -69,6 +69,7 @@ Reference renderOwn(const Scene& scene, const CampaignScene& entry, const Campai
   render.seed = 0;
   render.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   render.radius = kReferenceRadius;
+  render.roulette = Roulette::efficiency;
   render.radiusAlpha = RenderSettings().radiusAlpha;
   render.lightPaths.reset();  // as many as pixels, whatever the runs have
   ReferenceGoal goal;

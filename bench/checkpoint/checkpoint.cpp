@@ -122,6 +122,7 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                      {"light_paths", session.memoryPlan().lightPaths},
                      {"direct_pass", settings.directPass}});
   }
+  if (hasRouletteChoice(settings.method)) identity["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
   if (dependsOnWaves(settings.method)) identity["wave"] = settings.waveSize;
   if (hasConnectionRoulette(settings.method)) identity["connection_roulette"] = settings.connectionRoulette;
   if (settings.method == Method::mlt) {

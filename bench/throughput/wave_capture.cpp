@@ -10,6 +10,7 @@ template <class S>
 WaveCapture<S>::WaveCapture(const Scene& scene, const RenderSettings& settings)
     : settings_(settings),
       plan_(planRender<S>(scene, settings)),
+      survival_(survivalRule(settings, Walk::camera)),
       iterationBits_(plan_.pipeline.mostIterationBits(settings.waveSize)),
       pixels_(filmArea(scene.film).pixels) {}
 
@@ -19,6 +20,7 @@ StageContext<S> WaveCapture<S>::context(uint32_t depth) {
           .pixels = pixels_.data(),
           .sampler = {settings_.sampler, settings_.seed, 0},
           .limits = settings_.limits,
+          .survival = pointerTo(survival_),
           .mis = plan_.pipeline.cameraPass().strategies,
           .depth = depth,
           .film = {},

@@ -6,10 +6,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "engine/plan/render_plan.h"
+#include "engine/plan/survival.h"
 
 namespace wavecrest {
 
@@ -45,6 +47,7 @@ class WaveCapture {
 
   const RenderSettings settings_;
   RenderPlan<S> plan_;
+  std::optional<SurvivalRule> survival_;
   uint32_t iterationBits_ = 0;    // of all waves, as a session has them that has been running for a while
   std::vector<uint32_t> pixels_;  // of the film, in wave order
   StageCounters counters_;

@@ -59,6 +59,10 @@ void addPaths(Variants& variants, const RenderSettings& base) {
       variants.add("--rr-depth", std::to_string(depth)).limits.rouletteDepth = depth;
     }
   }
+  for (const Roulette roulette : {Roulette::throughput, Roulette::albedo, Roulette::efficiency}) {
+    if (!hasRouletteChoice(base.method) || roulette == base.roulette) continue;
+    variants.add("--roulette", enumeratorName(kRouletteNames, roulette)).roulette = roulette;
+  }
   // Chains draw their own numbers.
   if (base.method != Method::mlt) {
     const SamplerKind other = base.sampler == SamplerKind::sobol ? SamplerKind::independent : SamplerKind::sobol;

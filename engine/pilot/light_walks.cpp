@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/plan/survival.h"
 #include "engine/tasks/flush_to_zero.h"
 #include "engine/walks/run_walk.h"
 #include "kernels/columns/light_vertices.h"
@@ -21,6 +22,8 @@ LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& setti
   context.scene = &plan.scene->view;
   context.sampler = {settings.sampler, settings.seed, 0};
   context.limits = settings.limits;
+  const std::optional<SurvivalRule> rule = survivalRule(settings, Walk::light);
+  context.survival = pointerTo(rule);
   context.mis = misSettings(plan.pipeline.lightPass()->strategies, plan.mergeRadius, lightPaths, 0);
   context.light = &store;
   context.film = area.window();

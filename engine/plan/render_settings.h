@@ -68,6 +68,11 @@ inline PathLimits pathLimits(int maxDepth, int rouletteDepth) {
 enum class FilterMode { spread, sample };
 constexpr std::array<std::string_view, 2> kFilterModeNames{"spread", "sample"};
 
+// What decides whether a walk goes on after a vertex (METHODS 1.5): its throughput, as in the study; the albedo of the
+// vertex; or throughput in the proportion that is most efficient for the method. No choice changes a mean.
+enum class Roulette { throughput, albedo, efficiency };
+constexpr std::array<std::string_view, 3> kRouletteNames{"throughput", "albedo", "efficiency"};
+
 // The study's radius of the first merges, relative to the bounding sphere's.
 constexpr double kFixedRadius = 0.001;
 
@@ -85,6 +90,7 @@ struct RenderSettings {
   uint32_t threads = 1;
   uint32_t waveSize = 2048;  // paths
   PathLimits limits;
+  Roulette roulette = Roulette::throughput;  // of the walks of every method but mlt, from limits.rouletteDepth on
   // Of the first merges, relative to the bounding sphere's. Unset: what the image needs (engine/pilot/merge_radius.h).
   std::optional<double> radius = kFixedRadius;
   double radiusAlpha = 0.75;  // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
@@ -110,6 +116,10 @@ struct RenderSettings {
   uint32_t cutForThreads() const { return piecesForThreads.value_or(threads); }
   uint32_t chainsOfShare() const { return (metropolis.chains - share.part + share.parts - 1) / share.parts; }
 };
+
+// Whether the method's walks end by a roulette that can be chosen. Chains walk as far as their strategies say, or by
+// throughput.
+inline bool hasRouletteChoice(Method method) { return method != Method::mlt; }
 
 // Whether connections of the method are subject to roulette. Those of chains are not: what they carry is what chains
 // follow.

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "engine/plan/memory_plan.h"
+#include "engine/plan/survival.h"
 #include "engine/session/add_samples.h"
 #include "engine/session/planned_session.h"
 #include "engine/session/stage_rows.h"
@@ -120,10 +121,12 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
   const FilmArea& area = film_.area();
   // Weights and the merging radius are those of the iteration.
   const MisSettings mis = misSettings(pass.strategies, plan_.mergeRadius, plan_.memory.lightPaths, iteration);
+  const std::optional<SurvivalRule> rule = survivalRule(settings_, pass.walk);
   StageContext<S> context{.scene = &plan_.scene->view,
                           .pixels = area.pixels.data(),
                           .sampler = {settings_.sampler, settings_.seed, iteration},
                           .limits = settings_.limits,
+                          .survival = pointerTo(rule),
                           .mis = mis,
                           .rouletteBelow = plan_.connectionRouletteBelow,
                           .light = light,

@@ -15,10 +15,11 @@ struct RenderOptions {
   uint32_t threads = 0;  // 0: all cores
   std::string sampler = "independent", filterMode = "spread", precision = "float", isa = "auto", accel = "auto";
   std::string instances = "auto";
-  int maxDepth = 0;      // edges of the longest path; -1: unlimited, 0: what the scene says
-  int rrDepth = 0;       // first vertex where roulette may end a path; 0: what the scene says
-  uint32_t wave = 2048;  // paths per wave
-  std::string memory{};  // budget: "800M", "2GiB"; empty: none
+  int maxDepth = 0;                     // edges of the longest path; -1: unlimited, 0: what the scene says
+  int rrDepth = 0;                      // first vertex where roulette may end a path; 0: what the scene says
+  std::string roulette = "efficiency";  // throughput, albedo or efficiency: what decides whether a walk goes on
+  uint32_t wave = 2048;                 // paths per wave
+  std::string memory{};                 // budget: "800M", "2GiB"; empty: none
 
   // ppm, bpm, vcm: the first radius of merges, relative to the bounding sphere's (0: auto, what the image needs), and
   // how slowly it shrinks.

@@ -5,29 +5,12 @@
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/shading_lanes.h"
+#include "kernels/shade/survival_lanes.h"
 #include "kernels/stage_declarations.h"
 
 WAVECREST_SIMD_BEGIN
 
 namespace {
-
-// Survival probability from the path's throughput, in the scale that makes it comparable with 1: refraction's change of
-// radiance says nothing about the light that the path can still carry.
-//
-// One in twenty paths ends at each vertex however bright the surfaces are, which is what ends walks within glass. At
-// albedos above sqrt(0.95) that rate alone would make throughputs grow faster than paths die: variance without end, and
-// images that are too dark but for rare fireflies. From kBrightest on, the rate therefore falls as the throughput
-// grows.
-template <class P>
-WAVECREST_INLINE typename P::Real survival(Vec3<typename P::Real> throughput, typename P::Real scale) {
-  using Real = typename P::Real;
-  constexpr float kMost = 0.95f, kBrightest = 4;
-  const Real carried = maxComponent(throughput) * scale;
-  Real q = min(max(carried, Real(0.05f)), Real(kMost));
-  const Mask bright = carried > Real(kBrightest);
-  if (any(bright)) q = select(bright, Real(1) - Real((1 - kMost) * kBrightest) * reciprocal(carried), q);
-  return q;
-}
 
 // J of METHODS 5.5 for a delta lobe.
 template <class P, uint32_t kBsdfs>
@@ -60,7 +43,8 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     const Vec3<Real> direction = shading.toWorld(sample.wo);
     const Real woCosine = abs(dot(direction, shading.normal));
 
-    Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i) * sample.weight;
+    const Vec3<Real> arriving = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
+    Vec3<Real> throughput = arriving * sample.weight;
     Mask alive = active & (maxComponent(throughput) > Real(0)) & (sample.pdf > Real(0));
     if (lobes == Lobes::specularOnly) alive = alive & sample.specular;
     if constexpr (has(kFeatures, kBidirectional) && has(kFeatures, kShadingNormals | kTextures)) {
@@ -70,13 +54,14 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
             throughput * (abs(shading.wi.z) * woCosine * reciprocal(wiCosine * max(abs(sample.wo.z), Real(1e-12f))));
       }
     }
-    Real rouletteScale(1);
+    Real rouletteScale(1), scaleBefore(1);
     if constexpr (hasRouletteScale(kFeatures)) {
-      rouletteScale = load(paths.rouletteScale, i);
+      scaleBefore = rouletteScale = load(paths.rouletteScale, i);
       if (context.walk == Walk::camera) rouletteScale = rouletteScale / (sample.etaRatio * sample.etaRatio);
     }
     if (roulette) {
-      const Real q = survival<P>(throughput, rouletteScale);
+      const Real before = maxComponent(arriving) * scaleBefore;
+      const Real q = survival(context.survival, maxComponent(throughput) * rouletteScale, before);
       alive = alive & (to<Real>(u.d) < q);
       throughput = throughput * reciprocal(q);
     }

@@ -67,6 +67,7 @@ void addOptions(nb::module_& module) {
       .def_rw("instances", &RenderOptions::instances)
       .def_rw("max_depth", &RenderOptions::maxDepth)
       .def_rw("rr_depth", &RenderOptions::rrDepth)
+      .def_rw("roulette", &RenderOptions::roulette)
       .def_rw("wave", &RenderOptions::wave)
       .def_rw("memory", &RenderOptions::memory)
       .def_rw("radius", &RenderOptions::radius)

@@ -244,6 +244,8 @@ class Refusals(Converge):
             ["--shard", "3/2"],
             ["--shard", "half"],
             ["--shard", "1/2", "--check"],
+            ["--roulette", "luck"],
+            ["--methods", "mlt", "--roulette", "albedo"],
             ["--mlt", "walk"],
             ["--clock", "sun"],
             ["--radius", "0"],

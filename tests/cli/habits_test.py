@@ -102,6 +102,7 @@ class Words(CommandTest):
             ("render", "--accel", "auto embree small bvh"),
             ("render", "--instances", "auto expand keep"),
             ("render", "--filter-mode", "spread sample"),
+            ("render", "--roulette", "throughput albedo efficiency"),
             ("render", "--mlt", "pssmlt mmlt pathspace"),
             ("render", "--progress", "auto bar jsonl none"),
             ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm"),

@@ -89,6 +89,7 @@ class Usage(CommandTest):
             (["--light-paths", "9"], r"--light-paths: pt has one light path .*; expected ppm, bpm or vcm$"),
             (["-m", "vcm", "--direct-pass"], r"--direct-pass: vcm has no such choice; expected ppm$"),
             (["-m", "mlt", "--connection-roulette", "5"], r"--connection-roulette: mlt .*; expected bpt or vcm$"),
+            (["-m", "mlt", "--roulette", "albedo"], r"--roulette: mlt ends walks by throughput; expected pt, lt, .* or vcm$"),
             (["--mlt", "pathspace"], "--mlt: " + no_chains),
             (["--chains", "3"], "--chains: " + no_chains),
             (["--bootstrap", "5"], "--bootstrap: " + no_chains),

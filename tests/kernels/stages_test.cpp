@@ -8,6 +8,7 @@
 #include <functional>
 #include <string>
 
+#include "kernels/columns/survival.h"
 #include "tests/kernels/stage_room.h"
 #include "tests/kernels/stage_waves.h"
 
@@ -145,6 +146,43 @@ TEST_P(StageTest, equalsScalarTwin) {
     compareAll<double>();
   } else {
     compareAll<float>();
+  }
+}
+
+// Survivors carry their throughput over the probability, so the rule can be read from what roulette has left: nothing
+// by albedo, which keeps throughputs as they were, and no more than 1 / scale of a scaled throughput.
+TEST(Roulette, followsTheRule) {
+  for (const Isa isa : availableIsas()) {
+    const StageScene<float> scene = makeRoom<float>(true, false, false);
+    const Stages<float>& stages = findStages<float>(isa, Precision::floating, Specialization::complete);
+    for (const SurvivalRule rule :
+         {SurvivalRule{.byAlbedo = true}, SurvivalRule{.scale = 1}, SurvivalRule{.scale = 4}}) {
+      Wave<float> wave(kPaths, columnNeedsOf(Specialization::complete));
+      StageCounters counters;
+      StageContext<float> context;
+      context.scene = &scene.view;
+      context.pixels = scene.pixels.data();
+      context.limits = {.maxDepth = 6, .rouletteDepth = 1};
+      context.counters = &counters;
+      context.survival = &rule;
+      wave.pathCount = kPaths;
+      stages.generateCameraPaths(context, wave);
+      context.depth = 1;
+      stages.extendSmall(context, wave);
+      stages.arrive(context, wave);
+      for (size_t i = 0; i < wave.paths.size; ++i) {
+        wave.paths.throughputR[i] = wave.paths.throughputG[i] = wave.paths.throughputB[i] = 0.2f;
+      }
+      const size_t before = wave.paths.size;
+      stages.scatter(context, wave);
+      EXPECT_GT(wave.paths.size, 0u);
+      EXPECT_LT(wave.paths.size, before);
+      const float left = rule.byAlbedo ? 0.2f : 1 / rule.scale;
+      for (size_t i = 0; i < wave.paths.size; ++i) {
+        const float most = std::max({wave.paths.throughputR[i], wave.paths.throughputG[i], wave.paths.throughputB[i]});
+        EXPECT_NEAR(most, left, 1e-4f * left) << toString(isa) << ", scale " << rule.scale;
+      }
+    }
   }
 }
 

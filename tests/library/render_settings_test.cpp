@@ -55,5 +55,12 @@ TEST(RenderSettings, theRadiusIsLeftToTheImageUnlessItIsGiven) {
   EXPECT_EQ(renderSettings({.method = "vcm", .radius = 0.001}, Scene()).radius, 0.001);
 }
 
+TEST(RenderSettings, rouletteIsEfficientUnlessItIsChosen) {
+  EXPECT_EQ(renderSettings({}, Scene()).roulette, Roulette::efficiency);
+  EXPECT_EQ(renderSettings({.roulette = "throughput"}, Scene()).roulette, Roulette::throughput);
+  EXPECT_EQ(renderSettings({.method = "vcm", .roulette = "albedo"}, Scene()).roulette, Roulette::albedo);
+  EXPECT_NE(refusalOfRender({.roulette = "luck"}).find("throughput, albedo, efficiency"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace wavecrest

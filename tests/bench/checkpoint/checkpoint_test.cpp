@@ -97,6 +97,7 @@ TEST_F(CheckpointTest, theFirstSettingThatDiffersIsNamed) {
       {Method::pt, "its accel is small, not bvh", [](RenderSettings& s) { s.accel = Accel::bvh; }},
       {Method::pt, "its max_depth is 4, not 5", [](RenderSettings& s) { s.limits.maxDepth = 5; }},
       {Method::pt, "its rr_depth is 5, not 2", [](RenderSettings& s) { s.limits.rouletteDepth = 2; }},
+      {Method::lt, "its roulette is throughput, not albedo", [](RenderSettings& s) { s.roulette = Roulette::albedo; }},
       {Method::vcm, "its radius is 0.001, not 0.5", [](RenderSettings& s) { s.radius = 0.5; }},
       {Method::ppm, "its radius_alpha is 0.75, not 0.5", [](RenderSettings& s) { s.radiusAlpha = 0.5; }},
       {Method::bpm, "its light_paths is 4096, not 10", [](RenderSettings& s) { s.lightPaths = 10; }},

@@ -28,6 +28,7 @@ TEST(Knobs, areThoseThatMeanSomethingForTheMethod) {
     EXPECT_EQ(has(method, "--radius"), method == Method::vcm);
     EXPECT_EQ(has(method, "--chains"), method == Method::mlt);
     EXPECT_EQ(has(method, "--sampler"), method != Method::mlt);
+    EXPECT_EQ(has(method, "--roulette"), method != Method::mlt);
   }
 }
 
