@@ -61,7 +61,8 @@ struct Prediction {
   double ssimLimit = 0;           // after kLongestSeconds: what bias leaves
   std::optional<double> seconds;  // until the target; nothing where that is not within kLongestSeconds
   // Of seconds: by three samples of the noise, by the readings of the reference, the late one with noise that spreads,
-  // and by how far the pilot is from the time predicted. high is infinite where one of them does not get to the target.
+  // by what merging may blur unseen, and by how far the pilot is from the time predicted. high is infinite where one of
+  // them does not get to the target.
   Interval interval;
 };
 constexpr double kLongestSeconds = 1e7;
