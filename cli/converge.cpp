@@ -190,6 +190,7 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
            "first merge radius of ppm, bpm and vcm, relative to the bounding sphere, or auto; default: the profile's")
       .oneValue();
   defining("--radius-alpha", "how slowly the radius shrinks, 0 to 1; default: 0.75").oneValue();
+  defining("--merge-vertices", "where camera paths of vcm merge: all or first; default: the profile's").oneValue();
   defining("--light-paths",
            "light paths of an iteration of ppm, bpm and vcm; default: the profile's, or as many as pixels and of ppm "
            "and bpm at least 4096")

@@ -59,6 +59,7 @@ std::vector<CompletionWords> completionWords() {
           named({"--filter-mode"}, kFilterModeNames),
           named({"--roulette"}, kRouletteNames),
           named({"--mlt"}, kMetropolisVariantNames),
+          named({"--merge-vertices"}, kMergeVerticesNames),
           named({"--clock"}, kClockNames),
           named({"--progress"}, kProgressNames),
           named({"--images"}, kImageChoices),

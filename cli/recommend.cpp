@@ -58,6 +58,7 @@ void runRecommend(const RecommendOptions& options) {
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   settings.radius.reset();
   settings.roulette = Roulette::efficiency;
+  settings.mergeVertices = MergeVertices::first;
   const Recommendation result = recommend(scene, settings, request);
   // Output: JSON, or a paragraph and a table.
   fmt::print("{}", options.json ? jsonText(toJson(result), 2) + "\n" : toText(result));

@@ -46,6 +46,10 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
       .showDefault()
       .between(kRadiusAlphaRange);
   command
+      .add("--merge-vertices", options.mergeVertices,
+           "vcm: camera paths merge at all vertices, as in the study, or at the first that is not purely specular")
+      .showDefault();
+  command
       .add("--light-paths", options.lightPaths,
            "light paths of an iteration of ppm, bpm or vcm; default: as many as pixels, of ppm and bpm at least 4096")
       .between(kLightPathRange);

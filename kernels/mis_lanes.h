@@ -58,10 +58,33 @@ WAVECREST_INLINE double edgeSwitch(const MisSettings& mis, uint32_t depth) {
   return depth >= 2 && !mis.connect ? 0.0 : 1.0;
 }
 
+// Vertices at which a camera path can merge for the first time: it has left all others by delta lobes, which leave its
+// sums at 0.
+template <class Real>
+WAVECREST_INLINE Mask isFirstMerge(const MisSums<Real>& mis) {
+  return mis.dVC == Real(0);
+}
+
+// m, times a weight: whether merging at this vertex is a strategy. With firstMerges it never is at a vertex of a light
+// walk that is left or connected by more than a delta lobe, as the camera's side has a vertex before it.
+template <class Real>
+WAVECREST_INLINE Real ifMerging(const MisSettings& settings, Walk walk, const MisSums<Real>& mis, double weight) {
+  if (!settings.firstMerges) return Real(weight);
+  return walk == Walk::light ? Real(0) : zeroUnless(isFirstMerge(mis), Real(weight));
+}
+
 // vmWeight m + e dVCM + p_r dVC: densities of everything behind this vertex relative to joining it by a connection.
 template <class Real>
-WAVECREST_INLINE Real behindConnection(const MisSettings& settings, uint32_t depth, const MisSums<Real>& mis,
+WAVECREST_INLINE Real behindConnection(const MisSettings& settings, Walk walk, uint32_t depth, const MisSums<Real>& mis,
                                        Real pdfReverse) {
+  return ifMerging(settings, walk, mis, settings.vmWeight) +
+         mulAdd(Real(edgeSwitch(settings, depth)), mis.dVCM, pdfReverse * mis.dVC);
+}
+
+// The same of a light walk's vertex that is joined with the lens, where a camera path could have begun to merge.
+template <class Real>
+WAVECREST_INLINE Real behindLens(const MisSettings& settings, uint32_t depth, const MisSums<Real>& mis,
+                                 Real pdfReverse) {
   return Real(settings.vmWeight) + mulAdd(Real(edgeSwitch(settings, depth)), mis.dVCM, pdfReverse * mis.dVC);
 }
 
@@ -73,15 +96,16 @@ WAVECREST_INLINE Real behindMerge(const MisSettings& settings, uint32_t depth, c
 
 // Scattering (34)-(36). woCosine: |wo . geometric normal|.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE MisSums<typename P::Real> scatterMis(const MisSettings& settings, uint32_t depth,
+WAVECREST_INLINE MisSums<typename P::Real> scatterMis(const MisSettings& settings, Walk walk, uint32_t depth,
                                                       const MisSums<typename P::Real>& mis, typename P::Real pdf,
                                                       typename P::Real pdfReverse, typename P::Real woCosine) {
   using Real = typename P::Real;
   const Real inversePdf = reciprocal(pdf);
   if constexpr (has(kFeatures, kBidirectional)) {
     const Real scale = woCosine * inversePdf;
-    return {inversePdf, scale * behindConnection(settings, depth, mis, pdfReverse),
-            scale * (Real(settings.merge ? 1 : 0) + behindMerge(settings, depth, mis, pdfReverse))};
+    return {inversePdf, scale * behindConnection(settings, walk, depth, mis, pdfReverse),
+            scale * (ifMerging(settings, walk, mis, settings.merge ? 1 : 0) +
+                     behindMerge(settings, depth, mis, pdfReverse))};
   } else {
     return {inversePdf, Real(0), Real(0)};
   }

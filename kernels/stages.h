@@ -102,6 +102,7 @@ struct MisSettings {
   bool camera = false;          // t = 1
   bool merge = false;           // vertex merging
   bool mergeWeights = true;     // false: merging makes each path once, and alone
+  bool firstMerges = false;     // beside connections: merging only where a camera path can for the first time
   bool powerHeuristic = false;  // where s = 0 and s = 1 are all there is: weights by squares of densities
   double vmWeight = 0;          // merging seen from a connection: pi r^2 N_L, or 0 without merging
   double vcWeight = 0;          // connection seen from a merge: its reciprocal, or 0 where merging stands alone

@@ -29,10 +29,13 @@ using nlohmann::json;
 
 // The options that say what a campaign is. They are stored in its results file; all others may change from one process
 // to the next.
-constexpr std::array<std::string_view, 20> kDefiningOptions{
-    "scenes",        "--profile",  "--time-factor", "--time",   "--snapshot-every", "--spp",    "--seeds",
-    "--precision",   "--sampler",  "--size",        "--images", "--methods",        "--radius", "--radius-alpha",
-    "--light-paths", "--roulette", "--direct-pass", "--mlt",    "--clock",          "-D"};
+constexpr std::array<std::string_view, 21> kDefiningOptions{"scenes",        "--profile",        "--time-factor",
+                                                            "--time",        "--snapshot-every", "--spp",
+                                                            "--seeds",       "--precision",      "--sampler",
+                                                            "--size",        "--images",         "--methods",
+                                                            "--radius",      "--radius-alpha",   "--merge-vertices",
+                                                            "--light-paths", "--roulette",       "--direct-pass",
+                                                            "--mlt",         "--clock",          "-D"};
 
 // Those that take several words.
 constexpr std::array<std::string_view, 4> kListOptions{"scenes", "--methods", "--mlt", "-D"};

@@ -103,6 +103,11 @@ void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSett
   RenderSettings& render = settings.render;
   render.radius = profile.radius;
   if (const auto* radius = given(words, "--radius")) render.radius = parseRadius("--radius", radius->front());
+  render.mergeVertices = profile.mergeVertices;
+  if (const auto* vertices = given(words, "--merge-vertices")) {
+    render.mergeVertices =
+        static_cast<MergeVertices>(parseChoice("--merge-vertices", vertices->front(), kMergeVerticesNames));
+  }
   if (const auto* alpha = given(words, "--radius-alpha")) {
     render.radiusAlpha = parseNumber("--radius-alpha", alpha->front(), kRadiusAlphaRange);
   }
@@ -140,6 +145,10 @@ void refuseUnusedWords(const CampaignWords& words, const CampaignSettings& setti
     throw UsageError(fmt::format("--roulette: no method of the campaign has the choice; expected {} among --methods",
                                  methodsWith(hasRouletteChoice)));
   }
+  const bool choosesVertices = anyRow([](const CampaignMethod& row) { return choosesMergeVertices(row.method); });
+  if (given(words, "--merge-vertices") != nullptr && !choosesVertices) {
+    throw UsageError("--merge-vertices: is for vcm alone; expected vcm among --methods");
+  }
   // Options that make rows of ppm and mlt.
   if (given(words, "--direct-pass") != nullptr && !anyRow([](const CampaignMethod& row) { return row.directPass; })) {
     throw UsageError("--direct-pass: is for ppm alone; expected ppm among --methods");
@@ -168,6 +177,7 @@ void addRowKeys(const CampaignSettings& settings, std::map<std::string, std::str
   keys["radius"] = settings.render.radius ? fmt::format("{:g}", *settings.render.radius) : "auto";
   keys["radius_alpha"] = fmt::format("{:g}", settings.render.radiusAlpha);
   keys["roulette"] = kRouletteNames[static_cast<size_t>(settings.render.roulette)];
+  keys["merge_vertices"] = kMergeVerticesNames[static_cast<size_t>(settings.render.mergeVertices)];
   keys["light_paths"] = settings.render.lightPaths ? std::to_string(*settings.render.lightPaths) : "one per pixel";
   if (!definitions.empty()) keys["definitions"] = definitions;
 }

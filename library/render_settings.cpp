@@ -45,6 +45,8 @@ void refuseOptionsOfOtherMethods(const api::RenderOptions& options, Method metho
   const MethodOption all[] = {
       {"--radius", options.radius != byDefault.radius, mergesPaths, "does not merge"},
       {"--radius-alpha", options.radiusAlpha != byDefault.radiusAlpha, mergesPaths, "does not merge"},
+      {"--merge-vertices", options.mergeVertices != byDefault.mergeVertices, choosesMergeVertices,
+       "has no choice of where to merge"},
       {"--light-paths", options.lightPaths != 0, mergesPaths, "has one light path per camera path"},
       {"--direct-pass", options.directPass, isPpm, "has no such choice"},
       {"--connection-roulette", options.connectionRoulette != byDefault.connectionRoulette, hasConnectionRoulette,
@@ -115,6 +117,8 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   settings.radius = options.radius != 0 ? std::optional(options.radius) : std::nullopt;
   settings.radiusAlpha = options.radiusAlpha;
   settings.roulette = static_cast<Roulette>(parseChoice("--roulette", options.roulette, kRouletteNames));
+  settings.mergeVertices =
+      static_cast<MergeVertices>(parseChoice("--merge-vertices", options.mergeVertices, kMergeVerticesNames));
   settings.connectionRoulette = options.connectionRoulette;
   if (options.lightPaths != 0) settings.lightPaths = options.lightPaths;
   settings.directPass = options.directPass;

@@ -37,6 +37,7 @@ constexpr std::array kProfiles{
             .studyRows = false,
             .radius = {},
             .roulette = Roulette::efficiency,
+            .mergeVertices = MergeVertices::first,
             .effort = [](std::string_view) { return Effort{.seconds = 4}; }},
     Profile{.name = "standard",
             .description = "small images with error bands: an hour or two",
@@ -47,6 +48,7 @@ constexpr std::array kProfiles{
             .studyRows = true,
             .radius = kStudyRadius,
             .roulette = Roulette::throughput,
+            .mergeVertices = MergeVertices::all,
             .effort = [](std::string_view) { return Effort{.seconds = 30}; }},
     Profile{.name = "study",
             .description = "the study's size, light paths and radius in a tenth of its time: ten hours a seed",
@@ -57,6 +59,7 @@ constexpr std::array kProfiles{
             .studyRows = true,
             .radius = kStudyRadius,
             .roulette = Roulette::throughput,
+            .mergeVertices = MergeVertices::all,
             .effort = studyEffort},
     Profile{.name = "paper",
             .description = "the protocol of the study: 1024x768, 30 to 120 minutes a run",
@@ -67,6 +70,7 @@ constexpr std::array kProfiles{
             .studyRows = true,
             .radius = kStudyRadius,
             .roulette = Roulette::throughput,
+            .mergeVertices = MergeVertices::all,
             .effort = paperEffort},
 };
 

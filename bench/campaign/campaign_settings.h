@@ -51,6 +51,7 @@ struct Profile {
   bool studyRows;
   std::optional<double> radius;  // of the first merges; unset: what the image needs
   Roulette roulette;
+  MergeVertices mergeVertices;  // of vcm
   Effort (*effort)(std::string_view scene);
 };
 

@@ -142,6 +142,9 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
                   {"light_paths_per_iteration", lightPathsWanted(settings, pixels)}});
     if (statistics.mergeRadius) stats.update(mergeRadiusJson(*statistics.mergeRadius));
     if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
+    if (choosesMergeVertices(settings.method)) {
+      stats["merge_vertices"] = enumeratorName(kMergeVerticesNames, settings.mergeVertices);
+    }
   }
   // What a share of an image is of it.
   if (settings.share.parts > 1) {

@@ -71,6 +71,7 @@ Reference renderOwn(const Scene& scene, const CampaignScene& entry, const Campai
   render.radius = kReferenceRadius;
   render.roulette = Roulette::efficiency;
   render.radiusAlpha = RenderSettings().radiusAlpha;
+  render.mergeVertices = RenderSettings().mergeVertices;
   render.lightPaths.reset();  // as many as pixels, whatever the runs have
   ReferenceGoal goal;
   if (settings.iterations) {

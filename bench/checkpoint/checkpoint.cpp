@@ -123,6 +123,9 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                      {"direct_pass", settings.directPass}});
   }
   if (hasRouletteChoice(settings.method)) identity["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
+  if (choosesMergeVertices(settings.method)) {
+    identity["merge_vertices"] = enumeratorName(kMergeVerticesNames, settings.mergeVertices);
+  }
   if (dependsOnWaves(settings.method)) identity["wave"] = settings.waveSize;
   if (hasConnectionRoulette(settings.method)) identity["connection_roulette"] = settings.connectionRoulette;
   if (settings.method == Method::mlt) {

@@ -81,6 +81,7 @@ MisSettings weightsOf(const MethodPage& page, Walk walk) {
   weights.camera = ofLight && all.camera;
   weights.merge = all.merge;
   weights.mergeWeights = !all.mergeAtFirstVertex;
+  weights.firstMerges = page.firstMerges;
   // The power heuristic is for two strategies.
   weights.powerHeuristic = weights.nextEvent && !weights.connect && !weights.camera && !weights.merge;
   return weights;

@@ -88,6 +88,8 @@ struct MethodPage {
   std::vector<Phase> phases;
   // Metropolis: the walk that makes direct light, where the chains may leave it out.
   std::vector<WalkPhase> directLight = {};
+  // Beside connections: camera paths merge at the first vertex at which they can, and nowhere else.
+  bool firstMerges = false;
 
   const WalkPhase* walk(Walk walk) const;  // null if there is none
   bool has(StageId stage) const;           // in any phase

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/pilot/light_walks.h"
+#include "engine/pilot/median.h"
 #include "engine/tasks/flush_to_zero.h"
 #include "engine/walks/run_walk.h"
 
@@ -74,28 +75,24 @@ void visitVertices(Wave<S>& wave, bool parallel, std::vector<CameraPath>& paths,
   }
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // METHODS 6.5, relative to the scene's radius. photonsPerArea: of an iteration with a light path for each pixel of the
 // whole film, or as many as the settings ask for.
-double radiusOfImage(const MergeRadius& found, double photonsPerArea, const PathStrategies& strategies) {
+double radiusOfImage(const MergeRadius& found, double photonsPerArea, const RenderSettings& settings) {
   if (!(found.pixel > 0)) return kFixedRadius;
   constexpr double kFirstVertex = 2.5, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
   const double photons = std::numbers::pi * found.pixel * found.pixel * photonsPerArea;
-  const double pixels = (strategies.mergeAtFirstVertex ? kFirstVertex : kAllVertices) * std::cbrt(1 / photons);
+  const PathStrategies strategies = strategiesOf(settings.method);
+  const bool connects = choosesMergeVertices(settings.method);
+  const bool atFirst = connects ? settings.mergeVertices == MergeVertices::first : strategies.mergeAtFirstVertex;
+  const double pixels = (atFirst ? kFirstVertex : kAllVertices) * std::cbrt(1 / photons);
   // Three digits: instruction sets and precisions differ in the last bits of what they find, and are to make the same
   // choice all the same.
   const double asked = std::clamp(pixels, kLeastPixels, kMostPixels) * found.pixel / found.scene;
   const double unit = std::pow(10, std::floor(std::log10(asked)) - 2);
   const double chosen = std::round(asked / unit) * unit;
-  // The weights of vcm take photons that share a camera path for independent ones: they pay for larger radii.
-  return strategies.connect ? std::min(chosen, kFixedRadius) : chosen;
+  // Weights that take photons which share a camera path for independent ones make vcm pay for larger radii.
+  return connects && !atFirst ? std::min(chosen, kFixedRadius) : chosen;
 }
 
 }  // namespace
@@ -175,13 +172,13 @@ MergeRadius chosenRadius(const RenderPlan<S>& plan, const RenderSettings& settin
   std::vector<double> pixels;
   for (const MergePlace& place : places) pixels.push_back(place.pixel);
   MergeRadius radius = plan.mergeRadius;
-  radius.pixel = median(std::move(pixels));
+  radius.pixel = medianOf(std::move(pixels));
   const double ofPath = photonDensity(places, light.photons, 1 / static_cast<double>(std::max<size_t>(light.paths, 1)));
   radius.photonsPerArea = ofPath * static_cast<double>(plan.memory.lightPaths);
   if (settings.radius) return radius;
   const CameraView& camera = plan.scene->view.camera;
   const size_t lightPaths = lightPathsWanted(settings, size_t{camera.width} * camera.height);
-  radius.first = radiusOfImage(radius, ofPath * static_cast<double>(lightPaths), strategiesOf(settings.method));
+  radius.first = radiusOfImage(radius, ofPath * static_cast<double>(lightPaths), settings);
   return radius;
 }
 template MergeRadius chosenRadius(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);

@@ -1,8 +1,9 @@
 #include "engine/pilot/typical_brightness.h"
 
-#include <algorithm>
+#include <utility>
 #include <vector>
 
+#include "engine/pilot/median.h"
 #include "engine/pilot/pilot_paths.h"
 
 namespace wavecrest {
@@ -15,10 +16,7 @@ double typicalBrightness(const RenderPlan<S>& plan, const RenderSettings& settin
   std::vector<double> places(kPlaces, 0);
   for (size_t i = 0; i < paths.size(); ++i) places[i / kPathsPerPlace] += paths[i] / kPathsPerPlace;
   std::erase(places, 0.0);
-  if (places.empty()) return 0;
-  const auto median = places.begin() + static_cast<ptrdiff_t>(places.size() / 2);
-  std::nth_element(places.begin(), median, places.end());
-  return *median;
+  return medianOf(std::move(places));
 }
 template double typicalBrightness(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);
 template double typicalBrightness(const RenderPlan<double>&, const RenderSettings&, const FilmArea&);

@@ -59,7 +59,9 @@ void refuseTintedPassages(const Scene& scene) {
 }
 
 MethodPage pageOf(const RenderSettings& settings) {
-  return pageOf(settings.method, settings.metropolis.variant, settings.directPass);
+  MethodPage page = pageOf(settings.method, settings.metropolis.variant, settings.directPass);
+  page.firstMerges = choosesMergeVertices(settings.method) && settings.mergeVertices == MergeVertices::first;
+  return page;
 }
 
 bool isBidirectional(const RenderSettings& settings) { return isBidirectional(pageOf(settings)); }

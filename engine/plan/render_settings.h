@@ -72,6 +72,10 @@ constexpr std::array<std::string_view, 2> kFilterModeNames{"spread", "sample"};
 // vertex; or throughput in the proportion that is most efficient for the method. No choice changes a mean.
 enum class Roulette { throughput, albedo, efficiency };
 constexpr std::array<std::string_view, 3> kRouletteNames{"throughput", "albedo", "efficiency"};
+// Where the camera paths of vcm merge: at all vertices with more than delta lobes, as in the study, or at the first of
+// them alone (METHODS 5.10).
+enum class MergeVertices { all, first };
+constexpr std::array<std::string_view, 2> kMergeVerticesNames{"all", "first"};
 
 // The study's radius of the first merges, relative to the bounding sphere's.
 constexpr double kFixedRadius = 0.001;
@@ -93,7 +97,8 @@ struct RenderSettings {
   Roulette roulette = Roulette::throughput;  // of the walks of every method but mlt, from limits.rouletteDepth on
   // Of the first merges, relative to the bounding sphere's. Unset: what the image needs (engine/pilot/merge_radius.h).
   std::optional<double> radius = kFixedRadius;
-  double radiusAlpha = 0.75;  // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
+  double radiusAlpha = 0.75;                         // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
+  MergeVertices mergeVertices = MergeVertices::all;  // of vcm
   // bpt, vcm: Russian roulette of connections whose contribution is below this share of a typical pixel's brightness.
   // It saves shadow rays and changes no mean. 0: no roulette. Never used with Accel::small, where a shadow ray costs
   // less than the roulette.
@@ -124,6 +129,12 @@ inline bool hasRouletteChoice(Method method) { return method != Method::mlt; }
 // Whether connections of the method are subject to roulette. Those of chains are not: what they carry is what chains
 // follow.
 inline bool hasConnectionRoulette(Method method) { return method != Method::mlt && strategiesOf(method).connect; }
+
+// Whether the method has RenderSettings::mergeVertices: others merge at all vertices or at the first by what they are.
+inline bool choosesMergeVertices(Method method) {
+  const PathStrategies strategies = strategiesOf(method);
+  return strategies.merge && strategies.connect;
+}
 
 // Whether the last bits of the method's images depend on how paths are cut into waves: photons are summed, and pairs of
 // vertices joined, in an order that follows from the waves.

@@ -24,8 +24,9 @@ struct RenderOptions {
   // ppm, bpm, vcm: the first radius of merges, relative to the bounding sphere's (0: auto, what the image needs), and
   // how slowly it shrinks.
   double radius = 0, radiusAlpha = 0.75;
-  uint64_t lightPaths = 0;  // of an iteration of ppm, bpm or vcm; 0: as many as pixels
-  bool directPass = false;  // ppm: direct light by next event estimation
+  std::string mergeVertices = "first";  // vcm: camera paths merge at "all" vertices, or at the "first" alone
+  uint64_t lightPaths = 0;              // of an iteration of ppm, bpm or vcm; 0: as many as pixels
+  bool directPass = false;              // ppm: direct light by next event estimation
   // bpt, vcm: Russian roulette of connections whose contribution is below this share of a typical pixel's brightness.
   // 0: no roulette. Small scenes, whose shadow rays cost next to nothing, never use it.
   double connectionRoulette = 0.2;

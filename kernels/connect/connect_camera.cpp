@@ -60,7 +60,7 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
     const MisSums<Real> mis = loadMis<kFeatures>(paths, i);
     // LT has no other strategy: its weight is 1.
     const Real wLight = pdfA * Real(context.mis.lightPaths > 0 ? 1 / context.mis.lightPaths : 0.0) *
-                        behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
+                        behindLens(context.mis, context.depth, mis, bsdf.pdfReverse);
     // f c(omega_l) / n(omega_l): omega_l is wi, the light's side.
     const Real scale = pdfA * bsdf.lightCosine * reciprocal(max(wiCosine, Real(kSmallestCosine)) * (Real(1) + wLight)) *
                        (column.weight * row.weight);

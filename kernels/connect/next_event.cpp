@@ -41,7 +41,7 @@ WAVECREST_NOINLINE size_t sampleLights(const StageContext<typename P::Storage>& 
     if constexpr (has(kFeatures, kBidirectional)) {
       const MisSums<Real> mis = loadMis<kFeatures>(paths, i);
       wCamera = sample.emissionPdf * abs(dot(sample.direction, shading.normal)) * inversePdf *
-                behindConnection(context.mis, context.depth, mis, bsdf.pdfReverse);
+                behindConnection(context.mis, Walk::camera, context.depth, mis, bsdf.pdfReverse);
     }
     const Real other = wLight + wCamera;
     const Real scale = bsdf.lightCosine * inversePdf * reciprocal(Real(1) + others(context.mis, other));

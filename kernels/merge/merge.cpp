@@ -146,6 +146,7 @@ class Merger {
     querying = querying & (load(wave_.rays.originX, i) - reach >= Real(grid.origin[0])) &
                (load(wave_.rays.originY, i) - reach >= Real(grid.origin[1])) &
                (load(wave_.rays.originZ, i) - reach >= Real(grid.origin[2]));
+    if (context_.mis.firstMerges) querying = querying & isFirstMerge(loadMis<kFeatures>(wave_.paths, i));
     return querying;
   }
 

@@ -67,8 +67,8 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     }
 
     const MisSums<Real> before = loadMis<kFeatures>(paths, i);
-    MisSums<Real> mis =
-        scatterMis<P, kFeatures>(context.mis, context.depth, before, sample.pdf, sample.pdfReverse, woCosine);
+    MisSums<Real> mis = scatterMis<P, kFeatures>(context.mis, context.walk, context.depth, before, sample.pdf,
+                                                 sample.pdfReverse, woCosine);
     if constexpr (!onlyDiffuse(kBsdfs)) {
       if (any(sample.specular)) {
         const auto over = scatterSpecularMis(before, specularJacobian(shading, sample, woCosine));

@@ -72,6 +72,7 @@ void addOptions(nb::module_& module) {
       .def_rw("memory", &RenderOptions::memory)
       .def_rw("radius", &RenderOptions::radius)
       .def_rw("radius_alpha", &RenderOptions::radiusAlpha)
+      .def_rw("merge_vertices", &RenderOptions::mergeVertices)
       .def_rw("light_paths", &RenderOptions::lightPaths)
       .def_rw("direct_pass", &RenderOptions::directPass)
       .def_rw("connection_roulette", &RenderOptions::connectionRoulette)

@@ -198,6 +198,20 @@ class Rows(Converge):
             if choice == "fixed":
                 self.assertEqual(runs["ppm"]["radius"], 0.001)
 
+    def test_where_vcm_merges_is_the_profiles(self):
+        tiny = ["cornell-diffuse", "--methods", "vcm", "--size", "16x12", "--spp", "1", "--seeds", "1", "--light-paths", "99"]
+        for profile, more, vertices in (
+            ("quick", [], "first"),
+            ("standard", [], "all"),
+            ("study", [], "all"),
+            ("study", ["--merge-vertices", "first"], "first"),
+        ):
+            folder = f"vertices-{profile}-{vertices}"
+            self.converge(*tiny, "--profile", profile, *more, "--out", folder)
+            runs, campaign = self.runs(folder)
+            self.assertEqual(runs["vcm"]["merge_vertices"], vertices, profile)
+            self.assertEqual(campaign["merge_vertices"], vertices, profile)
+
     def test_a_run_is_charged_by_the_clock_that_is_asked_for(self):
         arguments = ["--methods", "pt", "--size", "32x24", "--time", "0.2s", "--seeds", "1", "--threads", "2"]
         self.converge("cornell-diffuse", *arguments, "--clock", "cpu", "--out", "a")
@@ -254,6 +268,8 @@ class Refusals(Converge):
             ["--methods", "pt", "--radius", "0.01"],
             ["--methods", "pt", "--radius-alpha", "0.5"],
             ["--methods", "pt,bpt", "--light-paths", "500"],
+            ["--methods", "ppm", "--merge-vertices", "all"],
+            ["--methods", "vcm", "--merge-vertices", "last"],
             ["--methods", "pt,vcm", "--direct-pass"],
             ["--methods", "pt", "--mlt", "pathspace"],
             ["--methods", "mlt-pathspace", "--mlt", "pssmlt"],

@@ -88,6 +88,8 @@ class Usage(CommandTest):
             (["-m", "lt", "--radius-alpha", "0.1"], r"--radius-alpha: lt does not merge; expected ppm, bpm or vcm$"),
             (["--light-paths", "9"], r"--light-paths: pt has one light path .*; expected ppm, bpm or vcm$"),
             (["-m", "vcm", "--direct-pass"], r"--direct-pass: vcm has no such choice; expected ppm$"),
+            (["-m", "ppm", "--merge-vertices", "all"], r"--merge-vertices: ppm has no choice of .*; expected vcm$"),
+            (["-m", "vcm", "--merge-vertices", "none"], r"--merge-vertices none: unknown; expected one of all, first"),
             (["-m", "mlt", "--connection-roulette", "5"], r"--connection-roulette: mlt .*; expected bpt or vcm$"),
             (["-m", "mlt", "--roulette", "albedo"], r"--roulette: mlt ends walks by throughput; expected pt, lt, .* or vcm$"),
             (["--mlt", "pathspace"], "--mlt: " + no_chains),

@@ -173,6 +173,38 @@ TEST(Agreement, withFewerAndMoreLightPathsThanPixels) {
   }
 }
 
+// ---- merging at first vertices --------------------------------------------------------------------------------------
+
+// Mirrors and glass put delta lobes before some first vertices, and behind others.
+TEST(Agreement, ofVcmThatMergesAtFirstVerticesAlone) {
+  for (const RoomLight light : {RoomLight::quad, RoomLight::sphere, RoomLight::constant}) {
+    const Scene scene = roomScene(
+        {.light = light, .materials = RoomMaterials::mixed, .tiltedNormals = true, .width = kWidth, .height = kHeight});
+    RenderSettings settings = settingsOf(Method::vcm);
+    settings.mergeVertices = MergeVertices::first;
+    expectSameTruth(referenceOf(scene), renderSeeds(scene, settings, iterations(), 7100),
+                    std::string("first merges, ") + kRoomLightNames[static_cast<size_t>(light)]);
+  }
+}
+
+// A search at every vertex finds more photons than those at first ones, which are all that ppm makes.
+TEST(FirstMerges, areThoseOfPpm) {
+  const Scene scene =
+      roomScene({.light = RoomLight::quad, .materials = RoomMaterials::mixed, .width = kWidth, .height = kHeight});
+  const auto merges = [&](Method method, MergeVertices vertices) {
+    RenderSettings settings = settingsOf(method);
+    settings.mergeVertices = vertices;
+    settings.lightPaths = 3000;
+    const auto session = Session::create(scene, settings);
+    session->renderUntil(8, std::nullopt);
+    return session->statistics().counters.merges;
+  };
+  const auto first = static_cast<double>(merges(Method::vcm, MergeVertices::first));
+  EXPECT_GT(static_cast<double>(merges(Method::vcm, MergeVertices::all)), 1.3 * first);
+  // Both have the same light paths. Camera paths of vcm choose between the lobes of a surface that has both kinds.
+  EXPECT_NEAR(static_cast<double>(merges(Method::ppm, MergeVertices::all)) / first, 1, 0.2);
+}
+
 // ---- merging alone --------------------------------------------------------------------------------------------------
 
 TEST(Agreement, ofPhotonMappingInTheMean) {

@@ -152,10 +152,16 @@ TEST(AutoRadius, leavesAFixedOneAlone) {
 }
 
 // Its weights take photons that share a camera path for independent ones.
-TEST(AutoRadius, ofVcmIsNeverMoreThanTheFixedOne) {
+TEST(AutoRadius, ofVcmThatMergesEverywhereIsNeverMoreThanTheFixedOne) {
   EXPECT_EQ(radiusOf(sceneFile("cornell-diffuse", 40, 30), automatic(Method::vcm)).first, kFixedRadius);
   const MergeRadius fine = radiusOf(sceneFile("cornell-diffuse", 4000, 3000), automatic(Method::vcm));
   EXPECT_LT(fine.first, kFixedRadius);
+}
+TEST(AutoRadius, ofVcmThatMergesAtFirstVerticesIsThatOfPpm) {
+  const Scene scene = sceneFile("cornell-diffuse", 80, 60);
+  RenderSettings first = automatic(Method::vcm);
+  first.mergeVertices = MergeVertices::first;
+  EXPECT_EQ(radiusOf(scene, first).first, radiusOf(scene, automatic(Method::ppm)).first);
 }
 
 TEST(PhotonDensity, isThatOfEvenPhotons) {

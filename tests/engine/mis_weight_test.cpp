@@ -19,11 +19,14 @@ struct Strategies {
 constexpr Strategies kBptStrategies{"bpt", {.emission = true, .nextEvent = true, .connect = true, .camera = true}};
 constexpr Strategies kVcmStrategies{
     "vcm", {.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true}};
+constexpr Strategies kFirstMerges{
+    "vcm_first",
+    {.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true, .firstMerges = true}};
 constexpr Strategies kPt{"pt", {.emission = true, .nextEvent = true}};
 constexpr Strategies kBpm{"bpm", {.emission = false, .nextEvent = false, .merge = true}};
 
 bool isPartOf(const Contribution& c, const MisSettings& mis) {
-  if (c.merge) return mis.merge;
+  if (c.merge) return mis.merge && (!mis.firstMerges || isFirstMerge(c.path, c.strategy));
   if (c.strategy == 0) return mis.emission;
   if (c.strategy == 1) return mis.nextEvent;
   return c.strategy == c.path.edges() ? mis.camera : mis.connect;
@@ -110,6 +113,7 @@ std::vector<WeightCase> weightCases() {
     room.materials = RoomMaterials::mixed;
     room.tiltedNormals = true;
     cases.push_back({room, kVcmStrategies});
+    cases.push_back({room, kFirstMerges});
   }
   const Room mixed{
       .light = RoomLight::quad, .materials = RoomMaterials::mixed, .tiltedNormals = true, .width = 32, .height = 24};

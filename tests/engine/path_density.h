@@ -39,6 +39,14 @@ struct StrategyDensities {
   }
 };
 
+// Whether delta lobes alone lead from the lens to x_i.
+inline bool isFirstMerge(const FullPath& path, size_t i) {
+  for (++i; i < path.edges(); ++i) {
+    if (!path.x[i].specular) return false;
+  }
+  return true;
+}
+
 template <class S>
 class PathDensity {
  public:
@@ -81,7 +89,7 @@ class PathDensity {
     if (mis_.camera && joinable(k - 1)) out.connect[k] = mis_.lightPaths * product(k, k);
     const double disc = std::numbers::pi * mis_.radius * mis_.radius * mis_.lightPaths;
     for (size_t i = 1; i < k && mis_.merge; ++i) {
-      if (joinable(i)) out.merge[i] = disc * product(i + 1, i);
+      if (joinable(i) && (isFirstMerge(path, i) || !mis_.firstMerges)) out.merge[i] = disc * product(i + 1, i);
     }
     return out;
   }

@@ -22,6 +22,7 @@ struct Kind {
   MetropolisVariant metropolis = MetropolisVariant::mmlt;
   Precision precision = Precision::floating;
   SamplerKind sampler = SamplerKind::independent;
+  MergeVertices mergeVertices = MergeVertices::all;
 };
 
 std::string nameOf(const Kind& kind) {
@@ -29,11 +30,12 @@ std::string nameOf(const Kind& kind) {
                                     ? kMetropolisVariantNames[static_cast<size_t>(kind.metropolis)]
                                     : toString(kind.method);
   return std::string(name) + "_" + std::string(kPrecisionNames[static_cast<size_t>(kind.precision)]) + "_" +
-         std::string(toString(kind.sampler));
+         std::string(toString(kind.sampler)) + (kind.mergeVertices == MergeVertices::first ? "_first" : "");
 }
 
 std::vector<Kind> kinds() {
-  std::vector<Kind> list{{.method = Method::pt, .sampler = SamplerKind::sobol}};
+  std::vector<Kind> list{{.method = Method::pt, .sampler = SamplerKind::sobol},
+                         {.method = Method::vcm, .mergeVertices = MergeVertices::first}};
   for (const Precision precision : {Precision::floating, Precision::doubled}) {
     for (const MethodEntry& entry : kMethods) {
       list.push_back({.method = entry.method, .precision = precision});
@@ -55,6 +57,7 @@ class SessionStateTest : public testing::TestWithParam<Kind> {
     settings.method = GetParam().method;
     settings.precision = GetParam().precision;
     settings.sampler = GetParam().sampler;
+    settings.mergeVertices = GetParam().mergeVertices;
     settings.isa = bestIsa();
     settings.threads = threads;
     settings.waveSize = waveSize;

@@ -21,10 +21,10 @@ struct Steps {
     storeUnaligned(mis.dVM, sums.dVM + i);
   }
 
-  static void scatter(const MisSettings& settings, uint32_t depth, size_t count, const S* pdf, const S* pdfReverse,
-                      const S* woCosine, const MisColumns<S>& sums) {
+  static void scatter(const MisSettings& settings, Walk walk, uint32_t depth, size_t count, const S* pdf,
+                      const S* pdfReverse, const S* woCosine, const MisColumns<S>& sums) {
     for (size_t i = 0; i < count; i += kLanes) {
-      storeSums(scatterMis<P, kBidirectional>(settings, depth, loadSums(sums, i), loadUnaligned(pdf + i),
+      storeSums(scatterMis<P, kBidirectional>(settings, walk, depth, loadSums(sums, i), loadUnaligned(pdf + i),
                                               loadUnaligned(pdfReverse + i), loadUnaligned(woCosine + i)),
                 sums, i);
     }
@@ -34,10 +34,17 @@ struct Steps {
       storeSums(scatterSpecularMis(loadSums(sums, i), loadUnaligned(jacobian + i)), sums, i);
     }
   }
-  static void connection(const MisSettings& settings, uint32_t depth, size_t count, const MisColumns<S>& sums,
-                         const S* pdfReverse, S* out) {
+  static void connection(const MisSettings& settings, Walk walk, uint32_t depth, size_t count,
+                         const MisColumns<S>& sums, const S* pdfReverse, S* out) {
     for (size_t i = 0; i < count; i += kLanes) {
-      storeUnaligned(behindConnection(settings, depth, loadSums(sums, i), loadUnaligned(pdfReverse + i)), out + i);
+      storeUnaligned(behindConnection(settings, walk, depth, loadSums(sums, i), loadUnaligned(pdfReverse + i)),
+                     out + i);
+    }
+  }
+  static void lens(const MisSettings& settings, uint32_t depth, size_t count, const MisColumns<S>& sums,
+                   const S* pdfReverse, S* out) {
+    for (size_t i = 0; i < count; i += kLanes) {
+      storeUnaligned(behindLens(settings, depth, loadSums(sums, i), loadUnaligned(pdfReverse + i)), out + i);
     }
   }
   static void merge(const MisSettings& settings, uint32_t depth, size_t count, const MisColumns<S>& sums, const S* pdf,
@@ -47,7 +54,7 @@ struct Steps {
     }
   }
 
-  static constexpr MisKernels<S> kKernels = {scatter, scatterSpecular, connection, merge};
+  static constexpr MisKernels<S> kKernels = {scatter, scatterSpecular, connection, lens, merge};
 };
 
 constexpr MisEntries kMisEntries = {

@@ -17,11 +17,13 @@ struct MisColumns {
 // Columns are padded to the lane count; the sums are read and written in place.
 template <class S>
 struct MisKernels {
-  void (*scatter)(const MisSettings& settings, uint32_t depth, size_t count, const S* pdf, const S* pdfReverse,
-                  const S* woCosine, const MisColumns<S>& sums);
+  void (*scatter)(const MisSettings& settings, Walk walk, uint32_t depth, size_t count, const S* pdf,
+                  const S* pdfReverse, const S* woCosine, const MisColumns<S>& sums);
   void (*scatterSpecular)(size_t count, const S* jacobian, const MisColumns<S>& sums);
-  void (*behindConnection)(const MisSettings& settings, uint32_t depth, size_t count, const MisColumns<S>& sums,
-                           const S* pdfReverse, S* out);
+  void (*behindConnection)(const MisSettings& settings, Walk walk, uint32_t depth, size_t count,
+                           const MisColumns<S>& sums, const S* pdfReverse, S* out);
+  void (*behindLens)(const MisSettings& settings, uint32_t depth, size_t count, const MisColumns<S>& sums,
+                     const S* pdfReverse, S* out);
   void (*behindMerge)(const MisSettings& settings, uint32_t depth, size_t count, const MisColumns<S>& sums,
                       const S* pdf, S* out);
 };

@@ -101,7 +101,7 @@ void scatter(const MisKernels<S>& kernels, const MisSettings& mis, uint32_t dept
     jacobian[path] = reverse[path] / forward[path] * woNormal[path] * wiShading / woShading * eta * eta;
   }
   kernels.scatterSpecular(kMisPaths, jacobian.data(), over.columns());
-  kernels.scatter(mis, depth, kMisPaths, forward.data(), reverse.data(), woNormal.data(), sums.columns());
+  kernels.scatter(mis, walk, depth, kMisPaths, forward.data(), reverse.data(), woNormal.data(), sums.columns());
   for (size_t path = 0; path < kMisPaths; ++path) {
     if (v.specular[path] == 0) continue;
     sums.dVCM[path] = over.dVCM[path];
@@ -168,13 +168,16 @@ std::vector<double> weights(const MisKernels<S>& kernels, const MisSettings& mis
     kernels.behindMerge(mis, cameraDepth(s), kMisPaths, camera[s].columns(), p.x[s].pdfToCamera.data(),
                         behindCamera.data());
   } else {
-    if (s >= 2) {
-      kernels.behindConnection(mis, lightDepth(s - 1), kMisPaths, light[s - 1].columns(), p.x[s - 1].pdfToLight.data(),
-                               behindLight.data());
+    if (s >= 2 && s == k) {
+      kernels.behindLens(mis, lightDepth(s - 1), kMisPaths, light[s - 1].columns(), p.x[s - 1].pdfToLight.data(),
+                         behindLight.data());
+    } else if (s >= 2) {
+      kernels.behindConnection(mis, Walk::light, lightDepth(s - 1), kMisPaths, light[s - 1].columns(),
+                               p.x[s - 1].pdfToLight.data(), behindLight.data());
     }
     if (s >= 1 && s < k) {
-      kernels.behindConnection(mis, cameraDepth(s), kMisPaths, camera[s].columns(), p.x[s].pdfToCamera.data(),
-                               behindCamera.data());
+      kernels.behindConnection(mis, Walk::camera, cameraDepth(s), kMisPaths, camera[s].columns(),
+                               p.x[s].pdfToCamera.data(), behindCamera.data());
     }
   }
   for (size_t path = 0; path < kMisPaths; ++path) {
@@ -258,7 +261,9 @@ struct Densities {
     }
     if (mis.camera && k >= 2 && !specular(k - 1)) connect[k] = mis.lightPaths * product(k, k);
     for (size_t i = 1; i < k && mis.merge; ++i) {
-      if (!specular(i)) merge[i] = mis.vmWeight * product(i + 1, i);
+      bool first = true;  // that the camera's side can merge at
+      for (size_t j = i + 1; j < k; ++j) first = first && specular(j);
+      if (!specular(i) && (first || !mis.firstMerges)) merge[i] = mis.vmWeight * product(i + 1, i);
     }
     for (const double density : connect) sum += density;
     for (const double density : merge) sum += density;
@@ -276,6 +281,10 @@ std::vector<StrategySet> strategySets() {
       {"bpt", {.emission = true, .nextEvent = true, .connect = true, .camera = true}},
       {"bpm", {.emission = false, .nextEvent = false, .merge = true}},
       {"vcm", {.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true}},
+      {"vcm with first merges",
+       {.emission = true, .nextEvent = true, .connect = true, .camera = true, .merge = true, .firstMerges = true}},
+      {"first merges without t = 1",
+       {.emission = true, .nextEvent = true, .connect = true, .camera = false, .merge = true, .firstMerges = true}},
       {"vcm without t = 1", {.emission = true, .nextEvent = true, .connect = true, .camera = false, .merge = true}},
       {"bpt without s = 1", {.emission = true, .nextEvent = false, .connect = true, .camera = true}},
       {"t = 1", {.emission = false, .nextEvent = false, .camera = true}}};
