@@ -135,6 +135,7 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
                           .film = area.window(),
                           .sharedPlace = film_.spreads(),
                           .counters = &worker.counters};
+  context.sampler.lightPaths = plan_.memory.lightPaths;
   auto& tallies = pass.walk == Walk::light ? worker.lightTallies : worker.cameraTallies;
   // Splats go from the wave's queue to the films through the worker's writer.
   SplatDrain<S> drain;

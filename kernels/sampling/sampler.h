@@ -24,7 +24,9 @@ constexpr uint32_t kMostPaths = 1u << kPathBits;
 constexpr uint32_t kIterationsPerWave = 1u << (32 - kPathBits);
 
 // independent: every number is independent of every other.
-// sobol: the numbers of one (path, block) are well distributed over the iterations.
+// sobol: the numbers of one (path, block) are well distributed over the iterations, or those of one block of light
+// paths
+//   over paths and iterations.
 // chain: what Markov chains propose (ChainSamples); no choice of the user's, but part of Metropolis light transport.
 enum class SamplerKind { independent, sobol, chain };
 
@@ -115,6 +117,16 @@ struct SamplerSettings {
   uint64_t seed = 0;
   uint64_t iteration = 0;               // if lanes are ahead of it, a multiple of the number of iterations in the wave
   const ChainSamples* chain = nullptr;  // of kind `chain`
+  // Of kind `sobol`: light paths of an iteration, of which all are points of one sequence, one after the other; 0: each
+  // light path is a sequence of its own over the iterations. An iteration has no path beyond them.
+  uint64_t lightPaths = 0;
+
+  // How many vertices of a walk have numbers of kind `sobol`, its origin included. Where a path is after them depends
+  // on all numbers before: well distributed ones are worth no more there, and independent ones are cheaper.
+  uint32_t sobolVertices(Stream stream) const {
+    if (stream != Stream::light) return 3;
+    return lightPaths == 0 ? 2 : 1;
+  }
 };
 
 }  // namespace wavecrest

@@ -1,4 +1,5 @@
-// The generator matrices of the first four Sobol dimensions, computed from their primitive polynomials.
+// The generator matrices of the first four Sobol dimensions, for 2^32 points, computed from their primitive
+// polynomials.
 //
 // A column is kept with its bits reversed (the first binary digit of the number is bit 0), the order in which the
 // scrambling hash of sobol_lanes.h works. Initial numbers: Joe and Kuo, "Constructing Sobol Sequences with Better
@@ -11,17 +12,19 @@
 
 namespace wavecrest {
 
-// 2^20 points before a block of dimensions starts over with fresh scrambles: enough for any image, and each bit less
+// The sequence of one path starts over with fresh scrambles after 2^20 points: enough for any image, and each bit less
 // saves work in every call.
-constexpr size_t kSobolIndexBits = 20;
-using SobolColumns = std::array<uint32_t, kSobolIndexBits>;
+constexpr uint32_t kPathSetBits = 20;
+
+constexpr size_t kSobolBits = 32;
+using SobolColumns = std::array<uint32_t, kSobolBits>;
 
 // Column j of the matrix is m_j 2^-(j+1); m follows the recurrence of the polynomial x^degree + ... + 1, whose inner
 // coefficients are the bits of `inner` (Sobol 1967; Bratley and Fox 1988, eq. 4).
 constexpr SobolColumns sobolColumns(size_t degree, uint32_t inner, std::array<uint32_t, 3> initial) {
-  std::array<uint32_t, kSobolIndexBits> m{};
+  SobolColumns m{};
   SobolColumns reversed{};
-  for (size_t j = 0; j < kSobolIndexBits; ++j) {
+  for (size_t j = 0; j < kSobolBits; ++j) {
     if (j < degree) {
       m[j] = initial[j];
     } else {

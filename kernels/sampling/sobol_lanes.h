@@ -1,5 +1,6 @@
 // Owen-scrambled Sobol points: the four numbers of one (path, block, stream) are a four-dimensional Sobol sequence over
-// the iterations, shuffled and scrambled independently of every other.
+// the iterations, shuffled and scrambled independently of every other; or the four numbers of one (block, stream) are
+// one over all light paths of all iterations, one after the other.
 //
 // Burley, "Practical Hash-based Owen Scrambling", JCGT 2020: higher dimensions are padded with further such sets, whose
 // order is decorrelated by scrambling the index too. The seeds of the scrambles are random bits of Philox, so no two
@@ -35,14 +36,15 @@ WAVECREST_INLINE UInt pascalTriangle(UInt x) {
   return x ^ shiftRight<16>(x);
 }
 
-// Four words of reversed digits: point `index` of the sequence, index below 2^kSobolIndexBits.
+// Four words of reversed digits: point `index` of the sequence, index below 2^kBits.
 struct SobolPoint {
   UInt a, b, c, d;
 };
+template <uint32_t kBits>
 WAVECREST_INLINE SobolPoint sobolPointReversed(UInt index) {
   UInt c(0u), d(0u);
 #pragma GCC unroll 32
-  for (uint32_t bit = 0; bit < kSobolIndexBits; ++bit) {
+  for (uint32_t bit = 0; bit < kBits; ++bit) {
     const Mask set = hasBit(index, bit);
     c = select(set, c ^ UInt(kSobolDimension2[bit]), c);
     d = select(set, d ^ UInt(kSobolDimension3[bit]), d);
@@ -50,22 +52,45 @@ WAVECREST_INLINE SobolPoint sobolPointReversed(UInt index) {
   return {index, pascalTriangle(index), c, d};
 }
 
-// 32 random bits for each number, uppermost digit first.
+// Seeds of a set's four scrambles; each a UInt or, where all lanes agree, a uint32_t.
+template <class Word>
+struct SobolSeeds {
+  Word a, b, c, d;
+};
+
+// 32 random bits for each number of point `index` of a set, uppermost digit first. The order of the points is scrambled
+// by a fifth seed: any three of the four scrambles are independent of it.
+template <uint32_t kBits, class Word>
+WAVECREST_INLINE SobolPoint scrambledPoint(UInt index, const SobolSeeds<Word>& seeds) {
+  constexpr uint32_t kIndexMask = ~0u >> (32 - kBits);
+  const UInt order = UInt(seeds.a) ^ UInt(seeds.b) ^ UInt(seeds.c) ^ UInt(seeds.d);
+  const UInt shuffled = reverseBits(scrambleReversed(reverseBits(index), order)) & UInt(kIndexMask);
+  const SobolPoint point = sobolPointReversed<kBits>(shuffled);
+  return {reverseBits(scrambleReversed(point.a, UInt(seeds.a))), reverseBits(scrambleReversed(point.b, UInt(seeds.b))),
+          reverseBits(scrambleReversed(point.c, UInt(seeds.c))), reverseBits(scrambleReversed(point.d, UInt(seeds.d)))};
+}
+
+// A path's own set, over the iterations.
 WAVECREST_INLINE SobolPoint sobolBits(const SamplerSettings& sampler, UInt path, uint32_t block, Stream stream) {
-  constexpr uint32_t kIndexMask = (1u << kSobolIndexBits) - 1;
   const auto iteration = static_cast<uint32_t>(sampler.iteration);
-  const uint32_t epoch = iteration >> kSobolIndexBits;
+  const uint32_t epoch = iteration >> kPathSetBits;
   const UInt set = path & UInt(kMostPaths - 1);
   const PhiloxBlock counter{split(set), epoch, block, streamWord(static_cast<uint32_t>(stream), sampler.iteration)};
   const auto random = philox4x32<kPhiloxRounds>(counter, philoxKey(sampler.seed));
-  const UInt seedA = join(random.a), seedB = join(random.b), seedC = join(random.c), seedD = join(random.d);
+  const UInt index = UInt(iteration & ((1u << kPathSetBits) - 1)) + shiftRight<kPathBits>(path);
+  return scrambledPoint<kPathSetBits>(index,
+                                      SobolSeeds<UInt>{join(random.a), join(random.b), join(random.c), join(random.d)});
+}
 
-  // The order of the points: any three of the four scrambles are independent of it.
-  const UInt index = UInt(iteration & kIndexMask) + shiftRight<kPathBits>(path);
-  const UInt shuffled = scrambleReversed(reverseBits(index), xor3(seedA, seedB, seedC) ^ seedD);
-  const SobolPoint point = sobolPointReversed(reverseBits(shuffled) & UInt(kIndexMask));
-  return {reverseBits(scrambleReversed(point.a, seedA)), reverseBits(scrambleReversed(point.b, seedB)),
-          reverseBits(scrambleReversed(point.c, seedC)), reverseBits(scrambleReversed(point.d, seedD))};
+// The set of all light paths of as many whole iterations as its points are enough for.
+WAVECREST_INLINE SobolPoint sharedSobolBits(const SamplerSettings& sampler, UInt path, uint32_t block) {
+  const uint64_t together = kMostPaths / sampler.lightPaths, epoch = sampler.iteration / together;
+  const auto first = static_cast<uint32_t>(sampler.iteration % together * sampler.lightPaths);
+  // No path with a set of its own has this number.
+  const PhiloxBlock counter{kMostPaths, static_cast<uint32_t>(epoch), block,
+                            streamWord(static_cast<uint32_t>(Stream::light), epoch)};
+  const auto random = philox4x32<kPhiloxRounds>(counter, philoxKey(sampler.seed));
+  return scrambledPoint<kPathBits>(path + UInt(first), SobolSeeds<uint32_t>{random.a, random.b, random.c, random.d});
 }
 
 WAVECREST_SIMD_END

@@ -11,6 +11,8 @@ namespace wavecrest {
 namespace {
 
 constexpr SamplerSettings kSobol{.kind = SamplerKind::sobol, .seed = 3, .iteration = 0};
+// Of a camera walk: blocks of later vertices are independent.
+const uint32_t kSobolBlocks = 4 * kSobol.sobolVertices(Stream::camera);
 constexpr SamplerSettings kIndependent{.kind = SamplerKind::independent, .seed = 3, .iteration = 0};
 
 // How many points fall into each box that is 2^-bits[d] wide along dimension d.
@@ -34,14 +36,14 @@ void expectEveryBoxHolds(const SampleColumns& u, const std::array<uint32_t, 4>& 
 // (0,m,2)-net: each of the 2^m boxes of area 2^-m, of any shape, holds one of the first 2^m points.
 TEST(SobolSampler, firstTwoNumbersFormNetsOfEverySize) {
   for (uint32_t m = 0; m <= 12; ++m) {
-    const SampleColumns u = drawIterations(kSobol, size_t{1} << m, 5, m);
+    const SampleColumns u = drawIterations(kSobol, size_t{1} << m, 5, m % kSobolBlocks);
     for (uint32_t bits = 0; bits <= m; ++bits) expectEveryBoxHolds(u, {bits, m - bits, 0, 0}, 1);
   }
 }
 
 TEST(SobolSampler, everyNumberIsStratified) {
   for (uint32_t m = 0; m <= 12; ++m) {
-    const SampleColumns u = drawIterations(kSobol, size_t{1} << m, 6, m);
+    const SampleColumns u = drawIterations(kSobol, size_t{1} << m, 6, m % kSobolBlocks);
     expectEveryBoxHolds(u, {m, 0, 0, 0}, 1);
     expectEveryBoxHolds(u, {0, m, 0, 0}, 1);
     expectEveryBoxHolds(u, {0, 0, m, 0}, 1);
@@ -64,11 +66,82 @@ TEST(SobolSampler, allFourNumbersFormNets) {
 // Later aligned ranges of iterations are nets too; the second epoch is one, and is not a repetition of the first.
 TEST(SobolSampler, laterIterationsFormNets) {
   const auto draw = [](uint32_t first) { return drawIterations(kSobol, 256, 5, 0, Stream::camera, first); };
-  constexpr uint32_t kEpoch = 1u << kSobolIndexBits;
+  constexpr uint32_t kEpoch = 1u << kPathSetBits;
   for (const uint32_t first : {256u, 3u * 256u, kEpoch - 256u, kEpoch, 2 * kEpoch + 512}) {
     for (uint32_t bits = 0; bits <= 8; ++bits) expectEveryBoxHolds(draw(first), {bits, 8 - bits, 0, 0}, 1);
   }
   EXPECT_NE(draw(0)[0], draw(kEpoch)[0]);
+}
+
+// ---- light paths of one sequence ------------------------------------------------------------------------------------
+
+SamplerSettings shared(uint64_t lightPaths, uint64_t iteration = 0) {
+  SamplerSettings sampler = kSobol;
+  sampler.lightPaths = lightPaths;
+  sampler.iteration = iteration;
+  return sampler;
+}
+
+TEST(SharedSobolSampler, pathsOfAnIterationFormNets) {
+  for (const uint64_t iteration : {0u, 1u, 77u}) {
+    for (const uint32_t block : {0u, 1u, 3u}) {
+      const SampleColumns u = drawPaths(shared(4096, iteration), 4096, block, Stream::light);
+      for (uint32_t bits = 0; bits <= 12; ++bits) expectEveryBoxHolds(u, {bits, 12 - bits, 0, 0}, 1);
+      for (uint32_t d = 2; d < 4; ++d) {
+        std::array<uint32_t, 4> bits{};
+        bits[d] = 12;
+        expectEveryBoxHolds(u, bits, 1);
+      }
+    }
+  }
+}
+
+TEST(SharedSobolSampler, iterationsGoOnWithTheSequence) {
+  // Four iterations of 256 paths, from the first of an aligned range of 1024 points on.
+  for (const uint64_t first : {0u, 8u, (kMostPaths - 1024u) / 256u}) {
+    SampleColumns u;
+    for (uint64_t i = first; i < first + 4; ++i) {
+      const SampleColumns some = drawPaths(shared(256, i), 256, 0, Stream::light);
+      for (size_t d = 0; d < 4; ++d) u[d].insert(u[d].end(), some[d].begin(), some[d].end());
+    }
+    for (uint32_t bits = 0; bits <= 10; ++bits) expectEveryBoxHolds(u, {bits, 10 - bits, 0, 0}, 1);
+  }
+}
+
+// Where the points end, another sequence begins with an iteration, however many paths that has.
+TEST(SharedSobolSampler, startsOverWithOtherScrambles) {
+  for (const uint64_t paths : {uint64_t{kMostPaths}, uint64_t{kMostPaths} / 2, uint64_t{100'000'000}}) {
+    const uint64_t together = kMostPaths / paths;
+    const auto draw = [&](uint64_t iteration) { return drawPaths(shared(paths, iteration), 256, 0, Stream::light); };
+    EXPECT_NE(draw(0)[0], draw(together)[0]);
+    for (uint32_t bits = 0; bits <= 8; ++bits) expectEveryBoxHolds(draw(together), {bits, 8 - bits, 0, 0}, 1);
+  }
+}
+
+TEST(SharedSobolSampler, isForTheOriginsOfLightPathsAlone) {
+  const auto isIndependent = [](const SamplerSettings& sampler, uint32_t block, Stream stream) {
+    SamplerSettings independent = sampler;
+    independent.kind = SamplerKind::independent;
+    return drawPaths(sampler, 64, block, stream) == drawPaths(independent, 64, block, stream);
+  };
+  EXPECT_FALSE(isIndependent(shared(64), 3, Stream::light));
+  EXPECT_TRUE(isIndependent(shared(64), 4, Stream::light));
+  EXPECT_FALSE(isIndependent(kSobol, 7, Stream::light));
+  EXPECT_TRUE(isIndependent(kSobol, 8, Stream::light));
+  EXPECT_FALSE(isIndependent(kSobol, 11, Stream::camera));
+  EXPECT_TRUE(isIndependent(kSobol, 12, Stream::camera));
+  EXPECT_EQ(drawPaths(shared(64), 64, 0, Stream::camera), drawPaths(kSobol, 64, 0, Stream::camera));
+}
+
+TEST(SharedSobolSampler, blocksArePairedAtRandom) {
+  const SampleColumns u = drawPaths(shared(1 << 15), 1 << 15, 0, Stream::light);
+  const SampleColumns others[] = {drawPaths(shared(1 << 15), 1 << 15, 1, Stream::light),
+                                  drawPaths(kSobol, 1 << 15, 0, Stream::light)};
+  for (const SampleColumns& other : others) {
+    for (size_t i = 0; i < 4; ++i) {
+      for (size_t j = 0; j < 4; ++j) EXPECT_LT(pairDeviations(u[i], other[j]), kMaxDeviations) << i << ' ' << j;
+    }
+  }
 }
 
 // ---- convergence ----------------------------------------------------------------------------------------------------
