@@ -18,7 +18,9 @@ class Wavecrest:
     """A process per render. Its own statistics leave out loading and building, as for the others."""
 
     def __init__(self, program, job, options=()):
-        self.program, self.job, self.options = program, job, options
+        # SmallVCM merges at every vertex.
+        own = ["--merge-vertices", "all"] if job.method == "vcm" and "--merge-vertices" not in options else []
+        self.program, self.job, self.options = program, job, [*own, *options]
         self.about = "wavecrest"
         self.spp = job.spp
         self.render(0)  # files and libraries into memory

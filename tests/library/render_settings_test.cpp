@@ -62,5 +62,10 @@ TEST(RenderSettings, rouletteIsEfficientUnlessItIsChosen) {
   EXPECT_NE(refusalOfRender({.roulette = "luck"}).find("throughput, albedo, efficiency"), std::string::npos);
 }
 
+TEST(RenderSettings, vcmMergesAtFirstVerticesUnlessItIsToldOtherwise) {
+  EXPECT_EQ(renderSettings({.method = "vcm"}, Scene()).mergeVertices, MergeVertices::first);
+  EXPECT_EQ(renderSettings({.method = "vcm", .mergeVertices = "all"}, Scene()).mergeVertices, MergeVertices::all);
+}
+
 }  // namespace
 }  // namespace wavecrest
