@@ -58,6 +58,7 @@ std::vector<CompletionWords> completionWords() {
           named({"--instances"}, kInstancingNames),
           named({"--filter-mode"}, kFilterModeNames),
           named({"--roulette"}, kRouletteNames),
+          named({"--guide"}, kGuideTargetNames),
           named({"--mlt"}, kMetropolisVariantNames),
           named({"--merge-vertices"}, kMergeVerticesNames),
           named({"--clock"}, kClockNames),

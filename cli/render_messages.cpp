@@ -26,6 +26,7 @@ std::string describe(const MemoryPlan& plan) {
   add("splats", use.splats);
   add("light vertices", use.lightVertices);
   add("photon map", use.photonMap);
+  add("guide", use.learned);
   add("chains", use.chains);
   add("image", use.image);
   text += fmt::format("together {:.1f} MB", static_cast<double>(use.total()) / 1e6);

@@ -59,6 +59,12 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
       .showDefault()
       .between(kConnectionRouletteRange);
   command.addFlag("--direct-pass", options.directPass, "ppm: direct light by next event estimation, not from photons");
+  command
+      .add("--guide", options.guide,
+           "gpt: draw directions by the light that comes from there: radiance, or variance to go where that is noisy "
+           "too; off: as pt")
+      .showDefault();
+  command.add("--guide-memory", options.guideMemory, "gpt: memory of what it learns, as 64MiB, which is the default");
   command.add("--memory", options.memory, "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");
   // Markov chains.
   command.add("--mlt", options.mlt, "what the chains of mlt walk in: pssmlt, mmlt or pathspace; default: mmlt");

@@ -44,6 +44,8 @@ enum class StageFamily : uint8_t { featured, bidirectional, common };
   STAGE(connectVertices, "connect", joinable, bidirectional, block)           /* connect_vertices.cpp */           \
   /* merge/ */                                                                                                     \
   STAGE(merge, "merge", joinable, bidirectional, block) /* merge.cpp */                                            \
+  /* guide/ */                                                                                                     \
+  STAGE(findCells, "find cells", live, common, block) /* find_cells.cpp */                                         \
   /* mutate/: what only Markov chains do */                                                                        \
   STAGE(proposeMutations, "propose", beginning, common, block)      /* propose_mutations.cpp */                    \
   STAGE(acceptMutations, "accept", beginning, common, block)        /* accept_mutations.cpp */                     \

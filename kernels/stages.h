@@ -10,7 +10,9 @@
 #include <optional>
 #include <string_view>
 
+#include "kernels/columns/cell_tree.h"
 #include "kernels/columns/filter_spread.h"
+#include "kernels/columns/guide_view.h"
 #include "kernels/columns/photon_grid.h"
 #include "kernels/columns/splat_sums.h"
 #include "kernels/columns/wave.h"
@@ -193,6 +195,10 @@ struct StageContext {
   ChainState* chains = nullptr;       // of Markov chains: their state, one chain to a lane
   WalkEnds<S>* ends = nullptr;        // of multiplexed chains: where walks stop to be joined
   PathMutations<S>* paths = nullptr;  // of chains in path space: the paths and what is to change about them
+  // Of renders that learn: the cells of vertices, what directions are drawn by, and whether scatter keeps records.
+  const CellTreeView* cellTree = nullptr;
+  const GuideView* guide = nullptr;
+  bool recordsDirections = false;
   StageCounters* counters = nullptr;
 
   bool contributesToLanes() const { return walk == Walk::camera || !splatting; }

@@ -11,6 +11,7 @@
 #include "bench/results/results_store.h"
 #include "bench/results/within_folder.h"
 #include "library/campaign_options.h"
+#include "library/campaign_rows.h"
 #include "library/errors.h"
 #include "scenes/scene_list.h"
 
@@ -27,7 +28,8 @@ Words listed(const CampaignOptions& options, const std::string& name) {
   if (name == "scenes") {
     for (const SceneEntry& entry : builtInScenes()) words.emplace_back(entry.name);
   } else {
-    for (const MethodEntry& entry : kMethods) words.emplace_back(entry.name);
+    const auto profile = options.defining.find("--profile");
+    words = defaultMethods(*findProfile(profile == options.defining.end() ? "quick" : profile->second.front()));
   }
   return words;
 }

@@ -56,7 +56,7 @@ std::vector<CampaignMethod> chosenMethods(const CampaignWords& words, const Prof
   if (const auto* named = given(words, "--methods")) {
     names = *named;
   } else {
-    for (const MethodEntry& entry : kMethods) names.emplace_back(entry.name);
+    names = defaultMethods(profile);
   }
   // Two words may stand for the same row.
   std::vector<CampaignMethod> methods;
@@ -82,6 +82,13 @@ std::span<const std::string_view> campaignMethodNames() {
     all.insert(all.end(), special.begin(), special.end());
     return all;
   }();
+  return names;
+}
+
+std::vector<std::string> defaultMethods(const Profile& profile) {
+  const size_t count = profile.studyRows ? kStudyMethods : kMethods.size();
+  std::vector<std::string> names;
+  for (const MethodEntry& entry : std::span(kMethods).first(count)) names.emplace_back(entry.name);
   return names;
 }
 

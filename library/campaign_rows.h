@@ -17,6 +17,9 @@ using CampaignWords = std::map<std::string, std::vector<std::string>>;  // by op
 // What --methods of a campaign takes: all methods, and the rows that have names of their own ("ppm-direct").
 std::span<const std::string_view> campaignMethodNames();
 
+// The methods of a campaign without --methods: all, or of the study's profiles those of the study.
+std::vector<std::string> defaultMethods(const Profile& profile);
+
 // NAME=VALUE of a scene's variables; UsageError for any other word.
 std::map<std::string, std::string> parseDefinitions(const std::vector<std::string>& words);
 

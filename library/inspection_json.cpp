@@ -27,6 +27,7 @@ ordered_json memoryJson(const MemoryUse& use) {
           {"splat_bytes", use.splats},
           {"light_vertex_bytes", use.lightVertices},
           {"photon_map_bytes", use.photonMap},
+          {"guide_bytes", use.learned},
           {"chain_bytes", use.chains},
           {"image_bytes", use.image},
           {"total_bytes", use.total()}};

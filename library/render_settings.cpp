@@ -40,6 +40,8 @@ void refuseOptionsOfOtherMethods(const api::RenderOptions& options, Method metho
   const api::RenderOptions byDefault;
   const auto isMlt = [](Method one) { return one == Method::mlt; };
   const auto isPpm = [](Method one) { return one == Method::ppm; };
+  const auto isGpt = [](Method one) { return one == Method::gpt; };
+  constexpr const char* kNoGuide = "learns no guide";
   constexpr const char* kNoChains = "has no Markov chains";
   const bool otherMlt = chosenChains(options).variant != chosenChains(byDefault).variant;
   const MethodOption all[] = {
@@ -52,6 +54,8 @@ void refuseOptionsOfOtherMethods(const api::RenderOptions& options, Method metho
       {"--connection-roulette", options.connectionRoulette != byDefault.connectionRoulette, hasConnectionRoulette,
        "has no roulette of connections"},
       {"--roulette", options.roulette != byDefault.roulette, hasRouletteChoice, "ends walks by throughput"},
+      {"--guide", options.guide != byDefault.guide, isGpt, kNoGuide},
+      {"--guide-memory", !options.guideMemory.empty(), isGpt, kNoGuide},
       {"--mlt", otherMlt, isMlt, kNoChains},
       {"--chains", options.chains != byDefault.chains, isMlt, kNoChains},
       {"--bootstrap", options.bootstrap != byDefault.bootstrap, isMlt, kNoChains},
@@ -120,6 +124,8 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   settings.mergeVertices =
       static_cast<MergeVertices>(parseChoice("--merge-vertices", options.mergeVertices, kMergeVerticesNames));
   settings.connectionRoulette = options.connectionRoulette;
+  settings.guide = static_cast<GuideTarget>(parseChoice("--guide", options.guide, kGuideTargetNames));
+  if (!options.guideMemory.empty()) settings.guideBytes = parseMemory("--guide-memory", options.guideMemory);
   if (options.lightPaths != 0) settings.lightPaths = options.lightPaths;
   settings.directPass = options.directPass;
   settings.limits = pathLimits(options.maxDepth != 0 ? options.maxDepth : scene.defaults.maxDepth,

@@ -153,8 +153,23 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
   }
   if (hasRouletteChoice(settings.method)) stats["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
   if (hasConnectionRoulette(settings.method)) stats["connection_roulette"] = settings.connectionRoulette;
+  if (settings.method == Method::gpt) stats["guide"] = guideJson(settings, statistics);
   if (statistics.chains) stats.update(chainStats(settings, *statistics.chains));
   return stats;
+}
+
+nlohmann::ordered_json guideJson(const RenderSettings& settings, const RenderStatistics& statistics) {
+  nlohmann::ordered_json guide{{"target", enumeratorName(kGuideTargetNames, settings.guide)}};
+  if (!statistics.guide) return guide;
+  const GuideStatistics& learned = *statistics.guide;
+  guide.update({{"blocks", learned.folds},
+                {"cells", learned.cells},
+                {"taught_cells", learned.taught},
+                {"records", learned.records},
+                {"guided_share", learned.guidedShare},
+                {"saturated_sums", learned.saturated},
+                {"bytes", learned.bytes}});
+  return guide;
 }
 
 nlohmann::ordered_json mergeRadiusJson(const MergeRadius& radius) {

@@ -20,6 +20,8 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
 // The first radius of merges, relative to the scene's radius, in units of the scene, in pixels and by the photons that
 // a search meets; the latter two where a typical camera path first merges.
 nlohmann::ordered_json mergeRadiusJson(const MergeRadius& radius);
+// What gpt was asked to learn, and has learned.
+nlohmann::ordered_json guideJson(const RenderSettings& settings, const RenderStatistics& statistics);
 
 // Every scalar of a stats object as a string attribute of an image, its key after "wavecrest:".
 Metadata statsMetadata(const nlohmann::ordered_json& stats);

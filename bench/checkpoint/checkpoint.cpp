@@ -128,6 +128,10 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
   }
   if (dependsOnWaves(settings.method)) identity["wave"] = settings.waveSize;
   if (hasConnectionRoulette(settings.method)) identity["connection_roulette"] = settings.connectionRoulette;
+  if (settings.method == Method::gpt) {
+    identity["guide"] = enumeratorName(kGuideTargetNames, settings.guide);
+    identity["guide_memory"] = settings.guideBytes;
+  }
   if (settings.method == Method::mlt) {
     identity.update(chainIdentity(settings.metropolis));
     identity["part"] = fmt::format("{}/{}", settings.share.part + 1, settings.share.parts);

@@ -10,9 +10,9 @@ namespace wavecrest {
 namespace {
 
 const std::vector<Method> kEveryMethod{Method::pt,  Method::lt,  Method::bpt, Method::mlt,
-                                       Method::ppm, Method::bpm, Method::vcm};
+                                       Method::ppm, Method::bpm, Method::vcm, Method::gpt};
 // All methods but those that merge alone.
-const std::vector<Method> kUnbiased{Method::pt, Method::lt, Method::bpt, Method::mlt, Method::vcm};
+const std::vector<Method> kUnbiased{Method::pt, Method::lt, Method::bpt, Method::mlt, Method::vcm, Method::gpt};
 constexpr const char* kNoPhotonsAlone = "ppm, bpm: a disc of photons reaches beyond the edges of walls, a bias of 3 %";
 
 // A metal that absorbs nothing.

@@ -117,7 +117,7 @@ def read_pfm(path):
 # name -> (methods it has, how to start it for a job given the command line's options)
 PROGRAMS = {
     "wavecrest": (
-        ("pt", "lt", "bpt", "mlt", "ppm", "bpm", "vcm"),
+        ("pt", "lt", "bpt", "mlt", "ppm", "bpm", "vcm", "gpt"),
         lambda job, options: Wavecrest(options.wavecrest, job, options.wavecrest_options.split()),
     ),
     "mitsuba-llvm": (("pt", "lt"), lambda job, options: Child("mitsuba_child.py", job, variant="llvm_ad_rgb")),

@@ -16,7 +16,7 @@ struct MethodStyle {
   CurveMark mark;
 };
 
-inline constexpr std::array<MethodStyle, 10> kMethodStyles = {{
+inline constexpr std::array<MethodStyle, 11> kMethodStyles = {{
     {"pt", "path tracing", CurveMark::kCircle},
     {"lt", "light tracing", CurveMark::kSquare},
     {"bpt", "bidirectional path tracing", CurveMark::kTriangleUp},
@@ -27,6 +27,7 @@ inline constexpr std::array<MethodStyle, 10> kMethodStyles = {{
     {"ppm-direct", "progressive photon mapping, direct light by next event estimation", CurveMark::kTriangleDown},
     {"bpm", "bidirectional photon mapping", CurveMark::kPlus},
     {"vcm", "vertex connection and merging", CurveMark::kCross},
+    {"gpt", "guided path tracing", CurveMark::kCircle},
 }};
 
 /// The style of a method; one that is not listed gets a plain one under its own name.

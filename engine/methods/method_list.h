@@ -10,7 +10,7 @@
 
 namespace wavecrest {
 
-enum class Method { pt, lt, bpt, mlt, ppm, bpm, vcm };
+enum class Method { pt, lt, bpt, mlt, ppm, bpm, vcm, gpt };
 
 // What the chains of Metropolis light transport walk in: primary samples of path tracing, primary samples of
 // bidirectional path tracing with one strategy per path, or paths.
@@ -28,6 +28,7 @@ MethodPage progressivePhotonMapping();
 MethodPage photonMappingWithDirectPass();
 MethodPage bidirectionalPhotonMapping();
 MethodPage vertexConnectionAndMerging();
+MethodPage guidedPathTracing();
 
 struct MethodEntry {
   Method method;
@@ -47,6 +48,7 @@ constexpr std::array kMethods{
     MethodEntry{Method::bpm, "bpm", "bidirectional photon mapping: merging at every vertex",
                 bidirectionalPhotonMapping},
     MethodEntry{Method::vcm, "vcm", "vertex connection and merging", vertexConnectionAndMerging},
+    MethodEntry{Method::gpt, "gpt", "guided path tracing: learns where light comes from", guidedPathTracing},
 };
 static_assert([] {
   for (size_t i = 0; i < kMethods.size(); ++i) {
@@ -54,6 +56,9 @@ static_assert([] {
   }
   return true;
 }());
+
+// The study compares the first so many.
+constexpr size_t kStudyMethods = 7;
 
 constexpr std::optional<Method> parseMethod(std::string_view word) {
   for (const MethodEntry& entry : kMethods) {

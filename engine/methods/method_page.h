@@ -63,8 +63,14 @@ struct WalkPhase {
 };
 
 // A barrier: all waves of an iteration have been through the phases before it when those after it begin. In between it
-// folds what the former gathered into what the latter read.
-enum class Fold { photonMap };  // the light vertices of the iteration into its photon map
+// folds what the former gathered into what the latter read. photonMap: the light vertices of the iteration into its
+// photon map.
+//
+// A lesson is a barrier at the end of a block of iterations (engine/learn/blocks.h), behind the page's last phase: what
+// all iterations of the block gathered becomes what those of the next read. guide: directions in which paths found
+// light into the histograms that directions are drawn from.
+enum class Fold { photonMap, guide };
+constexpr bool isLesson(Fold fold) { return fold != Fold::photonMap; }
 struct Barrier {
   Fold fold{};
 };
@@ -102,6 +108,7 @@ inline WalkPhase walk(Walk walk, StageId generate, Steps first, Steps steps) {
   return {walk, generate, std::move(steps), std::move(first)};
 }
 inline Barrier buildPhotonMap() { return {Fold::photonMap}; }
+inline Barrier learn(Fold lesson) { return {lesson}; }
 inline OncePhase once(std::vector<StageId> stages) { return {std::move(stages)}; }
 inline OncePhase atEnds(EndsOf ends, Walk walk, uint32_t depth, std::vector<StageId> stages) {
   return {std::move(stages), ends, walk, depth};

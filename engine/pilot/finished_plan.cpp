@@ -35,6 +35,7 @@ RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, c
   planLightPaths(plan, settings, area);
   // Path tracing picks its lights by what they give in view (METHODS 2.3).
   if (!plan.pipeline.lightPass() && !plan.pipeline.chains) pickLightsByView(plan, settings, area);
+  if (!plan.pipeline.lessons.empty()) plan.typicalBrightness = typicalBrightness(plan, settings, area);
   plan.connectionRouletteBelow = connectionRouletteLimit(plan, settings, area);
   return plan;
 }

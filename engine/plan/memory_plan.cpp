@@ -48,6 +48,7 @@ class Planner {
                                                  : pixels * 3 * sizeof(double);
     use.image = Film::imageBytesFor(pixels, spreadsSamples(plan_, settings_), plan_.pipeline.chains);
     // Count splats, and what chains or light paths hold.
+    if (plan_.pipeline.has(Fold::guide)) use.learned = Guide::bytesFor(settings_.guideBytes);
     if (plan_.pipeline.splats()) use.splats = SplatFilms::bytesFor(pixels, settings_.threads);
     if (plan_.pipeline.chains) {
       addChains();

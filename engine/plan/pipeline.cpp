@@ -117,7 +117,8 @@ const Pass<S>* Pipeline<S>::pass(Walk walk) const {
 template <class S>
 bool Pipeline<S>::has(Fold fold) const {
   return std::any_of(stretches.begin(), stretches.end(),
-                     [fold](const Stretch<S>& stretch) { return stretch.fold == fold; });
+                     [fold](const Stretch<S>& stretch) { return stretch.fold == fold; }) ||
+         std::find(lessons.begin(), lessons.end(), fold) != lessons.end();
 }
 
 template <class S>
@@ -134,8 +135,10 @@ Pipeline<S> makePipeline(const MethodPage& page, const Stages<S>& stages, const 
     } else if (const auto* once = std::get_if<OncePhase>(&phase)) {
       const bool decides = once->stages.front() == StageId::acceptMutations;
       stretch.phases.push_back(OnceCalls<S>{caller.calls(*once), decides, once->ends, once->walk, once->depth});
+    } else if (const Fold fold = std::get<Barrier>(phase).fold; isLesson(fold)) {
+      pipeline.lessons.push_back(fold);
     } else {
-      stretch.fold = std::get<Barrier>(phase).fold;
+      stretch.fold = fold;
       pipeline.stretches.emplace_back();
     }
   }

@@ -69,6 +69,7 @@ struct Stretch {
 template <class S>
 struct Pipeline {
   std::vector<Stretch<S>> stretches;
+  std::vector<Fold> lessons;  // at the end of each block of iterations
   // Paths are what Markov chains propose: in their one stretch all phases but those that decide trace a proposal and
   // its contribution.
   bool chains = false;
@@ -78,7 +79,7 @@ struct Pipeline {
   const Pass<S>* pass(Walk walk) const;  // null if there is none
   const Pass<S>* lightPass() const { return pass(Walk::light); }
   const Pass<S>& cameraPass() const { return *pass(Walk::camera); }
-  bool has(Fold fold) const;
+  bool has(Fold fold) const;  // at a barrier within an iteration, or behind a block of them
 
   // The logarithm of how many iterations a camera wave of this many paths takes at once (Wave::iterationBits), where it
   // may: camera paths that are joined with light paths of their iteration come alone.

@@ -59,6 +59,8 @@ void refuseTintedPassages(const Scene& scene) {
 }
 
 MethodPage pageOf(const RenderSettings& settings) {
+  // Without a guide nothing is learned, and the method is path tracing.
+  if (settings.method == Method::gpt && settings.guide == GuideTarget::off) return pathTracing();
   MethodPage page = pageOf(settings.method, settings.metropolis.variant, settings.directPass);
   page.firstMerges = choosesMergeVertices(settings.method) && settings.mergeVertices == MergeVertices::first;
   return page;
@@ -162,6 +164,8 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   }
   plan.pipeline = makePipeline(pageOf(settings), stages, chooseIntersector(stages, *plan.scene));
   plan.needs.splats = plan.pipeline.splats();
+  plan.needs.cells = !plan.pipeline.lessons.empty();
+  plan.needs.directions = plan.pipeline.has(Fold::guide);
   // Without a photon map, light vertices are stored only to be connected.
   const bool merged = plan.pipeline.has(Fold::photonMap);
   plan.lightUse = {.connected = !merged || plan.pipeline.cameraPass().strategies.connect, .merged = merged};

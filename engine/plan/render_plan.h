@@ -32,6 +32,7 @@ struct RenderPlan {
   MemoryPlan memory;
   MergeRadius mergeRadius;        // of methods that merge
   S connectionRouletteBelow = 0;  // StageContext::rouletteBelow
+  double typicalBrightness = 0;   // of a pixel, where a render learns
 
   Accel accel() const { return scene->accel(); }
 };

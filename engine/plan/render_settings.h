@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "engine/compile/compiled_scene.h"
+#include "engine/learn/guide.h"
 #include "engine/methods/method_list.h"
 #include "engine/plan/clock_kind.h"
 #include "engine/tasks/placement.h"
@@ -103,6 +104,9 @@ struct RenderSettings {
   // It saves shadow rays and changes no mean. 0: no roulette. Never used with Accel::small, where a shadow ray costs
   // less than the roulette.
   double connectionRoulette = 0.2;
+  // gpt: what its guide is learned for, and the memory of what it learns.
+  GuideTarget guide = GuideTarget::variance;
+  uint64_t guideBytes = uint64_t{64} << 20;
   bool directPass = false;      // ppm: direct light by next event estimation, the rest from photons
   uint64_t firstIteration = 0;  // of this session: what came before was rendered by another
   // N_L, the light paths of an iteration. Unset: one per pixel (lightPathsWanted). To be set for methods with a photon
@@ -146,11 +150,17 @@ RenderSettings settingsOfShare(RenderSettings settings, uint32_t part, uint32_t 
 // The first iteration of a share, and with part + 1 the end of it.
 uint64_t beginOfShare(uint64_t iterations, uint32_t part, uint32_t parts);
 
+// Whether neither light vertices nor chains keep memory for each vertex of a path.
+inline bool tracesCameraPathsAlone(Method method) {
+  const MethodPage page = entryOf(method).page();
+  return page.walk(Walk::light) == nullptr && !page.hasChains();
+}
+
 // The settings with the longest path that their method can make, where they ask for longer ones.
 inline RenderSettings withinDepthOfMethod(RenderSettings settings) {
   uint32_t& depth = settings.limits.maxDepth;
   if (settings.method == Method::mlt) depth = std::min(depth, kChainDepth);
-  if (settings.method == Method::pt && depth == kUnlimitedDepth) depth = kWalkDepth;
+  if (tracesCameraPathsAlone(settings.method) && depth == kUnlimitedDepth) depth = kWalkDepth;
   return settings;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/film/film.h"
+#include "engine/learn/guide.h"
 #include "engine/plan/memory_use.h"
 #include "engine/plan/merge_radius.h"
 #include "engine/plan/render_settings.h"
@@ -72,6 +73,7 @@ struct RenderStatistics {
   MemoryUse memory;                        // of all threads that have worked
   std::optional<MergeRadius> mergeRadius;  // of methods that merge
   std::optional<ChainStatistics> chains;   // of mlt
+  std::optional<GuideStatistics> guide;    // of gpt
 };
 
 class Session {

@@ -19,6 +19,7 @@
 #include "engine/tasks/flush_to_zero.h"
 #include "engine/tasks/for_each.h"
 #include "engine/tasks/run_schedule.h"
+#include "engine/waves/learner.h"
 #include "engine/waves/photon_iterations.h"
 #include "engine/waves/wave_worker.h"
 
@@ -74,6 +75,10 @@ class WaveSession final : public PlannedSession<S> {
   void renderWaves(const Finished& finished);
   // Iterations of a method with a photon map. end: the time when no other iteration may begin.
   void renderPhases(const Finished& finished, double end);
+  // Iterations of any method.
+  void renderIterations(const Finished& finished, double end);
+  // Iterations in blocks, of a method that learns.
+  void renderBlocks(const Finished& finished, double end);
   PhotonGrid<S> photonGrid(double searchRadius) const;
   void buildPhotonMap(const ScheduledTask& task, Worker& worker);
   // Light vertices that the camera paths of a wave are joined with.
@@ -85,6 +90,7 @@ class WaveSession final : public PlannedSession<S> {
   std::vector<CameraProgress> camera_;  // of each tile
   bool level_ = true;                   // false: pixels of a restored film have different numbers of samples
   PhotonIterations<S> photons_;
+  Learner<S> learner_;
   double iterationSeconds_ = 0;  // of the latest iterations with a photon map; 0: of none yet
   oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers_;
 };
@@ -104,6 +110,7 @@ WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings) 
     pieces_ = film_.area().pieces(piece, film_.spreads());
     camera_.resize(pieces_.size() - 1, {.next = settings_.firstIteration});
     if (plan_.pipeline.has(Fold::photonMap)) photons_ = PhotonIterations<S>(plan_, settings_, pixels, camera_.size());
+    if (!plan_.pipeline.lessons.empty()) learner_ = Learner<S>(plan_, settings_, pixels);
   });
 }
 
@@ -136,6 +143,10 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
                           .sharedPlace = film_.spreads(),
                           .counters = &worker.counters};
   context.sampler.lightPaths = plan_.memory.lightPaths;
+  if (learner_.learns()) {
+    learner_.prepare(context, iteration - settings_.firstIteration);
+    worker.wave.directions.size = 0;
+  }
   auto& tallies = pass.walk == Walk::light ? worker.lightTallies : worker.cameraTallies;
   // Splats go from the wave's queue to the films through the worker's writer.
   SplatDrain<S> drain;
@@ -179,9 +190,11 @@ LightStore<S>* WaveSession<S>::partnersOf(size_t waveIndex, uint64_t iteration, 
 template <class S>
 uint32_t WaveSession<S>::iterationBits(uint64_t next) const {
   const auto log2 = [](uint64_t n) { return static_cast<uint32_t>(std::bit_width(std::max<uint64_t>(n, 1))) - 1; };
-  // The sampler wants the first of n iterations at once to be a multiple of n. The last one must not pass the end.
-  return std::min({mostIterationBits(), static_cast<uint32_t>(std::countr_zero(next)),
-                   log2(next - settings_.firstIteration), log2(endIteration_ - next)});
+  // The sampler wants the first of n iterations at once to be a multiple of n. The last one must not pass the end, of
+  // the render or of iterations that learn alike.
+  const uint64_t done = next - settings_.firstIteration;
+  return std::min({mostIterationBits(), static_cast<uint32_t>(std::countr_zero(next)), log2(done),
+                   log2(endIteration_ - next), log2(learner_.endOfRun(done) - done)});
 }
 
 template <class S>
@@ -192,6 +205,7 @@ void WaveSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration,
   wave.iterationBits = iterationBits;
   wave.pathCount = count << iterationBits;
   tracePass(plan_.pipeline.cameraPass(), iteration, partners, worker);
+  learner_.gather(wave, iteration - settings_.firstIteration);
   worker.counters.nonFinite += addSamples(film_, plan_, {settings_.sampler, settings_.seed, iteration}, wave);
   worker.paths += wave.pathCount;
   progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
@@ -300,6 +314,29 @@ void WaveSession<S>::renderPhases(const Finished& finished, double end) {
   });
 }
 
+template <class S>
+void WaveSession<S>::renderIterations(const Finished& finished, double end) {
+  if (plan_.pipeline.has(Fold::photonMap)) {
+    renderPhases(finished, end);
+  } else {
+    renderWaves(finished);
+  }
+}
+
+// Waves stop at the end of their block. Once all have reached it, what they gathered is folded, and the next block
+// begins.
+template <class S>
+void WaveSession<S>::renderBlocks(const Finished& finished, double end) {
+  for (;;) {
+    const uint64_t blockEnd = settings_.firstIteration + learner_.blockEnd();
+    renderIterations([&](uint64_t next) { return next >= blockEnd || finished(next); }, end);
+    const bool over = std::all_of(camera_.begin(), camera_.end(),
+                                  [&](const CameraProgress& progress) { return progress.next == blockEnd; });
+    if (!over || finished(blockEnd)) return;
+    learner_.fold();
+  }
+}
+
 // One iteration at a time, light path and camera path of a pixel together, in runs of pixels that stopped together.
 template <class S>
 void WaveSession<S>::levelPixels(const Finished& finished) {
@@ -339,10 +376,11 @@ void WaveSession<S>::renderUntil(std::optional<uint64_t> iterations, std::option
     arena_.execute([&] {
       if (!level_) levelPixels(finished);
       if (!level_) return;
-      if (plan_.pipeline.has(Fold::photonMap)) {
-        renderPhases(finished, seconds.value_or(std::numeric_limits<double>::infinity()));
+      const double end = seconds.value_or(std::numeric_limits<double>::infinity());
+      if (learner_.learns()) {
+        renderBlocks(finished, end);
       } else {
-        renderWaves(finished);
+        renderIterations(finished, end);
       }
     });
   }
@@ -354,6 +392,8 @@ RenderStatistics WaveSession<S>::statistics() const {
   RenderStatistics out = this->plannedStatistics();
   out.iterations = film_.minSamples();
   if (plan_.pipeline.splats()) out.memory.splats = film_.splats().bytes();
+  out.memory.learned = learner_.bytes();
+  out.guide = learner_.guideStatistics();
   // Make the rows of the light pass, then those of the camera pass.
   if (plan_.pipeline.lightPass()) addRows(*plan_.pipeline.lightPass(), out.stages);
   const size_t cameraRow = out.stages.size();
@@ -386,18 +426,24 @@ RenderStatistics WaveSession<S>::statistics() const {
 template <class S>
 void WaveSession<S>::save(StateWriter& out) const {
   film_.save(out);
+  learner_.save(out);
   WorkDone::of(statistics()).save(out);
 }
 
 template <class S>
 void WaveSession<S>::restore(StateReader& in) {
   film_.restore(in);
+  learner_.restore(in);
   earlier_.restore(in, statistics().stages);
   in.finish();
   // The next renderUntil levels pixels that have fewer samples than others.
   const uint64_t done = film_.maxSamples();
   level_ = film_.minSamples() == done;
   if (!level_ && plan_.pipeline.has(Fold::photonMap)) throw StateError("it ends within an iteration");
+  // Pixels may differ within the block under way.
+  if (learner_.learns() && (done > learner_.blockEnd() || film_.minSamples() < beginOfBlock(learner_.blockEnd() - 1))) {
+    throw StateError("it has other blocks of iterations");
+  }
   for (CameraProgress& progress : camera_) progress.next = settings_.firstIteration + done;
   this->goOnFromEarlier(earlier_.paths);
   countLightPaths();

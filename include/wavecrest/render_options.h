@@ -8,7 +8,7 @@
 namespace wavecrest::api {
 
 struct RenderOptions {
-  std::string method = "pt";  // pt, lt, bpt, mlt, ppm, bpm or vcm
+  std::string method = "pt";  // pt, lt, bpt, mlt, ppm, bpm, vcm or gpt
   std::string time{};         // of rendering: "6s", "100ms", "1h30m"
   uint64_t spp = 0;  // iterations: paths, of mlt mutations, per pixel. Neither time nor spp: what the scene says
   uint64_t seed = 0;
@@ -30,6 +30,9 @@ struct RenderOptions {
   // bpt, vcm: Russian roulette of connections whose contribution is below this share of a typical pixel's brightness.
   // 0: no roulette. Small scenes, whose shadow rays cost next to nothing, never use it.
   double connectionRoulette = 0.2;
+
+  // gpt: what its guide is learned for: radiance, variance or off; memory of what it learns (empty: 64MiB).
+  std::string guide = "variance", guideMemory{};
 
   // mlt: pssmlt, mmlt or pathspace (empty: mmlt); Markov chains; independent samples from which they start; steps
   // before they start anew (0: by the number of samples); whether chains render direct light, too.

@@ -114,6 +114,28 @@ struct VertexRows : Columns<VertexRows<S>> {
   auto all() { return std::tie(row); }
 };
 
+// The cell of each live path's vertex (cell_tree.h), in the order of the vertices. Written by findCells; scatter, which
+// moves paths, ends it. Dropped where nothing is learned by cell.
+struct VertexCells : Columns<VertexCells> {
+  Column<uint32_t> cell;
+  auto all() { return std::tie(cell); }
+};
+
+// Where paths went on from vertices, for a guide to learn from. Pushed by scatter, at most one for each path and depth
+// up to kRecordedDepths; read by the engine at the end of the walk, when the path's radiance is known. What the
+// direction brought is (luminance of the path's radiance at the end - before) inverseThroughput. Dropped where no guide
+// is learned.
+constexpr uint32_t kRecordedDepths = 12;
+struct DirectionRecords : Columns<DirectionRecords> {
+  Column<uint32_t> lane;
+  Column<uint32_t> bin;             // of a guide's histogram: cell kGuideBins + bin (guide_view.h)
+  Column<float> before;             // luminance of the path's radiance when it went on
+  Column<float> inverseThroughput;  // of the luminance of the throughput at the vertex
+  Column<float> pdf;                // of the direction, per area of the guide's square; 0: of a delta lobe
+  Column<float> slope;              // (density of the BSDF - density of the guide) / density
+  auto all() { return std::tie(lane, bin, before, inverseThroughput, pdf, slope); }
+};
+
 // Contributions of light walks and of Markov chains on their way to the film. Pushed by occlude and acceptMutations, at
 // most one for each path and call; emptied into the film's sums by the engine (addSplats), which does so before a stage
 // could overrun the queue. Their order changes no sum. Dropped where a method has none.

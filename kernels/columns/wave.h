@@ -1,6 +1,8 @@
 // A wave: the columns of a few thousand paths that one worker takes from generation to the film.
 #pragma once
 
+#include <type_traits>
+
 #include "kernels/columns/records.h"
 
 namespace wavecrest {
@@ -20,6 +22,8 @@ struct ColumnNeeds {
   bool splats = true;
   // Room for rays behind the surfaces that they have passed (kernels/pass/pass_surfaces.cpp).
   bool passages = false;
+  // The cells of vertices, and records of directions: of renders that learn.
+  bool cells = false, directions = false;
 };
 
 // The front of paths, and what they carry, at their vertices.
@@ -89,6 +93,8 @@ struct Wave : Vertices<S> {
   PassingRays<S> passing;          // dropped without passages
   VertexPairs pairs, sortedPairs;  // sortedPairs: dropped where all BSDFs are diffuse
   VertexRows<S> vertexRows;
+  VertexCells cells;
+  DirectionRecords directions;
   Splats<S> splats;
   Radiance<S> radiance;
   size_t firstPath = 0;  // index of lane 0 in the iteration's order of paths
@@ -112,15 +118,17 @@ struct Wave : Vertices<S> {
     if (!needs.connections || !needs.bsdfOrder) sortedPairs.drop();
     if (!needs.bsdfOrder) aside.forEachQueue([](auto& queue) { queue.drop(); });
     if (!needs.splats) splats.drop();
+    if (!needs.cells) cells.drop();
+    if (!needs.directions) directions.drop();
     if (!needs.connections) {
       pairs.drop();
       vertexRows.row.drop();
     }
     // All columns lie in one block of memory.
     size_t bytes = 0;
-    forEachQueue([&](auto& queue) { bytes += queue.bytes(capacity); });
+    forEachQueue([&](auto& queue) { bytes += queue.bytes(capacity * itemsOfPath(queue)); });
     arena_ = Arena(bytes);
-    forEachQueue([&](auto& queue) { queue.bind(arena_, capacity); });
+    forEachQueue([&](auto& queue) { queue.bind(arena_, capacity * itemsOfPath(queue)); });
   }
 
   // The state of another wave of the same capacity and columns, so that a stage can be run on it again.
@@ -136,6 +144,8 @@ struct Wave : Vertices<S> {
     openPairs = other.openPairs;
     shadowRays.size = other.shadowRays.size;
     vertexRows.size = other.vertexRows.size;
+    cells.size = other.cells.size;
+    directions.size = other.directions.size;
     splats.size = other.splats.size;
     radiance.size = other.radiance.size;
     firstPath = other.firstPath;
@@ -154,11 +164,17 @@ struct Wave : Vertices<S> {
   // Memory of one path in all columns that are needed.
   size_t bytesPerPath() {
     size_t bytes = 0;
-    forEachQueue([&](auto& queue) { bytes += queue.bytesPerItem(); });
+    forEachQueue([&](auto& queue) { bytes += queue.bytesPerItem() * itemsOfPath(queue); });
     return bytes;
   }
 
  private:
+  // How many items a path may have in a queue.
+  template <class Queue>
+  static constexpr size_t itemsOfPath(const Queue&) {
+    return std::is_same_v<Queue, DirectionRecords> ? kRecordedDepths : 1;
+  }
+
   // Calls function(queue) for each queue of the wave, always in the same order, on which copyFrom relies.
   template <class Function>
   void forEachQueue(Function&& function) {
@@ -169,6 +185,8 @@ struct Wave : Vertices<S> {
     function(pairs);
     function(sortedPairs);
     function(vertexRows);
+    function(cells);
+    function(directions);
     function(splats);
     function(radiance);
   }

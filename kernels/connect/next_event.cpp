@@ -3,6 +3,7 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: ShadowRays [<= n], in that order. METHODS 2.2, 5.6.
 #include "kernels/endpoints/light_sample_lanes.h"
+#include "kernels/guide/guide_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/shading_lanes.h"
@@ -34,10 +35,14 @@ WAVECREST_NOINLINE size_t sampleLights(const StageContext<typename P::Storage>& 
     const auto sample = sampleLight<P, kFeatures>(scene, light, shading.position, u, more);
 
     const auto bsdf = shading.scattering(active, sample.direction);
-    // wLight: the BSDF's choice could also have met the light, unless it is a delta light.
+    // wLight: the path's next direction could also have met the light, unless it is a delta light.
     const Real inversePdf = reciprocal(sample.pdf);
     Real wLight(0), wCamera(0);
-    if (context.mis.emission) wLight = select(sample.delta, Real(0), bsdf.pdf * inversePdf);
+    if (context.mis.emission) {
+      Real pdf = bsdf.pdf;
+      if (context.guide != nullptr) pdf = mixedPdf<Real>(context, wave, active, i, sample.direction, pdf);
+      wLight = select(sample.delta, Real(0), pdf * inversePdf);
+    }
     if constexpr (has(kFeatures, kBidirectional)) {
       const MisSums<Real> mis = loadMis<kFeatures>(paths, i);
       wCamera = sample.emissionPdf * abs(dot(sample.direction, shading.normal)) * inversePdf *

@@ -49,7 +49,8 @@ constexpr std::optional<SamplerKind> parseSamplerKind(std::string_view word) {
 
 // What the numbers are for; paths of different streams share path indices but no numbers.
 // filter: the place in the pixel that all samples of an iteration share (StageContext::sharedPlace).
-enum class Stream : uint32_t { camera, light, bootstrap, chain, scene, filter };
+// guide: of camera paths, whether the guide draws, its bin and the place in it (2).
+enum class Stream : uint32_t { camera, light, bootstrap, chain, scene, filter, guide };
 
 // Each vertex has four blocks of four numbers; this is the one table of their uses.
 enum class Block : uint32_t {

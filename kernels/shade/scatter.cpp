@@ -2,6 +2,7 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: Rays (new), PathStates [<= n], in that order, without
 // paths that were absorbed or ended by roulette. METHODS 1.4 (throughput), 1.5 (roulette), 5.5 (MIS recursion).
+#include "kernels/guide/guided_scatter_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/bsdf_ranges.h"
 #include "kernels/shade/shading_lanes.h"
@@ -39,7 +40,15 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     shading.bsdf.lobes = lobes;
     const UInt lane = select(active, load(paths.lane, i), UInt(0u));
     const Uniform4 u = draw(context, pathOf(context, wave, lane), Block::scatter);
-    const auto sample = shading.sampled(active, u);
+    auto sample = shading.sampled(active, u);
+    // Where a render learns directions, the guide may replace the sample.
+    Real slope(0), albedo(0);
+    if (context.guide != nullptr) [[unlikely]] {
+      const auto guided = guideSample<P, kBsdfs>(context, wave, i, active, lane, shading, sample);
+      sample = guided.sample;
+      slope = guided.slope;
+      albedo = guided.albedo;
+    }
     const Vec3<Real> direction = shading.toWorld(sample.wo);
     const Real woCosine = abs(dot(direction, shading.normal));
 
@@ -60,10 +69,17 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
       if (context.walk == Walk::camera) rouletteScale = rouletteScale / (sample.etaRatio * sample.etaRatio);
     }
     if (roulette) {
-      const Real before = maxComponent(arriving) * scaleBefore;
-      const Real q = survival(context.survival, maxComponent(throughput) * rouletteScale, before);
+      const Real carried = maxComponent(throughput) * rouletteScale;
+      Real before = maxComponent(arriving) * scaleBefore;
+      // By albedo the share that the BSDF alone would leave, whoever drew: the guide leads dark paths to light.
+      if (context.guide != nullptr) before = carried * reciprocal(max(albedo, Real(1e-12f)));
+      const Real q = survival(context.survival, carried, before);
       alive = alive & (to<Real>(u.d) < q);
       throughput = throughput * reciprocal(q);
+    }
+
+    if (context.recordsDirections) [[unlikely]] {
+      recordDirections<P>(context, wave, i, alive, lane, arriving, direction, sample.pdf, slope, sample.specular);
     }
 
     const MisSums<Real> before = loadMis<kFeatures>(paths, i);

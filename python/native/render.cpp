@@ -76,6 +76,8 @@ void addOptions(nb::module_& module) {
       .def_rw("light_paths", &RenderOptions::lightPaths)
       .def_rw("direct_pass", &RenderOptions::directPass)
       .def_rw("connection_roulette", &RenderOptions::connectionRoulette)
+      .def_rw("guide", &RenderOptions::guide)
+      .def_rw("guide_memory", &RenderOptions::guideMemory)
       .def_rw("mlt", &RenderOptions::mlt)
       .def_rw("chains", &RenderOptions::chains)
       .def_rw("bootstrap", &RenderOptions::bootstrap)

@@ -126,7 +126,7 @@ class Scene:
 
         Further options are those of `wavecrest render`: sampler, filter_mode, precision, isa, accel, max_depth, rr_depth,
         roulette, wave, memory, radius (a number, or "auto"), radius_alpha, merge_vertices, light_paths, direct_pass,
-        connection_roulette, mlt, chains, bootstrap, restart, no_direct_pass.
+        connection_roulette, guide, guide_memory, mlt, chains, bootstrap, restart, no_direct_pass.
         Other Python threads run meanwhile. Ctrl-C raises Interrupted, a KeyboardInterrupt whose `result` is the image so
         far.
         """

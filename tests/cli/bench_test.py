@@ -29,6 +29,7 @@ STAGES = {
     "ppm": ["store", "photon map", "merge"],
     "bpm": ["store", "photon map", "merge"],
     "vcm": ["store", "photon map", "connect", "merge"],
+    "gpt": ["extend", "find cells", "next event"],
 }
 
 

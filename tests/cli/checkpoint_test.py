@@ -17,7 +17,7 @@ from harness import DONE, INPUT, INTERRUPTED, TIMEOUT_SECONDS, USAGE, CommandTes
 
 BREAKS = int(os.environ.get("BREAKS", "14"))
 # Iterations of some tenths of a second.
-SPP = {"pt": 3000, "lt": 2000, "bpt": 700, "mlt": 1000, "ppm": 1200, "bpm": 700, "vcm": 400}
+SPP = {"pt": 3000, "lt": 2000, "bpt": 700, "mlt": 1000, "ppm": 1200, "bpm": 700, "vcm": 400, "gpt": 2000}
 METHODS = list(SPP)
 WHOLE_THREADS = 2  # of renders that are not broken
 RADIUS, CHAINS = ["--radius", "0.02"], ["--chains", "2000", "--bootstrap", "20000"]

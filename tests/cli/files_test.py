@@ -185,7 +185,7 @@ DARK = '<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/
 class Warnings(CommandTest):
     def test_a_scene_without_light_renders_with_a_warning(self):
         self.write("dark.xml", DARK)
-        for method in ("pt", "lt", "bpt", "ppm", "bpm", "vcm"):
+        for method in ("pt", "lt", "bpt", "ppm", "bpm", "vcm", "gpt"):
             result = self.run_wavecrest("render", "dark.xml", "-m", method, "--size", "8x8", "--spp", "1", "-o", "d.exr")
             self.assertIn("wavecrest: warning: dark.xml: the scene has no light", result.stderr)
         self.assertNotIn("no light", self.render("--spp", "1").stderr)

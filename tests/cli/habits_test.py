@@ -105,12 +105,12 @@ class Words(CommandTest):
             ("render", "--roulette", "throughput albedo efficiency"),
             ("render", "--mlt", "pssmlt mmlt pathspace"),
             ("render", "--progress", "auto bar jsonl none"),
-            ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm"),
+            ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm gpt"),
             ("converge", "--profile", "quick standard study paper"),
-            ("converge", "--methods", "pt lt bpt mlt ppm bpm vcm mlt-pathspace mlt-pssmlt ppm-direct"),
+            ("converge", "--methods", "pt lt bpt mlt ppm bpm vcm gpt mlt-pathspace mlt-pssmlt ppm-direct"),
             ("converge", "--clock", "wall cpu"),
             ("converge", "--images", "all last"),
-            ("bench", "--methods", "pt lt bpt mlt ppm bpm vcm"),
+            ("bench", "--methods", "pt lt bpt mlt ppm bpm vcm gpt"),
             ("bench", "--score", "small medium large"),
         ):
             self.assertEqual(sorted(completed("wavecrest", command, option, "''")), sorted(expected.split()), option)

@@ -92,6 +92,10 @@ class Usage(CommandTest):
             (["-m", "vcm", "--merge-vertices", "none"], r"--merge-vertices none: unknown; expected one of all, first"),
             (["-m", "mlt", "--connection-roulette", "5"], r"--connection-roulette: mlt .*; expected bpt or vcm$"),
             (["-m", "mlt", "--roulette", "albedo"], r"--roulette: mlt ends walks by throughput; expected pt, lt, .* or vcm$"),
+            (["--guide", "off"], r"--guide: pt learns no guide; expected gpt$"),
+            (["-m", "vcm", "--guide-memory", "8MiB"], r"--guide-memory: vcm learns no guide; expected gpt$"),
+            (["-m", "gpt", "--guide", "light"], r"--guide light: unknown; expected one of radiance, variance, off$"),
+            (["-m", "gpt", "--spp", "8", "--part", "1/2", "--checkpoint", "c"], r"--part: gpt .*; expected another method, or"),
             (["--mlt", "pathspace"], "--mlt: " + no_chains),
             (["--chains", "3"], "--chains: " + no_chains),
             (["--bootstrap", "5"], "--bootstrap: " + no_chains),
@@ -105,6 +109,7 @@ class Usage(CommandTest):
         # Defaults fit every method, and the direct pass of mlt has a sampler.
         self.render("--dry-run", "--radius", "auto", "--chains", "16384", "--connection-roulette", "0.2", "--mlt", "mmlt")
         self.render("--dry-run", "-m", "mlt", "--sampler", "sobol")
+        self.render("--dry-run", "-m", "gpt", "--guide", "off", "--spp", "8", "--part", "1/2", "--checkpoint", "c")
 
     def test_a_scene_may_follow_a_list_of_methods(self):
         for command, *more in (["converge", "--out", "a", "--progress", "none"], ["bench"], ["recommend"]):

@@ -39,6 +39,7 @@ void expectAgreement(const Scene& scene, std::initializer_list<Method> methods, 
   for (const Method method : methods) {
     expectSameTruth(reference, imagesBy(scene, method), std::string(toString(method)) + where);
   }
+  expectSameTruth(reference, imagesBy(scene, Method::gpt), "gpt" + where);
 }
 
 // Means of whole images; allowed: relative difference that is no failure.

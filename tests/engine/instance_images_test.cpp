@@ -62,7 +62,7 @@ TEST(InstanceImages, ofPathSpaceAreThoseOfCopies) {
 
 INSTANTIATE_TEST_SUITE_P(Engine, InstanceImagesTest,
                          testing::Values(Method::pt, Method::lt, Method::bpt, Method::mlt, Method::ppm, Method::bpm,
-                                         Method::vcm),
+                                         Method::vcm, Method::gpt),
                          [](const auto& instance) { return std::string(toString(instance.param)); });
 
 // The same picture whatever the threads and waves, in every precision.

@@ -151,7 +151,7 @@ TEST_P(MappedAgreementTest, everyMethod) {
       return std::string(method) + (map == MapKind::bump ? ", bump map, " : ", normal map, ") +
              kRoomLightNames[static_cast<size_t>(light)];
     };
-    for (const Method method : {Method::lt, Method::bpt, Method::vcm}) {
+    for (const Method method : {Method::gpt, Method::lt, Method::bpt, Method::vcm}) {
       // From a mirror to the lens, lt has nothing.
       if (mapped.smooth && method == Method::lt) continue;
       // Of lt the light walks are all that there is.

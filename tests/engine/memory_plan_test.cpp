@@ -48,6 +48,7 @@ TEST_P(MemoryPlanTest, isExactForOneWave) {
       EXPECT_EQ(plan.use.splats, held.memory.splats) << name;
       EXPECT_EQ(plan.use.lightVertices, held.memory.lightVertices) << name;
       EXPECT_EQ(plan.use.photonMap, held.memory.photonMap) << name;
+      EXPECT_EQ(plan.use.learned, held.memory.learned) << name;
       EXPECT_EQ(plan.use.image, held.memory.image) << name;
     }
   }

@@ -50,7 +50,7 @@ void expectEveryMethod(const Scene& reference, const Scene& scene, const std::st
     return settings;
   };
   const SeedMeans truth = renderSeeds(reference, with(passageSettings(Method::pt)), 2 * passageIterations());
-  for (const Method method : {Method::pt, Method::lt, Method::bpt, Method::vcm}) {
+  for (const Method method : {Method::pt, Method::gpt, Method::lt, Method::bpt, Method::vcm}) {
     expectSameTruth(truth, renderSeeds(scene, with(passageSettings(method)), passageIterations(), 5000),
                     std::string(toString(method)) + where);
   }
@@ -122,7 +122,7 @@ TEST(Passages, onEveryIntersectorAndInDouble) {
   const SeedMeans truth =
       renderSeeds(cutOutRoom(RoomLight::spot), passageSettings(Method::pt), 2 * passageIterations());
   for (const Accel accel : {Accel::bvh, Accel::embree}) {
-    for (const Method method : {Method::pt, Method::bpt}) {
+    for (const Method method : {Method::pt, Method::gpt, Method::bpt}) {
       expectSameTruth(truth, renderSeeds(leaf, passageSettings(method, accel), passageIterations(), 5000),
                       std::string(toString(method)) + ", accelerator " + std::to_string(static_cast<int>(accel)));
     }
@@ -143,7 +143,7 @@ TEST(Passages, ofInstances) {
   leaf.instances.push_back(instance);
   const SeedMeans truth =
       renderSeeds(cutOutRoom(RoomLight::spot), passageSettings(Method::pt), 2 * passageIterations());
-  for (const Method method : {Method::pt, Method::bpt, Method::vcm}) {
+  for (const Method method : {Method::pt, Method::gpt, Method::bpt, Method::vcm}) {
     RenderSettings settings = passageSettings(method, Accel::bvh);
     settings.instancing = Instancing::kept;
     expectSameTruth(truth, renderSeeds(leaf, settings, passageIterations(), 5000), std::string(toString(method)));
@@ -193,7 +193,7 @@ TEST_P(SheetsTest, agreeByEveryMethod) {
     addShape(scene, Rectangle{{-0.5, -0.3, 0.6}, {1.1, 0, 0}, {0, 0.2, -1}}, material);
     const std::string where = std::string(", ") + kRoomLightNames[static_cast<size_t>(light)];
     const SeedMeans truth = renderSeeds(scene, passageSettings(Method::pt), 2 * passageIterations());
-    for (const Method method : {Method::lt, Method::bpt, Method::vcm}) {
+    for (const Method method : {Method::gpt, Method::lt, Method::bpt, Method::vcm}) {
       expectSameTruth(truth, renderSeeds(scene, passageSettings(method), passageIterations(), 5000),
                       std::string(toString(method)) + where);
     }
@@ -252,7 +252,7 @@ TEST(Passages, ofALampAreADeltaLobe) {
   const uint32_t material = addSheetMaterial(scene, Sheet::mask);
   addSheet(scene, material);
   const SeedMeans truth = renderSeeds(scene, passageSettings(Method::pt), 2 * passageIterations());
-  for (const Method method : {Method::lt, Method::bpt, Method::vcm}) {
+  for (const Method method : {Method::gpt, Method::lt, Method::bpt, Method::vcm}) {
     expectSameTruth(truth, renderSeeds(scene, passageSettings(method), passageIterations(), 5000),
                     std::string(toString(method)));
   }

@@ -26,6 +26,7 @@ TEST(PathStrategies, followFromTheStages) {
   PathStrategies all = bidirectional;
   all.merge = true;
   EXPECT_EQ(strategiesOf(Method::vcm), all);
+  EXPECT_EQ(strategiesOf(Method::gpt), strategiesOf(Method::pt)) << "a guide draws directions and makes no other paths";
 }
 
 TEST(PathStrategies, decideTheWeights) {
@@ -40,8 +41,9 @@ TEST(PathStrategies, decideTheWeights) {
     // Merging alone leaves emission only what it cannot make, and light tracing's walks make different paths.
     EXPECT_EQ(camera.emission, strategies.nextEvent) << entry.name;
     EXPECT_EQ(camera.camera, strategies.camera && !strategies.specularViewsOnly) << entry.name;
-    EXPECT_EQ(camera.powerHeuristic, entry.method == Method::pt || entry.method == Method::lt) << entry.name;
-    EXPECT_EQ(isBidirectional(page), entry.method != Method::pt) << entry.name;
+    EXPECT_EQ(camera.powerHeuristic, entry.method == Method::pt || entry.method == Method::lt || entry.method == Method::gpt)
+        << entry.name;
+    EXPECT_EQ(isBidirectional(page), entry.method != Method::pt && entry.method != Method::gpt) << entry.name;
   }
   const MisSettings light = weightsOf(lightTracing(), Walk::light);
   EXPECT_FALSE(light.emission || light.nextEvent || light.connect || light.merge);
@@ -98,9 +100,9 @@ TEST(PathClasses, impossibleOnesAreThoseNoStrategyMakes) {
   EXPECT_EQ(methodsWith(table, "A S+ E", Verdict::impossible), "");
   EXPECT_EQ(methodsWith(table, "A S+ D E", Verdict::impossible), "");
   EXPECT_EQ(methodsWith(table, "P D E", Verdict::impossible), "");
-  EXPECT_EQ(methodsWith(table, "P S+ D E", Verdict::impossible), "pt");
-  EXPECT_EQ(methodsWith(table, "P S+ D S+ E", Verdict::impossible), "pt lt bpt mlt");
-  EXPECT_EQ(methodsWith(table, "P S+ D D S+ E", Verdict::impossible), "pt lt");
+  EXPECT_EQ(methodsWith(table, "P S+ D E", Verdict::impossible), "pt gpt");
+  EXPECT_EQ(methodsWith(table, "P S+ D S+ E", Verdict::impossible), "pt lt bpt mlt gpt");
+  EXPECT_EQ(methodsWith(table, "P S+ D D S+ E", Verdict::impossible), "pt lt gpt");
   EXPECT_EQ(find(table, "P S+ E"), nullptr) << "no method shows it";
 }
 
@@ -108,8 +110,8 @@ TEST(PathClasses, smallLightsMakeEmissionInefficient) {
   SceneLinks links = allLinks();
   links.lightSolidAngle = 0.01;
   const PathClassTable table = classifyPaths(links);
-  EXPECT_EQ(methodsWith(table, "A S+ D E", Verdict::inefficient), "pt");
-  EXPECT_EQ(methodsWith(table, "A S+ D S+ E", Verdict::inefficient), "pt lt bpt mlt");
+  EXPECT_EQ(methodsWith(table, "A S+ D E", Verdict::inefficient), "pt gpt");
+  EXPECT_EQ(methodsWith(table, "A S+ D S+ E", Verdict::inefficient), "pt lt bpt mlt gpt");
   EXPECT_EQ(methodsWith(table, "A S+ E", Verdict::inefficient), "") << "delta lobes lead there for certain";
   EXPECT_EQ(methodsWith(table, "A D E", Verdict::inefficient), "") << "next event estimation finds it";
 }
@@ -131,7 +133,7 @@ TEST(PathClasses, nextEventIsInefficientForIndirectLightWhereFewPlacesSeeALamp) 
   links.lightCoverage = 0.01;
   links.lightSolidAngle = 0.01;
   const PathClassTable table = classifyPaths(links);
-  EXPECT_EQ(methodsWith(table, "A D D E", Verdict::inefficient), "pt");
+  EXPECT_EQ(methodsWith(table, "A D D E", Verdict::inefficient), "pt gpt");
   EXPECT_EQ(methodsWith(table, "A D E", Verdict::inefficient), "");
 }
 
@@ -268,7 +270,7 @@ INSTANTIATE_TEST_SUITE_P(PathClasses, CausticTest, testing::Bool(),
 TEST(PathClasses, inefficientOnesConvergeWithMoreNoise) {
   const Scene scene = sceneFile("cornell-mirror", 96, 72);
   const PathClassTable table = classifyPaths(scene);
-  EXPECT_EQ(methodsWith(table, "A S+ D E", Verdict::inefficient), "pt");
+  EXPECT_EQ(methodsWith(table, "A S+ D E", Verdict::inefficient), "pt gpt");
   const auto patch = [&](Method method) {
     RenderSettings settings;
     settings.isa = bestIsa();

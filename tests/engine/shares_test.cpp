@@ -36,6 +36,7 @@ RenderSettings settingsOf(const ShareCase& one) {
   settings.metropolis.bootstrapSamples = 4000;
   settings.metropolis.restartSteps = 4;  // so that iterations lie across a restart
   settings.metropolis.directPass = one.directPass;
+  settings.guide = GuideTarget::off;  // a share would learn from its own iterations alone
   settings.iterations = kShareIterations;
   return settings;
 }

@@ -1,0 +1,66 @@
+#include "engine/waves/learner.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace wavecrest {
+namespace {
+
+// So many paths of a block are enough: some ten million records, thousands for each cell. A power of two, so that waves
+// of several iterations fit.
+constexpr uint64_t kPathsOfBlock = uint64_t{1} << 22;
+
+}  // namespace
+
+template <class S>
+Learner<S>::Learner(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels)
+    : gathering_(std::bit_floor(std::max<uint64_t>(kPathsOfBlock / std::max<size_t>(pixels, 1), 1))) {
+  const SceneView<S>& scene = plan.scene->view;
+  if (plan.pipeline.has(Fold::guide)) {
+    guide_.emplace(scene.center, scene.halfExtent, settings.guide, settings.guideBytes, plan.typicalBrightness);
+  }
+}
+
+template <class S>
+void Learner<S>::prepare(StageContext<S>& context, uint64_t iteration) const {
+  if (!guide_) return;
+  context.cellTree = &guide_->cellTree();
+  context.guide = &guide_->view();
+  context.recordsDirections = gathers(iteration, gathering_);
+}
+
+template <class S>
+void Learner<S>::gather(const Wave<S>& wave, uint64_t iteration) {
+  if (guide_ && gathers(iteration, gathering_)) guide_->gather(wave.directions, wave.radiance);
+}
+
+template <class S>
+void Learner<S>::fold() {
+  if (guide_) guide_->fold();
+  blockEnd_ = endOfBlock(blockEnd_);
+}
+
+template <class S>
+std::optional<GuideStatistics> Learner<S>::guideStatistics() const {
+  return guide_ ? std::optional(guide_->statistics()) : std::nullopt;
+}
+
+template <class S>
+void Learner<S>::save(StateWriter& out) const {
+  if (!learns()) return;
+  out.value(blockEnd_);
+  if (guide_) guide_->save(out);
+}
+
+template <class S>
+void Learner<S>::restore(StateReader& in) {
+  if (!learns()) return;
+  blockEnd_ = in.value<uint64_t>();
+  if (!std::has_single_bit(blockEnd_)) throw StateError("its blocks of iterations are others");
+  if (guide_) guide_->restore(in);
+}
+
+template class Learner<float>;
+template class Learner<double>;
+
+}  // namespace wavecrest

@@ -1,0 +1,114 @@
+// What scatter does where a render learns directions: the mixture of BSDF and guide, and the records that a guide is
+// learned from. METHODS 12.1, 12.2.
+#pragma once
+
+#include "kernels/guide/guide_lanes.h"
+#include "kernels/shade/shading_lanes.h"
+
+WAVECREST_SIMD_BEGIN
+
+// sample: its pdf is the mixture's, and of a delta lobe the mixture's discrete probability. slope: (p_bsdf - p_guide) /
+// p, by which a greater share of the BSDF would change the logarithm of p. albedo: of the BSDF alone, f c / p_bsdf,
+// without refraction's change of radiance.
+template <class Real>
+struct GuidedSample {
+  BsdfSample<Real> sample;
+  Real slope, albedo;
+};
+
+template <class Real>
+WAVECREST_INLINE Real luminanceOf(Vec3<Real> rgb) {
+  return mulAdd(Real(0.2126f), rgb.x, mulAdd(Real(0.7152f), rgb.y, Real(0.0722f) * rgb.z));
+}
+
+// eta_wi / eta_wo of directions that the guide chose through a rough boundary: roulette alone asks for it.
+template <class P, uint32_t kBsdfs>
+WAVECREST_INLINE typename P::Real guidedEtaRatio(const ShadingLanes<P, kBsdfs>& shading, Mask drawn,
+                                                 typename P::Real woCosine) {
+  using Real = typename P::Real;
+  if constexpr (has(kBsdfs, kLayeredBsdfs)) {
+    const auto is = [&](BsdfKind kind) WAVECREST_LAMBDA {
+      return shading.bsdf.kind == UInt(static_cast<uint32_t>(kind));
+    };
+    const Mask refracted = drawn & (is(BsdfKind::roughDielectric) | is(BsdfKind::beckmannDielectric)) &
+                           (shading.wi.z * woCosine < Real(0));
+    if (any(refracted)) {
+      const Real eta = shading.bsdf.eta();
+      return select(refracted, select(shading.wi.z > Real(0), reciprocal(eta), eta), Real(1));
+    }
+  }
+  return Real(1);
+}
+
+// sample: what the BSDF drew. Lanes whose number says so go where the guide draws instead. Copies of the arguments: a
+// reference would keep them in memory in scatter as a whole.
+template <class P, uint32_t kBsdfs>
+WAVECREST_NOINLINE GuidedSample<typename P::Real> guideSample(const StageContext<typename P::Storage>& context,
+                                                              const Wave<typename P::Storage>& wave, size_t i,
+                                                              Mask active, UInt lane, ShadingLanes<P, kBsdfs> shading,
+                                                              BsdfSample<typename P::Real> sample) {
+  using Real = typename P::Real;
+  const GuideView& guide = *context.guide;
+  GuidedSample<Real> out{sample, Real(0), maxComponent(sample.weight)};
+  out.albedo = out.albedo * reciprocal(sample.etaRatio * sample.etaRatio);
+  const GuideLanes at(guide, wave, active, i);
+  const Mask guided = active & at.draws();
+  if (none(guided)) return out;
+  // Which of the two draws, and the guide's direction.
+  const Uniform4 u = uniform4(context.sampler, pathOf(context, wave, lane), 4 * context.depth, Stream::guide);
+  const Mask drawn = guided & (u.a >= at.share);
+  const Vec3<Real> chosen = normalize(to<Real>(drawFromGuide(guide, at.cell, u)));
+  const auto value = shading.scattering(drawn, chosen);
+  const Mask specular = andNot(sample.specular, drawn);
+  const Vec3<Real> direction = select(drawn, chosen, shading.toWorld(sample.wo));
+  const Real pdfBsdf = select(drawn, value.pdf, sample.pdf);
+  const Real pdfGuide =
+      zeroUnless(andNot(guided, specular), to<Real>(guideDensity(guide, at.cell, to<Float>(direction))));
+  // The mixture. Draws of the BSDF that failed stay failed.
+  const Real share = to<Real>(at.share);
+  const Real pdf = share * pdfBsdf + (Real(1) - share) * pdfGuide;
+  const Mask failed = andNot(sample.pdf <= Real(0), drawn);
+  const Real inversePdf = reciprocal(max(pdf, Real(1e-30f)));
+  const Vec3<Real> weight = select(drawn, value.f * (value.lightCosine * inversePdf), sample.weight * (pdfBsdf * inversePdf));
+  const Vec3<Real> wo = shading.toLocal(chosen);
+  const Real albedo = maxComponent(value.f) * value.lightCosine * reciprocal(max(value.pdf, Real(1e-30f)));
+  const Real etaRatio = guidedEtaRatio(shading, drawn, wo.z);
+  out.slope = zeroUnless(guided, (pdfBsdf - pdfGuide) * inversePdf);
+  out.albedo = select(drawn, albedo * reciprocal(etaRatio * etaRatio), out.albedo);
+  out.sample = {select(drawn, wo, sample.wo),
+                select(guided, weight, sample.weight),
+                select(andNot(guided, failed), pdf, sample.pdf),
+                select(drawn, value.pdfReverse, sample.pdfReverse),
+                select(drawn, etaRatio, sample.etaRatio),
+                specular};
+  return out;
+}
+
+// Leaves a record of each vertex in m that goes on, before its path does. throughput: at the vertex, before it
+// scatters. pdf, slope: of the direction.
+template <class P>
+WAVECREST_NOINLINE void recordDirections(const StageContext<typename P::Storage>& context,
+                                         Wave<typename P::Storage>& wave, size_t i, Mask m, UInt lane,
+                                         Vec3<typename P::Real> throughput, Vec3<typename P::Real> direction,
+                                         typename P::Real pdf, typename P::Real slope, Mask specular) {
+  using Real = typename P::Real;
+  if (context.depth > kRecordedDepths) return;
+  const auto carried = to<Float>(luminanceOf(throughput));
+  m = m & firstLanes(wave.joinable - std::min(i, wave.joinable)) & (carried > Float(0));
+  if (none(m)) return;
+  const UInt cell = select(m, load(wave.cells.cell, i), UInt(0u));
+  const SquarePoint at = toSquare(to<Float>(direction));
+  const Vec3<Real> radiance =
+      gatherVec3(wave.radiance.red, wave.radiance.green, wave.radiance.blue, select(m, lane, UInt(0u)));
+  auto& records = wave.directions;
+  const size_t out = records.claim(countTrue(m));
+  append(lane, m, records.lane, out);
+  append(shiftLeft<kGuideBinBits>(cell) + binOf(at.u, at.v), m, records.bin, out);
+  append(to<Float>(luminanceOf(radiance)), m, records.before, out);
+  append(Float(1) / carried, m, records.inverseThroughput, out);
+  // A delta lobe is no place in the histogram.
+  append(zeroUnless(!specular, to<Float>(pdf) * at.solidAngle), m, records.pdf, out);
+  append(to<Float>(slope), m, records.slope, out);
+}
+
+WAVECREST_SIMD_END

@@ -1,0 +1,257 @@
+// Guided path tracing: the image of path tracing, block by block and whatever the guide; the same bits however a render
+// is cut; and a guide that learns.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <numeric>
+#include <optional>
+
+#include "engine/learn/alias_table.h"
+#include "engine/learn/blocks.h"
+#include "engine/learn/cell_tree.h"
+#include "engine/plan/render_plan.h"
+#include "engine/tasks/flush_to_zero.h"
+#include "engine/walks/run_walk.h"
+#include "tests/effort.h"
+#include "tests/engine/light_scenes.h"
+#include "tests/engine/render_statistics.h"
+#include "tests/engine/saved_state.h"
+
+namespace wavecrest {
+namespace {
+
+RenderSettings guideSettings(Method method = Method::gpt) {
+  RenderSettings settings = settingsFor({Precision::floating, SamplerKind::independent, Accel::automatic});
+  settings.method = method;
+  settings.waveSize = 256;
+  return settings;
+}
+
+// ---- guides that are wrong on purpose -------------------------------------------------------------------------------
+
+// One histogram for all cells: a guide that no render would learn.
+struct FixedGuide {
+  FixedGuide(const SceneView<float>& view, float bsdfShare, const std::array<double, kGuideBins>& weights)
+      : tree(view.center, view.halfExtent, kCellRoots), share(kCellRoots, bsdfShare) {
+    const GuideUnits units = unitsOf(weights);
+    for (uint32_t cell = 0; cell < kCellRoots; ++cell) {
+      for (const uint32_t unit : units) {
+        density.push_back(static_cast<float>(unit * (kGuideBins / 4.0 / (1u << kGuideUnitBits))));
+      }
+      std::array<uint32_t, kGuideBins> entries{};
+      makeAliasTable(units, entries.data());
+      alias.insert(alias.end(), entries.begin(), entries.end());
+    }
+    guide = {.share = share.data(), .density = density.data(), .alias = alias.data(), .draws = true};
+  }
+
+  CellTree tree;
+  std::vector<float> share, density;
+  std::vector<uint32_t> alias;
+  GuideView guide;
+};
+
+std::array<double, kGuideBins> histogram(const std::function<double(size_t)>& weight) {
+  std::array<double, kGuideBins> weights{};
+  for (size_t bin = 0; bin < kGuideBins; ++bin) weights[bin] = weight(bin);
+  return weights;
+}
+
+// Images by the page of gpt with this guide in place of a learned one; without one: by path tracing's page.
+SeedMeans imagesWith(const Scene& scene, std::optional<std::pair<float, std::array<double, kGuideBins>>> fixed,
+                     uint64_t iterations, uint64_t firstSeed) {
+  const FlushToZero flushToZero;
+  const RenderSettings settings = guideSettings();
+  RenderPlan<float> plan = planRender<float>(scene, settings);
+  std::optional<FixedGuide> guide;
+  if (fixed) guide.emplace(plan.scene->view, fixed->first, fixed->second);
+  SeedMeans out;
+  out.width = scene.film.width;
+  for (size_t seed = 0; seed < kSeeds; ++seed) {
+    Film film(filmArea(scene.film));
+    const size_t pixels = film.area().pixels.size();
+    Wave<float> wave(pixels, plan.needs);
+    StageCounters counters;
+    StageContext<float> context;
+    context.scene = &plan.scene->view;
+    context.pixels = film.area().pixels.data();
+    context.limits = settings.limits;
+    context.mis = plan.pipeline.cameraPass().strategies;
+    context.counters = &counters;
+    context.film = film.area().window();
+    if (guide) {
+      context.cellTree = &guide->tree.view();
+      context.guide = &guide->guide;
+    }
+    for (uint64_t i = 0; i < iterations; ++i) {
+      context.sampler = {SamplerKind::independent, firstSeed + seed, i};
+      wave.firstPath = 0;
+      wave.pathCount = pixels;
+      runPass<float>(plan.pipeline.cameraPass(), context, wave, nullptr);
+      film.add(wave);
+    }
+    EXPECT_EQ(counters.nonFinite, 0u);
+    out.images.push_back(film.resolve());
+  }
+  out.mean.assign(out.images[0].size(), 0);
+  for (const RgbImage& image : out.images) {
+    for (size_t i = 0; i < image.size(); ++i) out.mean[i] += static_cast<double>(image[i]) / kSeeds;
+  }
+  return out;
+}
+
+void expectAnyGuideIsRight(const Scene& scene, const std::string& where) {
+  const uint64_t iterations = effort(64, 4);
+  const SeedMeans truth = imagesWith(scene, std::nullopt, 2 * iterations, 100);
+  const auto check = [&](float share, const std::array<double, kGuideBins>& weights, const char* name) {
+    expectSameTruth(truth, imagesWith(scene, std::pair(share, weights), iterations, 5000), where + ", " + name);
+  };
+  check(0.5f, histogram([](size_t) { return 1.0; }), "uniform");
+  check(kLeastBsdfShare, histogram([](size_t bin) { return 1.0 + static_cast<double>(bin * 7919 % 64); }), "random");
+  check(0.9f, histogram([](size_t bin) { return bin == 0 ? 1.0 : 0.0; }), "one bin");
+  check(0.5f, histogram([](size_t bin) { return bin % 2 == 0 ? 0.0 : 1.0; }), "gaps");
+}
+
+TEST(Guide, givesTheRightMeanHoweverWrongItIs) {
+  expectAnyGuideIsRight(sceneFile("validation/quad-over-plane", 16, 16), "a lamp over a plane");
+  expectAnyGuideIsRight(sceneFile("cornell-spheres", 24, 24), "mirror and glass");
+  for (const RoomLight light : {RoomLight::envmap, RoomLight::spot, RoomLight::sphere}) {
+    expectAnyGuideIsRight(
+        roomScene({.light = light, .materials = RoomMaterials::rough, .tiltedNormals = true, .width = 24, .height = 16}),
+        std::string("rough surfaces under ") + std::string(kRoomLightNames[static_cast<size_t>(light)]));
+  }
+  expectAnyGuideIsRight(roomScene({.light = RoomLight::quad, .materials = RoomMaterials::mixed, .width = 24, .height = 16}),
+                        "mirror, glass and plastic");
+}
+
+TEST(Guide, givesTheRightMeanOnFeatures) {
+  for (const char* const name : {"roughdielectric", "roughplastic", "plastic", "mask", "principled", "thindielectric",
+                                 "blendbsdf", "normalmap", "instance", "thinlens", "envmap"}) {
+    expectAnyGuideIsRight(sceneFile(std::string("features/") + name, 16, 16), name);
+  }
+}
+
+// ---- renders --------------------------------------------------------------------------------------------------------
+
+// The sum of samples of a film: the image times its iterations.
+std::vector<double> sumOf(const Session& session) {
+  std::vector<double> sum;
+  const auto iterations = static_cast<double>(session.statistics().iterations);
+  for (const float value : session.film().resolve()) sum.push_back(iterations * static_cast<double>(value));
+  return sum;
+}
+
+// Every block by itself: sums at its end less those at its beginning.
+void expectRightBlocks(const Scene& scene, GuideTarget target, const std::string& where) {
+  constexpr std::array<uint64_t, 7> kEnds{0, 4, 8, 16, 32, 64, 128};
+  const size_t blocks = effort(kEnds.size() - 1, 3);
+  const SeedMeans truth = renderSeeds(scene, guideSettings(Method::pt), 2 * kEnds[blocks], 100);
+  std::vector<SeedMeans> images(blocks, {.width = scene.film.width, .mean = {}, .error = {}, .images = {}});
+  for (size_t seed = 0; seed < kSeeds; ++seed) {
+    RenderSettings settings = guideSettings();
+    settings.guide = target;
+    settings.seed = 7000 + seed;
+    const auto session = Session::create(scene, settings);
+    std::vector<double> before(size_t{3} * scene.film.width * scene.film.height, 0);
+    for (size_t block = 0; block < blocks; ++block) {
+      session->renderUntil(kEnds[block + 1], std::nullopt);
+      const std::vector<double> after = sumOf(*session);
+      RgbImage image;
+      for (size_t i = 0; i < after.size(); ++i) {
+        image.push_back(static_cast<float>((after[i] - before[i]) / static_cast<double>(kEnds[block + 1] - kEnds[block])));
+      }
+      images[block].images.push_back(image);
+      before = after;
+    }
+  }
+  for (size_t block = 0; block < blocks; ++block) {
+    images[block].mean.assign(images[block].images[0].size(), 1);
+    expectSameTruth(truth, images[block], where + ", up to iteration " + std::to_string(kEnds[block + 1]));
+  }
+}
+
+TEST(Guide, everyBlockOfARenderIsRight) {
+  for (const GuideTarget target : {GuideTarget::radiance, GuideTarget::variance}) {
+    const std::string name(kGuideTargetNames[static_cast<size_t>(target)]);
+    expectRightBlocks(sceneFile("veach-door", 24, 16), target, "veach-door by " + name);
+    expectRightBlocks(sceneFile("cornell-glossy", 24, 24), target, "cornell-glossy by " + name);
+    expectRightBlocks(
+        roomScene({.light = RoomLight::quad, .materials = RoomMaterials::rough, .tiltedNormals = true, .width = 24, .height = 16}),
+        target, "rough surfaces by " + name);
+  }
+}
+
+RgbImage guidedImage(const Scene& scene, uint32_t threads, uint32_t waveSize, uint64_t iterations) {
+  RenderSettings settings = guideSettings();
+  settings.threads = threads;
+  settings.waveSize = waveSize;
+  return render(scene, settings, iterations);
+}
+
+TEST(Guide, imagesDependOnNeitherThreadsNorWaves) {
+  const Scene scene = sceneFile("cornell-glossy", 40, 27);
+  const uint64_t iterations = effort(70, 9);
+  const RgbImage image = guidedImage(scene, 1, 2048, iterations);
+  for (const uint32_t threads : {2u, 7u}) EXPECT_EQ(guidedImage(scene, threads, 2048, iterations), image) << threads;
+  for (const uint32_t waveSize : {512u, 1024u, 8192u}) {
+    EXPECT_EQ(guidedImage(scene, 2, waveSize, iterations), image) << waveSize;
+  }
+}
+
+TEST(Guide, goesOnInTheMiddleOfABlock) {
+  const Scene scene = sceneFile("cornell-glossy", 40, 27);
+  const RgbImage image = guidedImage(scene, 2, 512, 29);
+  for (const uint64_t stop : {1u, 11u, 16u, 23u}) {
+    RenderSettings settings = guideSettings();
+    const auto first = Session::create(scene, settings);
+    first->renderUntil(stop, std::nullopt);
+    settings.threads = 3;
+    settings.waveSize = 1000;
+    const auto second = Session::create(scene, settings);
+    restoreState(*second, savedState(*first));
+    EXPECT_EQ(savedState(*second).size(), savedState(*first).size());
+    second->renderUntil(29, std::nullopt);
+    EXPECT_EQ(second->film().resolve(), image) << stop;
+  }
+}
+
+TEST(Guide, thatIsOffLeavesPathTracing) {
+  const Scene scene = sceneFile("cornell-glossy", 40, 27);
+  RenderSettings settings = guideSettings();
+  settings.guide = GuideTarget::off;
+  EXPECT_EQ(render(scene, settings, 20), render(scene, guideSettings(Method::pt), 20));
+  const auto session = Session::create(scene, settings);
+  EXPECT_FALSE(session->statistics().guide);
+  EXPECT_EQ(session->memoryPlan().use.learned, 0u);
+}
+
+TEST(Guide, learnsWithinItsMemory) {
+  const Scene scene = sceneFile("veach-door", 40, 30);
+  RenderSettings settings = guideSettings();
+  settings.guideBytes = 100'000;
+  const auto session = Session::create(scene, settings);
+  session->renderUntil(effort(100, 40), std::nullopt);
+  const GuideStatistics guide = *session->statistics().guide;
+  EXPECT_GT(guide.folds, 4u);
+  EXPECT_GT(guide.cells, kCellRoots);
+  EXPECT_GT(guide.taught, 0u);
+  EXPECT_GT(guide.guidedShare, 0.05);
+  EXPECT_EQ(guide.saturated, 0u);
+  EXPECT_LE(guide.bytes, settings.guideBytes);
+  EXPECT_EQ(guide.bytes, session->memoryPlan().use.learned);
+}
+
+TEST(Guide, rendersWhereNothingCanBeLearned) {
+  // One pixel, delta lobes alone, and no light at all.
+  const Scene pixel = sceneFile("cornell-diffuse", 1, 1);
+  const float one = render(pixel, guideSettings(), 4000)[0], other = render(pixel, guideSettings(Method::pt), 4000)[0];
+  EXPECT_NEAR(one, other, 0.2 * other);
+  for (Scene scene : {sceneFile("features/conductor", 16, 16), sceneFile("cornell-diffuse", 16, 16)}) {
+    scene.emitters.clear();
+    for (Shape& shape : scene.shapes) shape.emitter = kNone;
+    for (const float value : render(scene, guideSettings(), 20)) EXPECT_EQ(value, 0);
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest

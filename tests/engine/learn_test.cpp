@@ -1,0 +1,165 @@
+// What a render learns with: blocks of iterations, sums of integers, cells, and histograms as alias tables.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#include "engine/learn/alias_table.h"
+#include "engine/learn/blocks.h"
+#include "engine/learn/cell_tree.h"
+#include "engine/learn/integer_sums.h"
+#include "tests/engine/saved_state.h"
+
+namespace wavecrest {
+namespace {
+
+TEST(Blocks, haveAsManyIterationsAsAllBeforeThem) {
+  uint64_t end = 0;
+  for (const uint64_t next : {1, 2, 4, 8, 16, 32}) {
+    for (uint64_t iteration = end; iteration < next; ++iteration) {
+      EXPECT_EQ(beginOfBlock(iteration), end) << iteration;
+      EXPECT_EQ(endOfBlock(iteration), next) << iteration;
+    }
+    end = next;
+  }
+}
+
+TEST(Blocks, gatherInTheirFirstIterations) {
+  // 16 to 31, of which 16 to 19 gather.
+  for (uint64_t iteration = 16; iteration < 32; ++iteration) {
+    EXPECT_EQ(gathers(iteration, 4), iteration < 20) << iteration;
+    EXPECT_EQ(endOfRun(iteration, 4), iteration < 20 ? 20u : 32u) << iteration;
+  }
+  EXPECT_EQ(endOfRun(5, 64), 8u) << "a block that gathers as a whole";
+}
+
+TEST(IntegerSums, holdTheirLimitInAnyOrder) {
+  const auto big = toAddend(kAddendLimit);
+  uint64_t sum = kSumLimit - big - 1;
+  addTo(sum, big);
+  EXPECT_EQ(sum, kSumLimit - 1) << "next to the limit nothing is lost";
+  addTo(sum, 1);
+  EXPECT_EQ(sum, kSumLimit);
+  addTo(sum, big);
+  EXPECT_EQ(sum, kSumLimit);
+  EXPECT_EQ(toAddend(1e300), big);
+  for (const double nothing : {0.0, -1.0, std::nan(""), HUGE_VAL}) EXPECT_EQ(toAddend(nothing), 0u) << nothing;
+  EXPECT_EQ(toAddend(0.5), 1u);
+  EXPECT_EQ(toAddend(0.49), 0u);
+}
+
+TEST(IntegerSums, addUpOnSeveralThreads) {
+  uint64_t sum = 0;
+  std::vector<std::thread> threads;
+  for (uint64_t t = 1; t <= 4; ++t) {
+    threads.emplace_back([&sum, t] {
+      for (int i = 0; i < 5000; ++i) addTo(sum, t);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(sum, 5000u * 10);
+}
+
+// Units of a bin in all columns of its alias table.
+GuideUnits drawnBy(const std::array<uint32_t, kGuideBins>& entries) {
+  GuideUnits drawn{};
+  for (uint32_t column = 0; column < kGuideBins; ++column) {
+    const uint32_t own = entries[column] >> kGuideBinBits, other = entries[column] & (kGuideBins - 1);
+    EXPECT_LE(own, 1u << kGuideColumnBits);
+    drawn[column] += own;
+    drawn[other] += (1u << kGuideColumnBits) - own;
+  }
+  return drawn;
+}
+
+TEST(AliasTable, drawsEveryBinWithExactlyItsUnits) {
+  std::vector<std::array<double, kGuideBins>> cases(4);
+  cases[0].fill(1);
+  cases[1][77] = 1e-300;  // alone
+  for (size_t bin = 0; bin < kGuideBins; ++bin) {
+    cases[2][bin] = std::pow(1.7, static_cast<double>(bin % 40));
+    cases[3][bin] = bin % 2 == 0 ? 1e-12 : 3 + std::sin(static_cast<double>(bin));
+  }
+  for (const auto& weights : cases) {
+    const GuideUnits units = unitsOf(weights);
+    EXPECT_EQ(std::accumulate(units.begin(), units.end(), uint64_t{0}), uint64_t{1} << kGuideUnitBits);
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    for (size_t bin = 0; bin < kGuideBins; ++bin) {
+      EXPECT_NEAR(units[bin], weights[bin] / total * (1u << kGuideUnitBits), kGuideBins);
+    }
+    std::array<uint32_t, kGuideBins> entries{};
+    makeAliasTable(units, entries.data());
+    EXPECT_EQ(drawnBy(entries), units);
+  }
+}
+
+constexpr double kCenter[3] = {1, 2, 3}, kHalf[3] = {4, 4, 0};
+
+// The cell of a place in [0, 1)^3 of the box, as kernels find it.
+uint32_t cellAt(const CellTreeView& tree, uint32_t root, const std::array<double, 3>& place) {
+  uint32_t node = tree.nodes[root];
+  std::array<double, 3> rest = place;
+  for (size_t axis = 0; node < kCellLeaf; axis = (axis + 1) % 3) {
+    rest[axis] *= 2;
+    const bool upper = rest[axis] >= 1;
+    if (upper) rest[axis] -= 1;
+    node = tree.nodes[node + (upper ? 1 : 0)];
+  }
+  return node & ~kCellLeaf;
+}
+
+TEST(CellTree, halvesTheBoxAlongItsAxesInTurn) {
+  CellTree tree(kCenter, kHalf, 100);
+  EXPECT_EQ(tree.cells(), kCellRoots);
+  const uint32_t right = tree.split(2), far = tree.split(right);
+  EXPECT_EQ(tree.cells(), kCellRoots + 2);
+  EXPECT_EQ(cellAt(tree.view(), 2, {0.4, 0.9, 0}), 2u);
+  EXPECT_EQ(cellAt(tree.view(), 2, {0.6, 0.4, 0}), right);
+  EXPECT_EQ(cellAt(tree.view(), 2, {0.6, 0.6, 0}), far);
+  EXPECT_EQ(cellAt(tree.view(), 3, {0.6, 0.6, 0}), 3u);
+  EXPECT_EQ(tree.view().scale[2], 0) << "a flat scene";
+}
+
+TEST(CellTree, splitsNoFurtherThanItMay) {
+  CellTree few(kCenter, kHalf, kCellRoots + 1);
+  EXPECT_TRUE(few.canSplit(0));
+  few.split(0);
+  EXPECT_FALSE(few.canSplit(0)) << "as many cells as may be";
+  CellTree deep(kCenter, kHalf, 1000);
+  for (uint32_t level = 0; level < kCellLevels; ++level) {
+    ASSERT_TRUE(deep.canSplit(0));
+    deep.split(0);
+  }
+  EXPECT_FALSE(deep.canSplit(0)) << "as small as cells get";
+}
+
+TEST(CellTree, comesBackFromItsBytesAndFromNoOthers) {
+  CellTree tree(kCenter, kHalf, 20);
+  for (const uint32_t cell : {0u, 0u, 6u, 3u}) tree.split(cell);
+  const auto bytes = savedState(tree);
+  const auto read = [](const std::vector<unsigned char>& state, size_t most) {
+    CellTree other(kCenter, kHalf, most);
+    StateReader in(state);
+    other.restore(in);
+    in.finish();
+    return savedState(other);
+  };
+  EXPECT_EQ(read(bytes, 20), bytes);
+  EXPECT_THROW(read(bytes, 8), StateError);
+  // Whatever one node is replaced by, what is accepted is a tree.
+  for (size_t at = sizeof(uint64_t); at < bytes.size(); at += 3) {
+    auto damaged = bytes;
+    damaged[at] ^= 0x85;
+    try {
+      read(damaged, 20);
+    } catch (const StateError&) {
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wavecrest
