@@ -70,17 +70,19 @@ void printFacts(const Scene& scene, const SceneInspection& facts) {
 void printMemory(const SceneInspection& facts) {
   fmt::print("memory, MB (light vertices and photon map from a few waves of light paths)\n");
   fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "method", "kernels",
-             "bytes/path", "scene", "waves", "film", "splats", "vertices", "photons", "guide", "chains", "image", "total");
+             "bytes/path", "scene", "waves", "film", "splats", "vertices", "photons", "guide", "chains", "image",
+             "total");
   for (const MethodInspection& row : facts.methods) {
     if (!row.refusal.empty()) {
       fmt::print("{:<6} {}\n", toString(row.method), row.refusal);
       continue;
     }
     const MemoryUse& use = row.memory.use;
-    fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9}\n", toString(row.method),
-               name(row.specialization), row.memory.bytesPerPath, megabytes(use.scene), megabytes(use.waves),
-               megabytes(use.film), megabytes(use.splats), megabytes(use.lightVertices), megabytes(use.photonMap),
-               megabytes(use.learned), megabytes(use.chains), megabytes(use.image), megabytes(use.total()));
+    fmt::print("{:<6} {:<22} {:>10} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9}\n",
+               toString(row.method), name(row.specialization), row.memory.bytesPerPath, megabytes(use.scene),
+               megabytes(use.waves), megabytes(use.film), megabytes(use.splats), megabytes(use.lightVertices),
+               megabytes(use.photonMap), megabytes(use.learned), megabytes(use.chains), megabytes(use.image),
+               megabytes(use.total()));
   }
 }
 

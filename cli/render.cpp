@@ -40,8 +40,9 @@ RenderSettings settingsOfPart(const RenderOptions& options, const RenderSettings
     throw UsageError("--part: some of the chains of mlt make no image; expected no -o, but `wavecrest merge -o`");
   }
   if (settings.method == Method::gpt && settings.guide != GuideTarget::off) {
-    throw UsageError("--part: gpt draws directions by what all earlier iterations have learned, and a part has only its "
-                     "own; expected another method, or --guide off");
+    throw UsageError(
+        "--part: gpt draws directions by what all earlier iterations have learned, and a part has only its "
+        "own; expected another method, or --guide off");
   }
   const uint64_t most = mlt ? settings.metropolis.chains : *settings.iterations;
   if (parts > most) {

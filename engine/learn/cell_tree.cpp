@@ -38,7 +38,8 @@ void CellTree::save(StateWriter& out) const { out.list(nodes_); }
 
 void CellTree::restore(StateReader& in) {
   const std::vector<uint32_t> nodes = in.list<uint32_t>();
-  const size_t most = 2 * mostCells_;
+  // Each cell but the roots' own has come with two nodes.
+  const size_t most = 2 * mostCells_ - kCellRoots;
   if (nodes.size() < kCellRoots || nodes.size() > most || nodes.size() % 2 != 0) {
     throw StateError("it has other cells than this render");
   }

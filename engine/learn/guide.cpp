@@ -123,7 +123,8 @@ void Guide::chooseShare(size_t cell) {
   if (sums.curvature == 0 || share >= 1) return;
   const double slope = static_cast<double>(sums.up) - static_cast<double>(sums.down);
   const double step = std::clamp(slope / static_cast<double>(sums.curvature), -kMostStep, kMostStep);
-  share = static_cast<float>(std::clamp(static_cast<double>(share) + step, double{kLeastBsdfShare}, double{kMostBsdfShare}));
+  share = static_cast<float>(
+      std::clamp(static_cast<double>(share) + step, double{kLeastBsdfShare}, double{kMostBsdfShare}));
 }
 
 // Both halves of a cell begin with half of its sums.

@@ -27,11 +27,11 @@ constexpr std::array<std::string_view, 3> kGuideTargetNames{"radiance", "varianc
 // What a guide has learned so far, as --stats reports it.
 struct GuideStatistics {
   uint64_t folds = 0;
-  size_t cells = 0;       // that the scene is divided into,
-  size_t taught = 0;      // and of them those with a histogram
-  uint64_t records = 0;   // of directions: those of the latest block whole, of each before half as many as of the next
-  double guidedShare = 0; // of the directions that were recorded before the latest fold: how many the guide would draw
-  uint64_t saturated = 0; // sums that held their limit when they were folded
+  size_t cells = 0;        // that the scene is divided into,
+  size_t taught = 0;       // and of them those with a histogram
+  uint64_t records = 0;    // of directions: those of the latest block whole, of each before half as many as of the next
+  double guidedShare = 0;  // of the directions that were recorded before the latest fold: how many the guide would draw
+  uint64_t saturated = 0;  // sums that held their limit when they were folded
   size_t bytes = 0;
 };
 

@@ -14,8 +14,8 @@ struct MemoryUse {
   size_t lightVertices = 0;  // of a wave per thread, or with a photon map of all waves
   size_t photonMap = 0;
   size_t learned = 0;  // what a guide holds at most; pages that it has not reached yet take no memory
-  size_t chains = 0;  // state of the Markov chains, and the bootstrap samples from which they start
-  size_t image = 0;   // the film resolved to floats, and what that takes on the way; while it is written or looked at
+  size_t chains = 0;   // state of the Markov chains, and the bootstrap samples from which they start
+  size_t image = 0;    // the film resolved to floats, and what that takes on the way; while it is written or looked at
 
   size_t total() const { return scene + waves + film + splats + lightVertices + photonMap + learned + chains + image; }
 };

@@ -105,7 +105,7 @@ struct RenderSettings {
   // less than the roulette.
   double connectionRoulette = 0.2;
   // gpt: what its guide is learned for, and the memory of what it learns.
-  GuideTarget guide = GuideTarget::variance;
+  GuideTarget guide = GuideTarget::radiance;
   uint64_t guideBytes = uint64_t{64} << 20;
   bool directPass = false;      // ppm: direct light by next event estimation, the rest from photons
   uint64_t firstIteration = 0;  // of this session: what came before was rendered by another

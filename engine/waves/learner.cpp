@@ -6,9 +6,9 @@
 namespace wavecrest {
 namespace {
 
-// So many paths of a block are enough: some ten million records, thousands for each cell. A power of two, so that waves
+// So many paths of a block are enough: some millions of records, thousands for each cell. A power of two, so that waves
 // of several iterations fit.
-constexpr uint64_t kPathsOfBlock = uint64_t{1} << 22;
+constexpr uint64_t kPathsOfBlock = uint64_t{1} << 20;
 
 }  // namespace
 

@@ -32,7 +32,7 @@ struct RenderOptions {
   double connectionRoulette = 0.2;
 
   // gpt: what its guide is learned for: radiance, variance or off; memory of what it learns (empty: 64MiB).
-  std::string guide = "variance", guideMemory{};
+  std::string guide = "radiance", guideMemory{};
 
   // mlt: pssmlt, mmlt or pathspace (empty: mmlt); Markov chains; independent samples from which they start; steps
   // before they start anew (0: by the number of samples); whether chains render direct light, too.

@@ -27,9 +27,8 @@ WAVECREST_INLINE typename P::Real guidedEtaRatio(const ShadingLanes<P, kBsdfs>& 
                                                  typename P::Real woCosine) {
   using Real = typename P::Real;
   if constexpr (has(kBsdfs, kLayeredBsdfs)) {
-    const auto is = [&](BsdfKind kind) WAVECREST_LAMBDA {
-      return shading.bsdf.kind == UInt(static_cast<uint32_t>(kind));
-    };
+    const auto is = [&](BsdfKind kind)
+                        WAVECREST_LAMBDA { return shading.bsdf.kind == UInt(static_cast<uint32_t>(kind)); };
     const Mask refracted = drawn & (is(BsdfKind::roughDielectric) | is(BsdfKind::beckmannDielectric)) &
                            (shading.wi.z * woCosine < Real(0));
     if (any(refracted)) {
@@ -69,7 +68,8 @@ WAVECREST_NOINLINE GuidedSample<typename P::Real> guideSample(const StageContext
   const Real pdf = share * pdfBsdf + (Real(1) - share) * pdfGuide;
   const Mask failed = andNot(sample.pdf <= Real(0), drawn);
   const Real inversePdf = reciprocal(max(pdf, Real(1e-30f)));
-  const Vec3<Real> weight = select(drawn, value.f * (value.lightCosine * inversePdf), sample.weight * (pdfBsdf * inversePdf));
+  const Vec3<Real> weight =
+      select(drawn, value.f * (value.lightCosine * inversePdf), sample.weight * (pdfBsdf * inversePdf));
   const Vec3<Real> wo = shading.toLocal(chosen);
   const Real albedo = maxComponent(value.f) * value.lightCosine * reciprocal(max(value.pdf, Real(1e-30f)));
   const Real etaRatio = guidedEtaRatio(shading, drawn, wo.z);

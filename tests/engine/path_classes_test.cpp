@@ -41,7 +41,8 @@ TEST(PathStrategies, decideTheWeights) {
     // Merging alone leaves emission only what it cannot make, and light tracing's walks make different paths.
     EXPECT_EQ(camera.emission, strategies.nextEvent) << entry.name;
     EXPECT_EQ(camera.camera, strategies.camera && !strategies.specularViewsOnly) << entry.name;
-    EXPECT_EQ(camera.powerHeuristic, entry.method == Method::pt || entry.method == Method::lt || entry.method == Method::gpt)
+    EXPECT_EQ(camera.powerHeuristic,
+              entry.method == Method::pt || entry.method == Method::lt || entry.method == Method::gpt)
         << entry.name;
     EXPECT_EQ(isBidirectional(page), entry.method != Method::pt && entry.method != Method::gpt) << entry.name;
   }

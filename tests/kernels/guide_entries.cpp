@@ -19,8 +19,7 @@ void toSquareColumns(const float* x, const float* y, const float* z, size_t coun
 void drawColumns(const GuideView& guide, const float* b, const float* c, const float* d, size_t count, float* x,
                  float* y, float* z, float* density) {
   for (size_t i = 0; i < count; i += kLanes) {
-    const Vec3<Float> direction =
-        drawFromGuide(guide, UInt(0u), {Float(0), load(b + i), load(c + i), load(d + i)});
+    const Vec3<Float> direction = drawFromGuide(guide, UInt(0u), {Float(0), load(b + i), load(c + i), load(d + i)});
     store(direction.x, x + i);
     store(direction.y, y + i);
     store(direction.z, z + i);
