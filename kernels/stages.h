@@ -10,9 +10,7 @@
 #include <optional>
 #include <string_view>
 
-#include "kernels/columns/cell_tree.h"
 #include "kernels/columns/filter_spread.h"
-#include "kernels/columns/guide_view.h"
 #include "kernels/columns/photon_grid.h"
 #include "kernels/columns/splat_sums.h"
 #include "kernels/columns/wave.h"
@@ -122,6 +120,9 @@ template <class S>
 class LightStore;  // kernels/columns/light_vertices.h
 template <class S>
 struct PhotonMap;  // kernels/merge/photon_map.h
+
+struct CellTreeView;  // kernels/columns/cell_tree.h
+struct GuideView;     // kernels/columns/guide_view.h
 
 struct ChainState;  // kernels/columns/chains.h
 template <class S>

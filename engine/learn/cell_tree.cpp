@@ -14,7 +14,10 @@ CellTree::CellTree(const double (&center)[3], const double (&halfExtent)[3], siz
     nodes_.push_back(kCellLeaf | root);
     leaves_.push_back({.node = root, .level = 0});
   }
+  starts_.resize(kCellStarts);
+  publish();
   view_.nodes = nodes_.data();
+  view_.starts = starts_.data();
   for (int axis = 0; axis < 3; ++axis) {
     const double extent = 2 * halfExtent[axis];
     view_.least[axis] = static_cast<float>(center[axis] - halfExtent[axis]);
@@ -45,6 +48,7 @@ void CellTree::restore(StateReader& in) {
   }
   nodes_.assign(nodes.begin(), nodes.end());
   findLeaves();
+  publish();
 }
 
 // Visits the tree from its roots. Every node must be reached once, and every cell be one node's.

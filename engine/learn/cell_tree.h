@@ -22,8 +22,11 @@ class CellTree {
   size_t mostCells() const { return mostCells_; }
   // Whether split(cell) may be called: the cell is not as small as cells get, and there may be one more.
   bool canSplit(uint32_t cell) const { return leaves_[cell].level < kCellLevels && cells() < mostCells_; }
-  // Halves a cell: one half keeps its number, the other gets the next new one, which is returned.
+  // Halves a cell: one half keeps its number, the other gets the next new one, which is returned. publish() is to
+  // follow, once for all splits.
   uint32_t split(uint32_t cell);
+  // Makes what kernels read follow from the cells.
+  void publish() { fillCellStarts(nodes_.data(), starts_.data()); }
 
   void save(StateWriter& out) const;
   // Throws StateError if the bytes are not those of a tree with at most mostCells() cells.
@@ -40,6 +43,7 @@ class CellTree {
   size_t mostCells_;
   std::vector<uint32_t> nodes_;
   std::vector<Leaf> leaves_;  // by cell
+  std::vector<uint32_t> starts_;
   CellTreeView view_;
 };
 

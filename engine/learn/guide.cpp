@@ -140,6 +140,7 @@ void Guide::splitCells() {
       std::copy_n(from, kGuideBins, &binSums_[added * size_t{kGuideBins}]);
     }
   }
+  tree_.publish();
 }
 
 // The histogram of the cell's sums, of which half are kept for the next one.

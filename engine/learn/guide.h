@@ -14,6 +14,7 @@
 
 #include "engine/learn/cell_tree.h"
 #include "engine/state/state_stream.h"
+#include "kernels/columns/guide_view.h"
 #include "kernels/columns/wave.h"
 
 namespace wavecrest {

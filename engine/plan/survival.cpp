@@ -9,7 +9,7 @@ namespace {
 // ones.
 float efficientScale(Method method, Walk walk) {
   if (method == Method::lt) return walk == Walk::light ? 2 : 4;
-  return method == Method::pt ? 4 : 1;
+  return method == Method::pt || method == Method::gpt ? 4 : 1;
 }
 
 }  // namespace
@@ -17,6 +17,8 @@ float efficientScale(Method method, Walk walk) {
 std::optional<SurvivalRule> survivalRule(const RenderSettings& settings, Walk walk) {
   if (settings.roulette == Roulette::albedo) return SurvivalRule{.byAlbedo = true};
   if (settings.roulette == Roulette::throughput) return std::nullopt;
+  // A guide leads paths that are dark so far to light.
+  if (settings.method == Method::gpt && settings.guide != GuideTarget::off) return SurvivalRule{.byAlbedo = true};
   return SurvivalRule{.scale = efficientScale(settings.method, walk)};
 }
 

@@ -33,7 +33,9 @@ WAVECREST_INLINE UInt cellOf(const CellTreeView& tree, Mask active, Vec3<Float> 
   };
   // Bit by bit, from the uppermost one: which half of the cell along x, y and z in turn.
   UInt code = shiftLeft<2>(halvings(place.x, 0)) | shiftLeft<1>(halvings(place.y, 1)) | halvings(place.z, 2);
-  UInt node = gather(tree.nodes, select(active, cellRoot(facing), UInt(0u)));
+  const UInt start = shiftLeft<kCellStartLevels>(cellRoot(facing)) | shiftRight<kCellLevels - kCellStartLevels>(code);
+  UInt node = gather(tree.starts, select(active, start, UInt(0u)));
+  code = shiftLeft<kCellStartLevels>(code);
   for (;;) {
     const Mask inner = active & (node < UInt(kCellLeaf));
     if (none(inner)) break;

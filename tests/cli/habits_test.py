@@ -103,6 +103,7 @@ class Words(CommandTest):
             ("render", "--instances", "auto expand keep"),
             ("render", "--filter-mode", "spread sample"),
             ("render", "--roulette", "throughput albedo efficiency"),
+            ("render", "--guide", "radiance variance off"),
             ("render", "--mlt", "pssmlt mmlt pathspace"),
             ("render", "--progress", "auto bar jsonl none"),
             ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm gpt"),

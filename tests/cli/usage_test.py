@@ -91,7 +91,7 @@ class Usage(CommandTest):
             (["-m", "ppm", "--merge-vertices", "all"], r"--merge-vertices: ppm has no choice of .*; expected vcm$"),
             (["-m", "vcm", "--merge-vertices", "none"], r"--merge-vertices none: unknown; expected one of all, first"),
             (["-m", "mlt", "--connection-roulette", "5"], r"--connection-roulette: mlt .*; expected bpt or vcm$"),
-            (["-m", "mlt", "--roulette", "albedo"], r"--roulette: mlt ends walks by throughput; expected pt, lt, .* or vcm$"),
+            (["-m", "mlt", "--roulette", "albedo"], r"--roulette: mlt ends walks by throughput; expected pt, lt, .* or gpt$"),
             (["--guide", "off"], r"--guide: pt learns no guide; expected gpt$"),
             (["-m", "vcm", "--guide-memory", "8MiB"], r"--guide-memory: vcm learns no guide; expected gpt$"),
             (["-m", "gpt", "--guide", "light"], r"--guide light: unknown; expected one of radiance, variance, off$"),

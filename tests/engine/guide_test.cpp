@@ -23,6 +23,7 @@ namespace {
 RenderSettings guideSettings(Method method = Method::gpt) {
   RenderSettings settings = settingsFor({Precision::floating, SamplerKind::independent, Accel::automatic});
   settings.method = method;
+  settings.roulette = Roulette::efficiency;
   settings.waveSize = 256;
   return settings;
 }

@@ -63,7 +63,9 @@ double meanOf(const MethodPage& page, const Scene& scene, uint64_t seed, uint32_
     wave.directions.size = 0;
     if (endOfBlock(i) == i + 1) guide.fold();
   }
-  if (page.has(Fold::guide)) EXPECT_GT(guide.statistics().guidedShare, 0.1) << "it has learned";
+  if (page.has(Fold::guide)) {
+    EXPECT_GT(guide.statistics().guidedShare, 0.1) << "it has learned";
+  }
   double sum = 0;
   for (const float value : film.resolve()) sum += static_cast<double>(value);
   return sum / static_cast<double>(3 * pixels);

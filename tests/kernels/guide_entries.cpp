@@ -36,9 +36,9 @@ void cellColumns(const CellTreeView& tree, const float* x, const float* y, const
   }
 }
 
-constexpr GuideEntries kEntries = {
+constexpr GuideEntries kGuideEntries = {
     .lanes = kLanes, .toSquare = toSquareColumns, .draw = drawColumns, .cells = cellColumns};
-WAVECREST_REGISTER_ENTRIES(GuideEntries, kEntries);
+WAVECREST_REGISTER_ENTRIES(GuideEntries, kGuideEntries);
 
 }  // namespace
 WAVECREST_SIMD_END

@@ -112,7 +112,9 @@ TEST_P(GuideLanesTest, findsTheCellOfAPlace) {
   const std::vector<uint32_t> nodes{
       kCellLeaf,     kCellLeaf | 1, 6, kCellLeaf | 3, kCellLeaf | 4, kCellLeaf | 5, kCellLeaf | 2, 8, 10, kCellLeaf | 6,
       kCellLeaf | 7, kCellLeaf | 8};
-  CellTreeView tree{.nodes = nodes.data(), .least = {-1, 0, -1}, .scale = {512, 512, 512}};
+  std::vector<uint32_t> starts(kCellStarts);
+  fillCellStarts(nodes.data(), starts.data());
+  CellTreeView tree{.nodes = nodes.data(), .starts = starts.data(), .least = {-1, 0, -1}, .scale = {512, 512, 512}};
   constexpr size_t kPlaces = 16;
   alignas(64) std::array<float, kPlaces> x{}, y{}, z{};
   std::array<uint32_t, kPlaces> expected{};
