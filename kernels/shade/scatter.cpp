@@ -2,9 +2,9 @@
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n]. out: Rays (new), PathStates [<= n], in that order, without
 // paths that were absorbed or ended by roulette. METHODS 1.4 (throughput), 1.5 (roulette), 5.5 (MIS recursion).
-#include "kernels/guide/guided_scatter_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/bsdf_ranges.h"
+#include "kernels/shade/guided_scatter_lanes.h"
 #include "kernels/shade/shading_lanes.h"
 #include "kernels/shade/survival_lanes.h"
 #include "kernels/stage_declarations.h"
