@@ -40,6 +40,13 @@ std::vector<ScoreEntry> chosenEntries(const BenchOptions& options, ScoreSize siz
     throw UsageError(
         fmt::format("--score {}: has no scene {}; expected none, or some of its own", options.score, scene));
   }
+  for (const Method method : options.methods.empty() ? std::vector<Method>() : methods) {
+    const bool known =
+        std::any_of(entries.begin(), entries.end(), [&](const ScoreEntry& entry) { return entry.method == method; });
+    if (known) continue;
+    throw UsageError(fmt::format("--score {}: has no method {}; expected none, or some of the study's", options.score,
+                                 toString(method)));
+  }
   std::erase_if(entries, [&](const ScoreEntry& entry) {
     return !contains(methods, entry.method) || (!options.scenes.empty() && !contains(options.scenes, entry.scene));
   });

@@ -173,6 +173,7 @@ class Usage(CommandTest):
             (["render", "cornell-diffuse", "--isa", "axv2"], USAGE, r"--isa axv2: .*did you mean 'avx2'\?"),
             (["converge", "--profile", "quikc", "--out", "a"], USAGE, r"--profile quikc: .*did you mean 'quick'\?"),
             (["compare", "a.exr", "b.exr", "--metrics", "sism"], USAGE, r"--metrics sism: .*did you mean 'ssim'\?"),
+            (["bench", "--score", "small", "--methods", "pt,gpt"], USAGE, r"--score small: has no method gpt; expected"),
             (["bench", "--methods", "vmc"], USAGE, r"--methods vmc: .*did you mean 'vcm'\?"),
             (["recommend", "cornell-diffuse", "--methods", "vmc"], USAGE, r"did you mean 'vcm'\?"),
             (["render", "cornell-diffuse", "--precision", "flaot"], USAGE, r"did you mean 'float'\?"),

@@ -43,10 +43,10 @@ INSTANTIATE_TEST_SUITE_P(Methods, ScoreImageTest,
                                          Method::vcm),
                          [](const auto& instance) { return std::string(toString(instance.param)); });
 
-TEST(Workload, hasEveryMethodOnEveryScene) {
-  EXPECT_EQ(workloadOf(ScoreSize::small).size(), 4 * kMethods.size());
+TEST(Workload, hasEveryMethodOfTheStudyOnEveryScene) {
+  EXPECT_EQ(workloadOf(ScoreSize::small).size(), 4 * kStudyMethods);
   for (const ScoreSize size : {ScoreSize::medium, ScoreSize::large}) {
-    EXPECT_EQ(workloadOf(size).size(), 9 * kMethods.size());
+    EXPECT_EQ(workloadOf(size).size(), 9 * kStudyMethods);
   }
 }
 
