@@ -14,7 +14,7 @@ namespace {
 // State that the handlers share with the guard; handlers may use only what is lock-free. watched: the session that
 // renders, or null. endsAtOnce: the guard is idle.
 std::atomic<Session*> watched{nullptr};
-std::atomic<bool> endsAtOnce{false}, saveWanted{false}, pauseWanted{false};
+std::atomic<bool> endsAtOnce{false}, saveWanted{false}, pauseWanted{false}, attentionWanted{false}, toldToStop{false};
 std::atomic<int64_t> firstRequest{0};  // milliseconds on the monotonic clock; 0: none yet
 static_assert(std::atomic<Session*>::is_always_lock_free && std::atomic<int64_t>::is_always_lock_free);
 // Set before the handlers are installed. Handlers only read it.
@@ -49,7 +49,10 @@ void onStop(int signal) {
 }
 
 // Whether the session is to return: to end, to be saved or to pause.
-bool isWanted() { return firstRequest.load() != 0 || saveWanted.load() || pauseWanted.load(); }
+bool isWanted() {
+  return firstRequest.load() != 0 || toldToStop.load() || saveWanted.load() || pauseWanted.load() ||
+         attentionWanted.load();
+}
 
 // Stores the reason before the interrupt, because the thread that renders looks for the reason once the session
 // returns.
@@ -63,10 +66,12 @@ void onSave(int) { pauseFor(saveWanted); }
 }  // namespace
 
 InterruptGuard::InterruptGuard(const std::string& lineAtEnd) {
-  endLine = lineAtEnd + "\n";
+  endLine = lineAtEnd.empty() ? "" : lineAtEnd + "\n";
   firstRequest.store(0);
   saveWanted.store(false);
   pauseWanted.store(false);
+  attentionWanted.store(false);
+  toldToStop.store(false);
   endsAtOnce.store(true);
   for (size_t i = 0; i < std::size(kSignals); ++i) {
     struct sigaction action {};
@@ -93,10 +98,13 @@ void InterruptGuard::watch(Session* session) {
   if (session != nullptr && isWanted()) session->interrupt();
 }
 
-bool InterruptGuard::interrupted() const { return firstRequest.load() != 0; }
+bool InterruptGuard::interrupted() const { return firstRequest.load() != 0 || toldToStop.load(); }
+void InterruptGuard::stop() { pauseFor(toldToStop); }
 bool InterruptGuard::takeSaveRequest() { return saveWanted.exchange(false); }
 void InterruptGuard::requestPause() { pauseFor(pauseWanted); }
 bool InterruptGuard::takePauseRequest() { return pauseWanted.exchange(false); }
+void InterruptGuard::requestAttention() { pauseFor(attentionWanted); }
+bool InterruptGuard::takeAttentionRequest() { return attentionWanted.exchange(false); }
 
 void InterruptGuard::goOn() {
   Session* const session = watched.load();

@@ -23,17 +23,24 @@ class InterruptGuard {
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
   // Idle: nothing is half done, as while a scene is loaded or built. A signal then ends the program at once with
-  // lineAtEnd on stderr and kExitInterrupted.
+  // lineAtEnd, if there is one, on stderr and kExitInterrupted.
   void setIdle(bool idle);
   // The session that is to stop, or null while none renders. One that comes after a signal is stopped at once. The
   // program is no longer idle.
   void watch(Session* session);
+  // By a signal, or by stop().
   bool interrupted() const;
+  // Does what a first signal does, from any thread: another process of the same render has got one. A signal that comes
+  // here later is then the first.
+  void stop();
   // Whether SIGUSR1 has come since the last call.
   bool takeSaveRequest();
   // Asks the watched session to pause, from any thread; and whether that was asked since the last call.
   void requestPause();
   bool takePauseRequest();
+  // The same for whoever has something to do between two waves.
+  void requestAttention();
+  bool takeAttentionRequest();
   // The watched session may go on, unless it is to end, to be saved or to pause again.
   void goOn();
 

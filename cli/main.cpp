@@ -3,82 +3,50 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <filesystem>
-#include <new>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "bench/against/child_render.h"
-#include "bench/checkpoint/checkpoint.h"
+#include "bench/ranks/launch.h"
 #include "cli/commands.h"
+#include "cli/failure.h"
 #include "cli/file_check.h"
 #include "cli/messages.h"
-#include "engine/load/load.h"
-#include "engine/scene/scene_error.h"
 #include "engine/version.h"
-#include "library/translate.h"
-#include "metrics/image/image.h"
-#include "scenes/scene_list.h"
 
 namespace wavecrest {
 namespace {
 
-constexpr const char* kOutOfMemory =
-    "wavecrest: error: out of memory; expected a smaller film or scene, fewer --threads, or a budget by --memory";
-
 // Says what went wrong and returns the exit code of its kind.
 int report(const std::exception_ptr& thrown) {
-  const auto line = [](int exitCode, const std::string& text) {
-    tell("wavecrest: error: {}", text);
-    return exitCode;
-  };
   try {
     std::rethrow_exception(thrown);
-  } catch (const UsageError& error) {
-    return line(kExitUsage, error.what());
-  } catch (const MissingFileError& error) {
-    return line(kExitInput, textOf(error));
-  } catch (const LoadError& error) {
-    return line(kExitInput, error.what());
-  } catch (const SceneError& error) {
-    return line(kExitInput, error.what());
-  } catch (const SceneFolderError& error) {
-    return line(kExitInput, error.what());
-  } catch (const ImageError& error) {
-    return line(kExitInput, error.what());
-  } catch (const CheckpointError& error) {
-    return line(kExitInput, error.what());
-  } catch (const InputError& error) {
-    return line(kExitInput, error.what());
-  } catch (const std::filesystem::filesystem_error& error) {
-    return line(kExitInput, fmt::format("{}: {}; expected a file or folder that can be reached", error.path1().string(),
-                                        error.code().message()));
-  } catch (const nlohmann::json::exception&) {
-    return line(kExitInput, "JSON of an input is not as wavecrest writes it; expected it unchanged");
-  } catch (const ChildStopped& error) {
-    return line(kExitInterrupted, error.what());
-  } catch (const std::bad_alloc&) {
-    writeStderr(kOutOfMemory);
-    writeStderr("\n");
-  } catch (const std::exception& error) {
-    // The standard library's threads and TBB's fail with texts of their own, which end alike.
-    const std::string text = error.what();
-    const bool thread = text.ends_with(std::strerror(EAGAIN));
-    tell("wavecrest: {}: {}{}", thread ? "error" : "internal error", text,
-         thread ? "; expected enough memory and processes for all threads, or fewer --threads" : "");
+  } catch (const SharedFailure& shared) {
+    return shared.exitCode;
   } catch (...) {
-    tell("wavecrest: internal error");
+    const Failure failure = failureOf(std::current_exception());
+    const std::optional<Launch> launch = launchOfThisProcess();
+    if (launch && launch->rank != 0 && failure.exitCode == kExitUsage) {
+      // All processes have the same arguments, and the first one says what is wrong. Launchers end all once one has
+      // failed, so that one gets the time to say it.
+      constexpr useconds_t kSpeech = 500'000;
+      usleep(kSpeech);
+    } else {
+      tell("wavecrest: {}", failure.line);
+    }
+    return failure.exitCode;
   }
-  return kExitFailure;
 }
 
 // Of an exception that no frame can catch, as where a library fails to start its thread. Several threads may fail at
@@ -104,9 +72,25 @@ void onCpuLimit(int) {
   _exit(kExitInterrupted);
 }
 
+// Only a render shares its work between the processes of a launcher. Any other command would do everything in each of
+// them, and all would write the same files.
+void refuseLaunched(const std::vector<std::string>& arguments) {
+  const std::optional<Launch> launch = launchOfThisProcess();
+  constexpr std::array<std::string_view, 5> kAny{"render", "help", "scenes", "describe", "inspect"};
+  if (!launch || arguments.empty() || arguments.front().starts_with('-') ||
+      std::find(kAny.begin(), kAny.end(), arguments.front()) != kAny.end()) {
+    return;
+  }
+  throw UsageError(fmt::format(
+      "{}: {} has started {} processes, which only `render` can share its work between; expected one process, "
+      "or {}=off, with which each works by itself",
+      arguments.front(), launch->by, launch->ranks, kMpiVariable));
+}
+
 int run(std::vector<std::string> arguments) {
   int exitCode = kExitDone;
   try {
+    refuseLaunched(arguments);
     CommandLine program("wavecrest measures light-transport methods against each other", "wavecrest");
     program.setVersion(kVersion);
     addCompareCommand(program, exitCode);

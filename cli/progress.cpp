@@ -38,7 +38,9 @@ void keepNote(const std::string& text) {
 }
 
 // The kind of progress by which notes are said where there is no progress.
-ProgressKind told(ProgressKind kind) { return showsProgress(kind) ? kind : ProgressKind::automatic; }
+ProgressKind told(ProgressKind kind) {
+  return showsProgress(kind) || kind == ProgressKind::silent ? kind : ProgressKind::automatic;
+}
 
 // Time between two updates. Columns of the longest bar, and of the text beside it.
 constexpr auto kInterval = std::chrono::milliseconds(250);
@@ -75,8 +77,8 @@ std::vector<std::string> notesSoFar() {
 }
 
 Progress::Progress(ProgressKind kind, const Session& session, std::optional<double> seconds,
-                   std::optional<uint64_t> paths)
-    : kind_(resolved(kind)), session_(session), seconds_(seconds), paths_(paths) {
+                   std::optional<uint64_t> paths, std::function<uint64_t()> elsewhere)
+    : kind_(resolved(kind)), session_(session), seconds_(seconds), paths_(paths), elsewhere_(std::move(elsewhere)) {
   if (!showsProgress(kind_)) return;
   thread_ = std::thread([this] {
     // Sleeps in short steps, so that the destructor does not wait for a whole interval.
@@ -96,7 +98,7 @@ Progress::~Progress() {
 void Progress::show(bool last) const {
   // The larger fraction counts, because the render ends at the first goal that it reaches.
   const double now = session_.progressSeconds();
-  const uint64_t paths = session_.progressPaths();
+  const uint64_t paths = session_.progressPaths() + (elsewhere_ ? elsewhere_() : 0);
   double fraction = 0;
   if (seconds_) fraction = std::max(fraction, now / *seconds_);
   if (paths_) fraction = std::max(fraction, static_cast<double>(paths) / static_cast<double>(*paths_));

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -15,10 +16,10 @@
 
 namespace wavecrest {
 
-// quiet: --quiet, which leaves out notes as well.
-enum class ProgressKind { automatic, bar, jsonl, none, quiet };
+// quiet: --quiet, which leaves out notes as well. silent: says nothing, as another process says the same.
+enum class ProgressKind { automatic, bar, jsonl, none, quiet, silent };
 inline ProgressKind quietIf(bool quiet, ProgressKind kind) { return quiet ? ProgressKind::quiet : kind; }
-inline bool showsProgress(ProgressKind kind) { return kind != ProgressKind::none && kind != ProgressKind::quiet; }
+inline bool showsProgress(ProgressKind kind) { return kind < ProgressKind::none; }
 constexpr std::array<std::string_view, 4> kProgressNames{"auto", "bar", "jsonl", "none"};
 
 // A line beside the progress: with jsonl an object {key: value}, else "wavecrest: TEXT".
@@ -32,8 +33,10 @@ std::vector<std::string> notesSoFar();
 
 class Progress {
  public:
-  // automatic: a bar if stderr is a terminal, else nothing. The goal is what the render runs towards.
-  Progress(ProgressKind kind, const Session& session, std::optional<double> seconds, std::optional<uint64_t> paths);
+  // automatic: a bar if stderr is a terminal, else nothing. The goal is what the render runs towards. elsewhere: paths
+  // of other processes so far, from any thread; empty where there are none.
+  Progress(ProgressKind kind, const Session& session, std::optional<double> seconds, std::optional<uint64_t> paths,
+           std::function<uint64_t()> elsewhere = {});
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -45,6 +48,7 @@ class Progress {
   const Session& session_;
   const std::optional<double> seconds_;
   const std::optional<uint64_t> paths_;
+  const std::function<uint64_t()> elsewhere_;
   std::atomic<bool> done_{false};
   std::thread thread_;
 };

@@ -16,6 +16,7 @@
 #include "cli/render_messages.h"
 #include "cli/render_options.h"
 #include "cli/render_outputs.h"
+#include "cli/render_ranks.h"
 #include "engine/load/load.h"
 #include "engine/pilot/finished_plan.h"
 #include "engine/plan/render_plan.h"
@@ -127,64 +128,234 @@ uint64_t pathsOf(uint64_t iterations, const FilmArea& film) {
   return iterations > kMost / pixels ? kMost : iterations * pixels;
 }
 
+// Where the image goes without -o: SCENE.exr in the working directory.
+std::string defaultOutput(const std::string& scene) {
+  return scene == kStandardStream ? "stdin.exr" : findScene(scene).stem().string() + ".exr";
+}
+
+// One render from its options to its files. Under a launcher each process has one, of a share of the render.
+class RenderRun {
+ public:
+  explicit RenderRun(RenderOptions options) : options_(std::move(options)) {}
+  // The exit code.
+  int run();
+
+ private:
+  int runTogether();
+  void check();
+  void load();
+  void build();
+  Ending render();
+  bool goesOn();
+  int end(Ending ending);
+  int endAlone(Ending ending, const RanksError& error);
+  int write(Ending ending, const Rendered& rendered);
+  int endWithoutImage(Ending ending, const RenderStatistics& statistics) const;
+
+  RenderRanks ranks_;
+  RenderOptions options_;
+  ProgressKind kind_ = ProgressKind::automatic;
+  SnapshotSchedule schedule_ = SnapshotSchedule::none();
+  OutputNames names_;
+  std::optional<InterruptGuard> guard_;
+  std::optional<Checkpointing> checkpointing_;
+  std::unique_ptr<Checkpoint> earlier_;
+  Scene scene_;
+  double loadSeconds_ = 0;
+  RenderSettings settings_;
+  std::optional<UntilGoal> until_;
+  std::unique_ptr<Session> session_;
+  std::optional<LiveRender> live_;
+  std::optional<RenderOutputs> outputs_;
+  unsigned firstSnapshot_ = 0;
+};
+
+// Checks options and output names before anything takes time, locks the checkpoint, and reads it with --resume.
+void RenderRun::check() {
+  schedule_ = parseSnapshotSchedule("--snapshot-every", options_.snapshotEvery);
+  kind_ = ranks_.kind(
+      quietIf(options_.quiet, static_cast<ProgressKind>(parseChoice("--progress", options_.progress, kProgressNames))));
+  if (options_.outputs.empty() && !options_.snapshotEvery.empty()) {
+    throw UsageError("--snapshot-every: snapshots of a part are named after its image; expected -o FILE.exr");
+  }
+  const bool measures = !options_.stats.empty();
+  ranks_.adapt(options_);
+  settings_.measureStages = measures;
+  names_ = {options_.outputs,         options_.stats,    options_.snapshotEvery,
+            options_.checkpoint.file, options_.exposure, options_.partial};
+  guard_.emplace(ranks_.first() ? "wavecrest: interrupted before anything was rendered; no image was written" : "");
+  checkOutputs(names_, {findScene(options_.scene.scene)}, options_.until.reference);
+  checkpointing_.emplace(options_.checkpoint);
+  earlier_ = checkpointing_->takeEarlier();
+  // Removes temporary files of a render that was killed while it wrote its images. The lock keeps other processes from
+  // going on with this render at the same time.
+  if (!earlier_) return;
+  for (const std::string& output : options_.outputs) removeTemporaries(output);
+}
+
+// Loads the scene. Only then are all its files known, so outputs are checked against them once more. Where the image
+// depends on it, light paths are cut into waves as the checkpoint says.
+void RenderRun::load() {
+  const auto begin = std::chrono::steady_clock::now();
+  scene_ = loadScene(options_.scene, kind_);
+  printNotes(scene_, kind_);
+  checkOutputs(names_, scene_.files, options_.until.reference);
+  loadSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const bool measures = settings_.measureStages;
+  settings_ = ranks_.share(resolved(options_, scene_), filmOutline(scene_.film), kind_);
+  settings_.measureStages = measures;
+  if (earlier_) earlier_->cutAlike(settings_);
+  if (options_.pin) settings_.placement = pinnedPlacement(settings_.threads, kind_);
+  if (options_.until.any()) until_.emplace(untilGoal(options_, settings_, filmOutline(scene_.film)));
+}
+
+// Makes the session, connects viewers and outputs, and goes on from the checkpoint.
+void RenderRun::build() {
+  session_ = withinMemory([&] { return Session::create(scene_, settings_); });
+  tellPlan(options_, scene_, settings_, kind_, session_->memoryPlan(), session_->film().spreads());
+  live_.emplace(options_.live, scene_, settings_, kind_, session_);
+  outputs_.emplace(names_, scene_, settings_, loadSeconds_, kind_);
+  goOn(earlier_, options_.checkpoint, scene_, settings_, kind_, *session_, *outputs_);
+  earlier_.reset();
+  firstSnapshot_ = outputs_->nextSnapshot(schedule_, *session_);
+}
+
+int RenderRun::run() {
+  try {
+    return runTogether();
+  } catch (const SharedFailure&) {
+    // The launcher may end those that are not over yet, which have nothing to add.
+    if (guard_) guard_->setIdle(false);
+    ranks_.finish();
+    throw;
+  }
+}
+
+int RenderRun::runTogether() {
+  ranks_.together([this] { check(); });
+  ranks_.together([this] { load(); });
+  ranks_.cutAlike(settings_);
+  if (options_.dryRun) {
+    ranks_.together([this] {
+      const DryPlan plan = withinMemory([&] { return planWithoutSession(scene_, settings_); });
+      tellPlan(options_, scene_, settings_, kind_, plan.memory, plan.spreads);
+      if (ranks_.first()) showPlan(options_, scene_, settings_, plan);
+    });
+    return ranks_.leave(kExitDone);
+  }
+  ranks_.together([this] { build(); });
+  if (ranks_.several()) firstSnapshot_ = ranks_.agree(renderIdentity(scene_, settings_, *session_), firstSnapshot_);
+  // Renders, with a checkpoint every now and then.
+  Ending ending = Ending::complete;
+  try {
+    const RenderRanks::Watch watch(ranks_, *guard_, *session_);
+    std::optional<CheckpointTimer> timer;
+    if (!options_.checkpoint.file.empty()) timer.emplace(*guard_, checkpointing_->seconds());
+    ending = render();
+    timer.reset();
+    if (until_) noteLine(kind_, {{"until", outputs_->until()}}, UntilGoal::describe(outputs_->until()));
+    return end(ending);
+  } catch (const RanksError& error) {
+    return endAlone(guard_->interrupted() ? Ending::stopped : Ending::complete, error);
+  }
+}
+
+// Called after an interrupt. A signal to stop ends the render. A pause writes a checkpoint, a save images as well; then
+// the session goes on.
+bool RenderRun::goesOn() {
+  if (guard_->interrupted()) return false;
+  const bool save = guard_->takeSaveRequest();
+  if (guard_->takePauseRequest()) outputs_->writeCheckpoint(*session_);
+  guard_->takeAttentionRequest();
+  ranks_.attend(*session_, save, *outputs_);
+  guard_->goOn();
+  return true;
+}
+
 // Renders to the end or to a signal. Snapshots and requested saves are written on the way.
-Ending render(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,
-              std::optional<UntilGoal>& until, ProgressKind kind, InterruptGuard& guard, RenderOutputs& outputs,
-              LiveRender& live) {
+Ending RenderRun::render() {
   bool stopped = false;
-  // Called after an interrupt. A signal to stop ends the render. A pause writes a checkpoint, a save images as well;
-  // then the session goes on.
-  const auto goesOn = [&] {
-    stopped = guard.interrupted();
-    if (stopped) return false;
-    const bool save = guard.takeSaveRequest();
-    if (guard.takePauseRequest() || save) outputs.writeCheckpoint(session);
-    if (save && outputs.hasImage(session)) {
-      outputs.save(session);
-    } else if (save) {
-      noteLine(kind, {{"left_out", "save"}}, "not saved, as there was no whole pass over the film yet");
-    }
-    guard.goOn();
-    return true;
+  const auto goOnUnlessStopped = [&] {
+    stopped = !goesOn();
+    return !stopped;
   };
   // From here on signals interrupt the session.
-  guard.watch(&live.interruptible(session));
+  guard_->watch(&live_->interruptible(*session_));
   std::optional<uint64_t> goalPaths;
-  if (settings.iterations) {
-    // Of mlt a part has some of the chains of all iterations.
-    const uint64_t parts = settings.method == Method::mlt ? settings.share.parts : 1;
-    goalPaths = pathsOf(*settings.iterations, session.film().area()) / parts;
+  if (settings_.iterations) {
+    // Of mlt a part has some of the chains of all iterations. Several processes show the progress of all.
+    const uint64_t parts = settings_.method == Method::mlt && !ranks_.several() ? settings_.share.parts : 1;
+    const uint64_t iterations =
+        ranks_.several() ? settings_.share.iterations.value_or(*settings_.iterations) : *settings_.iterations;
+    goalPaths = pathsOf(iterations, session_->film().area()) / parts;
   }
   {
     // Progress lives in a block of its own: its end completes the line on the terminal.
-    const Progress progress(kind, session, settings.seconds, goalPaths);
+    const Progress progress(kind_, *session_, settings_.seconds, goalPaths, ranks_.pathsElsewhere());
     // A goal of quality renders in steps of its own, without snapshots.
-    if (until) {
+    if (until_) {
       do {
-        outputs.setUntil(until->render(session, settings));
-      } while (session.interrupted() && goesOn());
+        outputs_->setUntil(until_->render(*session_, settings_));
+      } while (session_->interrupted() && goOnUnlessStopped());
     } else {
       renderWithSnapshots(
-          session, settings, schedule,
+          *session_, settings_, schedule_,
           [&](unsigned number) {
-            live.look(false);
-            outputs.writeSnapshot(session, number);
+            live_->look(false);
+            ranks_.snapshot(*session_, number, *outputs_);
           },
-          goesOn, outputs.nextSnapshot(schedule, session));
+          goOnUnlessStopped, firstSnapshot_);
     }
   }
   // Signals find no session from here on.
-  guard.watch(nullptr);
+  guard_->watch(nullptr);
   return stopped ? Ending::stopped : Ending::complete;
 }
 
-// The end of a render that has no whole image: nothing takes the place of an image that may be there. The checkpoint
-// keeps what has been rendered.
-int endWithoutImage(Ending ending, const Session& session, const CheckpointOptions& checkpoint,
-                    RenderOutputs& outputs) {
-  outputs.writeCheckpoint(session);
-  outputs.writeStats(session);
-  const RenderStatistics statistics = session.statistics();
+// Checkpoint and outputs are written however the render ended. The checkpoint comes first where others have to be
+// waited for: a launcher that ends a render gives it a moment only.
+int RenderRun::end(Ending ending) {
+  if (ranks_.several()) {
+    outputs_->writeCheckpoint(*session_);
+    if (ending == Ending::stopped) outputs_->writeCheckpoint(*session_, ranks_.emergencyFile());
+  }
+  int exitCode = ending == Ending::stopped ? kExitInterrupted : kExitDone;
+  if (const std::optional<Rendered> whole = ranks_.whole(*session_, *outputs_)) exitCode = write(ending, *whole);
+  if (outputs_->failed()) exitCode = kExitInput;
+  return ranks_.leave(exitCode);
+}
+
+// Where a process is lost, each of the others keeps what it has.
+int RenderRun::endAlone(Ending ending, const RanksError& error) {
+  guard_->watch(nullptr);
+  const std::string file = options_.checkpoint.file.empty() ? ranks_.emergencyFile() : options_.checkpoint.file;
+  outputs_->writeCheckpoint(*session_, file);
+  tell("wavecrest: error: {}; no image was written; {} keeps what this one has rendered, for `wavecrest merge`",
+       error.what(), file);
+  return ending == Ending::stopped ? kExitInterrupted : kExitFailure;
+}
+
+// The files of the whole render, images from the first whole one on. A part without an image of its own needs no whole
+// pass: its checkpoint is what it is for.
+int RenderRun::write(Ending ending, const Rendered& rendered) {
+  if (!ranks_.several()) outputs_->writeCheckpoint(*session_);
+  const RenderStatistics& statistics = rendered.statistics;
+  const bool refuses = !options_.outputs.empty() || (ending == Ending::stopped && statistics.paths == 0);
+  if (refuses && !outputs_->hasImage(statistics)) {
+    outputs_->writeStats(rendered);
+    return endWithoutImage(ending, statistics);
+  }
+  live_->look(true);
+  warnOfLosses(kind_, settings_, statistics);
+  outputs_->write(rendered);
+  if (!options_.outputs.empty() && !outputs_->failed()) live_->showFile(options_.outputs.front());
+  showSummary(options_, settings_, kind_, statistics);
+  return ending == Ending::stopped ? kExitInterrupted : kExitDone;
+}
+
+// Of a render that has no whole image: nothing takes the place of an image that may be there. The checkpoint keeps what
+// has been rendered.
+int RenderRun::endWithoutImage(Ending ending, const RenderStatistics& statistics) const {
   const std::string when =
       statistics.paths == 0 ? "before anything was rendered" : "before one whole pass over the film";
   if (ending == Ending::stopped) {
@@ -195,96 +366,26 @@ int endWithoutImage(Ending ending, const Session& session, const CheckpointOptio
   std::string longer = "a longer time";
   if (statistics.paths > 0) {
     const double passes =
-        static_cast<double>(statistics.paths) / static_cast<double>(session.film().area().pixels.size());
+        static_cast<double>(statistics.paths) / static_cast<double>(session_->film().area().pixels.size());
     longer = fmt::format("more than {:.1g} s", statistics.renderSeconds / std::min(passes, 1.0));
   }
   tell("wavecrest: error: --time: {:.2g} s ended {}; no image was written; expected {}{}{}", statistics.renderSeconds,
-       when, longer, checkpoint.file.empty() ? "" : " with --resume", statistics.paths == 0 ? "" : ", or --partial");
+       when, longer, options_.checkpoint.file.empty() ? "" : " with --resume",
+       statistics.paths == 0 ? "" : ", or --partial");
   return kExitInput;
-}
-
-// Where the image goes without -o: SCENE.exr in the working directory.
-std::string defaultOutput(const std::string& scene) {
-  return scene == kStandardStream ? "stdin.exr" : findScene(scene).stem().string() + ".exr";
-}
-
-int runRender(const RenderOptions& options) {
-  // Checks options and output names before anything takes time.
-  const SnapshotSchedule schedule = parseSnapshotSchedule("--snapshot-every", options.snapshotEvery);
-  const ProgressKind kind =
-      quietIf(options.quiet, static_cast<ProgressKind>(parseChoice("--progress", options.progress, kProgressNames)));
-  if (options.outputs.empty() && !options.snapshotEvery.empty()) {
-    throw UsageError("--snapshot-every: snapshots of a part are named after its image; expected -o FILE.exr");
-  }
-  const OutputNames names{options.outputs,         options.stats,    options.snapshotEvery,
-                          options.checkpoint.file, options.exposure, options.partial};
-  const std::string nothing = "wavecrest: interrupted before anything was rendered; no image was written";
-  InterruptGuard guard(nothing);
-  checkOutputs(names, {findScene(options.scene.scene)}, options.until.reference);
-  // Locks the checkpoint, and reads it with --resume.
-  Checkpointing checkpointing(options.checkpoint);
-  std::unique_ptr<Checkpoint> earlier = checkpointing.takeEarlier();
-  // Removes temporary files of a render that was killed while it wrote its images. The lock keeps other processes from
-  // going on with this render at the same time.
-  if (earlier) {
-    for (const std::string& output : options.outputs) removeTemporaries(output);
-  }
-  // Loads the scene. Only then are all its files known, so outputs are checked against them once more.
-  const auto begin = std::chrono::steady_clock::now();
-  const Scene scene = loadScene(options.scene, kind);
-  printNotes(scene, kind);
-  checkOutputs(names, scene.files, options.until.reference);
-  const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  // Makes the session, or only plans it. Where the image depends on it, light paths are cut into waves as the
-  // checkpoint says.
-  RenderSettings settings = resolved(options, scene);
-  if (earlier) earlier->cutAlike(settings);
-  if (options.pin) settings.placement = pinnedPlacement(settings.threads, kind);
-  std::optional<UntilGoal> until;
-  if (options.until.any()) until.emplace(untilGoal(options, settings, filmOutline(scene.film)));
-  if (options.dryRun) {
-    const DryPlan plan = withinMemory([&] { return planWithoutSession(scene, settings); });
-    tellPlan(options, scene, settings, kind, plan.memory, plan.spreads);
-    showPlan(options, scene, settings, plan);
-    return kExitDone;
-  }
-  std::unique_ptr<Session> session = withinMemory([&] { return Session::create(scene, settings); });
-  tellPlan(options, scene, settings, kind, session->memoryPlan(), session->film().spreads());
-  // Connects viewers and outputs, and goes on from the checkpoint.
-  LiveRender live(options.live, scene, settings, kind, session);
-  RenderOutputs outputs(names, scene, settings, loadSeconds, kind);
-  goOn(earlier, options.checkpoint, scene, settings, kind, *session, outputs);
-  earlier.reset();
-  // Renders, with a checkpoint every now and then.
-  std::optional<CheckpointTimer> timer;
-  if (!options.checkpoint.file.empty()) timer.emplace(guard, checkpointing.seconds());
-  const Ending ending = render(*session, settings, schedule, until, kind, guard, outputs, live);
-  timer.reset();
-  if (until) noteLine(kind, {{"until", outputs.until()}}, UntilGoal::describe(outputs.until()));
-  // Checkpoint and outputs are written however the render ended, images from the first whole one on. A part without an
-  // image of its own needs no whole pass: its checkpoint is what it is for.
-  const bool refuses = !options.outputs.empty() || (ending == Ending::stopped && session->statistics().paths == 0);
-  if (refuses && !outputs.hasImage(*session)) return endWithoutImage(ending, *session, options.checkpoint, outputs);
-  live.look(true);
-  warnOfLosses(kind, settings, session->statistics());
-  outputs.writeCheckpoint(*session);
-  outputs.write(*session);
-  if (!options.outputs.empty() && !outputs.failed()) live.showFile(options.outputs.front());
-  showSummary(options, settings, kind, *session);
-  if (outputs.failed()) return kExitInput;
-  return ending == Ending::stopped ? kExitInterrupted : kExitDone;
 }
 
 }  // namespace
 
 void addRenderCommand(CommandLine& program, int& exitCode) {
   auto options = std::make_shared<RenderOptions>();
-  const Command command = program.add("render", "render a scene by one method");
+  const Command command = program.add(
+      "render", "render a scene by one method; mpirun and srun have it share the work of several processes");
   addRenderOptions(command, *options);
   command.run([options, &exitCode] {
     // A part is a checkpoint; it has an image only where one is asked for.
     if (options->outputs.empty() && options->part.empty()) options->outputs = {defaultOutput(options->scene.scene)};
-    exitCode = runRender(*options);
+    exitCode = RenderRun(*options).run();
   });
 }
 

@@ -122,8 +122,7 @@ void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const Rende
 }
 
 void showSummary(const RenderOptions& options, const RenderSettings& settings, ProgressKind kind,
-                 const Session& session) {
-  const RenderStatistics statistics = session.statistics();
+                 const RenderStatistics& statistics) {
   std::string files;
   for (const std::string& output : options.outputs) files += (files.empty() ? "" : ", ") + output;
   if (files.empty()) files = options.checkpoint.file;

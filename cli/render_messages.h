@@ -21,6 +21,6 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
 void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const RenderStatistics& statistics);
 // One line with its outputs, its iterations and its speed.
 void showSummary(const RenderOptions& options, const RenderSettings& settings, ProgressKind kind,
-                 const Session& session);
+                 const RenderStatistics& statistics);
 
 }  // namespace wavecrest

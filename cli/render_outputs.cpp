@@ -70,8 +70,9 @@ void checkOutputs(const OutputNames& names, const std::vector<std::string>& inpu
   for (const std::string& image : names.images) files.image("-o", image);
   if (!names.stats.empty()) files.output("--stats", names.stats);
   if (!names.checkpoint.empty()) files.output("--checkpoint", names.checkpoint);
-  // How many snapshots there will be is not known, so no other file may have the name of any snapshot.
-  if (names.snapshotEvery.empty()) return;
+  // How many snapshots there will be is not known, so no other file may have the name of any snapshot. A process that
+  // writes no images has none.
+  if (names.snapshotEvery.empty() || names.images.empty()) return;
   std::vector<std::string> others(names.images.begin() + 1, names.images.end());
   others.push_back(names.stats);
   others.push_back(names.checkpoint);
@@ -95,15 +96,18 @@ void RenderOutputs::attempt(Step step) {
   }
 }
 
-bool RenderOutputs::hasImage(const Session& session) const {
-  const RenderStatistics statistics = session.statistics();
+Rendered renderedBy(const Session& session) {
+  return {.statistics = session.statistics(), .image = [&session] { return filmImage(session); }, .processes = {}};
+}
+
+bool RenderOutputs::hasImage(const RenderStatistics& statistics) const {
   return statistics.hasWholeImage() || (names_.partial && statistics.paths > 0);
 }
 
-void RenderOutputs::writeSnapshot(const Session& session, unsigned number) {
+void RenderOutputs::writeSnapshot(const Rendered& rendered, unsigned number) {
   const std::string file = snapshotFile(names_.images.front(), number);
-  const RenderStatistics statistics = session.statistics();
-  if (!hasImage(session)) {
+  const RenderStatistics& statistics = rendered.statistics;
+  if (!hasImage(statistics)) {
     noteLine(kind_, {{"left_out", file}, {"render_seconds", statistics.renderSeconds}},
              fmt::format("{}: left out, as there was no whole pass over the film in {:.2g} s", file,
                          statistics.renderSeconds));
@@ -114,31 +118,35 @@ void RenderOutputs::writeSnapshot(const Session& session, unsigned number) {
   // A snapshot that cannot be written leaves no record. For that, failed_ tells of this attempt alone for a moment.
   const bool failedBefore = failed_;
   failed_ = false;
-  attempt([&] { writeExr(file, filmImage(session), statsMetadata(stats(statistics))); });
+  attempt([&] { writeExr(file, rendered.image(), statsMetadata(stats(statistics, rendered.processes))); });
   if (failed_) snapshots_.pop_back();
   failed_ |= failedBefore;
 }
 
-void RenderOutputs::write(const Session& session) { write(session, names_.stats, true); }
+void RenderOutputs::write(const Rendered& rendered) { write(rendered, names_.stats, true); }
 
-void RenderOutputs::writeStats(const Session& session) { write(session, names_.stats, false); }
+void RenderOutputs::writeStats(const Rendered& rendered) { write(rendered, names_.stats, false); }
 
 // Stdout takes one JSON object, the last.
-void RenderOutputs::save(const Session& session) {
-  write(session, names_.stats == kStandardStream ? "" : names_.stats, true);
+void RenderOutputs::save(const Rendered& rendered) {
+  if (hasImage(rendered.statistics)) {
+    write(rendered, names_.stats == kStandardStream ? "" : names_.stats, true);
+  } else {
+    noteLine(kind_, {{"left_out", "save"}}, "not saved, as there was no whole pass over the film yet");
+  }
 }
 
-void RenderOutputs::write(const Session& session, const std::string& statsFile, bool images) {
+void RenderOutputs::write(const Rendered& rendered, const std::string& statsFile, bool images) {
   // The statistics go into the images as attributes, and into a file of their own.
   nlohmann::ordered_json all;
   attempt([&] {
-    all = stats(session.statistics());
+    all = stats(rendered.statistics, rendered.processes);
     if (!until_.is_null()) all["until"] = until_;
   });
   const Metadata metadata = statsMetadata(all);
   const std::vector<std::string> none;
   const std::vector<std::string>& names = images ? names_.images : none;
-  const Image image = names.empty() ? Image() : filmImage(session);
+  const Image image = names.empty() ? Image() : rendered.image();
   for (const std::string& name : names) {
     attempt([&] {
       WritingProgress progress(kind_, name);
@@ -153,8 +161,8 @@ void RenderOutputs::write(const Session& session, const std::string& statsFile, 
   if (!statsFile.empty() && !all.is_null()) attempt([&] { writeText(statsFile, jsonText(all, 2) + "\n"); });
 }
 
-void RenderOutputs::writeCheckpoint(const Session& session) {
-  if (names_.checkpoint.empty() || session.statistics().paths == 0) return;
+void RenderOutputs::writeCheckpoint(const Session& session, const std::string& file) {
+  if (file.empty() || session.statistics().paths == 0) return;
   // The notes are what goOnFrom reads, time, schedule and snapshots so far, and the statistics for `merge`.
   nlohmann::ordered_json snapshots = nlohmann::ordered_json::array();
   for (const SnapshotRecord& snapshot : snapshots_) {
@@ -163,8 +171,8 @@ void RenderOutputs::writeCheckpoint(const Session& session) {
   const nlohmann::ordered_json notes = {{"wall_seconds", wallSeconds()},
                                         {"snapshot_every", names_.snapshotEvery},
                                         {"snapshots", snapshots},
-                                        {"stats", stats(session.statistics())}};
-  attempt([&] { wavecrest::writeCheckpoint(names_.checkpoint, scene_, settings_, session, notes); });
+                                        {"stats", stats(session.statistics(), {})}};
+  attempt([&] { wavecrest::writeCheckpoint(file, scene_, settings_, session, notes); });
 }
 
 void RenderOutputs::goOnFrom(const nlohmann::ordered_json& notes, const Session& session) {
@@ -195,10 +203,20 @@ double RenderOutputs::wallSeconds() const {
   return earlierSeconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }
 
-nlohmann::ordered_json RenderOutputs::stats(const RenderStatistics& statistics) const {
+nlohmann::ordered_json RenderOutputs::stats(const RenderStatistics& statistics,
+                                            const nlohmann::ordered_json& processes) const {
   auto stats = renderStats(scene_, settings_, statistics, loadSeconds_, wallSeconds(), snapshots_);
   if (!names_.checkpoint.empty()) stats["resumed_from"] = resumedFrom_;
   stats["notes"] = notesSoFar();
+  if (processes.is_null()) return stats;
+  // Of all processes: threads add up, and there is no share.
+  uint64_t threads = 0;
+  for (const auto& process : processes) threads += process.at("threads").get<uint64_t>();
+  stats["threads"] = threads;
+  stats["processes"] = processes.size();
+  stats["process_list"] = processes;
+  stats.erase("part");
+  stats.erase("first_iteration");
   return stats;
 }
 

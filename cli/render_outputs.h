@@ -5,6 +5,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "engine/scene/scene.h"
 #include "engine/session/session.h"
 #include "engine/session/snapshots.h"
+#include "metrics/image/image.h"
 #include "wavecrest/results.h"
 
 namespace wavecrest {
@@ -31,6 +33,14 @@ struct OutputNames {
 // --until-ssim, if there is one) or of another output.
 void checkOutputs(const OutputNames& names, const std::vector<std::string>& inputs, const std::string& reference);
 
+// What a render has made so far: a session, or all processes of a render together.
+struct Rendered {
+  RenderStatistics statistics;
+  std::function<Image()> image;
+  nlohmann::ordered_json processes;  // a row for each; null for a session
+};
+Rendered renderedBy(const Session& session);  // which must outlive it
+
 class RenderOutputs {
  public:
   // All must outlive it.
@@ -39,17 +49,20 @@ class RenderOutputs {
       : names_(names), scene_(scene), settings_(settings), loadSeconds_(loadSeconds), kind_(kind) {}
 
   // Before there is a whole image, a line says that the snapshot is left out.
-  void writeSnapshot(const Session& session, unsigned number);
+  void writeSnapshot(const Rendered& rendered, unsigned number);
   // Whether there is an image to write: a whole one, or any with --partial.
-  bool hasImage(const Session& session) const;
+  bool hasImage(const RenderStatistics& statistics) const;
   // Images and statistics at the end of the render.
-  void write(const Session& session);
+  void write(const Rendered& rendered);
   // Statistics alone.
-  void writeStats(const Session& session);
-  // Images and statistics so far, while the render goes on; no statistics on stdout.
-  void save(const Session& session);
+  void writeStats(const Rendered& rendered);
+  // Images and statistics so far, while the render goes on; no statistics on stdout. Before there is a whole image, a
+  // line says that nothing is saved.
+  void save(const Rendered& rendered);
   // The checkpoint, if one was asked for and there are paths to keep.
-  void writeCheckpoint(const Session& session);
+  void writeCheckpoint(const Session& session) { writeCheckpoint(session, names_.checkpoint); }
+  // The same as a file of this name; empty: none.
+  void writeCheckpoint(const Session& session, const std::string& file);
   // Takes over what writeCheckpoint has noted of an earlier part of the render.
   void goOnFrom(const nlohmann::ordered_json& notes, const Session& session);
   // The number of the next snapshot. Where an earlier part had another schedule, those that would have been due by now
@@ -62,9 +75,9 @@ class RenderOutputs {
   bool failed() const { return failed_; }
 
  private:
-  nlohmann::ordered_json stats(const RenderStatistics& statistics) const;
+  nlohmann::ordered_json stats(const RenderStatistics& statistics, const nlohmann::ordered_json& processes) const;
   double wallSeconds() const;
-  void write(const Session& session, const std::string& statsFile, bool images);  // statsFile: empty for none
+  void write(const Rendered& rendered, const std::string& statsFile, bool images);  // statsFile: empty for none
   // Runs a step that writes one file.
   template <class Step>
   void attempt(Step step);

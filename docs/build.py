@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 # Title of each section, and the folders whose Markdown files it holds, in this order.
 SECTIONS = {
-    "Using it": [".", "scenes", "bench/campaign", "library", "python", "containers"],
+    "Using it": [".", "scenes", "bench/campaign", "bench/checkpoint", "bench/ranks", "library", "python", "containers"],
     "Measuring": ["bench", "metrics"],
     "How it works": ["engine", "kernels", "tests"],
 }

@@ -100,9 +100,9 @@ def step_release(tally):
         return
     if os.environ.get("CHECK_OFFLINE") == "1":
         print("CHECK_OFFLINE=1: the tests against Mitsuba (label oracle) are left out")
-        test(tally, "release", "--label-exclude", "^(oracle|long|slurm)$")
+        test(tally, "release", "--label-exclude", "^(oracle|long|mpi|slurm)$")
     else:
-        test(tally, "release", "--label-exclude", "^(long|slurm)$")
+        test(tally, "release", "--label-exclude", "^(long|mpi|slurm)$")
 
 
 def python_options(tally):
@@ -181,6 +181,16 @@ def step_slurm(tally):
         test(tally, "release", "--label-regex", "^slurm$")
 
 
+def step_mpi(tally):
+    """Processes of Open MPI that share a render, and the ratio of their speed to that of threads."""
+    if not run(tally, "mpi: packages", ["tools/install-packages", "mpi"]):
+        return
+    if build(tally, "release", "-DWAVECREST_SHARED=ON", "-DWAVECREST_MPI=ON", targets=("wavecrest", "wavecrest_mpi")):
+        test(tally, "release", "--label-regex", "^mpi$")
+        methods = ["--methods", "pt,vcm", "--seconds", "2", "--rounds", "3"]
+        run(tally, "mpi: against threads", ["bench/ranks/against-threads", "build/release/wavecrest", *methods])
+
+
 def step_wheel(tally):
     """The wheel, carrying its libraries, in a Debian 12 that has none of them. Needs root for chroot."""
     targets = ("wavecrest_python_stub", "wavecrest_scene_assets")
@@ -207,6 +217,7 @@ STEPS = {
     "lint": step_lint,
     "tidy": step_tidy,
     "python": step_python,
+    "mpi": step_mpi,
     "slurm": step_slurm,
     "wheel": step_wheel,
 }

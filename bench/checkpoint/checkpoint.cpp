@@ -51,6 +51,15 @@ Json chainIdentity(const MetropolisSettings& chains) {
           {"direct_pass", chains.directPass}};
 }
 
+// Which of several processes renders its share at the same time as others theirs; 1/1: no others.
+std::string processOf(const RenderSettings& settings) {
+  if (!settings.share.rounds) return "1/1";
+  const std::string name = fmt::format("{}/{}", settings.share.part + 1, settings.share.parts);
+  // The last round of iterations is cut into shares by where the image ends.
+  if (!settings.share.iterations || settings.method == Method::mlt) return name;
+  return fmt::format("{} of {} iterations", name, *settings.share.iterations);
+}
+
 // More than any render may have.
 constexpr uint32_t kMostThreads = 4096;
 
@@ -106,6 +115,7 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                    {"scene_hash", hashText(scene.hash)},
                    {"seed", settings.seed},
                    {"first_iteration", settings.firstIteration},
+                   {"process", processOf(settings)},
                    {"sampler", std::string(toString(settings.sampler))},
                    {"filter_mode", enumeratorName(kFilterModeNames, statistics.filterMode)},
                    {"precision", enumeratorName(kPrecisionNames, settings.precision)},

@@ -11,6 +11,7 @@
 // Numbers are little-endian. A file is replaced as a whole: whoever is killed while it is written leaves the last one.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -59,6 +60,8 @@ void writeCheckpoint(const std::string& file, const CheckpointHeader& header,
 // its settings, the size before the hash. Keys in `except` may differ.
 void requireSameRender(const std::string& file, const nlohmann::ordered_json& found,
                        const nlohmann::ordered_json& wanted, std::span<const std::string_view> except = {});
+// What says which share of the image a render is of; the rest of its identity is common to all.
+constexpr std::array<std::string_view, 3> kShareKeys{"first_iteration", "process", "part"};
 // What is expected of a file that is damaged.
 constexpr const char* kIntactCheckpoint = "expected one as `render --checkpoint` or `merge --checkpoint` left it";
 

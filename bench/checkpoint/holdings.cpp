@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/plan/share_iterations.h"
+
 namespace wavecrest {
 namespace {
 
@@ -135,15 +137,16 @@ std::string Holdings::missing(uint64_t allChains) const {
 Holdings holdingsOf(const RenderSettings& settings, const Session& session) {
   Holdings holdings;
   holdings.of = settings.share.iterations.value_or(settings.iterations.value_or(0));
-  holdings.parts = settings.share.parts;
+  // Shares of rounds have no parts of the image that could be named.
+  holdings.parts = settings.share.rounds ? 1 : settings.share.parts;
   if (settings.method == Method::mlt) {
     holdings.chains = {{settings.share.part, settings.share.parts, session.statistics().iterations}};
     return holdings;
   }
-  // The run goes on to the end of the iteration that was begun.
+  // The last run goes on to the end of the iteration that was begun.
   const Film& film = session.film();
   const uint64_t most = film.maxSamples();
-  if (most != 0) holdings.runs = {{settings.firstIteration, settings.firstIteration + most}};
+  for (const auto& [begin, end] : ShareIterations(settings).runs(most)) holdings.runs.push_back({begin, end});
   holdings.lacking = most * film.area().pixels.size() - film.allSamples();
   return holdings;
 }

@@ -18,9 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What says which share of the image a checkpoint is of; the rest of its identity is common to all.
-constexpr std::array<std::string_view, 2> kShareKeys{"first_iteration", "part"};
-
 // How far the images of parts lie apart; and the means of every other one, where halves are asked for.
 class Spread {
  public:
@@ -218,6 +215,10 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
     seconds += secondsIn(header);
   }
   const Holdings& holds = merged.header.holds;
+  if (holds.sum) {
+    merged.header.render["process"] = "1/1";
+    if (!holds.runs.empty()) merged.header.render["first_iteration"] = holds.runs.front().begin;
+  }
   stats["iterations"] = iterationsOf(holds);
   merged.missing = holds.missing(merged.header.render.value("chains", uint64_t{0}));
   if (halves) merged.whyNoHalves = whyNoHalves(merged, spread);

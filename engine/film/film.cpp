@@ -9,6 +9,17 @@
 #include "engine/state/state_stream.h"
 
 namespace wavecrest {
+namespace {
+
+std::vector<PendingSplat> pendingFrom(StateReader& in, size_t pixels) {
+  std::vector<PendingSplat> pending = in.list<PendingSplat>();
+  if (std::any_of(pending.begin(), pending.end(), [&](const auto& splat) { return splat.pixel >= pixels; })) {
+    throw StateError("its splats are beyond the film");
+  }
+  return pending;
+}
+
+}  // namespace
 
 Film::Film(FilmArea area) : area_(std::move(area)), sums_(3 * area_.pixels.size()), samples_(area_.pixels.size()) {}
 
@@ -184,19 +195,12 @@ void Film::restoreSums(StateReader& in) {
   if (splats_) splats_->restore(in);
   splatUnit_ = in.value<double>();
   splatCount_ = in.value<uint64_t>();
-  pending_ = in.list<PendingSplat>();
-  const size_t pixels = area_.pixels.size();
-  if (std::any_of(pending_.begin(), pending_.end(), [&](const auto& splat) { return splat.pixel >= pixels; })) {
-    throw StateError("its splats are beyond the film");
-  }
+  pending_ = pendingFrom(in, area_.pixels.size());
 }
 
 void Film::add(const Film& other) {
   if (other.kind() != kind()) throw StateError("its film is of another kind");
-  // Without light there is no unit. All films that found some have the same.
-  if (splatUnit_ != other.splatUnit_ && splatUnit_ != 0 && other.splatUnit_ != 0) {
-    throw StateError("its splats are scaled otherwise");
-  }
+  requireUnit(other.splatUnit_);
   if (spread_) {
     spread_->add(*other.spread_);
   } else {
@@ -204,10 +208,34 @@ void Film::add(const Film& other) {
   }
   std::transform(samples_.begin(), samples_.end(), other.samples_.begin(), samples_.begin(), std::plus<>());
   if (splats_) splats_->add(*other.splats_);
-  splatUnit_ = std::max(splatUnit_, other.splatUnit_);
-  splatCount_ += other.splatCount_;
+  addUnits(other.splatUnit_, other.splatCount_, other.pending_);
+}
+
+void Film::addSaved(StateReader& in) {
+  if (in.value<Kind>() != kind()) throw StateError("its film is of another kind");
+  if (spread_) {
+    spread_->addSaved(in);
+  } else {
+    in.addTo(std::span(sums_));
+  }
+  in.addTo(std::span(samples_));
+  if (splats_) splats_->addSaved(in);
+  const auto unit = in.value<double>();
+  const auto count = in.value<uint64_t>();
+  requireUnit(unit);
+  addUnits(unit, count, pendingFrom(in, area_.pixels.size()));
+}
+
+// Without light there is no unit. All films that found some have the same.
+void Film::requireUnit(double splatUnit) const {
+  if (splatUnit_ != splatUnit && splatUnit_ != 0 && splatUnit != 0) throw StateError("its splats are scaled otherwise");
+}
+
+void Film::addUnits(double splatUnit, uint64_t splatCount, const std::vector<PendingSplat>& pending) {
+  splatUnit_ = std::max(splatUnit_, splatUnit);
+  splatCount_ += splatCount;
   // In the order of chains, as one render has them.
-  pending_.insert(pending_.end(), other.pending_.begin(), other.pending_.end());
+  pending_.insert(pending_.end(), pending.begin(), pending.end());
   std::stable_sort(pending_.begin(), pending_.end(),
                    [](const PendingSplat& a, const PendingSplat& b) { return a.chain < b.chain; });
 }

@@ -50,6 +50,7 @@ class Film {
 
   // Makes room for splats; see SplatFilms.
   void makeSplats(size_t threads, double scale) { splats_.emplace(area_.pixels.size(), threads, scale); }
+  bool hasSplats() const { return splats_.has_value(); }
   SplatFilms& splats() { return *splats_; }
   const SplatFilms& splats() const { return *splats_; }
   // The sum of all splats times unit / count is radiance. count: of the light paths or mutations that made them.
@@ -90,6 +91,8 @@ class Film {
   // depend on the order of films. Samples are summed as doubles: their last bits do. Throws StateError
   // where the other film is of another kind.
   void add(const Film& other);
+  // The same of a film that was saved.
+  void addSaved(StateReader& in);
 
  private:
   // What films that can be added have in common, as it stands at the head of a state. Without padding.
@@ -103,6 +106,8 @@ class Film {
   };
   Kind kind() const;
   void restoreSums(StateReader& in);
+  void addUnits(double splatUnit, uint64_t splatCount, const std::vector<PendingSplat>& pending);
+  void requireUnit(double splatUnit) const;
 
   FilmArea area_;
   std::vector<double> sums_;          // RGB, in wave order

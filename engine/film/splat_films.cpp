@@ -70,12 +70,18 @@ void SplatFilms::restore(StateReader& in) {
 }
 
 // Sums are within kSplatLimit and a splat, so those of two films do not overflow; the total is kept within it as well.
-void SplatFilms::add(const SplatFilms& other) {
+void SplatFilms::addToFirst(size_t channel, __int128 sum) {
   constexpr auto kLimit = static_cast<__int128>(kSplatLimit);
-  for (size_t channel = 0; channel < 3 * pixels_; ++channel) {
-    const __int128 total = splatSum(films_.front()->sums(), channel) + other.sum(channel);
-    setFirst(channel, std::clamp(total, -kLimit, kLimit));
-  }
+  setFirst(channel, std::clamp(splatSum(films_.front()->sums(), channel) + sum, -kLimit, kLimit));
+}
+
+void SplatFilms::add(const SplatFilms& other) {
+  for (size_t channel = 0; channel < 3 * pixels_; ++channel) addToFirst(channel, other.sum(channel));
+}
+
+void SplatFilms::addSaved(StateReader& in) {
+  if (in.value<double>() != scale_) throw StateError("its splats are in other units");
+  for (size_t channel = 0; channel < 3 * pixels_; ++channel) addToFirst(channel, in.value<__int128>());
 }
 
 size_t SplatFilms::bytesFor(size_t pixels, size_t threads) {

@@ -57,6 +57,8 @@ class SplatFilms {
 
   // Adds the sums of another film of the same size and scale. No worker may be adding.
   void add(const SplatFilms& other);
+  // The same of sums that were saved.
+  void addSaved(StateReader& in);
 
   // The sum of a channel over all films, in units of 1 / scale. No worker may be adding.
   double total(size_t channel) const { return static_cast<double>(sum(channel)); }
@@ -71,6 +73,8 @@ class SplatFilms {
   __int128 sum(size_t channel) const;
   // Sets the first film's sum. High halves that stay zero are not written, so that their pages stay unused.
   void setFirst(size_t channel, __int128 sum);
+  // Adds to the first film's.
+  void addToFirst(size_t channel, __int128 sum);
 
   size_t pixels_;
   double scale_;

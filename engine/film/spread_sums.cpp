@@ -151,5 +151,6 @@ void SpreadSums::add(const SpreadSums& other) {
 
 void SpreadSums::save(StateWriter& out) const { out.items(sums_.data(), sums_.size()); }
 void SpreadSums::restore(StateReader& in) { in.items(sums_.data(), sums_.size()); }
+void SpreadSums::addSaved(StateReader& in) { in.addTo(std::span(sums_)); }
 
 }  // namespace wavecrest

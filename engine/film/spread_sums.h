@@ -41,6 +41,7 @@ class SpreadSums {
 
   void save(StateWriter& out) const;
   void restore(StateReader& in);
+  void addSaved(StateReader& in);
   static size_t bytesFor(const CameraView& camera, const FilmArea& area);
   size_t bytes() const { return sums_.size() * sizeof(double) + place_.size(); }
 

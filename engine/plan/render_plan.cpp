@@ -11,6 +11,7 @@
 
 #include "engine/compile/materials.h"
 #include "engine/film/spread_sums.h"
+#include "engine/plan/share_iterations.h"
 #include "engine/scene/scene_error.h"
 
 namespace wavecrest {
@@ -278,6 +279,15 @@ RenderSettings settingsOfShare(RenderSettings settings, uint32_t part, uint32_t 
   if (settings.method == Method::mlt) return settings;
   settings.firstIteration = beginOfShare(all, part, parts);
   settings.iterations = beginOfShare(all, part + 1, parts) - settings.firstIteration;
+  return settings;
+}
+
+RenderSettings settingsOfJointShare(RenderSettings settings, uint32_t part, uint32_t parts) {
+  settings.share = {.part = part, .parts = parts, .iterations = settings.iterations, .rounds = true};
+  // Chains of every share take all steps.
+  if (settings.method != Method::mlt && settings.iterations) {
+    settings.iterations = iterationsInRounds(*settings.iterations, part, parts);
+  }
   return settings;
 }
 

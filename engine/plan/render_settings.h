@@ -34,11 +34,13 @@ struct MetropolisSettings {
 };
 
 // What one session renders of an image that several render together; the films of all shares add up to the image
-// (Film::add). A share is a run of iterations, RenderSettings::firstIteration and iterations. A share of mlt is chains
-// part, part + parts, part + 2 parts, ... in all iterations. All shares of mlt trace the same bootstrap samples.
+// (Film::add). A share is a run of iterations, RenderSettings::firstIteration and iterations, or with `rounds` several
+// (engine/plan/share_iterations.h). A share of mlt is chains part, part + parts, part + 2 parts, ... in all iterations.
+// All shares of mlt trace the same bootstrap samples.
 struct RenderShare {
   uint32_t part = 0, parts = 1;        // no more than chains
-  std::optional<uint64_t> iterations;  // of the whole image; unset: those of the settings
+  std::optional<uint64_t> iterations;  // of the whole image; unset: those of the settings, of rounds without end
+  bool rounds = false;                 // of shares that are rendered at the same time
 };
 
 // Mutations to a bootstrap sample. The error of b falls only with the number of bootstraps, so they get a fixed part of
@@ -147,6 +149,8 @@ inline bool dependsOnWaves(Method method) { return strategiesOf(method).merge ||
 // The settings of one share of what they render. part: from 0 on. Their iterations must be set, and be no fewer than
 // parts (of mlt the chains).
 RenderSettings settingsOfShare(RenderSettings settings, uint32_t part, uint32_t parts);
+// The same of one that is rendered together with the others. Iterations need not be set, nor be as many as parts.
+RenderSettings settingsOfJointShare(RenderSettings settings, uint32_t part, uint32_t parts);
 // The first iteration of a share, and with part + 1 the end of it.
 uint64_t beginOfShare(uint64_t iterations, uint32_t part, uint32_t parts);
 

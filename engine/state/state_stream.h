@@ -77,6 +77,17 @@ class StateReader {
     items(values.data(), count);
     return values;
   }
+  // Adds as many values as there are in `sums`, which may not be aligned here, to them.
+  template <class T>
+  void addTo(std::span<T> sums) {
+    if (sums.size() > left_.size() / sizeof(T)) throw StateError("its state ends too early");
+    for (size_t i = 0; i < sums.size(); ++i) {
+      T value;
+      std::memcpy(&value, left_.data() + i * sizeof(T), sizeof(T));
+      sums[i] += value;
+    }
+    left_ = left_.subspan(sums.size() * sizeof(T));
+  }
   // Bytes that are left.
   size_t left() const { return left_.size(); }
   // Nothing may be left.

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "engine/plan/memory_plan.h"
+#include "engine/plan/share_iterations.h"
 #include "engine/plan/survival.h"
 #include "engine/session/add_samples.h"
 #include "engine/session/planned_session.h"
@@ -41,7 +42,8 @@ class WaveSession final : public PlannedSession<S> {
   using Base::arena_, Base::clock_, Base::earlier_, Base::film_, Base::plan_, Base::progressPaths_, Base::settings_;
   using Worker = WaveWorker<S>;
   // How far the camera paths of a wave's pixels are: 2^iterationBits iterations from `next` on are under way, and done
-  // for the first `pixels` of them.
+  // for the first `pixels` of them. The session counts its own iterations from 0 on; numbers_ has their numbers in the
+  // image.
   struct CameraProgress {
     uint64_t next = 0;
     uint32_t iterationBits = 0;
@@ -85,6 +87,7 @@ class WaveSession final : public PlannedSession<S> {
   LightStore<S>* partnersOf(size_t waveIndex, uint64_t iteration, Worker& worker);
   void countLightPaths();
 
+  const ShareIterations numbers_{settings_};
   std::vector<size_t> pieces_;          // the first pixel of each camera wave's own, and the end (FilmArea::pieces)
   uint64_t endIteration_ = 0;           // of this renderUntil
   std::vector<CameraProgress> camera_;  // of each tile
@@ -108,7 +111,7 @@ WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings) 
             ? settings_.waveSize
             : pieceSize(pixels * together, settings_.cutForThreads(), settings_.waveSize * together) / together;
     pieces_ = film_.area().pieces(piece, film_.spreads());
-    camera_.resize(pieces_.size() - 1, {.next = settings_.firstIteration});
+    camera_.resize(pieces_.size() - 1, {.next = 0});
     if (plan_.pipeline.has(Fold::photonMap)) photons_ = PhotonIterations<S>(plan_, settings_, pixels, camera_.size());
     if (!plan_.pipeline.lessons.empty()) learner_ = Learner<S>(plan_, settings_, pixels);
   });
@@ -126,12 +129,13 @@ template <class S>
 void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightStore<S>* light, Worker& worker) {
   const FlushToZero flushToZero;
   const FilmArea& area = film_.area();
-  // Weights and the merging radius are those of the iteration.
-  const MisSettings mis = misSettings(pass.strategies, plan_.mergeRadius, plan_.memory.lightPaths, iteration);
+  // Weights, the merging radius and random numbers are those of the iteration in the image.
+  const uint64_t number = numbers_.number(iteration);
+  const MisSettings mis = misSettings(pass.strategies, plan_.mergeRadius, plan_.memory.lightPaths, number);
   const std::optional<SurvivalRule> rule = survivalRule(settings_, pass.walk);
   StageContext<S> context{.scene = &plan_.scene->view,
                           .pixels = area.pixels.data(),
-                          .sampler = {settings_.sampler, settings_.seed, iteration},
+                          .sampler = {settings_.sampler, settings_.seed, number},
                           .limits = settings_.limits,
                           .survival = pointerTo(rule),
                           .mis = mis,
@@ -144,7 +148,7 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
                           .counters = &worker.counters};
   context.sampler.lightPaths = plan_.memory.lightPaths;
   if (learner_.learns()) {
-    learner_.prepare(context, iteration - settings_.firstIteration);
+    learner_.prepare(context, iteration);
     worker.wave.directions.size = 0;
   }
   auto& tallies = pass.walk == Walk::light ? worker.lightTallies : worker.cameraTallies;
@@ -190,11 +194,11 @@ LightStore<S>* WaveSession<S>::partnersOf(size_t waveIndex, uint64_t iteration, 
 template <class S>
 uint32_t WaveSession<S>::iterationBits(uint64_t next) const {
   const auto log2 = [](uint64_t n) { return static_cast<uint32_t>(std::bit_width(std::max<uint64_t>(n, 1))) - 1; };
-  // The sampler wants the first of n iterations at once to be a multiple of n. The last one must not pass the end, of
-  // the render or of iterations that learn alike.
-  const uint64_t done = next - settings_.firstIteration;
-  return std::min({mostIterationBits(), static_cast<uint32_t>(std::countr_zero(next)), log2(done),
-                   log2(endIteration_ - next), log2(learner_.endOfRun(done) - done)});
+  // The sampler wants the first of n iterations at once to be a multiple of n, and the others to follow it. The last
+  // one must not pass the end, of the render or of iterations that learn alike.
+  return std::min({mostIterationBits(), static_cast<uint32_t>(std::countr_zero(numbers_.number(next))), log2(next),
+                   log2(std::min(numbers_.together(next), endIteration_ - next)),
+                   log2(learner_.endOfRun(next) - next)});
 }
 
 template <class S>
@@ -205,8 +209,9 @@ void WaveSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration,
   wave.iterationBits = iterationBits;
   wave.pathCount = count << iterationBits;
   tracePass(plan_.pipeline.cameraPass(), iteration, partners, worker);
-  learner_.gather(wave, iteration - settings_.firstIteration);
-  worker.counters.nonFinite += addSamples(film_, plan_, {settings_.sampler, settings_.seed, iteration}, wave);
+  learner_.gather(wave, iteration);
+  worker.counters.nonFinite +=
+      addSamples(film_, plan_, {settings_.sampler, settings_.seed, numbers_.number(iteration)}, wave);
   worker.paths += wave.pathCount;
   progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
 }
@@ -280,7 +285,7 @@ template <class S>
 void WaveSession<S>::buildPhotonMap(const ScheduledTask& task, Worker& worker) {
   const uint64_t begin = readTicks();
   // All tasks of a map share one row of the statistics. The map's photons are counted once.
-  photons_.buildMap(task, photonGrid(plan_.mergeRadius.at(task.iteration)), settings_.placement);
+  photons_.buildMap(task, photonGrid(plan_.mergeRadius.at(numbers_.number(task.iteration))), settings_.placement);
   worker.photonTally.ticks += readTicks() - begin;
   if (photons_.phases()[task.phase].step == 0) worker.photonTally.items += photons_.mapOf(task.iteration)->size;
 }
@@ -328,7 +333,7 @@ void WaveSession<S>::renderIterations(const Finished& finished, double end) {
 template <class S>
 void WaveSession<S>::renderBlocks(const Finished& finished, double end) {
   for (;;) {
-    const uint64_t blockEnd = settings_.firstIteration + learner_.blockEnd();
+    const uint64_t blockEnd = learner_.blockEnd();
     renderIterations([&](uint64_t next) { return next >= blockEnd || finished(next); }, end);
     const bool over = std::all_of(camera_.begin(), camera_.end(),
                                   [&](const CameraProgress& progress) { return progress.next == blockEnd; });
@@ -345,7 +350,7 @@ void WaveSession<S>::levelPixels(const Finished& finished) {
   forEach(runs.size(), [&](size_t index) {
     const PixelRun& run = runs[index];
     Worker& mine = worker();
-    for (uint64_t next = settings_.firstIteration + run.samples; next < settings_.firstIteration + goal; ++next) {
+    for (uint64_t next = run.samples; next < goal; ++next) {
       if (finished(next)) return;
       if (plan_.pipeline.lightPass()) traceLight(run.first, run.count, next, mine.light, mine);
       traceCamera(run.first, run.count, next, 0, &mine.light, mine);
@@ -367,7 +372,7 @@ void WaveSession<S>::renderUntil(std::optional<uint64_t> iterations, std::option
   {
     const RenderClock::Running clock(clock_);
     const WorkerLimit limit(settings_.threads);
-    endIteration_ = iterations ? settings_.firstIteration + *iterations : std::numeric_limits<uint64_t>::max();
+    endIteration_ = iterations.value_or(std::numeric_limits<uint64_t>::max());
     const Finished finished = [&](uint64_t next) {
       if (next >= endIteration_) return true;
       const double now = clock.look();
@@ -444,7 +449,7 @@ void WaveSession<S>::restore(StateReader& in) {
   if (learner_.learns() && (done > learner_.blockEnd() || film_.minSamples() < beginOfBlock(learner_.blockEnd() - 1))) {
     throw StateError("it has other blocks of iterations");
   }
-  for (CameraProgress& progress : camera_) progress.next = settings_.firstIteration + done;
+  for (CameraProgress& progress : camera_) progress.next = done;
   this->goOnFromEarlier(earlier_.paths);
   countLightPaths();
 }

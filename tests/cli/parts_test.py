@@ -7,7 +7,9 @@ moves a rounding to the next float where the sum lies that close to the middle o
 
 import pathlib
 import random
+import signal
 import struct
+import time
 import unittest
 import zlib
 
@@ -122,6 +124,30 @@ class Sums(PartsTest):
             self.run_wavecrest(*self.arguments(method, "-o", "whole.pfm", spp=spp))
             self.assert_equal_but_for_rounding(self.image("merged.pfm"), self.image("whole.pfm"), method)
 
+    def test_parts_that_are_killed_at_random_and_run_again_add_up(self):
+        # Killed once there is a checkpoint, then a few times at any moment, also before one or while one is written.
+        chance, spp, parts = random.Random(5), {"bpt": 6000, "mlt": 12000}, 2
+        for method, iterations in spp.items():
+            files = []
+            for index in range(1, parts + 1):
+                files.append(f"{method}{index}")
+                share = ["--part", f"{index}/{parts}", "--checkpoint", files[-1], "--checkpoint-every", "10ms"]
+                command = self.arguments(method, *share, "--resume", spp=iterations)
+                for kill in range(4):
+                    process = self.start(*map(str, command))
+                    if kill == 0:
+                        self.wait_for((self.folder / files[-1]).exists)
+                    else:
+                        time.sleep(chance.uniform(0, 0.2))
+                    process.kill()
+                    process.communicate()
+                    if kill == 0:
+                        self.assertEqual(process.returncode, -signal.SIGKILL, "the part was over before it was killed")
+                self.run_wavecrest(*command)
+            self.merge(*files, "-o", "merged.pfm", "--complete")
+            self.run_wavecrest(*self.arguments(method, "-o", "whole.pfm", spp=iterations))
+            self.assert_equal_but_for_rounding(self.image("merged.pfm"), self.image("whole.pfm"), method)
+
     def test_the_error_is_that_of_the_image(self):
         parts, spp = 16, 64
         files = self.all_parts("pt", parts=parts, spp=spp)
@@ -226,6 +252,15 @@ class Refused(PartsTest):
         ):
             other = self.part(2, method, *more, name=name, **keywords)
             self.refuse(f"{other}: {said}", first, other)
+
+    def test_a_part_of_a_scene_that_was_edited(self):
+        scene = """<scene version="3.0.0"><sensor type="perspective"><float name="fov" value="60"/></sensor>
+            <shape type="sphere"><point name="center" x="0" y="0" z="4"/><float name="radius" value="{}"/>
+            <emitter type="area"><rgb name="radiance" value="1"/></emitter></shape></scene>"""
+        self.write("scene.xml", scene.format("1.5"))
+        first = self.part(1, scene="scene.xml")
+        self.write("scene.xml", scene.format("1.51"))
+        self.refuse("part2: its scene_hash is ", first, self.part(2, scene="scene.xml"))
 
     def test_a_part_of_another_version(self):
         first, second = self.part(1), self.part(2)

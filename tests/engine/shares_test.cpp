@@ -5,6 +5,7 @@
 #include <bit>
 #include <memory>
 
+#include "engine/plan/share_iterations.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/saved_state.h"
 #include "tests/engine/test_scenes.h"
@@ -119,6 +120,87 @@ TEST(SharesTest, aShareOfChainsThatIsBrokenGoesOn) {
   EXPECT_EQ(second->film().resolve(), whole->film().resolve());
   EXPECT_EQ(second->statistics().iterations, kShareIterations);
   EXPECT_EQ(second->statistics().chains->directPaths, whole->statistics().chains->directPaths);
+}
+
+// Of shares that are rendered at the same time every iteration belongs to one, whether the image has an end or not.
+TEST(ShareIterationsTest, everyIterationIsInOneShare) {
+  for (uint32_t parts = 1; parts <= 7; ++parts) {
+    for (const uint64_t all : {0, 1, 5, 6, 7, 20, 21, 22, 150}) {
+      RenderSettings image;
+      image.iterations = all;
+      std::vector<int> seen(all);
+      uint64_t most = 0, least = all;
+      for (uint32_t part = 0; part < parts; ++part) {
+        const RenderSettings share = settingsOfJointShare(image, part, parts);
+        const ShareIterations numbers(share);
+        most = std::max(most, *share.iterations);
+        least = std::min(least, *share.iterations);
+        for (uint64_t own = 0; own < *share.iterations; ++own) ++seen.at(numbers.number(own));
+        uint64_t inRuns = 0;
+        for (const auto& [begin, end] : numbers.runs(*share.iterations)) inRuns += end - begin;
+        EXPECT_EQ(inRuns, *share.iterations);
+      }
+      EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(all)) << parts << " of " << all;
+      EXPECT_LE(most - least, 1u);
+    }
+  }
+}
+
+TEST(ShareIterationsTest, roundsDouble) {
+  RenderSettings settings;
+  settings.seconds = 1;
+  const ShareIterations numbers(settingsOfJointShare(settings, 1, 3));
+  EXPECT_EQ(numbers.runs(7), (std::vector<ShareIterations::Run>{{1, 2}, {5, 7}, {13, 17}}));
+  EXPECT_EQ(numbers.number(5), 15u);
+  EXPECT_EQ(numbers.together(5), 2u);
+  EXPECT_EQ(numbers.together(6), 1u);
+  EXPECT_GT(numbers.number(uint64_t{1} << 60), numbers.number((uint64_t{1} << 60) - 1));
+}
+
+TEST(SharesTest, filmsOfSharesAtTheSameTimeAddUp) {
+  for (const bool spreads : {false, true}) {
+    Scene scene = sceneFile("cornell-diffuse", kShareWidth, kShareHeight);
+    if (spreads) scene.film.filter = ReconstructionFilter::gaussian;
+    for (const MethodEntry& entry : kMethods) {
+      if (entry.method == Method::gpt) continue;  // which learns from what it has rendered itself
+      RenderSettings settings = settingsOf({.method = entry.method});
+      settings.iterations = 50;  // so that path tracing takes several at once
+      const std::unique_ptr<Session> whole = rendered(scene, settings);
+      std::unique_ptr<Film> sum;
+      for (uint32_t part = 0; part < kShares; ++part) {
+        const auto share = rendered(scene, settingsOfJointShare(settings, part, kShares));
+        const std::vector<unsigned char> state = savedState(share->film());
+        StateReader in(state);
+        if (sum) {
+          sum->addSaved(in);
+          in.finish();
+        } else {
+          sum = Film::fromState(in);
+        }
+      }
+      EXPECT_EQ(sum->allSamples(), whole->film().allSamples());
+      EXPECT_EQ(sum->splatCount(), whole->film().splatCount());
+      // Sums of 50 samples in another order.
+      EXPECT_LE(worstDistance(sum->resolve(), whole->film().resolve()), 1) << toString(entry.method);
+    }
+  }
+}
+
+// A share that is broken within a round goes on with the number that comes next.
+TEST(SharesTest, aShareOfRoundsThatIsBrokenGoesOn) {
+  const Scene scene = sceneFile("cornell-diffuse", kShareWidth, kShareHeight);
+  for (const Method method : {Method::pt, Method::vcm}) {
+    RenderSettings settings = settingsOf({.method = method});
+    settings.iterations = 50;
+    settings = settingsOfJointShare(settings, 1, kShares);
+    const std::unique_ptr<Session> whole = rendered(scene, settings);
+    const auto first = Session::create(scene, settings);
+    first->renderUntil(9, std::nullopt);
+    const auto second = Session::create(scene, settings);
+    restoreState(*second, savedState(*first));
+    second->renderUntil(settings.iterations, std::nullopt);
+    EXPECT_EQ(second->film().resolve(), whole->film().resolve());
+  }
 }
 
 TEST(SharesTest, filmsOfOtherKindsAreNotAdded) {

@@ -1,0 +1,155 @@
+#include "bench/ranks/film_sum.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/state/state_stream.h"
+
+namespace wavecrest {
+namespace {
+
+// Chains as a contribution has them.
+void saveChains(StateWriter& out, uint64_t mutations, uint64_t directPaths, uint64_t epochs,
+                const ChainCounters& counters, const std::vector<StuckChain>& stuck) {
+  static_assert(sizeof(ChainCounters) == (2 * kMutationKinds + 4) * sizeof(uint64_t), "padding would be sent");
+  static_assert(sizeof(StuckChain) == 4 * sizeof(uint32_t), "padding would be sent");
+  out.value(mutations);
+  out.value(directPaths);
+  out.value(epochs);
+  out.value(counters);
+  out.list(stuck);
+}
+
+// about: how many bytes there will be, behind those of the head.
+template <class Save>
+std::vector<unsigned char> bytesOf(size_t head, size_t about, Save save) {
+  std::vector<unsigned char> bytes(head);
+  bytes.reserve(head + about);
+  StateWriter out([&](std::span<const unsigned char> block) { bytes.insert(bytes.end(), block.begin(), block.end()); });
+  save(out);
+  out.flush();
+  return bytes;
+}
+
+// Bytes of a film's state, or a little more.
+size_t stateBytes(const Film& film) {
+  constexpr size_t kRest = 1 << 16;
+  return film.bytes() + (film.hasSplats() ? film.area().size() * 3 * sizeof(__int128) : 0) + kRest;
+}
+
+}  // namespace
+
+nlohmann::ordered_json ProcessRecord::toJson() const {
+  return {{"rank", rank},
+          {"host", host},
+          {"threads", threads},
+          {"camera_paths", paths},
+          {"light_paths", lightPaths},
+          {"render_seconds", renderSeconds},
+          {"cpu_seconds", cpuSeconds}};
+}
+
+ProcessRecord recordOf(uint32_t rank, uint32_t threads, const RenderStatistics& statistics) {
+  ProcessRecord record{.rank = rank,
+                       .threads = threads,
+                       .paths = statistics.paths,
+                       .lightPaths = statistics.lightPaths,
+                       .renderSeconds = statistics.renderSeconds,
+                       .renderWallSeconds = statistics.renderWallSeconds,
+                       .cpuSeconds = statistics.cpuSeconds};
+  gethostname(record.host, sizeof(record.host) - 1);
+  return record;
+}
+
+std::vector<unsigned char> contributionOf(const Session& session, const ProcessRecord& record, size_t head) {
+  static_assert(sizeof(ProcessRecord) == 2 * sizeof(uint32_t) + 5 * sizeof(uint64_t) + 64, "padding would be sent");
+  return bytesOf(head, stateBytes(session.film()), [&](StateWriter& out) {
+    const RenderStatistics statistics = session.statistics();
+    out.list(std::vector<ProcessRecord>{record});
+    WorkDone::of(statistics).save(out);
+    const ChainStatistics chains = statistics.chains.value_or(ChainStatistics{});
+    saveChains(out, chains.mutations, chains.directPaths, chains.epochs, chains.counters, chains.stuck);
+    session.film().save(out);
+  });
+}
+
+void FilmSum::sumUp(const std::vector<Bytes>& contributions) {
+  for (size_t i = 0; i < contributions.size(); ++i) add(contributions[i], i == 0);
+  std::sort(processes_.begin(), processes_.end(), [](const auto& a, const auto& b) { return a.rank < b.rank; });
+}
+
+void FilmSum::add(Bytes contribution, bool first) {
+  StateReader in(contribution);
+  if (first) {
+    processes_.clear();
+    stuck_.clear();
+    mutations_ = directPaths_ = epochs_ = 0;
+    chainCounters_ = {};
+  }
+  const auto processes = in.list<ProcessRecord>();
+  processes_.insert(processes_.end(), processes.begin(), processes.end());
+  WorkDone work;
+  work.restore(in);
+  mutations_ += in.value<uint64_t>();
+  directPaths_ += in.value<uint64_t>();
+  epochs_ = std::max(epochs_, in.value<uint64_t>());
+  chainCounters_ += in.value<ChainCounters>();
+  const auto stuck = in.list<StuckChain>();
+  stuck_.insert(stuck_.end(), stuck.begin(), stuck.end());
+  if (!first) {
+    work_ += work;
+    film_->addSaved(in);
+    return;
+  }
+  work_ = std::move(work);
+  if (film_) {
+    film_->restore(in);
+  } else {
+    film_ = Film::fromState(in);
+  }
+}
+
+std::vector<unsigned char> FilmSum::contribution(size_t head) const {
+  return bytesOf(head, stateBytes(*film_), [&](StateWriter& out) {
+    out.list(processes_);
+    work_.save(out);
+    saveChains(out, mutations_, directPaths_, epochs_, chainCounters_, stuck_);
+    film_->save(out);
+  });
+}
+
+RenderStatistics FilmSum::statistics(RenderStatistics own) const {
+  own.paths = work_.paths;
+  own.lightPaths = work_.lightPaths;
+  own.counters = work_.counters;
+  own.cpuSeconds = work_.cpuSeconds;
+  for (size_t i = 0; i < own.stages.size() && i < work_.stages.size(); ++i) {
+    own.stages[i].items = work_.stages[i].items;
+    own.stages[i].laneSlots = work_.stages[i].laneSlots;
+    own.stages[i].seconds = work_.stages[i].seconds;
+  }
+  for (const ProcessRecord& process : processes_) {
+    own.renderSeconds = std::max(own.renderSeconds, process.renderSeconds);
+    own.renderWallSeconds = std::max(own.renderWallSeconds, process.renderWallSeconds);
+  }
+  if (!own.chains) {
+    own.iterations = film_->minSamples();
+    return own;
+  }
+  ChainStatistics& chains = *own.chains;
+  chains.mutations = mutations_;
+  chains.directPaths = directPaths_;
+  chains.epochs = epochs_;
+  chains.counters = chainCounters_;
+  // The worst of all.
+  chains.stuck = stuck_;
+  std::sort(chains.stuck.begin(), chains.stuck.end(),
+            [](const StuckChain& a, const StuckChain& b) { return a.rejections > b.rejections; });
+  if (chains.stuck.size() > kListedStuckChains) chains.stuck.resize(kListedStuckChains);
+  own.iterations = mutations_ / film_->area().size();
+  return own;
+}
+
+}  // namespace wavecrest

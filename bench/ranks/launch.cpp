@@ -1,0 +1,83 @@
+#include "bench/ranks/launch.h"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+namespace wavecrest {
+namespace {
+
+// The number that a variable holds, or nothing.
+std::optional<uint32_t> numberIn(const char* text) {
+  if (text == nullptr) return std::nullopt;
+  uint32_t number = 0;
+  const char* const end = text + std::strlen(text);
+  const auto [stop, error] = std::from_chars(text, end, number);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return number;
+}
+
+// Which variables hold the number of processes and that of this one among them. The launchers of MPI come before Slurm,
+// whose jobs they run in. Slurm's batch script is no step of srun and has no number of tasks of a step.
+struct Launcher {
+  const char *name, *ranks, *rank;
+};
+constexpr Launcher kLaunchers[] = {
+    {"mpirun", "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"},
+    {"mpiexec", "PMI_SIZE", "PMI_RANK"},
+    {"srun", "SLURM_STEP_NUM_TASKS", "SLURM_PROCID"},
+};
+
+// The numbers of the processors in the affinity mask.
+std::vector<uint32_t> processorsOfThisProcess() {
+  std::vector<uint32_t> processors;
+  // Masks grow with the machine: the call fails until there is room for all of its processors.
+  for (int most = CPU_SETSIZE; most <= 1 << 20; most *= 4) {
+    cpu_set_t* const set = CPU_ALLOC(static_cast<size_t>(most));
+    if (set == nullptr) break;
+    const size_t bytes = CPU_ALLOC_SIZE(static_cast<size_t>(most));
+    const bool known = sched_getaffinity(0, bytes, set) == 0;
+    for (int processor = 0; known && processor < most; ++processor) {
+      if (CPU_ISSET_S(static_cast<size_t>(processor), bytes, set))
+        processors.push_back(static_cast<uint32_t>(processor));
+    }
+    CPU_FREE(set);
+    if (known) break;
+  }
+  return processors;
+}
+
+}  // namespace
+
+std::optional<Launch> launchIn(const VariableLookup& variable) {
+  const char* const wish = variable(kMpiVariable);
+  if (wish != nullptr && std::strcmp(wish, "off") == 0) return std::nullopt;
+  for (const Launcher& launcher : kLaunchers) {
+    const std::optional<uint32_t> ranks = numberIn(variable(launcher.ranks)), rank = numberIn(variable(launcher.rank));
+    if (!ranks || !rank) continue;
+    if (*ranks < 2 || *rank >= *ranks) return std::nullopt;
+    return Launch{launcher.name, *rank, *ranks};
+  }
+  return std::nullopt;
+}
+
+std::optional<Launch> launchOfThisProcess() {
+  return launchIn([](const char* name) -> const char* { return std::getenv(name); });
+}
+
+uint32_t allowedProcessors() { return std::max(1u, static_cast<uint32_t>(processorsOfThisProcess().size())); }
+
+std::string placeOfThisProcess() {
+  char host[256] = {};
+  gethostname(host, sizeof(host) - 1);
+  std::string place = host;
+  for (const uint32_t processor : processorsOfThisProcess()) place += " " + std::to_string(processor);
+  return place;
+}
+
+}  // namespace wavecrest

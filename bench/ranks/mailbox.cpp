@@ -1,0 +1,160 @@
+#include "bench/ranks/mailbox.h"
+
+#include <cstring>
+#include <utility>
+
+#include "bench/ranks/mpi_library.h"
+
+namespace wavecrest {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+// Between two looks: where nothing is under way, and where something is.
+constexpr auto kPause = std::chrono::milliseconds(3);
+constexpr auto kShortPause = std::chrono::microseconds(50);
+constexpr auto kTick = std::chrono::milliseconds(10);
+// For what was posted before an end without finish.
+constexpr auto kLastMoment = std::chrono::milliseconds(300);
+
+// A message in whole blocks: itself, what fills the last block, and its length.
+std::vector<unsigned char> inBlocks(std::vector<unsigned char> message) {
+  const uint64_t length = message.size();
+  const uint64_t blocks = (length + sizeof(length) + kMpiBlock - 1) / kMpiBlock;
+  message.resize(blocks * kMpiBlock);
+  std::memcpy(message.data() + message.size() - sizeof(length), &length, sizeof(length));
+  return message;
+}
+
+// Back; empty where the length is none.
+std::vector<unsigned char> fromBlocks(std::vector<unsigned char> bytes) {
+  uint64_t length = 0;
+  if (bytes.size() < sizeof(length)) return {};
+  std::memcpy(&length, bytes.data() + bytes.size() - sizeof(length), sizeof(length));
+  if (length > bytes.size() - sizeof(length)) return {};
+  bytes.resize(length);
+  return bytes;
+}
+
+}  // namespace
+
+Mailbox::Mailbox(const MpiFunctions& mpi) : mpi_(mpi), thread_([this] { run(); }) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  changed_.wait(lock, [this] { return started_ || failed_; });
+  if (!failed_) return;
+  lock.unlock();
+  thread_.join();
+  throw RanksError("MPI cannot be started");
+}
+
+Mailbox::~Mailbox() { end(Ending::abandon); }
+
+void Mailbox::open(Duties duties) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    duties_ = std::move(duties);
+  }
+  changed_.notify_all();
+}
+
+void Mailbox::post(uint32_t to, Bytes message) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    posted_.push_back({to, std::move(message)});
+  }
+  changed_.notify_all();
+}
+
+void Mailbox::finish() { end(Ending::finish); }
+
+void Mailbox::end(Ending ending) {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = ending;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Mailbox::run() {
+  int rank = 0, ranks = 0;
+  const bool works = mpi_.start(&rank, &ranks) >= 0;
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    rank_ = static_cast<uint32_t>(rank);
+    ranks_ = static_cast<uint32_t>(ranks);
+    (works ? started_ : failed_) = true;
+    changed_.notify_all();
+    if (!works) return;
+    // Nothing is received before somebody takes it.
+    changed_.wait(lock, [this] { return duties_.received != nullptr || ending_ != Ending::none; });
+  }
+  work();
+}
+
+void Mailbox::work() {
+  Clock::time_point lastTick = Clock::now(), giveUp = Clock::time_point::max();
+  for (;;) {
+    const bool sent = sendAll(), received = duties_.received && receiveAll();
+    if (duties_.tick && Clock::now() - lastTick >= kTick) {
+      lastTick = Clock::now();
+      duties_.tick();
+    }
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (!posted_.empty()) continue;
+    if (ending_ == Ending::finish && underWay_.empty()) {
+      lock.unlock();
+      mpi_.finish();
+      return;
+    }
+    if (ending_ == Ending::abandon) {
+      if (giveUp == Clock::time_point::max()) giveUp = Clock::now() + kLastMoment;
+      if (underWay_.empty() || Clock::now() > giveUp) return;
+    }
+    if (sent || received) continue;
+    if (underWay_.empty()) {
+      changed_.wait_for(lock, kPause);
+    } else {
+      lock.unlock();
+      std::this_thread::sleep_for(kShortPause);
+    }
+  }
+}
+
+// Begins to send what was posted and looks what has been sent. Returns whether anything was.
+bool Mailbox::sendAll() {
+  std::deque<Letter> posted;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    posted.swap(posted_);
+  }
+  bool any = false;
+  for (Letter& letter : posted) {
+    any = true;
+    if (letter.to == rank_) {
+      if (duties_.received) duties_.received(rank_, std::move(letter.bytes));
+      continue;
+    }
+    underWay_.push_back({letter.to, inBlocks(std::move(letter.bytes))});
+    Letter& last = underWay_.back();
+    // What cannot be sent has nobody to receive it.
+    if (mpi_.send(last.to, last.bytes.data(), last.bytes.size() / kMpiBlock, &last.request) < 0) underWay_.pop_back();
+  }
+  any |= std::erase_if(underWay_, [&](Letter& letter) { return mpi_.sent(&letter.request) != 0; }) != 0;
+  return any;
+}
+
+bool Mailbox::receiveAll() {
+  bool any = false;
+  int from = 0;
+  uint64_t blocks = 0;
+  while (mpi_.arrived(&from, &blocks) == 1) {
+    Bytes bytes(blocks * kMpiBlock);
+    if (mpi_.receive(from, bytes.data(), blocks) < 0) break;
+    any = true;
+    duties_.received(static_cast<uint32_t>(from), fromBlocks(std::move(bytes)));
+  }
+  return any;
+}
+
+}  // namespace wavecrest

@@ -1,0 +1,76 @@
+// Messages between the processes of one render.
+//
+// A thread of its own does all that MPI does, and never waits within MPI for another process: it looks for messages
+// every few milliseconds, so that it takes no time from the threads that render. Messages from one process to another
+// arrive in the order in which they were posted.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "bench/ranks/mpi_plugin.h"
+
+namespace wavecrest {
+
+class Mailbox {
+ public:
+  using Bytes = std::vector<unsigned char>;
+  // Both are called on the mailbox' thread. received: a message, also of this process to itself. tick: now and then.
+  struct Duties {
+    std::function<void(uint32_t from, Bytes message)> received;
+    std::function<void()> tick;
+  };
+
+  // Starts MPI. Throws RanksError where it cannot.
+  explicit Mailbox(const MpiFunctions& mpi);
+  // Where finish was not called, MPI is left without a word, which launchers take for a failure. What was posted is
+  // sent first, if that takes but a moment.
+  ~Mailbox();
+  Mailbox(const Mailbox&) = delete;
+  Mailbox& operator=(const Mailbox&) = delete;
+
+  uint32_t rank() const { return rank_; }
+  uint32_t ranks() const { return ranks_; }
+  // To be called once; messages before that wait.
+  void open(Duties duties);
+  // Hands a message over, from any thread.
+  void post(uint32_t to, Bytes message);
+  // Sends what was posted, and waits for all processes to do so.
+  void finish();
+
+ private:
+  enum class Ending { none, finish, abandon };
+  struct Letter {
+    uint32_t to;
+    Bytes bytes;
+    void* request = nullptr;
+  };
+
+  void run();
+  void work();
+  bool sendAll();
+  bool receiveAll();
+  void end(Ending ending);
+
+  const MpiFunctions& mpi_;
+  uint32_t rank_ = 0, ranks_ = 0;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  // Guarded by the mutex.
+  bool started_ = false, failed_ = false;
+  Duties duties_;
+  std::deque<Letter> posted_;
+  Ending ending_ = Ending::none;
+  // Of the mailbox' thread.
+  std::deque<Letter> underWay_;
+  std::thread thread_;
+};
+
+}  // namespace wavecrest

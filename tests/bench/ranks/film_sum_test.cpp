@@ -1,0 +1,93 @@
+// Contributions of sessions that render shares at the same time: their sum is one render.
+#include "bench/ranks/film_sum.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "engine/state/state_stream.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+using Contribution = std::vector<unsigned char>;
+constexpr uint32_t kProcesses = 3;
+constexpr uint64_t kIterationsOfAll = 11;  // three rounds of 3, 6 and 2
+
+RenderSettings settingsOfSum(Method method) {
+  RenderSettings settings;
+  settings.method = method;
+  settings.isa = bestIsa();
+  settings.waveSize = 64;
+  settings.radius = 0.05;
+  settings.metropolis.chains = 300;
+  settings.metropolis.bootstrapSamples = 3000;
+  settings.iterations = kIterationsOfAll;
+  return settings;
+}
+
+std::unique_ptr<Session> renderedSession(const Scene& scene, const RenderSettings& settings) {
+  auto session = Session::create(scene, settings);
+  session->renderUntil(settings.iterations, std::nullopt);
+  return session;
+}
+
+int64_t mostUnits(const std::vector<float>& a, const std::vector<float>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  int64_t worst = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    worst = std::max<int64_t>(worst, std::abs(int64_t{std::bit_cast<int32_t>(a[i])} - std::bit_cast<int32_t>(b[i])));
+  }
+  return worst;
+}
+
+// As the tree does: the sum of two goes on as a contribution. The sum has a film that was used before.
+TEST(FilmSumTest, contributionsOfProcessesAreOneRender) {
+  const Scene scene = sceneFile("cornell-diffuse", 40, 27);
+  for (const MethodEntry& entry : kMethods) {
+    if (entry.method == Method::gpt) continue;  // which learns from what it has rendered itself
+    const RenderSettings settings = settingsOfSum(entry.method);
+    const std::unique_ptr<Session> whole = renderedSession(scene, settings);
+    std::vector<Contribution> contributions;
+    RenderStatistics own;
+    for (uint32_t rank = 0; rank < kProcesses; ++rank) {
+      const auto session = renderedSession(scene, settingsOfJointShare(settings, rank, kProcesses));
+      if (rank == 0) own = session->statistics();
+      contributions.push_back(contributionOf(*session, recordOf(rank, 2, session->statistics())));
+    }
+    FilmSum inner, outer;
+    inner.sumUp({contributions[2], contributions[1]});
+    outer.sumUp({contributions[1], contributions[1]});
+    outer.sumUp({contributions[0], inner.contribution()});
+    EXPECT_LE(mostUnits(outer.film().resolve(), whole->film().resolve()), 1) << entry.name;
+    const RenderStatistics sum = outer.statistics(own), expected = whole->statistics();
+    EXPECT_EQ(sum.iterations, expected.iterations) << entry.name;
+    EXPECT_EQ(sum.paths, expected.paths) << entry.name;
+    EXPECT_EQ(sum.lightPaths, expected.lightPaths) << entry.name;
+    EXPECT_EQ(sum.counters.raysClosest > 0, true);
+    EXPECT_GE(sum.cpuSeconds, own.cpuSeconds);
+    if (sum.chains) {
+      EXPECT_EQ(sum.chains->mutations, expected.chains->mutations);
+      EXPECT_EQ(sum.chains->directPaths, expected.chains->directPaths);
+    }
+    ASSERT_EQ(outer.processes().size(), kProcesses);
+    for (uint32_t rank = 0; rank < kProcesses; ++rank) EXPECT_EQ(outer.processes()[rank].rank, rank);
+  }
+}
+
+TEST(FilmSumTest, otherRendersDoNotAddUp) {
+  const auto contribution = [](Method method, uint32_t width) {
+    const auto session = renderedSession(sceneFile("cornell-diffuse", width, 27), settingsOfSum(method));
+    return contributionOf(*session, recordOf(0, 1, session->statistics()));
+  };
+  const Contribution pt = contribution(Method::pt, 40);
+  FilmSum sum;
+  EXPECT_THROW(sum.sumUp({pt, contribution(Method::pt, 41)}), StateError);
+  EXPECT_THROW(sum.sumUp({pt, contribution(Method::lt, 40)}), StateError);
+  EXPECT_THROW(sum.sumUp({pt, FilmSum::Bytes(pt).first(pt.size() - 1)}), StateError);
+}
+
+}  // namespace
+}  // namespace wavecrest
