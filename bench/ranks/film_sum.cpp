@@ -48,7 +48,10 @@ nlohmann::ordered_json ProcessRecord::toJson() const {
           {"camera_paths", paths},
           {"light_paths", lightPaths},
           {"render_seconds", renderSeconds},
-          {"cpu_seconds", cpuSeconds}};
+          {"cpu_seconds", cpuSeconds},
+          {"contributions", contributions},
+          {"contributing_seconds", contributingSeconds},
+          {"adding_seconds", addingSeconds}};
 }
 
 ProcessRecord recordOf(uint32_t rank, uint32_t threads, const RenderStatistics& statistics) {
@@ -64,7 +67,7 @@ ProcessRecord recordOf(uint32_t rank, uint32_t threads, const RenderStatistics& 
 }
 
 std::vector<unsigned char> contributionOf(const Session& session, const ProcessRecord& record, size_t head) {
-  static_assert(sizeof(ProcessRecord) == 2 * sizeof(uint32_t) + 5 * sizeof(uint64_t) + 64, "padding would be sent");
+  static_assert(sizeof(ProcessRecord) == 2 * sizeof(uint32_t) + 8 * sizeof(uint64_t) + 64, "padding would be sent");
   return bytesOf(head, stateBytes(session.film()), [&](StateWriter& out) {
     const RenderStatistics statistics = session.statistics();
     out.list(std::vector<ProcessRecord>{record});

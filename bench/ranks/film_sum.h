@@ -20,7 +20,10 @@ struct ProcessRecord {
   uint32_t rank = 0, threads = 0;
   uint64_t paths = 0, lightPaths = 0;
   double renderSeconds = 0, renderWallSeconds = 0, cpuSeconds = 0;
-  char host[64] = {};  // ends with a zero
+  uint64_t contributions = 0;      // before this one: snapshots and saves
+  double contributingSeconds = 0;  // that rendering stood still for them
+  double addingSeconds = 0;        // that sums have taken beside rendering
+  char host[64] = {};              // ends with a zero
 
   nlohmann::ordered_json toJson() const;
 };

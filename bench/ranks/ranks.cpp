@@ -136,8 +136,14 @@ void Ranks::contribute(SumLabel label, const Session& session, uint32_t threads)
     }
     if (first()) own_[label] = session.statistics();
   }
-  sendWithHead(rank(), Kind::contribution, label,
-               contributionOf(session, recordOf(rank(), threads, session.statistics()), kHead));
+  ProcessRecord record = recordOf(rank(), threads, session.statistics());
+  record.contributions = contributions_;
+  record.contributingSeconds = contributingSeconds_;
+  record.addingSeconds = addingSeconds_.load();
+  const Clock::time_point begin = Clock::now();
+  sendWithHead(rank(), Kind::contribution, label, contributionOf(session, record, kHead));
+  contributingSeconds_ += secondsBetween(begin, Clock::now());
+  ++contributions_;
 }
 
 void Ranks::requestSave() { send(0, Kind::wantSave, 0); }
@@ -258,17 +264,20 @@ void Ranks::complete(SumLabel label, std::vector<Mailbox::Bytes> messages) {
     mailbox_->post(tree_->parent(), std::move(messages.front()));
     return;
   }
+  const Clock::time_point begin = Clock::now();
   std::vector<FilmSum::Bytes> contributions;
   for (const Mailbox::Bytes& message : messages) contributions.push_back(FilmSum::Bytes(message).subspan(kHead));
   sum_.sumUp(contributions);
   if (!first()) {
     sendWithHead(tree_->parent(), Kind::contribution, label, sum_.contribution(kHead));
+    addingSeconds_ += secondsBetween(begin, Clock::now());
     return;
   }
   // The sum of all.
   nlohmann::ordered_json processes = nlohmann::ordered_json::array();
   for (const ProcessRecord& process : sum_.processes()) processes.push_back(process.toJson());
   std::vector<float> image = sum_.film().resolve();
+  addingSeconds_ += secondsBetween(begin, Clock::now());
   if (isSnapshot(label)) sendToOthers(Kind::completed, label);
   if (isSave(label)) saveUnderWay_ = false;
   const std::lock_guard<std::mutex> lock(mutex_);

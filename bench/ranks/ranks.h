@@ -6,6 +6,7 @@
 // stop and save their own shares, as they do after a signal; whatever still waits for the lost one throws.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -92,6 +93,10 @@ class Ranks {
   void wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& ready);
 
   std::unique_ptr<Mailbox> mailbox_;
+  // Of the thread that contributes.
+  uint64_t contributions_ = 0;
+  double contributingSeconds_ = 0;
+  std::atomic<double> addingSeconds_{0};
   // Of the mailbox' thread.
   std::optional<SumTree> tree_;
   FilmSum sum_;
