@@ -69,6 +69,25 @@ std::optional<CampaignOptions> extended(const CampaignOptions& before, const std
   return std::nullopt;
 }
 
+// A profile may choose otherwise than when the campaign began: what it chose then is asked for by name, so that all
+// runs have one radius, one roulette and one kind of vcm. Files of earlier versions do not name all of them.
+void keepFormerChoices(CampaignOptions& options, const std::map<std::string, std::string>& stored) {
+  const CampaignSettings settings = campaignSettings(options);
+  const std::map<std::string, std::string> now = campaignKeys(options, settings);
+  const auto anyRow = [&](bool (*has)(Method)) {
+    return std::any_of(settings.methods.begin(), settings.methods.end(),
+                       [has](const CampaignMethod& row) { return has(row.method); });
+  };
+  const auto keep = [&](const char* option, const char* key, const char* earlier, bool used) {
+    const auto found = stored.find(key);
+    const std::string former = found == stored.end() ? earlier : found->second;
+    if (used && now.at(key) != former) options.defining[option] = {former};
+  };
+  keep("--roulette", "roulette", "throughput", anyRow(hasRouletteChoice));
+  keep("--radius", "radius", "0.001", anyRow([](Method method) { return strategiesOf(method).merge; }));
+  keep("--merge-vertices", "merge_vertices", "all", anyRow(choosesMergeVertices));
+}
+
 }  // namespace
 
 void resumeCampaign(CampaignOptions& options, const std::filesystem::path& results) {
@@ -92,6 +111,7 @@ void resumeCampaign(CampaignOptions& options, const std::filesystem::path& resul
     throw ResultsFileError(results.string() + ": its options are none; expected an intact results file of a campaign");
   }
   const std::map<std::string, Words> begun = all.defining;
+  keepFormerChoices(all, before.campaign);
   // Each option that is given again must be the same, or make the campaign larger.
   for (const auto& [name, words] : options.defining) {
     const auto known = begun.find(name);

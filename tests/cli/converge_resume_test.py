@@ -3,6 +3,7 @@
 KILLS says how often the kill test kills campaigns, each a few times before it may finish.
 """
 
+import json
 import os
 import pathlib
 import random
@@ -81,6 +82,23 @@ class Resuming(Converge):
             result = self.converge("--out", "a", "--resume", *other, expect=USAGE)
             self.assert_one_error_line(result, r".*was begun with .*; expected the same, more, or another --out")
         self.assertEqual(rows(self.results("a")), before)
+
+    def test_choices_of_the_profile_are_those_of_the_beginning(self):
+        tiny = ["cornell-diffuse", "--methods", "vcm", "--size", "16x12", "--spp", "1", "--light-paths", "99"]
+        self.converge(*tiny, "--seeds", "1", "--out", "a")
+        # As an earlier version would have left it, whose profile chose otherwise and did not ask where vcm merges.
+        database = sqlite3.connect(self.results("a"))
+        with database:
+            database.execute("UPDATE campaign SET value = '0.002' WHERE key = 'radius'")
+            database.execute("DELETE FROM campaign WHERE key = 'roulette'")
+            database.execute("DELETE FROM campaign WHERE key = 'merge_vertices'")
+        database.close()
+        self.converge("--out", "a", "--resume", "--seeds", "2")
+        database = sqlite3.connect(self.results("a"))
+        stats = [json.loads(text) for (text,) in database.execute("SELECT stats FROM run WHERE seed = 2")]
+        database.close()
+        told = [(run["radius"], run["roulette"], run["merge_vertices"]) for run in stats]
+        self.assertEqual(told, [(0.002, "throughput", "all")])
 
     def test_a_campaign_is_not_begun_over_another(self):
         self.tiny("a")

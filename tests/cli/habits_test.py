@@ -105,6 +105,7 @@ class Words(CommandTest):
             ("render", "--roulette", "throughput albedo efficiency"),
             ("render", "--guide", "radiance variance off"),
             ("render", "--mlt", "pssmlt mmlt pathspace"),
+            ("render", "--merge-vertices", "all first"),
             ("render", "--progress", "auto bar jsonl none"),
             ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm gpt"),
             ("converge", "--profile", "quick standard study paper"),
