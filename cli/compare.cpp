@@ -209,12 +209,13 @@ bool checkThresholds(const CompareOptions& options, const MeasuredTest& test, bo
 
 // One test by all metrics. label: names its maps.
 MeasuredTest measure(const PreparedReference& reference, const std::string& file, const std::string& label,
-                     ImageFile image, const std::vector<const Metric*>& metrics, bool withMaps) {
+                     ImageFile image, const std::vector<const Metric*>& metrics, bool withMaps, bool withLight) {
   ComparedImage test = reference.prepareTest(file, std::move(image));
   MeasuredTest measured{
-      .file = file, .label = label, .codes = {}, .nonFinitePixels = test.nonFinitePixels, .scores = {}};
+      .file = file, .label = label, .codes = {}, .light = {}, .nonFinitePixels = test.nonFinitePixels, .scores = {}};
   for (const Metric* metric : metrics) measured.scores.push_back({metric, metric->measure(reference, test, withMaps)});
   measured.codes = std::move(test.codes);
+  if (withLight) measured.light = std::move(test.file);
   return measured;
 }
 
@@ -239,13 +240,13 @@ int compare(const CompareOptions& options) {
     ImageFile test = readPart(options, file);
     noteWindows(options, reference.image().file, file, test);
     notePu21Range(options, metrics, file, test);
-    tests.push_back(measure(reference, file, labels[i], std::move(test), metrics, withMaps));
+    tests.push_back(measure(reference, file, labels[i], std::move(test), metrics, withMaps, !options.html.empty()));
   }
   // Shows scores, maps and page.
   if (options.printsText()) printText(tests);
   if (options.json) fmt::print("{}\n", jsonText(toJson(tests), 2));
   if (!options.mapFolder.empty()) writeMaps(options, tests);
-  if (!options.html.empty()) writeText(options.html, comparePage(options.reference, reference.image().codes, tests));
+  if (!options.html.empty()) writeText(options.html, comparePage(options.reference, reference.image(), tests));
   // Checks all tests, also after one that fails.
   bool held = true;
   for (const MeasuredTest& test : tests) held = checkThresholds(options, test, tests.size() == 1) && held;

@@ -6,6 +6,7 @@
 
 #include "bench/report/assets.h"
 #include "bench/report/embedded_images.h"
+#include "bench/report/float_image.h"
 #include "bench/report/html_text.h"
 #include "bench/report/plain_page.h"
 #include "bench/report/viewer_html.h"
@@ -15,11 +16,27 @@ namespace wavecrest {
 namespace {
 
 // A pane of the viewer, embedded as PNG.
-std::string imagePane(const Image8& image, const std::string& name, const std::string& label) {
+std::string imagePane(const Image8& image, const std::string& name, const std::string& label,
+                      const std::string& floats = {}) {
   const std::vector<uint8_t> png =
       encodeImage({.label = {}, .width = image.width, .height = image.height, .rgb = image.pixels}, ImageCoding{});
   const std::string uri = "data:image/png;base64," + base64(png);
-  return viewerPane({.name = name, .label = label, .uri = uri, .width = image.width, .height = image.height});
+  return viewerPane(
+      {.name = name, .label = label, .uri = uri, .width = image.width, .height = image.height, .floats = floats});
+}
+
+// Whether an image has light in colour behind its codes.
+bool hasLight(const ImageFile& file) {
+  return file.encoding == Encoding::linear && file.image.channels == 3 && !file.image.pixels.empty();
+}
+
+// An image of light with its floats in an element of the page.
+std::string lightPane(const Image8& codes, const ImageFile& light, const std::string& name, const std::string& label,
+                      size_t number) {
+  const std::string id = fmt::format("floats-{}", number);
+  return imagePane(codes, name, label, "#" + id) +
+         fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id,
+                     floatText(light.image.pixels, light.image.width, light.image.height));
 }
 
 // The maps of one metric, of all tests on one scale.
@@ -71,18 +88,25 @@ void addTable(std::string& page, const std::vector<MeasuredTest>& tests) {
 
 }  // namespace
 
-std::string comparePage(const std::string& referenceFile, const Image8& reference,
+std::string comparePage(const std::string& referenceFile, const ComparedImage& reference,
                         const std::vector<MeasuredTest>& tests) {
   std::string page = pageHead("Against " + referenceFile);
   append(page, "<header><h1>Against {}</h1></header>\n<main>\n", escapeHtml(referenceFile));
   addTable(page, tests);
   // Pictures, then the maps of each metric.
-  std::string pictures = imagePane(reference, "reference", referenceFile);
-  for (const MeasuredTest& test : tests) pictures += imagePane(test.codes, test.label, test.file);
+  // Floats have errors against the reference: tests show theirs where the reference has some.
+  size_t number = 0;
+  const bool lit = hasLight(reference.file);
+  const auto pane = [&](const Image8& codes, const ImageFile& light, const std::string& name,
+                        const std::string& label) {
+    return lit && hasLight(light) ? lightPane(codes, light, name, label, number++) : imagePane(codes, name, label);
+  };
+  std::string pictures = pane(reference.codes, reference.file, "reference", referenceFile);
+  for (const MeasuredTest& test : tests) pictures += pane(test.codes, test.light, test.label, test.file);
   std::string groups = viewerGroup("Pictures", "", pictures);
   for (size_t i = 0; i < tests.front().scores.size(); ++i) groups += mapGroup(tests, i);
-  append(page, "<h3>Pictures and maps</h3>\n{}</main>\n<script>\n{}</script>\n</body></html>\n", viewer(groups),
-         kReportJs);
+  append(page, "<h3>Pictures and maps</h3>\n{}</main>\n<script>\n{}{}</script>\n</body></html>\n", viewer(groups),
+         kFloatsJs, kReportJs);
   return page;
 }
 

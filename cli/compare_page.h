@@ -10,7 +10,7 @@
 namespace wavecrest {
 
 // The page. Every score has its map.
-std::string comparePage(const std::string& referenceFile, const Image8& reference,
+std::string comparePage(const std::string& referenceFile, const ComparedImage& reference,
                         const std::vector<MeasuredTest>& tests);
 
 }  // namespace wavecrest

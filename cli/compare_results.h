@@ -14,6 +14,7 @@ struct MeasuredTest {
   std::string file;
   std::string label;  // names its maps and its column; unique among the tests
   Image8 codes;       // as the perceptual metrics saw it
+  ImageFile light;    // as it was read, for --html; else empty
   uint64_t nonFinitePixels = 0;
   std::vector<Measured> scores;
 };

@@ -100,9 +100,9 @@ def step_release(tally):
         return
     if os.environ.get("CHECK_OFFLINE") == "1":
         print("CHECK_OFFLINE=1: the tests against Mitsuba (label oracle) are left out")
-        test(tally, "release", "--label-exclude", "^(oracle|long|mpi|slurm)$")
+        test(tally, "release", "--label-exclude", "^(oracle|long|browser|mpi|slurm)$")
     else:
-        test(tally, "release", "--label-exclude", "^(long|mpi|slurm)$")
+        test(tally, "release", "--label-exclude", "^(long|browser|mpi|slurm)$")
 
 
 def python_options(tally):
@@ -191,6 +191,14 @@ def step_mpi(tally):
         run(tally, "mpi: against threads", ["bench/ranks/against-threads", "build/release/wavecrest", *methods])
 
 
+def step_browser(tally):
+    """The viewer of pages in a headless Chromium."""
+    if run(tally, "browser: packages", ["tools/install-packages", "browser"]) and build(
+        tally, "release", targets=("wavecrest",)
+    ):
+        test(tally, "release", "--label-regex", "^browser$")
+
+
 def step_wheel(tally):
     """The wheel, carrying its libraries, in a Debian 12 that has none of them. Needs root for chroot."""
     targets = ("wavecrest_python_stub", "wavecrest_scene_assets")
@@ -217,6 +225,7 @@ STEPS = {
     "lint": step_lint,
     "tidy": step_tidy,
     "python": step_python,
+    "browser": step_browser,
     "mpi": step_mpi,
     "slurm": step_slurm,
     "wheel": step_wheel,

@@ -9,5 +9,6 @@ namespace wavecrest {
 extern const std::string_view kPlotCss;  ///< plots alone: also inside plots that are files of their own
 extern const std::string_view kReportCss;
 extern const std::string_view kReportJs;
+extern const std::string_view kFloatsJs;
 
 }  // namespace wavecrest

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bench/report/float_image.h"
 #include "bench/report/html_text.h"
 #include "bench/report/series_values.h"
 #include "metrics/false_colour.h"
@@ -22,11 +23,18 @@ ReportImage shownImage(std::string label, Image8 codes) {
   return {.label = std::move(label), .width = codes.width, .height = codes.height, .rgb = std::move(codes.pixels)};
 }
 
+// Of an image of light in colour.
+void addFloats(ReportImage& image, const ImageFile& file) {
+  if (file.encoding != Encoding::linear || file.image.channels != 3) return;
+  image.floats = floatText(file.image.pixels, file.image.width, file.image.height);
+}
+
 }  // namespace
 
 void addFinalImages(ReportScene& scene, const PreparedReference& reference,
                     const std::vector<std::filesystem::path>& files) {
   scene.reference = shownImage("reference", reference.image().codes);
+  addFloats(scene.reference, reference.image().file);
   const Metric& metric = *findMetric(kMapMetric);
   std::vector<Measurement> measured(scene.series.size());
   double range = kLeastRange;
@@ -38,6 +46,7 @@ void addFinalImages(ReportScene& scene, const PreparedReference& reference,
     range = std::max(range, quantile(measured[i].map, kShownPart));
     series.finalImage =
         shownImage(fmt::format("{}, {}", series.label, formatSeconds(finalSeconds(series))), test.codes);
+    if (!scene.reference.floats.empty()) addFloats(series.finalImage, test.file);
   }
   for (size_t i = 0; i < scene.series.size(); ++i) {
     if (files[i].empty()) continue;

@@ -108,7 +108,7 @@ std::string assemble(const ConvergenceReport& report, const EmbeddedImages& imag
   html += renderClaims(report);
   html += renderEnvironment(report);
   // The page is complete without the script, which only adds interaction.
-  append(html, "</main>\n<script>\n{}</script>\n</body></html>\n", kReportJs);
+  append(html, "</main>\n<script>\n{}{}</script>\n</body></html>\n", kFloatsJs, kReportJs);
   return html;
 }
 

@@ -63,6 +63,7 @@ struct ReportImage {
   std::string label = {};
   uint32_t width = 0, height = 0;
   std::vector<uint8_t> rgb = {};
+  std::string floats = {};  ///< the light behind the codes (float_image.h); empty where it is not known
 };
 
 /// Where the error of a snapshot comes from, known where several seeds were rendered: mean squares over pixels, without

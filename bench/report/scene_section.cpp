@@ -1,5 +1,7 @@
 #include "bench/report/scene_section.h"
 
+#include <fmt/format.h>
+
 #include "bench/report/html_text.h"
 #include "bench/report/scene_plots.h"
 #include "bench/report/scene_tables.h"
@@ -8,17 +10,27 @@
 namespace wavecrest {
 namespace {
 
-std::string paneOf(const ReportImage& image, const std::string& name, const EmbeddedImages& images) {
-  return viewerPane(
-      {.name = name, .label = image.label, .uri = images.uri(image), .width = image.width, .height = image.height});
+// Where the floats of an image are: of the reference, or of series `number`, from 1 on.
+std::string floatFile(size_t scene, size_t number) { return fmt::format("report.floats/{}-{}.js", scene, number); }
+
+std::string paneOf(const ReportImage& image, const std::string& name, const EmbeddedImages& images,
+                   const std::string& floats = {}) {
+  return viewerPane({.name = name,
+                     .label = image.label,
+                     .uri = images.uri(image),
+                     .width = image.width,
+                     .height = image.height,
+                     .floats = image.floats.empty() ? "" : floats});
 }
 
 // Pictures, with the reference first, and the error map of each.
-std::string renderImages(const ReportScene& scene, const EmbeddedImages& images) {
+std::string renderImages(const ReportScene& scene, size_t index, const EmbeddedImages& images) {
   if (scene.reference.rgb.empty()) return "";
-  std::string pictures = paneOf(scene.reference, "reference", images), maps;
+  std::string pictures = paneOf(scene.reference, "reference", images, floatFile(index, 0)), maps;
+  size_t number = 0;
   for (const ReportSeries& series : scene.series) {
-    if (!series.finalImage.rgb.empty()) pictures += paneOf(series.finalImage, series.label, images);
+    const std::string floats = floatFile(index, ++number);
+    if (!series.finalImage.rgb.empty()) pictures += paneOf(series.finalImage, series.label, images, floats);
     if (!series.errorMap.rgb.empty()) maps += paneOf(series.errorMap, series.label, images);
   }
   std::string groups = viewerGroup("Pictures", "", pictures);
@@ -45,10 +57,24 @@ std::string renderScene(const ConvergenceReport& report, size_t index, const Emb
   append(html, "<section id=\"scene-{}\"><h2>{}</h2><p class=\"facts\">{} × {} pixels. Reference: {}.</p>\n", index,
          escapeHtml(scene.name), scene.width, scene.height, escapeHtml(scene.referenceOrigin));
   html += "<h3>Error over time</h3>\n" + renderPlots(report, scene);
-  html += renderImages(scene, images);
+  html += renderImages(scene, index, images);
   html += "<h3>At the end</h3>\n" + renderResults(report, scene);
   html += renderBias(scene) + renderPathClasses(scene) + renderStages(scene) + renderSettings(scene);
   return html + "</section>\n";
+}
+
+std::vector<std::pair<std::string, std::string>> floatFiles(const ConvergenceReport& report) {
+  std::vector<std::pair<std::string, std::string>> files;
+  const auto add = [&](const ReportImage& image, const std::string& file) {
+    if (image.floats.empty()) return;
+    files.emplace_back(file, fmt::format("wavecrestFloats(\"{}\", \"{}\");\n", file, image.floats));
+  };
+  for (size_t scene = 0; scene < report.scenes.size(); ++scene) {
+    add(report.scenes[scene].reference, floatFile(scene, 0));
+    size_t number = 0;
+    for (const ReportSeries& series : report.scenes[scene].series) add(series.finalImage, floatFile(scene, ++number));
+  }
+  return files;
 }
 
 }  // namespace wavecrest

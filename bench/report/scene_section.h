@@ -11,4 +11,7 @@ namespace wavecrest {
 /// `<section>` for report.scenes[index].
 std::string renderScene(const ConvergenceReport& report, size_t index, const EmbeddedImages& images);
 
+/// Scripts beside the page, by their path from it, that hold the floats of its images.
+std::vector<std::pair<std::string, std::string>> floatFiles(const ConvergenceReport& report);
+
 }  // namespace wavecrest

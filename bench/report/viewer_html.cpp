@@ -7,10 +7,14 @@
 namespace wavecrest {
 
 std::string viewerPane(const ViewerPane& pane) {
+  const std::string floats = pane.floats.empty()
+                                 ? ""
+                                 : fmt::format(" data-floats=\"{}\" data-width=\"{}\" data-height=\"{}\"",
+                                               escapeHtml(pane.floats), pane.width, pane.height);
   return fmt::format(
-      "<figure class=\"pane\" data-name=\"{}\"><div class=\"frame\"><img src=\"{}\" width=\"{}\" height=\"{}\" "
+      "<figure class=\"pane\" data-name=\"{}\"{}><div class=\"frame\"><img src=\"{}\" width=\"{}\" height=\"{}\" "
       "alt=\"{}\"></div><figcaption>{}</figcaption></figure>\n",
-      escapeHtml(pane.name), pane.uri, pane.width, pane.height, escapeHtml(pane.label), escapeHtml(pane.label));
+      escapeHtml(pane.name), floats, pane.uri, pane.width, pane.height, escapeHtml(pane.label), escapeHtml(pane.label));
 }
 
 std::string viewerGroup(std::string_view kind, std::string_view head, std::string_view panes) {

@@ -13,6 +13,7 @@ struct ViewerPane {
   std::string label;  ///< below it
   std::string_view uri;
   uint32_t width = 0, height = 0;
+  std::string floats = {};  ///< where its floats are, "#ID" or a script beside the page; empty: there are none
 };
 std::string viewerPane(const ViewerPane& pane);
 

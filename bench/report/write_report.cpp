@@ -12,6 +12,7 @@
 #include "bench/report/html_page.h"
 #include "bench/report/plot_files.h"
 #include "bench/report/results_folder.h"
+#include "bench/report/scene_section.h"
 #include "bench/report/series_values.h"
 #include "bench/results/within_folder.h"
 #include "metrics/image/atomic_file.h"
@@ -44,6 +45,13 @@ WrittenReport writeReport(std::span<const fs::path> paths, const ReportFiles& fi
   report.baseline = files.baseline;
   const fs::path folder = fs::is_directory(paths[0]) ? paths[0] : paths[0].parent_path();
   std::vector<fs::path> written{write(folder, "report.html", renderReport(report))};
+  // The light behind the pictures, which the page reads when somebody asks for it. What an earlier report left goes.
+  std::error_code ignored;
+  fs::remove_all(withinFolder(folder, "report.floats"), ignored);
+  for (const auto& [name, script] : floatFiles(report)) {
+    fs::create_directories(withinFolder(folder, name).parent_path());
+    write(folder, name.c_str(), script);
+  }
   if (files.csv) {
     const std::pair<const char*, std::string> tables[] = {{"measurements.csv", measurementsAsCsv(report)},
                                                           {"summary.csv", summaryAsCsv(report)},

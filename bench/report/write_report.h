@@ -21,8 +21,9 @@ struct WrittenReport {
   std::vector<ReportClaim> claims;  ///< as the page shows them
 };
 
-/// Writes report.html, and what else is asked for, into the folder of the first path. Errors as collectReport, and
-/// ImageError if a file cannot be written.
+/// Writes report.html with the floats of its images in report.floats, and what else is asked for, into the folder of
+/// the first path; `files` of the result are without the floats. Errors as collectReport, and ImageError if a file
+/// cannot be written.
 WrittenReport writeReport(std::span<const std::filesystem::path> paths, const ReportFiles& files = {});
 
 }  // namespace wavecrest

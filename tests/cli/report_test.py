@@ -1,11 +1,14 @@
 """`wavecrest report` on images of other programs: their scores are those of `wavecrest compare`."""
 
+import base64
 import csv
 import json
 import os
+import re
 import shutil
 import struct
 import unittest
+import zlib
 
 from harness import INPUT, CommandTest, read_pfm
 
@@ -44,12 +47,25 @@ def write_half_exr(path, width, height, pixels):
     path.write_bytes(header + table + rows)
 
 
+def read_floats(text, width, height):
+    """Rows of pixels from the top left, of a text of bench/report/float_image.h."""
+    data, count = zlib.decompress(base64.b64decode(text)), 3 * width * height
+    codes = []
+    for place in range(count):
+        column, row = place % width, place // width % height
+        before = codes[-1] if column else codes[-width] if row else 0
+        codes.append((before + 256 * data[place] + data[count + place]) % 65536)
+    planes = struct.unpack(f"<{count}e", struct.pack(f"<{count}H", *codes))
+    return [list(pixel) for pixel in zip(*(planes[i * width * height : (i + 1) * width * height] for i in range(3)))]
+
+
 class OtherPrograms(CommandTest):
     """Images without any word of wavecrest in them, as another program would leave them."""
 
     def setUp(self):
         super().setUp()
         (self.folder / "box").mkdir()
+        self.pixels = {}
         for name, seed, spp in (("reference", 1, 64), ("path.0.5", 2, 1), ("path.2s", 3, 4), ("my bdpt.1500ms", 4, 4)):
             self.run_wavecrest(
                 "render", "cornell-mirror", "--size", f"{SIZE[0]}x{SIZE[1]}", "--spp", spp, "--seed", seed, "--progress",
@@ -59,6 +75,7 @@ class OtherPrograms(CommandTest):
             rows = [[values[3 * (y * width + x) : 3 * (y * width + x) + 3] for x in range(width)] for y in range(height)]
             pixels = [pixel for row in reversed(rows) for pixel in row]
             write_half_exr(self.folder / "box" / f"{name}.exr", width, height, pixels)
+            self.pixels[name] = [list(struct.unpack("<3e", struct.pack("<3e", *pixel))) for pixel in pixels]
 
     def scores(self, *arguments):
         """The scores of the last `report --csv`: (series, seconds) -> {metric: value}."""
@@ -76,6 +93,21 @@ class OtherPrograms(CommandTest):
             ("q_mos", told["hdrvdp2"]["q_mos"]), ("flip", told["flip"]),
         ):  # fmt: skip
             self.assertEqual(float(scores[name]), value, name)  # the same numbers, to the last digit
+
+    def test_the_light_behind_the_pictures_lies_beside_the_page(self):
+        (self.folder / "box" / "report.floats").mkdir()
+        self.write("box/report.floats/7-7.js", "of an earlier report")
+        self.run_wavecrest("report", "box")
+        page = (self.folder / "box" / "report.html").read_text(encoding="utf-8")
+        panes = dict(re.findall(r'data-name="([^"]*)" data-floats="([^"]*)" data-width="48" data-height="32"', page))
+        self.assertEqual(sorted(panes), ["my bdpt", "path", "reference"])
+        files = sorted(f"report.floats/{path.name}" for path in (self.folder / "box" / "report.floats").iterdir())
+        self.assertEqual(files, sorted(panes.values()))
+        for name, image in (("reference", "reference"), ("path", "path.2s"), ("my bdpt", "my bdpt.1500ms")):
+            script = (self.folder / "box" / panes[name]).read_text(encoding="utf-8")
+            told = re.fullmatch(r'wavecrestFloats\("([^"]*)", "([^"]*)"\);\n', script)
+            self.assertEqual(told[1], panes[name])
+            self.assertEqual(read_floats(told[2], *SIZE), self.pixels[image], name)
 
     def test_names_say_method_and_time(self):
         scores = self.scores("box")

@@ -95,6 +95,7 @@ class Viewer {
     this.addTools();
     for (const frame of root.querySelectorAll(".frame")) this.addGestures(frame);
     root.addEventListener("keydown", (event) => this.onKey(event));
+    this.floats = this.groups[0].querySelector(".pane[data-floats]") ? new FloatTools(this) : null;
     this.showGroup(0);
     this.flip(false);
   }
@@ -177,14 +178,18 @@ class Viewer {
     if (!this.wiping) return;
     const over = document.createElement("div");
     over.className = "over";
-    over.append(this.groups[0].querySelector(".frame img").cloneNode());
+    const frame = this.groups[0].querySelector(".frame"), light = frame.querySelector("canvas.light");
+    over.append((light ?? frame.querySelector("img")).cloneNode());
+    if (light) over.firstChild.getContext("2d").drawImage(light, 0, 0);
     this.panes[this.shown].querySelector(".frame").append(over);
     this.apply();
   }
 
   onKey(event) {
+    if (event.target.type === "range" && event.key.startsWith("Arrow")) return;  // the slider's own
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     const digit = Number(event.key);
+    if (!event.ctrlKey && !event.metaKey && this.floats?.onKey(event.key)) return event.preventDefault();
     if (event.key === "w") return this.setWipe(!this.wiping);
     if (event.key === "+" || event.key === "-") return this.zoomTo(this.view.zoom * (event.key === "+" ? 2 : 0.5), 0.5, 0.5);
     if (event.key === "m" && this.groups.length > 1) return this.showGroup((this.group + 1) % this.groups.length);
@@ -210,7 +215,8 @@ class Viewer {
     this.view.y = Math.min(Math.max(this.view.y, 0), room);
     const { zoom, x, y } = this.view;
     this.root.classList.toggle("zoomed", zoom > 1);
-    for (const image of this.root.querySelectorAll(".frame img")) {
+    this.floats?.showEdges();
+    for (const image of this.root.querySelectorAll(".frame img, .frame canvas")) {
       image.style.transform = `scale(${zoom}) translate(${-100 * x}%, ${-100 * y}%)`;
     }
   }
@@ -242,7 +248,7 @@ class Viewer {
         this.root.style.setProperty("--split", `${100 * Math.min(Math.max(place(event)[0], 0), 1)}%`);
       }
       const before = pointers.get(event.pointerId);
-      if (!before) return;
+      if (!before || this.floats?.cropping) return;
       const [u, v, box] = place(event);
       const other = [...pointers.values()].find((pointer) => pointer.pointerId !== event.pointerId);
       if (other) {

@@ -1,0 +1,301 @@
+"""The viewer of `compare --html` and of reports in a headless Chromium: floats behind the pictures.
+
+Chromium is driven by WebDriver, which is HTTP and JSON. Expected values come from the images that were compared, read
+here by code that shares nothing with the page or the program.
+"""
+
+import base64
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import tempfile
+import time
+import unittest
+import urllib.error
+import urllib.request
+from xml.etree import ElementTree
+
+from harness import CommandTest, read_pfm
+
+DRIVER = shutil.which("chromedriver")
+ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
+# Of one answer of the browser, which takes part of a second: whatever hangs fails before the limit of ctest.
+PATIENCE_SECONDS = 60
+
+
+class Browser:
+    """One page in one headless Chromium, which needs no network."""
+
+    def __init__(self, width, height, folder):
+        # No proxy stands between this process, the driver and the browser.
+        self.opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+        self.log = folder / "chromedriver.log"
+        # Whatever the browser leaves there goes with it.
+        self.leavings = tempfile.TemporaryDirectory(prefix="wavecrest_browser_", ignore_cleanup_errors=True)
+        environment = os.environ | {"TMPDIR": self.leavings.name}
+        with open(self.log, "wb") as log:
+            self.driver = subprocess.Popen([DRIVER, "--port=0"], stdout=log, stderr=subprocess.STDOUT, env=environment)
+        try:
+            self.base = f"http://127.0.0.1:{self.port()}"
+            self.base += "/session/" + self.begin(width, height, folder)
+        except BaseException:
+            self.end_driver()
+            raise
+
+    def port(self):
+        """The free one that the driver has found."""
+        deadline = time.monotonic() + PATIENCE_SECONDS
+        while not (told := re.search(r"started successfully on port (\d+)", self.log.read_text(errors="replace"))):
+            if self.driver.poll() is not None or time.monotonic() > deadline:
+                raise RuntimeError("chromedriver does not start: " + self.log.read_text(errors="replace"))
+            time.sleep(0.02)
+        return int(told[1])
+
+    def begin(self, width, height, folder):
+        arguments = [
+            "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-background-networking",
+            "--no-proxy-server", "--force-device-scale-factor=1", f"--window-size={width},{height}",
+        ]  # fmt: skip
+        options = {"args": arguments, "prefs": {"download.default_directory": str(folder)}}
+        patience = 1000 * PATIENCE_SECONDS
+        capabilities = {"goog:chromeOptions": options, "timeouts": {"script": patience, "pageLoad": patience}}
+        return self.ask("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})["sessionId"]
+
+    def ask(self, method, path, content=None):
+        data = None if content is None else json.dumps(content).encode()
+        request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json"}, method=method)
+        try:
+            with self.opener.open(request, timeout=2 * PATIENCE_SECONDS) as answer:
+                return json.load(answer)["value"]
+        except urllib.error.HTTPError as error:
+            raise RuntimeError(error.read().decode()) from error
+
+    def open(self, url):
+        self.ask("POST", "/url", {"url": url})
+
+    def run(self, script, *arguments):
+        """What the script returns, once a promise of it is kept."""
+        wrapped = f"const done = arguments[arguments.length - 1]; (async () => {{ {script} }})().then(done, (error) => done('failed: ' + error))"
+        result = self.ask("POST", "/execute/async", {"script": wrapped, "args": list(arguments)})
+        if isinstance(result, str) and result.startswith("failed: "):
+            raise RuntimeError(result)
+        return result
+
+    def find(self, selector):
+        return self.ask("POST", "/element", {"using": "css selector", "value": selector})[ELEMENT]
+
+    def until(self, condition, *arguments):
+        """Waits until the expression is true in the page."""
+        self.run(f"while (!({condition})) await new Promise((resolve) => setTimeout(resolve, 10));", *arguments)
+
+    def click(self, text):
+        """The button of that text, by the pointer: a browser lets a script begin one download, its user each."""
+        button = self.ask("POST", "/element", {"using": "xpath", "value": f"//button[normalize-space()='{text}']"})[ELEMENT]
+        self.ask("POST", f"/element/{button}/click", {})
+
+    def pointer(self, *actions):
+        self.ask("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": list(actions)}]})
+
+    def close(self):
+        try:
+            self.ask("DELETE", "")
+        finally:
+            self.end_driver()
+
+    def end_driver(self):
+        self.driver.terminate()
+        try:
+            self.driver.wait(PATIENCE_SECONDS)
+        except subprocess.TimeoutExpired:
+            self.driver.kill()
+            self.driver.wait()
+        self.leavings.cleanup()
+
+
+def half(value):
+    """The nearest number of eleven bits."""
+    if value == 0:
+        return 0
+    exponent = max(math.frexp(value)[1], -13)
+    return round(value * 2 ** (11 - exponent)) / 2 ** (11 - exponent)
+
+
+def top_down(name):
+    width, height, values = read_pfm(name)
+    rows = [values[3 * width * y : 3 * width * (y + 1)] for y in range(height)]
+    return width, height, [value for row in reversed(rows) for value in row]
+
+
+@unittest.skipUnless(DRIVER and shutil.which("chromium"), "needs chromium and chromedriver: tools/install-packages browser")
+class ViewerTest(CommandTest):
+    SIZE = "48x32"
+
+    def setUp(self):
+        super().setUp()
+        for name, spp in (("reference", 64), ("noisy", 1), ("better", 8)):
+            self.run_wavecrest("render", "cornell-diffuse", "--size", self.SIZE, "--spp", spp, "--seed", spp, "-o", f"{name}.pfm", "--quiet")  # fmt: skip
+        self.browser = Browser(1400, 1000, self.folder)
+        self.addCleanup(self.browser.close)
+
+    def open_comparison(self):
+        self.run_wavecrest("compare", "reference.pfm", "noisy.pfm", "better.pfm", "--html", "page.html", "--metrics", "rmse,relmse")
+        self.browser.open((self.folder / "page.html").as_uri())
+
+    def floats(self):
+        """The floats of each pane as the page has read them."""
+        return self.browser.run(
+            "const panes = [...document.querySelectorAll('.pane[data-floats]')];"
+            "for (const pane of panes) pane.read = await decodeFloats(await floatText(pane.dataset.floats), +pane.dataset.width, +pane.dataset.height);"
+            "return panes.map((pane) => [pane.dataset.name, [...pane.read]])"
+        )
+
+    def test_floats_are_those_of_the_images(self):
+        self.open_comparison()
+        panes = self.floats()
+        self.assertEqual([name for name, _ in panes], ["reference", "noisy", "better"])
+        for name, values in panes:
+            _, _, expected = top_down(self.path(f"{name}.pfm"))
+            self.assertEqual(values, [half(value) for value in expected], name)
+
+    def test_exposure_luminance_and_wipe(self):
+        self.open_comparison()
+        canvas = "document.querySelectorAll('.pane')[1].querySelector('canvas.light')"
+        pixel = f"return [...{canvas}.getContext('2d').getImageData(20, 20, 1, 1).data]"
+        self.assertFalse(self.browser.run(f"return Boolean({canvas})"))
+        self.browser.run("const slider = document.querySelector('.floats input'); slider.value = 2; slider.dispatchEvent(new Event('input'))")
+        self.browser.until(canvas)
+        width, _, values = top_down(self.path("noisy.pfm"))
+        at = 3 * (20 * width + 20)
+        self.assertIn("+2 EV", self.browser.run("return document.querySelector('.floats label output').textContent"))
+        bright = self.browser.run(pixel)
+        for code, value in zip(bright, values[at : at + 3]):
+            light = min(max(4 * half(value), 0), 1)
+            expected = 255 * (12.92 * light if light <= 0.0031308 else 1.055 * light ** (1 / 2.4) - 0.055)
+            self.assertLess(abs(code - expected), 2)
+        # The wipe shows the reference as exposed.
+        self.browser.click("Wipe")
+        self.assertEqual(self.browser.run("return document.querySelectorAll('.over canvas').length"), 1)
+        self.browser.click("Side by side")
+        self.browser.click("Luminance")
+        self.browser.until("document.querySelector('.values output').textContent.startsWith('luminance')")
+        self.assertNotEqual(self.browser.run(pixel), bright)
+        # Back to the pictures of the page. Arrows are the slider's while it has the focus.
+        self.browser.click("Luminance")
+        self.browser.run("document.querySelector('.floats input').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft', bubbles: true }))")
+        self.assertFalse(self.browser.run("return document.querySelector('.viewer').classList.contains('flip')"))
+        self.browser.run("document.querySelector('.viewer').dispatchEvent(new KeyboardEvent('keydown', { key: '0' }))")
+        self.browser.until(f"!{canvas}")
+
+    def test_pixels_that_are_no_numbers_have_a_luminance(self):
+        name = self.path("noisy.pfm")
+        data = bytearray(pathlib.Path(name).read_bytes())
+        data[-12:] = struct.pack("<3f", math.nan, math.inf, -math.inf)
+        pathlib.Path(name).write_bytes(data)
+        self.open_comparison()
+        self.browser.click("Luminance")
+        self.browser.until("document.querySelectorAll('canvas.light').length === 3")
+
+    def test_floats_need_a_reference_with_floats(self):
+        self.run_wavecrest("render", "cornell-diffuse", "--size", self.SIZE, "--spp", 4, "-o", "codes.png", "--quiet")
+        self.run_wavecrest("compare", "codes.png", "noisy.pfm", "--html", "page.html", "--metrics", "rmse")
+        self.browser.open((self.folder / "page.html").as_uri())
+        counts = "return [document.querySelectorAll('.ready .frame').length > 1, document.querySelectorAll('.floats, [data-floats]').length]"
+        self.assertEqual(self.browser.run(counts), [True, 0])
+
+    def test_a_crop_has_errors_of_its_own_and_is_exported(self):
+        self.open_comparison()
+        self.browser.click("Crop")
+        self.browser.until("[...document.querySelectorAll('.pane[data-floats]')].every((pane) => pane.image)")
+        self.browser.run("document.querySelector('.viewer').scrollIntoView()")
+        frame = self.browser.find(".pane .frame")
+        box = self.browser.run("const box = document.querySelector('.frame').getBoundingClientRect(); return [box.width, box.height]")
+        width, height, _ = top_down(self.path("reference.pfm"))
+
+        def move(x, y):
+            # From the middle of the frame to the middle of a pixel.
+            offset = lambda pixel, count, size: round((pixel + 0.5) / count * size - size / 2)  # noqa: E731
+            return {"type": "pointerMove", "origin": {ELEMENT: frame}, "x": offset(x, width, box[0]), "y": offset(y, height, box[1])}
+
+        self.browser.pointer(move(5, 4), {"type": "pointerDown", "button": 0}, move(20, 11), {"type": "pointerUp", "button": 0})
+        text = self.browser.run("return document.querySelector('.crop-result').innerText")
+        self.assertIn("16 × 8 pixels at (5, 4)", text)
+        # Values of the pixel under the pointer.
+        values = self.browser.run("return document.querySelector('.values output').textContent")
+        self.assertTrue(values.startswith("(20, 11)  reference "), values)
+        reference = top_down(self.path("reference.pfm"))[2]
+        for name in ("noisy", "better"):
+            test = top_down(self.path(f"{name}.pfm"))[2]
+            pairs = [
+                (half(test[i]), half(reference[i]))
+                for y in range(4, 12) for i in range(3 * (y * width + 5), 3 * (y * width + 21))
+            ]  # fmt: skip
+            rmse = (sum((x - r) ** 2 for x, r in pairs) / len(pairs)) ** 0.5
+            relmse = sum((x - r) ** 2 / (r * r + 0.01) for x, r in pairs) / len(pairs)
+            shown = re.search(rf"{name}\s+(\S+)\s+(\S+)\s+(\S+)", text)
+            self.assertAlmostEqual(float(shown[1]) / rmse, 1, delta=0.006)
+            self.assertAlmostEqual(float(shown[2]) / relmse, 1, delta=0.006)
+        for button, file, begin in (("PNG", "crop.png", b"\x89PNG"), ("SVG", "crop.svg", b"<svg "), ("LaTeX", "crop.tex", b"\\begin{tabular}")):
+            self.browser.click(button)
+            self.wait_for_download(file)
+            self.assertTrue((self.folder / file).read_bytes().startswith(begin), file)
+        names = {"svg": "http://www.w3.org/2000/svg"}
+        figure = ElementTree.parse(self.folder / "crop.svg").getroot()
+        self.assertEqual([label.text.split(":")[0] for label in figure.findall("svg:text", names)], ["reference", "noisy", "better"])
+        for image in figure.findall("svg:image", names):
+            picture = base64.b64decode(image.get("href").removeprefix("data:image/png;base64,"))
+            self.assertEqual(struct.unpack_from(">II", picture, 16), (16, 8))
+
+    def wait_for_download(self, file):
+        deadline = time.monotonic() + PATIENCE_SECONDS
+        while not (self.folder / file).exists() or list(self.folder.glob("*.crdownload")):
+            self.assertLess(time.monotonic(), deadline, f"{file} is not downloaded")
+            time.sleep(0.02)
+
+    def test_a_report_reads_floats_beside_it(self):
+        (self.folder / "images").mkdir()
+        for name, spp in (("reference", 64), ("pt.1", 1), ("pt.4", 4), ("lt.1", 1)):
+            self.run_wavecrest("render", "cornell-diffuse", "--size", self.SIZE, "--spp", spp, "-m", name.split(".")[0].replace("reference", "pt"),
+                               "-o", f"images/{name}.exr", "--quiet")  # fmt: skip
+        self.run_wavecrest("report", "images")
+        self.browser.open((self.folder / "images/report.html").as_uri())
+        panes = self.floats()
+        self.assertEqual(panes[0][0], "reference")
+        self.assertGreaterEqual(len(panes), 3)
+        self.run_wavecrest("render", "cornell-diffuse", "--size", self.SIZE, "--spp", 64, "-o", "same.pfm", "--quiet")
+        self.assertEqual(panes[0][1], [half(value) for value in top_down(self.path("same.pfm"))[2]])
+        # A click on a picture asks for the values.
+        self.browser.run("document.querySelector('.viewer').scrollIntoView()")
+        middle = {"type": "pointerMove", "origin": {ELEMENT: self.browser.find(".pane .frame")}, "x": 0, "y": 0}
+        self.browser.pointer(middle, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0})
+        self.browser.until("document.querySelector('.pane[data-floats]').image")
+        self.browser.pointer(middle | {"x": 3})
+        values = self.browser.run("return document.querySelector('.values output').textContent")
+        self.assertRegex(values, r"^\(\d+, \d+\)  reference ")
+
+    def test_nothing_is_wider_than_the_page_nor_moves(self):
+        top = "return document.querySelector('.pane .frame').getBoundingClientRect().top"
+        for width in (1400, 900, 700, 400):
+            self.open_comparison()
+            self.browser.ask("POST", "/window/rect", {"width": width, "height": 900})
+            self.browser.until("innerWidth === arguments[0]", width)
+            self.browser.click("Crop")
+            self.browser.until("[...document.querySelectorAll('.pane[data-floats]')].every((pane) => pane.image)")
+            frame = {ELEMENT: self.browser.find(".pane .frame")}
+            self.browser.run("document.querySelector('.viewer').scrollIntoView()")
+            place = {"type": "pointerMove", "origin": frame, "x": 0, "y": 0}
+            before = self.browser.run(top)
+            self.browser.pointer(place, {"type": "pointerDown", "button": 0}, place | {"x": 20, "y": 20}, {"type": "pointerUp", "button": 0})
+            self.assertEqual(self.browser.run(top), before, "pictures moved under the pointer")
+            for element in ("documentElement", "querySelector('.crop-result')"):
+                widths = self.browser.run(f"const element = document.{element}; return [element.scrollWidth, element.clientWidth]")
+                self.assertGreater(widths[1], 0, element)
+                self.assertLessEqual(widths[0], widths[1], f"{element} at {width}")
+
+
+if __name__ == "__main__":
+    unittest.main()
