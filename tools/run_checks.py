@@ -135,6 +135,7 @@ SANITIZED_TESTS = (
     "load_fuzz_test",
     "load_test",
     "metrics_test",
+    "ranks_test",
     "results_test",
     "session_test",
     "stages_test",

@@ -217,14 +217,14 @@ class Clock(CommandTest):
         self.assertEqual(list(self.folder.glob("image.0*")), [])
 
     def test_a_partial_image_is_written_on_request(self):
-        size = ["--size", "640x480", "--threads", "1"]
+        size = ["--size", "1280x960", "--threads", "1"]
         arguments = ["render", "cornell-diffuse", *size, "--time", "0.02s", "--partial", "-o", "image.exr"]
         self.assertIn("no whole pass over the film", self.run_wavecrest(*arguments).stderr)
         self.assertEqual(read_exr_header(self.path("image.exr"))["wavecrest:iterations"], "0")
         self.assertNotIn("whole pass", self.render("--spp", "1", "--partial", "-o", "image.exr").stderr)
 
     def test_a_checkpoint_keeps_what_is_no_image_yet(self):
-        options = ["cornell-diffuse", "--size", "640x480", "--threads", "1", "--checkpoint", "state", "-o", "image.pfm"]
+        options = ["cornell-diffuse", "--size", "1280x960", "--threads", "1", "--checkpoint", "state", "-o", "image.pfm"]
         result = self.run_wavecrest("render", *options, "--time", "0.02s", expect=INPUT)
         self.assertRegex(result.stderr, r"expected more than [0-9.e-]+ s with --resume, or --partial")
         self.run_wavecrest("render", *options, "--resume", "--spp", "1")
