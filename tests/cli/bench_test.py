@@ -59,7 +59,7 @@ class Bench(CommandTest):
             for name in ("paths_per_second", "paths_per_cpu_second", "rays_per_second"):
                 low, high = entry[name + "_interval"]
                 self.assertTrue(0 < low <= entry[name] <= high, f"{entry['method']}: {name}")
-            self.assertEqual("bare_embree" in entry, entry["method"] == "pt", entry["method"])
+            self.assertEqual("bare_embree" in entry, entry["method"] in ("pt", "gpt"), entry["method"])
             for rates in (entry["bare_embree"][kind] for kind in ("closest", "any_hit") if "bare_embree" in entry):
                 self.assertGreater(rates["bare_rays_per_second"], 0)
                 self.assertGreater(rates["bare_not_robust_rays_per_second"], 0)

@@ -41,7 +41,9 @@ class Case:
         """What wavecrest renders. Methods of many strategies take longer to a sample and leave less noise."""
         spp = self.spp // 2 if method in ("bpt", "vcm") else self.spp
         depths = ("--max-depth", self.max_depth, "--rr-depth", renderers.RUSSIAN_ROULETTE_DEPTH)
-        return renderers.WavecrestRun(self.scene, method, spp, self.size, (*depths, *self.options))
+        # The bias of merges of the study's radius is far below the noise.
+        radius = ("--radius", "0.001") if method == "vcm" else ()
+        return renderers.WavecrestRun(self.scene, method, spp, self.size, (*depths, *radius, *self.options))
 
 
 def read_cases(group=None, name=None, method=None):
