@@ -8,8 +8,8 @@
 
 WAVECREST_SIMD_BEGIN
 
-// 1 to 2 ulp at most, and the same bits on every processor: the guesses of SSE and AVX2 differ by maker, those of AVX-512
-// are defined.
+// 1 to 2 ulp at most, and the same bits on every processor: the guesses of SSE and AVX2 differ by maker, those of
+// AVX-512 are defined.
 WAVECREST_INLINE Float repeatableReciprocal(Float a) {
 #if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2
   return Float(1) / a;
