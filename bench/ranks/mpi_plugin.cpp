@@ -77,5 +77,8 @@ constexpr MpiFunctions kFunctions{kMpiPluginVersion, start, send, sent, arrived,
 }  // namespace
 }  // namespace wavecrest
 
+// The symbol that the program looks for, with the library's name before it as C has it.
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" __attribute__((visibility("default"))) const wavecrest::MpiFunctions* wavecrest_mpi();
 const wavecrest::MpiFunctions* wavecrest_mpi() { return &wavecrest::kFunctions; }
+// NOLINTEND(readability-identifier-naming)

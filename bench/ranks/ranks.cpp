@@ -266,6 +266,7 @@ void Ranks::complete(SumLabel label, std::vector<Mailbox::Bytes> messages) {
   }
   const Clock::time_point begin = Clock::now();
   std::vector<FilmSum::Bytes> contributions;
+  contributions.reserve(messages.size());
   for (const Mailbox::Bytes& message : messages) contributions.push_back(FilmSum::Bytes(message).subspan(kHead));
   sum_.sumUp(contributions);
   if (!first()) {

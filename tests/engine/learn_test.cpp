@@ -19,7 +19,7 @@ namespace {
 
 TEST(Blocks, haveAsManyIterationsAsAllBeforeThem) {
   uint64_t end = 0;
-  for (const uint64_t next : {1, 2, 4, 8, 16, 32}) {
+  for (uint64_t next = 1; next <= 32; next *= 2) {
     for (uint64_t iteration = end; iteration < next; ++iteration) {
       EXPECT_EQ(beginOfBlock(iteration), end) << iteration;
       EXPECT_EQ(endOfBlock(iteration), next) << iteration;

@@ -29,7 +29,8 @@ const Directions& sphereDirections() {
     std::normal_distribution<double> normal;
     for (size_t i = 0; i < kDirections; ++i) {
       std::array<double, 3> d{normal(random), normal(random), normal(random)};
-      if (i < 27 && i != 13) d = {double(i % 3) - 1, double(i / 3 % 3) - 1, double(i / 9) - 1};
+      const size_t column = i % 3, row = i / 3 % 3, layer = i / 9;
+      if (i < 27 && i != 13) d = {double(column) - 1, double(row) - 1, double(layer) - 1};
       const double length = std::hypot(d[0], d[1], d[2]);
       out.x[i] = static_cast<float>(d[0] / length);
       out.y[i] = static_cast<float>(d[1] / length);
