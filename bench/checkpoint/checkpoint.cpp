@@ -54,7 +54,7 @@ Json chainIdentity(const MetropolisSettings& chains) {
 // Which of several processes renders its share at the same time as others theirs; 1/1: no others.
 std::string processOf(const RenderSettings& settings) {
   if (!settings.share.rounds) return "1/1";
-  const std::string name = fmt::format("{}/{}", settings.share.part + 1, settings.share.parts);
+  std::string name = fmt::format("{}/{}", settings.share.part + 1, settings.share.parts);
   // The last round of iterations is cut into shares by where the image ends.
   if (!settings.share.iterations || settings.method == Method::mlt) return name;
   return fmt::format("{} of {} iterations", name, *settings.share.iterations);

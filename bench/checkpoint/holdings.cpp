@@ -54,6 +54,7 @@ std::string missingIterations(const Holdings& holdings) {
   const std::vector<Holdings::Run> gaps = gapsOf(holdings.runs, holdings.of);
   if (gaps.empty()) return {};
   std::vector<std::string> words;
+  words.reserve(gaps.size());
   for (const Holdings::Run& gap : gaps) words.push_back(describe(gap));
   std::string text = fmt::format("iterations {}", joined(words));
   if (holdings.of == 0) return text;
