@@ -54,9 +54,10 @@ class ScheduleGraph {
   }
 
  private:
-  // The node of a phase: runs a task, and reports its end to the barriers.
-  void runTask(const ScheduledTask& task) noexcept {
+  // The node of a phase: runs a task, a copy of the message, and reports its end to the barriers.
+  void runTask(ScheduledTask task) noexcept {
     const TaskOrder::Task scope(order_);
+    observe(&phases_);
     Ended ended{.task = task};
     try {
       if (!recorded_.records()) {
@@ -69,6 +70,7 @@ class ScheduleGraph {
     } catch (...) {
       fail();
     }
+    publish(&barriers_);
     barriers_.try_put(ended);
   }
   // The node of the barriers: one message at a time. Hands out tasks as long as there are threads for them.
@@ -84,6 +86,7 @@ class ScheduleGraph {
         const std::optional<ScheduledTask> task = state_.take(mayBegin_);
         if (!task) break;
         ++running_;
+        publish(&phases_);
         phases_[task->phase].try_put(*task);
       }
     } catch (...) {
