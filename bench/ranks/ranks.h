@@ -86,7 +86,6 @@ class Ranks {
   void takeText(uint32_t from, std::string text);
   void takeContribution(uint32_t from, SumLabel label, Mailbox::Bytes message);
   void complete(SumLabel label, std::vector<Mailbox::Bytes> messages);
-  void lose(uint32_t rank);
   void callStop();
   // Waits until ready() is true, with the mutex held. Throws RanksError where that takes too long after a stop, or a
   // process is lost.

@@ -49,7 +49,6 @@ struct PilotReference {
 
   Image mean;
   NoiseSamples noises;
-  bool biased = false;       // by how much is not known
   PreparedReference noisy;   // as it is
   PreparedReference likely;  // with as much local contrast as the truth has: the noise's share of the variance is taken
   PreparedReference smooth;  // out, once in the root and once in full (Wiener's filter)
