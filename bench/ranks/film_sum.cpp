@@ -10,16 +10,24 @@
 namespace wavecrest {
 namespace {
 
-// Chains as a contribution has them.
-void saveChains(StateWriter& out, uint64_t mutations, uint64_t directPaths, uint64_t epochs,
-                const ChainCounters& counters, const std::vector<StuckChain>& stuck) {
+// What chains have done, as a contribution has it.
+void saveChains(StateWriter& out, const ChainStatistics& chains) {
   static_assert(sizeof(ChainCounters) == (2 * kMutationKinds + 4) * sizeof(uint64_t), "padding would be sent");
   static_assert(sizeof(StuckChain) == 4 * sizeof(uint32_t), "padding would be sent");
-  out.value(mutations);
-  out.value(directPaths);
-  out.value(epochs);
-  out.value(counters);
-  out.list(stuck);
+  out.value(chains.mutations);
+  out.value(chains.directPaths);
+  out.value(chains.epochs);
+  out.value(chains.counters);
+  out.list(chains.stuck);
+}
+
+void addSavedChains(ChainStatistics& sum, StateReader& in) {
+  sum.mutations += in.value<uint64_t>();
+  sum.directPaths += in.value<uint64_t>();
+  sum.epochs = std::max(sum.epochs, in.value<uint64_t>());
+  sum.counters += in.value<ChainCounters>();
+  const auto stuck = in.list<StuckChain>();
+  sum.stuck.insert(sum.stuck.end(), stuck.begin(), stuck.end());
 }
 
 // about: how many bytes there will be, behind those of the head.
@@ -72,8 +80,7 @@ std::vector<unsigned char> contributionOf(const Session& session, const ProcessR
     const RenderStatistics statistics = session.statistics();
     out.list(std::vector<ProcessRecord>{record});
     WorkDone::of(statistics).save(out);
-    const ChainStatistics chains = statistics.chains.value_or(ChainStatistics{});
-    saveChains(out, chains.mutations, chains.directPaths, chains.epochs, chains.counters, chains.stuck);
+    saveChains(out, statistics.chains.value_or(ChainStatistics{}));
     session.film().save(out);
   });
 }
@@ -87,20 +94,13 @@ void FilmSum::add(Bytes contribution, bool first) {
   StateReader in(contribution);
   if (first) {
     processes_.clear();
-    stuck_.clear();
-    mutations_ = directPaths_ = epochs_ = 0;
-    chainCounters_ = {};
+    chains_ = {};
   }
   const auto processes = in.list<ProcessRecord>();
   processes_.insert(processes_.end(), processes.begin(), processes.end());
   WorkDone work;
   work.restore(in);
-  mutations_ += in.value<uint64_t>();
-  directPaths_ += in.value<uint64_t>();
-  epochs_ = std::max(epochs_, in.value<uint64_t>());
-  chainCounters_ += in.value<ChainCounters>();
-  const auto stuck = in.list<StuckChain>();
-  stuck_.insert(stuck_.end(), stuck.begin(), stuck.end());
+  addSavedChains(chains_, in);
   if (!first) {
     work_ += work;
     film_->addSaved(in);
@@ -118,7 +118,7 @@ std::vector<unsigned char> FilmSum::contribution(size_t head) const {
   return bytesOf(head, stateBytes(*film_), [&](StateWriter& out) {
     out.list(processes_);
     work_.save(out);
-    saveChains(out, mutations_, directPaths_, epochs_, chainCounters_, stuck_);
+    saveChains(out, chains_);
     film_->save(out);
   });
 }
@@ -142,16 +142,16 @@ RenderStatistics FilmSum::statistics(RenderStatistics own) const {
     return own;
   }
   ChainStatistics& chains = *own.chains;
-  chains.mutations = mutations_;
-  chains.directPaths = directPaths_;
-  chains.epochs = epochs_;
-  chains.counters = chainCounters_;
+  chains.mutations = chains_.mutations;
+  chains.directPaths = chains_.directPaths;
+  chains.epochs = chains_.epochs;
+  chains.counters = chains_.counters;
   // The worst of all.
-  chains.stuck = stuck_;
+  chains.stuck = chains_.stuck;
   std::sort(chains.stuck.begin(), chains.stuck.end(),
             [](const StuckChain& a, const StuckChain& b) { return a.rejections > b.rejections; });
   if (chains.stuck.size() > kListedStuckChains) chains.stuck.resize(kListedStuckChains);
-  own.iterations = mutations_ / film_->area().size();
+  own.iterations = chains_.mutations / film_->area().size();
   return own;
 }
 

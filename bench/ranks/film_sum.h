@@ -55,10 +55,7 @@ class FilmSum {
   std::unique_ptr<Film> film_;
   WorkDone work_;
   std::vector<ProcessRecord> processes_;
-  // Of mlt: what chains have done.
-  uint64_t mutations_ = 0, directPaths_ = 0, epochs_ = 0;
-  ChainCounters chainCounters_;
-  std::vector<StuckChain> stuck_;
+  ChainStatistics chains_;  // of mlt: counts, and chains that are stuck; what all processes have in common is not here
 };
 
 }  // namespace wavecrest
