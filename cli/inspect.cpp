@@ -129,8 +129,7 @@ int runInspect(const InspectOptions& options) {
   settings.isa = bestIsa();
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
-  settings.radius.reset();
-  settings.mergeVertices = MergeVertices::first;
+  takeProgramDefaults(settings);
   // Scene and facts.
   const Scene scene = loadScene(options.scene);
   const SceneInspection facts = inspectScene(scene, settings);

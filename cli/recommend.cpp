@@ -56,9 +56,7 @@ void runRecommend(const RecommendOptions& options) {
   settings.isa = bestIsa();
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
-  settings.radius.reset();
-  settings.roulette = Roulette::efficiency;
-  settings.mergeVertices = MergeVertices::first;
+  takeProgramDefaults(settings);
   const Recommendation result = recommend(scene, settings, request);
   // Output: JSON, or a paragraph and a table.
   fmt::print("{}", options.json ? jsonText(toJson(result), 2) + "\n" : toText(result));

@@ -128,6 +128,13 @@ struct RenderSettings {
   uint32_t chainsOfShare() const { return (metropolis.chains - share.part + share.parts - 1) / share.parts; }
 };
 
+// What `render` takes where no option says otherwise. Settings as constructed have the study's choices.
+inline void takeProgramDefaults(RenderSettings& settings) {
+  settings.radius.reset();
+  settings.roulette = Roulette::efficiency;
+  settings.mergeVertices = MergeVertices::first;
+}
+
 // Whether the method's walks end by a roulette that can be chosen. Chains walk as far as their strategies say, or by
 // throughput.
 inline bool hasRouletteChoice(Method method) { return method != Method::mlt; }

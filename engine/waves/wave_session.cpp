@@ -135,7 +135,10 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
   const std::optional<SurvivalRule> rule = survivalRule(settings_, pass.walk);
   StageContext<S> context{.scene = &plan_.scene->view,
                           .pixels = area.pixels.data(),
-                          .sampler = {settings_.sampler, settings_.seed, number},
+                          .sampler = {.kind = settings_.sampler,
+                                      .seed = settings_.seed,
+                                      .iteration = number,
+                                      .lightPaths = plan_.memory.lightPaths},
                           .limits = settings_.limits,
                           .survival = pointerTo(rule),
                           .mis = mis,
@@ -146,7 +149,6 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
                           .film = area.window(),
                           .sharedPlace = film_.spreads(),
                           .counters = &worker.counters};
-  context.sampler.lightPaths = plan_.memory.lightPaths;
   if (learner_.learns()) {
     learner_.prepare(context, iteration);
     worker.wave.directions.size = 0;
