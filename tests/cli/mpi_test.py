@@ -8,7 +8,6 @@ import os
 import pathlib
 import shutil
 import signal
-import struct
 import subprocess
 import unittest
 
@@ -20,26 +19,18 @@ from harness import (
     TIMEOUT_SECONDS,
     USAGE,
     WAVECREST,
-    CommandTest,
     read_exr_header,
     read_json,
-    read_pfm,
 )
+from share_harness import COUNTS, METHODS, ShareTest
 
-CHAINS, RADIUS = ["--chains", "50", "--bootstrap", "400"], ["--radius", "0.05"]
-METHODS = {"pt": [], "lt": [], "bpt": [], "mlt": CHAINS, "ppm": RADIUS, "bpm": RADIUS, "vcm": RADIUS}
-COUNTS = ("iterations", "camera_paths", "light_paths", "mutations", "nonfinite_samples", "scene_hash", "seed")
 MPIRUN = ["mpirun", "--oversubscribe"]
 PATIENCE = ["--mca", "odls_base_sigkill_timeout", "3"]  # which mpirun always waits for, once it ends processes
 ALLOWED = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 ENDLESS = ["--spp", "100000000"]
 
 
-def bits(value):
-    return struct.unpack("<i", struct.pack("<f", value))[0]
-
-
-class MpiTest(CommandTest):
+class MpiTest(ShareTest):
     def command(self, processes, *arguments, program=WAVECREST, launcher=()):
         return [*MPIRUN, *launcher, "-n", processes, program, *arguments]
 
@@ -95,15 +86,6 @@ class MpiTest(CommandTest):
         lines = self.said(result)
         self.assertEqual(len(lines), 1, result.stderr)
         self.assertRegex(lines[0], "^wavecrest: error: " + pattern)
-
-    def image(self, name):
-        return read_pfm(self.path(name))
-
-    def assert_equal_but_for_rounding(self, one, other, said):
-        self.assertEqual(one[:2], other[:2], said)
-        worst = max(abs(bits(a) - bits(b)) for a, b in zip(one[2], other[2]))
-        self.assertLessEqual(worst, 1, said)
-        self.assertGreater(sum(one[2]), 0, said)
 
 
 class Sums(MpiTest):

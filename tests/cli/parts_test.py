@@ -13,21 +13,14 @@ import time
 import unittest
 import zlib
 
-from harness import CHECK, DONE, INPUT, USAGE, CommandTest, read_exr_header, read_json, read_pfm
+from harness import CHECK, DONE, INPUT, USAGE, read_exr_header, read_json
+from share_harness import COUNTS, METHODS, ShareTest
 
 PARTS = 4
-CHAINS, RADIUS = ["--chains", "50", "--bootstrap", "400"], ["--radius", "0.05"]
-# mlt restarts its chains within the render: an epoch has 128 steps of 50 chains.
-METHODS = {"pt": [], "lt": [], "bpt": [], "mlt": CHAINS, "ppm": RADIUS, "bpm": RADIUS, "vcm": RADIUS}
-COUNTS = ("iterations", "camera_paths", "light_paths", "mutations", "nonfinite_samples", "scene_hash", "seed")
 SPP = 18  # no multiple of the number of parts
 
 
-def bits(value):
-    return struct.unpack("<i", struct.pack("<f", value))[0]
-
-
-class PartsTest(CommandTest):
+class PartsTest(ShareTest):
     def arguments(self, method, *more, spp=SPP, scene="cornell-diffuse", seed=3, size="24x17"):
         return ["render", scene, "--size", size, "--threads", "1", "--seed", seed, "-m", method, "--spp", spp,
                 "--progress", "none", *METHODS[method], *more]  # fmt: skip
@@ -43,15 +36,6 @@ class PartsTest(CommandTest):
 
     def merge(self, *arguments, expect=DONE):
         return self.run_wavecrest("merge", *arguments, expect=expect)
-
-    def image(self, name):
-        return read_pfm(self.path(name))
-
-    def assert_equal_but_for_rounding(self, one, other, said):
-        self.assertEqual(one[:2], other[:2], said)
-        worst = max(abs(bits(a) - bits(b)) for a, b in zip(one[2], other[2]))
-        self.assertLessEqual(worst, 1, said)
-        self.assertGreater(sum(one[2]), 0, said)
 
 
 class Sums(PartsTest):

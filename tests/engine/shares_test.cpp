@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <memory>
 
 #include "engine/plan/share_iterations.h"
 #include "tests/engine/render_statistics.h"
+#include "tests/engine/rendered_session.h"
 #include "tests/engine/saved_state.h"
 #include "tests/engine/test_scenes.h"
 
@@ -42,12 +42,6 @@ RenderSettings settingsOf(const ShareCase& one) {
   return settings;
 }
 
-std::unique_ptr<Session> rendered(const Scene& scene, const RenderSettings& settings) {
-  auto session = Session::create(scene, settings);
-  session->renderUntil(settings.iterations, std::nullopt);
-  return session;
-}
-
 std::unique_ptr<Film> filmOf(const Session& session) {
   const std::vector<unsigned char> state = savedState(session);
   StateReader in(state);
@@ -56,20 +50,13 @@ std::unique_ptr<Film> filmOf(const Session& session) {
 
 // The sum of the films of all shares, added in an order that is not theirs.
 std::unique_ptr<Film> sumOfShares(const Scene& scene, const RenderSettings& settings) {
-  const auto share = [&](uint32_t part) { return filmOf(*rendered(scene, settingsOfShare(settings, part, kShares))); };
+  const auto share = [&](uint32_t part) {
+    return filmOf(*renderedSession(scene, settingsOfShare(settings, part, kShares)));
+  };
   std::unique_ptr<Film> sum = share(1);
   sum->add(*share(2));
   sum->add(*share(0));
   return sum;
-}
-
-// Floats between both, at most over all samples.
-int64_t worstDistance(const RgbImage& a, const RgbImage& b) {
-  int64_t worst = 0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    worst = std::max<int64_t>(worst, std::abs(int64_t{std::bit_cast<int32_t>(a[i])} - std::bit_cast<int32_t>(b[i])));
-  }
-  return worst;
 }
 
 // Sums of seven samples in another order differ by 7 x 2^-52 of themselves at most, so images in float by a unit.
@@ -84,7 +71,7 @@ TEST(SharesTest, filmsAddUpToThatOfOneSession) {
     Scene scene = sceneFile("cornell-diffuse", kShareWidth, kShareHeight);
     if (one.spreads) scene.film.filter = ReconstructionFilter::gaussian;
     const RenderSettings settings = settingsOf(one);
-    const std::unique_ptr<Session> whole = rendered(scene, settings);
+    const std::unique_ptr<Session> whole = renderedSession(scene, settings);
     EXPECT_EQ(whole->film().spreads(), one.spreads);
     const std::unique_ptr<Film> sum = sumOfShares(scene, settings);
     EXPECT_EQ(sum->allSamples(), whole->film().allSamples());
@@ -100,7 +87,7 @@ TEST(SharesTest, filmsOfChainsAddUpToTheBit) {
        {MetropolisVariant::mmlt, MetropolisVariant::pathspace, MetropolisVariant::pssmlt}) {
     const RenderSettings settings =
         settingsOf({.method = Method::mlt, .metropolis = variant, .directPass = variant == MetropolisVariant::pssmlt});
-    const std::unique_ptr<Session> whole = rendered(scene, settings);
+    const std::unique_ptr<Session> whole = renderedSession(scene, settings);
     EXPECT_EQ(sumOfShares(scene, settings)->resolve(), whole->film().resolve());
   }
 }
@@ -109,7 +96,7 @@ TEST(SharesTest, filmsOfChainsAddUpToTheBit) {
 TEST(SharesTest, aShareOfChainsThatIsBrokenGoesOn) {
   const Scene scene = sceneFile("cornell-diffuse", kShareWidth, kShareHeight);
   RenderSettings settings = settingsOfShare(settingsOf({.method = Method::mlt}), 1, kShares);
-  const std::unique_ptr<Session> whole = rendered(scene, settings);
+  const std::unique_ptr<Session> whole = renderedSession(scene, settings);
   const auto first = Session::create(scene, settings);
   first->renderUntil(3, std::nullopt);
   settings.threads = 3;
@@ -165,10 +152,10 @@ TEST(SharesTest, filmsOfSharesAtTheSameTimeAddUp) {
       if (entry.method == Method::gpt) continue;  // which learns from what it has rendered itself
       RenderSettings settings = settingsOf({.method = entry.method});
       settings.iterations = 50;  // so that path tracing takes several at once
-      const std::unique_ptr<Session> whole = rendered(scene, settings);
+      const std::unique_ptr<Session> whole = renderedSession(scene, settings);
       std::unique_ptr<Film> sum;
       for (uint32_t part = 0; part < kShares; ++part) {
-        const auto share = rendered(scene, settingsOfJointShare(settings, part, kShares));
+        const auto share = renderedSession(scene, settingsOfJointShare(settings, part, kShares));
         const std::vector<unsigned char> state = savedState(share->film());
         StateReader in(state);
         if (sum) {
@@ -193,7 +180,7 @@ TEST(SharesTest, aShareOfRoundsThatIsBrokenGoesOn) {
     RenderSettings settings = settingsOf({.method = method});
     settings.iterations = 50;
     settings = settingsOfJointShare(settings, 1, kShares);
-    const std::unique_ptr<Session> whole = rendered(scene, settings);
+    const std::unique_ptr<Session> whole = renderedSession(scene, settings);
     const auto first = Session::create(scene, settings);
     first->renderUntil(9, std::nullopt);
     const auto second = Session::create(scene, settings);
@@ -207,7 +194,7 @@ TEST(SharesTest, filmsOfOtherKindsAreNotAdded) {
   const auto film = [](Method method, uint32_t width, bool spreads) {
     Scene scene = sceneFile("cornell-diffuse", width, kShareHeight);
     if (spreads) scene.film.filter = ReconstructionFilter::gaussian;
-    return filmOf(*rendered(scene, settingsOf({.method = method})));
+    return filmOf(*renderedSession(scene, settingsOf({.method = method})));
   };
   const std::unique_ptr<Film> one = film(Method::pt, kShareWidth, false);
   EXPECT_THROW(one->add(*film(Method::pt, kShareWidth + 1, false)), StateError);

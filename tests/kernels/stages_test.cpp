@@ -149,6 +149,27 @@ TEST_P(StageTest, equalsScalarTwin) {
   }
 }
 
+// Camera paths of a room at their first vertices, before they scatter.
+struct FirstVertices {
+  FirstVertices(const StageScene<float>& scene, const Stages<float>& stages, uint32_t rouletteDepth) {
+    context.scene = &scene.view;
+    context.pixels = scene.pixels.data();
+    context.limits = {.maxDepth = 6, .rouletteDepth = rouletteDepth};
+    context.counters = &counters;
+    wave.pathCount = kPaths;
+    stages.generateCameraPaths(context, wave);
+    context.depth = 1;
+    stages.extendSmall(context, wave);
+    stages.arrive(context, wave);
+  }
+  FirstVertices(const FirstVertices&) = delete;
+  FirstVertices& operator=(const FirstVertices&) = delete;
+
+  Wave<float> wave{kPaths, columnNeedsOf(Specialization::complete)};
+  StageCounters counters;
+  StageContext<float> context;
+};
+
 // Survivors carry their throughput over the probability, so the rule can be read from what roulette has left: nothing
 // by albedo, which keeps throughputs as they were, and no more than 1 / scale of a scaled throughput.
 TEST(Roulette, followsTheRule) {
@@ -157,24 +178,14 @@ TEST(Roulette, followsTheRule) {
     const Stages<float>& stages = findStages<float>(isa, Precision::floating, Specialization::complete);
     for (const SurvivalRule rule :
          {SurvivalRule{.byAlbedo = true}, SurvivalRule{.scale = 1}, SurvivalRule{.scale = 4}}) {
-      Wave<float> wave(kPaths, columnNeedsOf(Specialization::complete));
-      StageCounters counters;
-      StageContext<float> context;
-      context.scene = &scene.view;
-      context.pixels = scene.pixels.data();
-      context.limits = {.maxDepth = 6, .rouletteDepth = 1};
-      context.counters = &counters;
-      context.survival = &rule;
-      wave.pathCount = kPaths;
-      stages.generateCameraPaths(context, wave);
-      context.depth = 1;
-      stages.extendSmall(context, wave);
-      stages.arrive(context, wave);
+      FirstVertices first(scene, stages, 1);
+      Wave<float>& wave = first.wave;
+      first.context.survival = &rule;
       for (size_t i = 0; i < wave.paths.size; ++i) {
         wave.paths.throughputR[i] = wave.paths.throughputG[i] = wave.paths.throughputB[i] = 0.2f;
       }
       const size_t before = wave.paths.size;
-      stages.scatter(context, wave);
+      stages.scatter(first.context, wave);
       EXPECT_GT(wave.paths.size, 0u);
       EXPECT_LT(wave.paths.size, before);
       const float left = rule.byAlbedo ? 0.2f : 1 / rule.scale;
@@ -192,23 +203,13 @@ TEST(Roulette, scaleUndoesTheCompressionOfRadiance) {
   for (const Isa isa : availableIsas()) {
     const StageScene<float> scene = makeRoom<float>(true, true, false);
     const Stages<float>& stages = findStages<float>(isa, Precision::floating, Specialization::complete);
-    Wave<float> wave(kPaths, columnNeedsOf(Specialization::complete));
-    StageCounters counters;
-    StageContext<float> context;
-    context.scene = &scene.view;
-    context.pixels = scene.pixels.data();
-    context.limits = {.maxDepth = 6, .rouletteDepth = 6};
-    context.counters = &counters;
-    wave.pathCount = kPaths;
-    stages.generateCameraPaths(context, wave);
-    context.depth = 1;
-    stages.extendSmall(context, wave);
-    stages.arrive(context, wave);
+    FirstVertices first(scene, stages, 6);
+    Wave<float>& wave = first.wave;
     std::vector<bool> onGlass(kPaths, false);
     for (size_t i = 0; i < wave.paths.size; ++i) {
       onGlass[wave.paths.lane[i]] = scene.view.primitives[wave.hits.primitive[i]].material == kGlass;
     }
-    stages.scatter(context, wave);
+    stages.scatter(first.context, wave);
     size_t refracted = 0;
     for (size_t i = 0; i < wave.paths.size; ++i) {
       if (!onGlass[wave.paths.lane[i]]) continue;

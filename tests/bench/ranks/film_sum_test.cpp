@@ -1,12 +1,10 @@
-// Contributions of sessions that render shares at the same time: their sum is one render.
+// The contributions of processes that share a render add up to that render.
 #include "bench/ranks/film_sum.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <bit>
-
 #include "engine/state/state_stream.h"
+#include "tests/engine/rendered_session.h"
 #include "tests/engine/test_scenes.h"
 
 namespace wavecrest {
@@ -28,21 +26,6 @@ RenderSettings settingsOfSum(Method method) {
   return settings;
 }
 
-std::unique_ptr<Session> renderedSession(const Scene& scene, const RenderSettings& settings) {
-  auto session = Session::create(scene, settings);
-  session->renderUntil(settings.iterations, std::nullopt);
-  return session;
-}
-
-int64_t mostUnits(const std::vector<float>& a, const std::vector<float>& b) {
-  EXPECT_EQ(a.size(), b.size());
-  int64_t worst = 0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    worst = std::max<int64_t>(worst, std::abs(int64_t{std::bit_cast<int32_t>(a[i])} - std::bit_cast<int32_t>(b[i])));
-  }
-  return worst;
-}
-
 // As the tree does: the sum of two goes on as a contribution. The sum has a film that was used before.
 TEST(FilmSumTest, contributionsOfProcessesAreOneRender) {
   const Scene scene = sceneFile("cornell-diffuse", 40, 27);
@@ -61,7 +44,7 @@ TEST(FilmSumTest, contributionsOfProcessesAreOneRender) {
     inner.sumUp({contributions[2], contributions[1]});
     outer.sumUp({contributions[1], contributions[1]});
     outer.sumUp({contributions[0], inner.contribution()});
-    EXPECT_LE(mostUnits(outer.film().resolve(), whole->film().resolve()), 1) << entry.name;
+    EXPECT_LE(worstDistance(outer.film().resolve(), whole->film().resolve()), 1) << entry.name;
     const RenderStatistics sum = outer.statistics(own), expected = whole->statistics();
     EXPECT_EQ(sum.iterations, expected.iterations) << entry.name;
     EXPECT_EQ(sum.paths, expected.paths) << entry.name;
