@@ -283,7 +283,8 @@ Ending RenderRun::render() {
   guard_->watch(&live_->interruptible(*session_));
   std::optional<uint64_t> goalPaths;
   if (settings_.iterations) {
-    // Of mlt a part has some of the chains of all iterations. Several processes show the progress of all.
+    // A part of an mlt render has some of the chains, in all iterations. Under a launcher, progress counts the paths of
+    // all processes.
     const uint64_t parts = settings_.method == Method::mlt && !ranks_.several() ? settings_.share.parts : 1;
     const uint64_t iterations =
         ranks_.several() ? settings_.share.iterations.value_or(*settings_.iterations) : *settings_.iterations;

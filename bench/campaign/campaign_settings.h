@@ -37,8 +37,7 @@ struct Effort {
 };
 
 // A named choice of everything. quick and standard are for small images and use the references that come with the
-// scenes; study and paper have the study's size, light paths, radius and
-// roulette, paper its run times too.
+// scenes; study and paper have the study's size, light paths, radius and roulette, paper its run times too.
 struct Profile {
   std::string_view name;
   std::string_view description;  // one line

@@ -16,7 +16,7 @@ using Clock = std::chrono::steady_clock;
 
 // Snapshots that a process may be ahead of the slowest: each takes memory where it waits.
 constexpr size_t kMostAhead = 2;
-// Seconds between two signs of life.
+// Seconds between two heartbeats.
 constexpr double kNews = 0.25;
 // Seconds of silence after which a process is lost; fewer once all are to stop, as launchers do not wait long. Longest
 // time that counts from one look to the next: a machine may have slept.
@@ -290,7 +290,7 @@ void Ranks::complete(SumLabel label, std::vector<Mailbox::Bytes> messages) {
   changed_.notify_all();
 }
 
-// Signs of life, signals that came here, and who is silent.
+// Sends heartbeats, passes on a signal that this process got, and finds processes that have been silent for too long.
 void Ranks::tick() {
   const Clock::time_point now = Clock::now();
   const double passed = std::min(secondsBetween(lastTick_, now), kLongestLook);

@@ -17,8 +17,8 @@ constexpr double kFirstSeconds = 1e-2;
 constexpr int kWindow = 3;  // a window of 7 x 7 pixels, about that of SSIM
 
 // What no sample of the noise tells: rare paths that a pilot has not met, and a speed that changes. Natural logarithm
-// of time, at the pilot's own time and for each factor e beyond it. Such that
-// the intervals of bench/recommend/judge hold the times of nine scenes.
+// of time, at the pilot's own time and for each factor e beyond it. Chosen so that the intervals of
+// bench/recommend/judge hold the times of nine scenes.
 constexpr double kModelError = 0.15, kModelErrorPerE = 0.06;
 
 // Merging blurs within blocks as well, and what is not significant is not seen. A radius that balances bias and noise

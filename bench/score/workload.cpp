@@ -8,8 +8,8 @@ namespace {
 // The score is of the study's seven methods, the first ones of kMethods, so that scores of all versions compare.
 constexpr size_t kScoredMethods = kStudyMethods;
 
-// Iterations of the size `small` by each of them: two seconds on a core of the reference
-// machine or somewhat less, powers of two.
+// Iterations of the size `small` by each of them: two seconds on a core of the reference machine or somewhat less,
+// powers of two.
 struct SceneWork {
   std::string_view scene;
   std::array<uint64_t, kScoredMethods> iterations;

@@ -38,7 +38,8 @@ struct GuideStatistics {
 
 class Guide {
  public:
-  // bytes: of all that it holds. typical: the brightness of a typical pixel, or 0; sums are in units far below it.
+  // bytes: the memory budget. typical: the brightness of a typical pixel, 0 where it is not known; it sets the unit of
+  // the integer sums, which is far below it.
   Guide(const double (&center)[3], const double (&halfExtent)[3], GuideTarget target, size_t bytes, double typical);
 
   const CellTreeView& cellTree() const { return tree_.view(); }

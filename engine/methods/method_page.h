@@ -63,8 +63,8 @@ struct WalkPhase {
 };
 
 // A barrier: all waves of an iteration have been through the phases before it when those after it begin. In between it
-// folds what the former gathered into what the latter read. photonMap: the light vertices of the iteration into its
-// photon map.
+// folds: it turns what the phases before it gathered into what those behind it read. photonMap: the light vertices of
+// the iteration into its photon map.
 //
 // A lesson is a barrier at the end of a block of iterations (engine/learn/blocks.h), behind the page's last phase: what
 // all iterations of the block gathered becomes what those of the next read. guide: directions in which paths found

@@ -24,9 +24,9 @@ constexpr uint32_t kMostPaths = 1u << kPathBits;
 constexpr uint32_t kIterationsPerWave = 1u << (32 - kPathBits);
 
 // independent: every number is independent of every other.
-// sobol: the numbers of one (path, block) are well distributed over the iterations, or those of one block of light
-// paths
-//   over paths and iterations.
+// sobol: the numbers of one (path, block) are well distributed over the iterations. Where light paths serve all pixels,
+//   they are points of one sequence: the numbers of one block are then well distributed over paths and iterations
+//   together.
 // chain: what Markov chains propose (ChainSamples); no choice of the user's, but part of Metropolis light transport.
 enum class SamplerKind { independent, sobol, chain };
 

@@ -1,4 +1,4 @@
-// What a render learns with: blocks of iterations, sums of integers, cells, and histograms as alias tables.
+// The parts that learning is made of: blocks of iterations, sums of integers, cells, and histograms as alias tables.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -109,7 +109,8 @@ TEST_P(GuideLanesTest, drawsWhatItSaysWithTheDensityItSays) {
 }
 
 TEST_P(GuideLanesTest, findsTheCellOfAPlace) {
-  // The tree of +y is split along x into nodes 6 and 7, this along y into 8 and 9, and 8 along z into 10 and 11.
+  // The root for +y (node 2) is split along x into nodes 6 and 7, node 7 along y into 8 and 9, and node 8 along z into
+  // 10 and 11.
   const std::vector<uint32_t> nodes{
       kCellLeaf,     kCellLeaf | 1, 6, kCellLeaf | 3, kCellLeaf | 4, kCellLeaf | 5, kCellLeaf | 2, 8, 10, kCellLeaf | 6,
       kCellLeaf | 7, kCellLeaf | 8};
