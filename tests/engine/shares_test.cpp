@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <memory>
 
 #include "engine/plan/share_iterations.h"
@@ -112,7 +113,7 @@ TEST(SharesTest, aShareOfChainsThatIsBrokenGoesOn) {
 // Of shares that are rendered at the same time every iteration belongs to one, whether the image has an end or not.
 TEST(ShareIterationsTest, everyIterationIsInOneShare) {
   for (uint32_t parts = 1; parts <= 7; ++parts) {
-    for (const uint64_t all : {0, 1, 5, 6, 7, 20, 21, 22, 150}) {
+    for (const uint64_t all : std::initializer_list<uint64_t>{0, 1, 5, 6, 7, 20, 21, 22, 150}) {
       RenderSettings image;
       image.iterations = all;
       std::vector<int> seen(all);
