@@ -207,6 +207,12 @@ def step_wheel(tally):
         run(tally, "wheel", ["tests/python/wheel-test"])
 
 
+def step_package(tally):
+    """The Debian package in a bare Debian 12. Needs root for chroot."""
+    if run(tally, "package: packages", ["tools/install-packages", "release"]):
+        run(tally, "package", ["tests/install/package-test"])
+
+
 def step_lint(tally):
     run(tally, "format", [sys.executable, "tools/lint.py", "format"])
     run(tally, "tidy of what changed", [sys.executable, "tools/lint.py", "tidy", "--changed"])
@@ -230,6 +236,7 @@ STEPS = {
     "mpi": step_mpi,
     "slurm": step_slurm,
     "wheel": step_wheel,
+    "package": step_package,
 }
 # To ask for: pictures of all scenes, ten thousand damaged files, data races, and clang-tidy over the whole tree, which
 # take longer than all else together.

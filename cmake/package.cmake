@@ -1,0 +1,15 @@
+# cpack -G DEB: a Debian package of what cmake --install installs, without the Python module (tools/make-release).
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME wavecrest)
+set(CPACK_PACKAGE_CONTACT "the wavecrest developers <wavecrest@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Renderer that measures light-transport methods against each other")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+# One package of the files that belong to no component; the module's are those of its wheel.
+set(CPACK_COMPONENTS_ALL Unspecified)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+include(CPack)
