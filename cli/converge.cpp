@@ -184,7 +184,7 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   defining("--seeds", "runs of each method, seeds 1 to N; default: the profile's").oneValue();
   defining("--size", "film size, WIDTHxHEIGHT; default: the profile's").oneValue();
   defining("--precision", "float or double; default: float").oneValue();
-  defining("--sampler", "independent or sobol; default: independent").oneValue();
+  defining("--sampler", "independent, sobol, or auto: by method; default: the profile's").oneValue();
   defining("--images", "keep images of 'all' snapshots, or of the 'last' of each run; default: all").oneValue();
   defining("--radius",
            "first merge radius of ppm, bpm and vcm, relative to the bounding sphere, or auto; default: the profile's")

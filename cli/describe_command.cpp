@@ -40,6 +40,8 @@ std::vector<CompletionWords> completionWords() {
   for (const SceneEntry& entry : builtInScenes()) scenes.push_back(entry.name);
   for (const Profile& profile : profiles()) profileNames.push_back(profile.name);
   for (const SamplerKind kind : kAllSamplerKinds) samplers.push_back(toString(kind));
+  std::vector<std::string_view> samplersOrAuto = samplers;
+  samplersOrAuto.push_back("auto");
   for (const Metric& metric : metricList()) metrics.push_back(metric.name);
   // A reference's method may also be chosen by the program.
   std::vector<std::string_view> referenceMethods{"auto"};
@@ -50,7 +52,8 @@ std::vector<CompletionWords> completionWords() {
           named({"scene", "scenes", "SCENE"}, scenes),
           named({"FORMAT"}, kDescriptionKindNames),
           named({"--profile"}, profileNames),
-          named({"--sampler"}, samplers),
+          named({"--sampler"}, samplersOrAuto),
+          named({"--sampler"}, samplers, "reference"),
           named({"--metrics"}, metrics),
           named({"--isa"}, isaNames()),
           named({"--precision"}, kPrecisionNames),

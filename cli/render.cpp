@@ -57,6 +57,8 @@ RenderSettings settingsOfPart(const RenderOptions& options, const RenderSettings
 // statistics are written.
 RenderSettings resolved(const RenderOptions& options, const Scene& scene) {
   RenderSettings settings = renderSettings(options, scene);
+  // Only long runs of Sobol points are independent, and an error is known after eight. A goal would be far behind.
+  if (options.until.relativeError > 0 && options.sampler == "auto") settings.sampler = SamplerKind::independent;
   // A goal ends the render, not the scene's number of samples.
   if (options.spp == 0 && options.until.any()) settings.iterations.reset();
   settings.measureStages = !options.stats.empty();

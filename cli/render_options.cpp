@@ -18,7 +18,10 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command.addFlag("--pin", options.pin, "bind threads to cores and spread shared memory over their nodes");
   // Samples and paths.
   command.add("--seed", options.seed, "seed of all random numbers").showDefault();
-  command.add("--sampler", options.sampler, "independent or sobol").showDefault();
+  command
+      .add("--sampler", options.sampler,
+           "independent, sobol, or auto: sobol for pt, lt, bpt, vcm and gpt, but not with --until-relative-error")
+      .showDefault();
   command
       .add("--filter-mode", options.filterMode,
            "spread: camera samples add to all pixels that the filter reaches; sample: to one")

@@ -141,7 +141,6 @@ RenderSettings renderSettings(const CampaignOptions& options) {
   render.isa = parseIsaOption(options.isa);
   render.precision =
       static_cast<Precision>(parseChoice("--precision", get(options, "--precision", "float"), kPrecisionNames));
-  render.sampler = parseSamplerOption("--sampler", get(options, "--sampler", "independent"));
   return render;
 }
 
@@ -178,6 +177,8 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
   // Film size, settings and methods of all runs.
   settings.size = has(options, "--size") ? parseSize("--size", get(options, "--size")) : profile.size;
   settings.render = renderSettings(options);
+  settings.sampler = profile.sampler;
+  if (has(options, "--sampler")) settings.sampler = parseSamplerOrAuto("--sampler", get(options, "--sampler"));
   chooseRows(options.defining, profile, settings);
   // Files: outputs, images to keep, and references.
   settings.out = options.out;
@@ -232,7 +233,7 @@ std::map<std::string, std::string> campaignKeys(const CampaignOptions& options, 
       {"seeds", std::to_string(settings.seeds)},
       {"size", fmt::format("{}x{}", settings.size[0], settings.size[1])},
       {"precision", std::string(kPrecisionNames[static_cast<size_t>(settings.render.precision)])},
-      {"sampler", std::string(toString(settings.render.sampler))},
+      {"sampler", settings.sampler ? std::string(toString(*settings.sampler)) : "auto"},
       {"shard", fmt::format("{}/{}", settings.shard.index, settings.shard.count)}};
   // --resume looks there again. Absolute, as it may be called from elsewhere.
   if (!options.reference.empty())

@@ -85,6 +85,7 @@ void keepFormerChoices(CampaignOptions& options, const std::map<std::string, std
   };
   keep("--roulette", "roulette", "throughput", anyRow(hasRouletteChoice));
   keep("--radius", "radius", "0.001", anyRow([](Method method) { return strategiesOf(method).merge; }));
+  keep("--sampler", "sampler", "independent", true);
   keep("--merge-vertices", "merge_vertices", "all", anyRow(choosesMergeVertices));
 }
 

@@ -167,12 +167,27 @@ Method parseMethodOption(const std::string& option, const std::string& word) {
   return kMethods[parseChoice(option, word, names)].method;
 }
 
-// Likewise for samplers and kAllSamplerKinds.
-SamplerKind parseSamplerOption(const std::string& option, const std::string& word) {
+namespace {
+
+// In the order of kAllSamplerKinds.
+std::vector<std::string_view> samplerNames() {
   std::vector<std::string_view> names;
-  names.reserve(std::size(kAllSamplerKinds));
   for (const SamplerKind kind : kAllSamplerKinds) names.push_back(toString(kind));
+  return names;
+}
+
+}  // namespace
+
+SamplerKind parseSamplerOption(const std::string& option, const std::string& word) {
+  const std::vector<std::string_view> names = samplerNames();
   return kAllSamplerKinds[parseChoice(option, word, names)];
+}
+
+std::optional<SamplerKind> parseSamplerOrAuto(const std::string& option, const std::string& word) {
+  std::vector<std::string_view> names = samplerNames();
+  names.push_back("auto");
+  const size_t choice = parseChoice(option, word, names);
+  return choice < kAllSamplerKinds.size() ? std::optional(kAllSamplerKinds[choice]) : std::nullopt;
 }
 
 bool mergesPaths(Method method) { return strategiesOf(method).merge; }

@@ -62,6 +62,8 @@ std::string methodsWith(bool (*has)(Method));
 
 // "independent" or "sobol".
 SamplerKind parseSamplerOption(const std::string& option, const std::string& word);
+// Likewise, or none for "auto".
+std::optional<SamplerKind> parseSamplerOrAuto(const std::string& option, const std::string& word);
 
 // The position of a word in a list of names; the UsageError of any other word lists them and suggests the closest.
 size_t parseChoice(const std::string& option, const std::string& word, std::span<const std::string_view> names);

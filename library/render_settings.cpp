@@ -108,7 +108,7 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   refuseNumbersOutOfRange(options);
   RenderSettings settings;
   settings.method = parseMethodOption("--method", options.method);
-  settings.sampler = parseSamplerOption("--sampler", options.sampler);
+  settings.sampler = parseSamplerOrAuto("--sampler", options.sampler).value_or(bestSampler(settings.method));
   settings.filterMode = static_cast<FilterMode>(parseChoice("--filter-mode", options.filterMode, kFilterModeNames));
   settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
   settings.accel = static_cast<Accel>(parseChoice("--accel", options.accel, kAccelNames));

@@ -38,6 +38,7 @@ constexpr std::array kProfiles{
             .radius = {},
             .roulette = Roulette::efficiency,
             .mergeVertices = MergeVertices::first,
+            .sampler = {},
             .effort = [](std::string_view) { return Effort{.seconds = 4}; }},
     Profile{.name = "standard",
             .description = "small images with error bands: an hour or two",
@@ -49,6 +50,7 @@ constexpr std::array kProfiles{
             .radius = kStudyRadius,
             .roulette = Roulette::throughput,
             .mergeVertices = MergeVertices::all,
+            .sampler = SamplerKind::independent,
             .effort = [](std::string_view) { return Effort{.seconds = 30}; }},
     Profile{.name = "study",
             .description = "the study's size, light paths and radius in a tenth of its time: ten hours a seed",
@@ -60,6 +62,7 @@ constexpr std::array kProfiles{
             .radius = kStudyRadius,
             .roulette = Roulette::throughput,
             .mergeVertices = MergeVertices::all,
+            .sampler = SamplerKind::independent,
             .effort = studyEffort},
     Profile{.name = "paper",
             .description = "the protocol of the study: 1024x768, 30 to 120 minutes a run",
@@ -71,6 +74,7 @@ constexpr std::array kProfiles{
             .radius = kStudyRadius,
             .roulette = Roulette::throughput,
             .mergeVertices = MergeVertices::all,
+            .sampler = SamplerKind::independent,
             .effort = paperEffort},
 };
 

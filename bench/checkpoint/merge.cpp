@@ -7,6 +7,7 @@
 #include <cmath>
 #include <future>
 #include <numeric>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -123,13 +124,19 @@ uint64_t iterationsOf(const Holdings& holdings) {
   return std::min_element(holdings.chains.begin(), holdings.chains.end(), less)->iterations;
 }
 
-// Whether the iterations of different parts are independent of each other.
-bool areIndependent(const CheckpointHeader& header) { return header.render.value("sampler", "") != "sobol"; }
+// Whether the iterations of different parts are independent of each other. Those of one run of Sobol points are not.
+bool areIndependent(std::span<const CheckpointHeader> headers) {
+  if (headers.front().render.value("sampler", "") != "sobol") return true;
+  const auto isWhole = [](const Holdings::Run& run) { return run.begin % kSobolRun == 0; };
+  return std::all_of(headers.begin(), headers.end(), [&](const CheckpointHeader& header) {
+    return std::all_of(header.holds.runs.begin(), header.holds.runs.end(), isWhole);
+  });
+}
 
 // Why the parts are no halves of a reference; empty: they are.
-std::string whyNoHalves(const MergedParts& merged, const Spread& spread) {
+std::string whyNoHalves(const MergedParts& merged, const Spread& spread, bool independent) {
   if (!merged.header.holds.chains.empty()) return "all parts of mlt share the error of b";
-  if (!areIndependent(merged.header)) return "points of one Sobol sequence depend on each other";
+  if (!independent) return "points of one Sobol sequence depend on each other";
   if (!merged.missing.empty()) return "missing are " + merged.missing;
   return spread.isEven() ? "" : "every other part does not have half of the iterations";
 }
@@ -176,6 +183,7 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
                    [&](size_t a, size_t b) { return beginOf(headers[a].holds) < beginOf(headers[b].holds); });
   MergedParts merged;
   Spread spread(halves);
+  const bool independent = areIndependent(headers);
   bool comparable = true;
   Json stats;
   double seconds = 0;
@@ -221,9 +229,9 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
   }
   stats["iterations"] = iterationsOf(holds);
   merged.missing = holds.missing(merged.header.render.value("chains", uint64_t{0}));
-  if (halves) merged.whyNoHalves = whyNoHalves(merged, spread);
+  if (halves) merged.whyNoHalves = whyNoHalves(merged, spread, independent);
   if (halves && merged.whyNoHalves.empty()) merged.halves = spread.halves();
-  if (comparable && areIndependent(merged.header)) {
+  if (comparable && independent) {
     merged.relativeError = spread.relativeError(merged.film->resolve(), merged.film->area().width);
   }
   if (merged.relativeError) stats["relative_error"] = *merged.relativeError;

@@ -26,7 +26,8 @@ WatchedSession::WatchedSession(std::unique_ptr<Session> session, const RenderSet
     : session_(std::move(session)),
       taker_(std::move(taker)),
       blocks_(session_->film().area().width, session_->film().area().height, kErrorBlocks),
-      errorKnowable_(blocks_.count() > 0 && whyNoFilmError(settings).empty()) {}
+      errorKnowable_(blocks_.count() > 0 && whyNoFilmError(settings).empty()),
+      run_(independentRun(settings)) {}
 
 template <class Step>
 void WatchedSession::whileWaiting(Step step) {
@@ -77,7 +78,7 @@ void WatchedSession::beginSlices() {
   }
   const double seconds = std::max(session_->progressSeconds(), 1e-6);
   const double rare = std::ceil(copySeconds / (0.5 * kMostLooking * seconds));
-  slices_.emplace(std::bit_ceil(static_cast<uint64_t>(std::clamp(rare, 1.0, 1e9))));
+  slices_.emplace(std::max(std::bit_ceil(static_cast<uint64_t>(std::clamp(rare, 1.0, 1e9))), run_));
 }
 
 void WatchedSession::addSlice(uint64_t iterations) {

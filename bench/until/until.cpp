@@ -39,6 +39,7 @@ SsimNow renderUntilSsim(Session& session, const RenderSettings& settings, const 
 
 ErrorNow FilmErrorWatch::renderUntil(Session& session, const RenderSettings& settings, double relativeError) {
   const uint64_t most = settings.iterations.value_or(std::numeric_limits<uint64_t>::max());
+  if (now_.iterations == 0 && slices_.slices().empty()) slices_ = FilmSlices(independentRun(settings));
   while (!now_.reached) {
     const uint64_t next = slices_.nextIterations();
     session.renderUntil(std::min(next, most), settings.seconds);
@@ -56,8 +57,6 @@ ErrorNow FilmErrorWatch::renderUntil(Session& session, const RenderSettings& set
 std::string whyNoFilmError(const RenderSettings& settings) {
   if (settings.method == Method::mlt)
     return "chains of mlt go on from where they were, so its iterations are not independent";
-  if (settings.sampler == SamplerKind::sobol)
-    return "points of one Sobol sequence depend on each other, so iterations are not independent";
   return {};
 }
 

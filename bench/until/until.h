@@ -46,7 +46,12 @@ class FilmErrorWatch {
   ErrorNow now_;
 };
 
-// Why iterations of these settings are not independent, so that their spread does not tell the error. Empty: they are.
+// Runs of so many iterations, from the image's first on, are independent of each other: 1, or kSobolRun.
+inline uint64_t independentRun(const RenderSettings& settings) {
+  return settings.sampler == SamplerKind::sobol ? kSobolRun : 1;
+}
+
+// Why no runs of iterations of these settings are independent, so that their spread does not tell the error. Empty: they are.
 std::string whyNoFilmError(const RenderSettings& settings);
 
 }  // namespace wavecrest

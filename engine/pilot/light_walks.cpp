@@ -20,7 +20,7 @@ LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& setti
   StageCounters counters;
   StageContext<S> context;
   context.scene = &plan.scene->view;
-  context.sampler = {.kind = settings.sampler, .seed = settings.seed, .iteration = 0, .lightPaths = lightPaths};
+  context.sampler = samplerOf(settings, 0, lightPaths);
   context.limits = settings.limits;
   const std::optional<SurvivalRule> rule = survivalRule(settings, Walk::light);
   context.survival = pointerTo(rule);

@@ -135,10 +135,7 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
   const std::optional<SurvivalRule> rule = survivalRule(settings_, pass.walk);
   StageContext<S> context{.scene = &plan_.scene->view,
                           .pixels = area.pixels.data(),
-                          .sampler = {.kind = settings_.sampler,
-                                      .seed = settings_.seed,
-                                      .iteration = number,
-                                      .lightPaths = plan_.memory.lightPaths},
+                          .sampler = samplerOf(settings_, number, plan_.memory.lightPaths),
                           .limits = settings_.limits,
                           .survival = pointerTo(rule),
                           .mis = mis,
@@ -213,7 +210,7 @@ void WaveSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration,
   tracePass(plan_.pipeline.cameraPass(), iteration, partners, worker);
   learner_.gather(wave, iteration);
   worker.counters.nonFinite +=
-      addSamples(film_, plan_, {settings_.sampler, settings_.seed, numbers_.number(iteration)}, wave);
+      addSamples(film_, plan_, samplerOf(settings_, numbers_.number(iteration)), wave);
   worker.paths += wave.pathCount;
   progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
 }

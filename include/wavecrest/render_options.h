@@ -13,8 +13,8 @@ struct RenderOptions {
   uint64_t spp = 0;  // iterations: paths, of mlt mutations, per pixel. Neither time nor spp: what the scene says
   uint64_t seed = 0;
   uint32_t threads = 0;  // 0: all cores
-  std::string sampler = "independent", filterMode = "spread", precision = "float", isa = "auto", accel = "auto";
-  std::string instances = "auto";
+  std::string sampler = "auto";  // independent, sobol, or auto: sobol for pt, lt, bpt, vcm and gpt
+  std::string filterMode = "spread", precision = "float", isa = "auto", accel = "auto", instances = "auto";
   int maxDepth = 0;                     // edges of the longest path; -1: unlimited, 0: what the scene says
   int rrDepth = 0;                      // first vertex where roulette may end a path; 0: what the scene says
   std::string roulette = "efficiency";  // throughput, albedo or efficiency: what decides whether a walk goes on
