@@ -123,6 +123,7 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   settings.roulette = static_cast<Roulette>(parseChoice("--roulette", options.roulette, kRouletteNames));
   settings.mergeVertices =
       static_cast<MergeVertices>(parseChoice("--merge-vertices", options.mergeVertices, kMergeVerticesNames));
+  settings.balancedWalks = true;
   settings.connectionRoulette = options.connectionRoulette;
   settings.guide = static_cast<GuideTarget>(parseChoice("--guide", options.guide, kGuideTargetNames));
   if (!options.guideMemory.empty()) settings.guideBytes = parseMemory("--guide-memory", options.guideMemory);

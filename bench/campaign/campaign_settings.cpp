@@ -39,6 +39,7 @@ constexpr std::array kProfiles{
             .roulette = Roulette::efficiency,
             .mergeVertices = MergeVertices::first,
             .sampler = {},
+            .balancedWalks = true,
             .effort = [](std::string_view) { return Effort{.seconds = 4}; }},
     Profile{.name = "standard",
             .description = "small images with error bands: an hour or two",
@@ -51,6 +52,7 @@ constexpr std::array kProfiles{
             .roulette = Roulette::throughput,
             .mergeVertices = MergeVertices::all,
             .sampler = SamplerKind::independent,
+            .balancedWalks = false,
             .effort = [](std::string_view) { return Effort{.seconds = 30}; }},
     Profile{.name = "study",
             .description = "the study's size, light paths and radius in a tenth of its time: ten hours a seed",
@@ -63,6 +65,7 @@ constexpr std::array kProfiles{
             .roulette = Roulette::throughput,
             .mergeVertices = MergeVertices::all,
             .sampler = SamplerKind::independent,
+            .balancedWalks = false,
             .effort = studyEffort},
     Profile{.name = "paper",
             .description = "the protocol of the study: 1024x768, 30 to 120 minutes a run",
@@ -75,6 +78,7 @@ constexpr std::array kProfiles{
             .roulette = Roulette::throughput,
             .mergeVertices = MergeVertices::all,
             .sampler = SamplerKind::independent,
+            .balancedWalks = false,
             .effort = paperEffort},
 };
 

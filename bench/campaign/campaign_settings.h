@@ -52,6 +52,7 @@ struct Profile {
   Roulette roulette;
   MergeVertices mergeVertices;  // of vcm
   std::optional<SamplerKind> sampler;  // unset: the best of each method
+  bool balancedWalks;  // of lt
   Effort (*effort)(std::string_view scene);
 };
 

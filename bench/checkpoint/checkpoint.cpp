@@ -133,6 +133,7 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                      {"direct_pass", settings.directPass}});
   }
   if (hasRouletteChoice(settings.method)) identity["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
+  if (settings.method == Method::lt) identity["light_paths"] = session.memoryPlan().lightPaths;
   if (choosesMergeVertices(settings.method)) {
     identity["merge_vertices"] = enumeratorName(kMergeVerticesNames, settings.mergeVertices);
   }

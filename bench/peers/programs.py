@@ -20,6 +20,8 @@ class Wavecrest:
     def __init__(self, program, job, options=()):
         # SmallVCM merges at every vertex.
         own = ["--merge-vertices", "all"] if job.method == "vcm" and "--merge-vertices" not in options else []
+        if "--sampler" not in options:
+            own += ["--sampler", "independent"]
         self.program, self.job, self.options = program, job, [*own, *options]
         self.about = "wavecrest"
         self.spp = job.spp

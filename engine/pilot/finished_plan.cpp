@@ -4,6 +4,7 @@
 #include "engine/pilot/light_walks.h"
 #include "engine/pilot/merge_radius.h"
 #include "engine/pilot/typical_brightness.h"
+#include "engine/pilot/walk_balance.h"
 
 namespace wavecrest {
 namespace {
@@ -13,6 +14,7 @@ template <class S>
 void planLightPaths(RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
   const bool walks = plan.pipeline.lightPass() != nullptr && !plan.pipeline.chains;
   plan.memory = planMemory(plan, settings, area, walks ? walkLightPaths(plan, settings, area) : LightPilot{});
+  plan.memory.lightPaths *= lightWalksPerCameraWalk(plan, settings, area);
   if (plan.pipeline.has(Fold::photonMap)) plan.mergeRadius = chosenRadius(plan, settings, area);
 }
 

@@ -102,6 +102,8 @@ struct RenderSettings {
   std::optional<double> radius = kFixedRadius;
   double radiusAlpha = 0.75;                         // how fast the radius shrinks: r_i = r_1 i^((alpha - 1) / 2)
   MergeVertices mergeVertices = MergeVertices::all;  // of vcm
+  // lt: as many light walks to a camera walk as the error of either deserves (engine/pilot/walk_balance.h); else one.
+  bool balancedWalks = false;
   // bpt, vcm: Russian roulette of connections whose contribution is below this share of a typical pixel's brightness.
   // It saves shadow rays and changes no mean. 0: no roulette. Never used with Accel::small, where a shadow ray costs
   // less than the roulette.
@@ -150,6 +152,7 @@ inline void takeProgramDefaults(RenderSettings& settings) {
   settings.radius.reset();
   settings.roulette = Roulette::efficiency;
   settings.mergeVertices = MergeVertices::first;
+  settings.balancedWalks = true;
 }
 
 // The sampler that serves the method best. Sobol points are worth nothing to photons that are merged, nor to chains.

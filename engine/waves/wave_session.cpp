@@ -66,6 +66,8 @@ class WaveSession final : public PlannedSession<S> {
   void traceLight(size_t first, size_t count, uint64_t iteration, LightStore<S>& store, Worker& worker);
   void traceCamera(size_t first, size_t count, uint64_t iteration, uint32_t iterationBits, LightStore<S>* partners,
                    Worker& worker);
+  // Of a method without a photon map: as many light walks as go with the camera paths of these pixels.
+  void traceLightOfPixels(size_t first, size_t count, uint64_t iteration, Worker& worker);
   void traceLightWave(size_t waveIndex, uint64_t iteration, Worker& worker);
   void traceCameraWave(size_t waveIndex, Worker& worker);
   void traceStretch(const Stretch<S>& stretch, size_t piece, Worker& worker);
@@ -168,6 +170,14 @@ void WaveSession<S>::traceLight(size_t first, size_t count, uint64_t iteration, 
 }
 
 template <class S>
+void WaveSession<S>::traceLightOfPixels(size_t first, size_t count, uint64_t iteration, Worker& worker) {
+  const size_t pixels = film_.area().pixels.size();
+  for (size_t walk = 0; walk < plan_.memory.lightPaths; walk += pixels) {
+    traceLight(walk + first, count, iteration, worker.light, worker);
+  }
+}
+
+template <class S>
 void WaveSession<S>::traceLightWave(size_t waveIndex, uint64_t iteration, Worker& worker) {
   const size_t count = itemsOfPiece(waveIndex, plan_.memory.lightPaths, settings_.waveSize);
   traceLight(waveIndex * settings_.waveSize, count, iteration, photons_.storeOf(iteration, waveIndex), worker);
@@ -240,7 +250,7 @@ void WaveSession<S>::traceStretch(const Stretch<S>& stretch, size_t piece, Worke
   const size_t first = pieces_[piece], count = pieces_[piece + 1] - first;
   for (const auto& phase : stretch.phases) {
     if (std::get<Pass<S>>(phase).walk == Walk::light) {
-      traceLight(first, count, camera_[piece].next, worker.light, worker);
+      traceLightOfPixels(first, count, camera_[piece].next, worker);
     } else {
       traceCameraWave(piece, worker);
     }
@@ -351,7 +361,7 @@ void WaveSession<S>::levelPixels(const Finished& finished) {
     Worker& mine = worker();
     for (uint64_t next = run.samples; next < goal; ++next) {
       if (finished(next)) return;
-      if (plan_.pipeline.lightPass()) traceLight(run.first, run.count, next, mine.light, mine);
+      if (plan_.pipeline.lightPass()) traceLightOfPixels(run.first, run.count, next, mine);
       traceCamera(run.first, run.count, next, 0, &mine.light, mine);
     }
   });

@@ -90,6 +90,7 @@ class Resuming(Converge):
         database = sqlite3.connect(self.results("a"))
         with database:
             database.execute("UPDATE campaign SET value = '0.002' WHERE key = 'radius'")
+            database.execute("UPDATE campaign SET value = 'independent' WHERE key = 'sampler'")
             database.execute("DELETE FROM campaign WHERE key = 'roulette'")
             database.execute("DELETE FROM campaign WHERE key = 'merge_vertices'")
         database.close()
@@ -97,8 +98,8 @@ class Resuming(Converge):
         database = sqlite3.connect(self.results("a"))
         stats = [json.loads(text) for (text,) in database.execute("SELECT stats FROM run WHERE seed = 2")]
         database.close()
-        told = [(run["radius"], run["roulette"], run["merge_vertices"]) for run in stats]
-        self.assertEqual(told, [(0.002, "throughput", "all")])
+        told = [(run["radius"], run["roulette"], run["merge_vertices"], run["sampler"]) for run in stats]
+        self.assertEqual(told, [(0.002, "throughput", "all", "independent")])
 
     def test_a_campaign_is_not_begun_over_another(self):
         self.tiny("a")

@@ -199,6 +199,20 @@ class Rows(Converge):
             if choice == "fixed":
                 self.assertEqual(runs["ppm"]["radius"], 0.001)
 
+    def test_the_sampler_is_the_profiles(self):
+        tiny = ["cornell-diffuse", "--methods", "pt", "ppm", "--size", "16x12", "--spp", "1", "--seeds", "1"]
+        for profile, more, stored, of_pt, of_ppm in (
+            ("quick", [], "auto", "sobol", "independent"),
+            ("quick", ["--sampler", "sobol"], "sobol", "sobol", "sobol"),
+            ("standard", [], "independent", "independent", "independent"),
+            ("study", ["--sampler", "auto"], "auto", "sobol", "independent"),
+        ):
+            folder = f"sampler-{profile}-{len(more)}"
+            self.converge(*tiny, "--profile", profile, "--light-paths", "99", *more, "--out", folder)
+            runs, campaign = self.runs(folder)
+            self.assertEqual((runs["pt"]["sampler"], runs["ppm"]["sampler"]), (of_pt, of_ppm), profile)
+            self.assertEqual(campaign["sampler"], stored, profile)
+
     def test_where_vcm_merges_is_the_profiles(self):
         tiny = ["cornell-diffuse", "--methods", "vcm", "--size", "16x12", "--spp", "1", "--seeds", "1", "--light-paths", "99"]
         for profile, more, vertices in (

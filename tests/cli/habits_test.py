@@ -96,7 +96,8 @@ class Words(CommandTest):
             return told.stdout.split()
 
         for command, option, expected in (
-            ("render", "--sampler", "independent sobol"),
+            ("render", "--sampler", "auto independent sobol"),
+            ("reference", "--sampler", "independent sobol"),
             ("render", "--precision", "float double"),
             ("render", "--isa", "auto scalar sse4 avx2 avx512"),
             ("render", "--accel", "auto embree small bvh"),

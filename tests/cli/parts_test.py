@@ -134,7 +134,7 @@ class Sums(PartsTest):
 
     def test_the_error_is_that_of_the_image(self):
         parts, spp = 16, 64
-        files = self.all_parts("pt", parts=parts, spp=spp)
+        files = self.all_parts("pt", "--sampler", "independent", parts=parts, spp=spp)
         self.merge(*files, "-o", "merged.pfm", "--stats", "merged.json")
         self.run_wavecrest(*self.arguments("pt", "-o", "truth.pfm", seed=9, spp=20000))
         (width, height, merged), (_, _, truth) = self.image("merged.pfm"), self.image("truth.pfm")
@@ -156,16 +156,19 @@ class Sums(PartsTest):
         # with the tails that bright samples have; its root by half of that. Four of these.
         told = read_json(self.path("merged.json"))["relative_error"]
         self.assertLess(abs(told / error - 1), 0.2, f"{told} instead of {error}")
-        # Points of one sequence depend on each other, and one part says nothing.
-        self.merge(*self.all_parts("pt", "--sampler", "sobol", name="sobol"), "--stats", "merged.json")
+        # Points of one run of a sequence depend on each other, those of different runs do not.
+        self.merge(*self.all_parts("pt", name="sobol"), "--stats", "merged.json")
         self.assertNotIn("relative_error", read_json(self.path("merged.json")))
+        self.merge(*self.all_parts("pt", name="runs", spp=64 * PARTS), "--stats", "merged.json")
+        self.assertLess(read_json(self.path("merged.json"))["relative_error"], told)
+        # One part says nothing.
         self.merge(files[0], "--stats", "merged.json")
         self.assertNotIn("relative_error", read_json(self.path("merged.json")))
 
 
 class References(PartsTest):
     def test_parts_make_a_reference_for_campaigns(self):
-        files = self.all_parts("pt", spp=1000, size="64x48")
+        files = self.all_parts("pt", "--sampler", "independent", spp=1000, size="64x48")
         self.merge(*files, "--reference", "references/cornell-diffuse.exr", expect=USAGE)  # there is no such folder
         (self.folder / "references").mkdir()
         self.merge(*files, "--reference", "references/cornell-diffuse.exr", "--stats", "merged.json")
@@ -180,14 +183,14 @@ class References(PartsTest):
 
     def test_parts_that_are_no_halves_are_refused(self):
         for method, more, spp, said in (
-            ("pt", [], SPP, "every other part does not have half"),
+            ("pt", ["--sampler", "independent"], SPP, "every other part does not have half"),
             ("pt", ["--sampler", "sobol"], 16, "points of one Sobol sequence"),
             ("mlt", [], 16, "all parts of mlt share the error of b"),
         ):
-            files = self.all_parts(method, *more, name=f"{method}{len(more)}-", spp=spp)
+            files = self.all_parts(method, *more, name=f"{method}{'-'.join(more)}-", spp=spp)
             result = self.merge(*files, "--reference", "a.exr", expect=INPUT)
             self.assert_one_error_line(result, f"--reference: {said}")
-        result = self.merge(*self.all_parts("pt", name="some", spp=16)[:2], "--reference", "a.exr", expect=INPUT)
+        result = self.merge(*self.all_parts("pt", "--sampler", "independent", name="some", spp=16)[:2], "--reference", "a.exr", expect=INPUT)
         self.assertIn("error: --reference: missing are iterations 8 to 15 of 16", result.stderr)
         self.assertFalse((self.folder / "a.exr").exists())
 

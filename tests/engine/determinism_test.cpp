@@ -61,6 +61,7 @@ class DeterminismTest : public testing::TestWithParam<MethodVariant> {
   RenderSettings settings() const {
     RenderSettings settings = settingsFor(GetParam().variant);
     settings.method = GetParam().method;
+    settings.balancedWalks = true;
     settings.metropolis.variant = GetParam().metropolis;
     settings.metropolis.chains = 500;
     settings.metropolis.bootstrapSamples = 4000;

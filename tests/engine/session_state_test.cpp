@@ -35,6 +35,7 @@ std::string nameOf(const Kind& kind) {
 
 std::vector<Kind> kinds() {
   std::vector<Kind> list{{.method = Method::pt, .sampler = SamplerKind::sobol},
+                         {.method = Method::lt, .sampler = SamplerKind::sobol},
                          {.method = Method::vcm, .mergeVertices = MergeVertices::first}};
   for (const Precision precision : {Precision::floating, Precision::doubled}) {
     for (const MethodEntry& entry : kMethods) {
@@ -58,6 +59,7 @@ class SessionStateTest : public testing::TestWithParam<Kind> {
     settings.precision = GetParam().precision;
     settings.sampler = GetParam().sampler;
     settings.mergeVertices = GetParam().mergeVertices;
+    settings.balancedWalks = true;
     settings.isa = bestIsa();
     settings.threads = threads;
     settings.waveSize = waveSize;

@@ -55,6 +55,17 @@ TEST(RenderSettings, theRadiusIsLeftToTheImageUnlessItIsGiven) {
   EXPECT_EQ(renderSettings({.method = "vcm", .radius = 0.001}, Scene()).radius, 0.001);
 }
 
+TEST(RenderSettings, theSamplerIsTheBestOfTheMethodUnlessItIsChosen) {
+  for (const char* method : {"pt", "lt", "bpt", "vcm", "gpt"}) {
+    EXPECT_EQ(renderSettings({.method = method}, Scene()).sampler, SamplerKind::sobol) << method;
+  }
+  for (const char* method : {"ppm", "bpm", "mlt"}) {
+    EXPECT_EQ(renderSettings({.method = method}, Scene()).sampler, SamplerKind::independent) << method;
+  }
+  EXPECT_EQ(renderSettings({.method = "pt", .sampler = "independent"}, Scene()).sampler, SamplerKind::independent);
+  EXPECT_EQ(renderSettings({.method = "ppm", .sampler = "sobol"}, Scene()).sampler, SamplerKind::sobol);
+}
+
 TEST(RenderSettings, rouletteIsEfficientUnlessItIsChosen) {
   EXPECT_EQ(renderSettings({}, Scene()).roulette, Roulette::efficiency);
   EXPECT_EQ(renderSettings({.roulette = "throughput"}, Scene()).roulette, Roulette::throughput);

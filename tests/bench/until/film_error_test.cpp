@@ -47,6 +47,7 @@ struct Case {
   const char* scene;
   Method method;
   double goal;
+  SamplerKind sampler = SamplerKind::independent;
 };
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
@@ -68,7 +69,8 @@ TEST_P(FilmErrorOf, isWithinItsIntervalAsOftenAsStated) {
   double n = 0;
   for (uint64_t seed = 0; seed < trials; ++seed) {
     RenderSettings settings = settingsOf(scene, GetParam().method, seed);
-    settings.iterations = 4000;  // far beyond the goal
+    settings.sampler = GetParam().sampler;
+    settings.iterations = 8000;  // far beyond the goal
     const auto session = Session::create(scene, settings);
     FilmErrorWatch watch;
     const ErrorNow now = watch.renderUntil(*session, settings, GetParam().goal);
@@ -95,7 +97,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, FilmErrorOf,
                          testing::Values(Case{"diffusePt", "cornell-diffuse", Method::pt, 0.2},
                                          Case{"mirrorLt", "cornell-mirror", Method::lt, 0.2},
                                          Case{"mirrorVcm", "cornell-mirror", Method::vcm, 0.2},
-                                         Case{"doorBpt", "veach-door", Method::bpt, 0.5}),
+                                         Case{"doorBpt", "veach-door", Method::bpt, 0.5},
+                                         Case{"sobolPt", "cornell-diffuse", Method::pt, 0.03, SamplerKind::sobol},
+                                         Case{"sobolBpt", "veach-door", Method::bpt, 0.3, SamplerKind::sobol}),
                          [](const auto& suite) { return suite.param.name; });
 
 // Slices of a grey film with noise of one size everywhere: N independent samples, K slices. The error's expectation is
@@ -163,9 +167,10 @@ TEST(FilmErrorWatch, goesOnAfterAnInterrupt) {
 TEST(FilmErrorWatch, saysWhichIterationsAreNotIndependent) {
   RenderSettings settings;
   EXPECT_EQ(whyNoFilmError(settings), "");
+  EXPECT_EQ(independentRun(settings), 1);
   settings.sampler = SamplerKind::sobol;
-  EXPECT_NE(whyNoFilmError(settings), "");
-  settings = {};
+  EXPECT_EQ(whyNoFilmError(settings), "");
+  EXPECT_EQ(independentRun(settings), kSobolRun);
   settings.method = Method::mlt;
   EXPECT_NE(whyNoFilmError(settings), "");
 }

@@ -1,0 +1,158 @@
+#include "engine/pilot/walk_balance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/plan/survival.h"
+#include "engine/tasks/flush_to_zero.h"
+#include "engine/walks/run_walk.h"
+
+namespace wavecrest {
+namespace {
+
+// Errors are looked at in kCells x kCells cells of the film; camera walks begin in kPixels x kPixels pixels of each,
+// kSamples in each pixel.
+constexpr uint32_t kCells = 16, kPixels = 4, kSamples = 8;
+constexpr uint32_t kCameraPaths = kCells * kCells * kPixels * kPixels, kLightPaths = 16384;
+constexpr uint64_t kBalanceSeed = 0x62616c616e6365;
+// Of the variance of a pixel's camera samples, where the filter spreads each over several pixels.
+constexpr double kSpreadVariance = 1.0 / 3;
+// What a shadow ray costs, of any other ray with the shading behind it.
+constexpr double kShadowRay = 0.5;
+constexpr double kDarkest = 0.01;  // of the mean brightness, the least that errors are relative to
+
+// What one walk leaves: brightness and variance of a pixel, of as many paths as the film has pixels; of light walks one
+// variance for all pixels of a cell.
+struct Walked {
+  std::vector<double> brightness = std::vector<double>(kCells * kCells, 0);
+  std::vector<std::pair<size_t, double>> variances{};  // with the cell
+  double cost = 0;                                     // of a path, in rays
+};
+
+// The pixels of the film's cells, as y << 16 | x.
+std::vector<uint32_t> pixelsOfCells(const FilmArea& area) {
+  std::vector<uint32_t> pixels;
+  constexpr uint32_t kAcross = kCells * kPixels;
+  const auto place = [](uint32_t i, uint32_t size) { return (2 * i + 1) * size / (2 * kAcross); };
+  for (uint32_t cell = 0; cell < kCells * kCells; ++cell) {
+    for (uint32_t i = 0; i < kPixels * kPixels; ++i) {
+      const uint32_t x = area.x0 + place(cell % kCells * kPixels + i % kPixels, area.width);
+      const uint32_t y = area.y0 + place(cell / kCells * kPixels + i / kPixels, area.height);
+      pixels.push_back(y << 16 | x);
+    }
+  }
+  return pixels;
+}
+
+double finiteOrZero(double value) { return std::isfinite(value) ? value : 0; }
+
+// Takes all paths of a pass through it in one wave. pixels: of camera paths, whose random numbers follow from the pixel
+// and the iteration. Returns what a path costs, in rays.
+template <class S>
+double costOfPass(const Pass<S>& pass, const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
+                  const uint32_t* pixels, uint32_t iteration, Wave<S>& wave, const SplatDrain<S>& drain) {
+  StageCounters counters;
+  const std::optional<SurvivalRule> rule = survivalRule(settings, pass.walk);
+  StageContext<S> context{.scene = &plan.scene->view,
+                          .pixels = pixels,
+                          .sampler = {SamplerKind::independent, kBalanceSeed, iteration},
+                          .limits = settings.limits,
+                          .survival = pointerTo(rule),
+                          .mis = misSettings(pass.strategies, plan.mergeRadius, wave.pathCount, 0),
+                          .film = area.window(),
+                          .counters = &counters};
+  runPass(pass, context, wave, nullptr, drain);
+  return (static_cast<double>(counters.raysClosest) + kShadowRay * static_cast<double>(counters.raysShadow)) /
+         static_cast<double>(wave.pathCount);
+}
+
+template <class S>
+Walked walkCamera(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
+  const std::vector<uint32_t> pixels = pixelsOfCells(area);
+  Wave<S> wave(kCameraPaths, plan.needs);
+  Walked walked;
+  std::vector<double> sums(kCameraPaths, 0), squares(kCameraPaths, 0);
+  for (uint32_t sample = 0; sample < kSamples; ++sample) {
+    wave.pathCount = kCameraPaths;
+    walked.cost +=
+        costOfPass(plan.pipeline.cameraPass(), plan, settings, area, pixels.data(), sample, wave, {}) / kSamples;
+    for (size_t i = 0; i < kCameraPaths; ++i) {
+      const double value = finiteOrZero((wave.radiance.red[i] + wave.radiance.green[i] + wave.radiance.blue[i]) / 3);
+      sums[i] += value;
+      squares[i] += value * value;
+    }
+  }
+  constexpr uint32_t kPixelsOfCell = kPixels * kPixels;
+  const double spread = spreadsSamples(plan, settings) ? kSpreadVariance : 1;
+  for (size_t i = 0; i < kCameraPaths; ++i) {
+    walked.brightness[i / kPixelsOfCell] += sums[i] / (kSamples * kPixelsOfCell);
+    const double variance = std::max(squares[i] - sums[i] * sums[i] / kSamples, 0.0) / (kSamples - 1);
+    walked.variances.emplace_back(i / kPixelsOfCell, spread * variance);
+  }
+  return walked;
+}
+
+template <class S>
+Walked walkLight(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
+  Wave<S> wave(kLightPaths, plan.needs);
+  wave.pathCount = kLightPaths;
+  // Pixels of a cell on average.
+  const double pixels = static_cast<double>(area.size()), inCell = pixels / (kCells * kCells);
+  Walked walked;
+  std::vector<double> squares(kCells * kCells, 0);
+  const SplatDrain<S> drain = [&](Splats<S>& splats) {
+    for (size_t i = 0; i < splats.size; ++i) {
+      const uint32_t x = splats.pixel[i] % area.width, y = splats.pixel[i] / area.width;
+      const size_t cell = y * kCells / area.height * kCells + x * kCells / area.width;
+      const double value = finiteOrZero((splats.red[i] + splats.green[i] + splats.blue[i]) / 3);
+      walked.brightness[cell] += value / (kLightPaths * inCell);
+      squares[cell] += value * value / (kLightPaths * inCell * pixels);
+    }
+    splats.size = 0;
+  };
+  walked.cost = costOfPass<S>(*plan.pipeline.lightPass(), plan, settings, area, nullptr, 0, wave, drain);
+  for (size_t cell = 0; cell < squares.size(); ++cell) walked.variances.emplace_back(cell, squares[cell]);
+  return walked;
+}
+
+// The mean over pixels of the variance over the squared brightness of their cell.
+double relativeVariance(const Walked& walked, const std::vector<double>& brightness) {
+  const double mean = std::accumulate(brightness.begin(), brightness.end(), 0.0) / (kCells * kCells);
+  double sum = 0;
+  for (const auto& [cell, variance] : walked.variances) {
+    const double here = std::max(brightness[cell], kDarkest * mean);
+    if (here > 0) sum += variance / (here * here);
+  }
+  return sum / static_cast<double>(walked.variances.size());
+}
+
+}  // namespace
+
+template <class S>
+uint32_t lightWalksPerCameraWalk(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
+  if (!settings.balancedWalks || settings.method != Method::lt) return 1;
+  const FlushToZero flushToZero;
+  const Walked camera = walkCamera(plan, settings, area), light = walkLight(plan, settings, area);
+  std::vector<double> brightness = camera.brightness;
+  for (size_t cell = 0; cell < brightness.size(); ++cell) brightness[cell] += light.brightness[cell];
+  // V_L / n + V_C for n c_L + c_C is least at n^2 = V_L c_C / (V_C c_L).
+  const double ofLight = relativeVariance(light, brightness) * camera.cost;
+  const double ofCamera = relativeVariance(camera, brightness) * light.cost;
+  if (!(ofLight > ofCamera)) return 1;
+  // Powers of two: instruction sets and precisions differ in the last bits of what they find, and are to make the same
+  // choice all the same. Random numbers tell apart so many light paths.
+  const double wanted = std::min(0.5 * std::log2(ofLight / std::max(ofCamera, 1e-9 * ofLight)), 30.0);
+  const auto most = std::min<uint64_t>(kMostLightWalks, kMostPaths / area.size());
+  uint32_t walks = 1u << static_cast<uint32_t>(std::lround(wanted));
+  while (walks > most) walks /= 2;
+  return walks;
+}
+template uint32_t lightWalksPerCameraWalk(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);
+template uint32_t lightWalksPerCameraWalk(const RenderPlan<double>&, const RenderSettings&, const FilmArea&);
+
+}  // namespace wavecrest

@@ -1,0 +1,63 @@
+// Light tracing has as many light walks to a camera walk as the error of either deserves, and the same image on average.
+#include "engine/pilot/walk_balance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "engine/session/session.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr uint32_t kWidth = 40, kHeight = 27;
+constexpr size_t kPixels = size_t{kWidth} * kHeight;
+
+RenderSettings settingsOf(Method method, bool balanced = true) {
+  RenderSettings settings;
+  settings.method = method;
+  settings.isa = bestIsa();
+  settings.balancedWalks = balanced;
+  settings.limits = pathLimits(8, 5);
+  return settings;
+}
+
+size_t lightPathsOf(const char* scene, const RenderSettings& settings) {
+  return Session::create(sceneFile(scene, kWidth, kHeight), settings)->memoryPlan().lightPaths;
+}
+
+TEST(WalkBalance, viewsWithoutNoiseGetTheFewestCameraWalks) {
+  // Nothing in view is specular: all that camera walks find is the lamp.
+  EXPECT_EQ(lightPathsOf("cornell-diffuse", settingsOf(Method::lt)), kMostLightWalks * kPixels);
+  EXPECT_LE(lightPathsOf("cornell-mirror", settingsOf(Method::lt)), 2 * kPixels);
+  EXPECT_EQ(lightPathsOf("cornell-diffuse", settingsOf(Method::lt, false)), kPixels);
+  EXPECT_EQ(lightPathsOf("cornell-diffuse", settingsOf(Method::bpt)), kPixels);
+}
+
+TEST(WalkBalance, dependsNeitherOnSeedsNorOnThreadsNorOnWaves) {
+  RenderSettings other = settingsOf(Method::lt);
+  const size_t wanted = lightPathsOf("cornell-spheres", other);
+  other.seed = 99;
+  other.threads = 3;
+  other.waveSize = 300;
+  EXPECT_EQ(lightPathsOf("cornell-spheres", other), wanted);
+}
+
+// The light that reaches the film together, of equal numbers of light paths, differs by its noise alone.
+TEST(WalkBalance, changesNoMean) {
+  const Scene scene = sceneFile("cornell-diffuse", kWidth, kHeight);
+  const auto brightness = [&](bool balanced, uint64_t iterations) {
+    const auto session = Session::create(scene, settingsOf(Method::lt, balanced));
+    session->renderUntil(iterations, {});
+    EXPECT_EQ(session->statistics().lightPaths, 256 * kPixels);
+    const std::vector<float> image = session->film().resolve();
+    return std::accumulate(image.begin(), image.end(), 0.0) / static_cast<double>(image.size());
+  };
+  // A splat is about as bright as the image, and a path makes one or two: 1 / sqrt(276480) is 0.2 %. Five of these.
+  EXPECT_NEAR(brightness(true, 256 / kMostLightWalks) / brightness(false, 256), 1, 0.01);
+}
+
+}  // namespace
+}  // namespace wavecrest
