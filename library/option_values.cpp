@@ -185,9 +185,9 @@ SamplerKind parseSamplerOption(const std::string& option, const std::string& wor
 
 std::optional<SamplerKind> parseSamplerOrAuto(const std::string& option, const std::string& word) {
   std::vector<std::string_view> names = samplerNames();
-  names.push_back("auto");
+  names.insert(names.begin(), "auto");
   const size_t choice = parseChoice(option, word, names);
-  return choice < kAllSamplerKinds.size() ? std::optional(kAllSamplerKinds[choice]) : std::nullopt;
+  return choice > 0 ? std::optional(kAllSamplerKinds[choice - 1]) : std::nullopt;
 }
 
 bool mergesPaths(Method method) { return strategiesOf(method).merge; }

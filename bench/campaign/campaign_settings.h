@@ -50,9 +50,9 @@ struct Profile {
   bool studyRows;
   std::optional<double> radius;  // of the first merges; unset: what the image needs
   Roulette roulette;
-  MergeVertices mergeVertices;  // of vcm
+  MergeVertices mergeVertices;         // of vcm
   std::optional<SamplerKind> sampler;  // unset: the best of each method
-  bool balancedWalks;  // of lt
+  bool balancedWalks;                  // of lt
   Effort (*effort)(std::string_view scene);
 };
 
@@ -78,8 +78,8 @@ struct CampaignSettings {
   unsigned seeds = 1;                  // 1, 2, ...
   std::optional<uint64_t> iterations;  // of each run, with snapshots after 1, 2, 4, ...; else the scenes' efforts
   std::array<uint32_t, 2> size{};
-  RenderSettings render;  // threads, clock, precision, ISA, radius, light paths of every run
-  std::optional<SamplerKind> sampler;  // of every run; unset: the best of its method
+  RenderSettings render;                           // threads, clock, precision, ISA, radius, light paths of every run
+  std::optional<SamplerKind> sampler;              // of every run; unset: the best of its method
   std::map<std::string, std::string> definitions;  // values of every scene's variables
   std::filesystem::path out;                       // folder of everything that is written
   std::filesystem::path referenceFolder;           // of SCENE.exr

@@ -60,7 +60,7 @@ class WatchedSession final : public Session {
   const LookTaker taker_;
   const BlockSample blocks_;
   bool errorKnowable_;
-  uint64_t run_;  // of iterations that depend on each other
+  uint64_t run_;                      // of iterations that depend on each other
   std::optional<FilmSlices> slices_;  // nothing before the first iteration is done
   uint64_t slicesUntil_ = 0;          // iterations of the last slice
   std::optional<FilmError> error_;

@@ -51,7 +51,8 @@ inline uint64_t independentRun(const RenderSettings& settings) {
   return settings.sampler == SamplerKind::sobol ? kSobolRun : 1;
 }
 
-// Why no runs of iterations of these settings are independent, so that their spread does not tell the error. Empty: they are.
+// Why no runs of iterations of these settings are independent, so that their spread does not tell the error. Empty:
+// they are.
 std::string whyNoFilmError(const RenderSettings& settings);
 
 }  // namespace wavecrest

@@ -219,8 +219,7 @@ void WaveSession<S>::traceCamera(size_t first, size_t count, uint64_t iteration,
   wave.pathCount = count << iterationBits;
   tracePass(plan_.pipeline.cameraPass(), iteration, partners, worker);
   learner_.gather(wave, iteration);
-  worker.counters.nonFinite +=
-      addSamples(film_, plan_, samplerOf(settings_, numbers_.number(iteration)), wave);
+  worker.counters.nonFinite += addSamples(film_, plan_, samplerOf(settings_, numbers_.number(iteration)), wave);
   worker.paths += wave.pathCount;
   progressPaths_.fetch_add(wave.pathCount, std::memory_order_relaxed);
 }

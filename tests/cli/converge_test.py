@@ -200,7 +200,7 @@ class Rows(Converge):
                 self.assertEqual(runs["ppm"]["radius"], 0.001)
 
     def test_the_sampler_is_the_profiles(self):
-        tiny = ["cornell-diffuse", "--methods", "pt", "ppm", "--size", "16x12", "--spp", "1", "--seeds", "1"]
+        tiny = ["cornell-diffuse", "--methods", "pt,ppm", "--size", "16x12", "--spp", "1", "--seeds", "1"]
         for profile, more, stored, of_pt, of_ppm in (
             ("quick", [], "auto", "sobol", "independent"),
             ("quick", ["--sampler", "sobol"], "sobol", "sobol", "sobol"),

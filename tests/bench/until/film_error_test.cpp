@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, FilmErrorOf,
                                          Case{"mirrorVcm", "cornell-mirror", Method::vcm, 0.2},
                                          Case{"doorBpt", "veach-door", Method::bpt, 0.5},
                                          Case{"sobolPt", "cornell-diffuse", Method::pt, 0.03, SamplerKind::sobol},
-                                         Case{"sobolBpt", "veach-door", Method::bpt, 0.3, SamplerKind::sobol}),
+                                         Case{"sobolBpt", "cornell-diffuse", Method::bpt, 0.03, SamplerKind::sobol}),
                          [](const auto& suite) { return suite.param.name; });
 
 // Slices of a grey film with noise of one size everywhere: N independent samples, K slices. The error's expectation is
