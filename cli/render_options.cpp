@@ -20,7 +20,7 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command.add("--seed", options.seed, "seed of all random numbers").showDefault();
   command
       .add("--sampler", options.sampler,
-           "independent, sobol, or auto: sobol for pt, lt, bpt, vcm and gpt, but not with --until-relative-error")
+           "independent, sobol, or auto: sobol for pt, bpt, vcm and gpt, but not with --until-relative-error")
       .showDefault();
   command
       .add("--filter-mode", options.filterMode,

@@ -12,7 +12,8 @@ namespace wavecrest {
 // other. From the error that either walk leaves in a typical pixel of the area and what it costs in rays, found out by
 // a few paths whose random numbers are the same for all seeds, threads and sizes of waves. area: its list of pixels may
 // be empty.
-constexpr uint32_t kMostLightWalks = 16;
+// More would keep the first whole image away for longer than they are worth.
+constexpr uint32_t kMostLightWalks = 4;
 template <class S>
 uint32_t lightWalksPerCameraWalk(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area);
 

@@ -155,11 +155,12 @@ inline void takeProgramDefaults(RenderSettings& settings) {
   settings.balancedWalks = true;
 }
 
-// The sampler that serves the method best. Sobol points are worth nothing to photons that are merged, nor to chains.
+// The sampler that serves the method best. Sobol points are worth nothing to chains, nor to light paths that are not
+// joined with camera paths.
 inline SamplerKind bestSampler(Method method) {
   const PathStrategies strategies = strategiesOf(method);
-  const bool mergesAlone = strategies.merge && !strategies.connect;
-  return mergesAlone || method == Method::mlt ? SamplerKind::independent : SamplerKind::sobol;
+  const bool lightAlone = (strategies.merge || strategies.camera) && !strategies.connect;
+  return lightAlone || method == Method::mlt ? SamplerKind::independent : SamplerKind::sobol;
 }
 
 // Whether the method's walks end by a roulette that can be chosen. Chains walk as far as their strategies say, or by
