@@ -9,63 +9,15 @@
 #include <optional>
 #include <utility>
 
+#include "bench/claims/comparison.h"
+
 namespace wavecrest {
 namespace {
 
 using V = ClaimVerdict;
 
-// " ± 0.02"; nothing where no width is known, or where equal values have none.
-std::string plusMinus(double halfWidth) {
-  return std::isfinite(halfWidth) && halfWidth > 0 ? fmt::format(" \u00b1 {:.2g}", halfWidth) : "";
-}
-
 constexpr double kNearFloor = 2;      // times the loss that the reference's noise alone gives
 constexpr size_t kBiasSnapshots = 3;  // that must agree on a share of bias
-
-// The weight of a verdict in a conjunction, where the heaviest verdict decides.
-int weightOf(V verdict) {
-  switch (verdict) {
-    case V::fails:
-      return 3;
-    case V::notJudged:
-      return 2;
-    case V::undecided:
-      return 1;
-    case V::holds:
-      break;
-  }
-  return 0;
-}
-
-// One comparison. margin: by how much it holds, below 0 by how much it does not, in logarithms or the metric's unit.
-struct Comparison {
-  V verdict = V::holds;
-  double margin = 0;
-  std::string text = {};
-};
-
-// Whether a value lies above a limit; undecided if the limit is within the band of the value.
-Comparison above(const Band& band, double limit, std::string text) {
-  const double margin = band.mean - limit;
-  const V verdict = margin >= band.halfWidth ? V::holds : margin < -band.halfWidth ? V::fails : V::undecided;
-  return {verdict, margin, std::move(text)};
-}
-Comparison below(const Band& band, double limit, std::string text) {
-  return above({-band.mean, band.halfWidth}, -limit, std::move(text));
-}
-
-// The name of a metric in print.
-std::string nameOf(const std::string& metric) {
-  if (metric == "ssim") return "SSIM";
-  if (metric == "q_mos") return "Q_MOS";
-  return metric == "rmse" ? "RMSE" : metric;
-}
-
-// A method in print: the row that it is judged by.
-std::string shown(const std::string& method) { return SceneLosses::rowOf(method); }
-
-// The geometric mean of numbers whose logarithms are given.
-double meanOfLog(std::span<const double> values) { return std::exp(meanBand(values).mean); }
 
 // Judges one condition on one scene: makes its comparisons and keeps the one that decides.
 class Judge {

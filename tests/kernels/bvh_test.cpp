@@ -1,5 +1,5 @@
-// The hierarchy of large scenes: that its boxes hold what lies below them, that no ray leaves a closed mesh of many
-// triangles, and that a hit depends on nothing but the ray.
+// Rays in the hierarchy of large scenes: none leaves a closed mesh of many triangles, and a hit depends on nothing but
+// the ray.
 //
 // That its hits are the right ones is tested beside the other intersectors (extend_test, leak_test).
 #include "kernels/extend/bvh.h"
@@ -7,14 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <cstring>
-#include <functional>
-#include <map>
-#include <numbers>
 #include <random>
-#include <thread>
 
 #include "tests/effort.h"
 #include "tests/kernels/closed_bodies.h"
@@ -22,174 +16,6 @@
 
 namespace wavecrest {
 namespace {
-
-// A sphere of two triangles to a cell of latitude and longitude, with bumps from every corner; closed.
-ClosedBody bumpySphere(size_t rows, double bumps) {
-  ClosedBody body{.walls = {}, .center = {0.3, -0.2, 0.1}, .reach = 0.3, .corners = {}, .edges = {}, .size = 2};
-  const size_t columns = 2 * rows;
-  RandomPoints random(3);
-  for (size_t row = 0; row <= rows; ++row) {
-    const double theta = std::numbers::pi * static_cast<double>(row) / static_cast<double>(rows);
-    for (size_t column = 0; column < columns; ++column) {
-      const double phi = 2 * std::numbers::pi * static_cast<double>(column) / static_cast<double>(columns);
-      const bool pole = row == 0 || row == rows;
-      const Point p{pole ? 0 : std::sin(theta) * std::cos(phi), std::cos(theta),
-                    pole ? 0 : std::sin(theta) * std::sin(phi)};
-      const double size = pole ? 1 : 1 + random.uniform(-bumps, bumps);
-      body.corners.push_back(roundedToFloat(body.center + turned(p) * size));
-    }
-  }
-  const auto index = [&](size_t row, size_t column) { return row * columns + column % columns; };
-  for (size_t row = 0; row < rows; ++row) {
-    for (size_t column = 0; column < columns; ++column) {
-      const size_t a = index(row, column), b = index(row, column + 1), c = index(row + 1, column + 1),
-                   d = index(row + 1, column);
-      const auto at = [&](size_t i) { return body.corners[i]; };
-      if (row > 0) body.walls.push_back(trianglePrimitive(at(a), at(b), at(c)));
-      if (row + 1 < rows) body.walls.push_back(trianglePrimitive(at(a), at(c), at(d)));
-      if (row > 0) body.edges.push_back({a, b});
-      body.edges.push_back({a, d});
-      body.edges.push_back({a, c});
-    }
-  }
-  return body;
-}
-
-std::vector<PrimitiveRecord<double>> crowd(size_t count) {
-  RandomPoints random(9);
-  std::vector<PrimitiveRecord<double>> list;
-  for (size_t i = 0; i < count; ++i) {
-    const Point p = random.inCube(1), e1 = random.direction() * random.uniform(0.01, 0.3);
-    const Point e2 = normalized(cross(e1, random.direction())) * random.uniform(0.01, 0.3);
-    if (i % 3 == 0) list.push_back(facePrimitive(PrimitiveKind::quad, p, e1, e2));
-    if (i % 3 == 1) list.push_back(facePrimitive(PrimitiveKind::triangle, p, e1, e2));
-    if (i % 3 == 2) list.push_back(spherePrimitive(p, random.uniform(0.01, 0.1)));
-  }
-  return list;
-}
-
-// ---- the boxes ------------------------------------------------------------------------------------------------------
-
-struct Bounds {
-  double low[3], high[3];
-};
-
-class Contents {
- public:
-  // Visits everything below the reference; all of it must lie strictly within the boxes.
-  void check(const BvhView& bvh, uint32_t reference, std::vector<Bounds> boxes) {
-    switch (entryOf(reference)) {
-      case BvhEntry::node: {
-        const auto& node = bvh.at<BvhNode>(reference);
-        for (size_t i = 0; i < kBvhWidth && node.children[i] != kBvhEnd; ++i) {
-          Bounds box;
-          for (size_t axis = 0; axis < 3; ++axis) {
-            const auto plane = [&](size_t row) {
-              return double{node.corner[axis]} + double{node.scale[axis]} * node.bounds[row][i];
-            };
-            box.low[axis] = plane(axis);
-            box.high[axis] = plane(3 + axis);
-          }
-          boxes.push_back(box);
-          check(bvh, node.children[i], boxes);
-          boxes.pop_back();
-        }
-        break;
-      }
-      case BvhEntry::faces: {
-        const auto& faces = bvh.at<FaceLeaf>(reference);
-        for (size_t slot = 0; slot < kLeafSize; ++slot) {
-          ++slots[faces.id[slot]];
-          for (const auto& corner : faces.corner) {
-            for (size_t axis = 0; axis < 3; ++axis) checkPoint(boxes, axis, corner[axis][slot], corner[axis][slot]);
-          }
-        }
-        break;
-      }
-      case BvhEntry::spheres: {
-        const auto& spheres = bvh.at<SphereLeaf>(reference);
-        for (size_t slot = 0; slot < kLeafSize; ++slot) {
-          ++slots[spheres.id[slot]];
-          for (size_t axis = 0; axis < 3; ++axis) {
-            const double c = spheres.center[axis][slot], r = spheres.radius[slot];
-            checkPoint(boxes, axis, c - r, c + r);
-          }
-        }
-        break;
-      }
-      case BvhEntry::end:
-        ADD_FAILURE() << "the end is no child";
-    }
-  }
-  std::map<uint32_t, size_t> slots;  // how many hold each id
-
- private:
-  static void checkPoint(const std::vector<Bounds>& boxes, size_t axis, double low, double high) {
-    for (const Bounds& box : boxes) {
-      ASSERT_LT(box.low[axis], low);
-      ASSERT_GT(box.high[axis], high);
-    }
-  }
-};
-
-TEST(BvhTest, boxesHoldEverythingBelowThem) {
-  for (const size_t count : {1u, 2u, 4u, 5u, 30u, 3000u}) {
-    const auto list = crowd(count);
-    const StageScene<float> scene(list);
-    Contents contents;
-    contents.check(scene.bvh->view(), scene.bvh->view().root, {});
-    size_t quads = 0;
-    for (const auto& record : list) quads += record.kind == static_cast<uint32_t>(PrimitiveKind::quad) ? 1 : 0;
-    EXPECT_EQ(contents.slots.size(), count + quads) << "each quad is two triangles, and nothing else is missing";
-    for (const auto& [id, times] : contents.slots) EXPECT_LE(times, kLeafSize);
-  }
-}
-
-// ---- what the hierarchy depends on ----------------------------------------------------------------------------------
-
-void expectSame(const BvhView& a, uint32_t atA, const BvhView& b, uint32_t atB) {
-  ASSERT_EQ(atA, atB);
-  switch (entryOf(atA)) {
-    case BvhEntry::node: {
-      const auto &x = a.at<BvhNode>(atA), &y = b.at<BvhNode>(atB);
-      ASSERT_EQ(std::memcmp(&x, &y, offsetof(BvhNode, bounds) + sizeof(x.bounds)), 0);
-      for (const uint32_t child : x.children) expectSame(a, child, b, child);
-      break;
-    }
-    case BvhEntry::faces:
-      ASSERT_EQ(std::memcmp(a.address(atA), b.address(atB), sizeof(FaceLeaf)), 0);
-      break;
-    case BvhEntry::spheres:
-      ASSERT_EQ(std::memcmp(a.address(atA), b.address(atB), sizeof(SphereLeaf)), 0);
-      break;
-    case BvhEntry::end:
-      break;
-  }
-}
-
-TEST(BvhTest, doesNotDependOnWhoBuildsIt) {
-  const auto list =
-      bumpySphere(160, 0.2).walls;  // enough triangles for several tasks on every level of the first three
-  const Box origins = boxAt({0, 0, 0});
-  const ParallelFor backwards = [](size_t count, const std::function<void(size_t)>& body) {
-    for (size_t i = count; i-- > 0;) body(i);
-  };
-  const ParallelFor byThreads = [](size_t count, const std::function<void(size_t)>& body) {
-    std::atomic<size_t> next{0};
-    const auto work = [&] {
-      for (size_t i = next++; i < count; i = next++) body(i);
-    };
-    std::thread other(work);
-    work();
-    other.join();
-  };
-  const PrimitiveSource source = PrimitiveSource::of(list.data(), list.size());
-  const Bvh inOrder(source, origins, inTurn);
-  for (const ParallelFor& parallelFor : {backwards, byThreads}) {
-    const Bvh other(source, origins, parallelFor);
-    expectSame(inOrder.view(), inOrder.view().root, other.view(), other.view().root);
-  }
-}
 
 // ---- what a hit depends on ------------------------------------------------------------------------------------------
 
@@ -376,7 +202,7 @@ TEST_P(BvhRaysTest, noRayLeavesAClosedMesh) {
         const Point &a = body.corners[edge[0]], &b = body.corners[edge[1]];
         rays.push_back(aimedRay(start(), a + (b - a) * random.uniform(0, 1)));
       }
-      while (rays.size() < effort(1'000'000, 50'000)) rays.push_back(roundedRay(start(), random.direction()));
+      while (rays.size() < samples(1'000'000, 50'000)) rays.push_back(roundedRay(start(), random.direction()));
       size_t leaks = 0;
       for (const Found& found : hits(named(name), scene, rays)) leaks += found.primitive == kMiss ? 1 : 0;
       EXPECT_EQ(leaks, 0u) << name << " bumps " << bumps;

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
-#include "tests/kernels/stage_scene.h"
+#include "tests/kernels/intersectors.h"
 
 namespace wavecrest {
 
@@ -81,6 +83,52 @@ inline ClosedBody hollowSphere(double radius, const Point& center) {
           .corners = {},
           .edges = {},
           .size = 2 * radius};
+}
+
+// A sphere of two triangles to a cell of latitude and longitude, with bumps from every corner; closed.
+inline ClosedBody bumpySphere(size_t rows, double bumps) {
+  ClosedBody body{.walls = {}, .center = {0.3, -0.2, 0.1}, .reach = 0.3, .corners = {}, .edges = {}, .size = 2};
+  const size_t columns = 2 * rows;
+  RandomPoints random(3);
+  for (size_t row = 0; row <= rows; ++row) {
+    const double theta = std::numbers::pi * static_cast<double>(row) / static_cast<double>(rows);
+    for (size_t column = 0; column < columns; ++column) {
+      const double phi = 2 * std::numbers::pi * static_cast<double>(column) / static_cast<double>(columns);
+      const bool pole = row == 0 || row == rows;
+      const Point p{pole ? 0 : std::sin(theta) * std::cos(phi), std::cos(theta),
+                    pole ? 0 : std::sin(theta) * std::sin(phi)};
+      const double size = pole ? 1 : 1 + random.uniform(-bumps, bumps);
+      body.corners.push_back(roundedToFloat(body.center + turned(p) * size));
+    }
+  }
+  const auto index = [&](size_t row, size_t column) { return row * columns + column % columns; };
+  for (size_t row = 0; row < rows; ++row) {
+    for (size_t column = 0; column < columns; ++column) {
+      const size_t a = index(row, column), b = index(row, column + 1), c = index(row + 1, column + 1),
+                   d = index(row + 1, column);
+      const auto at = [&](size_t i) { return body.corners[i]; };
+      if (row > 0) body.walls.push_back(trianglePrimitive(at(a), at(b), at(c)));
+      if (row + 1 < rows) body.walls.push_back(trianglePrimitive(at(a), at(c), at(d)));
+      if (row > 0) body.edges.push_back({a, b});
+      body.edges.push_back({a, d});
+      body.edges.push_back({a, c});
+    }
+  }
+  return body;
+}
+
+// Quads, triangles and spheres anywhere in a cube, which is not closed.
+inline std::vector<PrimitiveRecord<double>> crowd(size_t count) {
+  RandomPoints random(9);
+  std::vector<PrimitiveRecord<double>> list;
+  for (size_t i = 0; i < count; ++i) {
+    const Point p = random.inCube(1), e1 = random.direction() * random.uniform(0.01, 0.3);
+    const Point e2 = normalized(cross(e1, random.direction())) * random.uniform(0.01, 0.3);
+    if (i % 3 == 0) list.push_back(facePrimitive(PrimitiveKind::quad, p, e1, e2));
+    if (i % 3 == 1) list.push_back(facePrimitive(PrimitiveKind::triangle, p, e1, e2));
+    if (i % 3 == 2) list.push_back(spherePrimitive(p, random.uniform(0.01, 0.1)));
+  }
+  return list;
 }
 
 }  // namespace wavecrest

@@ -90,4 +90,9 @@ inline void expectErrorOnLine2(std::string_view body, std::string_view text) {
   expectError(sceneXml("\n" + std::string(body) + "\n" + std::string(kSensor) + std::string(kSphere)), 2, text);
 }
 
+// A sphere whose reflectance is a texture.
+inline std::string texturedSphere(std::string_view texture) {
+  return "<shape type=\"sphere\"><bsdf type=\"diffuse\">" + std::string(texture) + "</bsdf></shape>";
+}
+
 }  // namespace wavecrest

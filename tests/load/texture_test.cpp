@@ -17,13 +17,10 @@ class ImageFolder : public Folder {
   }
 };
 
-std::string material(std::string_view texture) {
-  return "<shape type=\"sphere\"><bsdf type=\"diffuse\">" + std::string(texture) + "</bsdf></shape>";
-}
 BitmapTexture bitmapOf(const Folder& folder, const std::string& file, std::string_view options = "") {
-  const Scene scene =
-      loadBody(folder, material("<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" value=\"" +
-                                file + "\"/>" + std::string(options) + "</texture>"));
+  const Scene scene = loadBody(
+      folder, texturedSphere("<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" value=\"" + file +
+                             "\"/>" + std::string(options) + "</texture>"));
   return std::get<BitmapTexture>(scene.textures.at(0).kind);
 }
 
@@ -48,7 +45,7 @@ TEST(Bitmap, ReflectanceBelowZeroIsRefusedAndAboveOneIsSaid) {
     const Folder folder;
     writeExr((folder.path() / "a.exr").string(),
              {.width = 1, .height = 1, .channels = 3, .pixels = {0.5f, value, 0.25f}});
-    return loadBody(folder, material(R"(<texture name="reflectance" type="bitmap">
+    return loadBody(folder, texturedSphere(R"(<texture name="reflectance" type="bitmap">
                                         <string name="filename" value="a.exr"/></texture>)"));
   };
   EXPECT_TRUE(reflectance(1).warnings.empty());
@@ -80,8 +77,9 @@ TEST(Bitmap, FormatFollowsFromTheContent) {
 }
 
 Scene sceneOfFile(const Folder& folder, std::string_view file) {
-  return loadBody(folder, material("<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" value=\"" +
-                                   std::string(file) + "\"/></texture>"));
+  return loadBody(folder,
+                  texturedSphere("<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" value=\"" +
+                                 std::string(file) + "\"/></texture>"));
 }
 
 TEST(Bitmap, ExposureOfARadiancePictureIsLeftOut) {
@@ -142,7 +140,7 @@ TEST(Bitmap, IsFoundBesideTheFileThatNamesIt) {
   writePng((folder.path() / "sub/grey.png").string(), Image8{.width = 1, .height = 1, .pixels = {9, 9, 9}});
   folder.write(
       "sub/part.xml",
-      sceneXml(material(
+      sceneXml(texturedSphere(
           R"(<texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture>)")));
   EXPECT_EQ(load(folder, sceneXml(std::string(kSensor) + R"(<include filename="sub/part.xml"/>)")).textures.size(), 1u);
 }
@@ -151,8 +149,8 @@ TEST(Bitmap, IsFoundInASearchPath) {
   const Folder folder;
   std::filesystem::create_directories(folder.path() / "images");
   writePng((folder.path() / "images/grey.png").string(), Image8{.width = 1, .height = 1, .pixels = {9, 9, 9}});
-  const std::string body =
-      material(R"(<texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture>)");
+  const std::string body = texturedSphere(
+      R"(<texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture>)");
   EXPECT_EQ(loadBody(folder, R"(<path value="images"/>)" + body).textures.size(), 1u);
 }
 
@@ -169,7 +167,7 @@ TEST(Bitmap, LastSearchPathComesFirstAndTheScenesFolderLast) {
     const Scene scene = loadBody(
         folder,
         paths +
-            material(
+            texturedSphere(
                 R"(<texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture>)"));
     return std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap->width;
   };
@@ -181,7 +179,8 @@ TEST(Bitmap, LastSearchPathComesFirstAndTheScenesFolderLast) {
 void expectTextureError(const Folder& folder, std::string_view content, std::string_view text) {
   expectError(
       folder,
-      sceneXml("\n" + material("<texture name=\"reflectance\" type=\"bitmap\">" + std::string(content) + "</texture>") +
+      sceneXml("\n" +
+               texturedSphere("<texture name=\"reflectance\" type=\"bitmap\">" + std::string(content) + "</texture>") +
                std::string(kSensor)),
       2, text);
 }
@@ -312,33 +311,6 @@ TEST(Bitmap, OptionsOfVersion06) {
   EXPECT_FLOAT_EQ(texture.bitmap->pixels.at(0), 128 / 255.0f);
 }
 
-TEST(RawConstant, IsAValue) {
-  const Scene scene = loadBody(material(
-      R"(<texture name="reflectance" type="rawconstant"><vector name="value" x="0.1" y="0.2" z="0.3"/></texture>)"));
-  EXPECT_EQ(scene.textures.size(), 0u);
-  const Rgb value = std::get<Diffuse>(scene.materials.at(0).kind).reflectance.value;
-  EXPECT_FLOAT_EQ(static_cast<float>(value[1]), 0.2f);
-}
-
-TEST(RawConstant, IsInTheRangeOfWhatItStandsFor) {
-  const std::string negative =
-      R"(<texture name="NAME" type="rawconstant"><vector name="value" x="-1" y="0" z="0"/></texture>)";
-  const auto named = [&](std::string name) { return std::string(negative).replace(negative.find("NAME"), 4, name); };
-  expectErrorOnLine2(material(named("reflectance")), "a value of -1");
-  expectErrorOnLine2(R"(<shape type="sphere"><emitter type="area">)" + named("radiance") + "</emitter></shape>",
-                     "emission texture has a value of -1");
-}
-
-TEST(ScaleTexture, MultipliesTheOneWithin) {
-  const ImageFolder folder;
-  const Scene scene =
-      loadBody(folder, material(R"(<texture name="reflectance" type="scale"><float name="scale" value="0.5"/>
-      <texture type="bitmap"><string name="filename" value="grey.png"/><boolean name="raw" value="true"/></texture>
-      </texture>)"));
-  ASSERT_EQ(scene.textures.size(), 1u);
-  EXPECT_FLOAT_EQ(std::get<BitmapTexture>(scene.textures[0].kind).bitmap->pixels[0], 64 / 255.0f);
-}
-
 TEST(Bitmap, TruncatedJpegIsAnError) {
   std::ifstream in(std::string(WAVECREST_TEST_DATA) + "/halves.jpg", std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), {});
@@ -348,64 +320,14 @@ TEST(Bitmap, TruncatedJpegIsAnError) {
   expectTextureError(folder, R"(<string name="filename" value="half.jpg"/>)", "damaged JPEG");
 }
 
-TEST(Checkerboard, Defaults) {
-  const Scene scene = loadBody(material(R"(<texture name="reflectance" type="checkerboard"/>)"));
-  const CheckerboardTexture& board = std::get<CheckerboardTexture>(scene.textures.at(0).kind);
-  EXPECT_EQ(board.color0, (Rgb{0.4, 0.4, 0.4}));
-  EXPECT_EQ(board.color1, (Rgb{0.2, 0.2, 0.2}));
-}
-
-// diff_trans reaches 2, and a texture does not know what it is for.
-TEST(Checkerboard, NumbersMayBeAbove1AndColoursMayNot) {
-  const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"><float name="color1" value="1.4"/></texture>
-      <shape type="sphere"><bsdf type="principledthin"><ref id="t" name="diff_trans"/></bsdf></shape>)");
-  const uint32_t texture = std::get<Principled>(scene.materials.at(0).kind).diffTrans.texture;
-  EXPECT_EQ(std::get<CheckerboardTexture>(scene.textures.at(texture).kind).color0[0], 1.4);
-  expectErrorOnLine2(
-      R"(<texture type="checkerboard" id="t"><rgb name="color1" value="1.4"/></texture><shape type="sphere">
-      <bsdf type="principledthin"><ref id="t" name="diff_trans"/></bsdf></shape>)",
-      "expected values from 0 to 1");
-}
-
-TEST(Checkerboard, OfReflectancesAbove1IsAWarning) {
-  const Scene scene = loadBody(
-      material(R"(<texture name="reflectance" type="checkerboard"><float name="color1" value="1.4"/></texture>)"));
-  ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("up to 1.4"), std::string::npos) << scene.warnings[0];
-}
-
-// What Mitsuba 3.9 renders, whatever its documentation says.
-TEST(Checkerboard, SwapsItsColoursWhereANumberIsAskedFor) {
-  const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"/><shape type="sphere"><bsdf type="mask">
-    <ref id="t" name="opacity"/><bsdf type="diffuse"><ref id="t" name="reflectance"/></bsdf></bsdf></shape>)");
-  const auto firstColour = [&](uint32_t texture) {
-    return std::get<CheckerboardTexture>(scene.textures.at(texture).kind).color0[0];
-  };
-  EXPECT_EQ(firstColour(std::get<Diffuse>(scene.materials.at(0).kind).reflectance.texture), 0.4);
-  EXPECT_EQ(firstColour(scene.materials.at(0).opacity->texture), 0.2);
-}
-
-TEST(Checkerboard, ColoursAreTheirMeansWhereANumberIsAskedFor) {
-  const Scene scene = loadBody(R"(<shape type="sphere"><bsdf type="mask"><texture type="checkerboard" name="opacity">
-      <rgb name="color0" value="0.3, 0.6, 0"/></texture><bsdf type="diffuse"/></bsdf></shape>)");
-  const auto& board = std::get<CheckerboardTexture>(scene.textures.at(scene.materials.at(0).opacity->texture).kind);
-  for (const double channel : board.color1) EXPECT_NEAR(channel, 0.3, 1e-15);
-}
-
-TEST(Texture, ToUvActsOnTextureCoordinates) {
-  const Scene scene = loadBody(material(
-      R"(<texture name="reflectance" type="checkerboard"><transform name="to_uv"><translate x="0.1"/><scale x="2" y="3"/></transform></texture>)"));
-  const Matrix4& m = scene.textures.at(0).toUv;
-  EXPECT_EQ(m[0][0], 2);
-  EXPECT_EQ(m[1][1], 3);
-  EXPECT_EQ(m[0][3], 0.2);
-}
-
-TEST(Texture, IsReadOnceHoweverOftenItIsReferenced) {
-  const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"/>
-    <shape type="sphere"><bsdf type="diffuse"><ref id="t" name="reflectance"/></bsdf></shape>
-    <shape type="cube"><bsdf type="plastic"><ref id="t" name="diffuse_reflectance"/></bsdf></shape>)");
-  EXPECT_EQ(scene.textures.size(), 1u);
+TEST(ScaleTexture, MultipliesTheOneWithin) {
+  const ImageFolder folder;
+  const Scene scene =
+      loadBody(folder, texturedSphere(R"(<texture name="reflectance" type="scale"><float name="scale" value="0.5"/>
+      <texture type="bitmap"><string name="filename" value="grey.png"/><boolean name="raw" value="true"/></texture>
+      </texture>)"));
+  ASSERT_EQ(scene.textures.size(), 1u);
+  EXPECT_FLOAT_EQ(std::get<BitmapTexture>(scene.textures[0].kind).bitmap->pixels[0], 64 / 255.0f);
 }
 
 }  // namespace

@@ -1,0 +1,54 @@
+#include "bench/claims/comparison.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "bench/claims/scene_losses.h"
+
+namespace wavecrest {
+namespace {
+
+using V = ClaimVerdict;
+
+}  // namespace
+
+std::string plusMinus(double halfWidth) {
+  return std::isfinite(halfWidth) && halfWidth > 0 ? fmt::format(" \u00b1 {:.2g}", halfWidth) : "";
+}
+
+int weightOf(V verdict) {
+  switch (verdict) {
+    case V::fails:
+      return 3;
+    case V::notJudged:
+      return 2;
+    case V::undecided:
+      return 1;
+    case V::holds:
+      break;
+  }
+  return 0;
+}
+
+Comparison above(const Band& band, double limit, std::string text) {
+  const double margin = band.mean - limit;
+  const V verdict = margin >= band.halfWidth ? V::holds : margin < -band.halfWidth ? V::fails : V::undecided;
+  return {verdict, margin, std::move(text)};
+}
+Comparison below(const Band& band, double limit, std::string text) {
+  return above({-band.mean, band.halfWidth}, -limit, std::move(text));
+}
+
+std::string nameOf(const std::string& metric) {
+  if (metric == "ssim") return "SSIM";
+  if (metric == "q_mos") return "Q_MOS";
+  return metric == "rmse" ? "RMSE" : metric;
+}
+
+std::string shown(const std::string& method) { return SceneLosses::rowOf(method); }
+
+double meanOfLog(std::span<const double> values) { return std::exp(meanBand(values).mean); }
+
+}  // namespace wavecrest

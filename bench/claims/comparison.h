@@ -1,0 +1,38 @@
+// Comparisons that conditions are judged by, and how their values are printed.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "bench/claims/judge_claims.h"
+#include "bench/statistics/bands.h"
+
+namespace wavecrest {
+
+// margin: by how much it holds, below 0 by how much it does not, in logarithms or the metric's unit.
+struct Comparison {
+  ClaimVerdict verdict = ClaimVerdict::holds;
+  double margin = 0;
+  std::string text = {};
+};
+
+// Whether a value lies above, or below, a limit; undecided if the limit is within the band of the value.
+Comparison above(const Band& band, double limit, std::string text);
+Comparison below(const Band& band, double limit, std::string text);
+
+// The weight of a verdict in a conjunction, where the heaviest verdict decides.
+int weightOf(ClaimVerdict verdict);
+
+// The geometric mean of numbers whose logarithms are given.
+double meanOfLog(std::span<const double> logarithms);
+
+// " ± 0.02"; nothing where no width is known, or where equal values have none.
+std::string plusMinus(double halfWidth);
+
+// A metric in print.
+std::string nameOf(const std::string& metric);
+
+// A method in print: the row that it is judged by.
+std::string shown(const std::string& method);
+
+}  // namespace wavecrest

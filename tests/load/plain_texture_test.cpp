@@ -1,0 +1,85 @@
+// Textures that no image file belongs to, and what all textures have.
+#include "tests/load/scene_file.h"
+
+namespace wavecrest {
+namespace {
+
+TEST(RawConstant, IsAValue) {
+  const Scene scene = loadBody(texturedSphere(
+      R"(<texture name="reflectance" type="rawconstant"><vector name="value" x="0.1" y="0.2" z="0.3"/></texture>)"));
+  EXPECT_EQ(scene.textures.size(), 0u);
+  const Rgb value = std::get<Diffuse>(scene.materials.at(0).kind).reflectance.value;
+  EXPECT_FLOAT_EQ(static_cast<float>(value[1]), 0.2f);
+}
+
+TEST(RawConstant, IsInTheRangeOfWhatItStandsFor) {
+  const std::string negative =
+      R"(<texture name="NAME" type="rawconstant"><vector name="value" x="-1" y="0" z="0"/></texture>)";
+  const auto named = [&](std::string name) { return std::string(negative).replace(negative.find("NAME"), 4, name); };
+  expectErrorOnLine2(texturedSphere(named("reflectance")), "a value of -1");
+  expectErrorOnLine2(R"(<shape type="sphere"><emitter type="area">)" + named("radiance") + "</emitter></shape>",
+                     "emission texture has a value of -1");
+}
+
+TEST(Checkerboard, Defaults) {
+  const Scene scene = loadBody(texturedSphere(R"(<texture name="reflectance" type="checkerboard"/>)"));
+  const CheckerboardTexture& board = std::get<CheckerboardTexture>(scene.textures.at(0).kind);
+  EXPECT_EQ(board.color0, (Rgb{0.4, 0.4, 0.4}));
+  EXPECT_EQ(board.color1, (Rgb{0.2, 0.2, 0.2}));
+}
+
+// diff_trans reaches 2, and a texture does not know what it is for.
+TEST(Checkerboard, NumbersMayBeAbove1AndColoursMayNot) {
+  const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"><float name="color1" value="1.4"/></texture>
+      <shape type="sphere"><bsdf type="principledthin"><ref id="t" name="diff_trans"/></bsdf></shape>)");
+  const uint32_t texture = std::get<Principled>(scene.materials.at(0).kind).diffTrans.texture;
+  EXPECT_EQ(std::get<CheckerboardTexture>(scene.textures.at(texture).kind).color0[0], 1.4);
+  expectErrorOnLine2(
+      R"(<texture type="checkerboard" id="t"><rgb name="color1" value="1.4"/></texture><shape type="sphere">
+      <bsdf type="principledthin"><ref id="t" name="diff_trans"/></bsdf></shape>)",
+      "expected values from 0 to 1");
+}
+
+TEST(Checkerboard, OfReflectancesAbove1IsAWarning) {
+  const Scene scene = loadBody(texturedSphere(
+      R"(<texture name="reflectance" type="checkerboard"><float name="color1" value="1.4"/></texture>)"));
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("up to 1.4"), std::string::npos) << scene.warnings[0];
+}
+
+// What Mitsuba 3.9 renders, whatever its documentation says.
+TEST(Checkerboard, SwapsItsColoursWhereANumberIsAskedFor) {
+  const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"/><shape type="sphere"><bsdf type="mask">
+    <ref id="t" name="opacity"/><bsdf type="diffuse"><ref id="t" name="reflectance"/></bsdf></bsdf></shape>)");
+  const auto firstColour = [&](uint32_t texture) {
+    return std::get<CheckerboardTexture>(scene.textures.at(texture).kind).color0[0];
+  };
+  EXPECT_EQ(firstColour(std::get<Diffuse>(scene.materials.at(0).kind).reflectance.texture), 0.4);
+  EXPECT_EQ(firstColour(scene.materials.at(0).opacity->texture), 0.2);
+}
+
+TEST(Checkerboard, ColoursAreTheirMeansWhereANumberIsAskedFor) {
+  const Scene scene = loadBody(R"(<shape type="sphere"><bsdf type="mask"><texture type="checkerboard" name="opacity">
+      <rgb name="color0" value="0.3, 0.6, 0"/></texture><bsdf type="diffuse"/></bsdf></shape>)");
+  const auto& board = std::get<CheckerboardTexture>(scene.textures.at(scene.materials.at(0).opacity->texture).kind);
+  for (const double channel : board.color1) EXPECT_NEAR(channel, 0.3, 1e-15);
+}
+
+TEST(Texture, ToUvActsOnTextureCoordinates) {
+  const Scene scene = loadBody(texturedSphere(
+      R"(<texture name="reflectance" type="checkerboard"><transform name="to_uv"><translate x="0.1"/><scale x="2" y="3"/></transform></texture>)"));
+  const Matrix4& m = scene.textures.at(0).toUv;
+  EXPECT_EQ(m[0][0], 2);
+  EXPECT_EQ(m[1][1], 3);
+  EXPECT_EQ(m[0][3], 0.2);
+}
+
+TEST(Texture, IsReadOnceHoweverOftenItIsReferenced) {
+  const Scene scene = loadBody(R"(<texture type="checkerboard" id="t"/>
+    <shape type="sphere"><bsdf type="diffuse"><ref id="t" name="reflectance"/></bsdf></shape>
+    <shape type="cube"><bsdf type="plastic"><ref id="t" name="diffuse_reflectance"/></bsdf></shape>)");
+  EXPECT_EQ(scene.textures.size(), 1u);
+}
+
+}  // namespace
+}  // namespace wavecrest
