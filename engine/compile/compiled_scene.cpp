@@ -177,6 +177,52 @@ void checkRange(const Scene& scene, double radius, double groupExtent) {
   }
 }
 
+// The view of what is compiled, but for the camera and the intersectors: pointers to it, and what kernels decide by.
+template <class S>
+void completeView(const Scene& scene, uint32_t features, bool keepsInstances, CompiledScene<S>& compiled) {
+  SceneView<S>& view = compiled.view;
+  const auto& primitives = compiled.primitives;
+  const BoundingSphere& bounds = compiled.bounds;
+  view.primitives = primitives.records.data();
+  view.primitiveCount = static_cast<uint32_t>(primitives.records.size());
+  if constexpr (sizeof(S) == sizeof(float)) {
+    compiled.primitiveTable = tabulate<PrimitiveTable>(
+        std::span<const PrimitiveRecord<S>>(primitives.records.data(), primitives.records.size()));
+    view.primitiveTable = compiled.primitiveTable.get();
+  }
+  view.attributes = primitives.attributes.data();
+  if (keepsInstances) view.instances = compiled.instances.data();
+  view.instanceCount = static_cast<uint32_t>(compiled.instances.size());
+  view.materials = compiled.materials.data();
+  if (!compiled.compounds.empty()) view.compounds = compiled.compounds.data();
+  if (!compiled.passages.empty()) view.passages = compiled.passages.data();
+  view.materialCount = static_cast<uint32_t>(compiled.materials.size());
+  view.bsdfKinds = 0;
+  for (const MaterialRecord& material : compiled.materials) view.bsdfKinds |= 1u << material.kind;
+  // Without kCompoundBsdfs no shape has a compound BSDF, though the scene may list one.
+  if (compiled.compounds.empty()) view.bsdfKinds &= ~kCompoundKinds;
+  compiled.materialTable = tabulate<MaterialTable>(std::span<const MaterialRecord>(compiled.materials));
+  view.materialTable = compiled.materialTable.get();
+  view.textures = compiled.textures.records.data();
+  view.texels = compiled.textures.texels.data();
+  view.environment = compiled.lights.environment.view;
+  view.lights = compiled.lights.records.data();
+  view.lightTable = compiled.lights.table.data();
+  view.lightCount = static_cast<uint32_t>(compiled.lights.records.size());
+  view.infiniteLight = compiled.lights.infinite;
+  view.hidesInfinite = scene.defaults.hideEmitters;
+  view.normalMaps = (features & kNormalMaps) != 0;
+  view.tangents = hasTangents(scene);
+  view.spheres = primitives.counts.spheres != 0;
+  view.firstPrimitive[1] = primitives.counts.quads;
+  view.firstPrimitive[2] = primitives.counts.quads + primitives.counts.triangles;
+  for (size_t i = 0; i < 3; ++i) {
+    view.center[i] = bounds.center[i];
+    view.halfExtent[i] = bounds.halfExtent(i);
+  }
+  view.radius = bounds.radius;
+}
+
 }  // namespace
 
 Box rayOrigins(const Scene& scene, const BoundingSphere& bounds, const double (&eye)[3], const Double3& origin) {
@@ -283,45 +329,7 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
   compiled->textures = compileTextures(scene);
   bindLightTextures(scene, primitives, compiled->lights, compiled->textures);
 
-  // The view: pointers into all of these, and what kernels decide by.
-  view.primitives = primitives.records.data();
-  view.primitiveCount = static_cast<uint32_t>(primitives.records.size());
-  if constexpr (sizeof(S) == sizeof(float)) {
-    compiled->primitiveTable = tabulate<PrimitiveTable>(
-        std::span<const PrimitiveRecord<S>>(primitives.records.data(), primitives.records.size()));
-    view.primitiveTable = compiled->primitiveTable.get();
-  }
-  view.attributes = primitives.attributes.data();
-  if (keeps) view.instances = compiled->instances.data();
-  view.instanceCount = static_cast<uint32_t>(compiled->instances.size());
-  view.materials = compiled->materials.data();
-  if (!compiled->compounds.empty()) view.compounds = compiled->compounds.data();
-  if (!compiled->passages.empty()) view.passages = compiled->passages.data();
-  view.materialCount = static_cast<uint32_t>(compiled->materials.size());
-  view.bsdfKinds = 0;
-  for (const MaterialRecord& material : compiled->materials) view.bsdfKinds |= 1u << material.kind;
-  // Without kCompoundBsdfs no shape has a compound BSDF, though the scene may list one.
-  if (compiled->compounds.empty()) view.bsdfKinds &= ~kCompoundKinds;
-  compiled->materialTable = tabulate<MaterialTable>(std::span<const MaterialRecord>(compiled->materials));
-  view.materialTable = compiled->materialTable.get();
-  view.textures = compiled->textures.records.data();
-  view.texels = compiled->textures.texels.data();
-  view.environment = compiled->lights.environment.view;
-  view.lights = compiled->lights.records.data();
-  view.lightTable = compiled->lights.table.data();
-  view.lightCount = static_cast<uint32_t>(compiled->lights.records.size());
-  view.infiniteLight = compiled->lights.infinite;
-  view.hidesInfinite = scene.defaults.hideEmitters;
-  view.normalMaps = (features & kNormalMaps) != 0;
-  view.tangents = hasTangents(scene);
-  view.spheres = primitives.counts.spheres != 0;
-  view.firstPrimitive[1] = primitives.counts.quads;
-  view.firstPrimitive[2] = primitives.counts.quads + primitives.counts.triangles;
-  for (size_t i = 0; i < 3; ++i) {
-    view.center[i] = bounds.center[i];
-    view.halfExtent[i] = bounds.halfExtent(i);
-  }
-  view.radius = bounds.radius;
+  completeView(scene, features, keeps, *compiled);
   return compiled;
 }
 template std::unique_ptr<CompiledScene<float>> compileScene(const Scene&, Accel, bool, Instancing);

@@ -146,6 +146,7 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
       .first = settings.radius.value_or(kFixedRadius), .alpha = settings.radiusAlpha, .scene = plan.scene->view.radius};
   plan.needs = columnNeeds(scene, plan.specialization, plan.scene->view.instances != nullptr);
   plan.needs.passages = plan.scene->view.passages != nullptr;
+  plan.needs.visibility = plan.scene->view.bvh != nullptr;
   // Clips are left in the compiled camera only where they hide a surface.
   const CameraView& camera = plan.scene->view.camera;
   const bool clipped = camera.nearClip > 0 || std::isfinite(camera.farClip);

@@ -33,7 +33,7 @@ struct PrincipledThinBsdf {
     const Real chosen = to<Real>(u.a);
     const Mask rough = chosen < sheet.rough;
     const Mask through = select(rough, Real(2) * chosen, chosen - sheet.rough) >=
-                         select(rough, sheet.rough, (one - sheet.rough) * (one - sheet.behind));
+                         select(rough, sheet.rough, (one - sheet.rough) * (one - sheet.through));
     const Vec3<Real> m =
         select(through, sheet.transmission.sampleVisible(near, u1, u2), sheet.reflection.sampleVisible(near, u1, u2));
     Vec3<Real> wo = select(rough, mirror(near, m, dot(near, m)), cosineHemisphere<Real>(u1, u2));
@@ -54,7 +54,7 @@ struct PrincipledThinBsdf {
     using Real = typename P::Real;
     Vec3<Real> base;
     Real roughness, eta;
-    Real rough, behind;  // share of the rough lobes; of the diffuse ones, of transmission
+    Real rough, through;  // share of the rough lobes; of the diffuse ones, of transmission
     StretchedGgx<P> reflection, transmission;
 
     explicit WAVECREST_INLINE Sheet(const CompoundInput<P>& input)
@@ -62,7 +62,7 @@ struct PrincipledThinBsdf {
           roughness(input.alpha()),
           eta(input.eta()),
           rough(input.parameter(CompoundParameter::specTrans)),
-          behind(Real(0.5f) * input.parameter(CompoundParameter::diffTrans, 2)) {
+          through(Real(0.5f) * input.parameter(CompoundParameter::diffTrans, 2)) {
       const Real anisotropic = input.parameter(CompoundParameter::anisotropic);
       reflection = principledNormals<P>(roughness, anisotropic);
       // Burley 2015, figure 15.
@@ -102,12 +102,12 @@ struct PrincipledThinBsdf {
     const Vec3<Real> light = input.walk == Walk::camera ? far : near, eye = input.walk == Walk::camera ? near : far;
     const Real eyeSide = copySign(one, eye.z);
     const Vec3<Real> seen{h.x * eyeSide, h.y * eyeSide, h.z};
-    const Mask behind = dot(light * eyeSide, seen) < zero;
-    const Vec3<Real> rough = select(reflect, reflected, zeroUnless(behind, sheet.base * (one - fresnel)));
+    const Mask transmit = dot(light * eyeSide, seen) < zero;
+    const Vec3<Real> rough = select(reflect, reflected, zeroUnless(transmit, sheet.base * (one - fresnel)));
     Vec3<Real> f = rough * (sheet.rough * density * byNear * byFar);
 
     // Diffuse ones.
-    const Real matte = one - sheet.rough, front = matte * (one - sheet.behind), back = matte * sheet.behind;
+    const Real matte = one - sheet.rough, front = matte * (one - sheet.through), back = matte * sheet.through;
     const Real diffuse = Real(kInvPi) * principledDiffuse(sheet.roughness, input.parameter(CompoundParameter::flatness),
                                                           near.z, image.z, cosine);
     const Vec3<Real> sheen = principledSheen(input.parameter(CompoundParameter::sheen),

@@ -76,6 +76,13 @@ struct ShadowRays : Columns<ShadowRays<S>> {
   }
 };
 
+// Whether nothing blocks each shadow ray, as 1 or 0. Scratch of occlude in hierarchies, whose walks end in no order;
+// dropped without one.
+struct Visibility : Columns<Visibility> {
+  Column<float> visible;
+  auto all() { return std::tie(visible); }
+};
+
 // Of rays that have passed a surface: where they are in the wave, and the number that decides whether they pass the
 // next one. Scratch of extend and occlude; dropped without passages.
 struct PassageMarks : Columns<PassageMarks> {

@@ -22,6 +22,7 @@ struct ColumnNeeds {
   bool splats = true;
   // Room for rays behind the surfaces that they have passed (kernels/pass/pass_surfaces.cpp).
   bool passages = false;
+  bool visibility = true;  // where occlude walks a hierarchy
   // The cells of vertices, and records of directions: of renders that learn.
   bool cells = false, directions = false;
 };
@@ -90,6 +91,7 @@ struct Wave : Vertices<S> {
   size_t openPairs = 0;
   Vertices<S> aside;  // scratch of arrive (kernels/shade/vertex_order_lanes.h); dropped where all BSDFs are diffuse
   ShadowRays<S> shadowRays;
+  Visibility visibility;
   PassingRays<S> passing;          // dropped without passages
   VertexPairs pairs, sortedPairs;  // sortedPairs: dropped where all BSDFs are diffuse
   VertexRows<S> vertexRows;
@@ -115,6 +117,7 @@ struct Wave : Vertices<S> {
       passing.forEachQueue([](auto& queue) { queue.drop(); });
       shadowRays.others.drop();
     }
+    if (!needs.visibility) visibility.drop();
     if (!needs.connections || !needs.bsdfOrder) sortedPairs.drop();
     if (!needs.bsdfOrder) aside.forEachQueue([](auto& queue) { queue.drop(); });
     if (!needs.splats) splats.drop();
@@ -181,6 +184,7 @@ struct Wave : Vertices<S> {
     Vertices<S>::forEachQueue(function);
     aside.forEachQueue(function);
     function(shadowRays);
+    function(visibility);
     passing.forEachQueue(function);
     function(pairs);
     function(sortedPairs);

@@ -83,9 +83,9 @@ WAVECREST_INLINE void finishAlone(const BvhView& bvh, const ShadowRays<S>& rays,
       });
 }
 
-// Writes whether nothing blocks each ray, as 1 or 0, in the place of its origin's x.
+// Writes `visible` of each ray.
 template <class S>
-WAVECREST_INLINE void walkAll(const BvhView& bvh, ShadowRays<S>& rays) {
+WAVECREST_INLINE void walkAll(const BvhView& bvh, const ShadowRays<S>& rays, float* visible) {
   if constexpr (kPackets) {
     LastBlockers blockers(bvh);
     Batch batch;
@@ -93,10 +93,10 @@ WAVECREST_INLINE void walkAll(const BvhView& bvh, ShadowRays<S>& rays) {
       batch.count = std::min(rays.size - batch.first, LoneEntries::kRays);
       walkTogether(bvh, rays, blockers, batch);
       finishAlone(bvh, rays, batch);
-      std::copy_n(batch.visible, batch.count, rays.originX + batch.first);
+      std::copy_n(batch.visible, batch.count, visible + batch.first);
     }
   } else {
-    walkShadowRaysAlone<BvhRay<true>>(bvh, rays);
+    walkShadowRaysAlone<BvhRay<true>>(bvh, rays, visible);
   }
 }
 
@@ -105,7 +105,9 @@ WAVECREST_INLINE void walkAll(const BvhView& bvh, ShadowRays<S>& rays) {
 template <class P>
 void occludeBvh(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   using S = typename P::Storage;
-  occludeThrough(context, wave, [](const BvhView& bvh, ShadowRays<S>& rays) HWY_ATTR { walkAll(bvh, rays); });
+  occludeThrough(context, wave, [](const BvhView& bvh, const ShadowRays<S>& rays, float* visible) HWY_ATTR {
+    walkAll(bvh, rays, visible);
+  });
 }
 
 WAVECREST_SIMD_END

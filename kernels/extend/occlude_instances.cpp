@@ -12,8 +12,8 @@ WAVECREST_SIMD_BEGIN
 template <class P>
 void occludeInstances(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   using S = typename P::Storage;
-  occludeThrough(context, wave, [](const BvhView& bvh, ShadowRays<S>& rays) HWY_ATTR {
-    walkShadowRaysAlone<PlacedRayOf<true>>(bvh, rays);
+  occludeThrough(context, wave, [](const BvhView& bvh, const ShadowRays<S>& rays, float* visible) HWY_ATTR {
+    walkShadowRaysAlone<PlacedRayOf<true>>(bvh, rays, visible);
   });
 }
 

@@ -14,9 +14,9 @@ WAVECREST_INLINE void beginShadowRay(Ray& ray, size_t index, const ShadowRays<S>
             rays.directionZ[i], kShadowEnd);
 }
 
-// Each ray alone. Writes whether nothing blocks it, as 1 or 0, in the place of its origin's x.
+// Each ray alone. Writes `visible` of each.
 template <class Ray, class S>
-WAVECREST_INLINE void walkShadowRaysAlone(const BvhView& bvh, ShadowRays<S>& rays) {
+WAVECREST_INLINE void walkShadowRaysAlone(const BvhView& bvh, const ShadowRays<S>& rays, float* visible) {
   size_t next = 0;
   walkBvh<Ray>(
       bvh,
@@ -26,18 +26,19 @@ WAVECREST_INLINE void walkShadowRaysAlone(const BvhView& bvh, ShadowRays<S>& ray
         ++next;
         return true;
       },
-      [&](const Ray& ray) HWY_ATTR { rays.originX[ray.index] = ray.id == kMiss ? 1.0f : 0.0f; });
+      [&](const Ray& ray) HWY_ATTR { visible[ray.index] = ray.id == kMiss ? 1.0f : 0.0f; });
 }
 
-// The stage. walkAll(bvh, rays): writes what walkShadowRaysAlone does.
+// The stage. walkAll(bvh, rays, visible): writes what walkShadowRaysAlone does.
 template <class S, class WalkAll>
 WAVECREST_INLINE void occludeThrough(const StageContext<S>& context, Wave<S>& wave, const WalkAll& walkAll) {
   auto& shadow = wave.shadowRays;
   const size_t count = shadow.size;
   context.counters->raysShadow += count;
-  walkAll(*context.scene->bvh, shadow);
+  const Column<float>& visible = wave.visibility.visible;
+  walkAll(*context.scene->bvh, shadow, visible);
   for (size_t i = 0; i < count; i += kLanes) {
-    addVisible(context, wave, (load(shadow.originX, i) > Float(0)) & firstLanes(count - i), i);
+    addVisible(context, wave, (load(visible, i) > Float(0)) & firstLanes(count - i), i);
   }
   shadow.size = 0;
 }

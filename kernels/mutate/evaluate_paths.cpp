@@ -69,12 +69,12 @@ class Rows {
   // Row r, a surface, in the lanes of m: its scattering and the densities of its neighbours made from it.
   WAVECREST_INLINE void evaluate(UInt r, Mask m) const {
     // The neighbours are row r - 1 on the light's side and row r + 1 on the eye's.
-    const UInt one(1u), at = r * stride_ + lane_, behind = at - stride_, ahead = at + stride_;
-    const Vec3<Real> x = positionAt(v_, at), towardsEye = positionAt(v_, ahead) - x;
-    Vec3<Real> towardsLight = positionAt(v_, behind) - x;
+    const UInt one(1u), at = r * stride_ + lane_, previous = at - stride_, next = at + stride_;
+    const Vec3<Real> x = positionAt(v_, at), towardsEye = positionAt(v_, next) - x;
+    Vec3<Real> towardsLight = positionAt(v_, previous) - x;
     Real dist2 = max(length2(towardsLight), Real(1e-37f));
     towardsLight = towardsLight * reciprocalSqrt(dist2);
-    Real lightCosine = abs(dot(towardsLight, normalAt(v_, behind)));
+    Real lightCosine = abs(dot(towardsLight, normalAt(v_, previous)));
     // x_0 may be a direction, or have no surface: lightEdge knows direction, distance and cosine of the first edge.
     const Mask first = m & (r == one);
     LightEdge<Real> edge{};
@@ -108,8 +108,8 @@ class Rows {
     storeWhere(scattering.step, m, v_.stepR, v_.stepG, v_.stepB, at);
     storeWhere(scattering.eyeChoice, m, v_.eyeChoice, at);
     storeWhere(scattering.lightChoice, m, v_.lightChoice, at);
-    storeWhere(eye, m, v_.eye, behind);
-    storeWhere(scattering.lightPdf * abs(dot(back, normalAt(v_, ahead))) / eyeDist2, m, v_.light, ahead);
+    storeWhere(eye, m, v_.eye, previous);
+    storeWhere(scattering.lightPdf * abs(dot(back, normalAt(v_, next))) / eyeDist2, m, v_.light, next);
   }
 
   // The density, from a new lens, of the row next to it. In a path of one edge that row is x_0: the lens sees the

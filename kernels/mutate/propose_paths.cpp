@@ -114,6 +114,38 @@ WAVECREST_INLINE void sortByKind(const PathPlans& plans, size_t count) {
   for (size_t i = 0; i < count; ++i) plans.order[first[plans.kind[i]]++] = static_cast<uint32_t>(i);
 }
 
+// The plans of block i, for a path of so many edges, go into the columns; walks have reached nothing yet.
+template <class S>
+WAVECREST_INLINE void storePlan(const Plan& plan, UInt edges, const PathMutations<S>& paths, const Chains& chains,
+                                size_t i) {
+  const UInt zero(0u), one(1u);
+  // How many rays each walk needs: one fewer where it begins with a new end of the path.
+  const Mask newLens = plan.eyeFrom == edges + one;
+  const UInt eyeWalked = plan.added - plan.lightWalked;
+  const UInt lightRays = select(plan.lightKept == zero, max(plan.lightWalked, one) - one, plan.lightWalked);
+  const UInt eyeRays = select(newLens, eyeWalked - one, eyeWalked);
+  const UInt length = select(plan.possible, edges + one - plan.eyeFrom + plan.lightKept + plan.added - one, zero);
+  store(plan.kind, paths.plans.kind, i);
+  store(plan.lightKept, paths.plans.lightKept, i);
+  store(plan.eyeFrom, paths.plans.eyeFrom, i);
+  store(plan.lightKept + plan.added, paths.plans.eyeTo, i);
+  store(plan.lightWalked, paths.plans.lightWalked, i);
+  store(select(plan.possible, lightRays, zero), paths.plans.lightRays, i);
+  store(select(plan.possible, eyeRays, zero), paths.plans.eyeRays, i);
+  store(zero, paths.plans.lightReached, i);
+  store(zero, paths.plans.eyeReached, i);
+  store(zero, paths.plans.lightEvent, i);
+  store(zero, paths.plans.eyeEvent, i);
+  store(length, paths.proposed.headers.edges, i);
+  // Fresh numbers for every walk; emission counts where a walk from the lens is to meet the light.
+  store(zero, chains.cameraLive, i);
+  store(zero, chains.lightLive, i);
+  const Mask byChance = plan.possible & (plan.lightKept == zero) & (plan.lightWalked == zero);
+  store(select(byChance, eyeRays, zero), chains.emissionDepth, i);
+  store(Float(1), chains.scale, i);
+  store(Float(0), chains.estimate, i);
+}
+
 // The same for every feature set, so there is one for each storage type.
 template <class S>
 WAVECREST_NOINLINE void proposeWave(const StageContext<S>& context, const Wave<S>& wave) {
@@ -158,32 +190,7 @@ WAVECREST_NOINLINE void proposeWave(const StageContext<S>& context, const Wave<S
       plan.possible = plan.possible & (large | !(kinds.count == zero));
     }
 
-    // How many rays each walk needs: one fewer where it begins with a new end of the path.
-    const Mask newLens = plan.eyeFrom == edges + one;
-    const UInt eyeWalked = plan.added - plan.lightWalked;
-    const UInt lightRays = select(plan.lightKept == zero, max(plan.lightWalked, one) - one, plan.lightWalked);
-    const UInt eyeRays = select(newLens, eyeWalked - one, eyeWalked);
-    const UInt length = select(plan.possible, edges + one - plan.eyeFrom + plan.lightKept + plan.added - one, zero);
-    // The plan goes into the columns; walks have reached nothing yet.
-    store(plan.kind, plans.kind, i);
-    store(plan.lightKept, plans.lightKept, i);
-    store(plan.eyeFrom, plans.eyeFrom, i);
-    store(plan.lightKept + plan.added, plans.eyeTo, i);
-    store(plan.lightWalked, plans.lightWalked, i);
-    store(select(plan.possible, lightRays, zero), plans.lightRays, i);
-    store(select(plan.possible, eyeRays, zero), plans.eyeRays, i);
-    store(zero, plans.lightReached, i);
-    store(zero, plans.eyeReached, i);
-    store(zero, plans.lightEvent, i);
-    store(zero, plans.eyeEvent, i);
-    store(length, proposed.edges, i);
-    // Fresh numbers for every walk; emission counts where a walk from the lens is to meet the light.
-    store(zero, chains.cameraLive, i);
-    store(zero, chains.lightLive, i);
-    const Mask byChance = plan.possible & (plan.lightKept == zero) & (plan.lightWalked == zero);
-    store(select(byChance, eyeRays, zero), chains.emissionDepth, i);
-    store(Float(1), chains.scale, i);
-    store(Float(0), chains.estimate, i);
+    storePlan(plan, edges, paths, chains, i);
     if (paths.current != nullptr) {
       // What the proposal keeps unless its walks replace it: the film position and the light's radiance.
       const auto& current = paths.current->headers;

@@ -116,14 +116,14 @@ WAVECREST_NOINLINE size_t leaveKept(const StageContext<typename P::Storage>& con
   // A light's own point has no neighbour behind it: its direction is turned, never sampled.
   const Mask surface = m & (camera ? allLanes() : !(row == zero));
   // wi: towards the neighbour that the walk would have come from, which the proposal keeps too.
-  const UInt at = select(surface, row, one), behind = camera ? at + one : at - one;
+  const UInt at = select(surface, row, one), previous = camera ? at + one : at - one;
   const Vec3<Real> position = positionAt(v, at * stride + lane);
-  Vec3<Real> wi = positionAt(v, behind * stride + lane);
+  Vec3<Real> wi = positionAt(v, previous * stride + lane);
   Mask direction = noLanes();  // x_0 at infinity is a direction
   if (!camera) {
     const RecordLanes<LightRecord<typename P::Storage>> light(
-        context.scene->lights, select(surface & (behind == zero), gather(v.primitive, lane), zero));
-    direction = (behind == zero) & isInfinite(light(context.scene->lights->kind));
+        context.scene->lights, select(surface & (previous == zero), gather(v.primitive, lane), zero));
+    direction = (previous == zero) & isInfinite(light(context.scene->lights->kind));
   }
   wi = select(direction, wi, wi - position);
   const auto shading = pathShading<P, kFeatures>(*context.scene, v, at * stride + lane, normalize(wi), context.walk);

@@ -174,9 +174,9 @@ WAVECREST_INLINE size_t passLight(const StageContext<typename P::Storage>& conte
     storeWhere(contribution * met.passage.colour * reweighted, m, shadow.red, shadow.green, shadow.blue, at);
     storeWhere(left, m, shadow.others, at);
   }
-  const Vec3<Float> behind = to<Float>(offsetOrigin(met.position, met.normal, met.offset, direction));
-  storeWhere(behind, m, shadow.originX, shadow.originY, shadow.originZ, at);
-  storeWhere(end - behind, m, shadow.directionX, shadow.directionY, shadow.directionZ, at);
+  const Vec3<Float> begin = to<Float>(offsetOrigin(met.position, met.normal, met.offset, direction));
+  storeWhere(begin, m, shadow.originX, shadow.originY, shadow.originZ, at);
+  storeWhere(end - begin, m, shadow.directionX, shadow.directionY, shadow.directionZ, at);
   return goOn(met, m, direction, index, number, wave.passing, out);
 }
 

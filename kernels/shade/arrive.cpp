@@ -33,14 +33,45 @@ WAVECREST_INLINE Mask showsInfinite(const StageContext<S>& context, UInt lane, M
   return andNot(active, edges == UInt(1u));
 }
 
-// Radiance of the infinite light along lanes that left the scene, weighted against the other strategies. The sums are
-// those before arrival: the light has no area measure.
+// Which lanes' emission counts.
+template <class S>
+struct EmissionRule {
+  // Where merging stands alone it makes every path with a vertex to merge at; emission makes the others, which have met
+  // nothing but delta lobes. Those have no earlier strategy in their sums.
+  bool mergingAlone;
+  // Of each lane the one depth at which emission counts, or null. Multiplexed chains make each path by one strategy:
+  // emission counts at the vertex where s = 0 ends.
+  const uint32_t* depths = nullptr;
+  uint32_t depth;
+
+  explicit EmissionRule(const StageContext<S>& context)
+      : mergingAlone(context.mis.merge && !context.mis.nextEvent), depth(context.depth) {
+    const bool chooses = context.walk == Walk::camera && context.chains != nullptr && context.chains->multiplexed;
+    if (chooses) depths = context.chains->columns.emissionDepth;
+  }
+  template <class Real>
+  WAVECREST_INLINE Mask counts(UInt lane, Mask active, const MisSums<Real>& mis) const {
+    Mask counted = active;
+    if (mergingAlone) counted = active & (mis.dVCM == Real(0)) & (mis.dVM == Real(0));
+    if (depths != nullptr) counted = counted & (gather(depths, select(active, lane, UInt(0u))) == UInt(depth));
+    return counted;
+  }
+};
+
+// Adds the infinite light along lanes of block i that left the scene, weighted against the other strategies unless it
+// stands alone. The sums are those before arrival: the light has no area measure.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE Vec3<typename P::Real> missedRadiance(const StageContext<typename P::Storage>& context,
-                                                       [[maybe_unused]] Vec3<typename P::Real> direction,
-                                                       const MisSums<typename P::Real>& mis, bool alone) {
+WAVECREST_INLINE void addInfiniteLight(const StageContext<typename P::Storage>& context,
+                                       Wave<typename P::Storage>& wave, size_t i, Mask missed,
+                                       const MisSums<typename P::Real>& mis, bool alone) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
+  const auto& rays = wave.rays;
+  const auto& paths = wave.paths;
+  const UInt lane = load(paths.lane, i);
+  missed = missed & showsInfinite(context, lane, missed);
+  if (none(missed)) return;
+  const Vec3<Real> direction = loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
   const auto& light = scene.lights[scene.infiniteLight];
   Vec3<Real> radiance{Real(light.radiance[0]), Real(light.radiance[1]), Real(light.radiance[2])};
   Real pdfW(kInvPi / 4);
@@ -51,37 +82,48 @@ WAVECREST_INLINE Vec3<typename P::Real> missedRadiance(const StageContext<typena
       pdfW = mapPdfW(scene.environment, point);
     }
   }
-  if (alone) return radiance;
-  const Real pick(light.pick);
-  Real wCamera(0);
-  if (context.mis.nextEvent) wCamera = pick * pdfW * mis.dVCM;
-  if constexpr (has(kFeatures, kBidirectional)) {
-    wCamera = mulAdd(pick * pdfW * reciprocal(projectedArea<Real>(scene, direction)), mis.dVC, wCamera);
+  if (!alone) {
+    const Real pick(light.pick);
+    Real wCamera(0);
+    if (context.mis.nextEvent) wCamera = pick * pdfW * mis.dVCM;
+    if constexpr (has(kFeatures, kBidirectional)) {
+      wCamera = mulAdd(pick * pdfW * reciprocal(projectedArea<Real>(scene, direction)), mis.dVC, wCamera);
+    }
+    radiance = radiance * reciprocal(Real(1) + others(context.mis, wCamera));
   }
-  return radiance * reciprocal(Real(1) + others(context.mis, wCamera));
+  const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
+  addRadiance(wave.radiance, lane, missed, throughput * radiance);
 }
 
-// Radiance of area lights that lanes arrived at, weighted likewise with the sums after arrival (METHODS 5.6, s = 0).
+// Adds the radiance of area lights that lanes of block i arrived at, weighted likewise with the sums after arrival
+// (METHODS 5.6, s = 0). cosine: at the light, of the direction back; dist2: squared length of the edge.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE Vec3<typename P::Real> metRadiance(const StageContext<typename P::Storage>& context, UInt index,
-                                                    Vec3<typename P::Real> receiver, typename P::Real n0,
-                                                    typename P::Real dist2, const MisSums<typename P::Real>& mis,
-                                                    bool alone, [[maybe_unused]] Float u, [[maybe_unused]] Float v) {
+WAVECREST_INLINE void addEmission(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
+                                  size_t i, Mask emits, UInt index, const SurfacePoint<typename P::Real>& surface,
+                                  typename P::Real cosine, typename P::Real dist2, const MisSums<typename P::Real>& mis,
+                                  bool alone) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
-  const LightLanes<Real> light = loadLight(scene, index);
+  const auto& rays = wave.rays;
+  const auto& paths = wave.paths;
+  const LightLanes<Real> light = loadLight(scene, select(emits, index, UInt(0u)));
   Vec3<Real> radiance = light.radiance;
   if constexpr (has(kFeatures, kTextures)) {
+    const Float u = to<Float>(surface.u), v = to<Float>(surface.v);
     radiance = radiance * to<Real>(textureFactor(scene.textures, scene.texels, light.texture, u, v));
   }
-  if (alone) return radiance;
-  Real wCamera(0);
-  if (context.mis.nextEvent) wCamera = directPdfA<P, kFeatures>(light, receiver, n0, dist2) * mis.dVCM;
-  if constexpr (has(kFeatures, kBidirectional)) {
-    const Real emissionPdf = light.pick * light.inverseArea * n0 * Real(kInvPi);
-    wCamera = mulAdd(emissionPdf, mis.dVC, wCamera);
+  if (!alone) {
+    const Vec3<Real> receiver = loadVec3(rays.originX, rays.originY, rays.originZ, i);
+    Real wCamera(0);
+    if (context.mis.nextEvent) wCamera = directPdfA<P, kFeatures>(light, receiver, cosine, dist2) * mis.dVCM;
+    if constexpr (has(kFeatures, kBidirectional)) {
+      const Real emissionPdf = light.pick * light.inverseArea * cosine * Real(kInvPi);
+      wCamera = mulAdd(emissionPdf, mis.dVC, wCamera);
+    }
+    radiance = radiance * reciprocal(Real(1) + others(context.mis, wCamera));
   }
-  return radiance * reciprocal(Real(1) + others(context.mis, wCamera));
+  const Vec3<Real> throughput = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
+  addRadiance(wave.radiance, load(paths.lane, i), emits, throughput * radiance);
 }
 
 // What turns dVCM of a light path's first edge into area measure at y_1: d^2 for a light that has a place. For spheres
@@ -126,6 +168,38 @@ WAVECREST_NOINLINE Mask beforeFarClip(const SceneView<typename P::Storage>& scen
          Real(scene.camera.farClip - scene.camera.nearClip);
 }
 
+// Densities of the MIS sums of block i, carried over the edge to the vertices at `position`, become those of area
+// (METHODS 5.6). dist2: squared length of the edge; cosine: at its end.
+template <class P, uint32_t kFeatures>
+WAVECREST_INLINE void toAreaMeasure(const StageContext<typename P::Storage>& context,
+                                    const Wave<typename P::Storage>& wave, size_t i, Mask hit,
+                                    Vec3<typename P::Real> position, typename P::Real dist2, typename P::Real cosine,
+                                    MisSums<typename P::Real>& mis) {
+  using Real = typename P::Real;
+  const Real inverseCosine = reciprocal(max(abs(cosine), Real(1e-12f)));
+  Real toArea = dist2;
+  if constexpr (has(kFeatures, kBidirectional)) {
+    const auto& scene = *context.scene;
+    const auto& rays = wave.rays;
+    if (context.depth == 1) {
+      const Vec3<Real> direction = loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
+      const Vec3<Real> origin = loadVec3(rays.originX, rays.originY, rays.originZ, i);
+      if (context.walk == Walk::light) {
+        const UInt from = select(hit, load(wave.paths.light, i), UInt(0u));
+        toArea = firstLightEdge<P, kFeatures>(scene, from, origin, direction, position, dist2);
+      } else if (scene.camera.nearClip > 0) {
+        // The first edge of a camera path began at the near clip.
+        toArea = length2(position - lensOf(scene.camera, origin, direction));
+      } else if (scene.camera.parallel) {
+        toArea = Real(1);
+      }
+    }
+    mis.dVC = mis.dVC * inverseCosine;
+    mis.dVM = mis.dVM * inverseCosine;
+  }
+  mis.dVCM = mis.dVCM * toArea * inverseCosine;
+}
+
 // What the limit of edges ends: this many paths and this much of their beginnings' throughput.
 template <class Real>
 WAVECREST_NOINLINE void countCut(StageCounters& counters, Mask cut, Real throughput) {
@@ -144,19 +218,11 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
   const auto& rays = wave.rays;
   const auto& paths = wave.paths;
   const bool camera = context.walk == Walk::camera;
-  // Where merging stands alone it makes every path with a vertex to merge at; emission makes the others, which have met
-  // nothing but delta lobes. Those have no earlier strategy in their sums.
-  const bool mergingAlone = context.mis.merge && !context.mis.nextEvent;
-  const bool alone = context.depth == 1 || mergingAlone;  // s = 0 is the only strategy of a path of one edge
-  // Multiplexed chains make each path by one strategy: emission counts at the vertex where s = 0 ends.
-  const bool stopsAtEmission = camera && context.chains != nullptr && context.chains->multiplexed;
-  const bool firstLightVertex = !camera && context.depth == 1;
-  // The first edge of a camera path ends at the far clip, and began at the near one.
-  const bool fromLens = camera && context.depth == 1;
-  const bool clipped = fromLens && std::isfinite(scene.camera.farClip);
+  const EmissionRule<typename P::Storage> emission(context);
+  const bool alone = context.depth == 1 || emission.mergingAlone;  // s = 0 is the only strategy of these paths
+  const bool clipped = camera && context.depth == 1 && std::isfinite(scene.camera.farClip);
   const bool goesOn = context.depth + 1 <= context.limits.maxDepth;
   const size_t count = rays.size;
-  uint64_t misses = 0;
   VertexOrder<P, kFeatures> vertices(scene, wave);
 
   for (size_t i = 0; i < count; i += kLanes) {
@@ -173,25 +239,17 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     MisSums<Real> mis = loadMis<kFeatures>(paths, i);
 
     // Rays that leave the scene: radiance of the sky or of another infinite light.
-    Mask counted = active;  // emission counts
-    if (mergingAlone) counted = active & (mis.dVCM == Real(0)) & (mis.dVM == Real(0));
-    if (stopsAtEmission) {
-      const UInt depth = gather(context.chains->columns.emissionDepth, select(active, lane, UInt(0u)));
-      counted = counted & (depth == UInt(context.depth));
-    }
+    const Mask counted = emission.counts(lane, active, mis);
     const Mask missed = andNot(active, hit);
     if (any(missed)) {
-      misses += countTrue(missed);
-      const Mask shown = missed & counted & showsInfinite(context, lane, active);
-      if (camera && scene.infiniteLight != kNoIndex && any(shown)) {
-        const Vec3<Real> radiance = throughput * missedRadiance<P, kFeatures>(context, direction, mis, alone);
-        addRadiance(wave.radiance, lane, shown, radiance);
+      context.counters->misses += countTrue(missed);
+      if (camera && scene.infiniteLight != kNoIndex) {
+        addInfiniteLight<P, kFeatures>(context, wave, i, missed & counted, mis, alone);
       }
       if (none(hit)) continue;
     }
 
-    // The point of each hit, and the MIS sums carried over the edge to it: densities become those of area
-    // (METHODS 5.6).
+    // The point of each hit, and the MIS sums carried over the edge to it.
     const auto at = primitivesOf(scene, primitive);
     const InstanceLanes<P, kFeatures> instance(scene, wave.hits, i, hit);
     const SurfacePoint<Real> inGroup =
@@ -200,20 +258,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     const SurfacePoint<Real> surface = instance.toWorld(inGroup);
     const Real dist2 = length2(surface.position - origin);
     const Real cosine = -dot(surface.normal, direction);
-    const Real inverseCosine = reciprocal(max(abs(cosine), Real(1e-12f)));
-    Real toArea = dist2;
-    if constexpr (has(kFeatures, kBidirectional)) {
-      if (firstLightVertex) {
-        const UInt from = select(hit, load(paths.light, i), UInt(0u));
-        toArea = firstLightEdge<P, kFeatures>(scene, from, origin, direction, surface.position, dist2);
-      }
-      if (fromLens && scene.camera.parallel) toArea = Real(1);
-      if (fromLens && scene.camera.nearClip > 0)
-        toArea = length2(surface.position - lensOf(scene.camera, origin, direction));
-      mis.dVC = mis.dVC * inverseCosine;
-      mis.dVM = mis.dVM * inverseCosine;
-    }
-    mis.dVCM = mis.dVCM * toArea * inverseCosine;
+    toAreaMeasure<P, kFeatures>(context, wave, i, hit, surface.position, dist2, cosine, mis);
 
     // Shading normal and texture coordinates.
     Interpolated<Real> shading{surface.normal, surface.normal, Float(0), Float(0), Float(0)};
@@ -222,14 +267,10 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     }
 
     if (camera) {
-      // Emission of the surface.
       const UInt light = at(scene.primitives->light);
-      const Mask emits = andNot(hit & (cosine > Real(0)), light == UInt(kNoIndex));
+      const Mask emits = andNot(hit & counted & (cosine > Real(0)), light == UInt(kNoIndex));
       if (any(emits)) {
-        const Vec3<Real> radiance =
-            metRadiance<P, kFeatures>(context, select(emits, light, UInt(0u)), origin, cosine, dist2, mis, alone,
-                                      to<Float>(surface.u), to<Float>(surface.v));
-        addRadiance(wave.radiance, lane, emits & counted, throughput * radiance);
+        addEmission<P, kFeatures>(context, wave, i, emits, light, surface, cosine, dist2, mis, alone);
       }
     }
     // The vertex goes into the wave, sorted by BSDF; paths at the limit of edges end here.
@@ -251,7 +292,6 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
                      .primitive = primitive},
                     hit, at(scene.primitives->material));
   }
-  context.counters->misses += misses;
   vertices.finish();
 }
 

@@ -76,6 +76,66 @@ WAVECREST_INLINE void mapSphere(const PrimitiveRecord<typename P::Storage>& fiel
   tangents.dpDv = select(sphere, (outOfAxis * z - axis * sine) * (e1.x * Real(kPi)), tangents.dpDv);
 }
 
+// Normals, texture coordinates and tangents of the attributed lanes, from those of their corners. surface: in the space
+// of the primitive's group. tangents: the edges of the primitive before.
+template <class S, class Real>
+WAVECREST_INLINE void interpolateCorners(const SceneView<S>& scene, Mask attributed, UInt index,
+                                         const SurfacePoint<Real>& surface, Interpolated<Real>& out,
+                                         Tangents<Real>& tangents) {
+  const Real b1 = surface.u, b2 = surface.v, b0 = Real(1) - b1 - b2;
+  const AttributeRecord& fields = *scene.attributes;
+  const RecordLanes<AttributeRecord> corner(scene.attributes, select(attributed, index, UInt(0u)));
+  // Normals and texture coordinates of the corners (0, 0), (1, 0) and (0, 1), interpolated. In the far half of a quad
+  // b0 is negative.
+  const Vec3<Real> smooth = to<Real>(corner(fields.normal[0])) * b0 + to<Real>(corner(fields.normal[1])) * b1 +
+                            to<Real>(corner(fields.normal[2])) * b2;
+  const Mask smoothed = attributed & (corner(fields.hasNormals) == UInt(1u)) & (length2(smooth) > Real(1e-12f));
+  out.normal = select(smoothed, normalize(smooth), out.normal);
+
+  Real uv[3][2];
+  for (size_t k = 0; k < 3; ++k) {
+    for (size_t axis = 0; axis < 2; ++axis) uv[k][axis] = to<Real>(corner(fields.uv[k][axis]));
+  }
+  out.u = select(attributed, to<Float>(uv[0][0] * b0 + uv[1][0] * b1 + uv[2][0] * b2), out.u);
+  out.v = select(attributed, to<Float>(uv[0][1] * b0 + uv[1][1] * b1 + uv[2][1] * b2), out.v);
+  // Solve (e1, e2) = (dpDu, dpDv) . d(u, v) for the tangents.
+  const Real u1 = uv[1][0] - uv[0][0], v1 = uv[1][1] - uv[0][1], u2 = uv[2][0] - uv[0][0], v2 = uv[2][1] - uv[0][1];
+  const Real determinant = u1 * v2 - u2 * v1;
+  const Mask spans = attributed & (abs(determinant) > Real(1e-20f));
+  const Real inverse = Real(1) / select(spans, determinant, Real(1));
+  const Vec3<Real> e1 = tangents.dpDu, e2 = tangents.dpDv;
+  tangents.dpDu = select(spans, (e1 * v2 - e2 * v1) * inverse, e1);
+  tangents.dpDv = select(spans, (e2 * u1 - e1 * u2) * inverse, e2);
+  // Where they do not span the plane of the coordinates, Mitsuba takes any frame of the face.
+  const Mask folded = andNot(attributed, spans);
+  if (any(folded)) {
+    const auto face = Frame<Real>::fromNormal(surface.normal);
+    tangents.dpDu = select(folded, face.s, tangents.dpDu);
+    tangents.dpDv = select(folded, face.t, tangents.dpDv);
+  }
+}
+
+// Bump and normal maps change the normal; `base` stays as it is.
+template <class S, class Real>
+WAVECREST_INLINE void mapNormals(const SceneView<S>& scene, const PrimitiveLanes<S>& at, Mask hit, Vec3<Real> geometric,
+                                 const Tangents<Real>& tangents, Interpolated<Real>& out) {
+  const MaterialLanes material(scene, at(scene.primitives->material));
+  const UInt bumpMap = material(scene.materials->bumpTexture), normalMap = material(scene.materials->normalTexture);
+  const Mask bump = andNot(hit, bumpMap == UInt(kNoIndex)), map = andNot(hit, normalMap == UInt(kNoIndex));
+  if (any(bump)) {
+    const Real scale = to<Real>(material(scene.materials->bumpScale));
+    out.normal = select(bump,
+                        bumped(scene.textures, scene.texels, select(bump, bumpMap, UInt(0u)), scale, out.u, out.v,
+                               out.normal, geometric, tangents),
+                        out.normal);
+  }
+  if (any(map)) {
+    out.normal = select(
+        map, mapped(scene.textures, scene.texels, select(map, normalMap, UInt(0u)), out.u, out.v, out.normal, tangents),
+        out.normal);
+  }
+}
+
 }  // namespace
 
 // Shading normal, texture coordinates and tangent at a surface point, in the world. surface: in the space of the
@@ -91,40 +151,10 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
   Interpolated<Real> out{surface.normal, surface.normal, to<Float>(surface.u), to<Float>(surface.v), Float(0)};
   const UInt index = at(scene.primitives->attributes);
   const Mask attributed = andNot(hit, index == UInt(kNoIndex));
-  const Real b1 = surface.u, b2 = surface.v, b0 = Real(1) - b1 - b2;
   Tangents<Real> tangents{at(scene.primitives->e1), at(scene.primitives->e2)};
 
   if (scene.attributes != nullptr && any(attributed)) {
-    const AttributeRecord& fields = *scene.attributes;
-    const RecordLanes<AttributeRecord> corner(scene.attributes, select(attributed, index, UInt(0u)));
-    // Normals and texture coordinates of the corners (0, 0), (1, 0) and (0, 1), interpolated. In the far half of a quad
-    // b0 is negative.
-    const Vec3<Real> smooth = to<Real>(corner(fields.normal[0])) * b0 + to<Real>(corner(fields.normal[1])) * b1 +
-                              to<Real>(corner(fields.normal[2])) * b2;
-    const Mask smoothed = attributed & (corner(fields.hasNormals) == UInt(1u)) & (length2(smooth) > Real(1e-12f));
-    out.normal = select(smoothed, normalize(smooth), out.normal);
-
-    Real uv[3][2];
-    for (size_t k = 0; k < 3; ++k) {
-      for (size_t axis = 0; axis < 2; ++axis) uv[k][axis] = to<Real>(corner(fields.uv[k][axis]));
-    }
-    out.u = select(attributed, to<Float>(uv[0][0] * b0 + uv[1][0] * b1 + uv[2][0] * b2), out.u);
-    out.v = select(attributed, to<Float>(uv[0][1] * b0 + uv[1][1] * b1 + uv[2][1] * b2), out.v);
-    // Solve (e1, e2) = (dpDu, dpDv) . d(u, v) for the tangents.
-    const Real u1 = uv[1][0] - uv[0][0], v1 = uv[1][1] - uv[0][1], u2 = uv[2][0] - uv[0][0], v2 = uv[2][1] - uv[0][1];
-    const Real determinant = u1 * v2 - u2 * v1;
-    const Mask spans = attributed & (abs(determinant) > Real(1e-20f));
-    const Real inverse = Real(1) / select(spans, determinant, Real(1));
-    const Vec3<Real> e1 = tangents.dpDu, e2 = tangents.dpDv;
-    tangents.dpDu = select(spans, (e1 * v2 - e2 * v1) * inverse, e1);
-    tangents.dpDv = select(spans, (e2 * u1 - e1 * u2) * inverse, e2);
-    // Where they do not span the plane of the coordinates, Mitsuba takes any frame of the face.
-    const Mask folded = andNot(attributed, spans);
-    if (any(folded)) {
-      const auto face = Frame<Real>::fromNormal(surface.normal);
-      tangents.dpDu = select(folded, face.s, tangents.dpDu);
-      tangents.dpDv = select(folded, face.t, tangents.dpDv);
-    }
+    interpolateCorners(scene, attributed, index, surface, out, tangents);
   }
 
   if constexpr (has(kFeatures, kTextures) && has(kFeatures, kCurvedShapes)) {
@@ -146,25 +176,7 @@ WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<type
       out.tangent = to<Float>(atan2(dot(tangents.dpDu, frame.t), dot(tangents.dpDu, frame.s)));
     }
   }
-  if (has(kFeatures, kNormalMaps) && scene.normalMaps) {
-    // Bump and normal maps change the normal; `base` stays as it is.
-    const MaterialLanes material(scene, at(scene.primitives->material));
-    const UInt bumpMap = material(scene.materials->bumpTexture), normalMap = material(scene.materials->normalTexture);
-    const Mask bump = andNot(hit, bumpMap == UInt(kNoIndex)), map = andNot(hit, normalMap == UInt(kNoIndex));
-    if (any(bump)) {
-      const Real scale = to<Real>(material(scene.materials->bumpScale));
-      out.normal = select(bump,
-                          bumped(scene.textures, scene.texels, select(bump, bumpMap, UInt(0u)), scale, out.u, out.v,
-                                 out.normal, geometric, tangents),
-                          out.normal);
-    }
-    if (any(map)) {
-      out.normal = select(
-          map,
-          mapped(scene.textures, scene.texels, select(map, normalMap, UInt(0u)), out.u, out.v, out.normal, tangents),
-          out.normal);
-    }
-  }
+  if (has(kFeatures, kNormalMaps) && scene.normalMaps) mapNormals(scene, at, hit, geometric, tangents, out);
   return out;
 }
 
