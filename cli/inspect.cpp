@@ -7,6 +7,7 @@
 
 #include "bench/json_text.h"
 #include "cli/commands.h"
+#include "cli/inspect_guide.h"
 #include "cli/scene_options.h"
 #include "engine/inspect/inspection.h"
 #include "library/inspection_json.h"
@@ -21,6 +22,7 @@ struct InspectOptions {
   SceneOptions scene;
   std::string precision = "float", accel = "auto", instances = "auto";
   uint32_t threads = 0, wave = RenderSettings{}.waveSize;
+  GuideOptions guide;
   bool json = false;
 };
 
@@ -119,7 +121,7 @@ void printNoteList(const std::vector<Note>& notes) {
   for (const Note& note : notes) fmt::print("{}\n", toString(note));
 }
 
-// Prints what inspectScene finds, as text or JSON. Nothing is rendered.
+// Prints what inspectScene finds, as text or JSON. Nothing is rendered, but for a picture of the guide.
 int runInspect(const InspectOptions& options) {
   // Of the planned render only the settings that decide kernels, intersector and memory are needed.
   RenderSettings settings;
@@ -132,6 +134,13 @@ int runInspect(const InspectOptions& options) {
   takeProgramDefaults(settings);
   // Scene and facts.
   const Scene scene = loadScene(options.scene);
+  if (!options.guide.pixel.empty()) {
+    writeGuidePicture(scene, settings, options.guide);
+    return kExitDone;
+  }
+  if (!options.guide.time.empty() || !options.guide.output.empty()) {
+    throw UsageError("--time and --output are for the picture of --guide X,Y");
+  }
   const SceneInspection facts = inspectScene(scene, settings);
   // Output: one JSON object, or text.
   if (options.json) {
@@ -158,6 +167,10 @@ void addInspectCommand(CommandLine& program, int& exitCode) {
   command.add("--instances", options->instances, "of shape groups: auto, expand or keep").showDefault();
   command.add("--threads", options->threads, "of the render that is planned; default: all cores").between(kThreadRange);
   command.add("--wave", options->wave, "paths per wave").showDefault().between(kWaveRange);
+  command.add("--guide", options->guide.pixel,
+              "X,Y: render by gpt, and write a picture of the directions that it has learned where this pixel looks");
+  command.add("--time", options->guide.time, "of that render; default: 10s");
+  command.add("-o,--output", options->guide.output, "its file: .exr, .pfm or .png; default: SCENE.guide.exr");
   command.run([options, &exitCode] { exitCode = runInspect(*options); });
 }
 

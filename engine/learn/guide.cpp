@@ -199,6 +199,13 @@ void Guide::fold() {
   ++folds_;
 }
 
+LearnedDirections Guide::learnedIn(uint32_t cell) const {
+  LearnedDirections learned{.cell = cell, .cells = tree_.cells(), .guidedShare = 1 - double{share_[cell]}};
+  if (learned.guidedShare > 0)
+    std::copy_n(&density_[cell * size_t{kGuideBins}], kGuideBins, learned.squareDensity.begin());
+  return learned;
+}
+
 GuideStatistics Guide::statistics() const {
   GuideStatistics out{.folds = folds_,
                       .cells = tree_.cells(),

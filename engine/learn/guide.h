@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "engine/learn/cell_tree.h"
+#include "engine/learn/learned_directions.h"
 #include "engine/state/state_stream.h"
 #include "kernels/columns/guide_view.h"
 #include "kernels/columns/wave.h"
@@ -53,6 +54,7 @@ class Guide {
   void fold();
 
   GuideStatistics statistics() const;
+  LearnedDirections learnedIn(uint32_t cell) const;
   void save(StateWriter& out) const;
   // Throws StateError.
   void restore(StateReader& in);

@@ -93,6 +93,11 @@ class Session {
   virtual RenderStatistics statistics() const = 0;
   virtual const Film& film() const = 0;
   virtual const MemoryPlan& memoryPlan() const = 0;
+  // What the render has learned of directions where a pixel of the image looks, x and y counted from its upper left
+  // corner; none of methods that learn none, and where a path through the pixel meets no rough surface.
+  virtual std::optional<LearnedDirections> learnedDirections(uint32_t /*x*/, uint32_t /*y*/) const {
+    return std::nullopt;
+  }
   // All that a session of the same scene and settings needs to go on from here, whatever its number of threads and size
   // of waves (engine/session/work_done.h). No renderUntil may be running.
   virtual void save(StateWriter& out) const = 0;

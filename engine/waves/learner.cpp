@@ -3,12 +3,45 @@
 #include <algorithm>
 #include <bit>
 
+#include "engine/tasks/flush_to_zero.h"
+#include "engine/walks/run_walk.h"
+
 namespace wavecrest {
 namespace {
 
 // So many paths of a block are enough: some millions of records, thousands for each cell. A power of two, so that waves
 // of several iterations fit.
 constexpr uint64_t kPathsOfBlock = uint64_t{1} << 20;
+
+// The cell of the first vertex with more than delta lobes of one camera path through a pixel (y << 16 | x).
+template <class S>
+std::optional<uint32_t> cellSeen(const RenderPlan<S>& plan, const RenderSettings& settings, const CellTreeView& cells,
+                                 uint32_t pixel) {
+  const FlushToZero flushToZero;
+  using enum StageId;
+  const MethodPage page{{walk(Walk::camera, generateCameraPaths, {extend, arrive, findCells, scatterSpecular})}};
+  const Pass<S> pass = makePipeline(page, *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass();
+  const CameraView& camera = plan.scene->view.camera;
+  StageCounters counters;
+  StageContext<S> context{.scene = &plan.scene->view,
+                          .pixels = &pixel,
+                          .sampler = {SamplerKind::independent, settings.seed, 0},
+                          .limits = settings.limits,
+                          .mis = misSettings(pass.strategies, plan.mergeRadius, 1, 0),
+                          .film = {.x0 = 0, .y0 = 0, .width = camera.width, .height = camera.height},
+                          .cellTree = &cells,
+                          .counters = &counters};
+  Wave<S> wave(1, plan.needs);
+  wave.pathCount = 1;
+  runStage<S>(pass.generate, context, wave, nullptr);
+  for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {
+    for (size_t stage = 0; stage < pass.perDepth.size(); ++stage) {
+      if (stage + 1 == pass.perDepth.size() && wave.joinable != 0) return wave.cells.cell[0];
+      runStage<S>(pass.perDepth[stage], context, wave, nullptr);
+    }
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -43,6 +76,15 @@ void Learner<S>::fold() {
 template <class S>
 std::optional<GuideStatistics> Learner<S>::guideStatistics() const {
   return guide_ ? std::optional(guide_->statistics()) : std::nullopt;
+}
+
+template <class S>
+std::optional<LearnedDirections> Learner<S>::learnedDirections(const RenderPlan<S>& plan,
+                                                               const RenderSettings& settings, uint32_t x,
+                                                               uint32_t y) const {
+  if (!guide_) return std::nullopt;
+  const std::optional<uint32_t> cell = cellSeen(plan, settings, guide_->cellTree(), y << 16 | x);
+  return cell ? std::optional(guide_->learnedIn(*cell)) : std::nullopt;
 }
 
 template <class S>

@@ -37,6 +37,10 @@ class Learner {
   void fold();
 
   std::optional<GuideStatistics> guideStatistics() const;
+  // At the first vertex with more than delta lobes of a path through a pixel of the image; none where the path has no
+  // such vertex or nothing learns directions.
+  std::optional<LearnedDirections> learnedDirections(const RenderPlan<S>& plan, const RenderSettings& settings,
+                                                     uint32_t x, uint32_t y) const;
   size_t bytes() const { return guide_ ? guide_->statistics().bytes : 0; }
   void save(StateWriter& out) const;
   // Throws StateError.

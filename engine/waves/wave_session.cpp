@@ -34,6 +34,10 @@ class WaveSession final : public PlannedSession<S> {
 
   void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) override;
   RenderStatistics statistics() const override;
+  std::optional<LearnedDirections> learnedDirections(uint32_t x, uint32_t y) const override {
+    const FilmWindow window = film_.area().window();
+    return learner_.learnedDirections(plan_, settings_, window.x0 + x, window.y0 + y);
+  }
   void save(StateWriter& out) const override;
   void restore(StateReader& in) override;
 

@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from harness import INPUT, CommandTest, read_json
+from harness import INPUT, USAGE, CommandTest, png_size, read_json
 
 KEYS = ["features", "primitives", "bounds", "specialization", "accel", "memory", "path_classes", "reference_method", "notes"]
 METHODS = {"pt", "lt", "bpt", "ppm", "bpm", "vcm"}
@@ -103,6 +103,20 @@ class Inspect(CommandTest):
         text = self.run_wavecrest("inspect", "cornell-mirror", "--size", "32x24").stdout
         self.assertRegex(text, r"A S\+ D E +inefficient +sampled")
         self.assertRegex(text, r"reference +bpt: path tracing is inefficient")
+
+    def test_a_picture_of_the_guide_is_written(self):
+        picture = self.path("guide.png")
+        said = self.run_wavecrest(
+            "inspect", "cornell-diffuse", "--size", "32x24", "--guide", "16,20", "--time", "500ms", "-o", picture
+        ).stdout
+        self.assertRegex(said, r"pixel 16,20: cell \d+ of \d+, after \d+ iterations; the guide draws [1-9]\d* % of")
+        self.assertEqual(png_size(picture), (256, 128))
+        for wrong in ("32,0", "1", "1,2,3", "-1,0", "a,b"):
+            result = self.run_wavecrest("inspect", "cornell-diffuse", "--size", "32x24", f"--guide={wrong}", expect=USAGE)
+            self.assert_one_error_line(result, ".*expected X,Y up to 31,23")
+        for alone in (("--time", "1s"), ("-o", picture)):
+            result = self.run_wavecrest("inspect", "cornell-diffuse", *alone, expect=USAGE)
+            self.assert_one_error_line(result, ".*--guide")
 
     def test_a_scene_that_cannot_be_read_is_bad_input(self):
         self.assert_one_error_line(self.run_wavecrest("inspect", "absent.xml", expect=INPUT), ".*absent.xml")

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "engine/learn/blocks.h"
 #include "engine/learn/cell_tree.h"
 #include "engine/learn/integer_sums.h"
+#include "engine/learn/learned_directions.h"
 #include "tests/engine/saved_state.h"
 
 namespace wavecrest {
@@ -35,6 +37,31 @@ TEST(Blocks, gatherInTheirFirstIterations) {
     EXPECT_EQ(endOfRun(iteration, 4), iteration < 20 ? 20u : 32u) << iteration;
   }
   EXPECT_EQ(endOfRun(5, 64), 8u) << "a block that gathers as a whole";
+}
+
+// A histogram on the square, of which each direction has its part of the sphere.
+TEST(LearnedDirections, addUpToOneOverTheSphere) {
+  LearnedDirections learned;
+  double sum = 0;
+  for (size_t bin = 0; bin < kGuideBins; ++bin) sum += learned.squareDensity[bin] = static_cast<float>(1 + bin % 7);
+  constexpr int kRows = 400;
+  double integral = 0;
+  for (int row = 0; row < kRows; ++row) {
+    const double theta = (row + 0.5) / kRows * std::numbers::pi;
+    for (int column = 0; column < 2 * kRows; ++column) {
+      const double phi = (column + 0.5) / kRows * std::numbers::pi;
+      integral += learned.density({std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)}) *
+                  std::sin(theta) * std::pow(std::numbers::pi / kRows, 2);
+    }
+  }
+  EXPECT_NEAR(integral, sum * 4 / kGuideBins, 2e-3 * integral);
+  // The middle of the square is +z.
+  learned.squareDensity = {};
+  for (const uint32_t row : {kGuideSide / 2 - 1, kGuideSide / 2})
+    learned.squareDensity[row * kGuideSide + kGuideSide / 2] = 8;
+  EXPECT_NEAR(learned.density({0.01, 0.01, std::sqrt(1 - 2e-4)}), 8, 0.5);
+  EXPECT_EQ(learned.density({-0.01, 0.01, std::sqrt(1 - 2e-4)}), 0);
+  EXPECT_EQ(learned.density({0, 0, -1}), 0);
 }
 
 TEST(IntegerSums, holdTheirLimitInAnyOrder) {
