@@ -122,6 +122,12 @@ def step_long(tally):
         test(tally, "release", "--label-regex", "^long$")
 
 
+def step_thorough(tally):
+    """Statistical tests with all their samples (tests/effort.h), of which other runs take a quarter."""
+    if build(tally, "release", "-DWAVECREST_SHARED=ON"):
+        test(tally, "release", "--label-regex", "^(kernel|render|slow|unit)$", WAVECREST_THOROUGH="1")
+
+
 # Unit and kernel tests, and the sessions, with fewer cases than elsewhere (tests/effort.h). Not those that render whole
 # images, nor scenes_test, whose fixture generates the dragon.
 SANITIZED_TESTS = (
@@ -228,6 +234,7 @@ STEPS = {
     "checked": step_checked,
     "sanitizers": step_sanitizers,
     "fuzz": step_fuzz,
+    "thorough": step_thorough,
     "tsan": step_tsan,
     "lint": step_lint,
     "tidy": step_tidy,
@@ -238,8 +245,8 @@ STEPS = {
     "wheel": step_wheel,
     "package": step_package,
 }
-# To ask for: pictures of all scenes, ten thousand damaged files, data races, and clang-tidy over the whole tree, which
-# take longer than all else together.
+# To ask for: pictures of all scenes, ten thousand damaged files, four times the samples of statistical tests, data
+# races, and clang-tidy over the whole tree, which take longer than all else together.
 DEFAULT_STEPS = ("release", "checked", "sanitizers", "lint")
 
 

@@ -24,7 +24,7 @@ RenderSettings settingsOf(Method method) {
   return settings;
 }
 
-uint64_t iterations() { return effort(32, 4); }
+uint64_t iterations() { return samples(32, 4); }
 
 // Independent of the reference, which begins at another seed.
 SeedMeans imagesBy(const Scene& scene, Method method, uint64_t count = iterations()) {

@@ -120,7 +120,7 @@ RenderSettings mappedSettings(Method method, MetropolisVariant variant = Metropo
   return settings;
 }
 
-uint64_t mappedIterations() { return effort(48, 2); }
+uint64_t mappedIterations() { return samples(48, 2); }
 
 // Mean of merging alone against the reference. Allowed: what discs lose at edges.
 void expectMappedMean(const SeedMeans& reference, const SeedMeans& found, double allowed, const std::string& where) {

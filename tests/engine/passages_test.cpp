@@ -30,7 +30,7 @@ RenderSettings passageSettings(Method method, Accel accel = Accel::small) {
   return settings;
 }
 
-uint64_t passageIterations() { return effort(48, 2); }
+uint64_t passageIterations() { return samples(48, 2); }
 
 void expectPassageMean(const SeedMeans& reference, const SeedMeans& found, const std::string& where) {
   const auto difference = [&](size_t s, size_t i) -> std::optional<double> {

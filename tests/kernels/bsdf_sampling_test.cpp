@@ -83,7 +83,7 @@ bool counts(const BsdfDraw& draw) {
 }
 
 size_t drawCount(Precision precision) {
-  return precision == Precision::floating ? effort(1'000'000, 20'000) : effort(200'000, 20'000);
+  return precision == Precision::floating ? samples(1'000'000, 20'000) : samples(200'000, 20'000);
 }
 
 // Of what is integrated over the sphere: everything, or one direction of every eighth material. That all materials run

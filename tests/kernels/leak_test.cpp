@@ -79,11 +79,11 @@ class LeakTest : public testing::TestWithParam<Intersector> {};
 class SlowLeakTest : public testing::TestWithParam<Intersector> {};
 
 TEST_P(LeakTest, noneOfTenMillionRaysLeavesTheCornellShell) {
-  EXPECT_EQ(randomRayLeaks(GetParam(), cornellShell(), effort(10'000'000, 200'000)), 0u);
+  EXPECT_EQ(randomRayLeaks(GetParam(), cornellShell(), samples(10'000'000, 200'000)), 0u);
 }
 
 TEST_P(SlowLeakTest, noneOfAHundredMillionRaysLeavesTheCornellShell) {
-  EXPECT_EQ(randomRayLeaks(GetParam(), cornellShell(), effort(100'000'000, 1'000'000)), 0u);
+  EXPECT_EQ(randomRayLeaks(GetParam(), cornellShell(), samples(100'000'000, 1'000'000)), 0u);
 }
 
 TEST_P(LeakTest, noRayAimedAtAnEdgeOrCornerGetsThrough) {

@@ -56,7 +56,7 @@ class FilmErrorOf : public testing::TestWithParam<Case> {};
 // The expectation of a film is the mean of all others, weighted by their iterations; their own error adds m / (n - m)
 // to the film's squared one on average.
 TEST_P(FilmErrorOf, isWithinItsIntervalAsOftenAsStated) {
-  const size_t trials = effort(80, 8);
+  const size_t trials = samples(80, 8);
   LoadOptions options;
   options.filmSize = {kWidth, kHeight};
   const Scene scene = loadScene(findScene(GetParam().scene), options);
