@@ -137,12 +137,17 @@ std::vector<ReportPathClass> pathClassesOf(const SceneRecord& scene) {
   return classes;
 }
 
-// The last image of a series: of the first run that has one and whose file is there; empty if there is none.
-fs::path lastImage(const Group& group) {
+// The images of a series: of the first run whose last image is there, as far as they are files; empty without one.
+std::vector<TimedImage> imagesOf(const Group& group) {
+  std::vector<TimedImage> images;
   for (const RunRecord* run : group) {
-    if (!run->snapshots.empty() && fs::is_regular_file(run->snapshots.back().file)) return run->snapshots.back().file;
+    if (run->snapshots.empty() || !fs::is_regular_file(run->snapshots.back().file)) continue;
+    for (const SnapshotRecord& snapshot : run->snapshots) {
+      if (fs::is_regular_file(snapshot.file)) images.push_back({snapshot.renderSeconds, snapshot.file});
+    }
+    break;
   }
-  return {};
+  return images;
 }
 
 // Adds the methods that cannot render the scene, each once with its reason.
@@ -229,10 +234,10 @@ ReportScene collectScene(const CampaignResults& results, const SceneRecord& reco
     scene.noiseFloors.push_back(std::isfinite(floor) ? std::optional(floor) : std::nullopt);
   }
   // One series for each method.
-  std::vector<fs::path> lastImages;
+  std::vector<std::vector<TimedImage>> images;
   for (const Group& group : groupByMethod(results, record.name)) {
     scene.series.push_back(seriesOf(results, group, report.metrics));
-    lastImages.push_back(lastImage(group));
+    images.push_back(imagesOf(group));
   }
   scene.pathClasses = pathClassesOf(record);
   // Warn where the noise of the reference is too large to measure against.
@@ -258,8 +263,8 @@ ReportScene collectScene(const CampaignResults& results, const SceneRecord& reco
   }
   const PreparedReference reference(record.referenceFile, readImage(record.referenceFile));
   scene.referenceOrigin += originOf(reference.image().file.metadata);
-  addFinalImages(scene, reference, lastImages);
-  const auto missing = std::count(lastImages.begin(), lastImages.end(), fs::path());
+  addImages(scene, reference, images);
+  const auto missing = std::ranges::count_if(images, [](const auto& ofSeries) { return ofSeries.empty(); });
   if (missing > 0)
     report.remarks.push_back(fmt::format("{}: the images of {} methods are not there.", record.name, missing));
   return scene;

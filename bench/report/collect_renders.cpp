@@ -277,14 +277,15 @@ ReportScene collectScene(const RenderFolder& from, const std::string& name, cons
   scene.height = reference.image.image().codes.height;
   scene.referenceOrigin = reference.origin;
   scene.noiseFloors = reference.noiseFloors;
-  // Each series shows the last image of its first run.
-  std::vector<fs::path> lastImages;
+  // Each series shows images of its first run.
+  std::vector<std::vector<TimedImage>> images;
   const auto groups = groupBySettings(runs);
   for (const auto& group : groups) {
     scene.series.push_back(collectSeries(group, seriesLabel(groups, *group[0]), reference.image));
-    lastImages.push_back(group[0]->snapshots.back().image);
+    auto& run = images.emplace_back();
+    for (const SnapshotFile& snapshot : group[0]->snapshots) run.push_back({snapshot.seconds, snapshot.image});
   }
-  addFinalImages(scene, reference.image, lastImages);
+  addImages(scene, reference.image, images);
   return scene;
 }
 

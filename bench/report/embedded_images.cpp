@@ -22,7 +22,7 @@ constexpr std::array<ImageCoding, 9> kCodings = {{
     {60, 4},
 }};
 
-// All images that a page shows: references, final images and error maps. Images without pixels are left out.
+// All images that a page shows: references, images of series and error maps. Images without pixels are left out.
 std::vector<const ReportImage*> imagesOf(const ConvergenceReport& report) {
   std::vector<const ReportImage*> images;
   const auto add = [&](const ReportImage& image) {
@@ -33,6 +33,7 @@ std::vector<const ReportImage*> imagesOf(const ConvergenceReport& report) {
     for (const ReportSeries& series : scene.series) {
       add(series.finalImage);
       add(series.errorMap);
+      for (const ReportImage& image : series.earlierImages) add(image);
     }
   }
   return images;

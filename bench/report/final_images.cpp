@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bench/report/float_image.h"
@@ -16,8 +17,10 @@ namespace wavecrest {
 namespace {
 
 constexpr const char* kMapMetric = "flip";
-constexpr double kShownPart = 0.99;   // of a map's pixels lie within the scale
-constexpr double kLeastRange = 0.02;  // a map of nothing but rounding stays dark
+constexpr double kShownPart = 0.99;                      // of a map's pixels lie within the scale
+constexpr double kLeastRange = 0.02;                     // a map of nothing but rounding stays dark
+constexpr double kEarlierParts[] = {1 / 16.0, 1 / 4.0};  // of the longest run, at which there are pictures too
+constexpr double kMostApart = 2.5;                       // times: an image further from such a time is not shown there
 
 ReportImage shownImage(std::string label, Image8 codes) {
   return {.label = std::move(label), .width = codes.width, .height = codes.height, .rgb = std::move(codes.pixels)};
@@ -29,10 +32,35 @@ void addFloats(ReportImage& image, const ImageFile& file) {
   image.floats = floatText(file.image.pixels, file.image.width, file.image.height);
 }
 
+// For each time the image of each series that is nearest to it, by the ratio of times, and not the last.
+void addEarlierImages(ReportScene& scene, const PreparedReference& reference,
+                      const std::vector<std::vector<TimedImage>>& files) {
+  double longest = 0;
+  for (const auto& run : files) longest = std::max(longest, run.empty() ? 0 : run.back().seconds);
+  for (const double part : kEarlierParts) {
+    const double wanted = part * longest;
+    const auto distance = [&](const TimedImage& image) { return std::abs(std::log(image.seconds / wanted)); };
+    std::vector<ReportImage> images(files.size());
+    for (size_t i = 0; i < files.size(); ++i) {
+      if (files[i].size() < 2) continue;
+      const TimedImage& near =
+          *std::min_element(files[i].begin(), files[i].end() - 1,
+                            [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+      if (!(distance(near) < std::log(kMostApart))) continue;
+      const ComparedImage test = reference.prepareTest(near.file.string(), readImage(near.file.string()));
+      images[i] = shownImage(fmt::format("{}, {}", scene.series[i].label, formatSeconds(near.seconds)), test.codes);
+      if (!scene.reference.floats.empty()) addFloats(images[i], test.file);
+    }
+    if (std::ranges::all_of(images, [](const ReportImage& image) { return image.rgb.empty(); })) continue;
+    scene.earlierSeconds.push_back(wanted);
+    for (size_t i = 0; i < files.size(); ++i) scene.series[i].earlierImages.push_back(std::move(images[i]));
+  }
+}
+
 }  // namespace
 
-void addFinalImages(ReportScene& scene, const PreparedReference& reference,
-                    const std::vector<std::filesystem::path>& files) {
+void addImages(ReportScene& scene, const PreparedReference& reference,
+               const std::vector<std::vector<TimedImage>>& files) {
   scene.reference = shownImage("reference", reference.image().codes);
   addFloats(scene.reference, reference.image().file);
   const Metric& metric = *findMetric(kMapMetric);
@@ -41,7 +69,8 @@ void addFinalImages(ReportScene& scene, const PreparedReference& reference,
   for (size_t i = 0; i < scene.series.size(); ++i) {
     if (files[i].empty()) continue;
     ReportSeries& series = scene.series[i];
-    const ComparedImage test = reference.prepareTest(files[i].string(), readImage(files[i].string()));
+    const std::string last = files[i].back().file.string();
+    const ComparedImage test = reference.prepareTest(last, readImage(last));
     measured[i] = metric.measure(reference, test, true);
     range = std::max(range, quantile(measured[i].map, kShownPart));
     series.finalImage =
@@ -57,6 +86,7 @@ void addFinalImages(ReportScene& scene, const PreparedReference& reference,
   }
   scene.errorMapScale = fmt::format("Error maps: {} of each pixel, all on one scale.", metric.symbol);
   scene.errorMapRange = range;
+  addEarlierImages(scene, reference, files);
 }
 
 }  // namespace wavecrest

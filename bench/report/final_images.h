@@ -1,5 +1,6 @@
-// The images at the end of each series of a scene, as a report shows them: 8-bit sRGB beside the reference, and the
-// FLIP error map of each, all maps of a scene on one scale so that they can be compared.
+// The images of each series of a scene, as a report shows them: 8-bit sRGB beside the reference, at the end and at a
+// sixteenth and a quarter of the longest run; and the FLIP error map of each at the end, all maps of a scene on one
+// scale so that they can be compared.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +11,14 @@
 
 namespace wavecrest {
 
-/// Fills scene.reference, errorMapScale and the finalImage and errorMap of each series from its file; an empty path
-/// leaves a series without. Throws ImageError if an image cannot be read or has another size.
-void addFinalImages(ReportScene& scene, const PreparedReference& reference,
-                    const std::vector<std::filesystem::path>& files);
+struct TimedImage {
+  double seconds = 0;  ///< render clock
+  std::filesystem::path file;
+};
+
+/// Fills what scene and series have of images. files: for each series those of one run, in order of time; a series
+/// without any stays without. Throws ImageError if an image cannot be read or has another size.
+void addImages(ReportScene& scene, const PreparedReference& reference,
+               const std::vector<std::vector<TimedImage>>& files);
 
 }  // namespace wavecrest

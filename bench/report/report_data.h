@@ -79,13 +79,14 @@ struct ReportSeries {
   std::string method = {};
   std::string label = {};  ///< the method, and what tells two series of one method apart
   std::vector<ReportRun> runs = {};
-  double pathsPerSecond = 0;              ///< mean over runs
-  double cpuSeconds = 0;                  ///< sum over runs
-  std::vector<ReportStage> stages = {};   ///< sum over runs
-  std::vector<NamedValue> settings = {};  ///< sampler, precision, radius, ...
-  ReportImage finalImage = {};            ///< of the first run that ended with one; without pixels if none did
-  ReportImage errorMap = {};              ///< of that image against the reference, in false colours
-  std::vector<ReportBias> bias = {};      ///< in order of time; empty with a single seed
+  double pathsPerSecond = 0;                    ///< mean over runs
+  double cpuSeconds = 0;                        ///< sum over runs
+  std::vector<ReportStage> stages = {};         ///< sum over runs
+  std::vector<NamedValue> settings = {};        ///< sampler, precision, radius, ...
+  ReportImage finalImage = {};                  ///< of the first run that ended with one; without pixels if none did
+  ReportImage errorMap = {};                    ///< of that image against the reference, in false colours
+  std::vector<ReportImage> earlierImages = {};  ///< per ReportScene::earlierSeconds; without pixels where none is known
+  std::vector<ReportBias> bias = {};            ///< in order of time; empty with a single seed
 };
 
 /// What a scene asks of methods: a class of paths, and what each method makes of it ("sampled", "impossible", ...).
@@ -102,6 +103,7 @@ struct ReportScene {
   std::vector<std::optional<double>> noiseFloors = {};  ///< per metric: score of a perfect image, where known
   std::string errorMapScale = {};                       ///< what the colours of the error maps mean, one line
   double errorMapRange = 0;                             ///< value of the brightest colour; 0: there are no maps
+  std::vector<double> earlierSeconds = {};              ///< times before the end at which pictures are shown, rising
   std::vector<ReportSeries> series = {};
   std::vector<ReportPathClass> pathClasses = {};
   std::vector<NamedValue> refusals = {};  ///< methods that cannot render this scene, and why

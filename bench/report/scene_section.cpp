@@ -10,8 +10,12 @@
 namespace wavecrest {
 namespace {
 
-// Where the floats of an image are: of the reference, or of series `number`, from 1 on.
-std::string floatFile(size_t scene, size_t number) { return fmt::format("report.floats/{}-{}.js", scene, number); }
+// Where the floats of an image are: of the reference, or of series `number`, from 1 on, at its end or at earlier time
+// `step`, from 1 on.
+std::string floatFile(size_t scene, size_t number, size_t step = 0) {
+  return step == 0 ? fmt::format("report.floats/{}-{}.js", scene, number)
+                   : fmt::format("report.floats/{}-{}-{}.js", scene, number, step);
+}
 
 std::string paneOf(const ReportImage& image, const std::string& name, const EmbeddedImages& images,
                    const std::string& floats = {}) {
@@ -37,7 +41,17 @@ std::string renderImages(const ReportScene& scene, size_t index, const EmbeddedI
   if (!maps.empty()) {
     groups += viewerGroup("Error maps", escapeHtml(scene.errorMapScale) + colourBar(scene.errorMapRange), maps);
   }
-  return "<h3>Pictures at the end</h3>\n" + viewer(groups);
+  for (size_t step = 0; step < scene.earlierSeconds.size(); ++step) {
+    std::string earlier;
+    for (size_t i = 0; i < scene.series.size(); ++i) {
+      const ReportSeries& series = scene.series[i];
+      if (step >= series.earlierImages.size() || series.earlierImages[step].rgb.empty()) continue;
+      earlier += paneOf(series.earlierImages[step], series.label, images, floatFile(index, i + 1, step + 1));
+    }
+    const std::string time = formatSeconds(scene.earlierSeconds[step]);
+    groups += viewerGroup("Pictures", "After about " + time, earlier, time);
+  }
+  return "<h3>Pictures</h3>\n" + viewer(groups);
 }
 
 std::string renderPlots(const ConvergenceReport& report, const ReportScene& scene) {
@@ -72,7 +86,12 @@ std::vector<std::pair<std::string, std::string>> floatFiles(const ConvergenceRep
   for (size_t scene = 0; scene < report.scenes.size(); ++scene) {
     add(report.scenes[scene].reference, floatFile(scene, 0));
     size_t number = 0;
-    for (const ReportSeries& series : report.scenes[scene].series) add(series.finalImage, floatFile(scene, ++number));
+    for (const ReportSeries& series : report.scenes[scene].series) {
+      add(series.finalImage, floatFile(scene, ++number));
+      for (size_t step = 0; step < series.earlierImages.size(); ++step) {
+        add(series.earlierImages[step], floatFile(scene, number, step + 1));
+      }
+    }
   }
   return files;
 }

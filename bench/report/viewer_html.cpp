@@ -17,8 +17,9 @@ std::string viewerPane(const ViewerPane& pane) {
       escapeHtml(pane.name), floats, pane.uri, pane.width, pane.height, escapeHtml(pane.label), escapeHtml(pane.label));
 }
 
-std::string viewerGroup(std::string_view kind, std::string_view head, std::string_view panes) {
-  std::string html = fmt::format("<div class=\"panes\" data-kind=\"{}\">\n", escapeHtml(kind));
+std::string viewerGroup(std::string_view kind, std::string_view head, std::string_view panes, std::string_view step) {
+  const std::string earlier = step.empty() ? "" : fmt::format(" data-step=\"{}\"", escapeHtml(step));
+  std::string html = fmt::format("<div class=\"panes\" data-kind=\"{}\"{}>\n", escapeHtml(kind), earlier);
   if (!head.empty()) append(html, "<div class=\"facts head\">{}</div>\n", head);
   append(html, "{}</div>\n", panes);
   return html;

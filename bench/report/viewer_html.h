@@ -17,8 +17,10 @@ struct ViewerPane {
 };
 std::string viewerPane(const ViewerPane& pane);
 
-/// A group of panes; kind: plain text on its button; head: HTML above the panes, or nothing.
-std::string viewerGroup(std::string_view kind, std::string_view head, std::string_view panes);
+/// A group of panes; kind: plain text on its button; head: HTML above the panes, or nothing. step: of pictures at an
+/// earlier time, which a slider chooses, what it is called there; such a group leaves the reference out.
+std::string viewerGroup(std::string_view kind, std::string_view head, std::string_view panes,
+                        std::string_view step = {});
 
 std::string viewer(std::string_view groups);
 

@@ -277,6 +277,46 @@ class ViewerTest(CommandTest):
         values = self.browser.run("return document.querySelector('.values output').textContent")
         self.assertRegex(values, r"^\(\d+, \d+\)  reference ")
 
+    def test_a_slider_shows_the_pictures_of_earlier_times(self):
+        (self.folder / "images").mkdir()
+        for name, spp in (("reference", 64), ("pt.1", 1), ("pt.4", 4), ("lt.2", 2), ("lt.4", 4)):
+            self.run_wavecrest("render", "cornell-diffuse", "--size", self.SIZE, "--spp", spp, "-m", name.split(".")[0].replace("reference", "pt"),
+                               "-o", f"images/{name}.{'exr' if name == 'reference' else 'pfm'}", "--quiet")  # fmt: skip
+        self.run_wavecrest("report", "images")
+        self.browser.open((self.folder / "images/report.html").as_uri())
+        shown = (
+            "return [...document.querySelectorAll('.viewer .panes:not(.away) .pane')]"
+            ".map((pane) => [pane.dataset.name, pane.querySelector('figcaption').textContent])"
+        )
+        slide = "const slider = document.querySelector('.tools .time'); slider.value = arguments[0]; slider.dispatchEvent(new Event('input'));"
+        at_end = [["reference", "reference"], ["lt", "lt, 4 s"], ["pt", "pt, 4 s"]]
+        self.assertEqual(sorted(self.browser.run(shown)), sorted(at_end))
+        self.browser.run(slide, 0)
+        earlier = self.browser.run(shown)
+        self.assertEqual(earlier[0][0], "reference")
+        self.assertEqual(sorted(row[1] for row in earlier[1:]), ["lt, 2 s", "pt, 1 s"])
+        self.assertEqual(self.browser.run("return document.querySelector('.tools .time + output').textContent"), "1 s")
+        # Floats, exposure and back to the end.
+        self.browser.run("const slider = document.querySelector('.floats input'); slider.value = 2; slider.dispatchEvent(new Event('input'))")
+        self.browser.until("document.querySelectorAll('.panes:not(.away) canvas.light').length === 3")
+        self.run_wavecrest("render", "cornell-diffuse", "--size", self.SIZE, "--spp", 1, "-m", "pt", "-o", "first.pfm", "--quiet")
+        values = self.browser.run(
+            "return [...document.querySelector('.panes:not(.away) .pane[data-name=pt]').image.floats]"
+        )
+        self.assertEqual(values, [half(value) for value in top_down(self.path("first.pfm"))[2]])
+        self.browser.run("document.querySelector('.viewer').dispatchEvent(new KeyboardEvent('keydown', { key: 't' }))")
+        self.assertEqual(sorted(self.browser.run(shown)), sorted(at_end))
+        self.browser.until("document.querySelectorAll('.panes:not(.away) canvas.light').length === 3")
+        # Neutral again, at whatever time.
+        self.browser.run("document.querySelector('.viewer').dispatchEvent(new KeyboardEvent('keydown', { key: '0' }))")
+        self.browser.run(slide, 0)
+        self.browser.until("document.querySelectorAll('.panes:not(.away) canvas.light').length === 0")
+        # Maps are those of the end, and pictures come back at the time that was chosen.
+        self.browser.click("Error maps")
+        self.assertEqual([row[0] for row in self.browser.run(shown)].count("reference"), 0)
+        self.browser.click("Pictures")
+        self.assertEqual(self.browser.run(shown), earlier)
+
     def test_nothing_is_wider_than_the_page_nor_moves(self):
         top = "return document.querySelector('.pane .frame').getBoundingClientRect().top"
         for width in (1400, 900, 700, 400):

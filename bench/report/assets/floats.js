@@ -25,6 +25,15 @@ for (let code = 0; code < 65536; ++code) {
     : exponent === 0 ? mantissa * 2 ** -24 : (1 + mantissa / 1024) * 2 ** (exponent - 15));
 }
 
+// The floats behind a pane, read once for all panes that name the same.
+const floatImages = new Map();
+function floatsOf({ floats, width, height }) {
+  if (!floatImages.has(floats)) {
+    floatImages.set(floats, floatText(floats).then((text) => decodeFloats(text, Number(width), Number(height))));
+  }
+  return floatImages.get(floats);
+}
+
 // RGB, row by row: planes of halves, each the difference to its neighbour on the left (above, where there is none), the
 // high bytes of all before the low bytes, compressed.
 async function decodeFloats(text, width, height) {
@@ -113,12 +122,10 @@ function download(name, type, content) {
 class FloatTools {
   constructor(viewer) {
     this.viewer = viewer;
-    this.panes = [...viewer.groups[0].querySelectorAll(".pane[data-floats]")];
     this.exposure = 0;
     this.luminance = false;
     this.cropping = false;
     this.crop = null;
-    this.loading = null;
     const tools = document.createElement("div");
     tools.className = "tools floats";
     const button = (text, action) => viewer.makeButton(text, action, tools);
@@ -144,24 +151,38 @@ class FloatTools {
     this.say();
   }
 
+  // Those of the time that was chosen.
+  get panes() { return [...this.viewer.pictures.querySelectorAll(".pane[data-floats]")]; }
+
+  get neutral() { return this.exposure === 0 && !this.luminance; }
+
+  // After another time was chosen: what was asked of the pictures before.
+  async update() {
+    if (this.neutral && !this.crop && !this.viewer.pictures.querySelector("canvas.light")) return;
+    await this.draw();
+    if (!this.result.hidden) this.showCrop();
+  }
+
   // The values of all panes at a pixel.
   valuesText(x, y, values) {
     return `(${x}, ${y})  ` + this.panes.map((pane) => `${pane.dataset.name} ${values(pane.image)}`).join(" · ");
   }
 
-  // Reads all floats, once.
-  load() {
-    this.loading ??= Promise.all(this.panes.map(async (pane) => {
-      const picture = pane.querySelector("img"), width = Number(pane.dataset.width), height = Number(pane.dataset.height);
-      pane.image = { width, height, floats: await decodeFloats(await floatText(pane.dataset.floats), width, height), name: pane.dataset.name, picture };
-    })).then(() => {
-      this.room.textContent = this.valuesText(9999, 9999, () => "0.00000 0.00000 0.00000");
-      this.values.textContent = "point at an image: values";
-    }).catch((error) => {
+  // Reads the floats of all panes, once.
+  async load() {
+    const missing = this.panes.filter((pane) => !pane.image);
+    if (!missing.length) return;
+    try {
+      await Promise.all(missing.map(async (pane) => {
+        const floats = await floatsOf(pane.dataset);
+        pane.image = { width: Number(pane.dataset.width), height: Number(pane.dataset.height), floats };
+      }));
+    } catch (error) {
       this.values.textContent = error.message;
       throw error;
-    });
-    return this.loading;
+    }
+    this.room.textContent = this.valuesText(9999, 9999, () => "0.00000 0.00000 0.00000");
+    this.values.textContent = "point at an image: values";
   }
 
   say() {
@@ -185,11 +206,10 @@ class FloatTools {
   async draw() {
     this.say();
     await this.load();
-    const neutral = this.exposure === 0 && !this.luminance;
     for (const pane of this.panes) {
       const frame = pane.querySelector(".frame");
       let canvas = frame.querySelector("canvas.light");
-      if (neutral) {
+      if (this.neutral) {
         canvas?.remove();
         continue;
       }

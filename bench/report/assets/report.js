@@ -83,10 +83,16 @@ function addSorting(table) {
 
 // Images: all panes of a scene share one view {zoom, x, y}: x and y are the image point, in 0..1, at the pane's corner.
 // A viewer has groups of panes (pictures, error maps), one of which is on show; panes of one name belong together.
+// Groups with a step are pictures at an earlier time: the slider chooses among them and the first group, the end.
 class Viewer {
   constructor(root) {
     this.root = root;
-    this.groups = [...root.querySelectorAll(".panes")];
+    const all = [...root.querySelectorAll(".panes")], earlier = all.filter((group) => group.dataset.step);
+    for (const group of earlier) group.querySelector(".pane").before(all[0].querySelector(".pane").cloneNode(true));
+    this.kinds = all.filter((group) => !group.dataset.step);
+    this.groups = [...this.kinds, ...earlier];
+    this.steps = [...earlier, this.groups[0]];  // in order of time
+    this.pictures = this.groups[0];             // those of the time that was chosen
     this.view = { zoom: 1, x: 0, y: 0 };
     this.group = 0;
     this.shown = 0;
@@ -114,9 +120,19 @@ class Viewer {
       return element;
     };
     const gap = () => tools.append(Object.assign(document.createElement("span"), { className: "gap" }));
-    this.groupButtons = this.groups.length < 2 ? []
-      : this.groups.map((group, index) => button(group.dataset.kind, () => this.showGroup(index)));
+    this.groupButtons = this.kinds.length < 2 ? []
+      : this.kinds.map((group, index) => button(group.dataset.kind, () => this.showKind(index)));
     if (this.groupButtons.length) gap();
+    if (this.steps.length > 1) {
+      const label = document.createElement("label");
+      this.timeSlider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: this.steps.length - 1, step: 1, value: this.steps.length - 1 });
+      this.timeSlider.classList.add("time");
+      this.timeSlider.addEventListener("input", () => this.showStep(Number(this.timeSlider.value)));
+      this.timeShown = document.createElement("output");
+      label.append("Time ", this.timeSlider, " ", this.timeShown);
+      tools.append(label);
+      gap();
+    }
     this.sideButton = button("Side by side", () => this.flip(false));
     this.flipButton = button("Flip", () => this.flip(true));
     this.wiping = false;
@@ -130,17 +146,32 @@ class Viewer {
     this.makeButton = button;
     const hint = document.createElement("span");
     hint.className = "hint";
-    hint.textContent = "click an image: wheel zooms, drag moves, keys 1–9 and arrows flip, w wipes, m maps, + and − zoom";
+    hint.textContent = "click an image: wheel zooms, drag moves, keys 1–9 and arrows flip, w wipes, m maps, t and T time, + and − zoom";
     tools.append(hint);
     this.root.prepend(tools);
   }
 
-  // Pictures or error maps; in flip mode the pane of the same name stays on show.
+  // Pictures at the time that was chosen, or error maps.
+  showKind(index) { this.showGroup(index === 0 ? this.groups.indexOf(this.pictures) : index); }
+
+  // Pictures of another time; the last step is the end.
+  showStep(step) {
+    this.pictures = this.steps[Math.min(Math.max(step, 0), this.steps.length - 1)];
+    this.showGroup(this.groups.indexOf(this.pictures));
+    this.floats?.update();
+  }
+
+  // In flip mode the pane of the same name stays on show.
   showGroup(index) {
     const name = this.panes[this.shown]?.dataset.name;
     this.group = index;
     this.groups.forEach((group, i) => group.classList.toggle("away", i !== index));
-    this.groupButtons.forEach((element, i) => element.setAttribute("aria-pressed", i === index));
+    const kind = index < this.kinds.length ? index : 0;
+    this.groupButtons.forEach((element, i) => element.setAttribute("aria-pressed", i === kind));
+    if (this.timeSlider) {
+      this.timeSlider.value = this.steps.indexOf(this.pictures);
+      this.timeShown.textContent = this.pictures.dataset.step ?? "end";
+    }
     this.names.replaceChildren();
     this.paneButtons = this.panes.map((pane, i) =>
       this.makeButton(i + 1 + " " + pane.dataset.name, () => { this.flip(true); this.show(i); }, this.names));
@@ -168,7 +199,7 @@ class Viewer {
   setWipe(on) {
     this.wiping = on;
     if (on && !this.root.classList.contains("flip")) this.flip(true);
-    if (on && this.group === 0 && this.shown === 0 && this.panes.length > 1) this.show(1);
+    if (on && this.groups[this.group] === this.pictures && this.shown === 0 && this.panes.length > 1) this.show(1);
     this.updateWipe();
   }
 
@@ -178,7 +209,7 @@ class Viewer {
     if (!this.wiping) return;
     const over = document.createElement("div");
     over.className = "over";
-    const frame = this.groups[0].querySelector(".frame"), light = frame.querySelector("canvas.light");
+    const frame = this.pictures.querySelector(".frame"), light = frame.querySelector("canvas.light");
     over.append((light ?? frame.querySelector("img")).cloneNode());
     if (light) over.firstChild.getContext("2d").drawImage(light, 0, 0);
     this.panes[this.shown].querySelector(".frame").append(over);
@@ -192,7 +223,8 @@ class Viewer {
     if (!event.ctrlKey && !event.metaKey && this.floats?.onKey(event.key)) return event.preventDefault();
     if (event.key === "w") return this.setWipe(!this.wiping);
     if (event.key === "+" || event.key === "-") return this.zoomTo(this.view.zoom * (event.key === "+" ? 2 : 0.5), 0.5, 0.5);
-    if (event.key === "m" && this.groups.length > 1) return this.showGroup((this.group + 1) % this.groups.length);
+    if (event.key === "m" && this.kinds.length > 1) return this.showKind(((this.group < this.kinds.length ? this.group : 0) + 1) % this.kinds.length);
+    if (event.key === "t" || event.key === "T") return this.showStep(this.steps.indexOf(this.pictures) + (event.key === "t" ? 1 : -1));
     if (step) this.show(this.shown + step);
     else if (digit >= 1 && digit <= this.panes.length) this.show(digit - 1);
     else return;
