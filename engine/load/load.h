@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -40,6 +41,14 @@ class MissingFileError : public LoadError {
   std::filesystem::path file;
 };
 
+// A parameter that a reader asked an object for, whether or not the file has it.
+struct AskedParameter {
+  std::string_view object, type;  // <bsdf type="diffuse">
+  std::string_view name;
+  std::string_view kind = {};  // "number", "integer", "boolean", "text", "vector", "transform"; empty: an element
+  std::string fallback = {};   // what stands for it where the file is silent, as far as the reader says so
+};
+
 struct LoadOptions {
   // Values of $name, stronger than the file's <default>. A name that the scene never uses is an error.
   std::map<std::string, std::string> defines{};
@@ -50,6 +59,8 @@ struct LoadOptions {
   std::optional<std::array<uint32_t, 2>> filmSize{};
   // Keep what changes no image (engine/load/simplify.h): for those who ask what the file says.
   bool keepAll = false;
+  // Called for each parameter that is asked for: what the loader knows, for the reference of the scene language.
+  std::function<void(const AskedParameter&)> asked{};
 };
 
 // "-" is standard input; files are then found relative to the current folder.

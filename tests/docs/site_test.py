@@ -32,6 +32,8 @@ class Site(unittest.TestCase):
             ("engine/methods/METHODS.html", "Weights by recursion"),
             ("interface.html", "render.h"),
             ("commands.html", "--until-relative-error"),
+            ("language/bsdf-roughplastic.html", "roughplastic.png"),
+            ("language/index.html", "rawconstant"),
         ]:
             text = (site / page).read_text()
             self.assertTrue(words in text, f"{page}: lacks {words}")
@@ -41,7 +43,8 @@ class Site(unittest.TestCase):
         tree = self.folder / "tree"
         (tree / "include/wavecrest").mkdir(parents=True)
         (tree / "docs").mkdir()
-        shutil.copy(ROOT / "docs/build.py", tree / "docs")
+        for file in ("build.py", "site.css"):
+            shutil.copy(ROOT / "docs" / file, tree / "docs")
         subprocess.run(["git", "init", "--quiet", tree], check=True)
         readme = tree / "README.md"
         readme.write_text("# A tree\n\n[good](docs/build.py), [within](#a-tree)\n")

@@ -1,0 +1,141 @@
+// The reference of the scene language (scenes/plugins.json) has an entry for each plugin and parameter that the loader
+// knows, and no other.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "engine/load/load.h"
+#include "engine/load/plugins.h"
+
+namespace wavecrest {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Asked {
+  std::string kind, fallback;
+};
+// By object, type and name.
+using AskedNames = std::map<std::string, std::map<std::string, std::map<std::string, Asked>>>;
+
+// What readers ask for while they read these scenes, which have every plugin between them.
+const AskedNames& askedNames() {
+  static const AskedNames all = [] {
+    AskedNames names;
+    LoadOptions options;
+    options.lenient = true;
+    options.asked = [&](const AskedParameter& asked) {
+      Asked& entry = names[std::string(asked.object)][std::string(asked.type)][std::string(asked.name)];
+      if (entry.kind.empty()) entry = {std::string(asked.kind), asked.fallback};
+    };
+    for (const char* folder : {"scenes/features", "scenes/validation", "tests/load/data/plugins"}) {
+      if (!fs::is_directory(fs::path(WAVECREST_SOURCE) / folder)) continue;
+      for (const auto& file : fs::directory_iterator(fs::path(WAVECREST_SOURCE) / folder)) {
+        if (file.path().extension() == ".xml") loadScene(file.path(), options);
+      }
+    }
+    return names;
+  }();
+  return all;
+}
+
+using Json = nlohmann::json;
+
+const Json& reference() {
+  static const Json json = Json::parse(std::ifstream(fs::path(WAVECREST_SOURCE) / "scenes/plugins.json"));
+  return json;
+}
+
+// The entry of a plugin, or that of all plugins of its object; null if there is none.
+const Json* entryOf(const std::string& object, const std::string& type) {
+  const Json& plugins = reference().at("plugins");
+  if (!plugins.contains(object)) return nullptr;
+  for (const std::string& name : {type, std::string("*")}) {
+    if (plugins.at(object).contains(name)) return &plugins.at(object).at(name);
+  }
+  return nullptr;
+}
+
+// Its parameters, with those of the groups that it uses.
+std::map<std::string, Json> parametersOf(const Json& entry) {
+  std::map<std::string, Json> all;
+  const auto add = [&](const Json& parameters) {
+    for (const auto& [name, parameter] : parameters.items()) all.try_emplace(name, parameter);
+  };
+  if (entry.contains("parameters")) add(entry.at("parameters"));
+  for (const Json& group : entry.value("uses", Json::array())) {
+    add(reference().at("groups").at(group.get<std::string>()));
+  }
+  return all;
+}
+
+TEST(PluginReference, hasEachParameterThatTheLoaderAsksForAndItsDefault) {
+  for (const auto& [object, types] : askedNames()) {
+    for (const auto& [type, names] : types) {
+      const Json* const entry = entryOf(object, type);
+      ASSERT_NE(entry, nullptr) << object << ' ' << type;
+      const std::map<std::string, Json> listed = parametersOf(*entry);
+      for (const auto& [name, asked] : names) {
+        SCOPED_TRACE(object + ' ' + type + ": " + name);
+        const auto found = listed.find(name);
+        ASSERT_NE(found, listed.end());
+        const std::string fallback = found->second.at("default");
+        // Where a default is no number, the entry says in words how it is found.
+        const bool said = fallback.find_first_not_of("-.0123456789") == std::string::npos;
+        if (asked.kind == "boolean" || (said && (asked.kind == "number" || asked.kind == "integer"))) {
+          EXPECT_EQ(fallback, asked.fallback);
+        }
+      }
+    }
+  }
+}
+
+TEST(PluginReference, hasNoParameterThatTheLoaderDoesNotKnow) {
+  for (const auto& [object, types] : reference().at("plugins").items()) {
+    for (const auto& [type, entry] : types.items()) {
+      std::set<std::string> asked;
+      for (const auto& [name, names] :
+           askedNames().contains(object) ? askedNames().at(object) : decltype(AskedNames().begin()->second)()) {
+        if (type != "*" && name != type) continue;
+        for (const auto& [parameter, how] : names) asked.insert(parameter);
+      }
+      for (const auto& [name, parameter] : parametersOf(entry)) {
+        EXPECT_TRUE(asked.contains(name)) << object << ' ' << type << ": " << name;
+        EXPECT_FALSE(parameter.at("kind").get<std::string>().empty()) << name;
+      }
+    }
+  }
+}
+
+template <class Reader>
+void expectEntries(const std::string& object, std::span<const Plugin<Reader>> plugins) {
+  for (const auto& plugin : plugins) {
+    const Json* const entry = entryOf(object, std::string(plugin.type));
+    ASSERT_NE(entry, nullptr) << object << ' ' << plugin.type;
+    EXPECT_FALSE(entry->at("summary").get<std::string>().empty()) << object << ' ' << plugin.type;
+  }
+}
+
+TEST(PluginReference, hasEachPluginAndNoOther) {
+  expectEntries("bsdf", bsdfPlugins());
+  expectEntries("bsdf", replacedBsdfPlugins());
+  expectEntries("texture", texturePlugins());
+  expectEntries("shape", shapePlugins());
+  expectEntries("emitter", emitterPlugins());
+  expectEntries("sensor", sensorPlugins());
+  expectEntries("rfilter", filterPlugins());
+  const Json& plugins = reference().at("plugins");
+  EXPECT_EQ(plugins.at("bsdf").size(), bsdfPlugins().size() + replacedBsdfPlugins().size());
+  EXPECT_EQ(plugins.at("texture").size(), texturePlugins().size());
+  EXPECT_EQ(plugins.at("shape").size(), shapePlugins().size() + 2) << "shapegroup and instance";
+  EXPECT_EQ(plugins.at("emitter").size(), emitterPlugins().size() + 1) << "area";
+  EXPECT_EQ(plugins.at("sensor").size(), sensorPlugins().size());
+  EXPECT_EQ(plugins.at("rfilter").size(), filterPlugins().size());
+}
+
+}  // namespace
+}  // namespace wavecrest
