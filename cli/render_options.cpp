@@ -4,42 +4,10 @@
 #include "library/option_ranges.h"
 
 namespace wavecrest {
-void addRenderOptions(const Command& command, RenderOptions& options) {
-  addSceneOptions(command, options.scene);
-  // Method, end and threads.
-  command.add("-m,--method", options.method, "light-transport method: " + methodChoices()).showDefault();
-  command.add("--time", options.time, "stop after this much render time: 6s, 100ms, 1h30m");
-  command
-      .add("--spp", options.spp,
-           "stop after N iterations: paths, of mlt mutations, per pixel; default without --time: "
-           "the scene's sample_count, or 4")
-      .atLeast(1);
-  command.add("--threads", options.threads, "worker threads; default: all cores").between(kThreadRange);
-  command.addFlag("--pin", options.pin, "bind threads to cores and spread shared memory over their nodes");
-  // Samples and paths.
-  command.add("--seed", options.seed, "seed of all random numbers").showDefault();
-  command
-      .add("--sampler", options.sampler,
-           "independent, sobol, or auto: sobol for pt, bpt, vcm and gpt, but not with --until-relative-error")
-      .showDefault();
-  command
-      .add("--filter-mode", options.filterMode,
-           "spread: camera samples add to all pixels that the filter reaches; sample: to one")
-      .showDefault();
-  command.add("--max-depth", options.maxDepth, "edges of the longest path; -1: unlimited")
-      .between(kDepthRange.least, kDepthRange.most, -1);
-  command.add("--rr-depth", options.rrDepth, "first vertex where roulette may end a path").between(kRouletteDepthRange);
-  command
-      .add("--roulette", options.roulette,
-           "what decides whether a walk goes on: throughput, albedo, or efficiency: throughput in the method's "
-           "proportion")
-      .showDefault();
-  // Kernels and intersector.
-  command.add("--precision", options.precision, "float or double").showDefault();
-  command.add("--isa", options.isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
-  command.add("--accel", options.accel, "intersector: auto, small, bvh or embree").showDefault();
-  command.add("--instances", options.instances, "of shape groups: auto, expand into copies, or keep").showDefault();
-  command.add("--wave", options.wave, "paths per wave").showDefault().between(kWaveRange);
+namespace {
+
+// What the methods that join paths, merge, learn or walk in chains have of their own.
+void addMethodOptions(const Command& command, RenderOptions& options) {
   // Merging, connections and memory.
   command
       .add("--radius", options.radius,
@@ -78,6 +46,47 @@ void addRenderOptions(const Command& command, RenderOptions& options) {
   command.add("--restart", options.restart, "steps before chains start anew; default: 16 mutations to a sample")
       .between(kRestartRange);
   command.addFlag("--no-direct-pass", options.noDirectPass, "mmlt and pathspace: chains render direct light too");
+}
+
+}  // namespace
+
+void addRenderOptions(const Command& command, RenderOptions& options) {
+  addSceneOptions(command, options.scene);
+  // Method, end and threads.
+  command.add("-m,--method", options.method, "light-transport method: " + methodChoices()).showDefault();
+  command.add("--time", options.time, "stop after this much render time: 6s, 100ms, 1h30m");
+  command
+      .add("--spp", options.spp,
+           "stop after N iterations: paths, of mlt mutations, per pixel; default without --time: "
+           "the scene's sample_count, or 4")
+      .atLeast(1);
+  command.add("--threads", options.threads, "worker threads; default: all cores").between(kThreadRange);
+  command.addFlag("--pin", options.pin, "bind threads to cores and spread shared memory over their nodes");
+  // Samples and paths.
+  command.add("--seed", options.seed, "seed of all random numbers").showDefault();
+  command
+      .add("--sampler", options.sampler,
+           "independent, sobol, or auto: sobol for pt, bpt and vcm, but not with --until-relative-error")
+      .showDefault();
+  command
+      .add("--filter-mode", options.filterMode,
+           "spread: camera samples add to all pixels that the filter reaches; sample: to one")
+      .showDefault();
+  command.add("--max-depth", options.maxDepth, "edges of the longest path; -1: unlimited")
+      .between(kDepthRange.least, kDepthRange.most, -1);
+  command.add("--rr-depth", options.rrDepth, "first vertex where roulette may end a path").between(kRouletteDepthRange);
+  command
+      .add("--roulette", options.roulette,
+           "what decides whether a walk goes on: throughput, albedo, or efficiency: throughput in the method's "
+           "proportion")
+      .showDefault();
+  // Kernels and intersector.
+  command.add("--precision", options.precision, "float or double").showDefault();
+  command.add("--isa", options.isa, "auto, scalar, sse4, avx2 or avx512").showDefault();
+  command.add("--accel", options.accel, "intersector: auto, small, bvh or embree").showDefault();
+  command.add("--instances", options.instances, "of shape groups: auto, expand into copies, or keep").showDefault();
+  command.add("--wave", options.wave, "paths per wave").showDefault().between(kWaveRange);
+  addMethodOptions(command, options);
   // Snapshots, goals, checkpoints and outputs.
   command.add("--snapshot-every", options.snapshotEvery, "snapshots at this interval, or 'log'");
   command

@@ -62,6 +62,31 @@ nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainSta
   return stats;
 }
 
+// Adds the keys that some methods, or parts of an image, have.
+void addMethodStats(const Scene& scene, const RenderSettings& settings, const RenderStatistics& statistics,
+                    nlohmann::ordered_json& stats) {
+  if (strategiesOf(settings.method).merge) {
+    const uint64_t pixels = uint64_t{scene.film.imageWidth()} * scene.film.imageHeight();
+    stats.update({{"radius_choice", settings.radius ? "fixed" : "auto"},
+                  {"radius_alpha", settings.radiusAlpha},
+                  {"light_paths_per_iteration", lightPathsWanted(settings, pixels)}});
+    if (statistics.mergeRadius) stats.update(mergeRadiusJson(*statistics.mergeRadius));
+    if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
+    if (choosesMergeVertices(settings.method)) {
+      stats["merge_vertices"] = enumeratorName(kMergeVerticesNames, settings.mergeVertices);
+    }
+  }
+  // What a share of an image is of it.
+  if (settings.share.parts > 1) {
+    stats["part"] = std::to_string(settings.share.part + 1) + "/" + std::to_string(settings.share.parts);
+    stats["first_iteration"] = settings.firstIteration;
+  }
+  if (hasRouletteChoice(settings.method)) stats["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
+  if (hasConnectionRoulette(settings.method)) stats["connection_roulette"] = settings.connectionRoulette;
+  if (settings.method == Method::gpt) stats["guide"] = guideJson(settings, statistics);
+  if (statistics.chains) stats.update(chainStats(settings, *statistics.chains));
+}
+
 }  // namespace
 
 nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& settings,
@@ -134,27 +159,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"stages", stages},
       {"snapshots", snapshotRows},
   };
-  // Keys of some methods only.
-  if (strategiesOf(settings.method).merge) {
-    const uint64_t pixels = uint64_t{scene.film.imageWidth()} * scene.film.imageHeight();
-    stats.update({{"radius_choice", settings.radius ? "fixed" : "auto"},
-                  {"radius_alpha", settings.radiusAlpha},
-                  {"light_paths_per_iteration", lightPathsWanted(settings, pixels)}});
-    if (statistics.mergeRadius) stats.update(mergeRadiusJson(*statistics.mergeRadius));
-    if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
-    if (choosesMergeVertices(settings.method)) {
-      stats["merge_vertices"] = enumeratorName(kMergeVerticesNames, settings.mergeVertices);
-    }
-  }
-  // What a share of an image is of it.
-  if (settings.share.parts > 1) {
-    stats["part"] = std::to_string(settings.share.part + 1) + "/" + std::to_string(settings.share.parts);
-    stats["first_iteration"] = settings.firstIteration;
-  }
-  if (hasRouletteChoice(settings.method)) stats["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
-  if (hasConnectionRoulette(settings.method)) stats["connection_roulette"] = settings.connectionRoulette;
-  if (settings.method == Method::gpt) stats["guide"] = guideJson(settings, statistics);
-  if (statistics.chains) stats.update(chainStats(settings, *statistics.chains));
+  addMethodStats(scene, settings, statistics, stats);
   return stats;
 }
 

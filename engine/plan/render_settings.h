@@ -155,12 +155,13 @@ inline void takeProgramDefaults(RenderSettings& settings) {
   settings.balancedWalks = true;
 }
 
-// The sampler that serves the method best. Sobol points are worth nothing to chains, nor to light paths that are not
-// joined with camera paths.
+// The sampler that serves the method best. Sobol points are worth nothing to chains, to light paths that are not joined
+// with camera paths, and to directions that a guide draws.
 inline SamplerKind bestSampler(Method method) {
   const PathStrategies strategies = strategiesOf(method);
   const bool lightAlone = (strategies.merge || strategies.camera) && !strategies.connect;
-  return lightAlone || method == Method::mlt ? SamplerKind::independent : SamplerKind::sobol;
+  const bool without = lightAlone || method == Method::mlt || method == Method::gpt;
+  return without ? SamplerKind::independent : SamplerKind::sobol;
 }
 
 // Whether the method's walks end by a roulette that can be chosen. Chains walk as far as their strategies say, or by

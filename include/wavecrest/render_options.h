@@ -13,7 +13,7 @@ struct RenderOptions {
   uint64_t spp = 0;  // iterations: paths, of mlt mutations, per pixel. Neither time nor spp: what the scene says
   uint64_t seed = 0;
   uint32_t threads = 0;          // 0: all cores
-  std::string sampler = "auto";  // independent, sobol, or auto: sobol for pt, bpt, vcm and gpt
+  std::string sampler = "auto";  // independent, sobol, or auto: sobol for pt, bpt and vcm
   std::string filterMode = "spread", precision = "float", isa = "auto", accel = "auto", instances = "auto";
   int maxDepth = 0;                     // edges of the longest path; -1: unlimited, 0: what the scene says
   int rrDepth = 0;                      // first vertex where roulette may end a path; 0: what the scene says

@@ -228,7 +228,6 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
     const UInt hitPrimitive = load(wave.hits.primitive, i);
-    // Which rays of the block hit a primitive.
     Mask hit = andNot(active, hitPrimitive == UInt(kMiss));
     const UInt primitive = select(hit, hitPrimitive, UInt(0u));
     const Vec3<Real> direction = loadVec3(rays.directionX, rays.directionY, rays.directionZ, i);
@@ -260,7 +259,6 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     const Real cosine = -dot(surface.normal, direction);
     toAreaMeasure<P, kFeatures>(context, wave, i, hit, surface.position, dist2, cosine, mis);
 
-    // Shading normal and texture coordinates.
     Interpolated<Real> shading{surface.normal, surface.normal, Float(0), Float(0), Float(0)};
     if constexpr (has(kFeatures, kShadingNormals | kTextures)) {
       shading = interpolate<P, kFeatures>(scene, at, hit, inGroup, surface.normal, instance);
