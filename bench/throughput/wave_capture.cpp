@@ -12,7 +12,9 @@ WaveCapture<S>::WaveCapture(const Scene& scene, const RenderSettings& settings)
       plan_(planRender<S>(scene, settings)),
       survival_(survivalRule(settings, Walk::camera)),
       iterationBits_(plan_.pipeline.mostIterationBits(settings.waveSize)),
-      pixels_(filmArea(scene.film).pixels) {}
+      pixels_(filmArea(scene.film).pixels) {
+  plan_.needs.visibility = true;  // rays of one intersector are traced by others too
+}
 
 template <class S>
 StageContext<S> WaveCapture<S>::context(uint32_t depth) {

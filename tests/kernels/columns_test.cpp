@@ -154,7 +154,8 @@ constexpr ColumnNeeds kPlainest{.shadingNormals = false,
                                 .rouletteScale = false,
                                 .connections = false,
                                 .bsdfOrder = false,
-                                .splats = false};
+                                .splats = false,
+                                .visibility = false};
 
 // Every queue of a wave has the wave's capacity and columns of its own.
 template <class Queue>
@@ -211,6 +212,7 @@ TYPED_TEST(WaveTest, eachNeedCostsItsColumns) {
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.normalMaps = true; }), 3 * kReal);
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.tangents = true; }), sizeof(float));
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.rouletteScale = true; }), kReal);
+  EXPECT_EQ(extra([](ColumnNeeds& n) { n.visibility = true; }), sizeof(float));
   EXPECT_EQ(extra([](ColumnNeeds& n) { n.connections = true; }),
             2 * kReal + 3 * sizeof(uint32_t) + sizeof(VertexRow<TypeParam>));
   // Position, direction, normal, offset, throughput, dVCM; lane and primitive.
