@@ -67,9 +67,9 @@ TEST(HtmlPage, ranksByTheFirstMetric) {
 TEST(HtmlPage, beginsWithTheAnswerAndEndsWithFindings) {
   const std::string page = renderReport(sampleReport());
   size_t last = 0;
-  for (const char* part : {"class=\"answer\"", "<h2>Summary</h2>", "Speed-up at equal relMSE",
-                           "<h3>Error over time</h3>", "<h3>Pictures</h3>", "<h3>At the end</h3>",
-                           "<h2>All scores</h2>", "<h2>The study's findings</h2>"}) {
+  for (const char* part :
+       {"class=\"answer\"", "<h2>Summary</h2>", "Speed-up at equal relMSE", "<h3>Error over time</h3>",
+        "<h3>Pictures</h3>", "<h3>At the end</h3>", "<h2>All scores</h2>", "<h2>The study's findings</h2>"}) {
     const size_t at = page.find(part);
     ASSERT_NE(at, std::string::npos) << part;
     EXPECT_GT(at, last) << part;
