@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "engine/session/session.h"
+#include "library/errors.h"
 #include "library/option_values.h"
 #include "metrics/image/image_io.h"
 

@@ -1,5 +1,6 @@
 #include "engine/waves/wave_session.h"
 
+#include "engine/plan/memory_plan.h"
 #include "engine/session/stage_rows.h"
 #include "engine/state/state_stream.h"
 #include "engine/tasks/for_each.h"
