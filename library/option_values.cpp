@@ -172,6 +172,7 @@ namespace {
 // In the order of kAllSamplerKinds.
 std::vector<std::string_view> samplerNames() {
   std::vector<std::string_view> names;
+  names.reserve(std::size(kAllSamplerKinds) + 1);  // and "auto"
   for (const SamplerKind kind : kAllSamplerKinds) names.push_back(toString(kind));
   return names;
 }
