@@ -15,7 +15,9 @@ TEST(RawConstant, IsAValue) {
 TEST(RawConstant, IsInTheRangeOfWhatItStandsFor) {
   const std::string negative =
       R"(<texture name="NAME" type="rawconstant"><vector name="value" x="-1" y="0" z="0"/></texture>)";
-  const auto named = [&](const std::string& name) { return std::string(negative).replace(negative.find("NAME"), 4, name); };
+  const auto named = [&](const std::string& name) {
+    return std::string(negative).replace(negative.find("NAME"), 4, name);
+  };
   expectErrorOnLine2(texturedSphere(named("reflectance")), "a value of -1");
   expectErrorOnLine2(R"(<shape type="sphere"><emitter type="area">)" + named("radiance") + "</emitter></shape>",
                      "emission texture has a value of -1");
