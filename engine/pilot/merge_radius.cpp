@@ -7,8 +7,7 @@
 
 #include "engine/pilot/light_walks.h"
 #include "engine/pilot/median.h"
-#include "engine/tasks/flush_to_zero.h"
-#include "engine/walks/run_walk.h"
+#include "engine/pilot/view_walk.h"
 
 namespace wavecrest {
 namespace {
@@ -75,6 +74,19 @@ void visitVertices(Wave<S>& wave, bool parallel, std::vector<CameraPath>& paths,
   }
 }
 
+// Follows all paths of a walk, and adds their places.
+template <class S>
+ViewLook<S> placesOf(const CameraView& camera, std::vector<CameraPath>& paths, std::vector<MergePlace>& places) {
+  return [&](Wave<S>& wave, uint32_t depth) {
+    if (depth == 0) {
+      beginPaths(wave, camera, paths);
+    } else {
+      visitVertices(wave, camera.parallel, paths, places);
+    }
+    return true;
+  };
+}
+
 // METHODS 6.5, relative to the scene's radius. photonsPerArea: of an iteration with a light path for each pixel of the
 // whole film, or as many as the settings ask for.
 double radiusOfImage(const MergeRadius& found, double photonsPerArea, const RenderSettings& settings) {
@@ -86,8 +98,7 @@ double radiusOfImage(const MergeRadius& found, double photonsPerArea, const Rend
   const bool connects = choosesMergeVertices(settings.method);
   const bool atFirst = connects ? settings.mergeVertices == MergeVertices::first : strategies.mergeAtFirstVertex;
   const double pixels = (atFirst ? kFirstVertex : kAllVertices) * std::cbrt(1 / photons);
-  // Three digits: instruction sets and precisions differ in the last bits of what they find, and are to make the same
-  // choice all the same.
+  // Three digits, so that the last bits, in which instruction sets and precisions differ, do not change the choice.
   const double asked = std::clamp(pixels, kLeastPixels, kMostPixels) * found.pixel / found.scene;
   const double unit = std::pow(10, std::floor(std::log10(asked)) - 2);
   const double chosen = std::round(asked / unit) * unit;
@@ -99,34 +110,11 @@ double radiusOfImage(const MergeRadius& found, double photonsPerArea, const Rend
 
 template <class S>
 std::vector<MergePlace> findMergePlaces(const RenderPlan<S>& plan, const RenderSettings& settings) {
-  const FlushToZero flushToZero;
-  const SceneView<S>& view = plan.scene->view;
-  // A walk that gathers nothing and goes on by delta lobes alone.
-  using enum StageId;
-  const MethodPage page{{walk(Walk::camera, generateCameraPaths, {extend, arrive, scatterSpecular})}};
-  const Pass<S> pass = makePipeline(page, *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass();
-  const std::vector<uint32_t> pixels = spreadPixels(view.camera);
-  StageCounters counters;
-  StageContext<S> context{.scene = &view,
-                          .pixels = pixels.data(),
-                          .sampler = {SamplerKind::independent, kPilotSeed, 0},
-                          .limits = settings.limits,
-                          .mis = misSettings(pass.strategies, plan.mergeRadius, 1, 0),
-                          .film = {.x0 = 0, .y0 = 0, .width = view.camera.width, .height = view.camera.height},
-                          .counters = &counters};
-  Wave<S> wave(static_cast<uint32_t>(pixels.size()), plan.needs);
-  wave.pathCount = pixels.size();
-  // Depth by depth, as runPass does, with a look at the vertices that arrive leaves.
+  const CameraView& camera = plan.scene->view.camera;
+  const std::vector<uint32_t> pixels = spreadPixels(camera);
   std::vector<CameraPath> paths(pixels.size());
   std::vector<MergePlace> places;
-  runStage<S>(pass.generate, context, wave, nullptr);
-  beginPaths(wave, view.camera, paths);
-  for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {
-    for (size_t stage = 0; stage < pass.perDepth.size(); ++stage) {
-      if (stage + 1 == pass.perDepth.size()) visitVertices(wave, view.camera.parallel, paths, places);
-      runStage<S>(pass.perDepth[stage], context, wave, nullptr);
-    }
-  }
+  walkViews<S>(plan, settings, pixels, kPilotSeed, nullptr, placesOf<S>(camera, paths, places));
   return places;
 }
 template std::vector<MergePlace> findMergePlaces(const RenderPlan<float>&, const RenderSettings&);

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "engine/tasks/flush_to_zero.h"
-#include "engine/walks/run_walk.h"
+#include "engine/pilot/view_walk.h"
 
 namespace wavecrest {
 namespace {
@@ -17,30 +16,12 @@ constexpr uint64_t kPathsOfBlock = uint64_t{1} << 20;
 template <class S>
 std::optional<uint32_t> cellSeen(const RenderPlan<S>& plan, const RenderSettings& settings, const CellTreeView& cells,
                                  uint32_t pixel) {
-  const FlushToZero flushToZero;
-  using enum StageId;
-  const MethodPage page{{walk(Walk::camera, generateCameraPaths, {extend, arrive, findCells, scatterSpecular})}};
-  const Pass<S> pass = makePipeline(page, *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass();
-  const CameraView& camera = plan.scene->view.camera;
-  StageCounters counters;
-  StageContext<S> context{.scene = &plan.scene->view,
-                          .pixels = &pixel,
-                          .sampler = {SamplerKind::independent, settings.seed, 0},
-                          .limits = settings.limits,
-                          .mis = misSettings(pass.strategies, plan.mergeRadius, 1, 0),
-                          .film = {.x0 = 0, .y0 = 0, .width = camera.width, .height = camera.height},
-                          .cellTree = &cells,
-                          .counters = &counters};
-  Wave<S> wave(1, plan.needs);
-  wave.pathCount = 1;
-  runStage<S>(pass.generate, context, wave, nullptr);
-  for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {
-    for (size_t stage = 0; stage < pass.perDepth.size(); ++stage) {
-      if (stage + 1 == pass.perDepth.size() && wave.joinable != 0) return wave.cells.cell[0];
-      runStage<S>(pass.perDepth[stage], context, wave, nullptr);
-    }
-  }
-  return std::nullopt;
+  std::optional<uint32_t> cell;
+  walkViews<S>(plan, settings, {&pixel, 1}, settings.seed, &cells, [&](Wave<S>& wave, uint32_t depth) {
+    if (depth != 0 && wave.joinable != 0) cell = wave.cells.cell[0];
+    return !cell;
+  });
+  return cell;
 }
 
 }  // namespace
