@@ -13,6 +13,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <variant>
 
 #include "engine/scene/scene.h"
 #include "engine/scene/scene_error.h"
@@ -41,12 +43,14 @@ class MissingFileError : public LoadError {
   std::filesystem::path file;
 };
 
-// A parameter that a reader asked an object for, whether or not the file has it.
+// What stands for a parameter where the file is silent, as far as its reader says so at once; none of other elements.
+using ParameterFallback = std::variant<std::monostate, bool, int64_t, double, std::string_view>;
+
+// A parameter that a reader asked an object for, whether or not the file has it. Valid during the call.
 struct AskedParameter {
   std::string_view object, type;  // <bsdf type="diffuse">
   std::string_view name;
-  std::string_view kind = {};  // "number", "integer", "boolean", "text", "vector", "transform"; empty: an element
-  std::string fallback = {};   // what stands for it where the file is silent, as far as the reader says so
+  ParameterFallback fallback{};
 };
 
 struct LoadOptions {

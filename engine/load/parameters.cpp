@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <set>
-#include <utility>
 
 #include "engine/load/ior_table.h"
 #include "engine/load/transform.h"
@@ -21,12 +19,6 @@ constexpr std::array<std::string_view, 12> kValueTags = {"boolean", "integer", "
 
 // A tag as files write it, for messages.
 std::string article(std::string_view tag) { return "<" + std::string(tag) + ">"; }
-
-// The fewest digits that mean this number.
-std::string shortest(double value) {
-  std::array<char, 32> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
 
 // A value has a name, and only a <transform> has children.
 void checkValueElement(const XmlElement& element) {
@@ -70,10 +62,8 @@ Parameters::Parameters(LoadContext& context, const XmlElement& object) : context
 }
 
 // Marks the child of that name as used and returns it; null if there is none. finish() lists the name as a known one.
-Parameters::Child* Parameters::take(std::string_view name, std::string_view kind, std::string fallback) {
-  if (context_.options.asked) {
-    context_.options.asked({object_.tag, object_.get("type"), name, kind, std::move(fallback)});
-  }
+Parameters::Child* Parameters::take(std::string_view name, const ParameterFallback& fallback) {
+  if (context_.options.asked) context_.options.asked({object_.tag, object_.get("type"), name, fallback});
   if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.emplace_back(name);
   for (Child& child : children_) {
     if (child.name != name) continue;
@@ -93,8 +83,8 @@ const XmlElement* Parameters::element(std::string_view name) {
 
 // Null if the parameter is absent. LoadError if its tag is not one of `tags`.
 const std::string* Parameters::valueOf(std::string_view name, std::initializer_list<std::string_view> tags,
-                                       std::string_view kind, std::string fallback) {
-  const Child* child = take(name, kind, std::move(fallback));
+                                       const ParameterFallback& fallback) {
+  const Child* child = take(name, fallback);
   if (!child) return nullptr;
   // Values have no ids, so a <ref> in place of one is refused by its tag.
   const XmlElement& element = *child->site;
@@ -112,7 +102,7 @@ const std::string* Parameters::valueOf(std::string_view name, std::initializer_l
 
 // A whole number may be written as an <integer>.
 double Parameters::real(std::string_view name, double fallback) {
-  const std::string* value = valueOf(name, {"float", "integer"}, "number", shortest(fallback));
+  const std::string* value = valueOf(name, {"float", "integer"}, fallback);
   return value ? parseReal(*value, locationOf(name)) : fallback;
 }
 
@@ -131,7 +121,7 @@ double Parameters::positiveReal(std::string_view name, double fallback) {
 
 // The range from `lowest` to `highest` includes both ends.
 int64_t Parameters::integer(std::string_view name, int64_t fallback, int64_t lowest, int64_t highest) {
-  const std::string* text = valueOf(name, {"integer"}, "integer", std::to_string(fallback));
+  const std::string* text = valueOf(name, {"integer"}, fallback);
   if (!text) return fallback;
   const int64_t value = parseInteger(*text, locationOf(name));
   if (value < lowest || value > highest) {
@@ -142,12 +132,12 @@ int64_t Parameters::integer(std::string_view name, int64_t fallback, int64_t low
 }
 
 bool Parameters::boolean(std::string_view name, bool fallback) {
-  const std::string* value = valueOf(name, {"boolean"}, "boolean", fallback ? "true" : "false");
+  const std::string* value = valueOf(name, {"boolean"}, fallback);
   return value ? parseBoolean(*value, locationOf(name)) : fallback;
 }
 
 std::string Parameters::string(std::string_view name, std::string_view fallback) {
-  const std::string* value = valueOf(name, {"string"}, "text", std::string(fallback));
+  const std::string* value = valueOf(name, {"string"}, fallback);
   return value ? *value : std::string(fallback);
 }
 
@@ -162,7 +152,7 @@ std::string Parameters::requiredString(std::string_view name) {
 
 // <point> and <vector> are interchangeable here.
 std::optional<Double3> Parameters::vector(std::string_view name) {
-  const Child* child = take(name, "vector");
+  const Child* child = take(name);
   if (!child) return std::nullopt;
   if (child->site->tag != "point" && child->site->tag != "vector") {
     throw LoadError(child->site->location(), "parameter " + inQuotes(name) + " is a " + article(child->site->tag) +
@@ -174,7 +164,7 @@ std::optional<Double3> Parameters::vector(std::string_view name) {
 
 // An absent transform is not the identity: some readers allow another parameter in its place.
 std::optional<Matrix4> Parameters::transform(std::string_view name) {
-  const Child* child = take(name, "transform");
+  const Child* child = take(name);
   if (!child) return std::nullopt;
   if (child->site->tag != "transform") {
     throw LoadError(child->site->location(),

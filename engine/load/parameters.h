@@ -61,10 +61,10 @@ class Parameters {
     std::string_view name;
     bool used = false;
   };
-  Child* take(std::string_view name, std::string_view kind = {}, std::string fallback = {});
+  Child* take(std::string_view name, const ParameterFallback& fallback = {});
   // The text of a value element of one of the given tags.
-  const std::string* valueOf(std::string_view name, std::initializer_list<std::string_view> tags, std::string_view kind,
-                             std::string fallback);
+  const std::string* valueOf(std::string_view name, std::initializer_list<std::string_view> tags,
+                             const ParameterFallback& fallback);
 
   LoadContext& context_;
   const XmlElement& object_;
