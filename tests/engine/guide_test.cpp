@@ -2,9 +2,7 @@
 // is cut; and a guide that learns.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
-#include <numbers>
 #include <numeric>
 #include <optional>
 
@@ -18,6 +16,7 @@
 #include "tests/engine/light_scenes.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/saved_state.h"
+#include "tests/engine/sphere_integral.h"
 
 namespace wavecrest {
 namespace {
@@ -263,19 +262,10 @@ TEST(Guide, tellsWhatItHasLearnedWhereAPixelLooks) {
   ASSERT_TRUE(learned);
   EXPECT_GT(learned->guidedShare, 0);
   EXPECT_LT(learned->cell, learned->cells);
-  double whole = 0, front = 0;
   constexpr int kRows = 64;
-  for (int row = 0; row < kRows; ++row) {
-    const double theta = (row + 0.5) / kRows * std::numbers::pi;
-    for (int column = 0; column < 2 * kRows; ++column) {
-      const double phi = (column + 0.5) / kRows * std::numbers::pi;
-      const double part =
-          learned->density({std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)}) *
-          std::sin(theta) * std::pow(std::numbers::pi / kRows, 2);
-      whole += part;
-      if (phi < std::numbers::pi) front += part;
-    }
-  }
+  const auto inFront = [&](const auto& direction) { return direction[2] > 0 ? learned->density(direction) : 0; };
+  const double whole = sphereIntegral(kRows, [&](const auto& direction) { return learned->density(direction); });
+  const double front = sphereIntegral(kRows, inFront);
   EXPECT_NEAR(whole, 1, 0.02);
   EXPECT_GT(front, 0.9);
   // Methods that learn nothing have nothing to tell.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "engine/learn/integer_sums.h"
 #include "engine/learn/learned_directions.h"
 #include "tests/engine/saved_state.h"
+#include "tests/engine/sphere_integral.h"
 
 namespace wavecrest {
 namespace {
@@ -44,16 +44,7 @@ TEST(LearnedDirections, addUpToOneOverTheSphere) {
   LearnedDirections learned;
   double sum = 0;
   for (size_t bin = 0; bin < kGuideBins; ++bin) sum += learned.squareDensity[bin] = static_cast<float>(1 + bin % 7);
-  constexpr int kRows = 400;
-  double integral = 0;
-  for (int row = 0; row < kRows; ++row) {
-    const double theta = (row + 0.5) / kRows * std::numbers::pi;
-    for (int column = 0; column < 2 * kRows; ++column) {
-      const double phi = (column + 0.5) / kRows * std::numbers::pi;
-      integral += learned.density({std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)}) *
-                  std::sin(theta) * std::pow(std::numbers::pi / kRows, 2);
-    }
-  }
+  const double integral = sphereIntegral(400, [&](const auto& direction) { return learned.density(direction); });
   EXPECT_NEAR(integral, sum * 4 / kGuideBins, 2e-3 * integral);
   // The middle of the square is +z.
   learned.squareDensity = {};
