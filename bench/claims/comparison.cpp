@@ -8,25 +8,20 @@
 #include "bench/claims/scene_losses.h"
 
 namespace wavecrest {
-namespace {
-
-using V = ClaimVerdict;
-
-}  // namespace
 
 std::string plusMinus(double halfWidth) {
   return std::isfinite(halfWidth) && halfWidth > 0 ? fmt::format(" \u00b1 {:.2g}", halfWidth) : "";
 }
 
-int weightOf(V verdict) {
+int weightOf(ClaimVerdict verdict) {
   switch (verdict) {
-    case V::fails:
+    case ClaimVerdict::fails:
       return 3;
-    case V::notJudged:
+    case ClaimVerdict::notJudged:
       return 2;
-    case V::undecided:
+    case ClaimVerdict::undecided:
       return 1;
-    case V::holds:
+    case ClaimVerdict::holds:
       break;
   }
   return 0;
@@ -34,7 +29,9 @@ int weightOf(V verdict) {
 
 Comparison above(const Band& band, double limit, std::string text) {
   const double margin = band.mean - limit;
-  const V verdict = margin >= band.halfWidth ? V::holds : margin < -band.halfWidth ? V::fails : V::undecided;
+  const ClaimVerdict verdict = margin >= band.halfWidth   ? ClaimVerdict::holds
+                               : margin < -band.halfWidth ? ClaimVerdict::fails
+                                                          : ClaimVerdict::undecided;
   return {verdict, margin, std::move(text)};
 }
 Comparison below(const Band& band, double limit, std::string text) {

@@ -151,6 +151,9 @@ class Viewer {
     this.root.prepend(tools);
   }
 
+  // Of the group on show; pictures of earlier times are of the first kind.
+  get kind() { return this.group < this.kinds.length ? this.group : 0; }
+
   // Pictures at the time that was chosen, or error maps.
   showKind(index) { this.showGroup(index === 0 ? this.groups.indexOf(this.pictures) : index); }
 
@@ -166,8 +169,7 @@ class Viewer {
     const name = this.panes[this.shown]?.dataset.name;
     this.group = index;
     this.groups.forEach((group, i) => group.classList.toggle("away", i !== index));
-    const kind = index < this.kinds.length ? index : 0;
-    this.groupButtons.forEach((element, i) => element.setAttribute("aria-pressed", i === kind));
+    this.groupButtons.forEach((element, i) => element.setAttribute("aria-pressed", i === this.kind));
     if (this.timeSlider) {
       this.timeSlider.value = this.steps.indexOf(this.pictures);
       this.timeShown.textContent = this.pictures.dataset.step ?? "end";
@@ -223,7 +225,7 @@ class Viewer {
     if (!event.ctrlKey && !event.metaKey && this.floats?.onKey(event.key)) return event.preventDefault();
     if (event.key === "w") return this.setWipe(!this.wiping);
     if (event.key === "+" || event.key === "-") return this.zoomTo(this.view.zoom * (event.key === "+" ? 2 : 0.5), 0.5, 0.5);
-    if (event.key === "m" && this.kinds.length > 1) return this.showKind(((this.group < this.kinds.length ? this.group : 0) + 1) % this.kinds.length);
+    if (event.key === "m" && this.kinds.length > 1) return this.showKind((this.kind + 1) % this.kinds.length);
     if (event.key === "t" || event.key === "T") return this.showStep(this.steps.indexOf(this.pictures) + (event.key === "t" ? 1 : -1));
     if (step) this.show(this.shown + step);
     else if (digit >= 1 && digit <= this.panes.length) this.show(digit - 1);
