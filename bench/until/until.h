@@ -46,7 +46,8 @@ class FilmErrorWatch {
   ErrorNow now_;
 };
 
-// Runs of so many iterations, from the image's first on, are independent of each other: 1, or kSobolRun.
+// How many iterations to a run, counted from the image's first, make runs independent of each other: 1, of Sobol points
+// kSobolRun.
 inline uint64_t independentRun(const RenderSettings& settings) {
   return settings.sampler == SamplerKind::sobol ? kSobolRun : 1;
 }

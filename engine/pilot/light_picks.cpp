@@ -14,8 +14,7 @@ constexpr double kEvenShare = 0.125;
 // Of light from infinitely far away, which has no place and fills many directions: paths meet it by chance as well, and
 // multiple importance sampling leaves little of its noise to picks.
 constexpr double kInfiniteShare = 1.0 / 6;
-// Weights in whole parts: instruction sets and precisions differ in the last bits of what they find, and are to make
-// the same choices all the same.
+// Weights in whole parts, so that the last bits, in which instruction sets and precisions differ, do not change picks.
 constexpr double kParts = 64;
 
 // What each path gets from an emitter that is picked always.

@@ -144,8 +144,8 @@ uint32_t lightWalksPerCameraWalk(const RenderPlan<S>& plan, const RenderSettings
   const double ofLight = relativeVariance(light, brightness) * camera.cost;
   const double ofCamera = relativeVariance(camera, brightness) * light.cost;
   if (!(ofLight > ofCamera)) return 1;
-  // Powers of two: instruction sets and precisions differ in the last bits of what they find, and are to make the same
-  // choice all the same. Random numbers tell apart so many light paths.
+  // A power of two, so that the last bits, in which instruction sets and precisions differ, do not change the choice.
+  // Random numbers tell apart so many light paths.
   const double wanted = std::min(0.5 * std::log2(ofLight / std::max(ofCamera, 1e-9 * ofLight)), 30.0);
   const auto most = std::min<uint64_t>(kMostLightWalks, kMostPaths / area.size());
   uint32_t walks = 1u << static_cast<uint32_t>(std::lround(wanted));

@@ -36,9 +36,8 @@ class WaveSession final : public PlannedSession<S> {
   using Base = PlannedSession<S>;
   using Base::arena_, Base::clock_, Base::earlier_, Base::film_, Base::plan_, Base::progressPaths_, Base::settings_;
   using Worker = WaveWorker<S>;
-  // How far the camera paths of a wave's pixels are: 2^iterationBits iterations from `next` on are under way, and done
-  // for the first `pixels` of them. The session counts its own iterations from 0 on; numbers_ has their numbers in the
-  // image.
+  // How far the pixels of a piece are: iterations [next, next + 2^iterationBits) are being traced, and done for the
+  // first `pixels` pixels. Iterations are counted from the session's first; numbers_ has their numbers in the image.
   struct CameraProgress {
     uint64_t next = 0;
     uint32_t iterationBits = 0;

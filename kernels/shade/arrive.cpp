@@ -36,8 +36,8 @@ WAVECREST_INLINE Mask showsInfinite(const StageContext<S>& context, UInt lane, M
 // Which lanes' emission counts.
 template <class S>
 struct EmissionRule {
-  // Where merging stands alone it makes every path with a vertex to merge at; emission makes the others, which have met
-  // nothing but delta lobes. Those have no earlier strategy in their sums.
+  // Photon mapping: merging makes every path with a vertex to merge at. Emission counts for the others, which met delta
+  // lobes alone: no other strategy makes them, so their MIS sums are 0.
   bool mergingAlone;
   // Of each lane the one depth at which emission counts, or null. Multiplexed chains make each path by one strategy:
   // emission counts at the vertex where s = 0 ends.
@@ -96,7 +96,7 @@ WAVECREST_INLINE void addInfiniteLight(const StageContext<typename P::Storage>& 
 }
 
 // Adds the radiance of area lights that lanes of block i arrived at, weighted likewise with the sums after arrival
-// (METHODS 5.6, s = 0). cosine: at the light, of the direction back; dist2: squared length of the edge.
+// (METHODS 5.6, s = 0). cosine: of the light's normal and the way back; dist2: squared length of the last edge.
 template <class P, uint32_t kFeatures>
 WAVECREST_INLINE void addEmission(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
                                   size_t i, Mask emits, UInt index, const SurfacePoint<typename P::Real>& surface,
