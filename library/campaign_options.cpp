@@ -128,7 +128,7 @@ std::vector<CampaignScene> chosenScenes(const CampaignOptions& options, const Pr
     const fs::path file = findScene(word);
     const std::string name = file.stem().string();
     if (!names.insert(name).second) throw UsageError(fmt::format("{}: a second scene of the name '{}'", word, name));
-    scenes.push_back({.name = name, .file = file, .effort = effortOf(options, profile, name)});
+    scenes.push_back({.name = name, .word = word, .file = file, .effort = effortOf(options, profile, name)});
   }
   return scenes;
 }

@@ -61,6 +61,7 @@ const Profile* findProfile(std::string_view name);
 
 struct CampaignScene {
   std::string name;
+  std::string word;  // as commands find it: the name of a built-in scene, or a path
   std::filesystem::path file;
   Effort effort;  // unused where iterations are counted
 };

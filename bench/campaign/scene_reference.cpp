@@ -32,6 +32,26 @@ struct GivenReference {
   std::string wrong;
 };
 
+// A word of a command line, quoted where a shell would not take it as it is.
+std::string shellWord(const std::string& word) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=,+:@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char letter : word) quoted += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return quoted + "'";
+}
+
+// The command that renders the reference of a scene into the reference folder.
+std::string referenceCommand(const CampaignScene& entry, const CampaignSettings& settings, const fs::path& file) {
+  std::string command = fs::is_directory(settings.referenceFolder)
+                            ? ""
+                            : fmt::format("mkdir -p {} && ", shellWord(settings.referenceFolder.string()));
+  command +=
+      fmt::format("wavecrest reference {} --size {}x{}", shellWord(entry.word), settings.size[0], settings.size[1]);
+  for (const auto& [name, value] : settings.definitions) command += " -D " + shellWord(name + "=" + value);
+  return command + " -o " + shellWord(file.string());
+}
+
 // Looks for the reference in the reference folder. Throws ReferenceError where it cannot be used and none may be
 // rendered.
 GivenReference givenReference(const Scene& scene, const CampaignScene& entry, const CampaignSettings& settings) {
@@ -46,8 +66,10 @@ GivenReference givenReference(const Scene& scene, const CampaignScene& entry, co
     given.wrong = "does not exist";
   }
   if (settings.referenceRequired) {
-    throw ReferenceError(fmt::format("{}: {}{}; make it by `wavecrest reference`", given.file.string(), given.wrong,
-                                     exists ? "" : "; expected the reference of " + entry.name));
+    throw ReferenceError(
+        fmt::format("{}: {}; {} by `{}`", given.file.string(), given.wrong,
+                    exists ? "move it away and make another" : "expected the reference of " + entry.name + "; make it",
+                    referenceCommand(entry, settings, given.file)));
   }
   // Shards that render references by time would get different images. By iterations all get the same one.
   if (settings.shard.count > 1 && !settings.iterations) {

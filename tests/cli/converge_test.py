@@ -3,11 +3,13 @@
 import json
 import os
 import pathlib
+import re
 import sqlite3
+import subprocess
 import unittest
 
 from campaign_harness import ROOM, RUNS, TINY, Converge, kind, rows
-from harness import CHECK, DONE, INPUT, USAGE
+from harness import CHECK, DONE, INPUT, USAGE, WAVECREST
 
 
 class Results(Converge):
@@ -90,8 +92,38 @@ class Planning(Converge):
         )
         scenes = ["cornell-diffuse", "cornell-mirror", *TINY[1:]]
         result = self.converge(*scenes, "--reference", "given", "--out", "a", "--progress", "none", expect=INPUT)
-        self.assert_one_error_line(result, r"given/cornell-mirror\.exr: does not exist")
+        self.assert_one_error_line(result, r"given/cornell-mirror\.exr: does not exist.*`wavecrest reference cornell-mirror --size")
         self.assertFalse(os.path.exists(self.path("a")), "nothing is begun")
+
+    def run_advice(self, result):
+        """Runs the command that the error message gives, cut short."""
+        advised = re.search(r"`(.*)`$", result.stderr.strip())[1]
+        self.assertNotIn("--spp", advised)
+        path = f"{pathlib.Path(WAVECREST).parent}:{os.environ['PATH']}"
+        command = ["bash", "-c", advised + " --spp 4 --quiet"]
+        done = subprocess.run(command, cwd=self.folder, env=os.environ | {"PATH": path}, capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, DONE, f"{advised}\n{done.stderr}")
+
+    def test_the_message_about_a_missing_reference_gives_the_command_that_makes_it(self):
+        # A folder that does not exist, names that the shell would split, and a variable of the scene.
+        room = ROOM.replace("RADIANCE", "$light").replace("<sensor", '<default name="light" value="1"/><sensor', 1)
+        self.write("my room.xml", room)
+        reference = self.folder / "my given/my room.exr"
+
+        def campaign(size, out, expect):
+            rest = ["--spp", "2", "--reference", "my given", "--out", out, "--progress", "none"]
+            return self.converge("my room.xml", "-D", "light=2 2 2", "--methods", "pt", "--size", size, *rest, expect=expect)
+
+        result = campaign("32x24", "a", INPUT)
+        self.assert_one_error_line(result, "my given/my room.exr: does not exist; expected the reference of my room; make it by `mkdir")
+        self.run_advice(result)
+        campaign("32x24", "a", DONE)
+        # One of another size.
+        result = campaign("16x12", "b", INPUT)
+        self.assert_one_error_line(result, "my given/my room.exr: is 32x24 pixels; expected 16x12; move it away and make another by `")
+        reference.rename(self.path("moved.exr"))
+        self.run_advice(result)
+        campaign("16x12", "b", DONE)
 
     def test_it_begins_with_what_is_ahead(self):
         times = ["--methods", "pt,lt", "--size", "16x12", "--time", "0.02s", "--seeds", "3", "--progress", "jsonl"]
