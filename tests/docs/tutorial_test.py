@@ -30,8 +30,17 @@ class Tutorial(unittest.TestCase):
                     self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             for made in ["room.exr", "room.png", "references/room.exr", "out/room/report.html", "others/report.html"]:
                 self.assertTrue((here / made).is_file(), made)
-        for word in re.findall(r"`wavecrest ([a-z]+)", text):
-            self.assertIn(word, subprocess.run([PROGRAM, "help"], capture_output=True, text=True).stdout)
+
+    def test_options_that_the_text_names_exist(self):
+        text = TUTORIAL.read_text()
+        commands = sorted(set(re.findall(r"^wavecrest ([a-z]+)", text, re.MULTILINE)))
+        options = re.findall(r"`(--[a-z-]+)", text)
+        self.assertTrue(options)
+        known = "".join(
+            subprocess.run([PROGRAM, "help", command], capture_output=True, text=True, check=True).stdout for command in commands
+        )
+        for option in options:
+            self.assertRegex(known, rf"(?m)^  (-\w,)?{option} ")
 
 
 if __name__ == "__main__":
