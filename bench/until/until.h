@@ -46,8 +46,8 @@ class FilmErrorWatch {
   ErrorNow now_;
 };
 
-// How many iterations to a run, counted from the image's first, make runs independent of each other: 1, of Sobol points
-// kSobolRun.
+// Length of a run, in iterations from the image's first one, such that different runs are independent samples: 1, or
+// kSobolRun for Sobol points, which are scrambled anew for each run.
 inline uint64_t independentRun(const RenderSettings& settings) {
   return settings.sampler == SamplerKind::sobol ? kSobolRun : 1;
 }

@@ -74,7 +74,7 @@ void visitVertices(Wave<S>& wave, bool parallel, std::vector<CameraPath>& paths,
   }
 }
 
-// Follows all paths of a walk, and adds their places.
+// For each depth of the camera walks: updates `paths`, and appends to `places` where a path can merge first.
 template <class S>
 ViewLook<S> placesOf(const CameraView& camera, std::vector<CameraPath>& paths, std::vector<MergePlace>& places) {
   return [&](Wave<S>& wave, uint32_t depth) {

@@ -87,8 +87,8 @@ LightStore<S>* WaveSession<S>::partnersOf(size_t waveIndex, uint64_t iteration, 
 template <class S>
 uint32_t WaveSession<S>::iterationBits(uint64_t next) const {
   const auto log2 = [](uint64_t n) { return static_cast<uint32_t>(std::bit_width(std::max<uint64_t>(n, 1))) - 1; };
-  // The sampler wants the first of n iterations at once to be a multiple of n, and the others to follow it. They end
-  // with the render, and with the iterations of a block that all gather records or all do not.
+  // The sampler needs n consecutive iterations, the first of which is a multiple of n. A batch passes neither the end
+  // of the render, nor the end of a learning block, nor the iteration from which on a block gathers no more records.
   return std::min({mostIterationBits(), static_cast<uint32_t>(std::countr_zero(numbers_.number(next))), log2(next),
                    log2(std::min(numbers_.together(next), endIteration_ - next)),
                    log2(learner_.endOfRun(next) - next)});

@@ -36,8 +36,8 @@ WAVECREST_INLINE Mask showsInfinite(const StageContext<S>& context, UInt lane, M
 // Which lanes' emission counts.
 template <class S>
 struct EmissionRule {
-  // Photon mapping: merging makes every path with a vertex to merge at. Emission counts for the others, which met delta
-  // lobes alone: no other strategy makes them, so their MIS sums are 0.
+  // Photon mapping: merging samples every path that has a vertex to merge at. Emission counts for paths of delta lobes
+  // only. No other strategy samples these, so their MIS sums are 0.
   bool mergingAlone;
   // Of each lane the one depth at which emission counts, or null. Multiplexed chains make each path by one strategy:
   // emission counts at the vertex where s = 0 ends.
