@@ -10,7 +10,6 @@ MkDocs runs in its strict mode, in which every warning is an error; so is a link
 """
 
 import argparse
-import json
 import os
 import pathlib
 import re
@@ -18,7 +17,10 @@ import shutil
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.dont_write_bytecode = True  # nothing is written into the tree
+
+from language_pages import language_pages  # noqa: E402
+from pictures import ROOT, Pictures  # noqa: E402
 
 # Title of each section, and the folders whose Markdown files it holds, in this order.
 SECTIONS = {
@@ -104,60 +106,6 @@ def command_page(program):
     return text
 
 
-def plugin_page(object_tag, plugin, entry, groups, picture):
-    """One plugin of the scene language: what it is, its parameters with their defaults, and what differs from Mitsuba."""
-    head = f"# {plugin}\n\n" if plugin != "*" else f"# Any {object_tag}\n\n"
-    text = head + f"`<{object_tag} type=\"{plugin if plugin != '*' else '...'}\">` {entry['summary']}\n"
-    if picture:
-        text += f"\n![{plugin}]({picture})\n\nFrom `{entry['scene']}`.\n"
-    parameters = dict(entry.get("parameters", {}))
-    for group in entry.get("uses", []):
-        parameters = {**groups[group], **parameters}
-    if parameters:
-        text += "\n| parameter | type | default | |\n|---|---|---|---|\n"
-        for name, about in sorted(parameters.items()):
-            text += f"| `{name}` | {about['kind']} | {about['default']} | {about['meaning']} |\n"
-    else:
-        text += "\nIt has no parameters.\n"
-    if "differs" in entry:
-        text += f"\n**Other than in Mitsuba 3.** {entry['differs']}\n"
-    return text
-
-
-def scene_picture(program, scene, pages):
-    """The name of a rendered picture of the scene, below the pages; None without a program or where it does not load."""
-    if not program:
-        return None
-    picture = pages / "language" / (pathlib.Path(scene).stem + ".png")
-    if not picture.exists():
-        command = [program, "render", ROOT / scene, "--size", "240x180", "-m", "bpt", "--spp", "32", "--quiet", "-o", picture]
-        if subprocess.run(command, capture_output=True, check=False).returncode != 0:
-            return None
-    return picture.name
-
-
-def language_pages(program, pages):
-    """A page for each plugin of scenes/plugins.json; returns the title and name of their index."""
-    source = ROOT / "scenes/plugins.json"
-    if not source.exists():
-        return []
-    reference = json.loads(source.read_text())
-    (pages / "language").mkdir(parents=True)
-    for object_tag, plugins in reference["plugins"].items():
-        for plugin, entry in plugins.items():
-            picture = scene_picture(program, entry["scene"], pages) if "scene" in entry else None
-            name = f"language/{object_tag}-{plugin if plugin != '*' else 'any'}.md"
-            (pages / name).write_text(plugin_page(object_tag, plugin, entry, reference["groups"], picture))
-    index = "# Scene language\n\nWhat the loader reads of Mitsuba's scene files; [scenes](../scenes/README.md) says how.\n"
-    for object_tag, plugins in reference["plugins"].items():
-        index += f"\n## {object_tag}\n\n| | |\n|---|---|\n"
-        for plugin, entry in plugins.items():
-            page = f"{object_tag}-{plugin if plugin != '*' else 'any'}.md"
-            index += f"| [{plugin if plugin != '*' else 'any'}]({page}) | {entry['summary']} |\n"
-    (pages / "language/index.md").write_text(index)
-    return [("Plugins and parameters", "language/index.md")]
-
-
 def navigation(files, titles, extra, language):
     """Each file in the section whose folder is the longest that holds it, as nested lists for MkDocs."""
     sections = {name: [] for name in SECTIONS}
@@ -206,7 +154,7 @@ def main():
     if arguments.wavecrest:
         extra.insert(0, ("Command line", "commands.md"))
         (pages / "commands.md").write_text(command_page(arguments.wavecrest))
-    language = language_pages(arguments.wavecrest, pages)
+    language = language_pages(pages, Pictures(arguments.wavecrest, pages))
     shutil.copy(pathlib.Path(__file__).resolve().parent / "site.css", pages / "site.css")
     settings = arguments.out.resolve() / "mkdocs.yml"
     settings.write_text(

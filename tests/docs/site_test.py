@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -32,19 +33,29 @@ class Site(unittest.TestCase):
             ("engine/methods/METHODS.html", "Weights by recursion"),
             ("interface.html", "render.h"),
             ("commands.html", "--until-relative-error"),
-            ("language/bsdf-roughplastic.html", "roughplastic.png"),
+            ("language/bsdf-roughplastic.html", "GGX alpha 0.15"),
             ("language/index.html", "rawconstant"),
         ]:
             text = (site / page).read_text()
             self.assertTrue(words in text, f"{page}: lacks {words}")
             self.assertTrue("commands.html" in text, f"{page}: lacks the navigation")
+        self.pictures_are_there(site)
+
+    def pictures_are_there(self, site):
+        """All pictures that pages show exist, and each plugin's page has one."""
+        for page in sorted(site.rglob("*.html")):
+            shown = re.findall(r'<img[^>]* src="([^":]+)"', page.read_text())
+            for picture in shown:
+                self.assertTrue((page.parent / picture).is_file(), f"{page}: there is no {picture}")
+            if page.parent.name == "language" and page.name != "index.html":
+                self.assertTrue(shown, f"{page}: no picture")
 
     def test_a_link_to_nothing_is_an_error(self):
         tree = self.folder / "tree"
         (tree / "include/wavecrest").mkdir(parents=True)
         (tree / "docs").mkdir()
-        for file in ("build.py", "site.css"):
-            shutil.copy(ROOT / "docs" / file, tree / "docs")
+        for file in [*(ROOT / "docs").glob("*.py"), ROOT / "docs/site.css"]:
+            shutil.copy(file, tree / "docs")
         subprocess.run(["git", "init", "--quiet", tree], check=True)
         readme = tree / "README.md"
         readme.write_text("# A tree\n\n[good](docs/build.py), [within](#a-tree)\n")

@@ -39,7 +39,7 @@ const AskedNames& askedNames() {
       std::string& known = names[std::string(asked.object)][std::string(asked.type)][std::string(asked.name)];
       if (known.empty()) known = textOf(asked.fallback);
     };
-    for (const char* folder : {"scenes/features", "scenes/validation", "tests/load/data/plugins"}) {
+    for (const char* folder : {"scenes/features", "scenes/validation", "scenes/plugins", "tests/load/data/plugins"}) {
       for (const auto& file : fs::directory_iterator(fs::path(WAVECREST_SOURCE) / folder)) {
         if (file.path().extension() == ".xml") loadScene(file.path(), options);
       }
