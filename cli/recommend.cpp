@@ -27,12 +27,14 @@ struct RecommendOptions {
   bool json = false;
 };
 
-// The methods of --methods; by default all.
+// The methods of --methods; by default all but evcm, whose choice is made here by longer renders.
 std::vector<Method> recommendMethods(const RecommendOptions& options) {
   std::vector<Method> methods;
   for (const std::string& word : options.methods) methods.push_back(parseMethodOption("--methods", word));
   if (methods.empty()) {
-    for (const MethodEntry& entry : kMethods) methods.push_back(entry.method);
+    for (const MethodEntry& entry : kMethods) {
+      if (!isChosenByTrials(entry.method)) methods.push_back(entry.method);
+    }
   }
   return methods;
 }

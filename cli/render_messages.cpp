@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bench/campaign/render_stats.h"
 #include "cli/messages.h"
 #include "engine/scene/hash_text.h"
 #include "library/inspection_json.h"
@@ -65,6 +67,19 @@ void showMemory(ProgressKind kind, const MemoryPlan& plan) {
   noteLine(kind, toJson(plan), "memory: " + describe(plan));
 }
 
+void showChoice(ProgressKind kind, const std::optional<MethodChoice>& choice) {
+  if (!choice) return;
+  std::vector<std::string> trials;
+  double least = std::numeric_limits<double>::infinity();
+  for (const MethodTrial& trial : choice->trials) least = std::min(least, trial.inefficiency());
+  for (const MethodTrial& trial : choice->trials) {
+    trials.push_back(fmt::format("{} {:.2f}", toString(trial.method), least > 0 ? trial.inefficiency() / least : 1));
+  }
+  noteLine(kind, {{"choice", choiceJson(*choice)}},
+           fmt::format("evcm: renders by {}; work for the same error, over the least: {}", toString(choice->method),
+                       fmt::join(trials, ", ")));
+}
+
 void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, const DryPlan& plan) {
   const uint32_t width = scene.film.imageWidth(), height = scene.film.imageHeight();
   fmt::print("scene    {}, {}x{} pixels, scene_hash {}\n", scene.name, width, height, hashText(scene.hash));
@@ -79,7 +94,7 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
     ends.push_back(fmt::format("once the relative error is {:g}", options.until.relativeError));
   }
   fmt::print("ends     {}\n", fmt::join(ends, " or "));
-  if (strategiesOf(settings.method).merge) {
+  if (strategiesOf(settings.method).merge && !isChosenByTrials(settings.method)) {
     const MergeRadius& radius = plan.mergeRadius;
     fmt::print(
         "merging  first within {:.4g} of the scene's radius: {:.4g} in its units, {:.2f} pixels, {:.2f} photons\n",
@@ -127,7 +142,8 @@ void showSummary(const RenderOptions& options, const RenderSettings& settings, P
   for (const std::string& output : options.outputs) files += (files.empty() ? "" : ", ") + output;
   if (files.empty()) files = options.checkpoint.file;
   // The speed of lt is that of its light paths.
-  const uint64_t paths = settings.method == Method::lt ? statistics.lightPaths : statistics.paths;
+  const uint64_t paths =
+      statistics.renderedBy(settings.method) == Method::lt ? statistics.lightPaths : statistics.paths;
   const double seconds = statistics.renderSeconds;
   const double perSecond = seconds > 0 ? static_cast<double>(paths) / seconds : 0;
   noteLine(

@@ -1,5 +1,8 @@
+#include <utility>
+
 #include "engine/chains/chain_session.h"
 #include "engine/session/session.h"
+#include "engine/trials/choose_method.h"
 #include "engine/waves/wave_session.h"
 
 namespace wavecrest {
@@ -7,7 +10,11 @@ namespace {
 
 template <class S>
 std::unique_ptr<Session> makeSession(const Scene& scene, const RenderSettings& settings) {
-  return settings.method == Method::mlt ? makeChainSession<S>(scene, settings) : makeWaveSession<S>(scene, settings);
+  if (settings.method == Method::mlt) return makeChainSession<S>(scene, settings);
+  if (!isChosenByTrials(settings.method)) return makeWaveSession<S>(scene, settings);
+  ChosenMethod<S> chosen = chooseMethod<S>(scene, settings);
+  const RenderSettings byMethod = withMethod(settings, chosen.choice.method);
+  return makeWaveSession<S>(scene, byMethod, {.scene = std::move(chosen.scene), .choice = std::move(chosen.choice)});
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ constexpr std::array kProfiles{
             .mergeVertices = MergeVertices::first,
             .sampler = {},
             .balancedWalks = true,
-            .effort = [](std::string_view) { return Effort{.seconds = 4}; }},
+            .effort = [](std::string_view) { return Effort{.seconds = 3.5}; }},
     Profile{.name = "standard",
             .description = "small images with error bands: an hour or two",
             .size = {256, 192},

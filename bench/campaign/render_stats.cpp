@@ -65,14 +65,16 @@ nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainSta
 // Adds the keys that some methods, or parts of an image, have.
 void addMethodStats(const Scene& scene, const RenderSettings& settings, const RenderStatistics& statistics,
                     nlohmann::ordered_json& stats) {
-  if (strategiesOf(settings.method).merge) {
+  if (statistics.choice) stats["choice"] = choiceJson(*statistics.choice);
+  const Method method = statistics.renderedBy(settings.method);
+  if (strategiesOf(method).merge) {
     const uint64_t pixels = uint64_t{scene.film.imageWidth()} * scene.film.imageHeight();
     stats.update({{"radius_choice", settings.radius ? "fixed" : "auto"},
                   {"radius_alpha", settings.radiusAlpha},
                   {"light_paths_per_iteration", lightPathsWanted(settings, pixels)}});
     if (statistics.mergeRadius) stats.update(mergeRadiusJson(*statistics.mergeRadius));
-    if (settings.method == Method::ppm) stats["direct_pass"] = settings.directPass;
-    if (choosesMergeVertices(settings.method)) {
+    if (method == Method::ppm) stats["direct_pass"] = settings.directPass;
+    if (choosesMergeVertices(method)) {
       stats["merge_vertices"] = enumeratorName(kMergeVerticesNames, settings.mergeVertices);
     }
   }
@@ -81,8 +83,8 @@ void addMethodStats(const Scene& scene, const RenderSettings& settings, const Re
     stats["part"] = std::to_string(settings.share.part + 1) + "/" + std::to_string(settings.share.parts);
     stats["first_iteration"] = settings.firstIteration;
   }
-  if (hasRouletteChoice(settings.method)) stats["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
-  if (hasConnectionRoulette(settings.method)) stats["connection_roulette"] = settings.connectionRoulette;
+  if (hasRouletteChoice(method)) stats["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
+  if (hasConnectionRoulette(method)) stats["connection_roulette"] = settings.connectionRoulette;
   if (settings.method == Method::gpt) stats["guide"] = guideJson(settings, statistics);
   if (statistics.chains) stats.update(chainStats(settings, *statistics.chains));
 }
@@ -116,7 +118,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"scene_hash", hashText(scene.hash)},
       {"method", std::string(toString(settings.method))},
       {"seed", settings.seed},
-      {"sampler", std::string(toString(settings.sampler))},
+      {"sampler", std::string(toString(statistics.sampler))},
       {"filter_mode", enumeratorName(kFilterModeNames, statistics.filterMode)},
       {"max_depth", settings.limits.maxDepth},
       {"rr_depth", settings.limits.rouletteDepth},
@@ -143,7 +145,8 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
       {"render_wall_seconds", statistics.renderWallSeconds},
       {"wall_seconds", wallSeconds},
       {"cpu_seconds", statistics.cpuSeconds},
-      {"paths_per_second", perSecond(settings.method == Method::lt ? statistics.lightPaths : statistics.paths)},
+      {"paths_per_second",
+       perSecond(statistics.renderedBy(settings.method) == Method::lt ? statistics.lightPaths : statistics.paths)},
       {"rays_per_second", perSecond(rays)},
       {"bytes_per_path", statistics.bytesPerPath},
       {"light_bytes", statistics.memory.lightVertices + statistics.memory.photonMap},
@@ -161,6 +164,19 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
   };
   addMethodStats(scene, settings, statistics, stats);
   return stats;
+}
+
+nlohmann::ordered_json choiceJson(const MethodChoice& choice) {
+  nlohmann::ordered_json trials = nlohmann::ordered_json::array();
+  for (const MethodTrial& trial : choice.trials) {
+    trials.push_back({{"method", std::string(toString(trial.method))},
+                      {"iterations", trial.iterations},
+                      {"variance", trial.variance},
+                      {"missed", trial.missed},
+                      {"cost", trial.cost},
+                      {"inefficiency", trial.inefficiency()}});
+  }
+  return {{"method", std::string(toString(choice.method))}, {"seconds", choice.seconds}, {"trials", trials}};
 }
 
 nlohmann::ordered_json guideJson(const RenderSettings& settings, const RenderStatistics& statistics) {

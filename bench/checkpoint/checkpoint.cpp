@@ -116,7 +116,7 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                    {"seed", settings.seed},
                    {"first_iteration", settings.firstIteration},
                    {"process", processOf(settings)},
-                   {"sampler", std::string(toString(settings.sampler))},
+                   {"sampler", std::string(toString(statistics.sampler))},
                    {"filter_mode", enumeratorName(kFilterModeNames, statistics.filterMode)},
                    {"precision", enumeratorName(kPrecisionNames, settings.precision)},
                    {"isa", std::string(toString(statistics.isa))},
@@ -126,19 +126,21 @@ Json renderIdentity(const Scene& scene, const RenderSettings& settings, const Se
                    {"rr_depth", limits.rouletteDepth}};
   // Settings that matter only for some scenes and methods.
   if (!scene.instances.empty()) identity["instances"] = enumeratorName(kInstancingNames, settings.instancing);
-  if (strategiesOf(settings.method).merge) {
+  const Method method = statistics.renderedBy(settings.method);
+  if (statistics.choice) identity["chosen"] = std::string(toString(method));
+  if (strategiesOf(method).merge) {
     identity.update({{"radius", statistics.mergeRadius->first},
                      {"radius_alpha", settings.radiusAlpha},
                      {"light_paths", session.memoryPlan().lightPaths},
                      {"direct_pass", settings.directPass}});
   }
-  if (hasRouletteChoice(settings.method)) identity["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
-  if (settings.method == Method::lt) identity["light_paths"] = session.memoryPlan().lightPaths;
-  if (choosesMergeVertices(settings.method)) {
+  if (hasRouletteChoice(method)) identity["roulette"] = enumeratorName(kRouletteNames, settings.roulette);
+  if (method == Method::lt) identity["light_paths"] = session.memoryPlan().lightPaths;
+  if (choosesMergeVertices(method)) {
     identity["merge_vertices"] = enumeratorName(kMergeVerticesNames, settings.mergeVertices);
   }
-  if (dependsOnWaves(settings.method)) identity["wave"] = settings.waveSize;
-  if (hasConnectionRoulette(settings.method)) identity["connection_roulette"] = settings.connectionRoulette;
+  if (dependsOnWaves(method)) identity["wave"] = settings.waveSize;
+  if (hasConnectionRoulette(method)) identity["connection_roulette"] = settings.connectionRoulette;
   if (settings.method == Method::gpt) {
     identity["guide"] = enumeratorName(kGuideTargetNames, settings.guide);
     identity["guide_memory"] = settings.guideBytes;

@@ -64,10 +64,10 @@ struct Rays {
   explicit Rays(const Scene& scene) {
     bvh = capture(scene, Accel::bvh);
     embree = capture(scene, Accel::embree);
-    bvh->plan().scene->view.embree = embree->plan().scene->view.embree;
+    bvh->plan().view.embree = embree->plan().view.embree;
     if (scene.shapes.size() > kMostForSmall) return;
     small = capture(scene, Accel::small);
-    bvh->plan().scene->view.small = small->plan().scene->view.small;
+    bvh->plan().view.small = small->plan().view.small;
   }
   static std::unique_ptr<WaveCapture<float>> capture(const Scene& scene, Accel accel) {
     RenderSettings settings;

@@ -55,8 +55,8 @@ struct Source {
       : small(cornellBox(), settings(precision, waveSize, Accel::small)),
         bvh(cornellBox(), settings(precision, waveSize, Accel::bvh)),
         embree(cornellBox(), settings(precision, waveSize, Accel::embree)) {
-    small.plan().scene->view.bvh = bvh.plan().scene->view.bvh;
-    small.plan().scene->view.embree = embree.plan().scene->view.embree;
+    small.plan().view.bvh = bvh.plan().view.bvh;
+    small.plan().view.embree = embree.plan().view.embree;
   }
   static RenderSettings settings(Precision precision, size_t waveSize, Accel accel) {
     RenderSettings settings;

@@ -16,7 +16,7 @@ struct MethodStyle {
   CurveMark mark;
 };
 
-inline constexpr std::array<MethodStyle, 11> kMethodStyles = {{
+inline constexpr std::array<MethodStyle, 12> kMethodStyles = {{
     {"pt", "path tracing", CurveMark::kCircle},
     {"lt", "light tracing", CurveMark::kSquare},
     {"bpt", "bidirectional path tracing", CurveMark::kTriangleUp},
@@ -28,6 +28,7 @@ inline constexpr std::array<MethodStyle, 11> kMethodStyles = {{
     {"bpm", "bidirectional photon mapping", CurveMark::kPlus},
     {"vcm", "vertex connection and merging", CurveMark::kCross},
     {"gpt", "guided path tracing", CurveMark::kCircle},
+    {"evcm", "efficiency-aware vertex connection and merging", CurveMark::kCross},
 }};
 
 /// The style of a method; one that is not listed gets a plain one under its own name.

@@ -55,7 +55,7 @@ class Comparison {
         wave_(used_.makeWave()),
         scratch_(used_.makeWave()) {
     // All stages run in the context of used_, so its scene needs Embree's scene as well.
-    used_.plan().scene->view.embree = scene_ = embree_.plan().scene->view.embree;
+    used_.plan().view.embree = scene_ = embree_.plan().view.embree;
   }
 
   // Adds the rays of a wave, of all depths.

@@ -18,7 +18,7 @@ WaveCapture<S>::WaveCapture(const Scene& scene, const RenderSettings& settings)
 
 template <class S>
 StageContext<S> WaveCapture<S>::context(uint32_t depth) {
-  return {.scene = &plan_.scene->view,
+  return {.scene = &plan_.view,
           .pixels = pixels_.data(),
           .sampler = {settings_.sampler, settings_.seed, 0},
           .limits = settings_.limits,

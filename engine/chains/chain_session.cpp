@@ -127,7 +127,7 @@ void ChainSession<S>::bootstrapWave(size_t wave, uint64_t epoch) {
   ChainState state(count, {});
   state.samples.values = nullptr;
   // Bootstrap walks draw the same blocks of numbers as the walks of chains.
-  const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
+  const ChainState::Kept kept = keptSamples(plan_.pipeline, plan_.view, settings_.limits.maxDepth);
   std::copy_n(kept.blocks, 2, state.samples.blocks);
   state.multiplexed = plan_.pipeline.lightPass() != nullptr;
   state.samples.stream = Stream::bootstrap;

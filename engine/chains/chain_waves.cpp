@@ -20,7 +20,7 @@ template <class S>
 ChainWaves<S>::ChainWaves(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area)
     : plan_(plan), settings_(settings), area_(area), layout_(settings) {
   // Make memory for all chains, wave by wave.
-  const ChainState::Kept kept = keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth);
+  const ChainState::Kept kept = keptSamples(plan.pipeline, plan.view, settings.limits.maxDepth);
   for (size_t wave = 0; wave < size(); ++wave) {
     states_.emplace_back(layout_.chainsOf(wave), kept).multiplexed = plan.pipeline.lightPass() != nullptr;
     if (inPathSpace()) paths_.emplace_back(settings.waveSize, plan.pathLaws.law().maxEdges, plan.needs);

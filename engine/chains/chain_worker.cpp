@@ -12,7 +12,7 @@ namespace wavecrest {
 template <class S>
 StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
   const Pass<S>& pass = plan.pipeline.cameraPass();
-  StageContext<S> context{.scene = &plan.scene->view,
+  StageContext<S> context{.scene = &plan.view,
                           .sampler = {.kind = SamplerKind::chain, .seed = settings.seed, .iteration = 0},
                           .limits = settings.limits,
                           .mis = misSettings(pass.strategies, plan.mergeRadius, area.pixels.size(), 0),

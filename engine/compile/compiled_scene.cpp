@@ -99,6 +99,13 @@ CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const D
   return camera;
 }
 
+CameraView withFilm(const CameraView& camera, const Sensor& sensor, const FilmSettings& film, const Double3& origin) {
+  CameraView other = compileCamera(sensor, film, origin);
+  other.nearClip = camera.nearClip;
+  other.farClip = camera.farClip;
+  return other;
+}
+
 namespace {
 
 // Bounding box of the space before the near clip and within the picture: of the pyramid from the lens to the near clip.

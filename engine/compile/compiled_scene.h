@@ -69,6 +69,9 @@ class SceneGeometry;
 // The camera of a sensor over its full film, relative to `origin`.
 CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const Double3& origin = {});
 
+// The same camera with another film of the same shape.
+CameraView withFilm(const CameraView& camera, const Sensor& sensor, const FilmSettings& film, const Double3& origin);
+
 // Sets the camera's clips where a primitive, in the camera's coordinates, may lie outside of them. Most scenes have
 // nothing there, and then rays begin at the lens and need no test. Of spheres in instances their boxes count.
 // bounds: of the geometry, in any precision.

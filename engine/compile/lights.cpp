@@ -122,7 +122,11 @@ class LightCollector {
       lights_.withinEmitter.push_back(power[emitter] > 0 ? power_[i] / power[emitter] : 1 / records[emitter]);
     }
     // The emitters' shares of all picks.
-    if (lights_.emitters != 0) setPicks(lights_, evenedShares(power, kEvenShare));
+    if (lights_.emitters != 0) {
+      PickedLights<S> picked = withPicks(lights_, evenedShares(power, kEvenShare));
+      lights_.records = std::move(picked.records);
+      lights_.table = std::move(picked.table);
+    }
     return std::move(lights_);
   }
 
@@ -324,17 +328,16 @@ template Lights<float> compileLights(const Scene&, const BoundingSphere&, Primit
 template Lights<double> compileLights(const Scene&, const BoundingSphere&, Primitives<double>&, const Double3&);
 
 template <class S>
-void setPicks(Lights<S>& lights, const std::vector<double>& shares) {
+PickedLights<S> withPicks(const Lights<S>& lights, const std::vector<double>& shares) {
   std::vector<double> picks(lights.records.size());
   for (size_t i = 0; i < picks.size(); ++i) picks[i] = lights.withinEmitter[i] * shares[lights.emitterOf[i]];
-  const std::vector<AliasEntry> table = makeAliasTable(picks);
-  const std::vector<double> drawn = sharesOf(table);
-  for (size_t i = 0; i < drawn.size(); ++i) lights.records[i].pick = static_cast<S>(drawn[i]);
-  lights.table.resize(table.size());
-  std::copy(table.begin(), table.end(), lights.table.begin());
+  PickedLights<S> picked{.records = lights.records, .table = makeAliasTable(picks)};
+  const std::vector<double> drawn = sharesOf(picked.table);
+  for (size_t i = 0; i < drawn.size(); ++i) picked.records[i].pick = static_cast<S>(drawn[i]);
+  return picked;
 }
-template void setPicks(Lights<float>&, const std::vector<double>&);
-template void setPicks(Lights<double>&, const std::vector<double>&);
+template PickedLights<float> withPicks(const Lights<float>&, const std::vector<double>&);
+template PickedLights<double> withPicks(const Lights<double>&, const std::vector<double>&);
 
 std::vector<double> evenedShares(const std::vector<double>& weights, double even) {
   const auto count = static_cast<double>(weights.size());

@@ -31,10 +31,15 @@ Lights<S> compileLights(const Scene& scene, const BoundingSphere& bounds, Primit
 // Where a light's paths begin, in the scene's coordinates, of those that begin at a point.
 std::optional<Double3> positionOf(const Emitter& emitter);
 
-// How often each emitter is picked from now on: shares that are at least 0 and add up to 1. Records and table stay
-// where they are.
+// Light records with their picks, and the table that they are picked from.
 template <class S>
-void setPicks(Lights<S>& lights, const std::vector<double>& shares);
+struct PickedLights {
+  std::vector<LightRecord<S>> records;
+  std::vector<AliasEntry> table;
+};
+// The lights where each emitter is picked so often: shares that are at least 0 and add up to 1.
+template <class S>
+PickedLights<S> withPicks(const Lights<S>& lights, const std::vector<double>& shares);
 // Shares of which the part `even`, 0 to 1, is the same for all, and the rest in proportion to `weights`, at least 0.
 std::vector<double> evenedShares(const std::vector<double>& weights, double even);
 

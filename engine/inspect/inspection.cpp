@@ -117,7 +117,8 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
     try {
       const DryPlan facts = planWithoutSession(scene, settings);
       row.memory = facts.memory;
-      if (strategiesOf(entry.method).merge) row.mergeRadius = facts.mergeRadius;
+      const bool merges = strategiesOf(entry.method).merge && !isChosenByTrials(entry.method);
+      if (merges) row.mergeRadius = facts.mergeRadius;
     } catch (const SceneError& error) {
       row.refusal = error.what();
     }

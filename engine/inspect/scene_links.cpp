@@ -133,7 +133,7 @@ class Walker {
   SceneLinks walk() {
     const FlushToZero flushToZero;
     for (uint32_t iteration = 0; iteration < kIterations; ++iteration) {
-      if (plan_.scene->view.lightCount != 0) walkFrom(Walk::light, iteration);
+      if (plan_.view.lightCount != 0) walkFrom(Walk::light, iteration);
       walkFrom(Walk::camera, iteration);
     }
     links_.onlyGlossyPairs = links_.between[0][0] && !roughPairs_;
@@ -156,7 +156,7 @@ class Walker {
     wave_.firstPath = iteration * kPaths;
     wave_.pathCount = kPaths;
     StageContext<float> context;
-    context.scene = &plan_.scene->view;
+    context.scene = &plan_.view;
     context.pixels = pixels_.data();
     context.sampler = {SamplerKind::independent, 0, iteration};
     context.walk = walk;
@@ -182,14 +182,14 @@ class Walker {
   void noteLights() {
     lightOf_.assign(kPaths, LightKindOfPath::extended);
     for (size_t i = 0; i < wave_.rays.size; ++i) {
-      const auto kind = static_cast<LightKind>(plan_.scene->view.lights[wave_.paths.light[i]].kind);
+      const auto kind = static_cast<LightKind>(plan_.view.lights[wave_.paths.light[i]].kind);
       if (isDelta(kind)) lightOf_[wave_.paths.lane[i]] = LightKindOfPath::delta;
     }
   }
 
   // Camera rays that leave the scene see its infinite light, unless it hides.
   void noteMisses() {
-    const SceneView<float>& view = plan_.scene->view;
+    const SceneView<float>& view = plan_.view;
     if (view.infiniteLight == kNoIndex || view.hidesInfinite) return;
     for (size_t i = 0; i < wave_.rays.size; ++i) links_.eyeMeetsLight |= wave_.hits.primitive[i] == kMiss;
   }
@@ -197,7 +197,7 @@ class Walker {
   // Marks the link from each path's vertex before, or from its light or the eye, to the vertex here.
   void noteEvents(Walk walk, uint32_t depth) {
     for (size_t i = 0; i < wave_.rays.size; ++i) {
-      const auto& primitive = plan_.scene->view.primitives[wave_.hits.primitive[i]];
+      const auto& primitive = plan_.view.primitives[wave_.hits.primitive[i]];
       const uint32_t lane = wave_.paths.lane[i];
       const uint8_t here = events_[primitive.material], before = previous_[lane];
       if ((here & kDiffuse) != 0) ++(walk == Walk::light ? lightVertices_ : cameraVertices_).all;

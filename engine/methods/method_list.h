@@ -10,7 +10,7 @@
 
 namespace wavecrest {
 
-enum class Method { pt, lt, bpt, mlt, ppm, bpm, vcm, gpt };
+enum class Method { pt, lt, bpt, mlt, ppm, bpm, vcm, gpt, evcm };
 
 // What the chains of Metropolis light transport walk in: primary samples of path tracing, primary samples of
 // bidirectional path tracing with one strategy per path, or paths.
@@ -34,7 +34,7 @@ struct MethodEntry {
   Method method;
   std::string_view name;         // spelling of --method
   std::string_view description;  // one line
-  MethodPage (*page)();          // of mlt: of its default variant
+  MethodPage (*page)();          // of mlt: of its default variant; of evcm: with all that it may choose
 };
 
 // In the order of the enumeration.
@@ -49,6 +49,8 @@ constexpr std::array kMethods{
                 bidirectionalPhotonMapping},
     MethodEntry{Method::vcm, "vcm", "vertex connection and merging", vertexConnectionAndMerging},
     MethodEntry{Method::gpt, "gpt", "guided path tracing: learns where light comes from", guidedPathTracing},
+    MethodEntry{Method::evcm, "evcm", "pt, lt, bpt or vcm, whichever suits the image: trials choose",
+                vertexConnectionAndMerging},
 };
 static_assert([] {
   for (size_t i = 0; i < kMethods.size(); ++i) {
@@ -68,6 +70,9 @@ constexpr std::optional<Method> parseMethod(std::string_view word) {
 }
 constexpr const MethodEntry& entryOf(Method method) { return kMethods[static_cast<size_t>(method)]; }
 constexpr std::string_view toString(Method method) { return entryOf(method).name; }
+
+// Whether the method is another one of the list, chosen for the image (engine/trials/choose_method.h).
+constexpr bool isChosenByTrials(Method method) { return method == Method::evcm; }
 
 // "pt, lt, ...": what --method may be.
 std::string methodChoices();

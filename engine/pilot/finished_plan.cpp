@@ -1,5 +1,7 @@
 #include "engine/pilot/finished_plan.h"
 
+#include <utility>
+
 #include "engine/pilot/light_picks.h"
 #include "engine/pilot/light_walks.h"
 #include "engine/pilot/merge_radius.h"
@@ -32,8 +34,9 @@ DryPlan dryPlan(RenderPlan<S> plan, const RenderSettings& settings, const FilmAr
 }  // namespace
 
 template <class S>
-RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, const FilmArea& area) {
-  RenderPlan<S> plan = planRender<S>(scene, settings);
+RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, const FilmArea& area,
+                           std::shared_ptr<const CompiledScene<S>> compiled) {
+  RenderPlan<S> plan = planRender<S>(scene, settings, std::move(compiled));
   planLightPaths(plan, settings, area);
   // Path tracing picks its lights by what they give in view (METHODS 2.3).
   if (!plan.pipeline.lightPass() && !plan.pipeline.chains) pickLightsByView(plan, settings, area);
@@ -41,8 +44,10 @@ RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, c
   plan.connectionRouletteBelow = connectionRouletteLimit(plan, settings, area);
   return plan;
 }
-template RenderPlan<float> finishedPlan(const Scene&, const RenderSettings&, const FilmArea&);
-template RenderPlan<double> finishedPlan(const Scene&, const RenderSettings&, const FilmArea&);
+template RenderPlan<float> finishedPlan(const Scene&, const RenderSettings&, const FilmArea&,
+                                        std::shared_ptr<const CompiledScene<float>>);
+template RenderPlan<double> finishedPlan(const Scene&, const RenderSettings&, const FilmArea&,
+                                         std::shared_ptr<const CompiledScene<double>>);
 
 DryPlan planWithoutSession(const Scene& scene, const RenderSettings& settings) {
   const RenderSettings limited = withinDepthOfMethod(settings);

@@ -10,7 +10,8 @@ namespace wavecrest {
 // connections. settings: cut by withPieces. Throws std::runtime_error where the method cannot render the scene,
 // MemoryBudgetError where it does not fit the settings' budget.
 template <class S>
-RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, const FilmArea& area);
+RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, const FilmArea& area,
+                           std::shared_ptr<const CompiledScene<S>> compiled = nullptr);
 
 // What a session with these settings would be. Nothing of the film's size is allocated.
 struct DryPlan {

@@ -17,14 +17,21 @@ constexpr double kInfiniteShare = 1.0 / 6;
 // Weights in whole parts, so that the last bits, in which instruction sets and precisions differ, do not change picks.
 constexpr double kParts = 64;
 
+template <class S>
+void setPicks(RenderPlan<S>& plan, const std::vector<double>& shares) {
+  plan.lights = withPicks(plan.scene->lights, shares);
+  plan.view.lights = plan.lights.records.data();
+  plan.view.lightTable = plan.lights.table.data();
+}
+
 // What each path gets from an emitter that is picked always.
 template <class S>
 std::vector<double> givenBy(size_t emitter, RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area,
                             const std::vector<double>& byChance) {
-  Lights<S>& lights = plan.scene->lights;
+  const Lights<S>& lights = plan.scene->lights;
   std::vector<double> alone(lights.emitters, 0);
   alone[emitter] = 1;
-  setPicks(lights, alone);
+  setPicks(plan, alone);
   std::vector<double> given = tracePilotPaths(plan, settings, area, kPickPlaces, PilotLight::unweighted);
   const bool infinite = lights.infinite != kNoIndex && lights.emitterOf[lights.infinite] == emitter;
   for (size_t i = 0; i < given.size(); ++i) {
@@ -37,7 +44,7 @@ std::vector<double> givenBy(size_t emitter, RenderPlan<S>& plan, const RenderSet
 
 template <class S>
 void pickLightsByView(RenderPlan<S>& plan, const RenderSettings& settings, const FilmArea& area) {
-  Lights<S>& lights = plan.scene->lights;
+  const Lights<S>& lights = plan.scene->lights;
   if (lights.emitters < 2 || lights.emitters > kMostWeighedEmitters) return;
   constexpr size_t kPathsPerPlace = kPilotPaths / kPickPlaces;
   const std::vector<double> byChance = tracePilotPaths(plan, settings, area, kPickPlaces, PilotLight::byChance);
@@ -61,7 +68,7 @@ void pickLightsByView(RenderPlan<S>& plan, const RenderSettings& settings, const
     sum += weights.back();
   }
   for (double& weight : weights) weight = sum > 0 ? std::round(kParts * weight / sum) : 0;
-  setPicks(lights, evenedShares(weights, kEvenShare));
+  setPicks(plan, evenedShares(weights, kEvenShare));
 }
 template void pickLightsByView(RenderPlan<float>&, const RenderSettings&, const FilmArea&);
 template void pickLightsByView(RenderPlan<double>&, const RenderSettings&, const FilmArea&);

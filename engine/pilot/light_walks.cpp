@@ -19,7 +19,7 @@ LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& setti
   LightStore<S> store(settings.waveSize, plan.needs, plan.lightUse);
   StageCounters counters;
   StageContext<S> context;
-  context.scene = &plan.scene->view;
+  context.scene = &plan.view;
   context.sampler = samplerOf(settings, 0, lightPaths);
   context.limits = settings.limits;
   const std::optional<SurvivalRule> rule = survivalRule(settings, Walk::light);

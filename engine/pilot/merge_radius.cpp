@@ -110,7 +110,7 @@ double radiusOfImage(const MergeRadius& found, double photonsPerArea, const Rend
 
 template <class S>
 std::vector<MergePlace> findMergePlaces(const RenderPlan<S>& plan, const RenderSettings& settings) {
-  const CameraView& camera = plan.scene->view.camera;
+  const CameraView& camera = plan.view.camera;
   const std::vector<uint32_t> pixels = spreadPixels(camera);
   std::vector<CameraPath> paths(pixels.size());
   std::vector<MergePlace> places;
@@ -164,7 +164,7 @@ MergeRadius chosenRadius(const RenderPlan<S>& plan, const RenderSettings& settin
   const double ofPath = photonDensity(places, light.photons, 1 / static_cast<double>(std::max<size_t>(light.paths, 1)));
   radius.photonsPerArea = ofPath * static_cast<double>(plan.memory.lightPaths);
   if (settings.radius) return radius;
-  const CameraView& camera = plan.scene->view.camera;
+  const CameraView& camera = plan.view.camera;
   const size_t lightPaths = lightPathsWanted(settings, size_t{camera.width} * camera.height);
   radius.first = radiusOfImage(radius, ofPath * static_cast<double>(lightPaths), settings);
   return radius;

@@ -16,7 +16,7 @@ std::vector<double> tracePilotPaths(const RenderPlan<S>& plan, const RenderSetti
   const Pass<S> pass =
       makePipeline(pageOf(Method::pt, {}), *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass();
   MisSettings strategies = pass.strategies;
-  SceneView<S> view = plan.scene->view;
+  SceneView<S> view = plan.view;
   if (light != PilotLight::weighted) strategies.emission = strategies.nextEvent = false;  // nothing shares a path
   // Without lights in the list, next events add nothing.
   if (light == PilotLight::byChance) view.lightCount = 0;

@@ -9,7 +9,7 @@ template <class S>
 void walkViews(const RenderPlan<S>& plan, const RenderSettings& settings, std::span<const uint32_t> pixels,
                uint64_t seed, const CellTreeView* cells, const ViewLook<S>& look) {
   const FlushToZero flushToZero;
-  const SceneView<S>& view = plan.scene->view;
+  const SceneView<S>& view = plan.view;
   using enum StageId;
   const MethodPage page{{walk(Walk::camera, generateCameraPaths, {extend, arrive, findCells, scatterSpecular})}};
   const Pass<S> pass = makePipeline(page, *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass();

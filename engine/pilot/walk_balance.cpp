@@ -58,7 +58,7 @@ double costOfPass(const Pass<S>& pass, const RenderPlan<S>& plan, const RenderSe
                   const uint32_t* pixels, uint32_t iteration, Wave<S>& wave, const SplatDrain<S>& drain) {
   StageCounters counters;
   const std::optional<SurvivalRule> rule = survivalRule(settings, pass.walk);
-  StageContext<S> context{.scene = &plan.scene->view,
+  StageContext<S> context{.scene = &plan.view,
                           .pixels = pixels,
                           .sampler = {SamplerKind::independent, kBalanceSeed, iteration},
                           .limits = settings.limits,

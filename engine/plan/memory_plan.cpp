@@ -44,8 +44,8 @@ class Planner {
     memory_.bytesPerPath = Wave<S>(1, plan_.needs).bytesPerPath();
     use.waves = settings_.threads * waveBytes(memory_.bytesPerPath, settings_.waveSize);
     use.film = area_.bytes() + pixels * sizeof(uint64_t);
-    use.film += spreadsSamples(plan_, settings_) ? SpreadSums::bytesFor(plan_.scene->view.camera, area_)
-                                                 : pixels * 3 * sizeof(double);
+    use.film +=
+        spreadsSamples(plan_, settings_) ? SpreadSums::bytesFor(plan_.view.camera, area_) : pixels * 3 * sizeof(double);
     use.image = Film::imageBytesFor(pixels, spreadsSamples(plan_, settings_), plan_.pipeline.chains);
     // Count splats, and what chains or light paths hold.
     if (plan_.pipeline.has(Fold::guide)) use.learned = Guide::bytesFor(settings_.guideBytes);
@@ -74,7 +74,7 @@ class Planner {
       use.lightVertices = settings_.threads * emptyStore_.bytesFor(settings_.waveSize);
     }
     use.chains += settings_.metropolis.bootstrapSamples * kBootstrapSampleBytes;
-    const auto kept = keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth);
+    const auto kept = keptSamples(plan_.pipeline, plan_.view, settings_.limits.maxDepth);
     const ChainLayout layout(settings_);
     for (size_t wave = 0; wave < layout.waves(); ++wave) {
       use.chains += ChainState::bytesFor(layout.chainsOf(wave), kept);

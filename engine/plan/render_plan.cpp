@@ -115,7 +115,7 @@ namespace {
 
 // Random numbers tell apart so many paths of an iteration. Throws SceneError where there are more.
 void refuseTooManyPaths(const Scene& scene, const RenderSettings& settings) {
-  const uint64_t pixels = uint64_t{scene.film.width} * scene.film.height;
+  const uint64_t pixels = uint64_t{settings.filmOf(scene).width} * settings.filmOf(scene).height;
   const uint64_t paths = std::max<uint64_t>(pixels, settings.lightPaths.value_or(0));
   if (paths <= kMostPaths) return;
   throw SceneError(
@@ -126,7 +126,8 @@ void refuseTooManyPaths(const Scene& scene, const RenderSettings& settings) {
 }  // namespace
 
 template <class S>
-RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
+RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings,
+                         std::shared_ptr<const CompiledScene<S>> compiled) {
   refuseTooManyPaths(scene, settings);
   RenderPlan<S> plan;
   // Densities of path space are those of rays that leave one point.
@@ -141,14 +142,16 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
     refuseDeltaBlends(scene);
     refuseTintedPassages(scene);
   }
-  plan.scene = compileScene<S>(scene, settings.accel, true, settings.instancing);
+  plan.scene = compiled ? std::move(compiled) : compileScene<S>(scene, settings.accel, true, settings.instancing);
+  plan.view = plan.scene->view;
+  if (settings.film) plan.view.camera = withFilm(plan.view.camera, scene.sensor, *settings.film, plan.scene->origin);
   plan.mergeRadius = {
-      .first = settings.radius.value_or(kFixedRadius), .alpha = settings.radiusAlpha, .scene = plan.scene->view.radius};
-  plan.needs = columnNeeds(scene, plan.specialization, plan.scene->view.instances != nullptr);
-  plan.needs.passages = plan.scene->view.passages != nullptr;
-  plan.needs.visibility = plan.scene->view.bvh != nullptr;
+      .first = settings.radius.value_or(kFixedRadius), .alpha = settings.radiusAlpha, .scene = plan.view.radius};
+  plan.needs = columnNeeds(scene, plan.specialization, plan.view.instances != nullptr);
+  plan.needs.passages = plan.view.passages != nullptr;
+  plan.needs.visibility = plan.view.bvh != nullptr;
   // Clips are left in the compiled camera only where they hide a surface.
-  const CameraView& camera = plan.scene->view.camera;
+  const CameraView& camera = plan.view.camera;
   const bool clipped = camera.nearClip > 0 || std::isfinite(camera.farClip);
   if (clipped && settings.method == Method::mlt && settings.metropolis.variant == MetropolisVariant::pathspace) {
     throw SceneError({scene.name},
@@ -161,8 +164,8 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   plan.stages = &stages;
   if (plan.needs.passages) {
     const Intersector<S> intersector = intersectorOf(stages, *plan.scene);
-    plan.scene->view.closestHits = intersector.extend;
-    plan.scene->view.blockedRays = intersector.occlude;
+    plan.view.closestHits = intersector.extend;
+    plan.view.blockedRays = intersector.occlude;
   }
   plan.pipeline = makePipeline(pageOf(settings), stages, chooseIntersector(stages, *plan.scene));
   plan.needs.splats = plan.pipeline.splats();
@@ -179,13 +182,14 @@ RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings) {
   }
   return plan;
 }
-template RenderPlan<float> planRender(const Scene&, const RenderSettings&);
-template RenderPlan<double> planRender(const Scene&, const RenderSettings&);
+template RenderPlan<float> planRender(const Scene&, const RenderSettings&, std::shared_ptr<const CompiledScene<float>>);
+template RenderPlan<double> planRender(const Scene&, const RenderSettings&,
+                                       std::shared_ptr<const CompiledScene<double>>);
 
 template <class S>
 bool spreadsSamples(const RenderPlan<S>& plan, const RenderSettings& settings) {
   const bool samples = !plan.pipeline.chains || hasDirectPass(plan, settings);
-  return samples && settings.filterMode == FilterMode::spread && canSpread(plan.scene->view.camera);
+  return samples && settings.filterMode == FilterMode::spread && canSpread(plan.view.camera);
 }
 template bool spreadsSamples(const RenderPlan<float>&, const RenderSettings&);
 template bool spreadsSamples(const RenderPlan<double>&, const RenderSettings&);

@@ -20,7 +20,9 @@ namespace wavecrest {
 
 template <class S>
 struct RenderPlan {
-  std::unique_ptr<CompiledScene<S>> scene;
+  std::shared_ptr<const CompiledScene<S>> scene;  // of other plans, too
+  SceneView<S> view;                              // of the scene, with the film and the lights of this plan
+  PickedLights<S> lights;                         // where they are not those of the scene (engine/pilot/light_picks.h)
   Specialization specialization{};
   ColumnNeeds needs;
   LightVertexUse lightUse;
@@ -37,9 +39,11 @@ struct RenderPlan {
   Accel accel() const { return scene->accel(); }
 };
 
-// S is the storage type of settings.precision. Throws std::runtime_error where the scene cannot be rendered.
+// S is the storage type of settings.precision. compiled: the scene as another plan of the same precision, intersector
+// and instancing has it; compiled here unless given. Throws std::runtime_error where the scene cannot be rendered.
 template <class S>
-RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings);
+RenderPlan<S> planRender(const Scene& scene, const RenderSettings& settings,
+                         std::shared_ptr<const CompiledScene<S>> compiled = nullptr);
 
 // Whether chains leave direct light to a pass of its own. False without chains.
 template <class S>

@@ -87,6 +87,7 @@ struct RenderSettings {
   Method method = Method::pt;
   MetropolisSettings metropolis;
   RenderShare share;
+  std::optional<FilmSettings> film;  // that is rendered, of the same shape as the scene's; unset: the scene's own
   Precision precision = Precision::floating;
   Isa isa = Isa::scalar;
   Accel accel = Accel::automatic;
@@ -126,6 +127,7 @@ struct RenderSettings {
   std::optional<uint32_t> piecesForThreads;
   Placement placement;  // of the threads and the memory that they share; images do not depend on it
 
+  const FilmSettings& filmOf(const Scene& scene) const { return film ? *film : scene.film; }
   uint32_t cutForThreads() const { return piecesForThreads.value_or(threads); }
   uint32_t chainsOfShare() const { return (metropolis.chains - share.part + share.parts - 1) / share.parts; }
 };

@@ -17,7 +17,7 @@ uint64_t addSamples(Film& film, const RenderPlan<S>& plan, const SamplerSettings
   if (!film.spreads()) return film.add(wave);
   std::array<FilterPlace, kIterationsPerWave> places;
   const std::span<FilterPlace> used(places.data(), size_t{1} << wave.iterationBits);
-  plan.stages->filterPlaces(plan.scene->view.camera, sampler, used.size(), used.data());
+  plan.stages->filterPlaces(plan.view.camera, sampler, used.size(), used.data());
   return film.spread(wave, used, plan.stages->spreadSamples);
 }
 

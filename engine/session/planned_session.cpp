@@ -1,5 +1,7 @@
 #include "engine/session/planned_session.h"
 
+#include <utility>
+
 #include "engine/pilot/finished_plan.h"
 #include "engine/plan/memory_plan.h"
 #include "engine/tasks/for_each.h"
@@ -11,12 +13,12 @@ namespace {
 // All threads read what a plan holds, so its pages are spread over the nodes.
 template <class S>
 RenderPlan<S> planIn(oneapi::tbb::task_arena& arena, const Scene& scene, const RenderSettings& settings,
-                     const FilmArea& area, double& seconds) {
+                     std::shared_ptr<const CompiledScene<S>> compiled, const FilmArea& area, double& seconds) {
   const auto begin = Clock::now();
   const WorkerLimit limit(settings.threads);
   const SpreadMemory spread(settings.placement);
   RenderPlan<S> plan;
-  arena.execute([&] { plan = finishedPlan<S>(scene, settings, area); });
+  arena.execute([&] { plan = finishedPlan<S>(scene, settings, area, std::move(compiled)); });
   seconds = secondsSince(begin);
   return plan;
 }
@@ -24,12 +26,14 @@ RenderPlan<S> planIn(oneapi::tbb::task_arena& arena, const Scene& scene, const R
 }  // namespace
 
 template <class S>
-PlannedSession<S>::PlannedSession(const Scene& scene, const RenderSettings& settings)
+PlannedSession<S>::PlannedSession(const Scene& scene, const RenderSettings& settings, Prepared<S> prepared)
     : arena_(static_cast<int>(settings.threads)),
-      film_(filmArea(scene.film)),
-      settings_(withPieces(settings, scene.film, film_.area().pixels.size())),
-      plan_(planIn<S>(arena_, scene, settings_, film_.area(), buildSeconds_)) {
-  if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.scene->view.camera);
+      film_(filmArea(settings.filmOf(scene))),
+      settings_(withPieces(settings, settings.filmOf(scene), film_.area().pixels.size())),
+      plan_(planIn<S>(arena_, scene, settings_, std::move(prepared.scene), film_.area(), buildSeconds_)),
+      choice_(std::move(prepared.choice)) {
+  if (choice_) clock_.goOnFrom(choice_->seconds, choice_->cpuSeconds);
+  if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.view.camera);
 }
 
 template <class S>
@@ -52,11 +56,13 @@ RenderStatistics PlannedSession<S>::plannedStatistics() const {
   out.renderWallSeconds = clock_.wallSeconds();
   out.cpuSeconds = clock_.cpuSeconds();
   out.isa = plan_.isa;
+  out.sampler = settings_.sampler;
   out.specialization = plan_.specialization;
   out.accel = plan_.accel();
   // Filters that cannot be spread are sampled, whatever the settings say.
   out.filterMode = film_.spreads() ? FilterMode::spread : FilterMode::sample;
   if (plan_.pipeline.has(Fold::photonMap)) out.mergeRadius = plan_.mergeRadius;
+  out.choice = choice_;
   out.memory.scene = sceneBytes(*plan_.scene);
   out.memory.film = film_.bytes();
   out.memory.image = film_.imageBytes();

@@ -5,15 +5,24 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "engine/plan/render_plan.h"
+#include "engine/session/method_choice.h"
 #include "engine/session/render_clock.h"
 #include "engine/session/session.h"
 #include "engine/session/work_done.h"
 #include "engine/tasks/thread_pins.h"
 
 namespace wavecrest {
+
+// What there is before a session is made.
+template <class S>
+struct Prepared {
+  std::shared_ptr<const CompiledScene<S>> scene{};  // as planRender takes it
+  std::optional<MethodChoice> choice{};             // that led to settings.method
+};
 
 // S is the storage type of the settings' precision.
 template <class S>
@@ -27,7 +36,7 @@ class PlannedSession : public Session {
  protected:
   // Compiles the scene, plans the memory and makes the film. The film has no splats yet: a session that needs them adds
   // them. Throws as Session::create does.
-  PlannedSession(const Scene& scene, const RenderSettings& settings);
+  PlannedSession(const Scene& scene, const RenderSettings& settings, Prepared<S> prepared = {});
 
   // Calls `rest`, which makes what a schedule needs besides, under the settings' threads and placement of memory; then
   // pins the threads. To be called once, by the constructor of each schedule's session.
@@ -44,6 +53,7 @@ class PlannedSession : public Session {
   Film film_;
   const RenderSettings settings_;
   const RenderPlan<S> plan_;
+  const std::optional<MethodChoice> choice_;
   WorkDone earlier_;  // of the sessions that this one goes on for
   RenderClock clock_{settings_.clock, settings_.threads};
   std::atomic<uint64_t> progressPaths_{0};

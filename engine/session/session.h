@@ -15,6 +15,7 @@
 #include "engine/plan/memory_use.h"
 #include "engine/plan/merge_radius.h"
 #include "engine/plan/render_settings.h"
+#include "engine/session/method_choice.h"
 #include "kernels/columns/chains.h"
 
 namespace wavecrest {
@@ -68,12 +69,17 @@ struct RenderStatistics {
   Isa isa{};
   Specialization specialization{};
   Accel accel{};
+  SamplerKind sampler{};                   // of the settings; of evcm that of the method it chose
   FilterMode filterMode{};                 // what the film does: boxes and very wide filters are never spread
   size_t bytesPerPath = 0;                 // of a wave's columns
   MemoryUse memory;                        // of all threads that have worked
   std::optional<MergeRadius> mergeRadius;  // of methods that merge
   std::optional<ChainStatistics> chains;   // of mlt
   std::optional<GuideStatistics> guide;    // of gpt
+  std::optional<MethodChoice> choice;      // of evcm
+
+  // The method whose page is executed, where `asked` is that of the settings.
+  Method renderedBy(Method asked) const { return choice ? choice->method : asked; }
 };
 
 class Session {

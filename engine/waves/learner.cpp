@@ -29,7 +29,7 @@ std::optional<uint32_t> cellSeen(const RenderPlan<S>& plan, const RenderSettings
 template <class S>
 Learner<S>::Learner(const RenderPlan<S>& plan, const RenderSettings& settings, size_t pixels)
     : gathering_(std::bit_floor(std::max<uint64_t>(kPathsOfBlock / std::max<size_t>(pixels, 1), 1))) {
-  const SceneView<S>& scene = plan.scene->view;
+  const SceneView<S>& scene = plan.view;
   if (plan.pipeline.has(Fold::guide)) {
     guide_.emplace(scene.center, scene.halfExtent, settings.guide, settings.guideBytes, plan.typicalBrightness);
   }

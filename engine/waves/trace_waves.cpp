@@ -19,7 +19,7 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
   const uint64_t number = numbers_.number(iteration);
   const MisSettings mis = misSettings(pass.strategies, plan_.mergeRadius, plan_.memory.lightPaths, number);
   const std::optional<SurvivalRule> rule = survivalRule(settings_, pass.walk);
-  StageContext<S> context{.scene = &plan_.scene->view,
+  StageContext<S> context{.scene = &plan_.view,
                           .pixels = area.pixels.data(),
                           .sampler = samplerOf(settings_, number, plan_.memory.lightPaths),
                           .limits = settings_.limits,
@@ -143,7 +143,7 @@ void WaveSession<S>::traceStretch(const Stretch<S>& stretch, size_t piece, Worke
 template <class S>
 PhotonGrid<S> WaveSession<S>::photonGrid(double searchRadius) const {
   if (!plan_.pipeline.has(Fold::photonMap)) return {};
-  const SceneView<S>& scene = plan_.scene->view;
+  const SceneView<S>& scene = plan_.view;
   return PhotonGrid<S>::over(scene.center, scene.radius, searchRadius,
                              static_cast<double>(std::max<size_t>(plan_.memory.photons, 1)));
 }

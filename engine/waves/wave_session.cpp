@@ -1,5 +1,7 @@
 #include "engine/waves/wave_session.h"
 
+#include <utility>
+
 #include "engine/plan/memory_plan.h"
 #include "engine/session/stage_rows.h"
 #include "engine/state/state_stream.h"
@@ -9,7 +11,8 @@
 namespace wavecrest {
 
 template <class S>
-WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings) : Base(scene, settings) {
+WaveSession<S>::WaveSession(const Scene& scene, const RenderSettings& settings, Prepared<S> prepared)
+    : Base(scene, settings, std::move(prepared)) {
   this->finishBuilding([&] {
     const size_t pixels = film_.area().pixels.size();
     if (plan_.pipeline.splats()) film_.makeSplats(settings_.threads, plan_.memory.splatScale);
@@ -109,10 +112,10 @@ template class WaveSession<float>;
 template class WaveSession<double>;
 
 template <class S>
-std::unique_ptr<Session> makeWaveSession(const Scene& scene, const RenderSettings& settings) {
-  return std::make_unique<WaveSession<S>>(scene, settings);
+std::unique_ptr<Session> makeWaveSession(const Scene& scene, const RenderSettings& settings, Prepared<S> prepared) {
+  return std::make_unique<WaveSession<S>>(scene, settings, std::move(prepared));
 }
-template std::unique_ptr<Session> makeWaveSession<float>(const Scene&, const RenderSettings&);
-template std::unique_ptr<Session> makeWaveSession<double>(const Scene&, const RenderSettings&);
+template std::unique_ptr<Session> makeWaveSession(const Scene&, const RenderSettings&, Prepared<float>);
+template std::unique_ptr<Session> makeWaveSession(const Scene&, const RenderSettings&, Prepared<double>);
 
 }  // namespace wavecrest

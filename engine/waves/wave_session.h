@@ -16,12 +16,12 @@
 
 #include <memory>
 
-#include "engine/session/session.h"
+#include "engine/session/planned_session.h"
 
 namespace wavecrest {
 
-// settings.method must not be mlt. S is the storage type of its precision.
+// settings.method must be neither mlt nor evcm. S is the storage type of its precision.
 template <class S>
-std::unique_ptr<Session> makeWaveSession(const Scene& scene, const RenderSettings& settings);
+std::unique_ptr<Session> makeWaveSession(const Scene& scene, const RenderSettings& settings, Prepared<S> prepared = {});
 
 }  // namespace wavecrest

@@ -21,7 +21,7 @@ namespace wavecrest {
 template <class S>
 class WaveSession final : public PlannedSession<S> {
  public:
-  WaveSession(const Scene& scene, const RenderSettings& settings);
+  WaveSession(const Scene& scene, const RenderSettings& settings, Prepared<S> prepared);
 
   void renderUntil(std::optional<uint64_t> iterations, std::optional<double> seconds) override;
   RenderStatistics statistics() const override;

@@ -108,12 +108,12 @@ class Words(CommandTest):
             ("render", "--mlt", "pssmlt mmlt pathspace"),
             ("render", "--merge-vertices", "all first"),
             ("render", "--progress", "auto bar jsonl none"),
-            ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm gpt"),
+            ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm gpt evcm"),
             ("converge", "--profile", "quick standard study paper"),
-            ("converge", "--methods", "pt lt bpt mlt ppm bpm vcm gpt mlt-pathspace mlt-pssmlt ppm-direct"),
+            ("converge", "--methods", "pt lt bpt mlt ppm bpm vcm gpt evcm mlt-pathspace mlt-pssmlt ppm-direct"),
             ("converge", "--clock", "wall cpu"),
             ("converge", "--images", "all last"),
-            ("bench", "--methods", "pt lt bpt mlt ppm bpm vcm gpt"),
+            ("bench", "--methods", "pt lt bpt mlt ppm bpm vcm gpt evcm"),
             ("bench", "--score", "small medium large"),
         ):
             self.assertEqual(sorted(completed("wavecrest", command, option, "''")), sorted(expected.split()), option)

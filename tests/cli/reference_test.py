@@ -147,7 +147,7 @@ class Reference(CommandTest):
 
     def test_wrong_words_and_files(self):
         result = self.reference("--method", "pt", "--radius", "0.01", "--quiet", expect=USAGE)
-        self.assert_one_error_line(result, r"--radius: pt does not merge; expected ppm, bpm or vcm$")
+        self.assert_one_error_line(result, r"--radius: pt does not merge; expected ppm, bpm, vcm or evcm$")
         self.reference("--method", "pt", "--radius", "0.001", "--spp", "1", "-o", "default.exr")
         self.reference("--quiet", "--progress", "loud", expect=USAGE)
         self.reference("--method", "guess", expect=USAGE)

@@ -84,14 +84,14 @@ class Usage(CommandTest):
     def test_options_of_other_methods_are_refused(self):
         no_chains = r"pt has no Markov chains; expected mlt$"
         for arguments, answer in [
-            (["--radius", "0.2"], r"--radius: pt does not merge; expected ppm, bpm or vcm$"),
-            (["-m", "lt", "--radius-alpha", "0.1"], r"--radius-alpha: lt does not merge; expected ppm, bpm or vcm$"),
-            (["--light-paths", "9"], r"--light-paths: pt has one light path .*; expected ppm, bpm or vcm$"),
+            (["--radius", "0.2"], r"--radius: pt does not merge; expected ppm, bpm, vcm or evcm$"),
+            (["-m", "lt", "--radius-alpha", "0.1"], r"--radius-alpha: lt does not merge; expected ppm, bpm, vcm or evcm$"),
+            (["--light-paths", "9"], r"--light-paths: pt has one light path .*; expected ppm, bpm, vcm or evcm$"),
             (["-m", "vcm", "--direct-pass"], r"--direct-pass: vcm has no such choice; expected ppm$"),
-            (["-m", "ppm", "--merge-vertices", "all"], r"--merge-vertices: ppm has no choice of .*; expected vcm$"),
+            (["-m", "ppm", "--merge-vertices", "all"], r"--merge-vertices: ppm has no choice of .*; expected vcm or evcm$"),
             (["-m", "vcm", "--merge-vertices", "none"], r"--merge-vertices none: unknown; expected one of all, first"),
-            (["-m", "mlt", "--connection-roulette", "5"], r"--connection-roulette: mlt .*; expected bpt or vcm$"),
-            (["-m", "mlt", "--roulette", "albedo"], r"--roulette: mlt ends walks by throughput; expected pt, lt, .* or gpt$"),
+            (["-m", "mlt", "--connection-roulette", "5"], r"--connection-roulette: mlt .*; expected bpt, vcm or evcm$"),
+            (["-m", "mlt", "--roulette", "albedo"], r"--roulette: mlt ends walks by throughput; expected pt, lt, .* or evcm$"),
             (["--guide", "off"], r"--guide: pt learns no guide; expected gpt$"),
             (["-m", "vcm", "--guide-memory", "8MiB"], r"--guide-memory: vcm learns no guide; expected gpt$"),
             (["-m", "gpt", "--guide", "light"], r"--guide light: unknown; expected one of radiance, variance, off$"),

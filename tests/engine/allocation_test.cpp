@@ -85,7 +85,7 @@ size_t allocationsPerWave(const std::string& sceneName, const RenderSettings& se
   Wave<S> wave(1024, plan.needs);
   StageCounters counters;
   StageContext<S> context;
-  context.scene = &plan.scene->view;
+  context.scene = &plan.view;
   context.pixels = area.pixels.data();
   context.sampler.kind = settings.sampler;
   context.counters = &counters;
@@ -130,7 +130,7 @@ TEST(ChainAllocation, isNoneForAnyStep) {
     constexpr size_t kChains = 500;
     SplatFilms films(area.pixels.size(), 1, 1.0);
     ChainWorker<float> worker(plan, 512, films);
-    ChainState state(kChains, keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth));
+    ChainState state(kChains, keptSamples(plan.pipeline, plan.view, settings.limits.maxDepth));
     state.multiplexed = variant != MetropolisVariant::pssmlt;
     const bool pathSpace = variant == MetropolisVariant::pathspace;
     PathStore<float> paths(kChains, pathSpace ? plan.pathLaws.law().maxEdges : 1, plan.needs);

@@ -167,7 +167,7 @@ class SceneChains {
       : settings_(settingsOf(chosen.variant, isa)),
         plan_(planRender<float>(scene, settings_)),
         area_(filmArea(scene.film)),
-        state(count, keptSamples(plan_.pipeline, plan_.scene->view, settings_.limits.maxDepth)),
+        state(count, keptSamples(plan_.pipeline, plan_.view, settings_.limits.maxDepth)),
         paths_(count, std::max(plan_.pathLaws.law().maxEdges, 1u), plan_.needs),
         films_(area_.pixels.size(), 1, 1.0),
         worker_(plan_, count, films_),

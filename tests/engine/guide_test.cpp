@@ -66,7 +66,7 @@ SeedMeans imagesWith(const Scene& scene, std::optional<std::pair<float, std::arr
   const RenderSettings settings = guideSettings();
   RenderPlan<float> plan = planRender<float>(scene, settings);
   std::optional<FixedGuide> guide;
-  if (fixed) guide.emplace(plan.scene->view, fixed->first, fixed->second);
+  if (fixed) guide.emplace(plan.view, fixed->first, fixed->second);
   SeedMeans out;
   out.width = scene.film.width;
   for (size_t seed = 0; seed < kSeeds; ++seed) {
@@ -75,7 +75,7 @@ SeedMeans imagesWith(const Scene& scene, std::optional<std::pair<float, std::arr
     Wave<float> wave(pixels, plan.needs);
     StageCounters counters;
     StageContext<float> context;
-    context.scene = &plan.scene->view;
+    context.scene = &plan.view;
     context.pixels = film.area().pixels.data();
     context.limits = settings.limits;
     context.mis = plan.pipeline.cameraPass().strategies;

@@ -37,7 +37,7 @@ std::vector<double> picksOf(const Scene& scene, Precision precision) {
   RenderPlan<S> plan = planRender<S>(scene, settings);
   pickLightsByView(plan, settings, filmArea(scene.film));
   std::vector<double> picks;
-  for (const LightRecord<S>& record : plan.scene->lights.records) picks.push_back(record.pick);
+  for (const LightRecord<S>& record : plan.lights.records) picks.push_back(record.pick);
   return picks;
 }
 

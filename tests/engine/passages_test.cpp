@@ -262,10 +262,10 @@ TEST(Passages, ofALampAreADeltaLobe) {
 
 TEST(Passages, areAFeatureOfTheScene) {
   const auto plan = planRender<float>(passageRoom(RoomLight::quad), passageSettings(Method::bpt));
-  EXPECT_EQ(plan.scene->view.passages, nullptr);
+  EXPECT_EQ(plan.view.passages, nullptr);
   EXPECT_EQ(plan.pipeline.cameraPass().perDepth.front().run, plan.stages->extendSmall);
   const auto through = planRender<float>(leafRoom(RoomLight::quad), passageSettings(Method::bpt));
-  EXPECT_NE(through.scene->view.passages, nullptr);
+  EXPECT_NE(through.view.passages, nullptr);
   EXPECT_EQ(through.pipeline.cameraPass().perDepth.front().run, through.stages->extendPassing);
 }
 

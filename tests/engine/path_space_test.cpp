@@ -120,14 +120,14 @@ Balance compareRatios(Precision precision, double tolerance) {
   settings.seed = 11;
   const RenderPlan<S> plan = planRender<S>(scene, settings);
   const FilmArea area = filmArea(scene.film);
-  ChainState state(kChains, keptSamples(plan.pipeline, plan.scene->view, settings.limits.maxDepth));
+  ChainState state(kChains, keptSamples(plan.pipeline, plan.view, settings.limits.maxDepth));
   state.multiplexed = true;
   PathStore<S> paths(kChains, plan.pathLaws.law().maxEdges, plan.needs);
   SplatFilms films(area.pixels.size(), 1, 1.0);
   ChainWorker<S> worker(plan, kChains, films);
   StageContext<S> context = chainContext(plan, settings, area);
   const auto pixels = static_cast<double>(area.pixels.size());
-  const PathTransition<S> scratch(plan.scene->view, pixels, {1, 9, double{state.samples.largeStep}});
+  const PathTransition<S> scratch(plan.view, pixels, {1, 9, double{state.samples.largeStep}});
   for (uint32_t i = 0; i < kChains; ++i) {
     state.columns.source[i] = i;
     state.columns.length[i] = 1 + i % 9;

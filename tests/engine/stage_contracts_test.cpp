@@ -20,7 +20,7 @@ constexpr size_t kPaths = 64;
 class StageContractsTest : public testing::Test {
  protected:
   StageContractsTest() {
-    context_.scene = &plan_.scene->view;
+    context_.scene = &plan_.view;
     context_.pixels = area_.pixels.data();
     context_.mis = plan_.pipeline.cameraPass().strategies;
     context_.mis.lightPaths = kPaths;

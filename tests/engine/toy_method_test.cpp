@@ -35,7 +35,7 @@ double meanOf(const MethodPage& page, const Scene& scene, uint64_t seed, uint32_
   settings.isa = bestIsa();
   RenderPlan<float> plan = planRender<float>(scene, settings);
   plan.pipeline = makePipeline(page, *plan.stages, chooseIntersector(*plan.stages, *plan.scene));
-  const SceneView<float>& view = plan.scene->view;
+  const SceneView<float>& view = plan.view;
   Guide guide(view.center, view.halfExtent, GuideTarget::radiance, 0, 1);
   plan.needs.cells = plan.needs.directions = page.has(Fold::guide);
   Film film(filmArea(scene.film));

@@ -42,9 +42,11 @@ INSTANTIATE_TEST_SUITE_P(Extremes, LongSweepTest, testing::Range(size_t{0}, swee
 
 // A sweep in which every method has rows or a reason to have none.
 TEST(SweepList, leavesNoMethodOutSilently) {
+  // evcm renders by one of the others.
+  const auto methods = std::ranges::count_if(kMethods, [](const auto& one) { return !isChosenByTrials(one.method); });
   for (const Sweep& sweep : sweeps()) {
     EXPECT_FALSE(sweep.boundSource.empty()) << sweep.name;
-    EXPECT_TRUE(sweep.methods.size() == kMethods.size() || !sweep.leftOut.empty()) << sweep.name;
+    EXPECT_TRUE(std::ssize(sweep.methods) == methods || !sweep.leftOut.empty()) << sweep.name;
     EXPECT_GT(sweep.bound, 0) << sweep.name;
   }
 }

@@ -1,0 +1,196 @@
+#include "engine/trials/choose_method.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "engine/tasks/for_each.h"
+#include "engine/trials/trial_error.h"
+#include "engine/waves/wave_session.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr std::array kCandidates{Method::pt, Method::lt, Method::bpt, Method::vcm};
+constexpr uint64_t kTrialSeed = 0x747269616c73;
+constexpr uint32_t kTrialPixels = 64 * 48;  // of the trial image, at most
+constexpr uint32_t kTrialWave = 2048, kTrialPieces = 8;
+
+// Both images of a round have so many iterations. Who is worse than the best by more than `within` is left out then.
+struct Round {
+  uint64_t iterations;
+  double within;
+};
+constexpr std::array kRounds{Round{1, 8}, Round{4, 4}, Round{16, 1}};
+
+// What stages cost, in rays to the closest hit with the shading behind them: least squares over 16 scenes and six
+// methods (a Zen 5, AVX-512), off by 4 and 8 % in the mean. Small scenes have no hierarchy to walk through.
+struct Costs {
+  double shadow, connection, merge, path;
+};
+constexpr Costs kCosts{.shadow = 0.67, .connection = 0.2, .merge = 0.2, .path = 0};
+constexpr Costs kSmallCosts{.shadow = 0.7, .connection = 0.93, .merge = 1.57, .path = 0.8};
+// What Sobol points save of the variance where a method gains by them, in the mean over the nine scenes. Trials draw
+// independently, so that halves of an image are independent.
+constexpr double kSobolGain = 1.15;
+// The bias of merges falls more slowly than noise, and a small image tells little of it: merges must gain so much.
+constexpr double kMergesMustGain = 1.1;
+
+// The film at a size of at most kTrialPixels pixels in the image.
+FilmSettings trialFilm(FilmSettings film) {
+  const double pixels = static_cast<double>(film.imageWidth()) * film.imageHeight();
+  const double scale = std::min(std::sqrt(kTrialPixels / pixels), 1.0);
+  const auto scaled = [scale](uint32_t size) { return static_cast<uint32_t>(std::lround(scale * size)); };
+  film.width = std::max(scaled(film.width), 1u);
+  film.height = std::max(scaled(film.height), 1u);
+  if (!film.isCropped()) return film;
+  film.cropX = std::min(scaled(film.cropX), film.width - 1);
+  film.cropY = std::min(scaled(film.cropY), film.height - 1);
+  film.cropWidth = std::clamp(scaled(film.cropWidth), 1u, film.width - film.cropX);
+  film.cropHeight = std::clamp(scaled(film.cropHeight), 1u, film.height - film.cropY);
+  return film;
+}
+
+RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings, Method method) {
+  RenderSettings trial = withMethod(settings, method);
+  trial.film = trialFilm(scene.film);
+  trial.seed = kTrialSeed;
+  trial.sampler = SamplerKind::independent;
+  trial.share = {};
+  trial.firstIteration = 0;
+  trial.iterations.reset();
+  trial.seconds.reset();
+  trial.memoryBytes.reset();
+  const FilmSettings &film = scene.film, &small = *trial.film;
+  if (trial.lightPaths) {
+    const double share = static_cast<double>(small.imageWidth()) * small.imageHeight() /
+                         (static_cast<double>(film.imageWidth()) * film.imageHeight());
+    trial.lightPaths = std::max<uint64_t>(static_cast<uint64_t>(share * static_cast<double>(*trial.lightPaths)), 1);
+  }
+  trial.waveSize = kTrialWave;
+  trial.piecesForThreads = kTrialPieces;
+  return trial;
+}
+
+// A candidate, its session and what it has rendered.
+struct Candidate {
+  Method method;
+  std::unique_ptr<Session> session;
+  TrialImages images;
+  bool goesOn = true;
+};
+
+// The image of the next iterations alone.
+std::vector<float> nextImage(Session& session, uint64_t iterations) {
+  const uint64_t before = session.statistics().iterations;
+  std::vector<float> sums = before == 0 ? std::vector<float>{} : session.film().resolve();
+  session.renderUntil(before + iterations, std::nullopt);
+  std::vector<float> image = session.film().resolve();
+  for (size_t i = 0; i < sums.size(); ++i) {
+    const double all = static_cast<double>(before + iterations) * image[i] - static_cast<double>(before) * sums[i];
+    image[i] = static_cast<float>(all / static_cast<double>(iterations));
+  }
+  return image;
+}
+
+double costOf(const RenderStatistics& statistics) {
+  const StageCounters& counts = statistics.counters;
+  const Costs& costs = statistics.accel == Accel::small ? kSmallCosts : kCosts;
+  const double rays = static_cast<double>(counts.raysClosest) + costs.shadow * static_cast<double>(counts.raysShadow) +
+                      costs.connection * static_cast<double>(counts.connections) +
+                      costs.merge * static_cast<double>(counts.merges);
+  return rays / static_cast<double>(statistics.paths) + costs.path;
+}
+
+std::vector<MethodTrial> trialsOf(const std::vector<Candidate>& candidates, SamplerKind sampler) {
+  std::vector<TrialImages> images;
+  images.reserve(candidates.size());
+  for (const Candidate& candidate : candidates) images.push_back(candidate.images);
+  const std::vector<TrialError> errors = trialErrors(images);
+  std::vector<MethodTrial> trials;
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
+    const bool gains = sampler == SamplerKind::sobol && bestSampler(candidate.method) == SamplerKind::sobol;
+    const double bias = strategiesOf(candidate.method).merge ? kMergesMustGain : 1;
+    trials.push_back({.method = candidate.method,
+                      .iterations = candidate.images.iterations(),
+                      .variance = errors[i].variance * bias / (gains ? kSobolGain : 1),
+                      .missed = errors[i].missed,
+                      .cost = costOf(candidate.session->statistics())});
+  }
+  return trials;
+}
+
+const MethodTrial& bestOf(const std::vector<MethodTrial>& trials) {
+  return *std::min_element(trials.begin(), trials.end(), [](const MethodTrial& a, const MethodTrial& b) {
+    return a.inefficiency() < b.inefficiency();
+  });
+}
+
+// Compiles the scene on the settings' threads.
+template <class S>
+std::shared_ptr<const CompiledScene<S>> compileOnThreads(const Scene& scene, const RenderSettings& settings) {
+  oneapi::tbb::task_arena arena(static_cast<int>(settings.threads));
+  const WorkerLimit limit(settings.threads);
+  const SpreadMemory spread(settings.placement);
+  std::shared_ptr<const CompiledScene<S>> compiled;
+  arena.execute([&] { compiled = compileScene<S>(scene, settings.accel, true, settings.instancing); });
+  return compiled;
+}
+
+// Renders trial images round by round. Without the times.
+template <class S>
+MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
+                       const std::shared_ptr<const CompiledScene<S>>& compiled) {
+  std::vector<Candidate> candidates;
+  for (const Method method : kCandidates) {
+    const RenderSettings trial = trialSettings(scene, settings, method);
+    auto session = makeWaveSession<S>(scene, trial, {.scene = compiled});
+    const FilmArea& area = session->film().area();
+    candidates.push_back({method, std::move(session), TrialImages(area.width, area.height)});
+  }
+  std::vector<MethodTrial> trials;
+  for (const Round& round : kRounds) {
+    for (Candidate& candidate : candidates) {
+      if (!candidate.goesOn) continue;
+      const std::vector<float> first = nextImage(*candidate.session, round.iterations);
+      candidate.images.add(first, nextImage(*candidate.session, round.iterations), round.iterations);
+    }
+    trials = trialsOf(candidates, settings.sampler);
+    const double best = bestOf(trials).inefficiency();
+    for (size_t i = 0; i < trials.size(); ++i) {
+      candidates[i].goesOn &= trials[i].inefficiency() <= round.within * best;
+    }
+    if (std::ranges::count_if(candidates, &Candidate::goesOn) < 2) break;
+  }
+  // Where no candidate found any light, the one with all strategies may yet.
+  const bool dark = std::ranges::none_of(candidates, [](const Candidate& one) { return one.images.brightness() > 0; });
+  return {.method = dark ? kCandidates.back() : bestOf(trials).method, .trials = std::move(trials)};
+}
+
+}  // namespace
+
+RenderSettings withMethod(RenderSettings settings, Method method) {
+  settings.method = method;
+  // Sobol points only where they serve the method.
+  if (settings.sampler == SamplerKind::sobol) settings.sampler = bestSampler(method);
+  if (!strategiesOf(method).merge) settings.lightPaths.reset();
+  return settings;
+}
+
+template <class S>
+ChosenMethod<S> chooseMethod(const Scene& scene, const RenderSettings& settings) {
+  ChosenMethod<S> chosen{.choice = {}, .scene = compileOnThreads<S>(scene, settings)};
+  const auto begin = Clock::now();
+  const double cpuBegin = processCpuSeconds();
+  chosen.choice = runTrials<S>(scene, settings, chosen.scene);
+  chosen.choice.seconds = secondsSince(begin);
+  chosen.choice.cpuSeconds = processCpuSeconds() - cpuBegin;
+  return chosen;
+}
+template ChosenMethod<float> chooseMethod(const Scene&, const RenderSettings&);
+template ChosenMethod<double> chooseMethod(const Scene&, const RenderSettings&);
+
+}  // namespace wavecrest
