@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the documentation site: the READMEs where they are, the public headers, and the help of every command.
+"""Makes the documentation site: the READMEs where they are, the public headers, the help of every command, the scene language
+and a gallery.
 
     docs/build.py --out build/docs [--wavecrest build/release/wavecrest]
 
@@ -19,6 +20,7 @@ import sys
 
 sys.dont_write_bytecode = True  # nothing is written into the tree
 
+from gallery_page import gallery_page  # noqa: E402
 from language_pages import language_pages  # noqa: E402
 from pictures import ROOT, Pictures  # noqa: E402
 
@@ -106,6 +108,14 @@ def command_page(program):
     return text
 
 
+def link_from_front(pages, made):
+    """Links from the front page to pages that no file of the tree is, above its first section."""
+    front = pages / page_of(FRONT)
+    links = ", ".join(f"[{title}]({page})" for title, page in made)
+    before, mark, after = front.read_text().partition("\n## ")
+    front.write_text(f"{before}\nMore on this site: {links}.\n{mark}{after}")
+
+
 def navigation(files, titles, extra, language):
     """Each file in the section whose folder is the longest that holds it, as nested lists for MkDocs."""
     sections = {name: [] for name in SECTIONS}
@@ -154,13 +164,16 @@ def main():
     if arguments.wavecrest:
         extra.insert(0, ("Command line", "commands.md"))
         (pages / "commands.md").write_text(command_page(arguments.wavecrest))
-    language = language_pages(pages, Pictures(arguments.wavecrest, pages))
+    pictures = Pictures(arguments.wavecrest, pages)
+    language = language_pages(pages, pictures)
+    gallery = gallery_page(pages, pictures)
+    link_from_front(pages, gallery + language + extra)
     shutil.copy(pathlib.Path(__file__).resolve().parent / "site.css", pages / "site.css")
     settings = arguments.out.resolve() / "mkdocs.yml"
     settings.write_text(
         f"site_name: wavecrest\ndocs_dir: {pages}\nsite_dir: {arguments.out.resolve() / 'site'}\nuse_directory_urls: false\n"
         "theme:\n  name: mkdocs\n  highlightjs: false\nextra_css:\n  - site.css\n"
-        f"nav:\n{navigation(files, titles, extra, language)}\n"
+        f"nav:\n{navigation(files, titles, gallery + extra, language)}\n"
     )
     built = subprocess.run(["mkdocs", "build", "--strict", "--config-file", settings], check=False)
     sys.exit(built.returncode)

@@ -35,6 +35,7 @@ class Site(unittest.TestCase):
             ("commands.html", "--until-relative-error"),
             ("language/bsdf-roughplastic.html", "GGX alpha 0.15"),
             ("language/index.html", "rawconstant"),
+            ("gallery.html", "veach-door"),
         ]:
             text = (site / page).read_text()
             self.assertTrue(words in text, f"{page}: lacks {words}")
