@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "bench/json_text.h"
+#include "bench/report/picture_crop.h"
 #include "cli/commands.h"
 #include "cli/compare_page.h"
 #include "cli/compare_results.h"
@@ -41,30 +41,14 @@ bool hasThreshold(const CompareOptions& options, size_t metric) { return options
 
 // ---- which part of the images ---------------------------------------------------------------------------------------
 
-// Pixels from the top left.
-struct Crop {
-  uint32_t x = 0, y = 0, width = 0, height = 0;
-};
-
-// "X,Y,WIDTHxHEIGHT".
-Crop parseCrop(const std::string& text) {
-  Crop crop;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  const auto number = [&](uint32_t& value, char after) {
-    const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || (after == 0 ? next != end : next == end || *next != after)) return false;
-    at = next + (after == 0 ? 0 : 1);
-    return true;
-  };
-  const bool valid = number(crop.x, ',') && number(crop.y, ',') && number(crop.width, 'x') && number(crop.height, 0);
-  if (valid && crop.width > 0 && crop.height > 0) return crop;
+PictureCrop cropOption(const std::string& text) {
+  if (const std::optional<PictureCrop> crop = parseCrop(text)) return *crop;
   throw UsageError(fmt::format("--crop '{}': expected X,Y,WIDTHxHEIGHT in pixels from the top left", text));
 }
 
 // Keeps only the crop. Throws ImageError where the image does not contain it.
-void cropTo(const Crop& crop, const std::string& path, Image& image) {
-  if (uint64_t{crop.x} + crop.width > image.width || uint64_t{crop.y} + crop.height > image.height) {
+void cropTo(const PictureCrop& crop, const std::string& path, Image& image) {
+  if (!crop.liesIn(image.width, image.height)) {
     throw ImageError(
         path, fmt::format("image of {}x{} pixels", image.width, image.height),
         fmt::format("expected one that holds --crop {},{},{}x{}", crop.x, crop.y, crop.width, crop.height));
@@ -81,7 +65,7 @@ void cropTo(const Crop& crop, const std::string& path, Image& image) {
 // Reads an image, and crops it if --crop asks for that.
 ImageFile readPart(const CompareOptions& options, const std::string& path) {
   ImageFile file = readImage(path);
-  if (!options.crop.empty()) cropTo(parseCrop(options.crop), path, file.image);
+  if (!options.crop.empty()) cropTo(cropOption(options.crop), path, file.image);
   return file;
 }
 

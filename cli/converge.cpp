@@ -203,6 +203,7 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   command.addFlag("--direct-pass", options->directPass, "ppm also with direct light by next event estimation");
   defining("--clock", "what a run is charged: wall, or cpu time over threads; both are stored; default: wall")
       .oneValue();
+  defining("--crop", "part of the pictures that the report has a button for: SCENE:X,Y,WIDTHxHEIGHT").repeatable();
   defining("-D", "value of the scenes' $name: NAME=VALUE").repeatable();
   // How this process runs it.
   command.add("--threads", options->threads, "worker threads; default: all cores").between(kThreadRange);

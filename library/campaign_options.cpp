@@ -11,6 +11,7 @@
 
 #include "bench/claims/judge_claims.h"
 #include "bench/json_text.h"
+#include "bench/report/picture_crop.h"
 #include "bench/report/results_folder.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
@@ -29,16 +30,15 @@ using nlohmann::json;
 
 // The options that say what a campaign is. They are stored in its results file; all others may change from one process
 // to the next.
-constexpr std::array<std::string_view, 21> kDefiningOptions{"scenes",        "--profile",        "--time-factor",
-                                                            "--time",        "--snapshot-every", "--spp",
-                                                            "--seeds",       "--precision",      "--sampler",
-                                                            "--size",        "--images",         "--methods",
-                                                            "--radius",      "--radius-alpha",   "--merge-vertices",
-                                                            "--light-paths", "--roulette",       "--direct-pass",
-                                                            "--mlt",         "--clock",          "-D"};
+constexpr std::array<std::string_view, 22> kDefiningOptions{
+    "scenes",        "--profile",  "--time-factor", "--time",         "--snapshot-every",
+    "--spp",         "--seeds",    "--precision",   "--sampler",      "--size",
+    "--images",      "--methods",  "--radius",      "--radius-alpha", "--merge-vertices",
+    "--light-paths", "--roulette", "--direct-pass", "--mlt",          "--clock",
+    "--crop",        "-D"};
 
 // Those that take several words.
-constexpr std::array<std::string_view, 4> kListOptions{"scenes", "--methods", "--mlt", "-D"};
+constexpr std::array<std::string_view, 5> kListOptions{"scenes", "--methods", "--mlt", "--crop", "-D"};
 
 bool has(const CampaignOptions& options, const char* name) { return options.defining.contains(name); }
 
@@ -133,6 +133,25 @@ std::vector<CampaignScene> chosenScenes(const CampaignOptions& options, const Pr
   return scenes;
 }
 
+// Refuses crops of scenes that the campaign has not, and those that its images do not have.
+void checkCrops(const CampaignOptions& options, const CampaignSettings& settings) {
+  if (!has(options, "--crop")) return;
+  for (const std::string& word : options.defining.at("--crop")) {
+    const std::optional<SceneCrop> crop = parseSceneCrop(word);
+    if (!crop) {
+      throw UsageError(fmt::format("--crop {}: expected SCENE:X,Y,WIDTHxHEIGHT in pixels from the top left", word));
+    }
+    const auto isScene = [&](const CampaignScene& one) { return one.name == crop->scene; };
+    if (std::ranges::none_of(settings.scenes, isScene)) {
+      throw UsageError(fmt::format("--crop {}: the campaign has no such scene; expected one of its own", word));
+    }
+    if (!crop->crop.liesIn(settings.size[0], settings.size[1])) {
+      throw UsageError(fmt::format("--crop {}: images have {}x{} pixels; expected a part of them", word,
+                                   settings.size[0], settings.size[1]));
+    }
+  }
+}
+
 // Settings that all runs share. Method, seed, path limits and the end come with each run.
 RenderSettings renderSettings(const CampaignOptions& options) {
   RenderSettings render;
@@ -176,6 +195,7 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
   }
   // Film size, settings and methods of all runs.
   settings.size = has(options, "--size") ? parseSize("--size", get(options, "--size")) : profile.size;
+  checkCrops(options, settings);
   settings.render = renderSettings(options);
   settings.sampler = profile.sampler;
   if (has(options, "--sampler")) settings.sampler = parseSamplerOrAuto("--sampler", get(options, "--sampler"));

@@ -297,6 +297,20 @@ ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile) {
   return shown;
 }
 
+// The crops that the campaign was asked for, of this scene.
+std::vector<PictureCrop> cropsOf(const CampaignResults& results, const std::string& scene) {
+  std::vector<PictureCrop> crops;
+  const auto options = results.campaign.find("options");
+  if (options == results.campaign.end()) return crops;
+  const auto parsed = nlohmann::json::parse(options->second, nullptr, false);
+  if (!parsed.is_object()) return crops;
+  for (const auto& word : parsed.value("--crop", nlohmann::json::array())) {
+    const auto crop = word.is_string() ? parseSceneCrop(word.get<std::string>()) : std::nullopt;
+    if (crop && crop->scene == scene) crops.push_back(crop->crop);
+  }
+  return crops;
+}
+
 std::string titleOf(const CampaignResults& results) {
   std::string title = results.scenes.size() == 1 ? "Convergence of " + results.scenes[0].name
                                                  : fmt::format("Convergence on {} scenes", results.scenes.size());
@@ -310,7 +324,10 @@ ConvergenceReport collectCampaign(const CampaignResults& results) {
   ConvergenceReport report;
   report.title = titleOf(results);
   for (const Metric* metric : measuredMetrics(results)) report.metrics.push_back(shownMetric(*metric));
-  for (const SceneRecord& scene : results.scenes) report.scenes.push_back(collectScene(results, scene, report));
+  for (const SceneRecord& scene : results.scenes) {
+    report.scenes.push_back(collectScene(results, scene, report));
+    report.scenes.back().crops = cropsOf(results, scene.name);
+  }
   // A scene whose runs are still to come has nothing to show.
   std::erase_if(report.scenes, [](const ReportScene& scene) { return scene.series.empty() && scene.refusals.empty(); });
   const std::string profile = profileOf(results);

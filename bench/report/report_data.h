@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/report/picture_crop.h"
+
 namespace wavecrest {
 
 /// A quality measure, and how its axis is drawn.
@@ -103,6 +105,7 @@ struct ReportScene {
   std::vector<std::optional<double>> noiseFloors = {};  ///< per metric: score of a perfect image, where known
   std::string errorMapScale = {};                       ///< what the colours of the error maps mean, one line
   double errorMapRange = 0;                             ///< value of the brightest colour; 0: there are no maps
+  std::vector<PictureCrop> crops = {};                  ///< that the campaign asks readers to look at
   std::vector<double> earlierSeconds = {};              ///< times before the end at which pictures are shown, rising
   std::vector<ReportSeries> series = {};
   std::vector<ReportPathClass> pathClasses = {};

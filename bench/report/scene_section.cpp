@@ -51,7 +51,7 @@ std::string renderImages(const ReportScene& scene, size_t index, const EmbeddedI
     const std::string time = formatSeconds(scene.earlierSeconds[step]);
     groups += viewerGroup("Pictures", "After about " + time, earlier, time);
   }
-  return "<h3>Pictures</h3>\n" + viewer(groups);
+  return "<h3>Pictures</h3>\n" + viewer(groups, scene.crops);
 }
 
 std::string renderPlots(const ConvergenceReport& report, const ReportScene& scene) {

@@ -25,7 +25,14 @@ std::string viewerGroup(std::string_view kind, std::string_view head, std::strin
   return html;
 }
 
-std::string viewer(std::string_view groups) { return fmt::format("<div class=\"viewer\">{}</div>\n", groups); }
+std::string viewer(std::string_view groups, std::span<const PictureCrop> crops) {
+  std::string words;
+  for (const PictureCrop& crop : crops) {
+    append(words, "{}{},{},{}x{}", words.empty() ? "" : " ", crop.x, crop.y, crop.width, crop.height);
+  }
+  const std::string data = words.empty() ? "" : fmt::format(" data-crops=\"{}\"", words);
+  return fmt::format("<div class=\"viewer\"{}>{}</div>\n", data, groups);
+}
 
 std::string colourBar(double range) {
   return fmt::format("<span class=\"scale\"><i></i><b><span>0</span><span>{}</span><span>{} and more</span></b></span>",

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+
+#include "bench/report/picture_crop.h"
 
 namespace wavecrest {
 
@@ -22,7 +25,8 @@ std::string viewerPane(const ViewerPane& pane);
 std::string viewerGroup(std::string_view kind, std::string_view head, std::string_view panes,
                         std::string_view step = {});
 
-std::string viewer(std::string_view groups);
+/// crops: parts of the pictures that get buttons of their own; all must lie in the pictures.
+std::string viewer(std::string_view groups, std::span<const PictureCrop> crops = {});
 
 /// The colours of maps (metrics/false_colour.h) with their values.
 std::string colourBar(double range);

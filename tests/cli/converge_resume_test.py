@@ -204,7 +204,7 @@ class Extending(Converge):
         ((end,),) = database.execute("SELECT MAX(render_seconds) FROM snapshot")
         ((time,),) = database.execute("SELECT value FROM campaign WHERE key = 'time'")
         database.close()
-        self.assertEqual(time, "0.2")
+        self.assertEqual(time, "0.175")
         self.assertGreaterEqual(end, 0.2)
         self.assertLess(end, 2)
 

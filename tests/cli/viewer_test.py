@@ -176,6 +176,20 @@ class ViewerTest(CommandTest):
         values = self.browser.run("return document.querySelector('.values output').textContent")
         self.assertRegex(values, r"^\(\d+, \d+\)  reference ")
 
+    def test_a_campaigns_crops_have_buttons(self):
+        self.run_wavecrest("converge", "cornell-diffuse", "cornell-mirror", "--methods", "pt,lt", "--spp", 2, "--size", self.SIZE, "--out", "out",
+                           "--crop", "cornell-mirror:3,2,16x8", "--crop", "cornell-diffuse:9,7,4x5", "--progress", "none")  # fmt: skip
+        self.browser.open((self.folder / "out/report.html").as_uri())
+        for viewer, other, crop in ((0, 1, "Crop 4 × 5 at (9, 7)"), (1, 0, "Crop 16 × 8 at (3, 2)")):
+            buttons = f"[...document.querySelectorAll('.viewer')[{viewer}].querySelectorAll('button')].filter((one) => one.textContent === '{crop}')"
+            self.assertEqual(self.browser.run(f"return {buttons}.length"), 1)
+            self.assertEqual(self.browser.run(f"return {buttons.replace(f'[{viewer}]', f'[{other}]')}.length"), 0)
+            self.browser.run(f"{buttons}[0].click()")
+            self.browser.until(f"!document.querySelectorAll('.crop-result')[{viewer}].hidden")
+            text = self.browser.run(f"return document.querySelectorAll('.crop-result')[{viewer}].innerText")
+            self.assertIn(crop.removeprefix("Crop ").replace(" at", " pixels at"), text)
+            self.assertRegex(text, r"pt\s+\d\S*\s+\d\S*\s+\d")
+
     def test_a_slider_shows_the_pictures_of_earlier_times(self):
         (self.folder / "images").mkdir()
         for name, spp in (("reference", 64), ("pt.1", 1), ("pt.4", 4), ("lt.2", 2), ("lt.4", 4)):

@@ -137,6 +137,15 @@ class FloatTools {
     tools.append(label);
     this.luminanceButton = button("Luminance", () => this.setLuminance(!this.luminance));
     this.cropButton = button("Crop", () => this.setCropping(!this.cropping));
+    // Those that whoever made the page asks to look at.
+    for (const crop of (viewer.root.dataset.crops ?? "").split(" ").filter(Boolean)) {
+      const [x, y, width, height] = crop.split(/[,x]/).map(Number);
+      button(`Crop ${width} × ${height} at (${x}, ${y})`, async () => {
+        await this.load();
+        this.setCrop([x, y], [x + width - 1, y + height - 1]);
+        this.showCrop();
+      });
+    }
     // Beside its text, room for the longest one: pictures must not move under the pointer when the text changes.
     const values = Object.assign(document.createElement("span"), { className: "values" });
     this.room = document.createElement("span");
