@@ -146,6 +146,8 @@ void refuseOptionsOfOtherModes(const BenchOptions& options, std::string_view mod
       {"--tolerance", options.tolerance != byDefault.tolerance, {"--against", "--compare"}},
       {"--hashes", !options.hashes.empty(), {"--score"}},
       {"--write-hashes", !options.writeHashes.empty(), {"--score"}},
+      {"--pictures", !options.pictures.empty(), {"--score"}},
+      {"--write-pictures", !options.writePictures.empty(), {"--score"}},
       {"--knobs", !options.knobs.empty(), {"--tradeoff"}},
       {"--seeds", options.seeds != byDefault.seeds, {"--tradeoff"}},
       {"--html", !options.html.empty(), {"--extremes", "--tradeoff"}}};
@@ -158,8 +160,10 @@ void refuseOptionsOfOtherModes(const BenchOptions& options, std::string_view mod
   if (options.pin && !mode.empty()) {
     throw UsageError("--pin goes with none of bench's other modes; expected it alone");
   }
-  if (!options.writeHashes.empty() && !(options.hashes.empty() && options.json.empty())) {
-    throw UsageError("--write-hashes measures nothing; expected neither --hashes nor --json beside it");
+  const bool writes = !options.writeHashes.empty() || !options.writePictures.empty();
+  if (writes && !(options.hashes.empty() && options.pictures.empty() && options.json.empty())) {
+    throw UsageError(fmt::format("{} measures nothing; expected neither --hashes, --pictures nor --json beside it",
+                                 options.writeHashes.empty() ? "--write-pictures" : "--write-hashes"));
   }
 }
 
@@ -171,8 +175,12 @@ void checkBenchFiles(const BenchOptions& options) {
   if (!options.hashes.empty()) files.input("--hashes", options.hashes);
   if (!options.json.empty()) files.output("--json", options.json);
   if (!options.html.empty()) files.output("--html", options.html);
-  if (options.writeHashes == kStandardStream) throw UsageError("--write-hashes -: expected a file");
-  if (!options.writeHashes.empty()) files.output("--write-hashes", options.writeHashes);
+  if (!options.pictures.empty()) files.input("--pictures", options.pictures);
+  for (const auto& [name, file] :
+       {std::pair("--write-hashes", options.writeHashes), std::pair("--write-pictures", options.writePictures)}) {
+    if (file == kStandardStream) throw UsageError(fmt::format("{} -: expected a file", name));
+    if (!file.empty()) files.output(name, file);
+  }
 }
 
 int runBench(const BenchOptions& options) {
@@ -218,6 +226,9 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.add("--hashes", options->hashes, "--score: validate images by this file instead of the committed one");
   command.add("--write-hashes", options->writeHashes,
               "--score: measure nothing, render what validates the images and put its hashes into this file");
+  command.add("--pictures", options->pictures,
+              "--score: compare images without hashes of this build with the pictures in this file, not the committed");
+  command.add("--write-pictures", options->writePictures, "--score: as --write-hashes, small pictures of the images");
   command.addFlag("--specialization", options->specialization,
                   "kernels for what a scene has against those that render everything: image, speed, memory, code");
   command.addFlag("--tradeoff", options->tradeoff,

@@ -21,7 +21,7 @@ struct BenchOptions {
   std::string against;
   std::vector<std::string> compare;  // two files
   bool extremes = false, scaling = false, tradeoff = false, specialization = false, pin = false;
-  std::string score, hashes, writeHashes;  // score: a size
+  std::string score, hashes, writeHashes, pictures, writePictures;  // score: a size
   std::string html;
   std::vector<std::string> knobs;
   uint32_t seeds = 0;  // 0: as many as the mode likes

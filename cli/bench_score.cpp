@@ -1,4 +1,4 @@
-// wavecrest bench --score: the score of this machine, or with --write-hashes the hashes that validate scores.
+// wavecrest bench --score: the score of this machine; with --write-hashes and --write-pictures what validates scores.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -16,11 +16,12 @@
 namespace wavecrest {
 namespace {
 
-// The hashes in a file that --write-hashes made.
-ImageHashes hashesIn(const std::string& file) {
+// The hashes or pictures in a file that --write-hashes or --write-pictures made.
+template <class Expected>
+Expected readExpected(const std::string& file) {
   const std::vector<unsigned char> bytes = readFileBytes(file);
   try {
-    return ImageHashes::parse(nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false));
+    return Expected::parse(nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false));
   } catch (const ScoreFileError& error) {
     throw InputError(fmt::format("{}: {}", file, error.what()));
   }
@@ -53,33 +54,47 @@ std::vector<ScoreEntry> chosenEntries(const BenchOptions& options, ScoreSize siz
   return entries;
 }
 
+// What a file holds that is to be completed; nothing if there is none yet.
+template <class Expected>
+Expected earlier(const std::string& file) {
+  return std::filesystem::exists(file) ? readExpected<Expected>(file) : Expected();
+}
+
 // Renders the image that validates each entry, on all instruction sets of this machine but scalar, and stores its hash
-// in the file. Hashes of other sizes and instruction sets stay.
-int writeHashes(const BenchOptions& options, ScoreSize size, uint32_t threads) {
-  const std::string& file = options.writeHashes;
-  ImageHashes hashes = std::filesystem::exists(file) ? hashesIn(file) : ImageHashes();
+// for each, and its picture for the first, in the files. What they hold of other sizes and instruction sets stays.
+int writeExpected(const BenchOptions& options, ScoreSize size, uint32_t threads) {
+  const std::string &hashFile = options.writeHashes, &pictureFile = options.writePictures;
+  ImageHashes hashes = earlier<ImageHashes>(hashFile);
+  ExpectedPictures pictures = earlier<ExpectedPictures>(pictureFile);
+  std::vector<Isa> isas = availableIsas();
+  std::erase(isas, Isa::scalar);
+  // Pictures need one instruction set, and the narrowest is that of most machines.
+  if (hashFile.empty()) isas.resize(1);
   for (const ScoreEntry& entry : chosenEntries(options, size)) {
     const Scene scene = loadScene(findScene(entry.scene), {.filmSize = std::array{entry.width, entry.height}});
-    for (const Isa isa : availableIsas()) {
-      if (isa == Isa::scalar) continue;
-      hashes.set(size, hashGroup(isa), entry, imageHashOf(scene, entry, isa, threads));
+    for (const Isa isa : isas) {
+      const Image image = validatedImage(scene, entry, isa, threads);
+      hashes.set(size, hashGroup(isa), entry, hashImage(image.pixels));
+      hashes.setBuild(size, hashGroup(isa), buildName());
+      if (isa == isas.front()) pictures.set(size, entry, pictureOf(image));
     }
     tell("{} {} {}", options.score, entry.scene, toString(entry.method));
   }
-  writeFileAtomically(file, hashes.toJson().dump(1) + "\n");
+  if (!hashFile.empty()) writeFileAtomically(hashFile, hashes.toJson().dump(1) + "\n");
+  if (!pictureFile.empty()) writeFileAtomically(pictureFile, pictures.toJson().dump(1) + "\n");
   return kExitDone;
 }
 
 }  // namespace
 
 int runBenchScore(const BenchOptions& options) {
-  // Checks options; --write-hashes replaces the measurement.
+  // Checks options; --write-hashes and --write-pictures replace the measurement.
   if (!options.size.empty() || !options.duration.empty()) {
     throw UsageError("--score has sizes and lengths of its own; expected neither --size nor --duration");
   }
   const auto size = static_cast<ScoreSize>(parseChoice("--score", options.score, kScoreSizeNames));
   const uint32_t threads = benchThreads(options);
-  if (!options.writeHashes.empty()) return writeHashes(options, size, threads);
+  if (!options.writeHashes.empty() || !options.writePictures.empty()) return writeExpected(options, size, threads);
   // The request: a workload, this machine, and where its scenes and references are.
   const ScoreRequest request{.size = size,
                              .entries = chosenEntries(options, size),
@@ -89,12 +104,14 @@ int runBenchScore(const BenchOptions& options) {
                              .references = sceneFolder() / "references"};
   printBench(options, scoreHeading(request));
   // Measures. Each row is printed once it is measured.
-  const ImageHashes hashes = options.hashes.empty() ? ImageHashes::committed() : hashesIn(options.hashes);
+  ExpectedImages expected = ExpectedImages::committed();
+  if (!options.hashes.empty()) expected.hashes = readExpected<ImageHashes>(options.hashes);
+  if (!options.pictures.empty()) expected.pictures = readExpected<ExpectedPictures>(options.pictures);
   const ScoreResult result =
-      measureScore(request, hashes, [&](const ScoreRow& row) { printBench(options, toText(row)); });
+      measureScore(request, expected, [&](const ScoreRow& row) { printBench(options, toText(row)); });
   printBench(options, toText(result));
   writeBenchJson(options, "score", toJson(result));
-  return result.allRight() ? kExitDone : kExitCheck;
+  return result.allAccepted() ? kExitDone : kExitCheck;
 }
 
 }  // namespace wavecrest

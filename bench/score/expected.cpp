@@ -16,10 +16,12 @@ namespace {
 // The end of a key SIZE/GROUP/SCENE/METHOD.
 std::string entryKey(const ScoreEntry& entry) { return fmt::format("{}/{}", entry.scene, toString(entry.method)); }
 
-// The beginning of a key SIZE/GROUP/SCENE/METHOD, with the slash after the group.
-std::string groupKey(ScoreSize size, const std::string& group) {
-  return fmt::format("{}/{}/", kScoreSizeNames[static_cast<size_t>(size)], group);
+std::string buildKey(ScoreSize size, const std::string& group) {
+  return fmt::format("{}/{}", kScoreSizeNames[static_cast<size_t>(size)], group);
 }
+
+// The beginning of a key SIZE/GROUP/SCENE/METHOD, with the slash after the group.
+std::string groupKey(ScoreSize size, const std::string& group) { return buildKey(size, group) + "/"; }
 
 // Throws ScoreFileError for anything but sixteen hexadecimal digits.
 uint64_t parseHash(const std::string& text) {
@@ -29,6 +31,17 @@ uint64_t parseHash(const std::string& text) {
     throw ScoreFileError(fmt::format("'{}' is no hash; expected sixteen hexadecimal digits", text));
   }
   return hash;
+}
+
+// Where a key stands in nested objects: each part of it between slashes is a level.
+nlohmann::ordered_json& placeOf(nlohmann::ordered_json& objects, const std::string& key) {
+  nlohmann::ordered_json* place = &objects;
+  for (size_t begin = 0; begin <= key.size();) {
+    const size_t end = std::min(key.find('/', begin), key.size());
+    place = &(*place)[key.substr(begin, end - begin)];
+    begin = end + 1;
+  }
+  return *place;
 }
 
 }  // namespace
@@ -63,6 +76,12 @@ ImageHashes ImageHashes::parse(const nlohmann::json& file) {
         }
       }
     }
+    if (!file.contains("builds")) return all;
+    for (const auto& [size, groups] : file.at("builds").items()) {
+      for (const auto& [group, build] : groups.items()) {
+        all.builds_[fmt::format("{}/{}", size, group)] = build.get<std::string>();
+      }
+    }
   } catch (const nlohmann::json::exception&) {
     throw ScoreFileError("is not made of sizes, instruction sets, scenes, methods and hashes");
   }
@@ -72,18 +91,10 @@ ImageHashes ImageHashes::parse(const nlohmann::json& file) {
 ImageHashes ImageHashes::committed() { return parse(nlohmann::json::parse(kImageHashesJson)); }
 
 nlohmann::ordered_json ImageHashes::toJson() const {
-  nlohmann::ordered_json images = nlohmann::ordered_json::object();
-  for (const auto& [key, hash] : hashes_) {
-    nlohmann::ordered_json* place = &images;
-    // Each part of the key between slashes is a level of the nested objects.
-    for (size_t begin = 0; begin <= key.size();) {
-      const size_t end = std::min(key.find('/', begin), key.size());
-      place = &(*place)[key.substr(begin, end - begin)];
-      begin = end + 1;
-    }
-    *place = hashText(hash);
-  }
-  return {{"score_version", kScoreVersion}, {"images", images}};
+  nlohmann::ordered_json images = nlohmann::ordered_json::object(), builds = images;
+  for (const auto& [key, hash] : hashes_) placeOf(images, key) = hashText(hash);
+  for (const auto& [key, build] : builds_) placeOf(builds, key) = build;
+  return {{"score_version", kScoreVersion}, {"builds", builds}, {"images", images}};
 }
 
 std::optional<uint64_t> ImageHashes::find(ScoreSize size, const std::string& group, const ScoreEntry& entry) const {
@@ -100,6 +111,16 @@ bool ImageHashes::has(ScoreSize size, const std::string& group) const {
   // The map is sorted: keys with this beginning follow the place where the beginning alone would stand.
   const auto found = hashes_.lower_bound(key);
   return found != hashes_.end() && found->first.starts_with(key);
+}
+
+const std::string& ImageHashes::buildOf(ScoreSize size, const std::string& group) const {
+  static const std::string unknown;
+  const auto found = builds_.find(buildKey(size, group));
+  return found == builds_.end() ? unknown : found->second;
+}
+
+void ImageHashes::setBuild(ScoreSize size, const std::string& group, const std::string& build) {
+  builds_[buildKey(size, group)] = build;
 }
 
 double ReferenceMachine::rateOf(const ScoreEntry& entry) const { return rates.at(entryKey(entry)); }

@@ -1,5 +1,5 @@
-// What `bench --score` measures against: the hash of every image for each instruction set, and the speed of the
-// reference machine. Committed as JSON beside this file and compiled in.
+// What `bench --score` measures against: the hash of every image for each instruction set, with the build that rendered
+// it, and the speed of the reference machine. Committed as JSON beside this file and compiled in.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "bench/score/build_name.h"
 #include "bench/score/workload.h"
 
 namespace wavecrest {
@@ -38,8 +39,13 @@ class ImageHashes {
   void set(ScoreSize size, const std::string& group, const ScoreEntry& entry, uint64_t hash);
   bool has(ScoreSize size, const std::string& group) const;
 
+  // buildName() of the build that rendered the images of a size and group; empty where that is not known.
+  const std::string& buildOf(ScoreSize size, const std::string& group) const;
+  void setBuild(ScoreSize size, const std::string& group, const std::string& build);
+
  private:
-  std::map<std::string, uint64_t> hashes_;  // by SIZE/GROUP/SCENE/METHOD
+  std::map<std::string, uint64_t> hashes_;     // by SIZE/GROUP/SCENE/METHOD
+  std::map<std::string, std::string> builds_;  // by SIZE/GROUP
 };
 
 // Paths per CPU second of one thread of the reference machine, 256x192 pixels.

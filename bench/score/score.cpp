@@ -22,24 +22,6 @@ Scene loadEntry(const ScoreRequest& request, const ScoreEntry& entry) {
   return loadScene(request.sceneFile(entry.scene), {.filmSize = std::array{entry.width, entry.height}});
 }
 
-// The image on the reference's pixels, each the mean of the film's pixels within it.
-Image reduced(const Image& film, uint32_t width) {
-  const uint32_t side = film.width / width;
-  if (side <= 1) return film;
-  Image small{.width = width, .height = film.height / side, .channels = 3, .pixels = {}};
-  small.pixels.resize(size_t{3} * small.width * small.height);
-  const float scale = 1.0f / static_cast<float>(side * side);
-  for (uint32_t y = 0; y < small.height * side; ++y) {
-    for (uint32_t x = 0; x < small.width * side; ++x) {
-      for (uint32_t channel = 0; channel < 3; ++channel) {
-        const size_t to = 3 * (size_t{y / side} * small.width + x / side) + channel;
-        small.pixels[to] += scale * film.pixels[3 * (size_t{y} * film.width + x) + channel];
-      }
-    }
-  }
-  return small;
-}
-
 // Time, samples and relMSE of the render so far.
 QualityAtTime qualityNow(const Session& session, const Image& reference) {
   const RenderStatistics now = session.statistics();
@@ -49,14 +31,15 @@ QualityAtTime qualityNow(const Session& session, const Image& reference) {
           .relmse = relmse(reference, reduced(filmImage(session), reference.width)).relmse};
 }
 
-// Renders the workload on all threads, slice by slice.
-void renderOnThreads(const Scene& scene, const RenderSettings& settings, const Image& reference, ScoreRow& row) {
+// Renders the workload on all threads, slice by slice. judge: what the image after the first one is.
+void renderOnThreads(const Scene& scene, const RenderSettings& settings, const Image& reference,
+                     const std::function<ImageVerdict(const Image&)>& judge, ScoreRow& row) {
   const auto session = Session::create(scene, settings);
   SliceRenderer slices(*session, row.entry.iterations / kScoreSlices);
   std::vector<double> rates;
   for (uint64_t done = 1; done <= kScoreSlices; ++done) {
     rates.push_back(slices.render().pathsPerSecond());
-    if (done == 1) row.hash = hashImage(session->film().resolve());
+    if (done == 1) row.image = judge(filmImage(*session));
     // After slices 1, 2, 4 and 8.
     if ((done & (done - 1)) == 0) row.quality.push_back(qualityNow(*session, reference));
   }
@@ -95,7 +78,7 @@ void renderOnOneThread(const Scene& scene, RenderSettings settings, StageEventCo
   }
 }
 
-ScoreRow measureRow(const ScoreRequest& request, const ScoreEntry& entry, const ImageHashes& hashes,
+ScoreRow measureRow(const ScoreRequest& request, const ScoreEntry& entry, const ExpectedImages& expected,
                     StageEventCounter& events) {
   const Scene scene = loadEntry(request, entry);
   const RenderSettings settings = scoreSettings(scene, entry, request.isa, request.threads);
@@ -103,9 +86,8 @@ ScoreRow measureRow(const ScoreRequest& request, const ScoreEntry& entry, const 
   ScoreRow row;
   row.entry = entry;
   // All threads: speed, quality over time, and the image that validates the row.
-  renderOnThreads(scene, settings, reference, row);
-  const std::optional<uint64_t> expected = hashes.find(request.size, hashGroup(request.isa), entry);
-  if (expected) row.validity = *expected == row.hash ? Validity::right : Validity::wrong;
+  const auto judge = [&](const Image& film) { return judgeImage(film, request.size, request.isa, entry, expected); };
+  renderOnThreads(scene, settings, reference, judge, row);
   // One thread.
   renderOnOneThread(scene, settings, events, row);
   // As many processes as threads, on one thread each, for one slice.
@@ -136,14 +118,14 @@ double geometricMean(const std::vector<ScoreRow>& rows, std::optional<Method> me
 
 }  // namespace
 
-uint64_t imageHashOf(const Scene& scene, const ScoreEntry& entry, Isa isa, uint32_t threads) {
+Image validatedImage(const Scene& scene, const ScoreEntry& entry, Isa isa, uint32_t threads) {
   const auto session = Session::create(scene, scoreSettings(scene, entry, isa, threads));
   session->renderUntil(entry.iterations / kScoreSlices, std::nullopt);
-  return hashImage(session->film().resolve());
+  return filmImage(*session);
 }
 
-bool ScoreResult::allRight() const {
-  return std::all_of(rows.begin(), rows.end(), [](const ScoreRow& row) { return row.validity == Validity::right; });
+bool ScoreResult::allAccepted() const {
+  return std::all_of(rows.begin(), rows.end(), [](const ScoreRow& row) { return row.image.isAccepted(); });
 }
 
 double ScoreResult::score(std::optional<Method> method) const { return geometricMean(rows, method, &ScoreRow::score); }
@@ -155,20 +137,20 @@ double ScoreResult::coreScore(std::optional<Method> method) const {
 std::vector<std::string> ScoreResult::doubts() const {
   std::vector<std::string> doubts = doubtsAbout(machine);
   const auto count = [&](Validity validity) {
-    return std::count_if(rows.begin(), rows.end(), [&](const ScoreRow& row) { return row.validity == validity; });
+    return std::count_if(rows.begin(), rows.end(), [&](const ScoreRow& row) { return row.image.validity == validity; });
   };
-  if (const auto wrong = count(Validity::wrong); wrong > 0) {
+  if (const auto refused = count(Validity::refused); refused > 0) {
     doubts.push_back(
-        fmt::format("{} of {} images are not what this workload renders: this is no score", wrong, rows.size()));
+        fmt::format("{} of {} images are not what this workload renders: this is no score", refused, rows.size()));
   }
   if (const auto unknown = count(Validity::unknown); unknown > 0) {
-    doubts.push_back(fmt::format("{} of {} images could not be validated: no hashes are committed for {}", unknown,
-                                 rows.size(), hashGroup(isa)));
+    doubts.push_back(fmt::format("{} of {} images could not be validated: neither hashes nor pictures are known for {}",
+                                 unknown, rows.size(), hashGroup(isa)));
   }
   return doubts;
 }
 
-ScoreResult measureScore(const ScoreRequest& request, const ImageHashes& hashes,
+ScoreResult measureScore(const ScoreRequest& request, const ExpectedImages& expected,
                          const std::function<void(const ScoreRow&)>& progress) {
   ScoreResult result;
   result.size = request.size;
@@ -179,7 +161,7 @@ ScoreResult measureScore(const ScoreRequest& request, const ImageHashes& hashes,
   result.eventsRefusal = events.refusal();
   MachineWatch watch;
   for (const ScoreEntry& entry : request.entries) {
-    result.rows.push_back(measureRow(request, entry, hashes, events));
+    result.rows.push_back(measureRow(request, entry, expected, events));
     progress(result.rows.back());
     watch.look();
   }

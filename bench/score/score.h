@@ -1,7 +1,8 @@
 // `wavecrest bench --score`: one figure for a machine, from a fixed workload whose images prove that it was rendered.
 //
 // Each entry of the workload (workload.h) is rendered on all threads in slices. The image after the first slice must
-// have the committed hash (expected.h): a build that renders something else gets no score. Its relMSE against the
+// have the committed hash (expected.h), or in other builds than that which made it the committed picture (picture.h): a
+// build that renders something else gets no score. Its relMSE against the
 // scene's committed reference after slices 1, 2, 4 and 8 says what the speed buys. One thread then renders some slices
 // again for the speed of a core and the stages, and as many processes as threads some slices each.
 #pragma once
@@ -15,16 +16,12 @@
 
 #include "bench/machine/machine_watch.h"
 #include "bench/machine/perf_events.h"
-#include "bench/score/expected.h"
+#include "bench/score/image_verdict.h"
 #include "bench/score/roofline.h"
 #include "bench/statistics/medians.h"
 #include "bench/throughput/speed.h"
 
 namespace wavecrest {
-
-// Whether an image is the one that it should be; unknown where no hash is committed for the instruction set.
-enum class Validity { right, wrong, unknown };
-constexpr std::array<std::string_view, 3> kValidityNames{"right", "wrong", "unknown"};
 
 struct QualityAtTime {
   double seconds = 0, cpuSeconds = 0;  // of the render on all threads
@@ -40,8 +37,7 @@ struct ScoredStage {
 
 struct ScoreRow {
   ScoreEntry entry;
-  uint64_t hash = 0;
-  Validity validity = Validity::unknown;
+  ImageVerdict image;
   Estimate pathsPerSecond;             // wall time, all threads, over slices
   Estimate pathsPerCpuSecond;          // one thread
   double processesPathsPerSecond = 0;  // of as many processes as threads, together
@@ -60,7 +56,7 @@ struct ScoreResult {
   std::vector<ScoreRow> rows;
   MachineState machine;
 
-  bool allRight() const;
+  bool allAccepted() const;
   // Geometric mean over entries: 100 is a core of the reference machine. method: of its entries alone.
   double score(std::optional<Method> method = {}) const;
   double coreScore(std::optional<Method> method = {}) const;
@@ -78,11 +74,11 @@ struct ScoreRequest {
 };
 
 // progress: called after each entry with its row.
-ScoreResult measureScore(const ScoreRequest& request, const ImageHashes& hashes,
+ScoreResult measureScore(const ScoreRequest& request, const ExpectedImages& expected,
                          const std::function<void(const ScoreRow&)>& progress);
 
-// The hash of an entry's image after its first slice, rendered with any number of threads.
-uint64_t imageHashOf(const Scene& scene, const ScoreEntry& entry, Isa isa, uint32_t threads);
+// An entry's image after its first slice, rendered with any number of threads.
+Image validatedImage(const Scene& scene, const ScoreEntry& entry, Isa isa, uint32_t threads);
 
 // Printed as it goes: a heading, a line for each entry, and the rest.
 std::string scoreHeading(const ScoreRequest& request);

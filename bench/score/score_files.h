@@ -6,6 +6,7 @@
 namespace wavecrest {
 
 extern const std::string_view kImageHashesJson;
+extern const std::string_view kImagePicturesJson;
 extern const std::string_view kReferenceMachineJson;
 
 }  // namespace wavecrest

@@ -42,6 +42,15 @@ Json stageJson(const ScoredStage& stage, const ScoreResult& result) {
   return json;
 }
 
+// null where pictures were not compared.
+Json differenceJson(const std::optional<PictureDifference>& difference) {
+  if (!difference) return {};
+  return {{"ssim", difference->ssim},
+          {"worst_block_ssim", difference->worstBlockSsim},
+          {"mean_off", difference->meanOff},
+          {"worst_block_mean_off", difference->worstBlockMeanOff}};
+}
+
 // One entry of the workload: its image, scores, rates, quality over time, and stages.
 Json rowJson(const ScoreRow& row, const ScoreResult& result) {
   Json json = {{"scene", row.entry.scene},
@@ -49,8 +58,10 @@ Json rowJson(const ScoreRow& row, const ScoreResult& result) {
                {"width", row.entry.width},
                {"height", row.entry.height},
                {"iterations", row.entry.iterations},
-               {"image_hash", hashText(row.hash)},
-               {"image", enumeratorName(kValidityNames, row.validity)},
+               {"image_hash", hashText(row.image.hash)},
+               {"image", enumeratorName(kValidityNames, row.image.validity)},
+               {"image_verdict", row.image.text},
+               {"image_difference", differenceJson(row.image.difference)},
                {"score", row.score},
                {"core_score", row.coreScore}};
   add(json, "paths_per_second", row.pathsPerSecond);
@@ -87,8 +98,10 @@ Json toJson(const ScoreResult& result) {
           {"size", enumeratorName(kScoreSizeNames, result.size)},
           {"isa", std::string(toString(result.isa))},
           {"threads", result.threads},
+          {"compiler", compilerName()},
+          {"build", buildName()},
           {"reference_machine", referenceMachine().name},
-          {"valid", result.allRight()},
+          {"valid", result.allAccepted()},
           {"score", result.score()},
           {"core_score", result.coreScore()},
           {"method_scores", methods},

@@ -78,22 +78,38 @@ void addStages(TextLines& text, const ScoreResult& result, Method method) {
   }
 }
 
+// "26 exact, 2 within tolerance".
+std::string countsInWords(const ScoreResult& result) {
+  std::string words;
+  for (size_t i = 0; i < kValidityNames.size(); ++i) {
+    const auto count = std::count_if(result.rows.begin(), result.rows.end(), [&](const ScoreRow& row) {
+      return row.image.validity == static_cast<Validity>(i);
+    });
+    if (count > 0) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, kValidityNames[i]);
+  }
+  return words;
+}
+
 }  // namespace
 
-// One line under scoreHeading, with relMSE and time after the last slice.
+// One line under scoreHeading, with relMSE and time after the last slice, and one for an image that is not exact.
 std::string toText(const ScoreRow& row) {
   const auto rate = [](const Estimate& e) {
     return fmt::format("{:.3f} +-{:.3f}", 1e-6 * e.value, 1e-6 * e.interval.halfWidth());
   };
   const QualityAtTime& end = row.quality.back();
-  return fmt::format("{:<23} {:<4} {:<8} {:>15} {:>15} {:>9.3f} {:>7.0f} {:>7.0f}   {:.2e} at {:.2f} s\n",
-                     row.entry.scene, toString(row.entry.method), enumeratorName(kValidityNames, row.validity),
-                     rate(row.pathsPerSecond), rate(row.pathsPerCpuSecond), 1e-6 * row.processesPathsPerSecond,
-                     row.score, row.coreScore, end.relmse, end.seconds);
+  std::string text =
+      fmt::format("{:<23} {:<4} {:<16} {:>15} {:>15} {:>9.3f} {:>7.0f} {:>7.0f}   {:.2e} at {:.2f} s\n",
+                  row.entry.scene, toString(row.entry.method), enumeratorName(kValidityNames, row.image.validity),
+                  rate(row.pathsPerSecond), rate(row.pathsPerCpuSecond), 1e-6 * row.processesPathsPerSecond, row.score,
+                  row.coreScore, end.relmse, end.seconds);
+  // What the verdict comes from, where it is not the bits.
+  if (row.image.validity != Validity::exact) text += fmt::format("    {}\n", row.image.text);
+  return text;
 }
 
 std::string scoreHeading(const ScoreRequest& request) {
-  return fmt::format("score {}: {} thread{}, {}; 100 is {}\n{:<23} {:<4} {:<8} {:>15} {:>15} {:>9} {:>7} {:>7}   {}\n",
+  return fmt::format("score {}: {} thread{}, {}; 100 is {}\n{:<23} {:<4} {:<16} {:>15} {:>15} {:>9} {:>7} {:>7}   {}\n",
                      kScoreSizeNames[static_cast<size_t>(request.size)], request.threads,
                      request.threads == 1 ? "" : "s", toString(request.isa), referenceMachine().name, "scene", "",
                      "image", "M paths/s", "of a core", "processes", "score", "core", "relMSE");
@@ -122,7 +138,8 @@ std::string toText(const ScoreResult& result) {
          result.coreScore(entry.method));
   }
   line(text, "  all  {:>7.0f}   of a core {:>7.0f}{}", result.score(), result.coreScore(),
-       result.allRight() ? "" : "   NOT VALID");
+       result.allAccepted() ? "" : "   NOT VALID");
+  line(text, "  images: {}", countsInWords(result));
   return fmt::to_string(text);
 }
 

@@ -193,7 +193,8 @@ class Score(CommandTest):
         self.assertTrue(result["valid"])
         self.assertEqual([entry["method"] for entry in result["entries"]], ["lt", "vcm"])
         for entry in result["entries"]:
-            self.assertEqual(entry["image"], "right")
+            self.assertEqual((entry["image"], entry["image_verdict"]), ("exact", "exact"))
+            self.assertIsNone(entry["image_difference"])
             self.assertEqual([round(at["samples_per_pixel"] * 8 / entry["iterations"]) for at in entry["quality"]],
                              [1, 2, 4, 8])
             self.assertLess(entry["quality"][-1]["relmse"], entry["quality"][0]["relmse"])
@@ -215,16 +216,60 @@ class Score(CommandTest):
             group["cornell-diffuse"]["vcm"] = "0123456789abcdef"
         wrong = self.write("wrong.json", json.dumps(hashes))
         told = self.run_wavecrest(*self.PART, "--hashes", wrong, "--json", self.path("score.json"), expect=CHECK)
-        self.assertRegex(told.stdout, r"(?m)^cornell-diffuse +vcm +wrong")
+        self.assertRegex(told.stdout, r"(?m)^cornell-diffuse +vcm +refused .*\n +refused \(other bits than")
         self.assertIn("NOT VALID", told.stdout)
         result = read_json(self.path("score.json"))
         validate(result)
-        self.assertEqual([entry["image"] for entry in result["entries"]], ["right", "wrong"])
+        self.assertEqual([entry["image"] for entry in result["entries"]], ["exact", "refused"])
 
-    def test_without_a_hash_there_is_no_valid_score(self):
-        none = self.write("none.json", json.dumps({"score_version": 1, "images": {}}))
-        told = self.run_wavecrest("bench", "cornell-diffuse", "--score", "small", "--methods", "lt", "--hashes", none,
-                                  expect=CHECK)
+    def no_hashes(self):
+        return self.write("none.json", json.dumps({"score_version": 1, "images": {}}))
+
+    def test_without_a_hash_an_image_is_compared_with_its_picture(self):
+        told = self.run_wavecrest(*self.PART, "--hashes", self.no_hashes(), "--json", self.path("score.json"), expect=DONE)
+        self.assertRegex(told.stdout, r"(?m)^cornell-diffuse +vcm +within tolerance .*\n"
+                                      r" +within tolerance \(worst block: SSIM \S+, mean off by \S+ %; image: ")
+        self.assertIn("images: 2 within tolerance", told.stdout)
+        self.assertNotIn("NOT VALID", told.stdout)
+        result = read_json(self.path("score.json"))
+        validate(result)
+        self.assertTrue(result["valid"])
+        for entry in result["entries"]:
+            self.assertEqual(entry["image"], "within tolerance")
+            self.assertIn(entry["image_verdict"], told.stdout)
+            self.assertGreater(entry["image_difference"]["ssim"], 0.995)
+            self.assertLess(entry["image_difference"]["mean_off"], 0.003)
+
+    def test_hashes_of_another_build_lead_to_pictures(self):
+        hashes = self.hashes()
+        for group in hashes["images"]["small"]:
+            hashes["images"]["small"][group]["cornell-diffuse"]["vcm"] = "0123456789abcdef"
+            hashes["builds"]["small"][group] = "0.0.9, a compiler"
+        other = self.write("other.json", json.dumps(hashes))
+        self.run_wavecrest(*self.PART, "--hashes", other, "--json", self.path("score.json"), expect=DONE)
+        self.assertEqual([entry["image"] for entry in read_json(self.path("score.json"))["entries"]],
+                         ["exact", "within tolerance"])
+
+    def test_another_picture_is_refused(self):
+        self.run_wavecrest(*self.PART, "--write-pictures", self.path("pictures.json"))
+        pictures = read_json(self.path("pictures.json"))
+        images = pictures["pictures"]["small"]["cornell-diffuse"]
+        images["vcm"] = images["lt"]
+        swapped = self.write("swapped.json", json.dumps(pictures))
+        told = self.run_wavecrest(*self.PART, "--hashes", self.no_hashes(), "--pictures", swapped, "--json",
+                                  self.path("score.json"), expect=CHECK)
+        self.assertRegex(told.stdout, r"(?m)^ +refused \(.*image: SSIM \S+, at least 0.995")
+        self.assertIn("NOT VALID", told.stdout)
+        result = read_json(self.path("score.json"))
+        validate(result)
+        self.assertFalse(result["valid"])
+        self.assertEqual([entry["image"] for entry in result["entries"]], ["within tolerance", "refused"])
+
+    def test_without_hash_and_picture_there_is_no_valid_score(self):
+        no_pictures = self.write("pictures.json", json.dumps({"score_version": 1, "pictures": {}}))
+        told = self.run_wavecrest("bench", "cornell-diffuse", "--score", "small", "--methods", "lt", "--hashes",
+                                  self.no_hashes(), "--pictures", no_pictures, expect=CHECK)
+        self.assertRegex(told.stdout, r"(?m)^cornell-diffuse +lt +unknown")
         self.assertIn("could not be validated", told.stdout)
 
     def test_hashes_of_other_sizes_and_instruction_sets_stay(self):
@@ -246,11 +291,14 @@ class Score(CommandTest):
         self.assert_one_error_line(result, "--hashes")
         result = self.run_wavecrest("bench", "--score", "small", "--hashes", self.write("bad.json", "[]"), expect=INPUT)
         self.assert_one_error_line(result, ".*bad.json: has no hashes")
+        result = self.run_wavecrest("bench", "--score", "small", "--pictures", self.path("bad.json"), expect=INPUT)
+        self.assert_one_error_line(result, ".*bad.json: has no pictures")
 
     def test_the_score_is_exported_for_other_tools(self):
-        self.run_wavecrest(*self.PART, "--hashes", self.write("n.json", json.dumps({"score_version": 1, "images": {}})),
-                           "--json", self.path("score.json"), expect=CHECK)
+        self.run_wavecrest(*self.PART, "--hashes", self.no_hashes(), "--json", self.path("score.json"), expect=DONE)
         result = read_json(self.path("score.json"))
+        result["valid"] = False
+        self.write("score.json", json.dumps(result))
 
         def exported(kind):
             return subprocess.run([sys.executable, EXPORT, kind, self.path("score.json")], capture_output=True,
@@ -292,8 +340,11 @@ class Modes(CommandTest):
             (["--tolerance", "0.1", "--scaling"], r"--tolerance goes with --against or --compare"),
             (["--extremes", "--knobs", "precision"], r"--knobs goes with --tradeoff; expected it$"),
             (["--scaling", "--write-hashes", "h.json"], r"--write-hashes goes with --score; expected it$"),
+            (["--pictures", "p.json"], r"--pictures goes with --score; expected it$"),
             (["--scaling", "--pin"], r"--pin goes with none"),
             (["--score", "small", "--write-hashes", "h.json", "--json", "j.json"], r"--write-hashes measures nothing"),
+            (["--score", "small", "--write-pictures", "p.json", "--hashes", __file__],
+             r"--write-pictures measures nothing"),
             (["--score", "small", "--write-hashes", "-"], r"--write-hashes -: expected a file$"),
             (["cornell-diffuse", "--compare", "a.json", "b.json"], r"--compare measures nothing; expected no scenes"),
             (["--extremes", "--duration", "1s"], r"--extremes has scenes, methods, sizes and lengths of its own"),

@@ -1,4 +1,4 @@
-"""The committed hashes that validate scores are those of this build, for the size small."""
+"""The committed hashes and pictures that validate scores are those of this build, for the size small."""
 
 import json
 import pathlib
@@ -6,7 +6,9 @@ import unittest
 
 from harness import CommandTest, read_json
 
-COMMITTED = pathlib.Path(__file__).parents[2] / "bench" / "score" / "image_hashes.json"
+SCORE = pathlib.Path(__file__).parents[2] / "bench" / "score"
+COMMITTED = SCORE / "image_hashes.json"
+PICTURES = SCORE / "image_pictures.json"
 REMAKE = "after a change that changes images on purpose: bench/score/remake-hashes build/release/wavecrest"
 
 
@@ -23,8 +25,20 @@ class Hashes(CommandTest):
 
     def test_are_in_the_order_in_which_they_are_written(self):
         """So that remaking them changes no other line."""
-        text = COMMITTED.read_text()
-        self.assertEqual(text, json.dumps(json.loads(text), indent=1) + "\n")
+        for file in COMMITTED, PICTURES:
+            text = file.read_text()
+            self.assertEqual(text, json.dumps(json.loads(text), indent=1) + "\n")
+
+    def test_the_build_is_known_that_made_them(self):
+        hashes = read_json(COMMITTED)
+        for size, groups in hashes["images"].items():
+            self.assertEqual(list(groups), list(hashes["builds"][size]))
+
+    def test_every_image_of_the_size_small_has_a_picture(self):
+        hashes, pictures = read_json(COMMITTED)["images"]["small"], read_json(PICTURES)["pictures"]["small"]
+        for scenes in hashes.values():
+            self.assertEqual({scene: list(methods) for scene, methods in scenes.items()},
+                             {scene: list(methods) for scene, methods in pictures.items()})
 
 
 if __name__ == "__main__":

@@ -33,6 +33,7 @@ TEST(ImageHashes, areThoseThatWereWritten) {
   ImageHashes hashes;
   hashes.set(ScoreSize::small, "avx2", kEntry, 0x0123456789abcdefu);
   hashes.set(ScoreSize::large, "avx512", kEntry, 7);
+  hashes.setBuild(ScoreSize::small, "avx2", "0.1.0, GCC 12");
   const ImageHashes read = ImageHashes::parse(nlohmann::json::parse(hashes.toJson().dump()));
   EXPECT_EQ(read.find(ScoreSize::small, "avx2", kEntry), 0x0123456789abcdefu);
   EXPECT_EQ(read.find(ScoreSize::large, "avx512", kEntry), 7u);
@@ -42,6 +43,8 @@ TEST(ImageHashes, areThoseThatWereWritten) {
   EXPECT_EQ(read.find(ScoreSize::small, "avx2", other), std::nullopt);
   EXPECT_TRUE(read.has(ScoreSize::small, "avx2"));
   EXPECT_FALSE(read.has(ScoreSize::small, "avx"));
+  EXPECT_EQ(read.buildOf(ScoreSize::small, "avx2"), "0.1.0, GCC 12");
+  EXPECT_EQ(read.buildOf(ScoreSize::large, "avx512"), "");
 }
 
 TEST(ImageHashes, ofOtherFilesAreRefused) {

@@ -10,11 +10,11 @@
 namespace wavecrest {
 namespace {
 
-ScoreRow rowOf(Method method, double score, Validity validity = Validity::right) {
+ScoreRow rowOf(Method method, double score, Validity validity = Validity::exact) {
   ScoreRow row;
   row.entry.scene = "cornell-diffuse";
   row.entry.method = method;
-  row.validity = validity;
+  row.image.validity = validity;
   row.score = score;
   row.coreScore = 0.5 * score;
   return row;
@@ -35,10 +35,14 @@ TEST(Score, isTheGeometricMeanOfTheEntries) {
 }
 
 TEST(Score, isValidOnlyIfEveryImageIs) {
-  EXPECT_TRUE(resultOf({rowOf(Method::pt, 1), rowOf(Method::lt, 1)}).allRight());
-  for (const Validity validity : {Validity::wrong, Validity::unknown}) {
+  const ScoreResult valid = resultOf({rowOf(Method::pt, 1), rowOf(Method::lt, 1, Validity::tolerated)});
+  EXPECT_TRUE(valid.allAccepted());
+  EXPECT_TRUE(toJson(valid).at("valid").get<bool>());
+  EXPECT_NE(toText(valid).find("images: 1 exact, 1 within tolerance"), std::string::npos);
+  for (const Validity validity : {Validity::refused, Validity::unknown}) {
     const ScoreResult result = resultOf({rowOf(Method::pt, 1), rowOf(Method::lt, 1, validity)});
-    EXPECT_FALSE(result.allRight());
+    EXPECT_FALSE(result.allAccepted());
+    EXPECT_NE(toText(result).find("NOT VALID"), std::string::npos);
     EXPECT_FALSE(result.doubts().empty());
     EXPECT_FALSE(toJson(result).at("valid").get<bool>());
   }

@@ -1,0 +1,42 @@
+// Whether an image is the one that an entry of the workload renders: by its bits where they are known, else by how far
+// its picture is from the expected one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "bench/score/expected.h"
+#include "bench/score/expected_pictures.h"
+#include "bench/score/picture.h"
+
+namespace wavecrest {
+
+// exact: the committed bits. tolerated: another build's, whose picture is the same within toleranceOf() the method.
+// refused: other bits than this build's, or another picture. unknown: neither a hash nor a picture is known.
+enum class Validity { exact, tolerated, refused, unknown };
+constexpr std::array<std::string_view, 4> kValidityNames{"exact", "within tolerance", "refused", "unknown"};
+
+struct ImageVerdict {
+  uint64_t hash = 0;
+  Validity validity = Validity::unknown;
+  std::optional<PictureDifference> difference;  // where pictures were compared
+  std::string text;                             // the word, and in brackets what it comes from
+
+  bool isAccepted() const { return validity == Validity::exact || validity == Validity::tolerated; }
+};
+
+struct ExpectedImages {
+  ImageHashes hashes;
+  ExpectedPictures pictures;
+  static ExpectedImages committed() { return {ImageHashes::committed(), ExpectedPictures::committed()}; }
+};
+
+// film: after the entry's first slice (validatedImage of score.h), at the entry's size. build: buildName(), or another
+// one's for a test.
+ImageVerdict judgeImage(const Image& film, ScoreSize size, Isa isa, const ScoreEntry& entry,
+                        const ExpectedImages& expected, const std::string& build = buildName());
+
+}  // namespace wavecrest
