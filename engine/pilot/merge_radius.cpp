@@ -158,6 +158,7 @@ MergeRadius chosenRadius(const RenderPlan<S>& plan, const RenderSettings& settin
   const LightPilot light = walkLightPaths(plan, pilot, area);
   const std::vector<MergePlace> places = findMergePlaces(plan, settings);
   std::vector<double> pixels;
+  pixels.reserve(places.size());
   for (const MergePlace& place : places) pixels.push_back(place.pixel);
   MergeRadius radius = plan.mergeRadius;
   radius.pixel = medianOf(std::move(pixels));

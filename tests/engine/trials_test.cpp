@@ -34,7 +34,7 @@ TrialImages imagesOf(float value, double chance, uint64_t iterations = 1) {
 TEST(TrialError, isTheRelativeVarianceOfOneIteration) {
   // A pixel of 2 or 0, evenly, has the mean 1 and the variance 1. It is that of one iteration, so images of four have
   // four times that.
-  for (const uint64_t iterations : {1, 4}) {
+  for (const uint64_t iterations : {uint64_t{1}, uint64_t{4}}) {
     const std::array candidates{imagesOf(2, 0.5, iterations), imagesOf(1, 1, iterations)};
     const std::vector<TrialError> errors = trialErrors(candidates);
     EXPECT_NEAR(errors[0].variance, static_cast<double>(iterations), 0.1 * static_cast<double>(iterations));
