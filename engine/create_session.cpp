@@ -12,9 +12,9 @@ template <class S>
 std::unique_ptr<Session> makeSession(const Scene& scene, const RenderSettings& settings) {
   if (settings.method == Method::mlt) return makeChainSession<S>(scene, settings);
   if (!isChosenByTrials(settings.method)) return makeWaveSession<S>(scene, settings);
-  ChosenMethod<S> chosen = chooseMethod<S>(scene, settings);
-  const RenderSettings byMethod = withMethod(settings, chosen.choice.method);
-  return makeWaveSession<S>(scene, byMethod, {.scene = std::move(chosen.scene), .choice = std::move(chosen.choice)});
+  Prepared<S> prepared = chooseMethod<S>(scene, settings);
+  const RenderSettings chosen = withMethod(settings, prepared.choice->method);
+  return makeWaveSession<S>(scene, chosen, std::move(prepared));
 }
 
 }  // namespace

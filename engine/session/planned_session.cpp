@@ -14,16 +14,21 @@ namespace {
 template <class S>
 RenderPlan<S> planIn(oneapi::tbb::task_arena& arena, const Scene& scene, const RenderSettings& settings,
                      std::shared_ptr<const CompiledScene<S>> compiled, const FilmArea& area, double& seconds) {
-  const auto begin = Clock::now();
-  const WorkerLimit limit(settings.threads);
-  const SpreadMemory spread(settings.placement);
   RenderPlan<S> plan;
-  arena.execute([&] { plan = finishedPlan<S>(scene, settings, area, std::move(compiled)); });
-  seconds = secondsSince(begin);
+  seconds = timeBuilding(
+      settings, [&] { arena.execute([&] { plan = finishedPlan<S>(scene, settings, area, std::move(compiled)); }); });
   return plan;
 }
 
 }  // namespace
+
+double timeBuilding(const RenderSettings& settings, const std::function<void()>& work) {
+  const auto begin = Clock::now();
+  const WorkerLimit limit(settings.threads);
+  const SpreadMemory spread(settings.placement);
+  work();
+  return secondsSince(begin);
+}
 
 template <class S>
 PlannedSession<S>::PlannedSession(const Scene& scene, const RenderSettings& settings, Prepared<S> prepared)
@@ -38,13 +43,11 @@ PlannedSession<S>::PlannedSession(const Scene& scene, const RenderSettings& sett
 
 template <class S>
 void PlannedSession<S>::finishBuilding(const std::function<void()>& rest) {
-  const auto begin = Clock::now();
-  const WorkerLimit limit(settings_.threads);
-  const SpreadMemory spread(settings_.placement);
-  rest();
-  // Threads are bound last. New memory of a bound thread is on the thread's own node.
-  pins_.emplace(arena_, settings_.placement);
-  buildSeconds_ += secondsSince(begin);
+  buildSeconds_ += timeBuilding(settings_, [&] {
+    rest();
+    // Threads are bound last. New memory of a bound thread is on the thread's own node.
+    pins_.emplace(arena_, settings_.placement);
+  });
 }
 
 template <class S>

@@ -24,6 +24,10 @@ struct Prepared {
   std::optional<MethodChoice> choice{};             // that led to settings.method
 };
 
+// Runs `work`, which makes what a session needs before it renders, with as many threads as the settings allow; new
+// pages are spread over the nodes of their placement. Returns the seconds that it took.
+double timeBuilding(const RenderSettings& settings, const std::function<void()>& work);
+
 // S is the storage type of the settings' precision.
 template <class S>
 class PlannedSession : public Session {

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "engine/tasks/for_each.h"
 #include "engine/trials/trial_error.h"
 #include "engine/waves/wave_session.h"
 
@@ -74,11 +73,9 @@ RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings,
   return trial;
 }
 
-// A candidate, its session and what it has rendered.
 struct Candidate {
   Method method;
   std::unique_ptr<Session> session;
-  TrialImages images;
   bool goesOn = true;
 };
 
@@ -104,10 +101,9 @@ double costOf(const RenderStatistics& statistics) {
   return rays / static_cast<double>(statistics.paths) + costs.path;
 }
 
-std::vector<MethodTrial> trialsOf(const std::vector<Candidate>& candidates, SamplerKind sampler) {
-  std::vector<TrialImages> images;
-  images.reserve(candidates.size());
-  for (const Candidate& candidate : candidates) images.push_back(candidate.images);
+// images: of each candidate.
+std::vector<MethodTrial> trialsOf(const std::vector<Candidate>& candidates, const std::vector<TrialImages>& images,
+                                  SamplerKind sampler) {
   const std::vector<TrialError> errors = trialErrors(images);
   std::vector<MethodTrial> trials;
   for (size_t i = 0; i < candidates.size(); ++i) {
@@ -115,7 +111,7 @@ std::vector<MethodTrial> trialsOf(const std::vector<Candidate>& candidates, Samp
     const bool gains = sampler == SamplerKind::sobol && bestSampler(candidate.method) == SamplerKind::sobol;
     const double bias = strategiesOf(candidate.method).merge ? kMergesMustGain : 1;
     trials.push_back({.method = candidate.method,
-                      .iterations = candidate.images.iterations(),
+                      .iterations = images[i].iterations(),
                       .variance = errors[i].variance * bias / (gains ? kSobolGain : 1),
                       .missed = errors[i].missed,
                       .cost = costOf(candidate.session->statistics())});
@@ -129,36 +125,26 @@ const MethodTrial& bestOf(const std::vector<MethodTrial>& trials) {
   });
 }
 
-// Compiles the scene on the settings' threads.
-template <class S>
-std::shared_ptr<const CompiledScene<S>> compileOnThreads(const Scene& scene, const RenderSettings& settings) {
-  oneapi::tbb::task_arena arena(static_cast<int>(settings.threads));
-  const WorkerLimit limit(settings.threads);
-  const SpreadMemory spread(settings.placement);
-  std::shared_ptr<const CompiledScene<S>> compiled;
-  arena.execute([&] { compiled = compileScene<S>(scene, settings.accel, true, settings.instancing); });
-  return compiled;
-}
-
 // Renders trial images round by round. Without the times.
 template <class S>
 MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
                        const std::shared_ptr<const CompiledScene<S>>& compiled) {
   std::vector<Candidate> candidates;
+  std::vector<TrialImages> images;
   for (const Method method : kCandidates) {
     const RenderSettings trial = trialSettings(scene, settings, method);
-    auto session = makeWaveSession<S>(scene, trial, {.scene = compiled});
-    const FilmArea& area = session->film().area();
-    candidates.push_back({method, std::move(session), TrialImages(area.width, area.height)});
+    candidates.push_back({method, makeWaveSession<S>(scene, trial, {.scene = compiled})});
+    const FilmArea& area = candidates.back().session->film().area();
+    images.emplace_back(area.width, area.height);
   }
   std::vector<MethodTrial> trials;
   for (const Round& round : kRounds) {
-    for (Candidate& candidate : candidates) {
-      if (!candidate.goesOn) continue;
-      const std::vector<float> first = nextImage(*candidate.session, round.iterations);
-      candidate.images.add(first, nextImage(*candidate.session, round.iterations), round.iterations);
+    for (size_t i = 0; i < candidates.size(); ++i) {
+      if (!candidates[i].goesOn) continue;
+      const std::vector<float> first = nextImage(*candidates[i].session, round.iterations);
+      images[i].add(first, nextImage(*candidates[i].session, round.iterations), round.iterations);
     }
-    trials = trialsOf(candidates, settings.sampler);
+    trials = trialsOf(candidates, images, settings.sampler);
     const double best = bestOf(trials).inefficiency();
     for (size_t i = 0; i < trials.size(); ++i) {
       candidates[i].goesOn &= trials[i].inefficiency() <= round.within * best;
@@ -166,7 +152,7 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
     if (std::ranges::count_if(candidates, &Candidate::goesOn) < 2) break;
   }
   // Where no candidate found any light, the one with all strategies may yet.
-  const bool dark = std::ranges::none_of(candidates, [](const Candidate& one) { return one.images.brightness() > 0; });
+  const bool dark = std::ranges::none_of(images, [](const TrialImages& one) { return one.brightness() > 0; });
   return {.method = dark ? kCandidates.back() : bestOf(trials).method, .trials = std::move(trials)};
 }
 
@@ -181,16 +167,20 @@ RenderSettings withMethod(RenderSettings settings, Method method) {
 }
 
 template <class S>
-ChosenMethod<S> chooseMethod(const Scene& scene, const RenderSettings& settings) {
-  ChosenMethod<S> chosen{.choice = {}, .scene = compileOnThreads<S>(scene, settings)};
+Prepared<S> chooseMethod(const Scene& scene, const RenderSettings& settings) {
+  Prepared<S> prepared;
+  timeBuilding(settings, [&] {
+    oneapi::tbb::task_arena arena(static_cast<int>(settings.threads));
+    arena.execute([&] { prepared.scene = compileScene<S>(scene, settings.accel, true, settings.instancing); });
+  });
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
-  chosen.choice = runTrials<S>(scene, settings, chosen.scene);
-  chosen.choice.seconds = secondsSince(begin);
-  chosen.choice.cpuSeconds = processCpuSeconds() - cpuBegin;
-  return chosen;
+  prepared.choice = runTrials<S>(scene, settings, prepared.scene);
+  prepared.choice->seconds = secondsSince(begin);
+  prepared.choice->cpuSeconds = processCpuSeconds() - cpuBegin;
+  return prepared;
 }
-template ChosenMethod<float> chooseMethod(const Scene&, const RenderSettings&);
-template ChosenMethod<double> chooseMethod(const Scene&, const RenderSettings&);
+template Prepared<float> chooseMethod(const Scene&, const RenderSettings&);
+template Prepared<double> chooseMethod(const Scene&, const RenderSettings&);
 
 }  // namespace wavecrest

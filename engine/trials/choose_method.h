@@ -8,23 +8,15 @@
 // the same at every size of the film.
 #pragma once
 
-#include <memory>
-
-#include "engine/plan/render_plan.h"
-#include "engine/session/method_choice.h"
+#include "engine/session/planned_session.h"
 
 namespace wavecrest {
 
+// Compiles the scene, for the trials and the render, and chooses. settings.method must be evcm. The choice depends on
+// the scene, the shape of its film and the settings that change a sample, not on the seed, the number of iterations,
+// threads, waves or any clock. Throws as Session::create does.
 template <class S>
-struct ChosenMethod {
-  MethodChoice choice;
-  std::shared_ptr<const CompiledScene<S>> scene;  // compiled for the trials, and as good for the render
-};
-
-// settings.method must be evcm. The choice depends on the scene, the shape of its film and the settings that change a
-// sample, not on the seed, the number of iterations, threads, waves or any clock. Throws as Session::create does.
-template <class S>
-ChosenMethod<S> chooseMethod(const Scene& scene, const RenderSettings& settings);
+Prepared<S> chooseMethod(const Scene& scene, const RenderSettings& settings);
 
 // The settings by which the chosen method renders.
 RenderSettings withMethod(RenderSettings settings, Method method);

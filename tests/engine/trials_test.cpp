@@ -89,7 +89,7 @@ RenderSettings evcmSettings() {
 }
 
 MethodChoice choiceFor(const Scene& scene, const RenderSettings& settings = evcmSettings()) {
-  return chooseMethod<float>(scene, settings).choice;
+  return *chooseMethod<float>(scene, settings).choice;
 }
 
 TEST(Evcm, choosesByTheScene) {
