@@ -32,18 +32,6 @@ std::vector<std::filesystem::path> benchSceneFiles(const BenchOptions& options) 
   return files;
 }
 
-// The methods of --methods; by default all that have a page of their own.
-std::vector<Method> benchMethods(const BenchOptions& options) {
-  std::vector<Method> methods;
-  for (const std::string& word : options.methods) methods.push_back(parseMethodOption("--methods", word));
-  if (methods.empty()) {
-    for (const MethodEntry& entry : kMethods) {
-      if (!isChosenByTrials(entry.method)) methods.push_back(entry.method);
-    }
-  }
-  return methods;
-}
-
 void printBench(const BenchOptions& options, const std::string& text) {
   // Tables on stdout would spoil the JSON or the page there.
   if (options.json == kStandardStream || options.html == kStandardStream) return;

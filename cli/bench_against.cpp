@@ -50,7 +50,7 @@ int runBenchAgainst(const BenchOptions& options) {
                          .seconds = benchSeconds(options, kAgainstSeconds),
                          .family = {.level = options.familyLevel, .tolerance = options.tolerance},
                          .more = {}};
-  for (const Method method : benchMethods(options)) request.methods.emplace_back(toString(method));
+  for (const Method method : parseMethodList(options.methods)) request.methods.emplace_back(toString(method));
   try {
     // Measures; the exit code tells whether this build is slower.
     const AgainstResult result = runAgainst(request, showRound);

@@ -41,7 +41,6 @@ int runBenchExtremes(const BenchOptions& options);
 // Shared by the modes. Tables go to stdout unless the JSON or the page does.
 void printBench(const BenchOptions& options, const std::string& text);
 std::vector<std::filesystem::path> benchSceneFiles(const BenchOptions& options);
-std::vector<Method> benchMethods(const BenchOptions& options);
 LoadOptions benchLoading(const BenchOptions& options);
 // The best instruction set, all cores unless told otherwise, and the scene's own limits of paths.
 RenderSettings benchSettings(const Scene& scene, const BenchOptions& options);

@@ -6,6 +6,7 @@
 #include "bench/scaling/scaling.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
+#include "library/option_values.h"
 
 namespace wavecrest {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kScalingSeconds = 20;
 int runBenchScaling(const BenchOptions& options) {
   const double seconds = benchSeconds(options, kScalingSeconds);
   nlohmann::ordered_json all = {{"results", nlohmann::ordered_json::array()}};
-  forEachBenchCase(options, benchMethods(options), [&](const BenchCase& one) {
+  forEachBenchCase(options, parseMethodList(options.methods), [&](const BenchCase& one) {
     const ScalingResult result = measureScaling(one.scene, one.file, one.settings, seconds);
     printBench(options, toText(result) + "\n");
     all["results"].push_back(toJson(result));

@@ -30,7 +30,7 @@ Expected readExpected(const std::string& file) {
 // The workload, or the part of it that has the named methods and scenes. A scene that is not in it is a UsageError.
 std::vector<ScoreEntry> chosenEntries(const BenchOptions& options, ScoreSize size) {
   std::vector<ScoreEntry> entries = workloadOf(size);
-  const std::vector<Method> methods = benchMethods(options);
+  const std::vector<Method> methods = parseMethodList(options.methods);
   const auto contains = [](const auto& list, const auto& value) {
     return std::find(list.begin(), list.end(), value) != list.end();
   };
@@ -54,7 +54,7 @@ std::vector<ScoreEntry> chosenEntries(const BenchOptions& options, ScoreSize siz
   return entries;
 }
 
-// What a file holds that is to be completed; nothing if there is none yet.
+// Reads a file that is to be extended; empty if there is none yet.
 template <class Expected>
 Expected earlier(const std::string& file) {
   return std::filesystem::exists(file) ? readExpected<Expected>(file) : Expected();
@@ -68,7 +68,7 @@ int writeExpected(const BenchOptions& options, ScoreSize size, uint32_t threads)
   ExpectedPictures pictures = earlier<ExpectedPictures>(pictureFile);
   std::vector<Isa> isas = availableIsas();
   std::erase(isas, Isa::scalar);
-  // Pictures need one instruction set, and the narrowest is that of most machines.
+  // Pictures alone need one instruction set: the narrowest, which most machines have.
   if (hashFile.empty()) isas.resize(1);
   for (const ScoreEntry& entry : chosenEntries(options, size)) {
     const Scene scene = loadScene(findScene(entry.scene), {.filmSize = std::array{entry.width, entry.height}});

@@ -7,6 +7,7 @@
 #include "bench/specialization/specialization.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
+#include "library/option_values.h"
 
 namespace wavecrest {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kSpecializationSeconds = 20;
 
 int runBenchSpecialization(const BenchOptions& options) {
   const std::vector<Method> methods =
-      options.methods.empty() ? std::vector{Method::pt, Method::vcm} : benchMethods(options);
+      options.methods.empty() ? std::vector{Method::pt, Method::vcm} : parseMethodList(options.methods);
   const double seconds = benchSeconds(options, kSpecializationSeconds);
   std::vector<SpecializationResult> results;
   nlohmann::ordered_json all = {{"results", nlohmann::ordered_json::array()}};

@@ -7,6 +7,7 @@
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
 #include "engine/load/load.h"
+#include "library/option_values.h"
 
 namespace wavecrest {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kThroughputSeconds = 6;
 }  // namespace
 
 int runBenchThroughput(const BenchOptions& options) {
-  const std::vector<Method> methods = benchMethods(options);
+  const std::vector<Method> methods = parseMethodList(options.methods);
   const double seconds = benchSeconds(options, kThroughputSeconds);
   nlohmann::ordered_json all = {{"scenes", nlohmann::ordered_json::array()}};
   std::vector<SceneBench> benches;

@@ -7,6 +7,7 @@
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
+#include "library/option_values.h"
 
 namespace wavecrest {
 namespace {
@@ -28,7 +29,7 @@ Scene tradeScene(const BenchOptions& options, const std::filesystem::path& file)
 }  // namespace
 
 int runBenchTradeoff(const BenchOptions& options) {
-  const std::vector<Method> methods = benchMethods(options);
+  const std::vector<Method> methods = parseMethodList(options.methods);
   TradeEffort effort{.seconds = benchSeconds(options, kTradeSeconds), .knobs = options.knobs};
   if (options.seeds != 0) effort.seeds = options.seeds;
   std::vector<TradeResult> results;

@@ -27,24 +27,12 @@ struct RecommendOptions {
   bool json = false;
 };
 
-// The methods of --methods; by default all but evcm, whose choice is made here by longer renders.
-std::vector<Method> recommendMethods(const RecommendOptions& options) {
-  std::vector<Method> methods;
-  for (const std::string& word : options.methods) methods.push_back(parseMethodOption("--methods", word));
-  if (methods.empty()) {
-    for (const MethodEntry& entry : kMethods) {
-      if (!isChosenByTrials(entry.method)) methods.push_back(entry.method);
-    }
-  }
-  return methods;
-}
-
 void runRecommend(const RecommendOptions& options) {
   // Options are checked before the scene is loaded.
   const RecommendRequest request{
       .targetSsim = options.targetSsim,
       .seconds = parseDuration("--budget", options.budget),
-      .methods = recommendMethods(options),
+      .methods = parseMethodList(options.methods),
       .clock = static_cast<PilotClock>(parseChoice("--clock", options.clock, kPilotClockNames))};
   const Scene scene = loadScene(options.scene);
   const uint32_t width = scene.film.imageWidth(), height = scene.film.imageHeight();

@@ -167,6 +167,16 @@ Method parseMethodOption(const std::string& option, const std::string& word) {
   return kMethods[parseChoice(option, word, names)].method;
 }
 
+std::vector<Method> parseMethodList(std::span<const std::string> words) {
+  std::vector<Method> methods;
+  for (const std::string& word : words) methods.push_back(parseMethodOption("--methods", word));
+  if (!words.empty()) return methods;
+  for (const MethodEntry& entry : kMethods) {
+    if (!isChosenByTrials(entry.method)) methods.push_back(entry.method);
+  }
+  return methods;
+}
+
 namespace {
 
 // In the order of kAllSamplerKinds.

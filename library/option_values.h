@@ -54,6 +54,9 @@ uint64_t parseMemory(const std::string& option, const std::string& text);
 // The method of that name.
 Method parseMethodOption(const std::string& option, const std::string& word);
 
+// The methods of --methods; without words all whose pages are their own, so not evcm, which renders by one of them.
+std::vector<Method> parseMethodList(std::span<const std::string> words);
+
 // Whether the method merges paths, so that --radius, --radius-alpha and --light-paths are for it.
 bool mergesPaths(Method method);
 
