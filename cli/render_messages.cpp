@@ -94,11 +94,10 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
     ends.push_back(fmt::format("once the relative error is {:g}", options.until.relativeError));
   }
   fmt::print("ends     {}\n", fmt::join(ends, " or "));
-  if (strategiesOf(settings.method).merge && !isChosenByTrials(settings.method)) {
-    const MergeRadius& radius = plan.mergeRadius;
+  if (const std::optional<MergeRadius>& radius = plan.mergeRadius) {
     fmt::print(
         "merging  first within {:.4g} of the scene's radius: {:.4g} in its units, {:.2f} pixels, {:.2f} photons\n",
-        radius.first, radius.at(0), radius.inPixels(), radius.photonsPerSearch());
+        radius->first, radius->at(0), radius->inPixels(), radius->photonsPerSearch());
   }
   fmt::print("memory   {}\n", describe(plan.memory));
   // Memory that writing an EXR takes besides the plan.

@@ -109,7 +109,7 @@ def command_page(program):
 
 
 def link_from_front(pages, made):
-    """Links from the front page to pages that no file of the tree is, above its first section."""
+    """Adds links to the generated pages above the first section of the front page."""
     front = pages / page_of(FRONT)
     links = ", ".join(f"[{title}]({page})" for title, page in made)
     before, mark, after = front.read_text().partition("\n## ")

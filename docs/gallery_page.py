@@ -24,7 +24,7 @@ FEATURES = {
 
 
 def entry(pictures, scene, name, options):
-    """A scene as HTML. name: what the command calls it."""
+    """The figure of a scene, as HTML. name: the scene in the command below it."""
     command = ["wavecrest", "render", name, *words(options), "-o", name.rsplit("/")[-1].removesuffix(".xml") + ".png"]
     shown = " ".join(f"<span>{word}</span>" for word in command)  # lines end between words
     figure = pictures.figure(scene, options, f"{html.escape(first_sentence(scene))}\n<pre><code>{shown}</code></pre>", "pictures")

@@ -1,4 +1,4 @@
-"""Pictures of scenes for the documentation site, rendered by the program, and what stands below them.
+"""Rendered pictures of scenes for the documentation site, and their captions.
 
 A picture is named by a scene of the tree and the options of `wavecrest render` that make it; each is rendered once, however
 many pages show it.
@@ -15,7 +15,7 @@ OPTIONS = "-m bpt --spp 32"
 
 
 def first_sentence(scene):
-    """That of the comment at the head of a scene's file, which says what the scene is."""
+    """The first sentence of the comment at the head of a scene's file, which describes the scene."""
     comment = re.search(r"<!--(.*?)-->", (ROOT / scene).read_text(), re.DOTALL)
     if not comment:
         raise SystemExit(f"docs: {scene}: no comment; expected one that says what the scene is")
@@ -23,7 +23,7 @@ def first_sentence(scene):
 
 
 def words(options):
-    """The options of a picture, with those of every picture that they leave open."""
+    """The options, completed by the defaults for method, samples and size."""
     given = options.split()
     chosen = given if {"-m", "--spp"} & set(given) else [*OPTIONS.split(), *given]
     return chosen if "--size" in chosen else [*chosen, "--size", SIZE]

@@ -133,7 +133,7 @@ std::vector<CampaignScene> chosenScenes(const CampaignOptions& options, const Pr
   return scenes;
 }
 
-// Refuses crops of scenes that the campaign has not, and those that its images do not have.
+// Refuses crops of other scenes than the campaign's, and crops that reach out of its images. Throws UsageError.
 void checkCrops(const CampaignOptions& options, const CampaignSettings& settings) {
   if (!has(options, "--crop")) return;
   for (const std::string& word : options.defining.at("--crop")) {

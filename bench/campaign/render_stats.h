@@ -20,6 +20,7 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
 // The first radius of merges, relative to the scene's radius, in units of the scene, in pixels and by the photons that
 // a search meets; the latter two where a typical camera path first merges.
 nlohmann::ordered_json mergeRadiusJson(const MergeRadius& radius);
+
 // What the trials of evcm found, and the method that they led to.
 nlohmann::ordered_json choiceJson(const MethodChoice& choice);
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "bench/pixel_blocks.h"
+#include "engine/film/pixel_blocks.h"
 
 namespace wavecrest {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "bench/pixel_blocks.h"
+#include "engine/film/pixel_blocks.h"
 #include "metrics/image/srgb.h"
 
 namespace wavecrest {

@@ -1,4 +1,5 @@
-// What rounds: the program's version, its compiler and its Embree. Images of builds of equal names have equal bits.
+// The version, compiler and Embree of this build: all that its rounding depends on. Builds with the same name render
+// the same bits on the same instruction set.
 #pragma once
 
 #include <string>

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "bench/score/nested_keys.h"
 #include "bench/score/score_files.h"
 #include "engine/scene/hash_text.h"
 #include "kernels/stages.h"
@@ -33,17 +34,6 @@ uint64_t parseHash(const std::string& text) {
   return hash;
 }
 
-// Where a key stands in nested objects: each part of it between slashes is a level.
-nlohmann::ordered_json& placeOf(nlohmann::ordered_json& objects, const std::string& key) {
-  nlohmann::ordered_json* place = &objects;
-  for (size_t begin = 0; begin <= key.size();) {
-    const size_t end = std::min(key.find('/', begin), key.size());
-    place = &(*place)[key.substr(begin, end - begin)];
-    begin = end + 1;
-  }
-  return *place;
-}
-
 }  // namespace
 
 uint64_t hashImage(std::span<const float> samples) {
@@ -66,22 +56,13 @@ ImageHashes ImageHashes::parse(const nlohmann::json& file) {
   }
   ImageHashes all;
   try {
-    // The file nests sizes, groups, scenes and methods. The map has one key for all four.
-    for (const auto& [size, groups] : file.at("images").items()) {
-      for (const auto& [group, scenes] : groups.items()) {
-        for (const auto& [scene, methods] : scenes.items()) {
-          for (const auto& [method, hash] : methods.items()) {
-            all.hashes_[fmt::format("{}/{}/{}/{}", size, group, scene, method)] = parseHash(hash.get<std::string>());
-          }
-        }
-      }
-    }
+    forEachNested(file.at("images"), 4, [&](const std::string& key, const nlohmann::json& hash) {
+      all.hashes_[key] = parseHash(hash.get<std::string>());
+    });
     if (!file.contains("builds")) return all;
-    for (const auto& [size, groups] : file.at("builds").items()) {
-      for (const auto& [group, build] : groups.items()) {
-        all.builds_[fmt::format("{}/{}", size, group)] = build.get<std::string>();
-      }
-    }
+    forEachNested(file.at("builds"), 2, [&](const std::string& key, const nlohmann::json& build) {
+      all.builds_[key] = build.get<std::string>();
+    });
   } catch (const nlohmann::json::exception&) {
     throw ScoreFileError("is not made of sizes, instruction sets, scenes, methods and hashes");
   }
@@ -92,8 +73,8 @@ ImageHashes ImageHashes::committed() { return parse(nlohmann::json::parse(kImage
 
 nlohmann::ordered_json ImageHashes::toJson() const {
   nlohmann::ordered_json images = nlohmann::ordered_json::object(), builds = images;
-  for (const auto& [key, hash] : hashes_) placeOf(images, key) = hashText(hash);
-  for (const auto& [key, build] : builds_) placeOf(builds, key) = build;
+  for (const auto& [key, hash] : hashes_) nestedPlace(images, key) = hashText(hash);
+  for (const auto& [key, build] : builds_) nestedPlace(builds, key) = build;
   return {{"score_version", kScoreVersion}, {"builds", builds}, {"images", images}};
 }
 

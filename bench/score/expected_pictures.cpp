@@ -6,10 +6,11 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "bench/pixel_blocks.h"
 #include "bench/report/embedded_images.h"
 #include "bench/score/expected.h"
+#include "bench/score/nested_keys.h"
 #include "bench/score/score_files.h"
+#include "engine/film/pixel_blocks.h"
 
 namespace wavecrest {
 namespace {
@@ -22,7 +23,7 @@ std::string keyOf(ScoreSize size, const ScoreEntry& entry) {
   return fmt::format("{}/{}/{}", kScoreSizeNames[static_cast<size_t>(size)], entry.scene, toString(entry.method));
 }
 
-// Six bits of a digit of base64; 64 for other characters.
+// The value of a base64 digit, 0 to 63; 64 for any other character.
 uint32_t digitOf(char c) {
   if (c >= 'A' && c <= 'Z') return static_cast<uint32_t>(c - 'A');
   if (c >= 'a' && c <= 'z') return static_cast<uint32_t>(c - 'a') + 26;
@@ -30,7 +31,8 @@ uint32_t digitOf(char c) {
   return c == '+' ? 62 : c == '/' ? 63 : 64;
 }
 
-// So many bytes, a multiple of three. Throws ScoreFileError for a text of another length or with other characters.
+// Decodes base64 without padding to `size` bytes, a multiple of three. Throws ScoreFileError if the text has another
+// length or other characters.
 std::vector<uint8_t> bytesOfBase64(std::string_view text, size_t size) {
   if (text.size() != size / 3 * 4) {
     throw ScoreFileError(fmt::format("has a picture of {} characters; expected {}", text.size(), size / 3 * 4));
@@ -74,14 +76,9 @@ ExpectedPictures ExpectedPictures::parse(const nlohmann::json& file) {
   }
   ExpectedPictures all;
   try {
-    // The file nests sizes, scenes and methods. The map has one key for all three.
-    for (const auto& [size, scenes] : file.at("pictures").items()) {
-      for (const auto& [scene, methods] : scenes.items()) {
-        for (const auto& [method, picture] : methods.items()) {
-          all.pictures_[fmt::format("{}/{}/{}", size, scene, method)] = parsePicture(picture);
-        }
-      }
-    }
+    forEachNested(file.at("pictures"), 3, [&](const std::string& key, const nlohmann::json& picture) {
+      all.pictures_[key] = parsePicture(picture);
+    });
   } catch (const nlohmann::json::exception&) {
     throw ScoreFileError("is not made of sizes, scenes, methods and pictures");
   }
@@ -92,11 +89,7 @@ ExpectedPictures ExpectedPictures::committed() { return parse(nlohmann::json::pa
 
 nlohmann::ordered_json ExpectedPictures::toJson() const {
   nlohmann::ordered_json pictures = nlohmann::ordered_json::object();
-  for (const auto& [key, picture] : pictures_) {
-    const size_t scene = key.find('/') + 1, method = key.find('/', scene) + 1;
-    pictures[key.substr(0, scene - 1)][key.substr(scene, method - scene - 1)][key.substr(method)] =
-        pictureJson(picture);
-  }
+  for (const auto& [key, picture] : pictures_) nestedPlace(pictures, key) = pictureJson(picture);
   return {{"score_version", kScoreVersion}, {"pictures", pictures}};
 }
 

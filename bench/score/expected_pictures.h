@@ -1,5 +1,5 @@
-// What `bench --score` compares an image with where no hash is known for it, or one of another build: a small picture
-// of it, as text in a JSON file that is committed beside this one and compiled in.
+// The small pictures that `bench --score` compares images with, if no hash is known or the hash is another build's.
+// Committed as JSON beside this file and compiled in.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@ namespace wavecrest {
 
 class ExpectedPictures {
  public:
-  // Throws ScoreFileError for other versions of the workload, and for what is no picture.
+  // Throws ScoreFileError if the file is for another version of the workload, or a picture in it is damaged.
   static ExpectedPictures parse(const nlohmann::json& file);
   static ExpectedPictures committed();  // bench/score/image_pictures.json
   nlohmann::ordered_json toJson() const;

@@ -14,8 +14,8 @@
 
 namespace wavecrest {
 
-// exact: the committed bits. tolerated: another build's, whose picture is the same within toleranceOf() the method.
-// refused: other bits than this build's, or another picture. unknown: neither a hash nor a picture is known.
+// exact: the hash is the committed one. tolerated: the hash is another build's or unknown, and the picture is within
+// toleranceOf() the method. refused: another hash than this build's, or another picture. unknown: neither is committed.
 enum class Validity { exact, tolerated, refused, unknown };
 constexpr std::array<std::string_view, 4> kValidityNames{"exact", "within tolerance", "refused", "unknown"};
 
@@ -23,7 +23,7 @@ struct ImageVerdict {
   uint64_t hash = 0;
   Validity validity = Validity::unknown;
   std::optional<PictureDifference> difference;  // where pictures were compared
-  std::string text;                             // the word, and in brackets what it comes from
+  std::string text;                             // kValidityNames, and the reason in brackets
 
   bool isAccepted() const { return validity == Validity::exact || validity == Validity::tolerated; }
 };
@@ -34,8 +34,8 @@ struct ExpectedImages {
   static ExpectedImages committed() { return {ImageHashes::committed(), ExpectedPictures::committed()}; }
 };
 
-// film: after the entry's first slice (validatedImage of score.h), at the entry's size. build: buildName(), or another
-// one's for a test.
+// film: after the entry's first slice (validatedImage of score.h), at the entry's size. build: the name of the build
+// that rendered it.
 ImageVerdict judgeImage(const Image& film, ScoreSize size, Isa isa, const ScoreEntry& entry,
                         const ExpectedImages& expected, const std::string& build = buildName());
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/pixel_blocks.h"
+#include "engine/film/pixel_blocks.h"
 #include "metrics/image/srgb.h"
 #include "metrics/ssim.h"
 
@@ -17,7 +17,7 @@ namespace {
 // Deviations of darker blocks are relative to this part of the mean over all blocks.
 constexpr double kDarkBlock = 0.01;
 
-// Of samples of a picture, in three channels: the mean of each block.
+// The mean of each block of a map that has one value per pixel.
 std::vector<double> meansOfBlocks(const std::vector<float>& map, uint32_t width) {
   const size_t pixels = map.size();
   const PixelBlocks blocks = PixelBlocks::of(3 * pixels, width);
@@ -82,12 +82,12 @@ ScorePicture pictureOf(const Image& film) {
 
 PictureDifference differenceOf(const ScorePicture& own, const ScorePicture& expected) {
   PictureDifference difference;
-  // Structure: SSIM of the codes.
+  // Structure: SSIM of the sRGB pixels.
   const SsimResult ssim = PreparedSsim(expected.codes).compare(own.codes, true);
   difference.ssim = ssim.mean;
   const std::vector<double> blocks = meansOfBlocks(ssim.map, expected.codes.width);
   difference.worstBlockSsim = *std::min_element(blocks.begin(), blocks.end());
-  // Light: means of blocks, and of the image, as blocks are of equal size.
+  // Brightness. The mean of all blocks is the mean of the image, as all blocks have the same size.
   const double mean = meanOf(expected.blockMeans);
   difference.meanOff = relativeOff(meanOf(own.blockMeans), mean, mean);
   for (size_t i = 0; i < own.blockMeans.size(); ++i) {

@@ -1,9 +1,8 @@
-// An image as `bench --score` keeps it where bits cannot be compared: 64 pixels wide, as 8-bit codes and means of
-// blocks.
+// What `bench --score` compares where bits may differ: the image reduced to 64x48 pixels in 8-bit sRGB, and the mean
+// radiance of its blocks.
 //
-// Rounding changes few paths, and paths that it does not change draw the same random numbers: images of another
-// instruction set or compiler have the same noise. So the picture is that of the same seed, and its noise is compared
-// too: another seed, sampler or estimator has other noise, even where its mean is right.
+// Both images have the same seed. Rounding changes few paths, so an image by another instruction set or compiler has
+// nearly the same noise. Another seed, sampler or estimator has other noise and is refused, even if its mean is right.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +21,8 @@ constexpr uint32_t kPictureWidth = 64, kPictureHeight = 48;
 Image reduced(const Image& film, uint32_t width);
 
 struct ScorePicture {
-  Image8 codes;                   // kPictureWidth x kPictureHeight, gamma-corrected
-  std::vector<float> blockMeans;  // light, sums of three channels; blocks of PixelBlocks, row by row
+  Image8 codes;                   // kPictureWidth x kPictureHeight, sRGB
+  std::vector<float> blockMeans;  // of R + G + B, linear; of PixelBlocks, row by row
 };
 
 // film: linear RGB; its sides are multiples of the picture's.
@@ -31,14 +30,14 @@ ScorePicture pictureOf(const Image& film);
 
 // How far a picture is from the expected one. A difference that is not finite is beyond every tolerance.
 struct PictureDifference {
-  double ssim = 1, worstBlockSsim = 1;        // of the codes: mean over all pixels, and over those of the worst block
-  double meanOff = 0, worstBlockMeanOff = 0;  // of the light: absolute and relative to the expected mean
+  double ssim = 1, worstBlockSsim = 1;        // of the sRGB pixels: mean over the picture and over its worst block
+  double meanOff = 0, worstBlockMeanOff = 0;  // of linear means: absolute difference over the expected mean
 };
 
 PictureDifference differenceOf(const ScorePicture& own, const ScorePicture& expected);
 
-// Limits of a difference. Measured with the small workload at AVX-512: the worst entry of SSE4, AVX2, scalar code and
-// double precision, the nearest one of two other seeds, and the nearest one with the light times 1.02:
+// Limits of a difference. Measured with the small workload against AVX-512: rounding is the worst entry of SSE4, AVX2,
+// scalar code and double precision; another seed is the entry that differs least, of two seeds; so is the image x 1.02.
 //
 //                                        rounding   another seed   x 1.02   limit
 //     SSIM of the image                    0.9986         0.9913   0.9990   0.995
@@ -50,8 +49,8 @@ PictureDifference differenceOf(const ScorePicture& own, const ScorePicture& expe
 //                                          0.01 %          0.1 %      2 %   0.3 %
 //                                           6.0 %          4.9 %      2 %   15 %
 //
-// The image's SSIM refuses other noise, its mean another brightness, and blocks what is wrong in one place. A chain of
-// mlt that accepts another proposal goes another way from there on, hence its wider limits.
+// SSIM of the image refuses other noise, its mean another brightness. Blocks refuse local errors. If rounding makes a
+// chain of mlt accept another proposal, all its later states differ: hence wider limits.
 struct PictureTolerance {
   double ssim, worstBlockSsim, meanOff, worstBlockMeanOff;
 };

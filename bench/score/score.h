@@ -1,10 +1,10 @@
 // `wavecrest bench --score`: one figure for a machine, from a fixed workload whose images prove that it was rendered.
 //
 // Each entry of the workload (workload.h) is rendered on all threads in slices. The image after the first slice must
-// have the committed hash (expected.h), or in other builds than that which made it the committed picture (picture.h): a
-// build that renders something else gets no score. Its relMSE against the
-// scene's committed reference after slices 1, 2, 4 and 8 says what the speed buys. One thread then renders some slices
-// again for the speed of a core and the stages, and as many processes as threads some slices each.
+// have the committed hash (expected.h). Only a build that did not make the hash may round otherwise: its image must
+// look like the committed picture (picture.h). A build that renders something else gets no score. The relMSE against
+// the scene's committed reference after slices 1, 2, 4 and 8 says what the speed buys. One thread then renders some
+// slices again for the speed of a core and the stages, and as many processes as threads some slices each.
 #pragma once
 
 #include <filesystem>

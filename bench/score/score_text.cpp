@@ -92,7 +92,8 @@ std::string countsInWords(const ScoreResult& result) {
 
 }  // namespace
 
-// One line under scoreHeading, with relMSE and time after the last slice, and one for an image that is not exact.
+// A line under scoreHeading, with relMSE and time after the last slice. If the image is not exact, a second line says
+// why.
 std::string toText(const ScoreRow& row) {
   const auto rate = [](const Estimate& e) {
     return fmt::format("{:.3f} +-{:.3f}", 1e-6 * e.value, 1e-6 * e.interval.halfWidth());
@@ -103,7 +104,6 @@ std::string toText(const ScoreRow& row) {
                   row.entry.scene, toString(row.entry.method), enumeratorName(kValidityNames, row.image.validity),
                   rate(row.pathsPerSecond), rate(row.pathsPerCpuSecond), 1e-6 * row.processesPathsPerSecond, row.score,
                   row.coreScore, end.relmse, end.seconds);
-  // What the verdict comes from, where it is not the bits.
   if (row.image.validity != Validity::exact) text += fmt::format("    {}\n", row.image.text);
   return text;
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/pixel_blocks.h"
 #include "bench/statistics/bands.h"
+#include "engine/film/pixel_blocks.h"
 
 namespace wavecrest {
 namespace {

@@ -4,8 +4,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "bench/pixel_blocks.h"
 #include "bench/statistics/bands.h"
+#include "engine/film/pixel_blocks.h"
 
 namespace wavecrest {
 namespace {

@@ -69,7 +69,7 @@ class SceneGeometry;
 // The camera of a sensor over its full film, relative to `origin`.
 CameraView compileCamera(const Sensor& sensor, const FilmSettings& film, const Double3& origin = {});
 
-// The same camera with another film of the same shape.
+// The camera with another film of the same aspect ratio. Clips stay.
 CameraView withFilm(const CameraView& camera, const Sensor& sensor, const FilmSettings& film, const Double3& origin);
 
 // Sets the camera's clips where a primitive, in the camera's coordinates, may lie outside of them. Most scenes have

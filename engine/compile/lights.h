@@ -37,7 +37,7 @@ struct PickedLights {
   std::vector<LightRecord<S>> records;
   std::vector<AliasEntry> table;
 };
-// The lights where each emitter is picked so often: shares that are at least 0 and add up to 1.
+// The lights with these picks of emitters: shares that are at least 0 and add up to 1.
 template <class S>
 PickedLights<S> withPicks(const Lights<S>& lights, const std::vector<double>& shares);
 // Shares of which the part `even`, 0 to 1, is the same for all, and the rest in proportion to `weights`, at least 0.

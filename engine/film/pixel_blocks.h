@@ -13,6 +13,7 @@ struct PixelBlocks {
   // samples: of an image in RGB, row by row.
   static PixelBlocks of(size_t samples, size_t width) { return {width, samples / (3 * width)}; }
 
+  size_t samples() const { return 3 * width * height; }
   size_t across() const { return (width + kSide - 1) / kSide; }
   size_t down() const { return (height + kSide - 1) / kSide; }
   size_t count() const { return across() * down(); }

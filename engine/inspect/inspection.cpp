@@ -117,8 +117,7 @@ SceneInspection inspectScene(const Scene& scene, RenderSettings settings) {
     try {
       const DryPlan facts = planWithoutSession(scene, settings);
       row.memory = facts.memory;
-      const bool merges = strategiesOf(entry.method).merge && !isChosenByTrials(entry.method);
-      if (merges) row.mergeRadius = facts.mergeRadius;
+      row.mergeRadius = facts.mergeRadius;
     } catch (const SceneError& error) {
       row.refusal = error.what();
     }

@@ -19,7 +19,7 @@ struct MethodInspection {
   std::string refusal;  // why the method cannot render the scene; empty: it can, and the rest is filled in
   Specialization specialization{};
   MemoryPlan memory;
-  std::optional<MergeRadius> mergeRadius;  // of methods that merge
+  std::optional<MergeRadius> mergeRadius;  // as of DryPlan
 };
 
 struct SceneInspection {

@@ -23,8 +23,9 @@ void planLightPaths(RenderPlan<S>& plan, const RenderSettings& settings, const F
 template <class S>
 DryPlan dryPlan(RenderPlan<S> plan, const RenderSettings& settings, const FilmArea& area) {
   planLightPaths(plan, settings, area);
+  const bool merges = plan.pipeline.has(Fold::photonMap) && !isChosenByTrials(settings.method);
   return {.memory = plan.memory,
-          .mergeRadius = plan.mergeRadius,
+          .mergeRadius = merges ? std::optional(plan.mergeRadius) : std::nullopt,
           .specialization = plan.specialization,
           .isa = plan.isa,
           .accel = plan.accel(),

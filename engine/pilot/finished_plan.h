@@ -1,6 +1,9 @@
 // A render's plan with all that pilots decide: nothing of it changes once a session has it.
 #pragma once
 
+#include <memory>
+#include <optional>
+
 #include "engine/film/film_area.h"
 #include "engine/plan/memory_plan.h"
 
@@ -16,7 +19,7 @@ RenderPlan<S> finishedPlan(const Scene& scene, const RenderSettings& settings, c
 // What a session with these settings would be. Nothing of the film's size is allocated.
 struct DryPlan {
   MemoryPlan memory;
-  MergeRadius mergeRadius;  // of methods that merge
+  std::optional<MergeRadius> mergeRadius;  // of methods that merge; of evcm that of the one it chooses, not known here
   Specialization specialization{};
   Isa isa{};
   Accel accel{};

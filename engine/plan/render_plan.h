@@ -20,9 +20,9 @@ namespace wavecrest {
 
 template <class S>
 struct RenderPlan {
-  std::shared_ptr<const CompiledScene<S>> scene;  // of other plans, too
+  std::shared_ptr<const CompiledScene<S>> scene;  // shared with other plans
   SceneView<S> view;                              // of the scene, with the film and the lights of this plan
-  PickedLights<S> lights;                         // where they are not those of the scene (engine/pilot/light_picks.h)
+  PickedLights<S> lights;  // empty unless picks differ from the scene's (engine/pilot/light_picks.h)
   Specialization specialization{};
   ColumnNeeds needs;
   LightVertexUse lightUse;

@@ -87,7 +87,7 @@ struct RenderSettings {
   Method method = Method::pt;
   MetropolisSettings metropolis;
   RenderShare share;
-  std::optional<FilmSettings> film;  // that is rendered, of the same shape as the scene's; unset: the scene's own
+  std::optional<FilmSettings> film;  // rendered instead of the scene's, with the same aspect ratio
   Precision precision = Precision::floating;
   Isa isa = Isa::scalar;
   Accel accel = Accel::automatic;

@@ -37,6 +37,7 @@ PlannedSession<S>::PlannedSession(const Scene& scene, const RenderSettings& sett
       settings_(withPieces(settings, settings.filmOf(scene), film_.area().pixels.size())),
       plan_(planIn<S>(arena_, scene, settings_, std::move(prepared.scene), film_.area(), buildSeconds_)),
       choice_(std::move(prepared.choice)) {
+  buildSeconds_ += prepared.buildSeconds;
   if (choice_) clock_.goOnFrom(choice_->seconds, choice_->cpuSeconds);
   if (spreadsSamples(plan_, settings_)) film_.spreadBy(plan_.view.camera);
 }

@@ -22,6 +22,7 @@ template <class S>
 struct Prepared {
   std::shared_ptr<const CompiledScene<S>> scene{};  // as planRender takes it
   std::optional<MethodChoice> choice{};             // that led to settings.method
+  double buildSeconds = 0;                          // that making this took
 };
 
 // Runs `work`, which makes what a session needs before it renders, with as many threads as the settings allow; new

@@ -17,27 +17,28 @@ constexpr uint64_t kTrialSeed = 0x747269616c73;
 constexpr uint32_t kTrialPixels = 64 * 48;  // of the trial image, at most
 constexpr uint32_t kTrialWave = 2048, kTrialPieces = 8;
 
-// Both images of a round have so many iterations. Who is worse than the best by more than `within` is left out then.
+// A round renders two images of so many iterations each. Then candidates with more than `within` times the least
+// inefficiency stop.
 struct Round {
   uint64_t iterations;
   double within;
 };
 constexpr std::array kRounds{Round{1, 8}, Round{4, 4}, Round{16, 1}};
 
-// What stages cost, in rays to the closest hit with the shading behind them: least squares over 16 scenes and six
-// methods (a Zen 5, AVX-512), off by 4 and 8 % in the mean. Small scenes have no hierarchy to walk through.
+// Costs in units of one closest-hit ray with its shading: least squares of CPU times of 16 scenes by six methods (AMD
+// EPYC Zen 5, AVX-512), with residuals of 4 and 8 %. kSmallCosts: for Accel::small, whose rays are cheap.
 struct Costs {
   double shadow, connection, merge, path;
 };
 constexpr Costs kCosts{.shadow = 0.67, .connection = 0.2, .merge = 0.2, .path = 0};
 constexpr Costs kSmallCosts{.shadow = 0.7, .connection = 0.93, .merge = 1.57, .path = 0.8};
-// What Sobol points save of the variance where a method gains by them, in the mean over the nine scenes. Trials draw
-// independently, so that halves of an image are independent.
+// Variance of independent over Sobol samples, mean of the nine scenes, for methods that gain by Sobol. Trials draw
+// independent samples, so that the two images of a round are independent.
 constexpr double kSobolGain = 1.15;
-// The bias of merges falls more slowly than noise, and a small image tells little of it: merges must gain so much.
+// Weight of the variance of methods that merge, for their bias, which trials do not see.
 constexpr double kMergesMustGain = 1.1;
 
-// The film at a size of at most kTrialPixels pixels in the image.
+// The film, scaled down to at most kTrialPixels pixels in its crop window.
 FilmSettings trialFilm(FilmSettings film) {
   const double pixels = static_cast<double>(film.imageWidth()) * film.imageHeight();
   const double scale = std::min(std::sqrt(kTrialPixels / pixels), 1.0);
@@ -79,7 +80,7 @@ struct Candidate {
   bool goesOn = true;
 };
 
-// The image of the next iterations alone.
+// Renders so many more iterations; returns the image of these alone.
 std::vector<float> nextImage(Session& session, uint64_t iterations) {
   const uint64_t before = session.statistics().iterations;
   std::vector<float> sums = before == 0 ? std::vector<float>{} : session.film().resolve();
@@ -125,7 +126,7 @@ const MethodTrial& bestOf(const std::vector<MethodTrial>& trials) {
   });
 }
 
-// Renders trial images round by round. Without the times.
+// Renders all rounds. The times of the choice are not set.
 template <class S>
 MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
                        const std::shared_ptr<const CompiledScene<S>>& compiled) {
@@ -151,7 +152,7 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
     }
     if (std::ranges::count_if(candidates, &Candidate::goesOn) < 2) break;
   }
-  // Where no candidate found any light, the one with all strategies may yet.
+  // If no candidate found any light, take the one with all strategies.
   const bool dark = std::ranges::none_of(images, [](const TrialImages& one) { return one.brightness() > 0; });
   return {.method = dark ? kCandidates.back() : bestOf(trials).method, .trials = std::move(trials)};
 }
@@ -169,7 +170,7 @@ RenderSettings withMethod(RenderSettings settings, Method method) {
 template <class S>
 Prepared<S> chooseMethod(const Scene& scene, const RenderSettings& settings) {
   Prepared<S> prepared;
-  timeBuilding(settings, [&] {
+  prepared.buildSeconds = timeBuilding(settings, [&] {
     oneapi::tbb::task_arena arena(static_cast<int>(settings.threads));
     arena.execute([&] { prepared.scene = compileScene<S>(scene, settings.accel, true, settings.instancing); });
   });

@@ -1,11 +1,10 @@
 // evcm: the method that suits an image, by trials (after Grittmann et al. 2022, Efficiency-aware multiple importance
 // sampling for bidirectional rendering algorithms, which weighs the same choices by one method's moments).
 //
-// The choices of vertex connection and merging are what its paths are for: none of the light's (path tracing), light
-// paths that are seen by the camera alone (light tracing), that are connected as well (bidirectional path tracing), or
-// that are merged too. Each is a method's page. A small image is rendered by all candidates; those far behind are left
-// out, and the others go on. What decides is the variance of a pixel times the work, counted in rays, which is about
-// the same at every size of the film.
+// The candidates are vertex connection and merging and what remains of it without merges (bidirectional path tracing),
+// without connections too (light tracing), and without light paths (path tracing). All of them render a small image.
+// After each round, those far behind the best stop. The variance of a pixel times the work, counted in rays, decides;
+// it is about the same at every size of the film.
 #pragma once
 
 #include "engine/session/planned_session.h"

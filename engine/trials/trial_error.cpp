@@ -8,7 +8,7 @@
 namespace wavecrest {
 namespace {
 
-constexpr double kDarkest = 0.25;     // of the image's mean brightness, the least that errors are relative to
+constexpr double kDarkest = 0.25;     // of the image's mean brightness: errors are relative to at least that
 constexpr double kTrimmed = 1e-3;     // part of the pixels
 constexpr double kConfidence = 2.0;   // standard errors
 constexpr double kLeastError = 1e-3;  // of the mean brightness: the least standard error that weights take
@@ -18,7 +18,7 @@ struct Reference {
   double mean = 0;                 // of the image
 };
 
-// What at least one candidate says that is in the tile.
+// The largest lower bound of the tile's brightness, over all candidates but one.
 double surelyThere(std::span<const TrialImages> candidates, size_t tile, const TrialImages* but) {
   double most = 0;
   for (const TrialImages& images : candidates) {
@@ -28,7 +28,7 @@ double surelyThere(std::span<const TrialImages> candidates, size_t tile, const T
   return most;
 }
 
-// The mean of all candidates, each by its standard error, but no less than what one surely found.
+// The mean of all candidates, weighted by their standard errors, but at least surelyThere().
 Reference referenceOf(std::span<const TrialImages> candidates) {
   Reference reference;
   double brightest = 0;
@@ -70,25 +70,22 @@ TrialError errorOf(const TrialImages& images, std::span<const TrialImages> candi
 }  // namespace
 
 TrialImages::TrialImages(uint32_t width, uint32_t height)
-    : width_(width), height_(height), across_((width + kTrialTile - 1) / kTrialTile) {
-  const size_t tiles = size_t{across_} * ((height + kTrialTile - 1) / kTrialTile);
-  pixels_.resize(tiles, 0);
-  sums_.resize(tiles, 0);
-  variances_.resize(tiles, 0);
-  ofMeans_.resize(tiles, 0);
-  for (uint32_t y = 0; y < height; ++y) {
-    for (uint32_t x = 0; x < width; ++x) ++pixels_[size_t{y / kTrialTile} * across_ + x / kTrialTile];
-  }
+    : blocks_{width, height},
+      pixels_(blocks_.count(), 0),
+      sums_(blocks_.count(), 0),
+      variances_(blocks_.count(), 0),
+      ofMeans_(blocks_.count(), 0) {
+  for (size_t sample = 0; sample < blocks_.samples(); sample += 3) ++pixels_[blocks_.ofSample(sample)];
 }
 
 void TrialImages::add(std::span<const float> first, std::span<const float> second, uint64_t iterations) {
-  assert(first.size() == 3 * size_t{width_} * height_ && second.size() == first.size());
+  assert(first.size() == blocks_.samples() && second.size() == first.size());
   std::vector<double> sums(tiles(), 0), differences(tiles(), 0), squares(tiles(), 0);
   std::vector<std::pair<double, size_t>> pixels;  // squared difference and tile
-  for (size_t i = 0; i < size_t{width_} * height_; ++i) {
-    const size_t tile = i / width_ / kTrialTile * across_ + i % width_ / kTrialTile;
+  for (size_t i = 0; i < blocks_.samples(); i += 3) {
+    const size_t tile = blocks_.ofSample(i);
     const auto brightness = [&](std::span<const float> image) {
-      return (double{image[3 * i]} + double{image[3 * i + 1]} + double{image[3 * i + 2]}) / 3;
+      return (double{image[i]} + double{image[i + 1]} + double{image[i + 2]}) / 3;
     };
     const double a = brightness(first), b = brightness(second);
     sums[tile] += a + b;
@@ -114,7 +111,7 @@ void TrialImages::add(std::span<const float> first, std::span<const float> secon
 double TrialImages::brightness() const {
   double sum = 0;
   for (size_t tile = 0; tile < tiles(); ++tile) sum += mean(tile) * static_cast<double>(pixels_[tile]);
-  return sum / (static_cast<double>(width_) * height_);
+  return 3 * sum / static_cast<double>(blocks_.samples());
 }
 
 double TrialImages::standardError(size_t tile) const {

@@ -1,14 +1,15 @@
-// How noisy the images of trials are, and what they have missed.
+// The noise of trial images, and the light that they have missed.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "engine/film/pixel_blocks.h"
+
 namespace wavecrest {
 
-// What is kept of one candidate's images, by tiles of kTrialTile x kTrialTile pixels.
-constexpr uint32_t kTrialTile = 8;
+// What is kept of one candidate's images, by tiles (PixelBlocks).
 class TrialImages {
  public:
   TrialImages(uint32_t width, uint32_t height);
@@ -29,7 +30,7 @@ class TrialImages {
   double standardError(size_t tile) const;
 
  private:
-  uint32_t width_, height_, across_;
+  PixelBlocks blocks_;
   uint64_t pairs_ = 0;                              // of iterations
   std::vector<size_t> pixels_;                      // of each tile
   std::vector<double> sums_, variances_, ofMeans_;  // weighted by iterations
@@ -39,12 +40,12 @@ struct TrialError {
   double variance = 0, missed = 0;  // as of MethodTrial
 };
 
-// What each candidate's images say of it beside the others'. All estimate the same image. One that seldom finds light
-// which matters looks free of noise until it has. So what a tile lacks, beyond both standard errors, of another
-// candidate's light counts as if that light came as rarely as its absence allows: a part f of the brightness that n
-// samples have missed has a variance of n f^2 at least. A candidate that has found nothing in a tile has missed what
-// the others have there in the mean. Errors are relative to the tile's brightness, in tiles that are much darker than
-// the image to a part of its mean. All images must have the same size, and at least one pair.
+// The errors of all candidates, which estimate the same image. A method that rarely samples a bright path looks free of
+// noise until it does. So if a tile is darker than another candidate's by more than two standard errors of each, the
+// difference counts as missed: if n samples have not found a part f of the brightness, the variance of a sample is n
+// f^2 or more. A candidate whose tile is black has missed all of it. Errors are relative to the tile's brightness, or
+// to a quarter of the image's mean where a tile is darker than that. All images must have the same size and one pair or
+// more.
 std::vector<TrialError> trialErrors(std::span<const TrialImages> candidates);
 
 }  // namespace wavecrest

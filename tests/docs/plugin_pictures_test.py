@@ -24,7 +24,7 @@ def plugins_of(scene, options):
 
 
 def without_picture(plugins):
-    """The plugins of which no picture's scene has them."""
+    """The plugins that are in no scene of their pictures."""
     lacking = []
     for tag, entries in plugins.items():
         for plugin, entry in entries.items():

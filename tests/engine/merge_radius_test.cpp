@@ -26,7 +26,7 @@ RenderSettings automatic(Method method = Method::ppm) {
 }
 
 MergeRadius radiusOf(const Scene& scene, const RenderSettings& settings = automatic()) {
-  return planWithoutSession(scene, settings).mergeRadius;
+  return planWithoutSession(scene, settings).mergeRadius.value();
 }
 
 // A floor of side 8 seen from above, so that each pixel covers a square of it. scale: of everything.

@@ -8,6 +8,7 @@
 #include "engine/session/session.h"
 #include "engine/trials/choose_method.h"
 #include "engine/trials/trial_error.h"
+#include "engine/waves/wave_session.h"
 #include "tests/engine/test_scenes.h"
 
 namespace wavecrest {
@@ -168,6 +169,15 @@ TEST(Evcm, isChargedForItsTrials) {
   EXPECT_GT(statistics.choice->seconds, 0);
   EXPECT_EQ(statistics.renderSeconds, statistics.choice->seconds);
   EXPECT_EQ(statistics.cpuSeconds, statistics.choice->cpuSeconds);
+}
+
+TEST(Evcm, countsTheCompilationAsBuilding) {
+  const Scene scene = sceneFile("veach-door", 16, 12);
+  const Prepared<float> prepared = chooseMethod<float>(scene, evcmSettings());
+  EXPECT_GT(prepared.buildSeconds, 0);
+  const RenderSettings settings = withMethod(evcmSettings(), prepared.choice->method);
+  Prepared<float> built{.scene = prepared.scene, .choice = prepared.choice, .buildSeconds = 1000};
+  EXPECT_GT(makeWaveSession<float>(scene, settings, std::move(built))->statistics().buildSeconds, 1000);
 }
 
 // What trials rest on: a session of another film than the scene's, and of a scene that others have compiled.

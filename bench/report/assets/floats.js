@@ -137,7 +137,7 @@ class FloatTools {
     tools.append(label);
     this.luminanceButton = button("Luminance", () => this.setLuminance(!this.luminance));
     this.cropButton = button("Crop", () => this.setCropping(!this.cropping));
-    // Those that whoever made the page asks to look at.
+    // Crops that the campaign was given.
     for (const crop of (viewer.root.dataset.crops ?? "").split(" ").filter(Boolean)) {
       const [x, y, width, height] = crop.split(/[,x]/).map(Number);
       button(`Crop ${width} × ${height} at (${x}, ${y})`, async () => {

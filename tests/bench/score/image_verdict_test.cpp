@@ -1,4 +1,4 @@
-// Which images are exact, tolerated, refused or unknown, by whether bits are known and of which build they are.
+// The verdict on an image, by what is committed: a hash of this build, of another build, a picture, or nothing.
 #include "bench/score/image_verdict.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ const ScoreEntry kSmallEntry{.scene = "cornell-diffuse",
                              .iterations = 8};
 constexpr Isa kIsa = Isa::avx2;
 
-// A picture with structure: SSIM of a flat one would say little.
+// Stripes, as SSIM of a constant image says little.
 Image stripes(float brightness) {
   Image image{.width = kPictureWidth, .height = kPictureHeight, .channels = 3, .pixels = {}};
   for (uint32_t i = 0; i < 3 * kPictureWidth * kPictureHeight; ++i) {
@@ -43,7 +43,7 @@ TEST(ImageVerdict, isExactWhereTheBitsAreKnown) {
   }
 }
 
-// However near the picture is: this build is known to render other bits.
+// However similar the picture is: the hash is known to be this build's.
 TEST(ImageVerdict, refusesOtherBitsOfTheSameBuild) {
   for (const char* build : {"this build", ""}) {
     const ImageVerdict verdict = judge(stripes(1.00001f), expectedOf(stripes(1), build));

@@ -1,5 +1,4 @@
-// Pictures stand for images where bits cannot: they accept what rounds otherwise, and refuse other noise, light and
-// paths.
+// Comparison by pictures: images that differ by rounding are accepted; other seeds, brightness or path lengths are not.
 #include "bench/score/picture.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,7 @@
 namespace wavecrest {
 namespace {
 
-// An entry of the small workload, as it is committed.
+// An entry of the small workload.
 ScoreEntry entryOf(const std::string& scene, Method method) {
   for (const ScoreEntry& entry : workloadOf(ScoreSize::small)) {
     if (entry.scene == scene && entry.method == method) return entry;
@@ -27,7 +26,7 @@ Scene sceneOf(const ScoreEntry& entry) {
   return loadScene(findScene(entry.scene), {.filmSize = std::array{entry.width, entry.height}});
 }
 
-// The image that validates an entry, with settings changed.
+// The image of an entry's first slice, with settings changed.
 template <class Change>
 Image changedImage(const Scene& scene, const ScoreEntry& entry, Change&& change) {
   RenderSettings settings = scoreSettings(scene, entry, bestIsa(), 2);
@@ -42,7 +41,7 @@ Image scaled(Image image, float factor) {
   return image;
 }
 
-// As of a build that no hash is known of: the committed picture decides.
+// Without hashes: the committed picture decides.
 ImageVerdict judge(const Image& image, const ScoreEntry& entry) {
   static const ExpectedImages expected{.hashes = {}, .pictures = ExpectedPictures::committed()};
   return judgeImage(image, ScoreSize::small, bestIsa(), entry, expected);
@@ -83,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CommittedPictureTest,
                            return name;
                          });
 
-// Direct light is the difference between paths of two edges and of one. Without it, indirect light remains.
+// Direct light is what paths of two edges add to those of one edge. Subtracting it leaves indirect light.
 TEST(ScorePicture, ofAnImageWithoutDirectLightIsRefused) {
   for (const Method method : {Method::pt, Method::lt, Method::bpt, Method::mlt, Method::vcm}) {
     const ScoreEntry entry = entryOf("cornell-diffuse", method);
@@ -98,7 +97,7 @@ TEST(ScorePicture, ofAnImageWithoutDirectLightIsRefused) {
   }
 }
 
-// Paths of one edge less: the mean changes by some percent, and shadows stay where they are.
+// A shorter longest path changes the mean by some percent, and no shadow.
 TEST(ScorePicture, ofShorterPathsIsRefused) {
   const ScoreEntry entry = entryOf("cornell-diffuse", Method::pt);
   const Scene scene = sceneOf(entry);
@@ -106,7 +105,7 @@ TEST(ScorePicture, ofShorterPathsIsRefused) {
   EXPECT_EQ(judge(changedImage(scene, entry, shorter), entry).validity, Validity::refused);
 }
 
-// A film of one value, without noise, as large as the picture.
+// A constant image of the picture's size.
 Image flatImage(float value) {
   return {.width = kPictureWidth,
           .height = kPictureHeight,
@@ -117,7 +116,7 @@ Image flatImage(float value) {
 TEST(ScorePicture, seesWhatIsWrongInOneBlock) {
   const ScorePicture expected = pictureOf(flatImage(0.25f));
   Image image = flatImage(0.25f);
-  // The block in the third column and second row, half as bright again.
+  // One block, in the third column and second row, is 1.5 times as bright.
   for (size_t y = 8; y < 16; ++y) {
     for (size_t i = 3 * (64 * y + 16); i < 3 * (64 * y + 24); ++i) image.pixels[i] *= 1.5f;
   }
@@ -132,7 +131,7 @@ TEST(ScorePicture, ofALargerFilmIsItsMeanOverPixels) {
   film.width *= 2;
   film.height *= 2;
   film.pixels.assign(film.pixels.size() * 4, 0.0f);
-  // Every second pixel of a row is lit: the mean is half.
+  // Every second pixel is white, the others are black: their mean is 0.5.
   for (size_t i = 0; i < film.pixels.size(); i += 6) {
     for (size_t channel = 0; channel < 3; ++channel) film.pixels[i + channel] = 1;
   }
