@@ -92,12 +92,14 @@ ViewLook<S> placesOf(const CameraView& camera, std::vector<CameraPath>& paths, s
 double radiusOfImage(const MergeRadius& found, double photonsPerArea, const RenderSettings& settings) {
   if (!(found.pixel > 0)) return kFixedRadius;
   constexpr double kFirstVertex = 2.5, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
+  constexpr double kBesideConnections = 5;                  // photons in a search
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
   const double photons = std::numbers::pi * found.pixel * found.pixel * photonsPerArea;
-  const PathStrategies strategies = strategiesOf(settings.method);
   const bool connects = choosesMergeVertices(settings.method);
-  const bool atFirst = connects ? settings.mergeVertices == MergeVertices::first : strategies.mergeAtFirstVertex;
-  const double pixels = (atFirst ? kFirstVertex : kAllVertices) * std::cbrt(1 / photons);
+  const bool atFirst = connects ? settings.mergeVertices == MergeVertices::first
+                                : strategiesOf(settings.method).mergeAtFirstVertex;
+  const double pixels = connects && atFirst ? std::sqrt(kBesideConnections / photons)
+                                            : (atFirst ? kFirstVertex : kAllVertices) * std::cbrt(1 / photons);
   // Three digits, so that the last bits, in which instruction sets and precisions differ, do not change the choice.
   const double asked = std::clamp(pixels, kLeastPixels, kMostPixels) * found.pixel / found.scene;
   const double unit = std::pow(10, std::floor(std::log10(asked)) - 2);

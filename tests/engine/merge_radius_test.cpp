@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <vector>
 
 #include "engine/pilot/finished_plan.h"
@@ -157,11 +158,15 @@ TEST(AutoRadius, ofVcmThatMergesEverywhereIsNeverMoreThanTheFixedOne) {
   const MergeRadius fine = radiusOf(sceneFile("cornell-diffuse", 4000, 3000), automatic(Method::vcm));
   EXPECT_LT(fine.first, kFixedRadius);
 }
-TEST(AutoRadius, ofVcmThatMergesAtFirstVerticesIsThatOfPpm) {
-  const Scene scene = sceneFile("cornell-diffuse", 80, 60);
-  RenderSettings first = automatic(Method::vcm);
-  first.mergeVertices = MergeVertices::first;
-  EXPECT_EQ(radiusOf(scene, first).first, radiusOf(scene, automatic(Method::ppm)).first);
+// Connections do most where photons are many: a search of vcm has the same number of them wherever no limit is reached.
+TEST(AutoRadius, ofVcmThatMergesAtFirstVerticesHasFivePhotonsInASearch) {
+  for (const auto& [name, width, height] : {std::tuple("cornell-diffuse", 80u, 60u), {"lafortune-room", 160u, 120u}}) {
+    const Scene scene = sceneFile(name, width, height);
+    RenderSettings first = automatic(Method::vcm);
+    first.mergeVertices = MergeVertices::first;
+    EXPECT_NEAR(radiusOf(scene, first).photonsPerSearch(), 5, 0.1) << name;
+    EXPECT_GT(radiusOf(scene, automatic(Method::ppm)).photonsPerSearch(), 6) << name;
+  }
 }
 
 TEST(PhotonDensity, isThatOfEvenPhotons) {
