@@ -96,8 +96,8 @@ double radiusOfImage(const MergeRadius& found, double photonsPerArea, const Rend
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
   const double photons = std::numbers::pi * found.pixel * found.pixel * photonsPerArea;
   const bool connects = choosesMergeVertices(settings.method);
-  const bool atFirst = connects ? settings.mergeVertices == MergeVertices::first
-                                : strategiesOf(settings.method).mergeAtFirstVertex;
+  const bool atFirst =
+      connects ? settings.mergeVertices == MergeVertices::first : strategiesOf(settings.method).mergeAtFirstVertex;
   const double pixels = connects && atFirst ? std::sqrt(kBesideConnections / photons)
                                             : (atFirst ? kFirstVertex : kAllVertices) * std::cbrt(1 / photons);
   // Three digits, so that the last bits, in which instruction sets and precisions differ, do not change the choice.
