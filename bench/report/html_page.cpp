@@ -11,6 +11,7 @@
 #include "bench/report/html_text.h"
 #include "bench/report/method_style.h"
 #include "bench/report/plain_page.h"
+#include "bench/report/samples_section.h"
 #include "bench/report/scene_section.h"
 #include "bench/report/series_values.h"
 #include "bench/report/speedup_section.h"
@@ -96,13 +97,13 @@ std::string assemble(const ConvergenceReport& report, const EmbeddedImages& imag
   html += "<main>\n";
   if (several) {
     html += "<section id=\"summary\"><h2>Summary</h2>\n" + renderTargetMaps(report) + renderSpeedUps(report) +
-            "</section>\n";
+            renderEqualSamples(report) + "</section>\n";
   }
   for (size_t i = 0; i < report.scenes.size(); ++i) html += renderScene(report, i, images);
   if (several) {
     html += "<section id=\"scores\"><h2>All scores</h2>\n" + renderRanking(report) + renderHeatMaps(report) +
             "</section>\n";
-  } else if (const std::string speedUps = renderSpeedUps(report); !speedUps.empty()) {
+  } else if (const std::string speedUps = renderSpeedUps(report) + renderEqualSamples(report); !speedUps.empty()) {
     html += "<section id=\"speedups\">" + speedUps + "</section>\n";
   }
   html += renderClaims(report);

@@ -85,6 +85,9 @@ ScenePlot metricPlot(const ReportScene& scene, const ReportMetric& metric, size_
     }
     plot.curves.push_back(std::move(curve));
   }
+  const bool hasBands =
+      std::ranges::any_of(scene.series, [](const ReportSeries& series) { return series.runs.size() > 1; });
+  if (hasBands) result.explanation += "; curve: mean over seeds, band: worst to best seed";
   return result;
 }
 

@@ -170,6 +170,13 @@ bool isClearlyFastest(const ReportScene& scene, const ReportSeries& series, cons
   });
 }
 
+std::optional<size_t> findMetric(const ConvergenceReport& report, std::string_view key) {
+  for (size_t m = 0; m < report.metrics.size(); ++m) {
+    if (report.metrics[m].key == key) return m;
+  }
+  return std::nullopt;
+}
+
 std::vector<std::string> methodsOf(const ConvergenceReport& report) {
   std::vector<std::string> methods;
   for (const ReportScene& scene : report.scenes) {

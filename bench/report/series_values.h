@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/report/report_data.h"
@@ -58,6 +59,9 @@ bool isClearlyBest(const ReportScene& scene, const ReportSeries& series, const R
 /// before those that take longer than that.
 bool isClearlyFastest(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
                       size_t metricIndex, double target);
+
+/// The index of the metric with this key, if the report has it.
+std::optional<size_t> findMetric(const ConvergenceReport& report, std::string_view key);
 
 /// Every method that occurs, in the order of kMethodStyles, then any others.
 std::vector<std::string> methodsOf(const ConvergenceReport& report);

@@ -35,7 +35,7 @@ std::string significant(const ReportSeries&, double value) { return formatSignif
 HeatMap metricMap(const ReportMetric& metric, size_t index) {
   return {
       .name = metric.name,
-      .explanation = fmt::format("{} at the end of each run, {}", metric.name,
+      .explanation = fmt::format("{}{}at the end of each run, {}", metric.formula, metric.formula.empty() ? "" : "; ",
                                  metric.higherIsBetter ? "higher is better" : "lower is better"),
       .value = [index](const ReportScene&, const ReportSeries& series) { return finalValue(series, index); },
       .behind =

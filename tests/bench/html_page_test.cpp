@@ -67,14 +67,27 @@ TEST(HtmlPage, ranksByTheFirstMetric) {
 TEST(HtmlPage, beginsWithTheAnswerAndEndsWithFindings) {
   const std::string page = renderReport(sampleReport());
   size_t last = 0;
-  for (const char* part :
-       {"class=\"answer\"", "<h2>Summary</h2>", "Speed-up at equal relMSE", "<h3>Error over time</h3>",
-        "<h3>Pictures</h3>", "<h3>At the end</h3>", "<h2>All scores</h2>", "<h2>The study's findings</h2>"}) {
+  for (const char* part : {"class=\"answer\"", "<h2>Summary</h2>", "Speed-up at equal relMSE",
+                           "relMSE at equal samples, and overhead", "<h3>Error over time</h3>", "<h3>Pictures</h3>",
+                           "<h3>At the end</h3>", "<h2>All scores</h2>", "<h2>The study's findings</h2>"}) {
     const size_t at = page.find(part);
     ASSERT_NE(at, std::string::npos) << part;
     EXPECT_GT(at, last) << part;
     last = at;
   }
+}
+
+// What a band or a formula means stands beside it.
+TEST(HtmlPage, explainsBandsAndFormulasWhereTheyAre) {
+  ConvergenceReport report = sampleReport();
+  report.metrics[0].formula = "√ mean (x - r)²";
+  EXPECT_TRUE(
+      contains(renderScene(report, 0, EmbeddedImages()),
+               "<b>RMSE</b> √ mean (x - r)²; linear radiance, all pixels; curve: mean over seeds, band: worst to "
+               "best seed<"));
+  EXPECT_TRUE(contains(renderHeatMaps(report), "<b>RMSE</b> <small>√ mean (x - r)²; at the end of each run"));
+  for (ReportSeries& series : report.scenes[0].series) series.runs.resize(1);
+  EXPECT_FALSE(contains(renderScene(report, 0, EmbeddedImages()), "band:")) << "one seed has no band";
 }
 
 TEST(HtmlPage, namesAxesAndPathClasses) {

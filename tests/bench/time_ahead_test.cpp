@@ -93,6 +93,13 @@ TEST(SpeedUp, isABoundWhereTheFirstSnapshotIsGoodEnough) {
   EXPECT_FALSE(speedUp(none, falling(1, {1}), kError, 0));
 }
 
+TEST(SpeedUp, isOneOverItselfThoughTheErrorRises) {
+  // A firefly in the last snapshot: the error of the end was there after 2 s.
+  ReportSeries rising = falling(1, {1});
+  rising.runs[0].points.back().values[0] = 0.5;
+  EXPECT_EQ(speedUp(rising, rising, kError, 0)->factor, 1);
+}
+
 TEST(SpeedUp, hasATableForEachBaselineWithTheGeometricMeanOverScenes) {
   ConvergenceReport report;
   report.metrics = {kError};
