@@ -1,6 +1,8 @@
 """bench/campaign/publish: what it writes is what the campaign measured, and nothing is published half."""
 
 import csv
+import importlib.machinery
+import importlib.util
 import json
 import pathlib
 import re
@@ -14,6 +16,15 @@ from harness import TIMEOUT_SECONDS, WAVECREST, CommandTest
 CAMPAIGN = pathlib.Path(__file__).resolve().parents[2] / "bench" / "campaign"
 PUBLISH, RESTORE = CAMPAIGN / "publish", CAMPAIGN / "restore"
 README = "# A title\n\n<!-- results -->\nold\n<!-- /results -->\n\nThe end.\n"
+
+
+def publish_module():
+    """bench/campaign/publish, a program without an ending, as a module."""
+    sys.path.insert(0, str(CAMPAIGN))
+    loader = importlib.machinery.SourceFileLoader("publish", str(PUBLISH))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("publish", loader))
+    loader.exec_module(module)
+    return module
 
 
 class Publishing(CommandTest):
@@ -56,6 +67,7 @@ class Publishing(CommandTest):
             self.assertEqual(len(scores), 2)
             mean, spread = sum(scores) / 2, abs(scores[0] - scores[1]) / 2
             shown = re.findall(r"(-?[\d.]+) <sub>±([\d.]+)</sub>", page.split("## SSIM")[1].split("## ")[0])
+            self.assertTrue(all(float(s) > 0 for _, s in shown), "a spread that rounds to zero is shown with more digits")
             # The page rounds what the CSV has rounded before.
             self.assertTrue(
                 any(abs(float(m) - mean) < 0.0011 and abs(float(s) - spread) < 0.0011 for m, s in shown), (scores, shown)
@@ -82,6 +94,15 @@ class Publishing(CommandTest):
         self.assertEqual(len(rows), snapshots)
         last = [float(row["ssim"]) for row in rows if row["method"] == "pt"]
         self.assertAlmostEqual(max(last), max(last + self.last_scores("pt", "ssim")), places=4)
+
+    def test_spreads_are_never_shown_as_zero(self):
+        publish = publish_module()
+        row = {"mean": "0.9944", "low": "0.9940", "high": "0.9948", "seeds": "2"}
+        self.assertEqual(publish.band(row, "{:.3f}"), "0.994 <sub>±0.0004</sub>")
+        self.assertEqual(publish.band({**row, "low": "0.99", "high": "0.9988"}, "{:.3f}"), "0.994 <sub>±0.004</sub>")
+        self.assertEqual(publish.band({**row, "low": "0.9948"}, "{:.3f}"), "0.994")
+        for spread, shown in ((4.96e-4, "0.0005"), (3e-5, "0.00003"), (1e-4, "0.0001"), (9.7e-5, "0.0001")):
+            self.assertEqual(publish.shown_spread(spread, "{:.3f}"), shown)
 
     def test_what_cannot_be_judged_is_not_counted(self):
         self.campaign(methods="bpm")  # of which the study says nothing
