@@ -219,6 +219,12 @@ def step_package(tally):
         run(tally, "package", ["tests/install/package-test"])
 
 
+def step_newcomer(tally):
+    """README's commands and the tutorial's in a bare Debian 12, ./quickstart among them. Needs root for chroot."""
+    if run(tally, "newcomer: packages", ["tools/install-packages", "release"]):
+        run(tally, "newcomer", ["tests/docs/newcomer-test"])
+
+
 def step_lint(tally):
     run(tally, "format", [sys.executable, "tools/lint.py", "format"])
     run(tally, "tidy of what changed", [sys.executable, "tools/lint.py", "tidy", "--changed"])
@@ -244,6 +250,7 @@ STEPS = {
     "slurm": step_slurm,
     "wheel": step_wheel,
     "package": step_package,
+    "newcomer": step_newcomer,
 }
 # To ask for: pictures of all scenes, ten thousand damaged files, four times the samples of statistical tests, data
 # races, and clang-tidy over the whole tree, which take longer than all else together.
