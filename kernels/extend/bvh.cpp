@@ -40,8 +40,8 @@ void layBoxes(const Box* boxes, size_t count, double margin, BvhNode& node) {
       const bool present = i < count;
       const double low = present ? std::floor((boxes[i].low[axis] - margin - corner) / scale) : kGrid;
       const double high = present ? std::ceil((boxes[i].high[axis] + margin - corner) / scale) : 0;
-      node.bounds[axis][i] = static_cast<uint8_t>(std::clamp(low, 0.0, kGrid));
-      node.bounds[3 + axis][i] = static_cast<uint8_t>(std::clamp(high, 0.0, kGrid));
+      node.bounds[axis][0][i] = node.bounds[axis][2][i] = static_cast<uint8_t>(std::clamp(low, 0.0, kGrid));
+      node.bounds[axis][1][i] = static_cast<uint8_t>(std::clamp(high, 0.0, kGrid));
     }
   }
 }

@@ -34,12 +34,14 @@ constexpr uint32_t kBvhEnd = makeReference(BvhEntry::end, 0);
 // InstanceLeaf; they are behind all nodes.
 constexpr uint32_t kBvhLeave = makeReference(BvhEntry::end, kBvhUnit);
 
-// Planes of child i along an axis: corner + scale * bounds[axis or 3 + axis][i], low ones before high ones. Scales are
-// powers of two. Absent children have low above high.
+// Planes of child i along an axis: corner + scale * bounds[axis][row][i]. Rows are the low planes, the high ones, and
+// the low ones again: so those by which a ray enters and those by which it leaves are two rows one after the other,
+// whatever its direction. Scales are powers of two. Absent children have low above high.
+constexpr size_t kBvhRows = 3;
 struct alignas(128) BvhNode {
   uint32_t children[kBvhWidth];
   float corner[3], scale[3];
-  uint8_t bounds[6][kBvhWidth];
+  uint8_t bounds[3][kBvhRows][kBvhWidth];
 };
 static_assert(sizeof(BvhNode) == 128);
 

@@ -3,13 +3,14 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "kernels/extend/walk_bvh.h"
 
 WAVECREST_SIMD_BEGIN
 
 template <size_t kCount>
-WAVECREST_INLINE Vec3<FloatGroup<kCount>> broadcast(const float (&a)[3]) {
+WAVECREST_INLINE Vec3<FloatGroup<kCount>> broadcast(const float* a) {
   return {a[0], a[1], a[2]};
 }
 template <size_t kCount>
@@ -21,36 +22,41 @@ constexpr float kFarthest = std::numeric_limits<float>::max();
 // The end of a shadow ray: just short of 1, as nothing at the segment's end may block it.
 constexpr float kShadowEnd = 0x1.fffffep-1f;
 // Offset in BvhNode::bounds from the low planes of an axis to those by which a ray enters whose direction is d there:
-// 0, or the 3 rows to the high planes.
-WAVECREST_INLINE uint32_t nearPlanes(float d) { return std::signbit(d) ? 3 * kBvhWidth : 0; }
+// 0, or the row to the high planes. Those by which it leaves are in the next row.
+WAVECREST_INLINE uint32_t nearPlanes(float d) { return std::signbit(d) ? kBvhWidth : 0; }
 
-// The axis of the greatest part of a direction.
+// The axis of the greatest part of a direction. Without a branch: no processor foresees those of incoherent rays.
 WAVECREST_INLINE uint32_t greatestAxis(float x, float y, float z) {
   x = std::abs(x), y = std::abs(y), z = std::abs(z);
-  return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+  const uint32_t isX = static_cast<uint32_t>(x >= y) & static_cast<uint32_t>(x >= z);
+  return (1 - isX) * (2 - static_cast<uint32_t>(y >= z));
 }
+
+// What a ray has met. t: nothing beyond counts, the distance of the hit or the ray's end. second, third: weights of the
+// corners, or t and 0 of a sphere. id: of the face, or kMiss.
+struct BvhHit {
+  float t, second, third;
+  uint32_t id;
+};
 
 // A single ray. kAnyHit: of a shadow ray, whose walk ends with any hit before the ray's end.
 template <bool kAnyHit>
 struct alignas(64) BvhRay {
-  static constexpr size_t kUnderWay = 32;
-  float origin[3], direction[3], inverse[3];
+  static constexpr size_t kUnderWay = 64;
+  float origin[4] = {}, inverse[4] = {};  // the fourth numbers fill a register
+  float direction[3];
   uint32_t nearPlane[3];
   RayAxes axes;
   float shear[3];
-  float t;              // nothing beyond counts: of the nearest hit so far, or the ray's end
-  float second, third;  // of that hit: weights of the corners, or t and 0 of a sphere
-  uint32_t id;          // of the face, or kMiss
-  uint32_t blocker;     // any hit: the leaf
+  BvhHit hit;         // the nearest so far
+  BvhHit notNearest;  // where a leaf writes what is not: keep() has no branch
   uint32_t index, at, waiting;
   uint32_t stack[kBvhStack];
 
   // ray: the index by which the caller knows it. end: the distance beyond which no hit counts.
   WAVECREST_INLINE void begin(size_t ray, float ox, float oy, float oz, float dx, float dy, float dz, float end) {
     index = static_cast<uint32_t>(ray);
-    id = kMiss;
-    t = end;
-    second = third = 0;
+    hit = {end, 0, 0, kMiss};
     const float o[3] = {ox, oy, oz}, d[3] = {dx, dy, dz};
     aim(o, d);
   }
@@ -71,23 +77,27 @@ struct alignas(64) BvhRay {
 
   // Puts the children that the ray meets before t on its stack: the nearest last, or in any order if any hit will do.
   WAVECREST_INLINE void visit(const BvhNode& node) {
-    using Group = FloatGroup<kBvhWidth>;
-    Group enter(0.0f), leave(t);
-    // Along each axis the plane of byte b is met at b * step + first. All children are tested at once.
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const Group step(node.scale[axis] * inverse[axis]);
-      const Group first((node.corner[axis] - origin[axis]) * inverse[axis]);
-      const uint8_t* const low = node.bounds[axis];
-      enter = max(mulAdd(loadBytes<kBvhWidth>(low + nearPlane[axis]), step, first), enter);
-      leave = min(mulAdd(loadBytes<kBvhWidth>(low + 3 * kBvhWidth - nearPlane[axis]), step, first), leave);
-    }
+    constexpr size_t kPlanes = 2 * kBvhWidth;
+    FloatGroup<kBvhWidth> enter(0.0f), leave(hit.t);
+    // Along each axis the plane of byte b is met at b * step + first. All children are tested at once, by both planes.
+    const FourGroup inverses = repeatFour(inverse), steps = repeatFour(node.scale) * inverses;
+    const FourGroup firsts = (repeatFour(node.corner) - repeatFour(origin)) * inverses;
+    const auto clip = [&]<size_t kAxis>(std::integral_constant<size_t, kAxis>) HWY_ATTR {
+      const FloatGroup<kPlanes> bytes = loadBytes<kPlanes>(node.bounds[kAxis][0] + nearPlane[kAxis]);
+      const auto planes = mulAdd(bytes, spread<kPlanes, kAxis>(steps), spread<kPlanes, kAxis>(firsts));
+      enter = max(firstHalf(planes), enter);
+      leave = min(secondHalf(planes), leave);
+    };
+    clip(std::integral_constant<size_t, 0>());
+    clip(std::integral_constant<size_t, 1>());
+    clip(std::integral_constant<size_t, 2>());
     const auto children = loadGroup<kBvhWidth>(node.children);
     const auto met = (enter <= leave) & (children != kBvhEnd);
     uint32_t* const top = stack + waiting;
     waiting += static_cast<uint32_t>(kAnyHit ? appendWhere(met, children, top)
                                              : appendByFallingKey(met, enter, children, top));
   }
-  // Tests all triangles of the leaf at once. Only the kept hit's weights are divided by their sum.
+  // Tests all triangles of the leaf at once.
   WAVECREST_INLINE void visit(const FaceLeaf& faces) {
     using Group = FloatGroup<kLeafSize>;
     const auto corner = [&](size_t k) HWY_ATTR {
@@ -99,48 +109,40 @@ struct alignas(64) BvhRay {
     const Vec3<Group> turned{Group(direction[axes.axis[0]]), Group(direction[axes.axis[1]]),
                              Group(direction[axes.axis[2]])};
     MaskGroup<kLeafSize> met;
-    const FaceHit<Group> hit =
+    const FaceHit<Group> found =
         intersectFaces(corner(0), corner(1), corner(2), turned, broadcast<kLeafSize>(shear), met);
-    keep(met, hit.t, faces.id, [&](size_t slot) HWY_ATTR {
-      HWY_ALIGN float sum[kLeafSize], weights[2][kLeafSize];
-      store(hit.sum, sum);
-      store(hit.second, weights[0]);
-      store(hit.third, weights[1]);
-      second = weights[0][slot] / sum[slot];
-      third = weights[1][slot] / sum[slot];
-    });
+    keep(met, found.t, found.second / found.sum, found.third / found.sum, faces.id);
   }
   WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
     using Group = FloatGroup<kLeafSize>;
     const Group distance = intersectSpheres(loadPoints(spheres.center), loadGroup<kLeafSize>(spheres.radius),
                                             broadcast<kLeafSize>(origin), broadcast<kLeafSize>(direction));
-    keep(distance > Group(0.0f), distance, spheres.id, [&](size_t) HWY_ATTR {
-      second = t;
-      third = 0;
-    });
+    keep(distance > Group(0.0f), distance, distance, Group(0.0f), spheres.id);
   }
 
  private:
-  // Takes the nearest of a leaf's hits if it is nearer than t. Of equally near hits the one of the lowest id is kept,
-  // so that the result does not depend on the order of visits. coordinates(slot): sets those of the hit.
-  template <class Coordinates>
-  WAVECREST_INLINE void keep(MaskGroup<kLeafSize> met, FloatGroup<kLeafSize> distance, const uint32_t* ids,
-                             const Coordinates& coordinates) {
+  // Takes the nearest of a leaf's hits if it is nearer than the one so far. Of equally near hits the one of the lowest
+  // id is kept, so that the result does not depend on the order of visits. Every third leaf or so has a nearer hit, and
+  // no processor foresees which: no branches, so the walkers' steps overlap.
+  WAVECREST_INLINE void keep(MaskGroup<kLeafSize> met, FloatGroup<kLeafSize> distance, FloatGroup<kLeafSize> second,
+                             FloatGroup<kLeafSize> third, const uint32_t* ids) {
     using Group = FloatGroup<kLeafSize>;
-    met = met & (distance > Group(0.0f)) & (distance <= Group(t));
-    if (!any(met)) return;
+    met = met & (distance > Group(0.0f)) & (distance <= Group(hit.t));
     if constexpr (kAnyHit) {
       // Any id says that the ray is blocked. Only the end is left on the stack.
-      id = ids[0];
-      blocker = at;
-      waiting = 1;
+      const uint32_t blocked = 0u - static_cast<uint32_t>(any(met));
+      hit.id = (ids[0] & blocked) | (hit.id & ~blocked);
+      waiting = (1u & blocked) | (waiting & ~blocked);
       return;
     }
     const Least nearest = leastOf(select(met, distance, Group(std::numeric_limits<float>::infinity())));
-    if (nearest.value == t && ids[nearest.index] >= id) return;
-    t = nearest.value;
-    id = ids[nearest.index];
-    coordinates(nearest.index);
+    HWY_ALIGN float seconds[kLeafSize], thirds[kLeafSize];
+    store(second, seconds);
+    store(third, thirds);
+    const BvhHit found{nearest.value, seconds[nearest.index], thirds[nearest.index], ids[nearest.index]};
+    const bool nearer = (found.t < hit.t) | ((found.t == hit.t) & (found.id < hit.id));
+    BvhHit* const places[2] = {&notNearest, &hit};
+    *places[static_cast<size_t>(nearer)] = found;
   }
 };
 
@@ -211,10 +213,10 @@ struct BvhPacket {
   template <bool kInOrder, class Take>
   WAVECREST_INLINE void forEachChild(const BvhNode& node, const Take& take) const {
     using Group = FloatGroup<kBvhWidth>;
-    // The bytes of all planes as numbers, in the layout of BvhNode::bounds.
+    // The bytes of all planes as numbers: of each axis the low ones, then the high ones.
     HWY_ALIGN float planes[6 * kBvhWidth];
     for (size_t row = 0; row < 6; ++row) {
-      store(loadBytes<kBvhWidth>(node.bounds[row]), planes + row * kBvhWidth);
+      store(loadBytes<kBvhWidth>(node.bounds[row / 2][row % 2]), planes + row * kBvhWidth);
     }
     // All children against the whole packet, in interval arithmetic: the least distance at which any ray enters, and
     // the greatest at which any ray leaves. Both ends of the interval of 1 / direction are tried. Along an axis where
@@ -228,9 +230,9 @@ struct BvhPacket {
         return std::pair{mulAdd(steps, step0, Group(from * inverses[0][axis])),
                          mulAdd(steps, step1, Group(from * inverses[1][axis]))};
       };
-      const float* const low = planes + axis * kBvhWidth;
+      const float* const low = planes + 2 * axis * kBvhWidth;
       const auto [enter0, enter1] = along(loadGroup<kBvhWidth>(low + nearPlane[axis]), near);
-      const auto [leave0, leave1] = along(loadGroup<kBvhWidth>(low + 3 * kBvhWidth - nearPlane[axis]), far);
+      const auto [leave0, leave1] = along(loadGroup<kBvhWidth>(low + kBvhWidth - nearPlane[axis]), far);
       enter = max(min(enter0, enter1) - Group(slack[axis]), enter);
       leave = min(max(leave0, leave1) + Group(slack[axis]), leave);
     }
@@ -293,14 +295,14 @@ struct BvhPacket {
     farOrigin[axis] = backward ? high : low;
     return inverted;
   }
-  // The rays that themselves meet a child. planes: as BvhNode::bounds, from the child's own on. step, first: distances
+  // The rays that themselves meet a child. planes: as in forEachChild, from the child's own on. step, first: distances
   // along the rays are plane * step + first.
   WAVECREST_INLINE Mask raysThrough(const float* planes, Vec3<Float> step, Vec3<Float> first) const {
     Float enter(0), leave = t;
     const auto clip = [&](size_t axis, Float s, Float f) HWY_ATTR {
-      const float* const low = planes + axis * kBvhWidth;
+      const float* const low = planes + 2 * axis * kBvhWidth;
       const Float near = mulAdd(Float(low[nearPlane[axis]]), s, f);
-      const Float far = mulAdd(Float(low[3 * kBvhWidth - nearPlane[axis]]), s, f);
+      const Float far = mulAdd(Float(low[kBvhWidth - nearPlane[axis]]), s, f);
       const bool oneWay = slack[axis] == 0;
       enter = max(enter, oneWay ? near : min(near, far));
       leave = min(leave, oneWay ? far : max(near, far));

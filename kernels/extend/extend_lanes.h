@@ -65,11 +65,11 @@ WAVECREST_INLINE void walkAlone(const SceneView<S>& scene, const Rays<S>& rays, 
         return true;
       },
       [&](const Ray& ray) HWY_ATTR {
-        hits.primitive[ray.index] = ray.id;
-        hits.u[ray.index] = ray.second;
-        hits.v[ray.index] = ray.third;
+        hits.primitive[ray.index] = ray.hit.id;
+        hits.u[ray.index] = ray.hit.second;
+        hits.v[ray.index] = ray.hit.third;
         if constexpr (EntersInstances<Ray>) hits.instance[ray.index] = ray.instance;
-        prefetchHit(scene, ray.id);
+        prefetchHit(scene, ray.hit.id);
       });
 }
 

@@ -79,9 +79,9 @@ WAVECREST_NOINLINE void decideByLeaves(const SmallSceneView& scene, const Rays<S
     ray.begin(at, of(rays.originX), of(rays.originY), of(rays.originZ), of(rays.directionX), of(rays.directionY),
               of(rays.directionZ), kFarthest);
     visitLeaves(scene, ray);
-    id[k] = ray.id;
-    second[k] = ray.second;
-    third[k] = ray.third;
+    id[k] = ray.hit.id;
+    second[k] = ray.hit.second;
+    third[k] = ray.hit.third;
   }
   // Make coordinates of the weights, all rays at once, and put the hits in their places.
   const HitCoordinates<Float> found = coordinatesInFace(load(id), load(second), load(third));

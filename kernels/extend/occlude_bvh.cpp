@@ -79,7 +79,7 @@ WAVECREST_INLINE void finishAlone(const BvhView& bvh, const ShadowRays<S>& rays,
         return true;
       },
       [&](const BvhRay<true>& ray) HWY_ATTR {
-        if (ray.id != kMiss) batch.visible[ray.index] = 0;
+        if (ray.hit.id != kMiss) batch.visible[ray.index] = 0;
       });
 }
 

@@ -26,7 +26,7 @@ WAVECREST_INLINE void walkShadowRaysAlone(const BvhView& bvh, const ShadowRays<S
         ++next;
         return true;
       },
-      [&](const Ray& ray) HWY_ATTR { visible[ray.index] = ray.id == kMiss ? 1.0f : 0.0f; });
+      [&](const Ray& ray) HWY_ATTR { visible[ray.index] = ray.hit.id == kMiss ? 1.0f : 0.0f; });
 }
 
 // The stage. walkAll(bvh, rays, visible): writes what walkShadowRaysAlone does.

@@ -48,7 +48,7 @@ WAVECREST_NOINLINE Mask blockedByLeaves(const SmallSceneView& scene, const Shado
     BvhRay<true> ray;
     beginShadowRay(ray, at, shadow, at);
     visitLeaves(scene, ray);
-    blocked[places[k]] = ray.id != kMiss ? 1 : 0;
+    blocked[places[k]] = ray.hit.id != kMiss ? 1 : 0;
   }
   return load(blocked) == UInt(1u);
 }

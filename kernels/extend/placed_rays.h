@@ -70,7 +70,7 @@ struct GroupRay {
 template <bool kAnyHit>
 struct PlacedRayOf : BvhRay<kAnyHit> {
   using Base = BvhRay<kAnyHit>;
-  using Base::t, Base::second, Base::third, Base::id;
+  using Base::hit;
   uint32_t instance;  // of the hit, or kNoIndex
 
   WAVECREST_INLINE void begin(size_t ray, float ox, float oy, float oz, float dx, float dy, float dz, float end) {
@@ -83,13 +83,13 @@ struct PlacedRayOf : BvhRay<kAnyHit> {
   WAVECREST_INLINE bool enter(const InstanceLeaf& leaf) {
     const GroupRay<float> ray(leaf, {worldOrigin_[0], worldOrigin_[1], worldOrigin_[2]},
                               {worldDirection_[0], worldDirection_[1], worldDirection_[2]});
-    if (!(ray.miss2 <= ray.reach * ray.reach && ray.enter <= t && ray.leave >= 0)) return false;
-    outside_ = {t, second, third, id};
+    if (!(ray.miss2 <= ray.reach * ray.reach && ray.enter <= hit.t && ray.leave >= 0)) return false;
+    outside_ = hit;
     shift_ = ray.shift;
     current_ = leaf.index;
-    id = kMiss;
+    hit.id = kMiss;
     // Whatever may be nearer in the world is found; of a shadow ray nothing at its end.
-    t = kAnyHit ? t - shift_ : std::min(t - shift_ + t * kPassageError, kFarthest);
+    hit.t = kAnyHit ? hit.t - shift_ : std::min(hit.t - shift_ + hit.t * kPassageError, kFarthest);
     const float o[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
     const float d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
     Base::aim(o, d);
@@ -99,26 +99,20 @@ struct PlacedRayOf : BvhRay<kAnyHit> {
   // the lower id wins, then the lower index of the instance.
   WAVECREST_INLINE void leave() {
     Base::aim(worldOrigin_, worldDirection_);
-    const float there = t + shift_;
-    const bool nearer =
-        id != kMiss && (there < outside_.t ||
-                        (there == outside_.t && (id < outside_.id || (id == outside_.id && current_ < instance))));
-    if (!nearer) {
-      t = outside_.t, second = outside_.second, third = outside_.third, id = outside_.id;
+    const float there = hit.t + shift_;
+    const bool first = hit.id < outside_.id || (hit.id == outside_.id && current_ < instance);
+    if (hit.id == kMiss || !(there < outside_.t || (there == outside_.t && first))) {
+      hit = outside_;
       return;
     }
-    t = there;
+    hit.t = there;
     instance = current_;
-    if (static_cast<FaceKind>(id >> kFaceKindShift) == FaceKind::sphere) second = there;
+    if (static_cast<FaceKind>(hit.id >> kFaceKindShift) == FaceKind::sphere) hit.second = there;
   }
 
  private:
-  struct Found {
-    float t, second, third;
-    uint32_t id;
-  };
   float worldOrigin_[3], worldDirection_[3];
-  Found outside_;  // before the ray entered
+  BvhHit outside_;  // before the ray entered
   float shift_;
   uint32_t current_;
 };

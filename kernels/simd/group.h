@@ -149,10 +149,57 @@ WAVECREST_INLINE FloatGroup<kCount> loadBytes(const uint8_t* p) {
   }
   return out;
 }
+// The four numbers from p on, again and again: an operation on three axes at once. p: of any alignment.
+using FourGroup = FloatGroup<std::max<size_t>(4, kLanes)>;
+WAVECREST_INLINE FourGroup repeatFour(const float* p) {
+  using Shape = FourGroup::Shape;
+  FourGroup out;
+  for (size_t i = 0; i < Shape::kParts; ++i) {
+    out.part[i] = hn::LoadDup128(Shape::FloatTag(), p + i * Shape::kWidth % 4);
+  }
+  return out;
+}
+// The one at place kAt in all values. kCount: at least the lanes of a register.
+template <size_t kCount, size_t kAt>
+WAVECREST_INLINE FloatGroup<kCount> spread(FourGroup a) {
+  constexpr bool kWhole = FourGroup::Shape::kParts == 1;  // one register holds all four
+  constexpr size_t kPart = kWhole ? 0 : kAt, kLane = kWhole ? kAt : 0;
+  FloatGroup<kCount> out;
+  for (auto& p : out.part) p = hn::Broadcast<kLane>(a.part[kPart]);
+  return out;
+}
 template <size_t kCount>
 WAVECREST_INLINE void store(FloatGroup<kCount> a, float* p) {
   using Shape = GroupShape<kCount>;
   for (size_t i = 0; i < Shape::kParts; ++i) hn::Store(a.part[i], typename Shape::FloatTag(), p + i * Shape::kWidth);
+}
+
+// ---- parts ----------------------------------------------------------------------------------------------------------
+
+template <size_t kCount>
+WAVECREST_INLINE FloatGroup<kCount / 2> firstHalf(FloatGroup<kCount> a) {
+  constexpr size_t kParts = GroupShape<kCount>::kParts;
+  FloatGroup<kCount / 2> out;
+  if constexpr (kParts > 1) {
+    std::copy_n(a.part, kParts / 2, out.part);
+  } else {
+    out.part[0] = hn::LowerHalf(a.part[0]);
+  }
+  return out;
+}
+template <size_t kCount>
+WAVECREST_INLINE FloatGroup<kCount / 2> secondHalf(FloatGroup<kCount> a) {
+  constexpr size_t kParts = GroupShape<kCount>::kParts;
+  FloatGroup<kCount / 2> out;
+  if constexpr (kParts > 1) {
+    std::copy_n(a.part + kParts / 2, kParts / 2, out.part);
+  }
+#if HWY_TARGET != HWY_SCALAR  // whose registers have no halves
+  else {
+    out.part[0] = hn::UpperHalf(typename GroupShape<kCount / 2>::FloatTag(), a.part[0]);
+  }
+#endif
+  return out;
 }
 
 // ---- across the values ----------------------------------------------------------------------------------------------

@@ -31,10 +31,11 @@ class Contents {
           Bounds box;
           for (size_t axis = 0; axis < 3; ++axis) {
             const auto plane = [&](size_t row) {
-              return double{node.corner[axis]} + double{node.scale[axis]} * node.bounds[row][i];
+              return double{node.corner[axis]} + double{node.scale[axis]} * node.bounds[axis][row][i];
             };
-            box.low[axis] = plane(axis);
-            box.high[axis] = plane(3 + axis);
+            box.low[axis] = plane(0);
+            box.high[axis] = plane(1);
+            EXPECT_EQ(plane(2), plane(0)) << "rays of either direction find both planes in rows side by side";
           }
           boxes.push_back(box);
           check(bvh, node.children[i], boxes);
