@@ -24,22 +24,18 @@ constexpr size_t kMutationKinds = 6;
 // the light's; eyeChoice and lightChoice those of the direction that leaves x_i, per solid angle or, of a delta lobe,
 // its probability. step is f c / pdf of an eye walk at x_i; at x_1 its end is the light: f c L n_0 / (d^2 light[0]).
 template <class S>
-struct PathVertices : Columns<PathVertices<S>> {
+struct PathVertices : Columns<PathVertices<S>>, VertexDetails<S> {
   Column<S> positionX, positionY, positionZ;  // of x_0 at infinity: the direction towards it
   Column<S> normalX, normalY, normalZ;        // geometric
   Column<S> offset;
-  Column<S> shadingX, shadingY, shadingZ;  // dropped where the scene has no shading normals
-  Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
-  Column<float> uvU, uvV;                  // dropped where the scene has no textures
-  Column<float> tangent;                   // dropped where no BSDF depends on dp/du
-  Column<uint32_t> primitive;              // of x_0: the light
-  Column<uint32_t> event;                  // PathEvent
+  Column<uint32_t> primitive;  // of x_0: the light
+  Column<uint32_t> event;      // PathEvent
   Column<S> stepR, stepG, stepB;
   Column<S> eye, light, eyeChoice, lightChoice;
   auto all() {
-    return std::tie(positionX, positionY, positionZ, normalX, normalY, normalZ, offset, shadingX, shadingY, shadingZ,
-                    baseX, baseY, baseZ, uvU, uvV, tangent, primitive, event, stepR, stepG, stepB, eye, light,
-                    eyeChoice, lightChoice);
+    return std::tuple_cat(std::tie(positionX, positionY, positionZ, normalX, normalY, normalZ, offset, primitive, event,
+                                   stepR, stepG, stepB, eye, light, eyeChoice, lightChoice),
+                          this->details());
   }
 };
 
@@ -60,7 +56,7 @@ struct PathStore {
   PathHeaders<S> headers;
 
   PathStore(size_t lanes, uint32_t maxEdges, const ColumnNeeds& needs) : stride_(paddedItems(lanes)) {
-    dropColumns(vertices, needs);
+    vertices.keepDetails(needs);
     arena_ = Arena(bytesFor(lanes, maxEdges, needs));
     vertices.bind(arena_, (maxEdges + 1) * stride_);
     headers.bind(arena_, lanes);
@@ -69,24 +65,11 @@ struct PathStore {
 
   static size_t bytesFor(size_t lanes, uint32_t maxEdges, const ColumnNeeds& needs) {
     PathVertices<S> shape;
-    dropColumns(shape, needs);
+    shape.keepDetails(needs);
     return shape.bytes((maxEdges + 1) * paddedItems(lanes)) + PathHeaders<S>().bytes(lanes);
   }
 
  private:
-  static void dropColumns(PathVertices<S>& vertices, const ColumnNeeds& needs) {
-    if (!needs.shadingNormals) {
-      for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ}) column->drop();
-    }
-    if (!needs.normalMaps) {
-      for (Column<S>* column : {&vertices.baseX, &vertices.baseY, &vertices.baseZ}) column->drop();
-    }
-    if (!needs.textures) {
-      vertices.uvU.drop();
-      vertices.uvV.drop();
-    }
-    if (!needs.tangents) vertices.tangent.drop();
-  }
   size_t stride_;
   Arena arena_;
 };

@@ -14,19 +14,13 @@ namespace wavecrest {
 constexpr uint32_t kOtherLink = 1u << 31, kLinkIndex = kOtherLink - 1;
 
 template <class S>
-struct LightVertices : Columns<LightVertices<S>> {
+struct LightVertices : Columns<LightVertices<S>>, VertexDetails<S> {
   Column<VertexRow<S>> row;
-  // In the grid of photons (kernels/columns/photon_grid.h). Dropped without merges; all below are without connections.
-  Column<uint32_t> cell, place;
-  Column<S> shadingX, shadingY, shadingZ;  // dropped where the scene has no shading normals
-  Column<S> baseX, baseY, baseZ;           // dropped where it has no normal maps
-  Column<float> uvU, uvV;                  // dropped where the scene has no textures
-  Column<float> tangent;                   // dropped where no BSDF depends on dp/du
-  Column<uint32_t> lane;                   // of the path, in its wave
-  Column<uint32_t> next;                   // link to the vertex after it that the path has here
-  auto all() {
-    return std::tie(row, cell, place, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV, tangent, lane, next);
-  }
+  Column<uint32_t> cell, place;  // in the grid of photons (kernels/columns/photon_grid.h); dropped without merges
+  // Dropped without connections, as the details are.
+  Column<uint32_t> lane;  // of the path, in its wave
+  Column<uint32_t> next;  // link to the vertex after it that the path has here
+  auto all() { return std::tuple_cat(std::tie(row, cell, place, lane, next), this->details()); }
 };
 
 // What camera paths do with light vertices.
@@ -46,18 +40,12 @@ class LightStore {
 
   LightStore(size_t lanes, const ColumnNeeds& needs, LightVertexUse use = {})
       : lanes_(lanes), firstOfLane_(lanes, kNoIndex), lastOfLane_(lanes, kNoIndex) {
-    if (!needs.shadingNormals) {
-      for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ}) column->drop();
+    vertices.keepDetails(needs);
+    if (!use.connected) {
+      vertices.dropDetails();
+      vertices.lane.drop();
+      vertices.next.drop();
     }
-    if (!needs.normalMaps) {
-      for (Column<S>* column : {&vertices.baseX, &vertices.baseY, &vertices.baseZ}) column->drop();
-    }
-    if (!needs.textures) {
-      vertices.uvU.drop();
-      vertices.uvV.drop();
-    }
-    if (!needs.tangents) vertices.tangent.drop();
-    if (!use.connected) dropConnectedColumns();
     if (!use.merged) {
       vertices.cell.drop();
       vertices.place.drop();
@@ -151,18 +139,6 @@ class LightStore {
   size_t bytesFor(size_t capacity) const { return arenaBytes(capacity) + 2 * lanes_ * sizeof(uint32_t); }
 
  private:
-  void dropConnectedColumns() {
-    for (Column<S>* column : {&vertices.shadingX, &vertices.shadingY, &vertices.shadingZ, &vertices.baseX,
-                              &vertices.baseY, &vertices.baseZ}) {
-      column->drop();
-    }
-    vertices.uvU.drop();
-    vertices.uvV.drop();
-    vertices.tangent.drop();
-    vertices.lane.drop();
-    vertices.next.drop();
-  }
-
   void grow(size_t capacity) {
     Arena arena(arenaBytes(capacity));
     moveTo(arena, capacity);

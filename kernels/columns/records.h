@@ -5,7 +5,7 @@
 // where it began, which is also where its radiance is summed.
 #pragma once
 
-#include "kernels/columns/columns.h"
+#include "kernels/columns/vertex_details.h"
 
 namespace wavecrest {
 
@@ -33,18 +33,10 @@ struct Hits : Columns<Hits> {
 
 // The vertex under each live path, written by arrive: what its position (in Rays) and primitive (in Hits) do not say.
 template <class S>
-struct Surfaces : Columns<Surfaces<S>> {
-  Column<S> normalX, normalY, normalZ;     // geometric normal, unit
-  Column<S> offset;                        // bound on the position's error along the normal
-  Column<S> shadingX, shadingY, shadingZ;  // shading normal; dropped where the scene has none
-  Column<S> baseX, baseY, baseZ;           // the same without bump and normal maps; dropped without those
-  Column<float> uvU, uvV;                  // texture coordinates; dropped where the scene has no textures
-  // Angle of dp/du about the base normal in Frame::fromNormal of it; dropped where no BSDF depends on it.
-  Column<float> tangent;
-  auto all() {
-    return std::tie(normalX, normalY, normalZ, offset, shadingX, shadingY, shadingZ, baseX, baseY, baseZ, uvU, uvV,
-                    tangent);
-  }
+struct Surfaces : Columns<Surfaces<S>>, VertexDetails<S> {
+  Column<S> normalX, normalY, normalZ;  // geometric normal, unit
+  Column<S> offset;                     // bound on the position's error along the normal
+  auto all() { return std::tuple_cat(std::tie(normalX, normalY, normalZ, offset), this->details()); }
 };
 
 // What a path carries along. dVCM, dVC and dVM are the partial sums of the MIS recursion of Georgiev's technical report

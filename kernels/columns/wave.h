@@ -7,26 +7,6 @@
 
 namespace wavecrest {
 
-// Which optional columns a scene and method need.
-struct ColumnNeeds {
-  bool shadingNormals = true;
-  bool textures = true;
-  bool normalMaps = true;
-  bool tangents = true;
-  bool instances = true;
-  bool rouletteScale = true;
-  // What methods with light paths need: dVC, dVM and the light of paths, pairs, vertex rows.
-  bool connections = true;
-  // Room to sort vertices by their BSDFs, where not all are diffuse (kernels/shade/vertex_order_lanes.h).
-  bool bsdfOrder = true;
-  bool splats = true;
-  // Room for rays behind the surfaces that they have passed (kernels/pass/pass_surfaces.cpp).
-  bool passages = false;
-  bool visibility = true;  // where occlude walks a hierarchy
-  // The cells of vertices, and records of directions: of renders that learn.
-  bool cells = false, directions = false;
-};
-
 // The front of paths, and what they carry, at their vertices.
 template <class S>
 struct Vertices {
@@ -37,17 +17,7 @@ struct Vertices {
 
   // Drops the columns that are not needed. The others have no memory until they are bound.
   explicit Vertices(const ColumnNeeds& needs) {
-    if (!needs.shadingNormals) {
-      for (Column<S>* column : {&surfaces.shadingX, &surfaces.shadingY, &surfaces.shadingZ}) column->drop();
-    }
-    if (!needs.normalMaps) {
-      for (Column<S>* column : {&surfaces.baseX, &surfaces.baseY, &surfaces.baseZ}) column->drop();
-    }
-    if (!needs.textures) {
-      surfaces.uvU.drop();
-      surfaces.uvV.drop();
-    }
-    if (!needs.tangents) surfaces.tangent.drop();
+    surfaces.keepDetails(needs);
     if (!needs.instances) hits.instance.drop();
     if (!needs.rouletteScale) paths.rouletteScale.drop();
     if (!needs.connections) {

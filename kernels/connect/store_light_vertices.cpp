@@ -43,33 +43,15 @@ WAVECREST_INLINE void storeRows(const StageContext<S>& context, const Wave<S>& w
 }
 
 // What connections read besides rows.
-template <uint32_t kFeatures, class S>
-WAVECREST_INLINE void storeColumns(const SceneView<S>& scene, const Wave<S>& wave, size_t i, LightVertices<S>& vertices,
-                                   size_t out) {
-  const auto& surfaces = wave.surfaces;
-  const auto copy = [i, out](const auto& from, const auto& to)
-                        WAVECREST_LAMBDA { storeUnaligned(load(from, i), to + out); };
-  if constexpr (has(kFeatures, kShadingNormals)) {
-    copy(surfaces.shadingX, vertices.shadingX);
-    copy(surfaces.shadingY, vertices.shadingY);
-    copy(surfaces.shadingZ, vertices.shadingZ);
-  }
-  if constexpr (has(kFeatures, kNormalMaps)) {
-    if (scene.normalMaps) {
-      copy(surfaces.baseX, vertices.baseX);
-      copy(surfaces.baseY, vertices.baseY);
-      copy(surfaces.baseZ, vertices.baseZ);
-    }
-  }
-  if constexpr (has(kFeatures, kTextures)) {
-    copy(surfaces.uvU, vertices.uvU);
-    copy(surfaces.uvV, vertices.uvV);
-  }
-  if constexpr (has(kFeatures, kCompoundBsdfs)) {
-    if (scene.tangents) copy(surfaces.tangent, vertices.tangent);
-  }
+template <uint32_t kFeatures, class Real, class S>
+WAVECREST_INLINE void storeColumns(const Wave<S>& wave, size_t i, LightVertices<S>& vertices, size_t out) {
+  VertexDetailLanes<Real> details;
+  details.template forEach<kFeatures>(
+      wave.surfaces, [&](auto& number, const auto& column) WAVECREST_LAMBDA { number = load(column, i); });
+  details.template forEach<kFeatures>(
+      vertices, [&](const auto& number, const auto& column) WAVECREST_LAMBDA { storeUnaligned(number, column + out); });
   prefetchColumns(out, vertices.lane, vertices.next);
-  copy(wave.paths.lane, vertices.lane);
+  storeUnaligned(load(wave.paths.lane, i), vertices.lane + out);
 }
 
 }  // namespace
@@ -84,7 +66,7 @@ void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<t
   // The tail of a column has room for whole blocks.
   for (size_t i = 0; i < wave.joinable; i += kLanes) {
     storeRows<kFeatures>(context, wave, i, vertices, first + i, merged);
-    if (connected) storeColumns<kFeatures>(*context.scene, wave, i, vertices, first + i);
+    if (connected) storeColumns<kFeatures, typename P::Real>(wave, i, vertices, first + i);
     if (merged) storePlaces(context.photonGrid, wave.rays, i, vertices, first + i);
   }
   if (merged) flushStream();

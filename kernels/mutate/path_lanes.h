@@ -70,18 +70,14 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> pathShading(const SceneView<typename
                                                         Vec3<typename P::Real> wi, Walk walk) {
   using Real = typename P::Real;
   const Vec3<Real> normal = normalAt(v, at);
-  VertexLanes<Real> vertex{.position = positionAt(v, at),
-                           .wi = wi,
-                           .normal = normal,
-                           .shadingNormal = normal,
-                           .baseNormal = normal,
-                           .offset = gather(v.offset, at),
-                           .u = Float(0),
-                           .v = Float(0),
-                           .tangent = Float(0),
-                           .material = materialOf(scene, gather(v.primitive, at))};
-  readDetails<kFeatures>(
-      scene, v, [&](const auto& column) WAVECREST_LAMBDA { return gather(column, at); }, vertex);
+  const VertexLanes<Real> vertex{.position = positionAt(v, at),
+                                 .wi = wi,
+                                 .normal = normal,
+                                 .offset = gather(v.offset, at),
+                                 .material = materialOf(scene, gather(v.primitive, at)),
+                                 .details = readDetails<kFeatures>(v, normal, [&](const auto& column) WAVECREST_LAMBDA {
+                                   return gather(column, at);
+                                 })};
   auto shading = shadingOf<P, kFeatures>(scene, vertex);
   shading.bsdf.walk = walk;
   return shading;

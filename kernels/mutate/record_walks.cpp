@@ -49,22 +49,11 @@ void recordPathVertices(const StageContext<typename P::Storage>& context, Wave<t
     storeWhere(loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i), active, v.normalX, v.normalY,
                v.normalZ, at);
     storeWhere(load(surfaces.offset, i), active, v.offset, at);
-    if constexpr (has(kFeatures, kShadingNormals)) {
-      storeWhere(loadVec3(surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ, i), active, v.shadingX, v.shadingY,
-                 v.shadingZ, at);
-    }
-    if constexpr (has(kFeatures, kNormalMaps)) {
-      if (context.scene->normalMaps) {
-        storeWhere(loadVec3(surfaces.baseX, surfaces.baseY, surfaces.baseZ, i), active, v.baseX, v.baseY, v.baseZ, at);
-      }
-    }
-    if constexpr (has(kFeatures, kTextures)) {
-      storeWhere(load(surfaces.uvU, i), active, v.uvU, at);
-      storeWhere(load(surfaces.uvV, i), active, v.uvV, at);
-    }
-    if constexpr (has(kFeatures, kCompoundBsdfs)) {
-      if (context.scene->tangents) storeWhere(load(surfaces.tangent, i), active, v.tangent, at);
-    }
+    VertexDetailLanes<typename P::Real> details;
+    details.template forEach<kFeatures>(
+        surfaces, [&](auto& number, const auto& column) WAVECREST_LAMBDA { number = load(column, i); });
+    details.template forEach<kFeatures>(
+        v, [&](const auto& number, const auto& column) WAVECREST_LAMBDA { storeWhere(number, active, column, at); });
     UInt primitive = select(active, load(wave.hits.primitive, i), UInt(0u));
     if (camera) {  // x_0 is a point of a light, if it is one
       const auto record = primitivesOf(*context.scene, primitive);

@@ -259,9 +259,9 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
     const Real cosine = -dot(surface.normal, direction);
     toAreaMeasure<P, kFeatures>(context, wave, i, hit, surface.position, dist2, cosine, mis);
 
-    Interpolated<Real> shading{surface.normal, surface.normal, Float(0), Float(0), Float(0)};
+    VertexDetailLanes<Real> details(surface.normal);
     if constexpr (has(kFeatures, kShadingNormals | kTextures)) {
-      shading = interpolate<P, kFeatures>(scene, at, hit, inGroup, surface.normal, instance);
+      details = interpolate<P, kFeatures>(scene, at, hit, inGroup, surface.normal, instance);
     }
 
     if (camera) {
@@ -282,7 +282,7 @@ void arrive(const StageContext<typename P::Storage>& context, Wave<typename P::S
                      .direction = direction,
                      .normal = surface.normal,
                      .throughput = throughput,
-                     .shading = shading,
+                     .details = details,
                      .offset = surface.offset,
                      .rouletteScale = rouletteScale,
                      .mis = mis,

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/mis_lanes.h"
-#include "kernels/surface/interpolation_lanes.h"
+#include "kernels/surface/vertex_detail_lanes.h"
 
 WAVECREST_SIMD_BEGIN
 
@@ -10,7 +10,7 @@ WAVECREST_SIMD_BEGIN
 template <uint32_t kFeatures, class Real>
 struct PathVertexLanes {
   Vec3<Real> position, direction, normal, throughput;
-  Interpolated<Real> shading;
+  VertexDetailLanes<Real> details;
   Real offset, rouletteScale;
   MisSums<Real> mis;
   UInt lane, primitive;
@@ -30,19 +30,7 @@ struct PathVertexLanes {
     three(direction, rays.directionX, rays.directionY, rays.directionZ);
     three(normal, surfaces.normalX, surfaces.normalY, surfaces.normalZ);
     function(offset, surfaces.offset);
-    if constexpr (has(kFeatures, kShadingNormals)) {
-      three(shading.normal, surfaces.shadingX, surfaces.shadingY, surfaces.shadingZ);
-    }
-    if constexpr (has(kFeatures, kTextures)) {
-      function(shading.u, surfaces.uvU);
-      function(shading.v, surfaces.uvV);
-    }
-    if constexpr (has(kFeatures, kCompoundBsdfs)) {
-      if (surfaces.tangent.needed()) function(shading.tangent, surfaces.tangent);
-    }
-    if constexpr (has(kFeatures, kNormalMaps)) {
-      if (surfaces.baseX.needed()) three(shading.base, surfaces.baseX, surfaces.baseY, surfaces.baseZ);
-    }
+    details.template forEach<kFeatures>(surfaces, function);
     three(throughput, paths.throughputR, paths.throughputG, paths.throughputB);
     function(mis.dVCM, paths.dVCM);
     if constexpr (has(kFeatures, kBidirectional)) {

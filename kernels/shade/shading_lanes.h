@@ -5,6 +5,7 @@
 #include "kernels/simd/math.h"
 #include "kernels/surface/normal_map_lanes.h"
 #include "kernels/surface/surface_lanes.h"
+#include "kernels/surface/vertex_detail_lanes.h"
 
 WAVECREST_SIMD_BEGIN
 
@@ -19,12 +20,10 @@ struct Scattering {
 // What a vertex is, before its material is known: of a live path, or of a stored light vertex.
 template <class Real>
 struct VertexLanes {
-  Vec3<Real> position, wi, normal, shadingNormal;
-  Vec3<Real> baseNormal;  // the shading normal without its map, in feature sets with normal maps
+  Vec3<Real> position, wi, normal;  // geometric normal
   Real offset;
-  Float u, v;     // texture coordinates
-  Float tangent;  // as in Surfaces
   UInt material;
+  VertexDetailLanes<Real> details;
 };
 
 struct NoTangents {};
@@ -48,7 +47,7 @@ struct ShadingLanes {
       : position(vertex.position),
         normal(vertex.normal),
         offset(vertex.offset),
-        frame(Frame<Real>::fromNormal(vertex.shadingNormal)),
+        frame(Frame<Real>::fromNormal(vertex.details.normal)),
         wi(frame.toLocal(vertex.wi)),
         side(Real(1)),
         wiCosine(dot(vertex.wi, vertex.normal)),
@@ -252,23 +251,23 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
                .softens = flagged(kSoftensTerminator),
                .mirrorsBack = flagged(kMirrorsBack),
                .wi = vertex.wi,
-               .base = vertex.baseNormal,
-               .mapped = vertex.shadingNormal};
+               .base = vertex.details.base,
+               .mapped = vertex.details.normal};
       // Of the two normals of a map the frame has the one that wi faces.
-      s.frame = Frame<Real>::fromNormal(select(s.map.lanes, s.map.normalFor(vertex.wi), vertex.shadingNormal));
+      s.frame = Frame<Real>::fromNormal(select(s.map.lanes, s.map.normalFor(vertex.wi), vertex.details.normal));
       s.wi = s.frame.toLocal(vertex.wi);
     }
   }
   if constexpr (has(kFeatures, kTextures)) {
-    readTextureFactors<P>(scene, s.bsdf, vertex.u, vertex.v);
+    readTextureFactors<P>(scene, s.bsdf, vertex.details.u, vertex.details.v);
   }
   if constexpr (has(kFeatures, kCompoundBsdfs)) {
-    s.bsdf.u = vertex.u;
-    s.bsdf.v = vertex.v;
+    s.bsdf.u = vertex.details.u;
+    s.bsdf.v = vertex.details.v;
     if (scene.tangents) {
       // dp/du from its angle about the base normal.
-      const auto base = Frame<Real>::fromNormal(scene.normalMaps ? vertex.baseNormal : vertex.shadingNormal);
-      const auto angle = sinCos(to<Real>(vertex.tangent));
+      const auto base = Frame<Real>::fromNormal(scene.normalMaps ? vertex.details.base : vertex.details.normal);
+      const auto angle = sinCos(to<Real>(vertex.details.tangent));
       s.tangent = mulAdd(base.s, angle.cos, base.t * angle.sin);
       s.bsdf.setTangent(s.tangent, s.frame);
     }
@@ -278,24 +277,14 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
   return s;
 }
 
-// What some feature sets ask of a vertex: shading normals, those without maps, texture coordinates. columns: Surfaces
-// or others that name them so; read(column): the numbers of the lanes.
-template <uint32_t kFeatures, class Real, class S, class Columns, class Read>
-WAVECREST_INLINE void readDetails(const SceneView<S>& scene, const Columns& columns, const Read& read,
-                                  VertexLanes<Real>& vertex) {
-  if constexpr (has(kFeatures, kShadingNormals)) {
-    vertex.shadingNormal = {read(columns.shadingX), read(columns.shadingY), read(columns.shadingZ)};
-  }
-  if constexpr (has(kFeatures, kNormalMaps)) {
-    if (scene.normalMaps) vertex.baseNormal = {read(columns.baseX), read(columns.baseY), read(columns.baseZ)};
-  }
-  if constexpr (has(kFeatures, kTextures)) {
-    vertex.u = read(columns.uvU);
-    vertex.v = read(columns.uvV);
-  }
-  if constexpr (has(kFeatures, kCompoundBsdfs)) {
-    if (scene.tangents) vertex.tangent = read(columns.tangent);
-  }
+// The details of a vertex that has this geometric normal. columns: a record of vertices; read(column): the numbers of
+// the lanes.
+template <uint32_t kFeatures, class Real, class Columns, class Read>
+WAVECREST_INLINE VertexDetailLanes<Real> readDetails(const Columns& columns, Vec3<Real> normal, const Read& read) {
+  VertexDetailLanes<Real> details(normal);
+  details.template forEach<kFeatures>(
+      columns, [&](auto& number, const auto& column) WAVECREST_LAMBDA { number = read(column); });
+  return details;
 }
 
 // Block i of the live paths' vertices.
@@ -306,18 +295,14 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> loadShading(const SceneView<typename
   const auto& rays = wave.rays;
   const auto& surfaces = wave.surfaces;
   const auto normal = loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i);
-  VertexLanes<Real> vertex{.position = loadVec3(rays.originX, rays.originY, rays.originZ, i),
-                           .wi = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i),
-                           .normal = normal,
-                           .shadingNormal = normal,
-                           .baseNormal = normal,
-                           .offset = load(surfaces.offset, i),
-                           .u = Float(0),
-                           .v = Float(0),
-                           .tangent = Float(0),
-                           .material = materialOf(scene, select(active, load(wave.hits.primitive, i), UInt(0u)))};
-  readDetails<kFeatures>(
-      scene, surfaces, [&](const auto& column) WAVECREST_LAMBDA { return load(column, i); }, vertex);
+  const VertexLanes<Real> vertex{
+      .position = loadVec3(rays.originX, rays.originY, rays.originZ, i),
+      .wi = -loadVec3(rays.directionX, rays.directionY, rays.directionZ, i),
+      .normal = normal,
+      .offset = load(surfaces.offset, i),
+      .material = materialOf(scene, select(active, load(wave.hits.primitive, i), UInt(0u))),
+      .details = readDetails<kFeatures>(surfaces, normal,
+                                        [&](const auto& column) WAVECREST_LAMBDA { return load(column, i); })};
   return shadingOf<P, kFeatures>(scene, vertex);
 }
 

@@ -60,19 +60,15 @@ WAVECREST_INLINE RowLanes<P, kFeatures> gatherRows(const SceneView<typename P::S
                           side = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].normal; }),
                           carried = loadFour([&](size_t k) WAVECREST_LAMBDA { return rows[index[k]].throughput; });
   const Vec3<Real> normal{side.a, side.b, side.c};
-  VertexLanes<Real> vertex{.position = {place.a, place.b, place.c},
-                           .wi = {back.a, back.b, back.c},
-                           .normal = normal,
-                           .shadingNormal = normal,
-                           .baseNormal = normal,
-                           .offset = place.d,
-                           .u = Float(0),
-                           .v = Float(0),
-                           .tangent = Float(0),
-                           .material = materialOfTag(back.d)};
   const UInt at = loadUnaligned(index);
-  readDetails<kFeatures>(
-      scene, columns, [&](const auto& column) WAVECREST_LAMBDA { return gather(column, at); }, vertex);
+  const VertexLanes<Real> vertex{
+      .position = {place.a, place.b, place.c},
+      .wi = {back.a, back.b, back.c},
+      .normal = normal,
+      .offset = place.d,
+      .material = materialOfTag(back.d),
+      .details = readDetails<kFeatures>(columns, normal,
+                                        [&](const auto& column) WAVECREST_LAMBDA { return gather(column, at); })};
   return {shadingOf<P, kFeatures>(scene, vertex), {carried.a, carried.b, carried.c}, side.d, carried.d};
 }
 

@@ -4,16 +4,9 @@
 #include "kernels/simd/math.h"
 #include "kernels/surface/instance_lanes.h"
 #include "kernels/surface/texture_lanes.h"
+#include "kernels/surface/vertex_detail_lanes.h"
 
 WAVECREST_SIMD_BEGIN
-
-template <class Real>
-struct Interpolated {
-  Vec3<Real> normal;  // shading normal, unit
-  Vec3<Real> base;    // the same without bump and normal maps
-  Float u, v;         // texture coordinates
-  Float tangent;      // angle of dp/du about `base` in Frame::fromNormal of it, where a feature set has compound BSDFs
-};
 
 namespace {
 
@@ -59,7 +52,7 @@ namespace {
 template <class P>
 WAVECREST_INLINE void mapSphere(const PrimitiveRecord<typename P::Storage>& fields,
                                 const PrimitiveLanes<typename P::Storage>& at, Mask sphere,
-                                Vec3<typename P::Real> normal, Interpolated<typename P::Real>& out,
+                                Vec3<typename P::Real> normal, VertexDetailLanes<typename P::Real>& out,
                                 Tangents<typename P::Real>& tangents) {
   using Real = typename P::Real;
   // x, y, z: the outward direction in the sphere's own frame.
@@ -80,7 +73,7 @@ WAVECREST_INLINE void mapSphere(const PrimitiveRecord<typename P::Storage>& fiel
 // of the primitive's group. tangents: the edges of the primitive before.
 template <class S, class Real>
 WAVECREST_INLINE void interpolateCorners(const SceneView<S>& scene, Mask attributed, UInt index,
-                                         const SurfacePoint<Real>& surface, Interpolated<Real>& out,
+                                         const SurfacePoint<Real>& surface, VertexDetailLanes<Real>& out,
                                          Tangents<Real>& tangents) {
   const Real b1 = surface.u, b2 = surface.v, b0 = Real(1) - b1 - b2;
   const AttributeRecord& fields = *scene.attributes;
@@ -118,7 +111,7 @@ WAVECREST_INLINE void interpolateCorners(const SceneView<S>& scene, Mask attribu
 // Bump and normal maps change the normal; `base` stays as it is.
 template <class S, class Real>
 WAVECREST_INLINE void mapNormals(const SceneView<S>& scene, const PrimitiveLanes<S>& at, Mask hit, Vec3<Real> geometric,
-                                 const Tangents<Real>& tangents, Interpolated<Real>& out) {
+                                 const Tangents<Real>& tangents, VertexDetailLanes<Real>& out) {
   const MaterialLanes material(scene, at(scene.primitives->material));
   const UInt bumpMap = material(scene.materials->bumpTexture), normalMap = material(scene.materials->normalTexture);
   const Mask bump = andNot(hit, bumpMap == UInt(kNoIndex)), map = andNot(hit, normalMap == UInt(kNoIndex));
@@ -141,14 +134,17 @@ WAVECREST_INLINE void mapNormals(const SceneView<S>& scene, const PrimitiveLanes
 // Shading normal, texture coordinates and tangent at a surface point, in the world. surface: in the space of the
 // primitive's group. geometric: its normal in the world.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE Interpolated<typename P::Real> interpolate(const SceneView<typename P::Storage>& scene,
-                                                            const PrimitiveLanes<typename P::Storage>& at, Mask hit,
-                                                            const SurfacePoint<typename P::Real>& surface,
-                                                            Vec3<typename P::Real> geometric,
-                                                            const InstanceLanes<P, kFeatures>& instance) {
+WAVECREST_INLINE VertexDetailLanes<typename P::Real> interpolate(const SceneView<typename P::Storage>& scene,
+                                                                 const PrimitiveLanes<typename P::Storage>& at,
+                                                                 Mask hit,
+                                                                 const SurfacePoint<typename P::Real>& surface,
+                                                                 Vec3<typename P::Real> geometric,
+                                                                 const InstanceLanes<P, kFeatures>& instance) {
   using Real = typename P::Real;
   // A primitive without attributes has its own normal, and its own (u, v) as texture coordinates.
-  Interpolated<Real> out{surface.normal, surface.normal, to<Float>(surface.u), to<Float>(surface.v), Float(0)};
+  VertexDetailLanes<Real> out(surface.normal);
+  out.u = to<Float>(surface.u);
+  out.v = to<Float>(surface.v);
   const UInt index = at(scene.primitives->attributes);
   const Mask attributed = andNot(hit, index == UInt(kNoIndex));
   Tangents<Real> tangents{at(scene.primitives->e1), at(scene.primitives->e2)};
