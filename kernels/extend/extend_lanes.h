@@ -27,7 +27,7 @@ WAVECREST_INLINE void finish(const SceneView<S>& scene, Hits& hits, size_t i) {
 
 // Rays in packets of a block; those behind the last ray repeat the first of their packet.
 template <class Packet, class S>
-WAVECREST_INLINE void walkTogether(const SceneView<S>& scene, const Rays<S>& rays, Hits& hits) {
+WAVECREST_NOINLINE void walkTogether(const SceneView<S>& scene, const Rays<S>& rays, Hits& hits) {
   size_t next = 0;
   walkBvh<Packet>(
       *scene.bvh,
@@ -52,7 +52,7 @@ WAVECREST_INLINE void walkTogether(const SceneView<S>& scene, const Rays<S>& ray
 }
 
 template <class Ray, class S>
-WAVECREST_INLINE void walkAlone(const SceneView<S>& scene, const Rays<S>& rays, Hits& hits) {
+WAVECREST_NOINLINE void walkAlone(const SceneView<S>& scene, const Rays<S>& rays, Hits& hits) {
   size_t next = 0;
   walkBvh<Ray>(
       *scene.bvh,

@@ -17,6 +17,7 @@ WAVECREST_SIMD_BEGIN
 namespace {
 
 constexpr bool kPackets = kLanes >= 8;  // blocks of fewer lanes gain nothing by them
+constexpr size_t kTrialRays = 256;      // of the first batch
 
 // Some rays of a wave that are walked in packets, and whether nothing blocks them, as 1 or 0.
 struct Batch {
@@ -27,8 +28,8 @@ struct Batch {
 
 // Walks the batch in packets. Entries that rays have to visit alone go to batch.alone.
 template <class S>
-WAVECREST_INLINE void walkTogether(const BvhView& bvh, const ShadowRays<S>& rays, LastBlockers& blockers,
-                                   Batch& batch) {
+WAVECREST_NOINLINE void walkTogether(const BvhView& bvh, const ShadowRays<S>& rays, LastBlockers& blockers,
+                                     Batch& batch) {
   // The end of a packet's first ray stands for the ends of all its rays.
   const auto blockerOf = [&](size_t i) HWY_ATTR -> uint32_t& {
     return blockers.towards(rays.originX[i] + rays.directionX[i], rays.originY[i] + rays.directionY[i],
@@ -59,7 +60,7 @@ WAVECREST_INLINE void walkTogether(const BvhView& bvh, const ShadowRays<S>& rays
 
 // Finishes the rays that packets have left, each from the entries that were left to it.
 template <class S>
-WAVECREST_INLINE void finishAlone(const BvhView& bvh, const ShadowRays<S>& rays, Batch& batch) {
+WAVECREST_NOINLINE void finishAlone(const BvhView& bvh, const ShadowRays<S>& rays, Batch& batch) {
   size_t next = 0;
   walkBvh<BvhRay<true>>(
       bvh,
@@ -83,21 +84,36 @@ WAVECREST_INLINE void finishAlone(const BvhView& bvh, const ShadowRays<S>& rays,
       });
 }
 
-// Writes `visible` of each ray.
+// Whether packets of rays like those of the batch are worth it: many of them were blocked in their packet, or hardly
+// any is left to finish alone. kernels/MEASUREMENTS.md has the shares of some scenes. Call between walkTogether and
+// finishAlone.
+bool goesTogether(const Batch& batch) {
+  size_t blocked = 0, left = 0;
+  for (size_t i = 0; i < batch.count; ++i) {
+    const bool open = batch.visible[i] != 0;
+    blocked += open ? 0 : 1;
+    left += open && batch.alone.count[i] != 0 ? 1 : 0;
+  }
+  return blocked * 4 >= batch.count || left * 8 <= batch.count;
+}
+
+// Writes `visible` of each ray. A first small batch shows whether the others go in packets too.
 template <class S>
 WAVECREST_INLINE void walkAll(const BvhView& bvh, const ShadowRays<S>& rays, float* visible) {
+  size_t first = 0;
   if constexpr (kPackets) {
     LastBlockers blockers(bvh);
     Batch batch;
-    for (batch.first = 0; batch.first < rays.size; batch.first += batch.count) {
-      batch.count = std::min(rays.size - batch.first, LoneEntries::kRays);
+    for (bool together = true; together && first < rays.size; first += batch.count) {
+      batch.first = first;
+      batch.count = std::min(rays.size - first, first == 0 ? kTrialRays : LoneEntries::kRays);
       walkTogether(bvh, rays, blockers, batch);
+      together = goesTogether(batch);
       finishAlone(bvh, rays, batch);
-      std::copy_n(batch.visible, batch.count, visible + batch.first);
+      std::copy_n(batch.visible, batch.count, visible + first);
     }
-  } else {
-    walkShadowRaysAlone<BvhRay<true>>(bvh, rays, visible);
   }
+  walkShadowRaysAlone<BvhRay<true>>(bvh, rays, first, visible);
 }
 
 }  // namespace

@@ -14,10 +14,10 @@ WAVECREST_INLINE void beginShadowRay(Ray& ray, size_t index, const ShadowRays<S>
             rays.directionZ[i], kShadowEnd);
 }
 
-// Each ray alone. Writes `visible` of each.
+// Each ray from `next` on alone. Writes `visible` of each.
 template <class Ray, class S>
-WAVECREST_INLINE void walkShadowRaysAlone(const BvhView& bvh, const ShadowRays<S>& rays, float* visible) {
-  size_t next = 0;
+WAVECREST_NOINLINE void walkShadowRaysAlone(const BvhView& bvh, const ShadowRays<S>& rays, size_t next,
+                                            float* visible) {
   walkBvh<Ray>(
       bvh,
       [&](Ray& ray) HWY_ATTR {

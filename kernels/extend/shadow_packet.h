@@ -32,9 +32,9 @@ struct LoneEntries {
 };
 
 struct ShadowPacket : BvhPacket {
-  // So few rays are better off alone. Measured: in packets of sixteen ten cost 1.1 to 1.2 times less alone on scattered
-  // meshes, and the same in rooms (kernels/MEASUREMENTS.md).
-  static constexpr size_t kFew = kLanes == 16 ? 10 : kLanes * 3 / 8;
+  // So few rays are better off alone. Measured (kernels/MEASUREMENTS.md): of sixteen, eight to twelve are about as
+  // good; of eight, three or six are slower.
+  static constexpr size_t kFew = kLanes * 5 / 8;
 
   LoneEntries* alone;
   uint32_t blocker;          // the last leaf that blocked a ray, or kBvhEnd

@@ -34,6 +34,8 @@ concept EntersInstances = requires(Walker& walker, const InstanceLeaf& leaf) {
   walker.leave();
 };
 
+// Call it from a function of its own that is not inlined: next to other loops g++ keeps what a step needs in memory.
+//
 // Walks for as long as begin(walker) finds something to do. end(walker): takes what was found. Walker::kUnderWay: at
 // most 255.
 template <class Walker, class Begin, class End>
@@ -45,19 +47,19 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
   uint8_t lists[kEntries][kUnderWay], current[kUnderWay];
   size_t sizes[kEntries] = {};
   // Puts a walker on the list of its next entry's kind.
-  const auto stand = [&](uint8_t i, uint32_t reference) HWY_ATTR {
+  const auto stand = [&](uint8_t i, uint32_t reference) WAVECREST_LAMBDA {
     walkers[i].at = reference;
     const uint32_t entry = reference >> kBvhEntryShift;
     lists[entry][sizes[entry]++] = i;
   };
   // Takes the next waiting entry off the walker's stack and fetches it ahead of the visit.
-  const auto goOn = [&](uint8_t i) HWY_ATTR {
+  const auto goOn = [&](uint8_t i) WAVECREST_LAMBDA {
     const uint32_t reference = walkers[i].stack[--walkers[i].waiting];
     prefetchEntry(bvh, reference);
     stand(i, reference);
   };
   // Gives a walker its next ray, if there is one.
-  const auto enter = [&](uint8_t i) HWY_ATTR {
+  const auto enter = [&](uint8_t i) WAVECREST_LAMBDA {
     Walker& walker = walkers[i];
     walker.stack[0] = kBvhEnd;
     walker.waiting = 1;
@@ -66,7 +68,7 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
     stand(i, walker.at);
   };
   // In or out of an instance.
-  [[maybe_unused]] const auto pass = [&](uint8_t i) HWY_ATTR {
+  [[maybe_unused]] const auto pass = [&](uint8_t i) WAVECREST_LAMBDA {
     if constexpr (EntersInstances<Walker>) {
       Walker& walker = walkers[i];
       if (walker.at == kBvhLeave) {
@@ -79,7 +81,7 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
     }
   };
   // Moves the list aside, so that walkers may join it again.
-  const auto take = [&](BvhEntry entry) HWY_ATTR {
+  const auto take = [&](BvhEntry entry) WAVECREST_LAMBDA {
     const auto which = static_cast<size_t>(entry);
     std::memcpy(current, lists[which], kUnderWay);
     const size_t size = sizes[which];
@@ -87,7 +89,7 @@ WAVECREST_INLINE void walkBvh(const BvhView& bvh, const Begin& begin, const End&
     return size;
   };
   // All walkers that visit an entry of one kind: the same code for each, one after the other.
-  const auto visitAll = [&]<class Record>(BvhEntry entry, std::type_identity<Record>) HWY_ATTR {
+  const auto visitAll = [&]<class Record>(BvhEntry entry, std::type_identity<Record>) WAVECREST_LAMBDA {
     for (size_t k = 0, size = take(entry); k < size; ++k) {
       Walker& walker = walkers[current[k]];
       walker.visit(bvh.at<Record>(walker.at));

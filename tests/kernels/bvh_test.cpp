@@ -132,7 +132,27 @@ TEST_P(BvhRaysTest, raysThatAreNoRaysMissAndHarmNoOther) {
 // ---- shadow rays ----------------------------------------------------------------------------------------------------
 
 // Segments to a few lights, most of them behind something: from one place in packets, from anywhere, and along the
-// axes; among them some that are no rays. Neither packets nor what blocked the ray before changes what a ray sees.
+// axes; among them some that are no rays. scattered: from anywhere to anywhere, which packets are given up for.
+RayBatch shadowRays(size_t count, bool scattered, RandomPoints& random) {
+  const Point lights[] = {{2, 0, 0}, {-2, 0.1, 0.2}, {0, 0, 3}};
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  RayBatch batch;
+  for (size_t i = 0; i < count; ++i) {
+    const bool fromOnePlace = !scattered && i / 64 % 2 == 0;
+    const Point end = scattered ? random.inCube(1.5) : lights[i / 32 % 3] + random.inCube(0.02);
+    const Point start = fromOnePlace ? Point{0.1, 1.2, 0.3} + random.inCube(0.01) : random.inCube(1.2);
+    if (i % 50 == 17) {
+      batch.push({roundedToFloat(start), {nan, 1, 0}});
+    } else if (i % 50 == 18) {
+      batch.push({roundedToFloat(start), {i % 4 < 2 ? 3.0 : -3.0, 0, 0}});
+    } else {
+      batch.push(roundedRay(start, end - start));
+    }
+  }
+  return batch;
+}
+
+// Neither packets nor what blocked the ray before changes what a ray sees.
 TEST_P(BvhRaysTest, shadowRaysSeeWhatTheyWouldSeeAlone) {
   RandomPoints random(35);
   auto list = crowd(300);
@@ -140,21 +160,8 @@ TEST_P(BvhRaysTest, shadowRaysSeeWhatTheyWouldSeeAlone) {
     list.push_back(facePrimitive(PrimitiveKind::quad, {side, -0.8, -2}, {0, 1.6, 0}, {0, 0, 4}));
   }
   const StageScene<float> scene(list);
-  const Point lights[] = {{2, 0, 0}, {-2, 0.1, 0.2}, {0, 0, 3}};
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const size_t count : {size_t{1}, size_t{7}, size_t{255}, size_t{257}, RayBatch::kCapacity}) {
-    RayBatch batch;
-    for (size_t i = 0; i < count; ++i) {
-      const Point end = lights[i / 32 % 3] + random.inCube(0.02);
-      const Point start = i / 64 % 2 == 0 ? Point{0.1, 1.2, 0.3} + random.inCube(0.01) : random.inCube(1.2);
-      if (i % 50 == 17) {
-        batch.push({roundedToFloat(start), {nan, 1, 0}});
-      } else if (i % 50 == 18) {
-        batch.push({roundedToFloat(start), {i % 4 < 2 ? 3.0 : -3.0, 0, 0}});
-      } else {
-        batch.push(roundedRay(start, end - start));
-      }
-    }
+  const auto compare = [&](size_t count, bool scattered) {
+    RayBatch batch = shadowRays(count, scattered, random);
     std::vector<bool> want, sure;
     batch.extend(named("bvh"), scene.view);
     for (size_t i = 0; i < count; ++i) {
@@ -181,9 +188,13 @@ TEST_P(BvhRaysTest, shadowRaysSeeWhatTheyWouldSeeAlone) {
       }
     }
     const auto blocked = static_cast<size_t>(std::count(want.begin(), want.end(), true));
-    if (count < 200) continue;
+    if (count < 200 || scattered) return;
     EXPECT_GT(blocked, count / 3);
     EXPECT_LT(blocked, count - count / 10);
+  };
+  for (const size_t count : {size_t{1}, size_t{7}, size_t{255}, size_t{257}, RayBatch::kCapacity}) {
+    compare(count, false);
+    compare(count, true);
   }
 }
 
