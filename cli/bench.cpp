@@ -107,6 +107,7 @@ BenchMode chosenMode(const BenchOptions& options) {
                              {"--scaling", options.scaling, runBenchScaling},
                              {"--specialization", options.specialization, runBenchSpecialization},
                              {"--score", !options.score.empty(), runBenchScore},
+                             {"--machines", !options.machines.empty(), runBenchMachines},
                              {"--extremes", options.extremes, runBenchExtremes}};
   BenchMode chosen{"", true, runBenchThroughput};
   for (const BenchMode& mode : modes) {
@@ -138,7 +139,7 @@ void refuseOptionsOfOtherModes(const BenchOptions& options, std::string_view mod
       {"--write-pictures", !options.writePictures.empty(), {"--score"}},
       {"--knobs", !options.knobs.empty(), {"--tradeoff"}},
       {"--seeds", options.seeds != byDefault.seeds, {"--tradeoff"}},
-      {"--html", !options.html.empty(), {"--extremes", "--tradeoff"}}};
+      {"--html", !options.html.empty(), {"--extremes", "--tradeoff", "--machines"}}};
   for (const ModeOption& option : all) {
     const bool taken = std::find(option.modes.begin(), option.modes.end(), mode) != option.modes.end();
     if (!option.given || taken) continue;
@@ -160,6 +161,7 @@ void checkBenchFiles(const BenchOptions& options) {
   FileCheck files;
   for (const std::string& scene : options.scenes) files.input("the scene", findScene(scene));
   for (const std::string& result : options.compare) files.input("--compare", result);
+  for (const std::string& result : options.machines) files.input("--machines", result);
   if (!options.hashes.empty()) files.input("--hashes", options.hashes);
   if (!options.json.empty()) files.output("--json", options.json);
   if (!options.html.empty()) files.output("--html", options.html);
@@ -217,6 +219,10 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.add("--pictures", options->pictures,
               "--score: compare images without hashes of this build with the pictures in this file, not the committed");
   command.add("--write-pictures", options->writePictures, "--score: as --write-hashes, small pictures of the images");
+  command
+      .add("--machines", options->machines,
+           "scores of several machines beside each other: files of --score --json, or folders of them")
+      .repeatable();
   command.addFlag("--specialization", options->specialization,
                   "kernels for what a scene has against those that render everything: image, speed, memory, code");
   command.addFlag("--tradeoff", options->tradeoff,
@@ -229,7 +235,7 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.add("--seeds", options->seeds, "--tradeoff: renders of each setting; default: 6").between(2, 1000);
   command.addFlag("--extremes", options->extremes, "take scenes and renders to their extremes, one property at a time");
   command.add("--html", options->html,
-              "--extremes, --tradeoff: write a page with plots; -: to stdout, instead of the tables");
+              "--extremes, --tradeoff, --machines: write a page; -: to stdout, instead of the tables");
   command.run([options, &exitCode] { exitCode = runBench(*options); });
 }
 

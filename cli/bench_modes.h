@@ -23,6 +23,7 @@ struct BenchOptions {
   bool extremes = false, scaling = false, tradeoff = false, specialization = false, pin = false;
   std::string score, hashes, writeHashes, pictures, writePictures;  // score: a size
   std::string html;
+  std::vector<std::string> machines;  // files and folders of scores
   std::vector<std::string> knobs;
   uint32_t seeds = 0;  // 0: as many as the mode likes
   double familyLevel = 0.05, tolerance = 0;
@@ -37,6 +38,7 @@ int runBenchScaling(const BenchOptions& options);
 int runBenchSpecialization(const BenchOptions& options);
 int runBenchScore(const BenchOptions& options);
 int runBenchExtremes(const BenchOptions& options);
+int runBenchMachines(const BenchOptions& options);
 
 // Shared by the modes. Tables go to stdout unless the JSON or the page does.
 void printBench(const BenchOptions& options, const std::string& text);
