@@ -23,6 +23,7 @@ install(FILES ${described}/zsh/_wavecrest DESTINATION ${CMAKE_INSTALL_DATADIR}/z
 install(FILES ${described}/fish/wavecrest.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
 install(TARGETS wavecrest)
+install(DIRECTORY bench/score/machines DESTINATION ${CMAKE_INSTALL_DATADIR}/wavecrest)
 install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(NOT WAVECREST_SHARED)
   return()
