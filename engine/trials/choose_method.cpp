@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "engine/trials/trial_error.h"
@@ -37,6 +38,9 @@ constexpr Costs kSmallCosts{.shadow = 0.7, .connection = 0.93, .merge = 1.57, .p
 constexpr double kSobolGain = 1.15;
 // Weight of the variance of methods that merge, for their bias, which trials do not see.
 constexpr double kMergesMustGain = 1.1;
+// Weight of the variance of methods without light paths: the caustics that they seldom meet are most of it, and trials
+// of 42 samples meet too few.
+constexpr double kSeldomMet = 1.25;
 
 // The film, scaled down to at most kTrialPixels pixels in its crop window.
 FilmSettings trialFilm(FilmSettings film) {
@@ -110,19 +114,22 @@ std::vector<MethodTrial> trialsOf(const std::vector<Candidate>& candidates, cons
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     const bool gains = sampler == SamplerKind::sobol && bestSampler(candidate.method) == SamplerKind::sobol;
-    const double bias = strategiesOf(candidate.method).merge ? kMergesMustGain : 1;
+    const PathStrategies strategies = strategiesOf(candidate.method);
+    const double unseen = strategies.merge ? kMergesMustGain : strategies.camera || strategies.connect ? 1 : kSeldomMet;
     trials.push_back({.method = candidate.method,
                       .iterations = images[i].iterations(),
-                      .variance = errors[i].variance * bias / (gains ? kSobolGain : 1),
+                      .variance = errors[i].variance * unseen / (gains ? kSobolGain : 1),
                       .missed = errors[i].missed,
                       .cost = costOf(candidate.session->statistics())});
   }
   return trials;
 }
 
+// Of those that were not left out, which have the most iterations: shorter trials know less.
 const MethodTrial& bestOf(const std::vector<MethodTrial>& trials) {
   return *std::min_element(trials.begin(), trials.end(), [](const MethodTrial& a, const MethodTrial& b) {
-    return a.inefficiency() < b.inefficiency();
+    return std::tuple(-static_cast<double>(a.iterations), a.inefficiency()) <
+           std::tuple(-static_cast<double>(b.iterations), b.inefficiency());
   });
 }
 
