@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bench/campaign/render_stats.h"
@@ -69,14 +68,17 @@ void showMemory(ProgressKind kind, const MemoryPlan& plan) {
 
 void showChoice(ProgressKind kind, const std::optional<MethodChoice>& choice) {
   if (!choice) return;
+  const auto chosen = std::ranges::find(choice->trials, choice->method, &MethodTrial::method);
+  const double least = chosen == choice->trials.end() ? 0 : chosen->inefficiency();
+  const uint64_t longest = std::ranges::max(choice->trials, {}, &MethodTrial::iterations).iterations;
   std::vector<std::string> trials;
-  double least = std::numeric_limits<double>::infinity();
-  for (const MethodTrial& trial : choice->trials) least = std::min(least, trial.inefficiency());
   for (const MethodTrial& trial : choice->trials) {
-    trials.push_back(fmt::format("{} {:.2f}", toString(trial.method), least > 0 ? trial.inefficiency() / least : 1));
+    const double over = least > 0 ? trial.inefficiency() / least : 1;
+    trials.push_back(
+        fmt::format("{} {:.2f}{}", toString(trial.method), over, trial.iterations < longest ? " (left out early)" : ""));
   }
   noteLine(kind, {{"choice", choiceJson(*choice)}},
-           fmt::format("evcm: renders by {}; work for the same error, over the least: {}", toString(choice->method),
+           fmt::format("evcm: renders by {}; work for the same error, over its own: {}", toString(choice->method),
                        fmt::join(trials, ", ")));
 }
 
