@@ -74,8 +74,8 @@ void showChoice(ProgressKind kind, const std::optional<MethodChoice>& choice) {
   std::vector<std::string> trials;
   for (const MethodTrial& trial : choice->trials) {
     const double over = least > 0 ? trial.inefficiency() / least : 1;
-    trials.push_back(
-        fmt::format("{} {:.2f}{}", toString(trial.method), over, trial.iterations < longest ? " (left out early)" : ""));
+    trials.push_back(fmt::format("{} {:.2f}{}", toString(trial.method), over,
+                                 trial.iterations < longest ? " (left out early)" : ""));
   }
   noteLine(kind, {{"choice", choiceJson(*choice)}},
            fmt::format("evcm: renders by {}; work for the same error, over its own: {}", toString(choice->method),
