@@ -8,6 +8,7 @@
 #include "bench/score/machine_scores.h"
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
+#include "cli/file_check.h"
 #include "cli/messages.h"
 #include "metrics/image/atomic_file.h"
 

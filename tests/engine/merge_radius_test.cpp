@@ -172,8 +172,11 @@ TEST(AutoRadius, ofVcmThatMergesAtFirstVerticesHasFivePhotonsInASearch) {
 TEST(PhotonDensity, isThatOfEvenPhotons) {
   // 64 x 64 positions on a unit square, each for three photons; places in its middle.
   std::vector<std::array<float, 3>> positions;
-  for (int i = 0; i < 64 * 64; ++i) {
-    positions.push_back({(static_cast<float>(i % 64) + 0.5f) / 64, (static_cast<float>(i / 64) + 0.5f) / 64, 0});
+  positions.reserve(size_t{64} * 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      positions.push_back({(static_cast<float>(x) + 0.5f) / 64, (static_cast<float>(y) + 0.5f) / 64, 0});
+    }
   }
   const std::vector<MergePlace> places(5, MergePlace{.position = {0.51f, 0.52f, 0}, .pixel = 1});
   // Positions on a grid: the eighth is off the even density's radius by up to half a step of three.

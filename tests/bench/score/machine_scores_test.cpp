@@ -96,6 +96,7 @@ TEST(MachineScores, areSortedBySizeAndThenByTheScoreOfThoseThatCount) {
   }
   sortScores(scores);
   std::vector<std::string> order;
+  order.reserve(scores.size());
   for (const MachineScore& score : scores) order.push_back(score.machine);
   EXPECT_EQ(order, (std::vector<std::string>{"fast", "slow", "part", "wrong", "large"}));
   // Neither a part of the workload nor a wrong image has a figure.
