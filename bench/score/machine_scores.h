@@ -3,7 +3,6 @@
 
 #include <map>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,16 +16,16 @@ struct MachineScore {
   std::string isa;
   uint32_t threads = 1;
   ScoreSize size{};
-  double score = 0, coreScore = 0;  // 100: a core of the reference machine
-  bool whole = true;                // has the size's whole workload; scores of parts are not comparable
-  std::string refusal;              // why the score counts for nothing, as "pt in cornell-diffuse: refused"; else empty
+  double score = 0, coreScore = 0;        // 100: a core of the reference machine
+  bool whole = true;                      // measured on the whole workload; else not comparable with others
+  std::string refusal;                    // the first image that was not accepted, and why; empty for a valid score
   size_t entries = 0, tolerated = 0;      // images in all, and those that were accepted by tolerance instead of hash
   std::map<std::string, double> methods;  // scores by method
   std::map<std::string, double> rates;    // paths per second of wall time on all threads, by "scene, method"
   std::vector<std::string> doubts;
 };
 
-// Whether JSON is of bench --score at all. Other results, which may lie in the same folder, are not.
+// Whether the JSON is a result of `bench --score`. A folder may hold results of other modes as well.
 bool isScore(const nlohmann::json& file);
 
 // Throws ScoreFileError for a score of another version, or without what bench/schema.json requires.

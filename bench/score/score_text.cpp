@@ -92,8 +92,8 @@ std::string countsInWords(const ScoreResult& result) {
 
 }  // namespace
 
-// A line under scoreHeading, with relMSE and time after the last slice. If the image is not exact, a second line says
-// why.
+// The entry's row of the table that scoreHeading begins, with relMSE and time after the last slice. A second line has
+// the verdict if the image is not exact.
 std::string toText(const ScoreRow& row) {
   const auto rate = [](const Estimate& e) {
     return fmt::format("{:.3f} +-{:.3f}", 1e-6 * e.value, 1e-6 * e.interval.halfWidth());

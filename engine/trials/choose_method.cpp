@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <tuple>
 #include <vector>
 
 #include "engine/trials/trial_error.h"
@@ -36,11 +35,13 @@ constexpr Costs kSmallCosts{.shadow = 0.7, .connection = 0.93, .merge = 1.57, .p
 // Variance of independent over Sobol samples, mean of the nine scenes, for methods that gain by Sobol. Trials draw
 // independent samples, so that the two images of a round are independent.
 constexpr double kSobolGain = 1.15;
-// Weight of the variance of methods that merge, for their bias, which trials do not see.
-constexpr double kMergesMustGain = 1.1;
-// Weight of the variance of methods without light paths: the caustics that they seldom meet are most of it, and trials
-// of 42 samples meet too few.
-constexpr double kSeldomMet = 1.25;
+// What a method's variance is multiplied by for the error that trials do not see: the bias of merges, or the caustics
+// of methods without light paths, most of whose variance comes from paths that 42 samples seldom include.
+double unseenError(Method method) {
+  const PathStrategies strategies = strategiesOf(method);
+  if (strategies.merge) return 1.1;
+  return strategies.camera || strategies.connect ? 1 : 1.25;
+}
 
 // The film, scaled down to at most kTrialPixels pixels in its crop window.
 FilmSettings trialFilm(FilmSettings film) {
@@ -114,23 +115,13 @@ std::vector<MethodTrial> trialsOf(const std::vector<Candidate>& candidates, cons
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     const bool gains = sampler == SamplerKind::sobol && bestSampler(candidate.method) == SamplerKind::sobol;
-    const PathStrategies strategies = strategiesOf(candidate.method);
-    const double unseen = strategies.merge ? kMergesMustGain : strategies.camera || strategies.connect ? 1 : kSeldomMet;
     trials.push_back({.method = candidate.method,
                       .iterations = images[i].iterations(),
-                      .variance = errors[i].variance * unseen / (gains ? kSobolGain : 1),
+                      .variance = errors[i].variance * unseenError(candidate.method) / (gains ? kSobolGain : 1),
                       .missed = errors[i].missed,
                       .cost = costOf(candidate.session->statistics())});
   }
   return trials;
-}
-
-// Of those that were not left out, which have the most iterations: shorter trials know less.
-const MethodTrial& bestOf(const std::vector<MethodTrial>& trials) {
-  return *std::min_element(trials.begin(), trials.end(), [](const MethodTrial& a, const MethodTrial& b) {
-    return std::tuple(-static_cast<double>(a.iterations), a.inefficiency()) <
-           std::tuple(-static_cast<double>(b.iterations), b.inefficiency());
-  });
 }
 
 // Renders all rounds. The times of the choice are not set.
@@ -165,6 +156,13 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
 }
 
 }  // namespace
+
+const MethodTrial& bestOf(std::span<const MethodTrial> trials) {
+  return *std::ranges::min_element(trials, [](const MethodTrial& a, const MethodTrial& b) {
+    if (a.iterations != b.iterations) return a.iterations > b.iterations;
+    return a.inefficiency() < b.inefficiency();
+  });
+}
 
 RenderSettings withMethod(RenderSettings settings, Method method) {
   settings.method = method;

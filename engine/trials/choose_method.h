@@ -7,6 +7,8 @@
 // it is about the same at every size of the film.
 #pragma once
 
+#include <span>
+
 #include "engine/session/planned_session.h"
 
 namespace wavecrest {
@@ -16,6 +18,9 @@ namespace wavecrest {
 // threads, waves or any clock. Throws as Session::create does.
 template <class S>
 Prepared<S> chooseMethod(const Scene& scene, const RenderSettings& settings);
+
+// The most efficient of the trials that were not left out, which have the most iterations. trials: at least one.
+const MethodTrial& bestOf(std::span<const MethodTrial> trials);
 
 // The settings by which the chosen method renders.
 RenderSettings withMethod(RenderSettings settings, Method method);

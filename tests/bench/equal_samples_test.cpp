@@ -48,8 +48,8 @@ TEST(EqualSamples, areTheMostThatBothHave) {
 }
 
 TEST(EqualSamples, lieOnTheLineBetweenSnapshots) {
-  // pt has 2 and 32 samples and vcm ends at 8: half of the way over the logarithm, a fifth of it over samples. Errors
-  // of pt are 0.9 and 0.1, the root of their product is 0.3; 12 s lie between 1 s and 56 s: 1 + 55 / 5.
+  // pt has snapshots at 2 and 32 samples, vcm one at 8. On a logarithmic axis 8 is half way between 2 and 32, so pt's
+  // error there is sqrt(0.9 * 0.1) = 0.3. Time is linear: 8 is a fifth of the way, so 1 s + 55 s / 5 = 12 s.
   ReportSeries base = sampled("pt", 1, 1, {2, 32});
   base.runs[0].points[0].values = {0.9};
   base.runs[0].points[1].values = {0.1};

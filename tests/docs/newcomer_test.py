@@ -129,7 +129,7 @@ class Newcomer(unittest.TestCase):
         readme, tutorial = ((ROOT / page).read_text() for page in ("README.md", "docs/tutorial.md"))
         scenes = re.findall(r"^```xml\n(.*?)^```$", tutorial, re.MULTILINE | re.DOTALL)
         self.assertEqual(len(scenes), 1)
-        # README, with the tutorial's scene as the newcomer's own.
+        # README's commands, on a copy of the tutorial's scene named my/scene.xml.
         self.file("my").mkdir()
         self.file("my/scene.xml").write_text(scenes[0])
         for line in commands_of(readme):

@@ -1,4 +1,4 @@
-// Scores of several machines: what is read, what counts, and in which order.
+// Scores of several machines: reading their JSON, which of them are comparable, and their order in the table.
 #include "bench/score/machine_scores.h"
 
 #include <gtest/gtest.h>
