@@ -15,6 +15,7 @@
 #include "engine/version.h"
 #include "library/option_ranges.h"
 #include "library/option_values.h"
+#include "metrics/image/atomic_file.h"
 #include "scenes/scene_list.h"
 
 namespace wavecrest {
@@ -76,6 +77,11 @@ uint32_t benchThreads(const BenchOptions& options) {
 // Seconds of --duration, or what the mode takes by default.
 double benchSeconds(const BenchOptions& options, double unlessGiven) {
   return options.duration.empty() ? unlessGiven : parseDuration("--duration", options.duration);
+}
+
+nlohmann::json readJsonFile(const std::filesystem::path& file) {
+  const std::vector<unsigned char> bytes = readFileBytes(file);
+  return nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
 }
 
 void writeBenchJson(const BenchOptions& options, const std::string& kind, const nlohmann::ordered_json& figures) {

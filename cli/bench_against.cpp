@@ -11,7 +11,6 @@
 #include "cli/bench_modes.h"
 #include "cli/commands.h"
 #include "library/option_values.h"
-#include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
 namespace {
@@ -28,8 +27,7 @@ void showRound(size_t done, size_t all) {
 
 // A stored result of `bench --json`.
 nlohmann::json readResult(const std::string& file) {
-  const std::vector<unsigned char> bytes = readFileBytes(file);
-  nlohmann::json result = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  nlohmann::json result = readJsonFile(file);
   if (!result.is_object()) throw InputError(fmt::format("{}: is no JSON object; expected a result of bench", file));
   return result;
 }

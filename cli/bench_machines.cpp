@@ -10,7 +10,6 @@
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/messages.h"
-#include "metrics/image/atomic_file.h"
 
 namespace wavecrest {
 namespace {
@@ -41,8 +40,7 @@ int runBenchMachines(const BenchOptions& options) {
   // Results of bench's other modes may lie beside scores.
   std::vector<MachineScore> scores;
   for (const std::filesystem::path& file : resultFiles(options.machines)) {
-    const std::vector<unsigned char> bytes = readFileBytes(file);
-    const nlohmann::json result = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
+    const nlohmann::json result = readJsonFile(file);
     if (result.is_discarded()) throw InputError(fmt::format("{}: is no JSON", file.string()));
     if (!isScore(result)) {
       tell("{}: is no score; left out", file.string());

@@ -57,6 +57,8 @@ void forEachBenchCase(const BenchOptions& options, const std::vector<Method>& me
 // As many as asked for, or as the machine has.
 uint32_t benchThreads(const BenchOptions& options);
 double benchSeconds(const BenchOptions& options, double unlessGiven);
+// The JSON in a file, is_discarded() where it is none. Throws where the file cannot be read.
+nlohmann::json readJsonFile(const std::filesystem::path& file);
 // Writes the figures of a mode where --json asks for them, with what every result has (bench/schema.json).
 void writeBenchJson(const BenchOptions& options, const std::string& kind, const nlohmann::ordered_json& figures);
 

@@ -19,9 +19,9 @@ namespace {
 // The hashes or pictures in a file that --write-hashes or --write-pictures made.
 template <class Expected>
 Expected readExpected(const std::string& file) {
-  const std::vector<unsigned char> bytes = readFileBytes(file);
+  const nlohmann::json json = readJsonFile(file);
   try {
-    return Expected::parse(nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false));
+    return Expected::parse(json);
   } catch (const ScoreFileError& error) {
     throw InputError(fmt::format("{}: {}", file, error.what()));
   }

@@ -46,8 +46,7 @@ WAVECREST_INLINE void storeRows(const StageContext<S>& context, const Wave<S>& w
 template <uint32_t kFeatures, class Real, class S>
 WAVECREST_INLINE void storeColumns(const Wave<S>& wave, size_t i, LightVertices<S>& vertices, size_t out) {
   VertexDetailLanes<Real> details;
-  details.template forEach<kFeatures>(
-      wave.surfaces, [&](auto& number, const auto& column) WAVECREST_LAMBDA { number = load(column, i); });
+  details.template read<kFeatures>(wave.surfaces, [&](const auto& column) WAVECREST_LAMBDA { return load(column, i); });
   details.template forEach<kFeatures>(
       vertices, [&](const auto& number, const auto& column) WAVECREST_LAMBDA { storeUnaligned(number, column + out); });
   prefetchColumns(out, vertices.lane, vertices.next);

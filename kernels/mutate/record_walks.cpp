@@ -50,8 +50,7 @@ void recordPathVertices(const StageContext<typename P::Storage>& context, Wave<t
                v.normalZ, at);
     storeWhere(load(surfaces.offset, i), active, v.offset, at);
     VertexDetailLanes<typename P::Real> details;
-    details.template forEach<kFeatures>(
-        surfaces, [&](auto& number, const auto& column) WAVECREST_LAMBDA { number = load(column, i); });
+    details.template read<kFeatures>(surfaces, [&](const auto& column) WAVECREST_LAMBDA { return load(column, i); });
     details.template forEach<kFeatures>(
         v, [&](const auto& number, const auto& column) WAVECREST_LAMBDA { storeWhere(number, active, column, at); });
     UInt primitive = select(active, load(wave.hits.primitive, i), UInt(0u));

@@ -282,8 +282,7 @@ WAVECREST_INLINE ShadingLanes<P, kFeatures> shadingOf(const SceneView<typename P
 template <uint32_t kFeatures, class Real, class Columns, class Read>
 WAVECREST_INLINE VertexDetailLanes<Real> readDetails(const Columns& columns, Vec3<Real> normal, const Read& read) {
   VertexDetailLanes<Real> details(normal);
-  details.template forEach<kFeatures>(
-      columns, [&](auto& number, const auto& column) WAVECREST_LAMBDA { number = read(column); });
+  details.template read<kFeatures>(columns, read);
   return details;
 }
 

@@ -18,6 +18,12 @@ struct VertexDetailLanes {
       : normal(geometric), base(geometric), u(Float(0)), v(Float(0)), tangent(Float(0)) {}
   VertexDetailLanes() = default;
 
+  // Takes the numbers of the lanes from a record of vertices by read(column).
+  template <uint32_t kFeatures, class Columns, class Read>
+  WAVECREST_INLINE void read(const Columns& columns, const Read& read) {
+    forEach<kFeatures>(columns, [&](auto& number, const auto& column) WAVECREST_LAMBDA { number = read(column); });
+  }
+
   // Calls function(number, column) for each number that this feature set keeps, with its column of a record of
   // vertices.
   template <uint32_t kFeatures, class Columns, class Function>
