@@ -147,6 +147,7 @@ def main():
     parser = argparse.ArgumentParser(prog="docs/build.py", description="Makes the documentation site.")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/docs", help="folder; replaced as a whole")
     parser.add_argument("--wavecrest", help="the program whose help is a page")
+    parser.add_argument("--drafts", action="store_true", help="pictures of one sample per pixel")
     arguments = parser.parse_args()
     pages = arguments.out.resolve() / "pages"
     shutil.rmtree(arguments.out, ignore_errors=True)
@@ -164,7 +165,7 @@ def main():
     if arguments.wavecrest:
         extra.insert(0, ("Command line", "commands.md"))
         (pages / "commands.md").write_text(command_page(arguments.wavecrest))
-    pictures = Pictures(arguments.wavecrest, pages)
+    pictures = Pictures(arguments.wavecrest, pages, arguments.drafts)
     language = language_pages(pages, pictures)
     gallery = gallery_page(pages, pictures)
     link_from_front(pages, gallery + language + extra)

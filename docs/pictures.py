@@ -30,10 +30,11 @@ def words(options):
 
 
 class Pictures:
-    """Renders into the folder `pictures` of the pages. Without a program there are none."""
+    """Renders into the folder `pictures` of the pages. Without a program there are none. Drafts have one sample per pixel."""
 
-    def __init__(self, program, pages):
+    def __init__(self, program, pages, drafts=False):
         self.program = program
+        self.drafts = drafts
         self.folder = pages / "pictures"
         self.missing = set()  # scenes whose model nobody has fetched
 
@@ -46,7 +47,10 @@ class Pictures:
         if picture.exists():
             return name
         self.folder.mkdir(parents=True, exist_ok=True)
-        command = [self.program, "render", ROOT / scene, *words(options), "--quiet", "-o", picture]
+        chosen = words(options)
+        if self.drafts and "--spp" in chosen:
+            chosen[chosen.index("--spp") + 1] = "1"
+        command = [self.program, "render", ROOT / scene, *chosen, "--quiet", "-o", picture]
         made = subprocess.run(command, capture_output=True, text=True, check=False)
         if made.returncode == 0:
             return name

@@ -24,7 +24,7 @@ class Site(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def test_the_site_is_made_without_a_warning_and_holds_readmes_headers_and_help(self):
-        result = build(ROOT, self.folder / "out", "--wavecrest", os.environ["WAVECREST"])
+        result = build(ROOT, self.folder / "out", "--drafts", "--wavecrest", os.environ["WAVECREST"])
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("WARNING", result.stderr)
         site = self.folder / "out/site"
