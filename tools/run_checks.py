@@ -15,6 +15,8 @@ import sys
 import time
 import xml.etree.ElementTree as ElementTree
 
+import junit_cases
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 JOBS = os.cpu_count() or 1
 TEST_TIMEOUT_SECONDS = 600
@@ -57,30 +59,28 @@ def build(tally, preset, *options, targets=("all",)):
     )
 
 
-def read_junit(tally, step, path):
-    """Adds the test cases of a ctest JUnit file; returns how many failed."""
-    failures = 0
-    for case in ElementTree.parse(path).getroot().iter("testcase"):
-        name = f"{step}: {case.get('name')}"
-        skipped = case.find("skipped")
-        reason = skipped.get("message", "") if skipped is not None else ""
-        if case.get("status") == "run":
+def read_junit(tally, step, report):
+    """Adds the test cases of a ctest JUnit file, and of its batches; returns how many failed."""
+    failed = len(tally.failed)
+    for case in junit_cases.read(report, report.parent / "batches"):
+        name = f"{step}: {case.name}"
+        if case.outcome == "passed":
             tally.passed.append(name)
-        elif case.get("status") == "disabled" or reason.startswith("SKIP_"):
+        elif case.outcome == "skipped":
             tally.skipped.append(name)
         else:
-            said = (case.findtext("system-out") or "").rstrip().splitlines()[-SHOWN_LINES:]
-            tally.failed.append("\n    ".join([f"{name}{f' ({reason})' if reason else ''}", *said]))
-            failures += 1
-    return failures
+            tally.failed.append("\n    ".join([f"{name}{f' ({case.why})' if case.why else ''}", *case.said[-SHOWN_LINES:]]))
+    return len(tally.failed) - failed
 
 
-def test(tally, preset, *selection, **environment):
-    """Runs the tests of a built preset, each test case being an item."""
+def test(tally, preset, *selection, batches=True, **environment):
+    """Runs the tests of a built preset, each test case being an item; several cases of a program to a process, or one."""
     step = f"{preset}: tests"
     report = ROOT / "build" / preset / "junit.xml"
     report.unlink(missing_ok=True)
-    command = ["ctest", "--test-dir", f"build/{preset}", "--output-junit", str(report), "--output-on-failure"]
+    shutil.rmtree(report.parent / "batches", ignore_errors=True)
+    command = ["ctest", "--test-dir", f"build/{preset}", *(["--build-config", "batches"] if batches else [])]
+    command += ["--output-junit", str(report), "--output-on-failure"]
     command += ["--no-tests=error", "--parallel", str(JOBS), "--timeout", str(TEST_TIMEOUT_SECONDS), *selection]
     print(f"\n=== {step}: {' '.join(command)}", flush=True)
     start = time.monotonic()
@@ -125,7 +125,7 @@ def step_long(tally):
 def step_thorough(tally):
     """Statistical tests with all their samples (tests/effort.h), of which other runs take a quarter."""
     if build(tally, "release", "-DWAVECREST_SHARED=ON"):
-        test(tally, "release", "--label-regex", "^(kernel|render|slow|unit)$", WAVECREST_THOROUGH="1")
+        test(tally, "release", "--label-regex", "^(kernel|render|slow|unit)$", batches=False, WAVECREST_THOROUGH="1")
 
 
 # Unit and kernel tests, and the sessions, with fewer cases than elsewhere (tests/effort.h). Not those that render whole
@@ -147,9 +147,6 @@ SANITIZED_TESTS = (
     "stages_test",
 )
 
-# Every stage of every instruction set, specialisation and precision, with contracts checked before and after it.
-CHECKED_TESTS = ("contracts_test",)
-
 # Sessions of all methods on several threads, with photon maps and chains. Not yet the metrics, whose loops do not say
 # what TBB orders (engine/tasks/task_order.h).
 THREADED_TESTS = ("library_test", "render_test", "session_test")
@@ -158,15 +155,8 @@ THREADED_CASES = "Determinism|IterationsTogether|Snapshots|StopRequest"
 
 def step_sanitizers(tally):
     if build(tally, "asan-ubsan", "-DWAVECREST_BENCH=OFF", targets=SANITIZED_TESTS):
-        selection = ("--label-regex", "^(unit|kernel|session)$", "--exclude-regex", "_NOT_BUILT$")
-        test(tally, "asan-ubsan", *selection, UBSAN_OPTIONS="print_stacktrace=1")
-
-
-def step_checked(tally):
-    """The release's kernels between checks of their contracts; with a compiler cache, they are not compiled again."""
-    # Position-independent as the release, or its kernels would be other objects.
-    if build(tally, "checked", "-DWAVECREST_SHARED=ON", "-DWAVECREST_BENCH=OFF", targets=CHECKED_TESTS):
-        test(tally, "checked", "--label-regex", "^checked$", "--exclude-regex", "_NOT_BUILT$")
+        built = rf"^fuzz[.]load$|^({'|'.join(SANITIZED_TESTS)})[.]batch"
+        test(tally, "asan-ubsan", "--tests-regex", built, UBSAN_OPTIONS="print_stacktrace=1")
 
 
 def step_fuzz(tally):
@@ -179,7 +169,8 @@ def step_tsan(tally):
     """Data races of whatever runs on several threads (tools/tsan.supp says what is left out, and why)."""
     if build(tally, "tsan", "-DWAVECREST_BENCH=OFF", targets=THREADED_TESTS):
         options = f"suppressions={ROOT}/tools/tsan.supp second_deadlock_stack=1 history_size=4"
-        test(tally, "tsan", "--tests-regex", THREADED_CASES, "--exclude-regex", "_NOT_BUILT$", TSAN_OPTIONS=options)
+        selection = ("--tests-regex", THREADED_CASES, "--exclude-regex", "_NOT_BUILT$")
+        test(tally, "tsan", *selection, batches=False, TSAN_OPTIONS=options)
 
 
 def step_slurm(tally):
@@ -237,7 +228,6 @@ def step_tidy(tally):
 STEPS = {
     "release": step_release,
     "long": step_long,
-    "checked": step_checked,
     "sanitizers": step_sanitizers,
     "fuzz": step_fuzz,
     "thorough": step_thorough,
@@ -254,7 +244,7 @@ STEPS = {
 }
 # To ask for: pictures of all scenes, ten thousand damaged files, four times the samples of statistical tests, data
 # races, and clang-tidy over the whole tree, which take longer than all else together.
-DEFAULT_STEPS = ("release", "checked", "sanitizers", "lint")
+DEFAULT_STEPS = ("release", "sanitizers", "lint")
 
 
 def main():

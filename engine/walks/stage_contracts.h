@@ -1,5 +1,5 @@
-// What every stage may rely on and must leave behind, checked where asserts are on: the presets checked, debug and the
-// sanitizers'. Release builds have none of it.
+// What every stage may rely on and must leave behind, checked in the library wavecrest_checked_engine, which
+// contracts_test links. Other builds have none of it.
 //
 // Queues fit their memory, counts agree with each other, indices lead to something, directions are unit vectors, and no
 // number is NaN. Columns.h and kernels/stages.h say the contracts in words; this is the one place that tests them, so
@@ -12,7 +12,7 @@
 
 namespace wavecrest {
 
-#ifndef WAVECREST_CHECKED  // the preset `checked`
+#ifndef WAVECREST_CHECKED
 constexpr bool kChecksContracts = false;
 #else
 constexpr bool kChecksContracts = true;

@@ -1,6 +1,5 @@
 // Every stage of every instruction set, precision and specialisation, with its contracts checked before and after it: a
-// broken one ends the program. Built where checks are on (WAVECREST_CHECKED) and nowhere else, because without them
-// nothing here could fail.
+// broken one ends the program. Linked with wavecrest_checked_engine, as without checks nothing here could fail.
 #include <gtest/gtest.h>
 
 #include "engine/walks/stage_contracts.h"
