@@ -119,7 +119,7 @@ def step_python(tally):
 
 def step_long(tally):
     if build(tally, "release"):
-        test(tally, "release", "--label-regex", "^long$")
+        test(tally, "release", "--label-regex", "^long$", batches=False)
 
 
 def step_thorough(tally):
