@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/pilot/finished_plan.h"
+#include "tests/effort.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/saved_state.h"
 #include "tests/engine/test_scenes.h"
@@ -215,6 +216,7 @@ TEST(AutoRadius, goesOnFromASavedState) {
 
 // Density estimation loses light at edges, in proportion to its radius: with the radius it goes.
 TEST(AutoRadius, agreesWithPathTracingAsItShrinks) {
+  if (!kFullSpeed) GTEST_SKIP() << "8,000 iterations, for a mean alone";
   const Scene scene = sceneFile("cornell-diffuse", 32, 24);
   RenderSettings settings = automatic();
   settings.radiusAlpha = 0;  // r_i = r_1 / sqrt(i)
