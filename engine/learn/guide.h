@@ -22,9 +22,10 @@ namespace wavecrest {
 
 // What a histogram is proportional to. radiance: the light that comes from a direction, times BSDF and cosine.
 // variance: the root of the second moment of that, which also goes where it is noisy (Rath et al. 2020). off: paths are
-// those of path tracing.
-enum class GuideTarget { radiance, variance, off };
-constexpr std::array<std::string_view, 3> kGuideTargetNames{"radiance", "variance", "off"};
+// those of path tracing. automatic: radiance or off, whichever trials find better for the image
+// (engine/trials/choose_method.h); what a guide is made for is never this.
+enum class GuideTarget { automatic, radiance, variance, off };
+constexpr std::array<std::string_view, 4> kGuideTargetNames{"auto", "radiance", "variance", "off"};
 
 // What a guide has learned so far, as --stats reports it.
 struct GuideStatistics {

@@ -12,7 +12,14 @@
 namespace wavecrest {
 namespace {
 
-constexpr std::array kCandidates{Method::pt, Method::lt, Method::bpt, Method::vcm};
+// Of evcm; the last one has all strategies.
+constexpr std::array kConnecting{Method::pt, Method::lt, Method::bpt, Method::vcm};
+// Of gpt: what a guide costs may be more than it brings.
+constexpr std::array kGuided{Method::pt, Method::gpt};
+std::span<const Method> candidatesOf(Method method) {
+  return method == Method::gpt ? std::span<const Method>(kGuided) : kConnecting;
+}
+
 constexpr uint64_t kTrialSeed = 0x747269616c73;
 constexpr uint32_t kTrialPixels = 64 * 48;  // of the trial image, at most
 constexpr uint32_t kTrialWave = 2048, kTrialPieces = 8;
@@ -24,14 +31,21 @@ struct Round {
   double within;
 };
 constexpr std::array kRounds{Round{1, 8}, Round{4, 4}, Round{16, 1}};
+// A guide first has to be learned.
+constexpr std::array kLearningRounds{Round{16, 8}, Round{64, 1}};
+std::span<const Round> roundsOf(Method method) {
+  return method == Method::gpt ? std::span<const Round>(kLearningRounds) : kRounds;
+}
+
 
 // Costs in units of one closest-hit ray with its shading: least squares of CPU times of 16 scenes by six methods (AMD
 // EPYC Zen 5, AVX-512), with residuals of 4 and 8 %. kSmallCosts: for Accel::small, whose rays are cheap.
 struct Costs {
   double shadow, connection, merge, path;
+  double guide;  // of each ray of a method with a guide
 };
-constexpr Costs kCosts{.shadow = 0.67, .connection = 0.2, .merge = 0.2, .path = 0};
-constexpr Costs kSmallCosts{.shadow = 0.7, .connection = 0.93, .merge = 1.57, .path = 0.8};
+constexpr Costs kCosts{.shadow = 0.67, .connection = 0.2, .merge = 0.2, .path = 0, .guide = 0.3};
+constexpr Costs kSmallCosts{.shadow = 0.7, .connection = 0.93, .merge = 1.57, .path = 0.8, .guide = 1};
 // Variance of independent over Sobol samples, mean of the nine scenes, for methods that gain by Sobol. Trials draw
 // independent samples, so that the two images of a round are independent.
 constexpr double kSobolGain = 1.15;
@@ -101,7 +115,9 @@ std::vector<float> nextImage(Session& session, uint64_t iterations) {
 double costOf(const RenderStatistics& statistics) {
   const StageCounters& counts = statistics.counters;
   const Costs& costs = statistics.accel == Accel::small ? kSmallCosts : kCosts;
-  const double rays = static_cast<double>(counts.raysClosest) + costs.shadow * static_cast<double>(counts.raysShadow) +
+  const double ray = statistics.guide ? 1 + costs.guide : 1;
+  const double rays = ray * static_cast<double>(counts.raysClosest) +
+                      costs.shadow * static_cast<double>(counts.raysShadow) +
                       costs.connection * static_cast<double>(counts.connections) +
                       costs.merge * static_cast<double>(counts.merges);
   return rays / static_cast<double>(statistics.paths) + costs.path;
@@ -130,14 +146,15 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
                        const std::shared_ptr<const CompiledScene<S>>& compiled) {
   std::vector<Candidate> candidates;
   std::vector<TrialImages> images;
-  for (const Method method : kCandidates) {
+  const std::span<const Method> methods = candidatesOf(settings.method);
+  for (const Method method : methods) {
     const RenderSettings trial = trialSettings(scene, settings, method);
     candidates.push_back({method, makeWaveSession<S>(scene, trial, {.scene = compiled})});
     const FilmArea& area = candidates.back().session->film().area();
     images.emplace_back(area.width, area.height);
   }
   std::vector<MethodTrial> trials;
-  for (const Round& round : kRounds) {
+  for (const Round& round : roundsOf(settings.method)) {
     for (size_t i = 0; i < candidates.size(); ++i) {
       if (!candidates[i].goesOn) continue;
       const std::vector<float> first = nextImage(*candidates[i].session, round.iterations);
@@ -152,7 +169,7 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
   }
   // If no candidate found any light, take the one with all strategies.
   const bool dark = std::ranges::none_of(images, [](const TrialImages& one) { return one.brightness() > 0; });
-  return {.method = dark ? kCandidates.back() : bestOf(trials).method, .trials = std::move(trials)};
+  return {.method = dark ? methods.back() : bestOf(trials).method, .trials = std::move(trials)};
 }
 
 }  // namespace
@@ -166,6 +183,7 @@ const MethodTrial& bestOf(std::span<const MethodTrial> trials) {
 
 RenderSettings withMethod(RenderSettings settings, Method method) {
   settings.method = method;
+  if (settings.guide == GuideTarget::automatic) settings.guide = GuideTarget::radiance;
   // Sobol points only where they serve the method.
   if (settings.sampler == SamplerKind::sobol) settings.sampler = bestSampler(method);
   if (!strategiesOf(method).merge) settings.lightPaths.reset();
