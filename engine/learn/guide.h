@@ -84,16 +84,14 @@ class Guide {
   void chooseShare(size_t cell);
   void splitCells();
   void makeHistogram(size_t cell);
-  void publish(size_t cell);
 
   CellTree tree_;
   GuideTarget target_;
   double unit_, squareUnit_;  // units in 1, of values and of their squares
   Zeros<uint64_t> binSums_;   // kGuideBins to a cell
   Zeros<CellSums> cellSums_;
-  Zeros<uint32_t> units_;  // the histograms
-  Zeros<float> share_, density_;
-  Zeros<uint32_t> alias_;
+  Zeros<uint32_t> bins_;  // the histograms, as kernels read them
+  Zeros<float> share_;
   GuideView view_;
   uint64_t folds_ = 0, saturated_ = 0;
   double guidedShare_ = 0;

@@ -37,7 +37,6 @@ std::span<const Round> roundsOf(Method method) {
   return method == Method::gpt ? std::span<const Round>(kLearningRounds) : kRounds;
 }
 
-
 // Costs in units of one closest-hit ray with its shading: least squares of CPU times of 16 scenes by six methods (AMD
 // EPYC Zen 5, AVX-512), with residuals of 4 and 8 %. kSmallCosts: for Accel::small, whose rays are cheap.
 struct Costs {
@@ -116,10 +115,9 @@ double costOf(const RenderStatistics& statistics) {
   const StageCounters& counts = statistics.counters;
   const Costs& costs = statistics.accel == Accel::small ? kSmallCosts : kCosts;
   const double ray = statistics.guide ? 1 + costs.guide : 1;
-  const double rays = ray * static_cast<double>(counts.raysClosest) +
-                      costs.shadow * static_cast<double>(counts.raysShadow) +
-                      costs.connection * static_cast<double>(counts.connections) +
-                      costs.merge * static_cast<double>(counts.merges);
+  const double rays =
+      ray * static_cast<double>(counts.raysClosest) + costs.shadow * static_cast<double>(counts.raysShadow) +
+      costs.connection * static_cast<double>(counts.connections) + costs.merge * static_cast<double>(counts.merges);
   return rays / static_cast<double>(statistics.paths) + costs.path;
 }
 
