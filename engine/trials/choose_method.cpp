@@ -31,8 +31,8 @@ struct Round {
   double within;
 };
 constexpr std::array kRounds{Round{1, 8}, Round{4, 4}, Round{16, 1}};
-// A guide first has to be learned.
-constexpr std::array kLearningRounds{Round{16, 8}, Round{64, 1}};
+// A guide first has to be learned: two million paths tell what it is worth, half a million do not.
+constexpr std::array kLearningRounds{Round{16, 100}, Round{64, 100}, Round{256, 1}};
 std::span<const Round> roundsOf(Method method) {
   return method == Method::gpt ? std::span<const Round>(kLearningRounds) : kRounds;
 }
@@ -41,9 +41,9 @@ std::span<const Round> roundsOf(Method method) {
 // EPYC Zen 5, AVX-512), with residuals of 4 and 8 %. kSmallCosts: for Accel::small, whose rays are cheap.
 struct Costs {
   double shadow, connection, merge, path;
-  double guide;  // of each ray of a method with a guide
+  double guide;  // of each ray of a method with a guide; such trials are of small scenes alone
 };
-constexpr Costs kCosts{.shadow = 0.67, .connection = 0.2, .merge = 0.2, .path = 0, .guide = 0.3};
+constexpr Costs kCosts{.shadow = 0.67, .connection = 0.2, .merge = 0.2, .path = 0, .guide = 0};
 constexpr Costs kSmallCosts{.shadow = 0.7, .connection = 0.93, .merge = 1.57, .path = 0.8, .guide = 1};
 // Variance of independent over Sobol samples, mean of the nine scenes, for methods that gain by Sobol. Trials draw
 // independent samples, so that the two images of a round are independent.
@@ -195,6 +195,8 @@ Prepared<S> chooseMethod(const Scene& scene, const RenderSettings& settings) {
     oneapi::tbb::task_arena arena(static_cast<int>(settings.threads));
     arena.execute([&] { prepared.scene = compileScene<S>(scene, settings.accel, true, settings.instancing); });
   });
+  // Beside the rays of other scenes a guide costs little.
+  if (settings.method == Method::gpt && prepared.scene->accel() != Accel::small) return prepared;
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
   prepared.choice = runTrials<S>(scene, settings, prepared.scene);

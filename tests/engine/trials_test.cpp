@@ -131,9 +131,12 @@ TEST(Trials, areTheSameForAnySeedThreadsAndWaves) {
 }
 
 TEST(Gpt, takesAGuideWhereItPays) {
-  // Nearly all surfaces see the lamp, which next event estimation finds; and a room that is lit by its ceiling.
+  // Nearly all surfaces see the lamp, which next event estimation finds; and a box with the caustic of a mirror, which
+  // only directions find.
   EXPECT_EQ(choiceFor(sceneFile("cornell-diffuse", 64, 48), triedSettings(Method::gpt)).method, Method::pt);
-  EXPECT_EQ(choiceFor(sceneFile("lafortune-room", 64, 48), triedSettings(Method::gpt)).method, Method::gpt);
+  EXPECT_EQ(choiceFor(sceneFile("cornell-mirror", 64, 48), triedSettings(Method::gpt)).method, Method::gpt);
+  // Rays of more primitives cost more than a guide.
+  EXPECT_FALSE(chooseMethod<float>(sceneFile("veach-door", 8, 6), triedSettings(Method::gpt)).choice);
 }
 
 TEST(Gpt, isNotTriedWhereItsGuideIsGiven) {
@@ -192,7 +195,7 @@ void expectImageOfChoice(const Scene& scene, Method method) {
 TEST(Trials, leadToTheImageOfTheirChoice) {
   for (const char* name : {"cornell-diffuse", "cornell-spheres"})
     expectImageOfChoice(sceneFile(name, 32, 24), Method::evcm);
-  for (const char* name : {"cornell-diffuse", "lafortune-room"})
+  for (const char* name : {"cornell-diffuse", "cornell-mirror"})
     expectImageOfChoice(sceneFile(name, 32, 24), Method::gpt);
 }
 
