@@ -13,7 +13,7 @@ std::unique_ptr<Session> makeSession(const Scene& scene, const RenderSettings& s
   if (settings.method == Method::mlt) return makeChainSession<S>(scene, settings);
   if (!areTried(settings)) return makeWaveSession<S>(scene, settings);
   Prepared<S> prepared = chooseMethod<S>(scene, settings);
-  const RenderSettings chosen = withMethod(settings, prepared.choice ? prepared.choice->method : settings.method);
+  const RenderSettings chosen = withMethod(settings, prepared.choice->method);
   return makeWaveSession<S>(scene, chosen, std::move(prepared));
 }
 

@@ -22,8 +22,8 @@ namespace wavecrest {
 
 // What a histogram is proportional to. radiance: the light that comes from a direction, times BSDF and cosine.
 // variance: the root of the second moment of that, which also goes where it is noisy (Rath et al. 2020). off: paths are
-// those of path tracing. automatic: radiance, but in scenes whose rays are cheap where trials find no guide better
-// (engine/trials/choose_method.h); a guide that is made has one of the others.
+// those of path tracing. automatic: radiance or off, whichever trials find better (engine/trials/choose_method.h); a
+// guide that is made has one of the others.
 enum class GuideTarget { automatic, radiance, variance, off };
 constexpr std::array<std::string_view, 4> kGuideTargetNames{"auto", "radiance", "variance", "off"};
 

@@ -31,8 +31,9 @@ struct Round {
   double within;
 };
 constexpr std::array kRounds{Round{1, 8}, Round{4, 4}, Round{16, 1}};
-// A guide first has to be learned: two million paths tell what it is worth, half a million do not.
-constexpr std::array kLearningRounds{Round{16, 100}, Round{64, 100}, Round{256, 1}};
+// Of images that are independent with Sobol points too, and in the block behind those that a guide was learned in.
+constexpr uint64_t kLearningIterations = 2 * kSobolRun;
+constexpr std::array kLearningRounds{Round{kSobolRun, 1}};
 std::span<const Round> roundsOf(Method method) {
   return method == Method::gpt ? std::span<const Round>(kLearningRounds) : kRounds;
 }
@@ -41,16 +42,18 @@ std::span<const Round> roundsOf(Method method) {
 // EPYC Zen 5, AVX-512), with residuals of 4 and 8 %. kSmallCosts: for Accel::small, whose rays are cheap.
 struct Costs {
   double shadow, connection, merge, path;
-  double guide;  // of each ray of a method with a guide; such trials are of small scenes alone
+  double guide;  // of each ray of a method with a guide
 };
-constexpr Costs kCosts{.shadow = 0.67, .connection = 0.2, .merge = 0.2, .path = 0, .guide = 0};
+constexpr Costs kCosts{.shadow = 0.67, .connection = 0.2, .merge = 0.2, .path = 0, .guide = 0.3};
 constexpr Costs kSmallCosts{.shadow = 0.7, .connection = 0.93, .merge = 1.57, .path = 0.8, .guide = 1};
-// Variance of independent over Sobol samples, mean of the nine scenes, for methods that gain by Sobol. Trials draw
-// independent samples, so that the two images of a round are independent.
+// Variance of independent over Sobol samples, mean of the nine scenes, for methods that gain by Sobol. Trials of evcm
+// draw independent samples, so that the two images of a round are independent.
 constexpr double kSobolGain = 1.15;
 // What a method's variance is multiplied by for the error that trials do not see: the bias of merges, or the caustics
-// of methods without light paths, most of whose variance comes from paths that 42 samples seldom include.
+// of methods without light paths, most of whose variance comes from paths that 42 samples seldom include. The guide of
+// a render learns from more paths than that of a trial.
 double unseenError(Method method) {
+  if (method == Method::gpt) return 0.85;
   const PathStrategies strategies = strategiesOf(method);
   if (strategies.merge) return 1.1;
   return strategies.camera || strategies.connect ? 1 : 1.25;
@@ -75,7 +78,7 @@ RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings,
   RenderSettings trial = withMethod(settings, method);
   trial.film = trialFilm(scene.film);
   trial.seed = kTrialSeed;
-  trial.sampler = SamplerKind::independent;
+  if (settings.method != Method::gpt) trial.sampler = SamplerKind::independent;
   trial.share = {};
   trial.firstIteration = 0;
   trial.iterations.reset();
@@ -128,12 +131,13 @@ std::vector<MethodTrial> trialsOf(const std::vector<Candidate>& candidates, cons
   std::vector<MethodTrial> trials;
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
-    const bool gains = sampler == SamplerKind::sobol && bestSampler(candidate.method) == SamplerKind::sobol;
+    const RenderStatistics statistics = candidate.session->statistics();
+    const bool gains = statistics.sampler != sampler && bestSampler(candidate.method) == sampler;
     trials.push_back({.method = candidate.method,
                       .iterations = images[i].iterations(),
                       .variance = errors[i].variance * unseenError(candidate.method) / (gains ? kSobolGain : 1),
                       .missed = errors[i].missed,
-                      .cost = costOf(candidate.session->statistics())});
+                      .cost = costOf(statistics)});
   }
   return trials;
 }
@@ -148,6 +152,7 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
   for (const Method method : methods) {
     const RenderSettings trial = trialSettings(scene, settings, method);
     candidates.push_back({method, makeWaveSession<S>(scene, trial, {.scene = compiled})});
+    if (method == Method::gpt) candidates.back().session->renderUntil(kLearningIterations, std::nullopt);
     const FilmArea& area = candidates.back().session->film().area();
     images.emplace_back(area.width, area.height);
   }
@@ -195,8 +200,6 @@ Prepared<S> chooseMethod(const Scene& scene, const RenderSettings& settings) {
     oneapi::tbb::task_arena arena(static_cast<int>(settings.threads));
     arena.execute([&] { prepared.scene = compileScene<S>(scene, settings.accel, true, settings.instancing); });
   });
-  // Beside the rays of other scenes a guide costs little.
-  if (settings.method == Method::gpt && prepared.scene->accel() != Accel::small) return prepared;
   const auto begin = Clock::now();
   const double cpuBegin = processCpuSeconds();
   prepared.choice = runTrials<S>(scene, settings, prepared.scene);

@@ -4,7 +4,7 @@
 //
 // The candidates of evcm are vertex connection and merging and what remains of it without merges (bidirectional path
 // tracing), without connections too (light tracing), and without light paths (path tracing); those of gpt are path
-// tracing with and without a guide, in scenes whose rays are cheap (Accel::small). All of them render a small image.
+// tracing with and without a guide. All of them render a small image.
 // After each round, those far behind the best stop. The variance of a pixel times the work, counted in rays, decides;
 // it is about the same at every size of the film.
 #pragma once
@@ -15,8 +15,8 @@
 
 namespace wavecrest {
 
-// Compiles the scene, for the trials and the render, and chooses, if there is a choice. The settings must be areTried(). The choice depends on
-// the scene, the shape of its film and the settings that change a sample, not on the seed, the number of iterations,
+// Compiles the scene, for the trials and the render, and chooses. The settings must be areTried(). The choice depends
+// on the scene, the shape of its film and the settings that change a sample, not on the seed, the number of iterations,
 // threads, waves or any clock. Throws as Session::create does.
 template <class S>
 Prepared<S> chooseMethod(const Scene& scene, const RenderSettings& settings);

@@ -31,8 +31,8 @@ struct RenderOptions {
   // 0: no roulette. Small scenes, whose shadow rays cost next to nothing, never use it.
   double connectionRoulette = 0.2;
 
-  // gpt: what its guide is learned for: radiance, variance or off, or auto: radiance, but in scenes of few primitives
-  // off where trials find that better; memory of what it learns (empty: 64MiB).
+  // gpt: what its guide is learned for: radiance, variance or off, or auto: radiance or off, whichever trials find
+  // better; memory of what it learns (empty: 64MiB).
   std::string guide = "auto", guideMemory{};
 
   // mlt: pssmlt, mmlt or pathspace (empty: mmlt); Markov chains; independent samples from which they start; steps
