@@ -57,6 +57,7 @@ void writeGuidePicture(const Scene& scene, RenderSettings settings, const GuideO
   const std::string file = options.output.empty() ? scene.name + ".guide.exr" : options.output;
   checkImageTarget(file);
   settings.method = Method::gpt;
+  if (settings.guide == GuideTarget::automatic) settings.guide = GuideTarget::radiance;
   const std::unique_ptr<Session> session = Session::create(scene, settings);
   session->renderUntil(std::nullopt, seconds);
   const std::optional<LearnedDirections> learned = session->learnedDirections(x, y);

@@ -215,7 +215,7 @@ void RenderRun::load() {
 void RenderRun::build() {
   session_ = withinMemory([&] { return Session::create(scene_, settings_); });
   tellPlan(options_, scene_, settings_, kind_, session_->memoryPlan(), session_->film().spreads());
-  showChoice(kind_, session_->statistics().choice);
+  showChoice(kind_, settings_.method, session_->statistics().choice);
   live_.emplace(options_.live, scene_, settings_, kind_, session_);
   outputs_.emplace(names_, scene_, settings_, loadSeconds_, kind_);
   goOn(earlier_, options_.checkpoint, scene_, settings_, kind_, *session_, *outputs_);

@@ -66,7 +66,7 @@ void showMemory(ProgressKind kind, const MemoryPlan& plan) {
   noteLine(kind, toJson(plan), "memory: " + describe(plan));
 }
 
-void showChoice(ProgressKind kind, const std::optional<MethodChoice>& choice) {
+void showChoice(ProgressKind kind, Method method, const std::optional<MethodChoice>& choice) {
   if (!choice) return;
   const auto chosen = std::ranges::find(choice->trials, choice->method, &MethodTrial::method);
   const double least = chosen == choice->trials.end() ? 0 : chosen->inefficiency();
@@ -78,8 +78,8 @@ void showChoice(ProgressKind kind, const std::optional<MethodChoice>& choice) {
                                  trial.iterations < longest ? " (left out early)" : ""));
   }
   noteLine(kind, {{"choice", choiceJson(*choice)}},
-           fmt::format("evcm: renders by {}; work for the same error, over its own: {}", toString(choice->method),
-                       fmt::join(trials, ", ")));
+           fmt::format("{}: renders by {}; work for the same error, over its own: {}", toString(method),
+                       choice->method == method ? "a guide" : toString(choice->method), fmt::join(trials, ", ")));
 }
 
 void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, const DryPlan& plan) {

@@ -33,7 +33,7 @@ void addMethodOptions(const Command& command, RenderOptions& options) {
   command
       .add("--guide", options.guide,
            "gpt: draw directions by the light that comes from there: radiance, or variance to go where that is noisy "
-           "too; off: as pt")
+           "too; off: as pt; auto: radiance, or off, whichever trials find better")
       .showDefault();
   command.add("--guide-memory", options.guideMemory, "gpt: memory of what it learns, as 64MiB, which is the default");
   command.add("--memory", options.memory, "budget, as 800M or 2GiB: fewer light paths of ppm, bpm and vcm if need be");

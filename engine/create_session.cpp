@@ -11,7 +11,7 @@ namespace {
 template <class S>
 std::unique_ptr<Session> makeSession(const Scene& scene, const RenderSettings& settings) {
   if (settings.method == Method::mlt) return makeChainSession<S>(scene, settings);
-  if (!isChosenByTrials(settings.method)) return makeWaveSession<S>(scene, settings);
+  if (!areTried(settings)) return makeWaveSession<S>(scene, settings);
   Prepared<S> prepared = chooseMethod<S>(scene, settings);
   const RenderSettings chosen = withMethod(settings, prepared.choice->method);
   return makeWaveSession<S>(scene, chosen, std::move(prepared));

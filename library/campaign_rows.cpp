@@ -112,6 +112,7 @@ void chooseRows(const CampaignWords& words, const Profile& profile, CampaignSett
   if (const auto* radius = given(words, "--radius")) render.radius = parseRadius("--radius", radius->front());
   render.mergeVertices = profile.mergeVertices;
   render.balancedWalks = profile.balancedWalks;
+  render.guide = GuideTarget::automatic;
   if (const auto* vertices = given(words, "--merge-vertices")) {
     render.mergeVertices =
         static_cast<MergeVertices>(parseChoice("--merge-vertices", vertices->front(), kMergeVerticesNames));

@@ -108,7 +108,6 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   refuseNumbersOutOfRange(options);
   RenderSettings settings;
   settings.method = parseMethodOption("--method", options.method);
-  settings.sampler = parseSamplerOrAuto("--sampler", options.sampler).value_or(bestSampler(settings.method));
   settings.filterMode = static_cast<FilterMode>(parseChoice("--filter-mode", options.filterMode, kFilterModeNames));
   settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));
   settings.accel = static_cast<Accel>(parseChoice("--accel", options.accel, kAccelNames));
@@ -126,6 +125,7 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   settings.balancedWalks = true;
   settings.connectionRoulette = options.connectionRoulette;
   settings.guide = static_cast<GuideTarget>(parseChoice("--guide", options.guide, kGuideTargetNames));
+  settings.sampler = parseSamplerOrAuto("--sampler", options.sampler).value_or(bestSampler(settings));
   if (!options.guideMemory.empty()) settings.guideBytes = parseMemory("--guide-memory", options.guideMemory);
   if (options.lightPaths != 0) settings.lightPaths = options.lightPaths;
   settings.directPass = options.directPass;

@@ -322,7 +322,7 @@ class Campaign {
                              uint64_t seed) const {
     RenderSettings render = settings_.render;
     render.method = method.method;
-    render.sampler = settings_.sampler.value_or(bestSampler(method.method));
+    render.sampler = settings_.sampler.value_or(bestSampler(render));
     render.metropolis.variant = method.variant;
     render.directPass = method.directPass;
     if (!strategiesOf(method.method).merge) render.lightPaths.reset();

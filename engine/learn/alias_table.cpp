@@ -18,10 +18,14 @@ GuideUnits unitsOf(const std::array<double, kGuideBins>& weights) {
   }
   // The largest bin gets what rounding has left.
   units[largest] += kAll - given;
+  if (units[largest] == kAll) {
+    --units[largest];
+    ++units[largest ^ 1];
+  }
   return units;
 }
 
-void makeAliasTable(const GuideUnits& units, uint32_t* entries) {
+void makeAliasTable(const GuideUnits& units, uint32_t* words) {
   constexpr uint32_t kColumn = 1u << kGuideColumnBits;
   GuideUnits left = units;
   std::array<uint32_t, kGuideBins> poor, rich;  // stacks of bins with less than a column, and of the others
@@ -36,13 +40,24 @@ void makeAliasTable(const GuideUnits& units, uint32_t* entries) {
   // A rich bin fills up the column of each poor one. All bins together have as many units as the columns.
   while (poorCount != 0) {
     const uint32_t bin = poor[--poorCount], giver = rich[richCount - 1];
-    entries[bin] = left[bin] << kGuideBinBits | giver;
+    words[bin] = GuideBin{.units = units[bin], .own = left[bin], .other = giver}.word();
     left[giver] -= kColumn - left[bin];
     if (left[giver] >= kColumn) continue;
     --richCount;
     poor[poorCount++] = giver;
   }
-  for (size_t i = 0; i < richCount; ++i) entries[rich[i]] = kColumn << kGuideBinBits | rich[i];
+  for (size_t i = 0; i < richCount; ++i) {
+    words[rich[i]] = GuideBin{.units = units[rich[i]], .own = 0, .other = rich[i]}.word();
+  }
+}
+
+bool isAliasTable(const uint32_t* words) {
+  GuideUnits units;
+  for (size_t bin = 0; bin < kGuideBins; ++bin) units[bin] = GuideBin::of(words[bin]).units;
+  if (std::accumulate(units.begin(), units.end(), uint64_t{0}) != uint64_t{1} << kGuideUnitBits) return false;
+  std::array<uint32_t, kGuideBins> made{};
+  makeAliasTable(units, made.data());
+  return std::equal(made.begin(), made.end(), words);
 }
 
 }  // namespace wavecrest

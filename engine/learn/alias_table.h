@@ -9,13 +9,17 @@
 
 namespace wavecrest {
 
-// Units of each bin, 2^kGuideUnitBits together.
+// Units of each bin, 2^kGuideUnitBits together; none has them all.
 using GuideUnits = std::array<uint32_t, kGuideBins>;
 
-// In proportion to weights that are not negative and not all zero; a bin whose weight rounds to nothing has no unit.
+// In proportion to weights that are not negative and not all zero. A bin whose weight rounds to nothing has no unit;
+// one that has all the weight leaves a unit to a neighbour.
 GuideUnits unitsOf(const std::array<double, kGuideBins>& weights);
 
-// entries: of the bins' columns. Every unit of a bin is in exactly one column.
-void makeAliasTable(const GuideUnits& units, uint32_t* entries);
+// words: of the bins (GuideBin). Every unit of a bin is in exactly one column.
+void makeAliasTable(const GuideUnits& units, uint32_t* words);
+
+// Whether kGuideBins words are what makeAliasTable makes: no others draw what they say.
+bool isAliasTable(const uint32_t* words);
 
 }  // namespace wavecrest

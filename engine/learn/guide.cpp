@@ -14,12 +14,14 @@ namespace {
 // A value of a typical pixel's brightness has 2^20 units, its square 2^28.
 constexpr int kUnitBits = 20, kSquareUnitBits = 28;
 // A cell with more records is split, one with fewer than kLeastRecords keeps to the BSDF.
-constexpr uint64_t kSplitRecords = 16384, kLeastRecords = 512;
+constexpr uint64_t kSplitRecords = 8192, kLeastRecords = 512;
 // Before it knows better a cell asks BSDF and guide alike.
 constexpr float kFirstShare = 0.5f;
 // One block moves a share by at most so much: sums of a block are noisy.
 constexpr double kMostStep = 0.2;
 constexpr size_t kCellsOfTask = 16;
+// Sums are fetched so many records before they are added to.
+constexpr size_t kAhead = 12;
 
 // The bin next to (x, y), one step outside of the square at most: over an edge the square goes on at its mirror image
 // about the edge's middle.
@@ -36,16 +38,17 @@ size_t wrappedBin(int x, int y) {
   return static_cast<size_t>(y) * kGuideSide + static_cast<size_t>(x);
 }
 
-// Each bin is blended with its neighbours, which it shares most of its directions' light with: weights 4, 2 and 1.
+// Each bin is blended with its neighbours: weights 64, 8 and 1. A fifth of the draws go to the neighbours of a lone
+// bright bin, so that what lies across its edge is found.
 std::array<double, kGuideBins> smoothed(const uint64_t* sums) {
   std::array<double, kGuideBins> out{};
   for (int y = 0; y < static_cast<int>(kGuideSide); ++y) {
     for (int x = 0; x < static_cast<int>(kGuideSide); ++x) {
+      const auto weightOf = [](int step) { return step == 0 ? 8 : 1; };
       double sum = 0;
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
-          const int weight = (2 - std::abs(dx)) * (2 - std::abs(dy));
-          sum += weight * static_cast<double>(sums[wrappedBin(x + dx, y + dy)]);
+          sum += weightOf(dx) * weightOf(dy) * static_cast<double>(sums[wrappedBin(x + dx, y + dy)]);
         }
       }
       out[static_cast<size_t>(y) * kGuideSide + static_cast<size_t>(x)] = sum;
@@ -64,7 +67,7 @@ double luminanceOf(const Radiance<S>& radiance, uint32_t lane) {
 
 size_t Guide::bytesOfCell() {
   return CellTree::bytesOfCell() + sizeof(CellSums) + sizeof(float) +
-         kGuideBins * (sizeof(uint64_t) + 2 * sizeof(uint32_t) + sizeof(float));
+         kGuideBins * (sizeof(uint64_t) + sizeof(uint32_t));
 }
 
 size_t Guide::cellsFor(size_t bytes) { return std::max<size_t>(bytes / bytesOfCell(), kCellRoots); }
@@ -84,18 +87,17 @@ Guide::Guide(const double (&center)[3], const double (&halfExtent)[3], GuideTarg
   const size_t cells = tree_.mostCells();
   binSums_ = zeros<uint64_t>(cells * kGuideBins);
   cellSums_ = zeros<CellSums>(cells);
-  units_ = zeros<uint32_t>(cells * kGuideBins);
-  density_ = zeros<float>(cells * kGuideBins);
-  alias_ = zeros<uint32_t>(cells * kGuideBins);
+  bins_ = zeros<uint32_t>(cells * kGuideBins);
   share_ = zeros<float>(cells);
   std::fill_n(share_.get(), tree_.cells(), 1.0f);
-  view_ = {.share = share_.get(), .density = density_.get(), .alias = alias_.get(), .draws = false};
+  view_ = {.share = share_.get(), .bins = bins_.get(), .draws = false};
 }
 
 template <class S>
 void Guide::gather(const DirectionRecords& records, const Radiance<S>& radiance) {
   const bool squares = target_ == GuideTarget::variance;
   for (size_t i = 0; i < records.size; ++i) {
+    if (i + kAhead < records.size) __builtin_prefetch(&binSums_[records.bin[i + kAhead]], 1);
     const uint32_t bin = records.bin[i];
     CellSums& cell = cellSums_[bin >> kGuideBinBits];
     addTo(cell.records, 1);
@@ -156,26 +158,10 @@ void Guide::makeHistogram(size_t cell) {
     share_[cell] = 1;
   } else {
     if (share_[cell] >= 1) share_[cell] = kFirstShare;
-    const GuideUnits units = unitsOf(weights);
-    std::copy(units.begin(), units.end(), &units_[cell * kGuideBins]);
+    makeAliasTable(unitsOf(weights), &bins_[cell * kGuideBins]);
   }
-  publish(cell);
   for (size_t bin = 0; bin < kGuideBins; ++bin) bins[bin] /= 2;
   sums = {.records = sums.records / 2};
-}
-
-// What kernels read follows from the units.
-void Guide::publish(size_t cell) {
-  if (share_[cell] >= 1) return;
-  const uint32_t* const mine = &units_[cell * kGuideBins];
-  GuideUnits units;
-  std::copy_n(mine, kGuideBins, units.begin());
-  // A bin has the area 4 / kGuideBins.
-  constexpr double kDensityOfUnit = kGuideBins / 4.0 / (1u << kGuideUnitBits);
-  for (size_t bin = 0; bin < kGuideBins; ++bin) {
-    density_[cell * kGuideBins + bin] = static_cast<float>(units[bin] * kDensityOfUnit);
-  }
-  makeAliasTable(units, &alias_[cell * kGuideBins]);
 }
 
 void Guide::fold() {
@@ -201,8 +187,11 @@ void Guide::fold() {
 
 LearnedDirections Guide::learnedIn(uint32_t cell) const {
   LearnedDirections learned{.cell = cell, .cells = tree_.cells(), .guidedShare = 1 - double{share_[cell]}};
-  if (learned.guidedShare > 0)
-    std::copy_n(&density_[cell * size_t{kGuideBins}], kGuideBins, learned.squareDensity.begin());
+  if (learned.guidedShare == 0) return learned;
+  for (size_t bin = 0; bin < kGuideBins; ++bin) {
+    const auto units = static_cast<float>(GuideBin::of(bins_[cell * size_t{kGuideBins} + bin]).units);
+    learned.squareDensity[bin] = units * kGuideDensityOfUnit;
+  }
   return learned;
 }
 
@@ -228,7 +217,7 @@ void Guide::save(StateWriter& out) const {
   out.value(guidedShare_);
   out.items(binSums_.get(), cells * kGuideBins);
   out.items(cellSums_.get(), cells);
-  out.items(units_.get(), cells * kGuideBins);
+  out.items(bins_.get(), cells * kGuideBins);
   out.items(share_.get(), cells);
 }
 
@@ -241,16 +230,14 @@ void Guide::restore(StateReader& in) {
   const size_t cells = tree_.cells();
   in.items(binSums_.get(), cells * kGuideBins);
   in.items(cellSums_.get(), cells);
-  in.items(units_.get(), cells * kGuideBins);
+  in.items(bins_.get(), cells * kGuideBins);
   in.items(share_.get(), cells);
   for (size_t cell = 0; cell < cells; ++cell) {
-    uint64_t total = 0;
-    for (size_t bin = 0; bin < kGuideBins; ++bin) total += units_[cell * kGuideBins + bin];
     const bool taught = share_[cell] < 1;
-    if (!(share_[cell] >= kLeastBsdfShare) || share_[cell] > 1 || (taught && total != uint64_t{1} << kGuideUnitBits)) {
+    if (!(share_[cell] >= kLeastBsdfShare) || share_[cell] > 1 ||
+        (taught && !isAliasTable(&bins_[cell * size_t{kGuideBins}]))) {
       throw StateError("what it has learned is damaged");
     }
-    publish(cell);
   }
   view_.draws = std::any_of(share_.get(), share_.get() + cells, [](float share) { return share < 1; });
 }

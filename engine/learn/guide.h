@@ -22,9 +22,10 @@ namespace wavecrest {
 
 // What a histogram is proportional to. radiance: the light that comes from a direction, times BSDF and cosine.
 // variance: the root of the second moment of that, which also goes where it is noisy (Rath et al. 2020). off: paths are
-// those of path tracing.
-enum class GuideTarget { radiance, variance, off };
-constexpr std::array<std::string_view, 3> kGuideTargetNames{"radiance", "variance", "off"};
+// those of path tracing. automatic: radiance or off, whichever trials find better (engine/trials/choose_method.h); a
+// guide that is made has one of the others.
+enum class GuideTarget { automatic, radiance, variance, off };
+constexpr std::array<std::string_view, 4> kGuideTargetNames{"auto", "radiance", "variance", "off"};
 
 // What a guide has learned so far, as --stats reports it.
 struct GuideStatistics {
@@ -83,16 +84,14 @@ class Guide {
   void chooseShare(size_t cell);
   void splitCells();
   void makeHistogram(size_t cell);
-  void publish(size_t cell);
 
   CellTree tree_;
   GuideTarget target_;
   double unit_, squareUnit_;  // units in 1, of values and of their squares
   Zeros<uint64_t> binSums_;   // kGuideBins to a cell
   Zeros<CellSums> cellSums_;
-  Zeros<uint32_t> units_;  // the histograms
-  Zeros<float> share_, density_;
-  Zeros<uint32_t> alias_;
+  Zeros<uint32_t> bins_;  // the histograms, as kernels read them
+  Zeros<float> share_;
   GuideView view_;
   uint64_t folds_ = 0, saturated_ = 0;
   double guidedShare_ = 0;

@@ -155,6 +155,13 @@ inline void takeProgramDefaults(RenderSettings& settings) {
   settings.roulette = Roulette::efficiency;
   settings.mergeVertices = MergeVertices::first;
   settings.balancedWalks = true;
+  settings.guide = GuideTarget::automatic;
+}
+
+// Whether trials decide by what an image is rendered (engine/trials/choose_method.h).
+inline bool areTried(const RenderSettings& settings) {
+  return isChosenByTrials(settings.method) ||
+         (settings.method == Method::gpt && settings.guide == GuideTarget::automatic);
 }
 
 // The sampler that serves the method best. Sobol points are worth nothing to chains, to light paths that are not joined
@@ -164,6 +171,11 @@ inline SamplerKind bestSampler(Method method) {
   const bool lightAlone = (strategies.merge || strategies.camera) && !strategies.connect;
   const bool without = lightAlone || method == Method::mlt || method == Method::gpt;
   return without ? SamplerKind::independent : SamplerKind::sobol;
+}
+
+// The sampler of settings that name none. What trials choose takes Sobol points where they serve it.
+inline SamplerKind bestSampler(const RenderSettings& settings) {
+  return areTried(settings) ? SamplerKind::sobol : bestSampler(settings.method);
 }
 
 // Whether the method's walks end by a roulette that can be chosen. Chains walk as far as their strategies say, or by

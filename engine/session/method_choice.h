@@ -1,4 +1,4 @@
-// Which method renders an image whose method is left to trials (engine/trials/choose_method.h).
+// Which method renders an image that is left to trials (engine/trials/choose_method.h).
 #pragma once
 
 #include <cstdint>

@@ -69,14 +69,14 @@ struct RenderStatistics {
   Isa isa{};
   Specialization specialization{};
   Accel accel{};
-  SamplerKind sampler{};                   // of the settings; of evcm that of the method it chose
+  SamplerKind sampler{};                   // of the settings; after trials that of the method they chose
   FilterMode filterMode{};                 // what the film does: boxes and very wide filters are never spread
   size_t bytesPerPath = 0;                 // of a wave's columns
   MemoryUse memory;                        // of all threads that have worked
   std::optional<MergeRadius> mergeRadius;  // of methods that merge
   std::optional<ChainStatistics> chains;   // of mlt
   std::optional<GuideStatistics> guide;    // of gpt
-  std::optional<MethodChoice> choice;      // of evcm
+  std::optional<MethodChoice> choice;      // after trials
 
   // The method whose page is executed, where `asked` is that of the settings.
   Method renderedBy(Method asked) const { return choice ? choice->method : asked; }

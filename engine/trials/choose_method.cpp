@@ -12,7 +12,14 @@
 namespace wavecrest {
 namespace {
 
-constexpr std::array kCandidates{Method::pt, Method::lt, Method::bpt, Method::vcm};
+// Of evcm; the last one has all strategies.
+constexpr std::array kConnecting{Method::pt, Method::lt, Method::bpt, Method::vcm};
+// Of gpt: what a guide costs may be more than it brings.
+constexpr std::array kGuided{Method::pt, Method::gpt};
+std::span<const Method> candidatesOf(Method method) {
+  return method == Method::gpt ? std::span<const Method>(kGuided) : kConnecting;
+}
+
 constexpr uint64_t kTrialSeed = 0x747269616c73;
 constexpr uint32_t kTrialPixels = 64 * 48;  // of the trial image, at most
 constexpr uint32_t kTrialWave = 2048, kTrialPieces = 8;
@@ -24,20 +31,29 @@ struct Round {
   double within;
 };
 constexpr std::array kRounds{Round{1, 8}, Round{4, 4}, Round{16, 1}};
+// Of images that are independent with Sobol points too, and in the block behind those that a guide was learned in.
+constexpr uint64_t kLearningIterations = 2 * kSobolRun;
+constexpr std::array kLearningRounds{Round{kSobolRun, 1}};
+std::span<const Round> roundsOf(Method method) {
+  return method == Method::gpt ? std::span<const Round>(kLearningRounds) : kRounds;
+}
 
 // Costs in units of one closest-hit ray with its shading: least squares of CPU times of 16 scenes by six methods (AMD
 // EPYC Zen 5, AVX-512), with residuals of 4 and 8 %. kSmallCosts: for Accel::small, whose rays are cheap.
 struct Costs {
   double shadow, connection, merge, path;
+  double guide;  // of each ray of a method with a guide
 };
-constexpr Costs kCosts{.shadow = 0.67, .connection = 0.2, .merge = 0.2, .path = 0};
-constexpr Costs kSmallCosts{.shadow = 0.7, .connection = 0.93, .merge = 1.57, .path = 0.8};
-// Variance of independent over Sobol samples, mean of the nine scenes, for methods that gain by Sobol. Trials draw
-// independent samples, so that the two images of a round are independent.
+constexpr Costs kCosts{.shadow = 0.67, .connection = 0.2, .merge = 0.2, .path = 0, .guide = 0.3};
+constexpr Costs kSmallCosts{.shadow = 0.7, .connection = 0.93, .merge = 1.57, .path = 0.8, .guide = 1};
+// Variance of independent over Sobol samples, mean of the nine scenes, for methods that gain by Sobol. Trials of evcm
+// draw independent samples, so that the two images of a round are independent.
 constexpr double kSobolGain = 1.15;
 // What a method's variance is multiplied by for the error that trials do not see: the bias of merges, or the caustics
-// of methods without light paths, most of whose variance comes from paths that 42 samples seldom include.
+// of methods without light paths, most of whose variance comes from paths that 42 samples seldom include. The guide of
+// a render learns from more paths than that of a trial.
 double unseenError(Method method) {
+  if (method == Method::gpt) return 0.85;
   const PathStrategies strategies = strategiesOf(method);
   if (strategies.merge) return 1.1;
   return strategies.camera || strategies.connect ? 1 : 1.25;
@@ -62,7 +78,7 @@ RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings,
   RenderSettings trial = withMethod(settings, method);
   trial.film = trialFilm(scene.film);
   trial.seed = kTrialSeed;
-  trial.sampler = SamplerKind::independent;
+  if (settings.method != Method::gpt) trial.sampler = SamplerKind::independent;
   trial.share = {};
   trial.firstIteration = 0;
   trial.iterations.reset();
@@ -101,9 +117,10 @@ std::vector<float> nextImage(Session& session, uint64_t iterations) {
 double costOf(const RenderStatistics& statistics) {
   const StageCounters& counts = statistics.counters;
   const Costs& costs = statistics.accel == Accel::small ? kSmallCosts : kCosts;
-  const double rays = static_cast<double>(counts.raysClosest) + costs.shadow * static_cast<double>(counts.raysShadow) +
-                      costs.connection * static_cast<double>(counts.connections) +
-                      costs.merge * static_cast<double>(counts.merges);
+  const double ray = statistics.guide ? 1 + costs.guide : 1;
+  const double rays =
+      ray * static_cast<double>(counts.raysClosest) + costs.shadow * static_cast<double>(counts.raysShadow) +
+      costs.connection * static_cast<double>(counts.connections) + costs.merge * static_cast<double>(counts.merges);
   return rays / static_cast<double>(statistics.paths) + costs.path;
 }
 
@@ -114,12 +131,13 @@ std::vector<MethodTrial> trialsOf(const std::vector<Candidate>& candidates, cons
   std::vector<MethodTrial> trials;
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
-    const bool gains = sampler == SamplerKind::sobol && bestSampler(candidate.method) == SamplerKind::sobol;
+    const RenderStatistics statistics = candidate.session->statistics();
+    const bool gains = statistics.sampler != sampler && bestSampler(candidate.method) == sampler;
     trials.push_back({.method = candidate.method,
                       .iterations = images[i].iterations(),
                       .variance = errors[i].variance * unseenError(candidate.method) / (gains ? kSobolGain : 1),
                       .missed = errors[i].missed,
-                      .cost = costOf(candidate.session->statistics())});
+                      .cost = costOf(statistics)});
   }
   return trials;
 }
@@ -130,14 +148,16 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
                        const std::shared_ptr<const CompiledScene<S>>& compiled) {
   std::vector<Candidate> candidates;
   std::vector<TrialImages> images;
-  for (const Method method : kCandidates) {
+  const std::span<const Method> methods = candidatesOf(settings.method);
+  for (const Method method : methods) {
     const RenderSettings trial = trialSettings(scene, settings, method);
     candidates.push_back({method, makeWaveSession<S>(scene, trial, {.scene = compiled})});
+    if (method == Method::gpt) candidates.back().session->renderUntil(kLearningIterations, std::nullopt);
     const FilmArea& area = candidates.back().session->film().area();
     images.emplace_back(area.width, area.height);
   }
   std::vector<MethodTrial> trials;
-  for (const Round& round : kRounds) {
+  for (const Round& round : roundsOf(settings.method)) {
     for (size_t i = 0; i < candidates.size(); ++i) {
       if (!candidates[i].goesOn) continue;
       const std::vector<float> first = nextImage(*candidates[i].session, round.iterations);
@@ -152,7 +172,7 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
   }
   // If no candidate found any light, take the one with all strategies.
   const bool dark = std::ranges::none_of(images, [](const TrialImages& one) { return one.brightness() > 0; });
-  return {.method = dark ? kCandidates.back() : bestOf(trials).method, .trials = std::move(trials)};
+  return {.method = dark ? methods.back() : bestOf(trials).method, .trials = std::move(trials)};
 }
 
 }  // namespace
@@ -166,6 +186,7 @@ const MethodTrial& bestOf(std::span<const MethodTrial> trials) {
 
 RenderSettings withMethod(RenderSettings settings, Method method) {
   settings.method = method;
+  if (settings.guide == GuideTarget::automatic) settings.guide = GuideTarget::radiance;
   // Sobol points only where they serve the method.
   if (settings.sampler == SamplerKind::sobol) settings.sampler = bestSampler(method);
   if (!strategiesOf(method).merge) settings.lightPaths.reset();

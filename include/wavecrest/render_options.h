@@ -31,8 +31,9 @@ struct RenderOptions {
   // 0: no roulette. Small scenes, whose shadow rays cost next to nothing, never use it.
   double connectionRoulette = 0.2;
 
-  // gpt: what its guide is learned for: radiance, variance or off; memory of what it learns (empty: 64MiB).
-  std::string guide = "radiance", guideMemory{};
+  // gpt: what its guide is learned for: radiance, variance or off, or auto: radiance or off, whichever trials find
+  // better; memory of what it learns (empty: 64MiB).
+  std::string guide = "auto", guideMemory{};
 
   // mlt: pssmlt, mmlt or pathspace (empty: mmlt); Markov chains; independent samples from which they start; steps
   // before they start anew (0: by the number of samples); whether chains render direct light, too.

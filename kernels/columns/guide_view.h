@@ -4,6 +4,8 @@
 // (kernels/guide/square_lanes.h). The square has kGuideSide x kGuideSide bins. A histogram is an alias table of whole
 // units, so what is drawn has exactly the density that is stated. At a vertex the direction comes from the BSDF with
 // the probability `share` of the cell, else from the histogram (METHODS 12.1).
+//
+// A cell's histogram is 1 KB: lookups go to random places of all of them, so their size is what guiding costs.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +14,29 @@ namespace wavecrest {
 
 constexpr uint32_t kGuideSideBits = 4, kGuideSide = 1u << kGuideSideBits, kGuideBins = kGuideSide * kGuideSide;
 constexpr uint32_t kGuideBinBits = 2 * kGuideSideBits;
-// Units of probability: as many as a random number of 24 bits tells apart. A column of the alias table has this many.
-constexpr uint32_t kGuideUnitBits = 24, kGuideColumnBits = kGuideUnitBits - kGuideBinBits;
+// Units of probability: 2^kGuideUnitBits in all, 2^kGuideColumnBits in each column of the alias table.
+constexpr uint32_t kGuideUnitBits = 16, kGuideColumnBits = kGuideUnitBits - kGuideBinBits;
+
+// A bin with its column of the alias table in one word.
+struct GuideBin {
+  static constexpr uint32_t kUnitShift = kGuideBinBits + kGuideColumnBits, kOwnShift = kGuideBinBits;
+
+  uint32_t units;  // of the bin, below 2^kGuideUnitBits
+  uint32_t own;    // of the column, below 2^kGuideColumnBits: so many units are the bin's own,
+  uint32_t other;  // and the bin that has all others: the bin itself where its own fill the column
+
+  constexpr uint32_t word() const { return units << kUnitShift | own << kOwnShift | other; }
+  static constexpr GuideBin of(uint32_t word) {
+    return {word >> kUnitShift, word >> kOwnShift & ((1u << kGuideColumnBits) - 1), word & (kGuideBins - 1)};
+  }
+};
+// Density per area of the square [-1,1]^2 of a bin with one unit: a bin has the area 4 / kGuideBins.
+constexpr float kGuideDensityOfUnit = kGuideBins / 4.0f / (1u << kGuideUnitBits);
 
 struct GuideView {
   const float* share = nullptr;    // of each cell: probability of the BSDF; 1 where the cell has no histogram
-  const float* density = nullptr;  // of each bin, kGuideBins to a cell: density per area of the square [-1,1]^2
-  // Of each bin: in the upper bits how many units of its column are its own, in the lowest kGuideBinBits the bin that
-  // has the others.
-  const uint32_t* alias = nullptr;
-  bool draws = false;  // any share is below 1
+  const uint32_t* bins = nullptr;  // words of GuideBin, kGuideBins to a cell
+  bool draws = false;              // any share is below 1
 };
 
 // The least and greatest share of the BSDF where there is a histogram.

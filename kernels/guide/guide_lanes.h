@@ -23,15 +23,18 @@ struct GuideLanes {
 // Per solid angle.
 WAVECREST_INLINE Float guideDensity(const GuideView& guide, UInt cell, Vec3<Float> direction) {
   const SquarePoint at = toSquare(direction);
-  return gather(guide.density, shiftLeft<kGuideBinBits>(cell) + binOf(at.u, at.v)) / at.solidAngle;
+  const UInt bin = gather(guide.bins, shiftLeft<kGuideBinBits>(cell) + binOf(at.u, at.v));
+  return toFloat(shiftRight<GuideBin::kUnitShift>(bin)) * Float(kGuideDensityOfUnit) / at.solidAngle;
 }
 
 // A direction by the guide of each lane's cell. u.b chooses the bin, u.c and u.d the place in it.
 WAVECREST_INLINE Vec3<Float> drawFromGuide(const GuideView& guide, UInt cell, const Uniform4& u) {
-  const UInt number = toUInt(u.b * Float(0x1p24f));
-  const UInt column = shiftRight<kGuideColumnBits>(number), unit = number & UInt((1u << kGuideColumnBits) - 1);
-  const UInt entry = gather(guide.alias, shiftLeft<kGuideBinBits>(cell) + column);
-  const UInt bin = select(unit < shiftRight<kGuideBinBits>(entry), column, entry & UInt(kGuideBins - 1));
+  const UInt inColumn((1u << kGuideColumnBits) - 1);
+  const UInt number = toUInt(u.b * Float(static_cast<float>(1u << kGuideUnitBits)));
+  const UInt column = shiftRight<kGuideColumnBits>(number), unit = number & inColumn;
+  const UInt entry = gather(guide.bins, shiftLeft<kGuideBinBits>(cell) + column);
+  const UInt own = shiftRight<GuideBin::kOwnShift>(entry) & inColumn;
+  const UInt bin = select(unit < own, column, entry & UInt(kGuideBins - 1));
   constexpr float kWidth = 2.0f / kGuideSide;
   const Float left = toFloat(bin & UInt(kGuideSide - 1)), low = toFloat(shiftRight<kGuideSideBits>(bin));
   Float solidAngle;

@@ -104,7 +104,7 @@ class Words(CommandTest):
             ("render", "--instances", "auto expand keep"),
             ("render", "--filter-mode", "spread sample"),
             ("render", "--roulette", "throughput albedo efficiency"),
-            ("render", "--guide", "radiance variance off"),
+            ("render", "--guide", "auto radiance variance off"),
             ("render", "--mlt", "pssmlt mmlt pathspace"),
             ("render", "--merge-vertices", "all first"),
             ("render", "--progress", "auto bar jsonl none"),

@@ -35,21 +35,15 @@ RenderSettings guideSettings(Method method = Method::gpt) {
 struct FixedGuide {
   FixedGuide(const SceneView<float>& view, float bsdfShare, const std::array<double, kGuideBins>& weights)
       : tree(view.center, view.halfExtent, kCellRoots), share(kCellRoots, bsdfShare) {
-    const GuideUnits units = unitsOf(weights);
-    for (uint32_t cell = 0; cell < kCellRoots; ++cell) {
-      for (const uint32_t unit : units) {
-        density.push_back(static_cast<float>(unit * (kGuideBins / 4.0 / (1u << kGuideUnitBits))));
-      }
-      std::array<uint32_t, kGuideBins> entries{};
-      makeAliasTable(units, entries.data());
-      alias.insert(alias.end(), entries.begin(), entries.end());
-    }
-    guide = {.share = share.data(), .density = density.data(), .alias = alias.data(), .draws = true};
+    std::array<uint32_t, kGuideBins> words{};
+    makeAliasTable(unitsOf(weights), words.data());
+    for (uint32_t cell = 0; cell < kCellRoots; ++cell) bins.insert(bins.end(), words.begin(), words.end());
+    guide = {.share = share.data(), .bins = bins.data(), .draws = true};
   }
 
   CellTree tree;
-  std::vector<float> share, density;
-  std::vector<uint32_t> alias;
+  std::vector<float> share;
+  std::vector<uint32_t> bins;
   GuideView guide;
 };
 
@@ -59,11 +53,15 @@ std::array<double, kGuideBins> histogram(const std::function<double(size_t)>& we
   return weights;
 }
 
+// At each vertex a guide that is wrong makes some samples ten times as bright. A few edges keep the variance finite.
+constexpr uint32_t kWrongDepth = 4;
+
 // Images by the page of gpt with this guide in place of a learned one; without one: by path tracing's page.
 SeedMeans imagesWith(const Scene& scene, std::optional<std::pair<float, std::array<double, kGuideBins>>> fixed,
                      uint64_t iterations, uint64_t firstSeed) {
   const FlushToZero flushToZero;
-  const RenderSettings settings = guideSettings();
+  RenderSettings settings = guideSettings();
+  settings.limits.maxDepth = kWrongDepth;
   RenderPlan<float> plan = planRender<float>(scene, settings);
   std::optional<FixedGuide> guide;
   if (fixed) guide.emplace(plan.view, fixed->first, fixed->second);

@@ -83,13 +83,12 @@ TEST(IntegerSums, addUpOnSeveralThreads) {
 }
 
 // Units of a bin in all columns of its alias table.
-GuideUnits drawnBy(const std::array<uint32_t, kGuideBins>& entries) {
+GuideUnits drawnBy(const std::array<uint32_t, kGuideBins>& words) {
   GuideUnits drawn{};
   for (uint32_t column = 0; column < kGuideBins; ++column) {
-    const uint32_t own = entries[column] >> kGuideBinBits, other = entries[column] & (kGuideBins - 1);
-    EXPECT_LE(own, 1u << kGuideColumnBits);
-    drawn[column] += own;
-    drawn[other] += (1u << kGuideColumnBits) - own;
+    const GuideBin bin = GuideBin::of(words[column]);
+    drawn[column] += bin.own;
+    drawn[bin.other] += (1u << kGuideColumnBits) - bin.own;
   }
   return drawn;
 }
@@ -108,10 +107,18 @@ TEST(AliasTable, drawsEveryBinWithExactlyItsUnits) {
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
     for (size_t bin = 0; bin < kGuideBins; ++bin) {
       EXPECT_NEAR(units[bin], weights[bin] / total * (1u << kGuideUnitBits), kGuideBins);
+      EXPECT_LT(units[bin], 1u << kGuideUnitBits);
     }
-    std::array<uint32_t, kGuideBins> entries{};
-    makeAliasTable(units, entries.data());
-    EXPECT_EQ(drawnBy(entries), units);
+    std::array<uint32_t, kGuideBins> words{};
+    makeAliasTable(units, words.data());
+    EXPECT_EQ(drawnBy(words), units);
+    for (uint32_t bin = 0; bin < kGuideBins; ++bin) EXPECT_EQ(GuideBin::of(words[bin]).units, units[bin]);
+    EXPECT_TRUE(isAliasTable(words.data()));
+    for (const uint32_t bit : {0u, 9u, 20u}) {
+      std::array<uint32_t, kGuideBins> damaged = words;
+      damaged[77] ^= 1u << bit;
+      EXPECT_FALSE(isAliasTable(damaged.data())) << bit;
+    }
   }
 }
 

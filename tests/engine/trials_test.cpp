@@ -1,4 +1,4 @@
-// evcm: what trials make of images, and what they choose.
+// evcm and gpt: what trials make of images, and what they choose.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -81,13 +81,15 @@ TEST(TrialError, leavesTheNoisiestPixelsOut) {
   EXPECT_GT(images.standardError(0), 1);
 }
 
-RenderSettings evcmSettings() {
+RenderSettings triedSettings(Method method) {
   RenderSettings settings;
-  settings.method = Method::evcm;
+  settings.method = method;
   settings.isa = bestIsa();
   takeProgramDefaults(settings);
   return settings;
 }
+
+RenderSettings evcmSettings() { return triedSettings(Method::evcm); }
 
 MethodChoice choiceFor(const Scene& scene, const RenderSettings& settings = evcmSettings()) {
   return *chooseMethod<float>(scene, settings).choice;
@@ -108,21 +110,42 @@ TEST(Evcm, choosesByTheScene) {
   EXPECT_EQ(choiceFor(sceneFile("cornell-spheres", 64, 48)).method, Method::vcm);
 }
 
-TEST(Evcm, choosesTheSameForAnySeedThreadsAndWaves) {
+TEST(Trials, areTheSameForAnySeedThreadsAndWaves) {
   const Scene scene = sceneFile("cornell-mirror", 64, 48);
-  const MethodChoice choice = choiceFor(scene);
-  RenderSettings other = evcmSettings();
-  other.seed = 9;
-  other.threads = 3;
-  other.waveSize = 512;
-  other.iterations = 7;
-  other.seconds = 1;
-  const MethodChoice same = choiceFor(scene, other);
-  EXPECT_EQ(same.method, choice.method);
-  ASSERT_EQ(same.trials.size(), choice.trials.size());
-  for (size_t i = 0; i < choice.trials.size(); ++i) {
-    EXPECT_EQ(same.trials[i].inefficiency(), choice.trials[i].inefficiency()) << i;
-    EXPECT_EQ(same.trials[i].iterations, choice.trials[i].iterations) << i;
+  for (const Method method : {Method::evcm, Method::gpt}) {
+    const MethodChoice choice = choiceFor(scene, triedSettings(method));
+    RenderSettings other = triedSettings(method);
+    other.seed = 9;
+    other.threads = 3;
+    other.waveSize = 512;
+    other.iterations = 7;
+    other.seconds = 1;
+    const MethodChoice same = choiceFor(scene, other);
+    EXPECT_EQ(same.method, choice.method);
+    ASSERT_EQ(same.trials.size(), choice.trials.size());
+    for (size_t i = 0; i < choice.trials.size(); ++i) {
+      EXPECT_EQ(same.trials[i].inefficiency(), choice.trials[i].inefficiency()) << i;
+      EXPECT_EQ(same.trials[i].iterations, choice.trials[i].iterations) << i;
+    }
+  }
+}
+
+TEST(Gpt, takesAGuideWhereItPays) {
+  RenderSettings settings = triedSettings(Method::gpt);
+  settings.sampler = bestSampler(settings);
+  // Nearly all surfaces see the lamp, which next event estimation finds; and a box with the caustic of a mirror, which
+  // only directions find.
+  EXPECT_EQ(choiceFor(sceneFile("cornell-diffuse", 64, 48), settings).method, Method::pt);
+  EXPECT_EQ(choiceFor(sceneFile("cornell-mirror", 64, 48), settings).method, Method::gpt);
+}
+
+TEST(Gpt, isNotTriedWhereItsGuideIsGiven) {
+  for (const GuideTarget guide : {GuideTarget::radiance, GuideTarget::variance, GuideTarget::off}) {
+    RenderSettings settings = triedSettings(Method::gpt);
+    settings.guide = guide;
+    const auto session = Session::create(sceneFile("cornell-diffuse", 8, 6), settings);
+    EXPECT_FALSE(session->statistics().choice);
+    EXPECT_EQ(session->statistics().guide.has_value(), guide != GuideTarget::off);
   }
 }
 
@@ -153,22 +176,27 @@ TEST(Evcm, choosesForCropsAndSinglePixels) {
   EXPECT_GT(choiceFor(sceneFile("cornell-diffuse", 1, 1)).trials.front().iterations, 0u);
 }
 
-TEST(Evcm, rendersTheImageOfItsChoice) {
-  for (const char* name : {"cornell-diffuse", "cornell-spheres"}) {
-    const Scene scene = sceneFile(name, 32, 24);
-    RenderSettings settings = evcmSettings();
-    settings.sampler = bestSampler(Method::evcm);
-    const auto session = Session::create(scene, settings);
-    session->renderUntil(2, std::nullopt);
-    const RenderStatistics statistics = session->statistics();
-    ASSERT_TRUE(statistics.choice);
-    settings.method = statistics.choice->method;
-    settings.sampler = statistics.sampler;
-    const auto chosen = Session::create(scene, settings);
-    chosen->renderUntil(2, std::nullopt);
-    EXPECT_EQ(session->film().resolve(), chosen->film().resolve()) << name;
-    EXPECT_FALSE(chosen->statistics().choice);
-  }
+void expectImageOfChoice(const Scene& scene, Method method) {
+  RenderSettings settings = triedSettings(method);
+  settings.sampler = bestSampler(settings);
+  const auto session = Session::create(scene, settings);
+  session->renderUntil(2, std::nullopt);
+  const RenderStatistics statistics = session->statistics();
+  ASSERT_TRUE(statistics.choice);
+  settings.method = statistics.choice->method;
+  settings.guide = GuideTarget::radiance;
+  settings.sampler = statistics.sampler;
+  const auto chosen = Session::create(scene, settings);
+  chosen->renderUntil(2, std::nullopt);
+  EXPECT_EQ(session->film().resolve(), chosen->film().resolve()) << scene.name;
+  EXPECT_FALSE(chosen->statistics().choice);
+}
+
+TEST(Trials, leadToTheImageOfTheirChoice) {
+  for (const char* name : {"cornell-diffuse", "cornell-spheres"})
+    expectImageOfChoice(sceneFile(name, 32, 24), Method::evcm);
+  for (const char* name : {"cornell-diffuse", "cornell-mirror"})
+    expectImageOfChoice(sceneFile(name, 32, 24), Method::gpt);
 }
 
 TEST(Evcm, isChargedForItsTrials) {

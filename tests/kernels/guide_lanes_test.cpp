@@ -77,14 +77,12 @@ TEST_P(GuideLanesTest, binsAreThoseOfTheFoldedOctahedron) {
 
 TEST_P(GuideLanesTest, drawsWhatItSaysWithTheDensityItSays) {
   // Two bins have all, one three times as much as the other: column 5 is filled up by bin 200.
-  std::vector<uint32_t> alias(kGuideBins, 200);
-  constexpr uint32_t kColumn = 1u << kGuideColumnBits;
-  alias[5] = kColumn << kGuideBinBits | 5;
-  for (uint32_t column = 64; column < 127; ++column) alias[column] = 5;
-  std::vector<float> density(kGuideBins, 0.0f);
-  density[5] = 0.25f * kGuideBins / 4;
-  density[200] = 0.75f * kGuideBins / 4;
-  const GuideView guide{.share = nullptr, .density = density.data(), .alias = alias.data(), .draws = true};
+  constexpr uint32_t kAll = 1u << kGuideUnitBits;
+  std::vector<uint32_t> words(kGuideBins, GuideBin{.units = 0, .own = 0, .other = 200}.word());
+  for (uint32_t column = 64; column < 127; ++column) words[column] = GuideBin{.units = 0, .own = 0, .other = 5}.word();
+  words[5] = GuideBin{.units = kAll / 4, .own = 0, .other = 5}.word();
+  words[200] = GuideBin{.units = kAll / 4 * 3, .own = 0, .other = 200}.word();
+  const GuideView guide{.share = nullptr, .bins = words.data(), .draws = true};
   constexpr size_t kDraws = 1 << 14;
   alignas(64) static std::array<float, kDraws> b, c, d, x, y, z, pdf;
   std::mt19937 random(3);
@@ -102,7 +100,8 @@ TEST_P(GuideLanesTest, drawsWhatItSaysWithTheDensityItSays) {
     outside += bin != 5 && bin != 200 ? 1 : 0;
     if (bin != 5 && bin != 200) continue;
     const double norm = std::abs(double{x[i]}) + std::abs(double{y[i]}) + std::abs(double{z[i]});
-    EXPECT_NEAR(double{pdf[i]} * norm * norm * norm / double{density[bin]}, 1, 1e-5);
+    const double density = (bin == 5 ? 0.25 : 0.75) * kGuideBins / 4;
+    EXPECT_NEAR(double{pdf[i]} * norm * norm * norm / density, 1, 1e-5);
   }
   EXPECT_EQ(first, kDraws / 4);
   EXPECT_LE(outside, 4u) << "but for directions on a border, which rounding decides";
