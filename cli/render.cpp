@@ -368,6 +368,7 @@ int RenderRun::endWithoutImage(Ending ending, const RenderStatistics& statistics
   }
   // A pass takes about as much longer as pixels are missing.
   std::string longer = "a longer time";
+  if (statistics.choice) longer = fmt::format("more than the {:.2g} s that trials take", statistics.choice->seconds);
   if (statistics.paths > 0) {
     const double passes =
         static_cast<double>(statistics.paths) / static_cast<double>(session_->film().area().pixels.size());

@@ -216,6 +216,12 @@ class Clock(CommandTest):
             self.assertEqual((stats["iterations"], stats["snapshots"]), (0, []))
         self.assertEqual(list(self.folder.glob("image.0*")), [])
 
+    def test_trials_take_their_time_of_it(self):
+        for method in ("gpt", "evcm"):
+            arguments = ["render", "cornell-diffuse", "-m", method, "--size", "64x48", "--time", "0.001s", "-o", "image.exr"]
+            result = self.run_wavecrest(*arguments, expect=INPUT)
+            self.assertRegex(result.stderr, r"expected more than the [0-9.e-]+ s that trials take")
+
     def test_a_partial_image_is_written_on_request(self):
         size = ["--size", "1280x960", "--threads", "1"]
         arguments = ["render", "cornell-diffuse", *size, "--time", "0.02s", "--partial", "-o", "image.exr"]
