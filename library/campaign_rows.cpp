@@ -78,6 +78,7 @@ std::span<const std::string_view> campaignMethodNames() {
   }();
   static const auto names = [] {
     std::vector<std::string_view> all;
+    all.reserve(kMethods.size());
     for (const MethodEntry& entry : kMethods) all.push_back(entry.name);
     all.insert(all.end(), special.begin(), special.end());
     return all;
