@@ -8,8 +8,8 @@
 namespace wavecrest {
 
 // A line for each finding on stdout, and on stderr one for each that does not hold: then the exit code is kExitCheck.
-// Undecided ones are no failure, nor are those that were not judged; but where none was judged nothing was checked,
-// which is one.
+// Undecided ones are no failure, nor are those not reached in this time or not judged; but where none was judged
+// nothing was checked, which is one.
 int showFindings(std::span<const ReportClaim> claims);
 
 }  // namespace wavecrest

@@ -16,6 +16,8 @@ std::string plusMinus(double halfWidth) {
 int weightOf(ClaimVerdict verdict) {
   switch (verdict) {
     case ClaimVerdict::fails:
+      return 4;
+    case ClaimVerdict::notReached:
       return 3;
     case ClaimVerdict::notJudged:
       return 2;

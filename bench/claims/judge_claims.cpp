@@ -34,15 +34,15 @@ Judgement judgeOverScenes(const Claim& claim, const CampaignResults& results) {
     if (results.findScene(name) != nullptr) own = judgeOnScene(claim, name, results);
     holding += own.verdict == V::holds ? 1 : 0;
     failing += own.verdict == V::fails ? 1 : 0;
-    open += own.verdict == V::undecided ? 1 : 0;
+    open += own.verdict == V::undecided || own.verdict == V::notReached ? 1 : 0;
     unjudged += own.verdict == V::notJudged ? 1 : 0;
     all.evidence +=
         fmt::format("{}{}: {} ({})", all.evidence.empty() ? "" : "; ", name, toString(own.verdict), own.figure);
   }
   all.figure =
       fmt::format("in {} of {} scenes, not in {}; needs {}", holding, claim.scenes.size(), failing, claim.atLeast);
-  // The claim fails if even all undecided and unjudged scenes would be too few. It is not judged if the undecided ones
-  // alone would be too few, but the unjudged ones could make up the number.
+  // The claim fails if even all open and unjudged scenes would be too few. It is not judged if the open ones alone
+  // would be too few, but the unjudged ones could make up the number.
   if (holding >= claim.atLeast) {
     all.verdict = V::holds;
   } else if (holding + open + unjudged < claim.atLeast) {
@@ -65,6 +65,8 @@ std::string_view toString(ClaimVerdict verdict) {
       return "holds";
     case V::fails:
       return "does not hold";
+    case V::notReached:
+      return "not reached in this time";
     case V::undecided:
       return "undecided";
     case V::notJudged:

@@ -1,8 +1,10 @@
-// Judges claims on the results of a campaign: holds, does not hold, undecided within noise, or not judged here.
+// Judges claims on the results of a campaign: holds, does not hold, not reached in this time, undecided within noise,
+// or not judged here.
 //
 // Losses are compared by their logarithms at the end of runs of equal render time, times to equal quality likewise,
 // with 95 % bands from the seeds; a single seed gets the spread between the two seeds of the standard campaign
-// (scene_losses.h). What the bands leave open is undecided. A claim is not judged, and counts for nothing, where the
+// (scene_losses.h). What the bands leave open is undecided. A score that is missed for want of time alone
+// (reached_later.h) is not reached in this time. A claim is not judged, and counts for nothing, where the
 // campaign lacks what the claim is about: light paths, time, methods, a control, or a reference clean enough to see a
 // difference.
 #pragma once
@@ -15,7 +17,7 @@
 
 namespace wavecrest {
 
-enum class ClaimVerdict { holds, fails, undecided, notJudged };
+enum class ClaimVerdict { holds, fails, notReached, undecided, notJudged };
 std::string_view toString(ClaimVerdict verdict);  // as in the results file's claim table
 
 ClaimRecord judgeClaim(const Claim& claim, const CampaignResults& results);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "bench/claims/comparison.h"
+#include "bench/claims/reached_later.h"
 
 namespace wavecrest {
 namespace {
@@ -267,7 +268,8 @@ class Judge {
                              std::exp(here->mean), std::exp(there->mean), condition_.control));
   }
 
-  // Compares scores themselves with the limit: at least for reaches, below for misses.
+  // Compares scores themselves with the limit: at least for reaches, below for misses. Of methods that would reach it
+  // later, the last to do so decides.
   void threshold(const std::string& metric) {
     const bool reaches = condition_.kind == ConditionKind::reaches;
     for (const std::string& method : condition_.methods) {
@@ -278,9 +280,14 @@ class Judge {
         continue;
       }
       const Band band = scoreBand(metric, values);
-      const std::string text =
-          fmt::format("{} of {} is {:.3g}, limit {:g}", nameOf(metric), shown(method), band.mean, condition_.score);
-      add(reaches ? above(band, condition_.score, text) : below(band, condition_.score, text));
+      const std::string value = fmt::format("{} of {} is {:.3g}", nameOf(metric), shown(method), band.mean),
+                        text = fmt::format("{}, limit {:g}", value, condition_.score);
+      Comparison result = reaches ? above(band, condition_.score, text) : below(band, condition_.score, text);
+      if (reaches && result.verdict == V::fails) {
+        const std::optional<ReachedLater> later = reachedLater(scene_, method, metric, condition_.score);
+        if (later) result = {V::notReached, -later->seconds, value + "; " + later->text};
+      }
+      add(result);
     }
   }
 

@@ -13,7 +13,8 @@ struct Judgement {
   std::string figure = {};    // in some ten words: the comparison that decides
   std::string evidence = {};  // all values, for people
 
-  // Of a claim all conditions must hold: one that fails decides, then one that cannot be judged, then an open one.
+  // Of a claim all conditions must hold: one that fails decides, then one that is not reached in this time, one that
+  // cannot be judged, an open one.
   void add(const Judgement& other);
 };
 

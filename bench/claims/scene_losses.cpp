@@ -135,6 +135,24 @@ std::vector<double> SceneLosses::logTimes(const std::string& method, const std::
   });
 }
 
+std::optional<TimeToLoss> SceneLosses::timeToLoss(const std::string& method, const std::string& metric,
+                                                  double loss) const {
+  std::vector<std::vector<LossPoint>> curves;
+  for (const RunRecord* run : runs(method)) {
+    std::vector<LossPoint>& points = curves.emplace_back();
+    for (const SnapshotRecord& snapshot : run->snapshots) {
+      if (const std::optional<double> score = scoreOf(snapshot, metric)) {
+        points.push_back({snapshot.renderSeconds, lossOf(metric, *score)});
+      }
+    }
+  }
+  return wavecrest::timeToLoss(curves, loss);
+}
+
+double SceneLosses::endSeconds(const std::string& method) const {
+  return meanOf(perSeed(method, [](const RunRecord& run) { return run.snapshots.back().renderSeconds; })).mean;
+}
+
 std::vector<double> SceneLosses::errorSlopes(const std::string& method) const {
   return perSeed(method, [](const RunRecord& run) -> std::optional<double> {
     // The factor 0.999 keeps a snapshot at exactly a quarter of the time.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/statistics/bands.h"
+#include "bench/statistics/time_to_loss.h"
 #include "wavecrest/results.h"
 
 namespace wavecrest {
@@ -47,6 +48,10 @@ class SceneLosses {
   // logarithms; of a seed that has more at its end, the logarithm of that. The first snapshot's time where it is there
   // already.
   std::vector<double> logTimes(const std::string& method, const std::string& metric, double loss) const;
+
+  // When this loss would be reached, by the slope of the runs' own curves; seconds at which they end, a mean.
+  std::optional<TimeToLoss> timeToLoss(const std::string& method, const std::string& metric, double loss) const;
+  double endSeconds(const std::string& method) const;
 
   // d log(error) / d log(time) over the last three quarters of the time, by least squares; error is the root of the
   // mean of (T - A)(T - B), in which the reference's noise averages out. Empty where it was not measured.

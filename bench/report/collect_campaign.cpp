@@ -287,9 +287,9 @@ ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile) {
   if (claim == nullptr) return shown;
   shown.id = claim->id;
   shown.source = claim->source;
-  // An explanation is shown where the claim does not hold or is undecided.
+  // An explanation is shown where the claim does not hold or is open.
   const bool open =
-      record.verdict == toString(ClaimVerdict::fails) || record.verdict == toString(ClaimVerdict::undecided);
+      record.verdict != toString(ClaimVerdict::holds) && record.verdict != toString(ClaimVerdict::notJudged);
   const Explanation* explanation = open ? findExplanation(claim->id, profile) : nullptr;
   if (explanation == nullptr) return shown;
   if (explanation->profile != profile) shown.explanation = "In the " + explanation->profile + " campaign: ";

@@ -115,7 +115,7 @@ struct ReportScene {
 /// A statement of the study and whether it holds here.
 struct ReportClaim {
   std::string scene, statement;
-  std::string verdict = {};  ///< "holds", "does not hold", "undecided" or "not judged"
+  std::string verdict = {};  ///< "holds", "does not hold", "not reached in this time", "undecided" or "not judged"
   std::string figure = {};   ///< in some ten words: what decides it, or why it is not judged
   std::string evidence = {};
   std::string source = {};       ///< the study's words

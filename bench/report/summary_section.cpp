@@ -158,7 +158,7 @@ std::string numberCell(double value, const char* unit) {
 std::string verdictClass(const std::string& verdict) {
   if (verdict == "holds") return "holds";
   if (verdict == "not judged") return "unjudged";
-  return verdict == "undecided" ? "undecided" : "fails";
+  return verdict == "undecided" || verdict == "not reached in this time" ? "undecided" : "fails";
 }
 
 // A table row: scene, statement, verdict and the figure that decides. Explanation and evidence are folded behind a
@@ -228,11 +228,11 @@ std::string renderClaims(const ConvergenceReport& report) {
     return std::count_if(report.claims.begin(), report.claims.end(),
                          [&](const ReportClaim& claim) { return claim.verdict == verdict; });
   };
-  const auto judged = count("holds") + count("does not hold") + count("undecided");
+  const auto judged = std::ssize(report.claims) - count("not judged");
   std::string html = "<section id=\"claims\"><h2>The study's findings</h2><p class=\"facts\">";
   if (judged > 0) {
-    append(html, "{} hold, {} do not, {} are undecided within noise. ", count("holds"), count("does not hold"),
-           count("undecided"));
+    append(html, "{} hold, {} do not, {} not in this time, {} are undecided within noise. ", count("holds"),
+           count("does not hold"), count("not reached in this time"), count("undecided"));
   }
   if (count("not judged") > 0) {
     append(html, "{} cannot be judged by this campaign, which counts neither for nor against them.",

@@ -1,8 +1,5 @@
-// How much longer a method that has missed a target would need, by the slope of its own curve.
-//
-// A score's loss, its distance from the best possible one, falls about as a power of time: a straight line in the
-// logarithms of both. It is fitted to the last part of each run, from a quarter of its time on, and followed to the
-// target.
+// How much longer a method that has missed a target would need, by the slope of its own curve
+// (bench/statistics/time_to_loss.h).
 #pragma once
 
 #include <optional>
@@ -13,8 +10,7 @@
 
 namespace wavecrest {
 
-/// Seconds after the end of the runs, with the ends of the 95 % interval: over seeds, or with one seed of its fitted
-/// line alone, whose snapshots are not independent, so that it is too narrow rather than too wide.
+/// Seconds after the end of the runs, with the ends of the 95 % interval.
 struct TimeAhead {
   double seconds = 0;
   Range interval;  ///< high may be infinite

@@ -70,20 +70,20 @@ CREATE TABLE claim(
   id TEXT PRIMARY KEY,
   scene TEXT NOT NULL,
   statement TEXT NOT NULL,
-  verdict TEXT NOT NULL CHECK(verdict IN ('holds', 'does not hold', 'undecided', 'not judged')),
+  verdict TEXT NOT NULL CHECK(verdict IN
+    ('holds', 'does not hold', 'not reached in this time', 'undecided', 'not judged')),
   figure TEXT NOT NULL,
   evidence TEXT NOT NULL);
 )";
 
-// Claims of version 1 have no figure, and their verdict is never "not judged". The table is set aside, and its rows are
-// copied into a new one.
-constexpr const char* kOlderClaims = R"(
-ALTER TABLE claim RENAME TO older_claim;
-)";
-constexpr const char* kMoveClaims = R"(
-INSERT INTO claim SELECT id, scene, statement, verdict, '', evidence FROM older_claim ORDER BY rowid;
-DROP TABLE older_claim;
-)";
+// Claims of version 1 have no figure, and older versions know fewer verdicts: none "not reached in this time", version
+// 1 none "not judged". The table is set aside, and its rows are copied into a new one.
+std::string newClaimTable(int64_t version) {
+  const std::string figure = version == kOldestResultsVersion ? "''" : "figure";
+  return std::string("ALTER TABLE claim RENAME TO older_claim;") + kClaimTable +
+         "INSERT INTO claim SELECT id, scene, statement, verdict, " + figure +
+         ", evidence FROM older_claim ORDER BY rowid; DROP TABLE older_claim;";
+}
 
 // The version of the schema. SQLite gives 0 for a file in which none was set.
 int64_t versionOf(Database& database) {
@@ -97,11 +97,11 @@ bool hasTables(Database& database) {
   return tables.step() && tables.integer(0) != 0;
 }
 
-// Throws for a version that is neither current nor the oldest.
+// Throws for a version that cannot be read.
 [[noreturn]] void failVersion(const Database& database, int64_t version) {
   throw ResultsFileError(database.path().string() + ": has results of version " + std::to_string(version) +
-                         "; expected version " + std::to_string(kResultsVersion) + " or " +
-                         std::to_string(kOldestResultsVersion));
+                         "; expected version " + std::to_string(kOldestResultsVersion) + " to " +
+                         std::to_string(kResultsVersion));
 }
 
 // The version of the results in the file; 0 if the file is new. Throws for a version that cannot be read, and for a
@@ -109,7 +109,7 @@ bool hasTables(Database& database) {
 int64_t requireOurs(Database& database) {
   const int64_t version = versionOf(database);
   const bool isNew = version == 0 && !hasTables(database);
-  if (!isNew && version != kOldestResultsVersion && version != kResultsVersion) failVersion(database, version);
+  if (!isNew && (version < kOldestResultsVersion || version > kResultsVersion)) failVersion(database, version);
   return version;
 }
 
@@ -126,8 +126,8 @@ void createSchema(Database& database) {
   const int64_t version = requireOurs(database);
   if (version == 0) {
     database.execute(std::string(kTables) + kClaimTable + setVersion);
-  } else if (version == kOldestResultsVersion) {
-    database.execute(std::string(kOlderClaims) + kClaimTable + kMoveClaims + setVersion);
+  } else if (version < kResultsVersion) {
+    database.execute(newClaimTable(version) + setVersion);
   }
   transaction.commit();
 }

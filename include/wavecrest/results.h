@@ -82,7 +82,7 @@ struct BiasRecord {
 // One of the study's findings, judged on this campaign.
 struct ClaimRecord {
   std::string id, scene, statement;
-  std::string verdict;        // "holds", "does not hold", "undecided", "not judged"
+  std::string verdict;        // "holds", "does not hold", "not reached in this time", "undecided", "not judged"
   std::string figure = {};    // in some ten words: what decides it, or why it is not judged
   std::string evidence = {};  // values and bands, for people
 };

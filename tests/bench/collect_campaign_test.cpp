@@ -221,6 +221,7 @@ TEST_F(CollectCampaign, explanationsOfTheStandardCampaignSayThatElsewhere) {
   const std::string standard = explanation("standard", "undecided");
   EXPECT_FALSE(standard.empty());
   EXPECT_EQ(explanation("quick", "undecided"), "In the standard campaign: " + standard);
+  EXPECT_EQ(explanation("standard", "not reached in this time"), standard);
   EXPECT_EQ(explanation("quick", "holds"), "");
   EXPECT_EQ(explanation("quick", "not judged"), "");
 }

@@ -151,7 +151,7 @@ TEST(Summary, aPerfectScoreIsNotBehindItself) {
 
 TEST(Summary, claimsCarryTheirVerdicts) {
   const std::string claims = renderClaims(sampleReport());
-  EXPECT_TRUE(contains(claims, "0 hold, 1 do not, 1 are undecided"));
+  EXPECT_TRUE(contains(claims, "0 hold, 1 do not, 0 not in this time, 1 are undecided"));
   EXPECT_TRUE(contains(claims, "<td>pt &lt; bpt<td><span class=\"verdict fails\">does not hold</span>"));
   ConvergenceReport report = sampleReport();
   report.claims[0].source = "BPT & PT";
@@ -159,11 +159,15 @@ TEST(Summary, claimsCarryTheirVerdicts) {
   const std::string explained = renderClaims(report);
   EXPECT_TRUE(contains(explained, "<td>pt &lt; bpt<small class=\"source\">BPT &amp; PT</small><td>"));
   EXPECT_TRUE(contains(explained, "<summary>evidence</summary><p>a &lt; b</p>0.1</details>")) << "behind a click";
+  report.claims[1].verdict = "not reached in this time";
+  const std::string later = renderClaims(report);
+  EXPECT_TRUE(contains(later, "0 hold, 1 do not, 1 not in this time, 0 are undecided"));
+  EXPECT_TRUE(contains(later, "<span class=\"verdict undecided\">not reached in this time</span>"));
   report.claims[0].figure = "SSIM 0.9 < 0.95";
   report.claims[1].verdict = "not judged";
   const std::string unjudged = renderClaims(report);
   EXPECT_TRUE(
-      contains(unjudged, "0 hold, 1 do not, 0 are undecided within noise. 1 cannot be judged by this campaign"));
+      contains(unjudged, "0 not in this time, 0 are undecided within noise. 1 cannot be judged by this campaign"));
   EXPECT_TRUE(contains(unjudged, "<td>SSIM 0.9 &lt; 0.95<details>")) << "the figure that decides is in view";
   report.claims[0].verdict = "not judged";
   EXPECT_TRUE(contains(renderClaims(report), "<p class=\"facts\">All 2 cannot be judged")) << "no count of verdicts";

@@ -88,7 +88,7 @@ TEST(ResultsStore, whatIsWrittenIsReadBack) {
   EXPECT_EQ(results.claims[0].evidence, "pt 0.1, lt 0.2");
 }
 
-// Files of the version before: claims had no figure.
+// Files of version 1: claims had no figure.
 TEST(ResultsStore, aFileOfTheOldestVersionIsReadAndBroughtUpToDate) {
   const TemporaryFolder folder;
   const std::string path = folder.path("results.sqlite");
@@ -112,6 +112,28 @@ TEST(ResultsStore, aFileOfTheOldestVersionIsReadAndBroughtUpToDate) {
   { ResultsStore(path).putClaims({{"c2", "box", "lt wins", "not judged", "no light", ""}}); }
   EXPECT_EQ(readResults(path).claims.at(0).id, "c2");
   EXPECT_EQ(readResults(path).runs.size(), 1u) << "the rest stays";
+}
+
+// Files of the version before: no verdict "not reached in this time".
+TEST(ResultsStore, aFileOfTheVersionBeforeIsReadAndBroughtUpToDate) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("results.sqlite");
+  { const ResultsStore store(path); }
+  {
+    Database database(path, OpenFor::writing);
+    database.execute(
+        "DROP TABLE claim; CREATE TABLE claim(id TEXT PRIMARY KEY, scene TEXT NOT NULL, statement TEXT NOT NULL, "
+        "verdict TEXT NOT NULL CHECK(verdict IN ('holds', 'does not hold', 'undecided', 'not judged')), "
+        "figure TEXT NOT NULL, evidence TEXT NOT NULL); "
+        "INSERT INTO claim VALUES('c1', 'box', 'pt wins', 'holds', 'pt 0.1', 'pt 0.1, lt 0.2'); "
+        "PRAGMA user_version = 2");
+  }
+  EXPECT_EQ(readResults(path).claims.at(0).figure, "pt 0.1");
+  { const ResultsStore store(path); }
+  EXPECT_EQ(readResults(path).claims.at(0).figure, "pt 0.1");
+  EXPECT_EQ(readResults(path).claims.at(0).evidence, "pt 0.1, lt 0.2");
+  { ResultsStore(path).putClaims({{"c2", "box", "lt wins", "not reached in this time", "after 9 s", ""}}); }
+  EXPECT_EQ(readResults(path).claims.at(0).verdict, "not reached in this time");
 }
 
 TEST(ResultsStore, aRefusalIsARunWithAReason) {

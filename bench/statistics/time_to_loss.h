@@ -1,0 +1,40 @@
+// When a loss that falls with time will be that small, by the slope of its own curve.
+//
+// A score's loss, its distance from the best possible one, falls about as a power of time: a straight line in the
+// logarithms of both. It is fitted to the last part of each run, from a quarter of its time on, and followed to the
+// loss that is wanted.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bench/statistics/bands.h"
+
+namespace wavecrest {
+
+// A line is not followed farther than so many times the time that it was fitted to.
+constexpr double kFarthestTime = 100;
+
+// A snapshot. Those of a run are in order of time.
+struct LossPoint {
+  double seconds = 0, loss = 0;
+};
+
+// Bounds and band are of 95 %: over seeds, or with one seed of its fitted line alone, whose snapshots are not
+// independent, so that they are too narrow rather than too wide.
+struct TimeToLoss {
+  double seconds = 0;        // from the start of the run; it may be before its end, where the last points are above the
+                             // line
+  double low = 0, high = 0;  // high may be infinite
+  Band slope = {};           // d log(loss) / d log(time)
+};
+
+// Nothing where there is no run, or where one has fewer than three snapshots in its last part or does not get better
+// there.
+std::optional<TimeToLoss> timeToLoss(std::span<const std::vector<LossPoint>> runs, double loss);
+
+// With two significant digits: more would promise too much of a time that was not measured.
+double roundedTime(double seconds);
+
+}  // namespace wavecrest
