@@ -124,6 +124,7 @@ class GoingOn(Checkpoints):
         for method in METHODS:
             arguments = ["-m", method, "--checkpoint", method, "--stats", "stats.json"]
             arguments += ["--chains", "500"] if method == "mlt" else []
+            arguments += ["--guide", "radiance"] if method == "gpt" else []  # trials may take longer
             seconds = []
             for time_limit in ("0.1s", "0.2s"):
                 self.render(*arguments, "--time", time_limit, "--resume")

@@ -23,6 +23,14 @@ class Signals(CommandTest):
                 break
         return process
 
+    def save(self, process, name):
+        """Asks for saves until the file is there: before the first whole pass over the film nothing is saved."""
+        deadline = time.monotonic() + TIMEOUT_SECONDS
+        while not (self.folder / name).exists():
+            self.assertLess(time.monotonic(), deadline)
+            process.send_signal(signal.SIGUSR1)
+            time.sleep(0.1)
+
 
 class Render(Signals):
     def test_each_ending_signal_saves_what_there_is(self):
@@ -47,13 +55,9 @@ class Render(Signals):
     def test_usr1_saves_and_goes_on(self):
         process = self.started("-o", "image.exr", "--stats", "stats.json")
         iterations = []
-        deadline = time.monotonic() + TIMEOUT_SECONDS
-        # The first save may fall into the first iteration.
-        while len(iterations) < 2 or iterations[0] == 0:
-            self.assertLess(time.monotonic(), deadline)
-            process.send_signal(signal.SIGUSR1)
-            self.wait_for(lambda: (self.folder / "stats.json").exists())
-            iterations = [*iterations[-1:], read_json(self.path("stats.json"))["iterations"]]
+        for _ in range(2):
+            self.save(process, "stats.json")
+            iterations.append(read_json(self.path("stats.json"))["iterations"])
             read_exr_header(self.path("image.exr"))
             os.remove(self.path("stats.json"))
         self.assertIsNone(process.poll())
@@ -67,8 +71,7 @@ class Render(Signals):
     def test_stdout_gets_the_last_statistics_alone(self):
         process = self.started("-o", "image.exr", "--stats", "-")
         for _ in range(2):
-            process.send_signal(signal.SIGUSR1)
-            self.wait_for(lambda: (self.folder / "image.exr").exists())
+            self.save(process, "image.exr")
             os.remove(self.path("image.exr"))
         process.send_signal(signal.SIGTERM)
         output, _ = self.end(process, INTERRUPTED)
@@ -127,8 +130,7 @@ class Reference(Signals):
 
     def test_usr1_saves_and_goes_on(self):
         process = self.begin()
-        process.send_signal(signal.SIGUSR1)
-        self.wait_for(lambda: (self.folder / "r.exr").exists())
+        self.save(process, "r.exr")
         saved = int(read_exr_header(self.path("r.exr"))["wavecrest:iterations"])
         self.assertIsNone(process.poll())
         process.send_signal(signal.SIGTERM)
