@@ -105,9 +105,8 @@ class Render(Signals):
     def test_an_interrupt_is_answered_while_a_scene_is_loaded(self):
         for number in ENDING:
             process = self.start("render", "-", "-o", "image.exr", stdin=subprocess.PIPE)
-            process.stdin.write("<scene>")
+            process.stdin.write("<scene>" + " " * (1 << 17))  # more than a pipe holds: once it is through, it is being read
             process.stdin.flush()
-            time.sleep(0.2)
             process.send_signal(number)
             _, error = self.end(process, INTERRUPTED)
             self.assertIn("before anything was rendered", error)
