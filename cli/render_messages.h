@@ -15,7 +15,8 @@ void warnOfLimits(ProgressKind kind, const RenderSettings& settings);
 void warnOfFilter(ProgressKind kind, const Scene& scene, const RenderSettings& settings, bool spreads);
 // The memory plan, in one line.
 void showMemory(ProgressKind kind, const MemoryPlan& plan);
-// What the method (of the settings) renders by after trials, and why, in one line; nothing without trials.
+// One line: which method the trials of `method` (gpt or evcm) have chosen, and the work of each candidate. Prints
+// nothing if there were no trials.
 void showChoice(ProgressKind kind, Method method, const std::optional<MethodChoice>& choice);
 // What --dry-run prints on stdout: scene, kernels, end, memory and outputs of the render.
 void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, const DryPlan& plan);

@@ -21,8 +21,8 @@ struct LossPoint {
   double seconds = 0, loss = 0;
 };
 
-// Bounds and band are of 95 %: over seeds, or with one seed of its fitted line alone, whose snapshots are not
-// independent, so that they are too narrow rather than too wide.
+// Bounds and band are 95 % intervals over the seeds. With one seed they are those of its fitted line, and tend to be
+// too narrow, because the snapshots of a run are not independent.
 struct TimeToLoss {
   double seconds = 0;        // from the start of the run; it may be before its end, where the last points are above the
                              // line

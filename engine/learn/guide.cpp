@@ -38,8 +38,8 @@ size_t wrappedBin(int x, int y) {
   return static_cast<size_t>(y) * kGuideSide + static_cast<size_t>(x);
 }
 
-// Each bin is blended with its neighbours: weights 64, 8 and 1. A fifth of the draws go to the neighbours of a lone
-// bright bin, so that what lies across its edge is found.
+// Each bin is blended with its neighbours: weights 64, 8 and 1. A lone bright bin keeps 64 % of its weight; its
+// neighbours get the rest, so that light on the other side of an edge is found.
 std::array<double, kGuideBins> smoothed(const uint64_t* sums) {
   std::array<double, kGuideBins> out{};
   for (int y = 0; y < static_cast<int>(kGuideSide); ++y) {

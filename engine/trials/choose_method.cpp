@@ -12,14 +12,6 @@
 namespace wavecrest {
 namespace {
 
-// Of evcm; the last one has all strategies.
-constexpr std::array kConnecting{Method::pt, Method::lt, Method::bpt, Method::vcm};
-// Of gpt: what a guide costs may be more than it brings.
-constexpr std::array kGuided{Method::pt, Method::gpt};
-std::span<const Method> candidatesOf(Method method) {
-  return method == Method::gpt ? std::span<const Method>(kGuided) : kConnecting;
-}
-
 constexpr uint64_t kTrialSeed = 0x747269616c73;
 constexpr uint32_t kTrialPixels = 64 * 48;  // of the trial image, at most
 constexpr uint32_t kTrialWave = 2048, kTrialPieces = 8;
@@ -30,13 +22,27 @@ struct Round {
   uint64_t iterations;
   double within;
 };
-constexpr std::array kRounds{Round{1, 8}, Round{4, 4}, Round{16, 1}};
-// Of images that are independent with Sobol points too, and in the block behind those that a guide was learned in.
-constexpr uint64_t kLearningIterations = 2 * kSobolRun;
-constexpr std::array kLearningRounds{Round{kSobolRun, 1}};
-std::span<const Round> roundsOf(Method method) {
-  return method == Method::gpt ? std::span<const Round>(kLearningRounds) : kRounds;
+
+// The trials of a method.
+struct Trials {
+  std::span<const Method> candidates;  // the last one is taken where none finds light
+  std::span<const Round> rounds;
+  bool independent;  // samples are independent, whatever the render's own sampler
+};
+// evcm: vcm, the last one, has all strategies.
+constexpr std::array kStrategies{Method::pt, Method::lt, Method::bpt, Method::vcm};
+constexpr std::array kStrategyRounds{Round{1, 8}, Round{4, 4}, Round{16, 1}};
+// gpt: a guide may cost more than it brings. The two images have a Sobol run each, so they are independent.
+constexpr std::array kGuides{Method::pt, Method::gpt};
+constexpr std::array kGuideRounds{Round{kSobolRun, 1}};
+
+Trials trialsOf(Method method) {
+  if (method == Method::gpt) return {.candidates = kGuides, .rounds = kGuideRounds, .independent = false};
+  return {.candidates = kStrategies, .rounds = kStrategyRounds, .independent = true};
 }
+
+// What gpt learns in before its rounds: whole blocks, so that the rounds are the next block.
+constexpr uint64_t kLearningIterations = 2 * kSobolRun;
 
 // Costs in units of one closest-hit ray with its shading: least squares of CPU times of 16 scenes by six methods (AMD
 // EPYC Zen 5, AVX-512), with residuals of 4 and 8 %. kSmallCosts: for Accel::small, whose rays are cheap.
@@ -78,7 +84,7 @@ RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings,
   RenderSettings trial = withMethod(settings, method);
   trial.film = trialFilm(scene.film);
   trial.seed = kTrialSeed;
-  if (settings.method != Method::gpt) trial.sampler = SamplerKind::independent;
+  if (trialsOf(settings.method).independent) trial.sampler = SamplerKind::independent;
   trial.share = {};
   trial.firstIteration = 0;
   trial.iterations.reset();
@@ -125,8 +131,8 @@ double costOf(const RenderStatistics& statistics) {
 }
 
 // images: of each candidate.
-std::vector<MethodTrial> trialsOf(const std::vector<Candidate>& candidates, const std::vector<TrialImages>& images,
-                                  SamplerKind sampler) {
+std::vector<MethodTrial> resultsOf(const std::vector<Candidate>& candidates, const std::vector<TrialImages>& images,
+                                   SamplerKind sampler) {
   const std::vector<TrialError> errors = trialErrors(images);
   std::vector<MethodTrial> trials;
   for (size_t i = 0; i < candidates.size(); ++i) {
@@ -148,8 +154,8 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
                        const std::shared_ptr<const CompiledScene<S>>& compiled) {
   std::vector<Candidate> candidates;
   std::vector<TrialImages> images;
-  const std::span<const Method> methods = candidatesOf(settings.method);
-  for (const Method method : methods) {
+  const Trials kind = trialsOf(settings.method);
+  for (const Method method : kind.candidates) {
     const RenderSettings trial = trialSettings(scene, settings, method);
     candidates.push_back({method, makeWaveSession<S>(scene, trial, {.scene = compiled})});
     if (method == Method::gpt) candidates.back().session->renderUntil(kLearningIterations, std::nullopt);
@@ -157,13 +163,13 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
     images.emplace_back(area.width, area.height);
   }
   std::vector<MethodTrial> trials;
-  for (const Round& round : roundsOf(settings.method)) {
+  for (const Round& round : kind.rounds) {
     for (size_t i = 0; i < candidates.size(); ++i) {
       if (!candidates[i].goesOn) continue;
       const std::vector<float> first = nextImage(*candidates[i].session, round.iterations);
       images[i].add(first, nextImage(*candidates[i].session, round.iterations), round.iterations);
     }
-    trials = trialsOf(candidates, images, settings.sampler);
+    trials = resultsOf(candidates, images, settings.sampler);
     const double best = bestOf(trials).inefficiency();
     for (size_t i = 0; i < trials.size(); ++i) {
       candidates[i].goesOn &= trials[i].inefficiency() <= round.within * best;
@@ -172,7 +178,7 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
   }
   // If no candidate found any light, take the one with all strategies.
   const bool dark = std::ranges::none_of(images, [](const TrialImages& one) { return one.brightness() > 0; });
-  return {.method = dark ? methods.back() : bestOf(trials).method, .trials = std::move(trials)};
+  return {.method = dark ? kind.candidates.back() : bestOf(trials).method, .trials = std::move(trials)};
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST(ResultsStore, aFileOfTheOldestVersionIsReadAndBroughtUpToDate) {
   EXPECT_EQ(readResults(path).runs.size(), 1u) << "the rest stays";
 }
 
-// Files of the version before: no verdict "not reached in this time".
+// Version 2, which had no verdict "not reached in this time".
 TEST(ResultsStore, aFileOfTheVersionBeforeIsReadAndBroughtUpToDate) {
   const TemporaryFolder folder;
   const std::string path = folder.path("results.sqlite");
