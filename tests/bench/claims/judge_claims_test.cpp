@@ -3,118 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <utility>
+#include "tests/bench/claims/made_up_results.h"
 
 namespace wavecrest {
 namespace {
-
-// Results of one scene "s"; each method has a run per final score, with an RMSE that falls from twice that value at a
-// quarter of the time (a slope of -1/2) unless given otherwise.
-class MadeUp {
- public:
-  MadeUp() { results_.scenes.push_back({.name = "s", .hash = "0", .referenceFile = ""}); }
-  MadeUp& with(const std::string& method, const std::string& metric, const std::vector<double>& finalScores,
-               double before = 2) {
-    for (size_t i = 0; i < finalScores.size(); ++i) {
-      results_.runs.push_back(
-          {.scene = "s",
-           .method = method,
-           .seed = i + 1,
-           .snapshots = {
-               {.number = 0,
-                .renderSeconds = 1,
-                .iterations = 1,
-                .file = "",
-                .values = {{metric, before * finalScores[i]}}},
-               {.number = 1, .renderSeconds = 4, .iterations = 4, .file = "", .values = {{metric, finalScores[i]}}}}});
-    }
-    return *this;
-  }
-  // A run with these scores after 1, 2, 4, ... seconds.
-  MadeUp& curve(const std::string& method, const std::string& metric, const std::vector<double>& scores) {
-    RunRecord run{.scene = "s", .method = method, .seed = 1};
-    for (unsigned k = 0; k < scores.size(); ++k) {
-      run.snapshots.push_back({.number = k,
-                               .renderSeconds = std::pow(2.0, k),
-                               .iterations = k,
-                               .file = "",
-                               .values = {{metric, scores[k]}}});
-    }
-    results_.runs.push_back(run);
-    return *this;
-  }
-  MadeUp& floor(const std::string& metric, double value) {
-    results_.scenes[0].noiseFloors[metric] = value;
-    return *this;
-  }
-  MadeUp& refuse(const std::string& method) {
-    results_.runs.push_back(
-        {.scene = "s", .method = method, .seed = 1, .state = RunState::refused, .reason = "it cannot"});
-    return *this;
-  }
-  MadeUp& bias(const std::string& method, const std::vector<double>& shares) {
-    for (unsigned i = 0; i < shares.size(); ++i) {
-      results_.biases.push_back({"s", method, i, 2, 1.0, 1 - shares[i], shares[i]});
-    }
-    return *this;
-  }
-  // Errors without the reference's noise, whose root goes as time to this power, at five times.
-  MadeUp& slope(const std::string& method, const std::vector<double>& powers) {
-    for (size_t i = 0; i < powers.size(); ++i) {
-      RunRecord run{.scene = "s", .method = method, .seed = i + 1};
-      for (unsigned k = 0; k < 5; ++k) {
-        const double time = std::pow(2.0, k);
-        run.snapshots.push_back({.number = k,
-                                 .renderSeconds = time,
-                                 .iterations = k,
-                                 .file = "",
-                                 .values = {{kUnbiasedMse, std::pow(time, 2 * powers[i])}}});
-      }
-      results_.runs.push_back(run);
-    }
-    return *this;
-  }
-  // The stats of every run.
-  MadeUp& stats(const std::string& json) {
-    for (RunRecord& run : results_.runs) run.stats = json;
-    return *this;
-  }
-  MadeUp& scene(const std::string& name) {
-    results_.scenes.push_back({.name = name, .hash = "0", .referenceFile = ""});
-    for (RunRecord& run : results_.runs) run.scene = run.scene == "s" ? name : run.scene;
-    return *this;
-  }
-  ClaimRecord judge(const Condition& condition) const {
-    return judgeClaim({.id = "c", .scene = "s", .statement = "so", .conditions = {condition}}, results_);
-  }
-  std::string verdict(const Condition& condition) const { return judge(condition).verdict; }
-  const CampaignResults& results() const { return results_; }
-
- private:
-  CampaignResults results_;
-};
-
-Condition condition(ConditionKind kind, const std::string& metric, const std::vector<std::string>& methods,
-                    const std::vector<std::string>& than = {}) {
-  return {.kind = kind, .metrics = {metric}, .methods = methods, .than = than};
-}
-
-const std::string kHolds = "holds", kFails = "does not hold", kUndecided = "undecided", kNotJudged = "not judged",
-                  kNotReached = "not reached in this time";
-
-// pt has to have an SSIM of 0.9.
-Condition reachesScore() {
-  Condition reaches = condition(ConditionKind::reaches, "ssim", {"pt"});
-  reaches.score = 0.9;
-  return reaches;
-}
-// Runs of 16 s whose SSIM is 1 - scale / t^power.
-MadeUp falling(MadeUp made, const std::string& method, double scale, double power) {
-  std::vector<double> scores;
-  for (unsigned k = 0; k < 5; ++k) scores.push_back(1 - scale * std::pow(2.0, -power * k));
-  return made.curve(method, "ssim", scores);
-}
 
 TEST(JudgeClaims, better) {
   const Condition better = condition(ConditionKind::better, "rmse", {"pt"}, {"lt", "bpt"});
@@ -239,58 +131,6 @@ TEST(JudgeClaims, reachesAndMisses) {
   EXPECT_EQ(other.judge(reaches).figure, "SSIM of pt was not measured");
 }
 
-TEST(JudgeClaims, aScoreThatIsReachedLaterIsNotReachedInThisTime) {
-  // 0.8 / sqrt(t) is 0.2 at the end and 0.1 after 64 s. Points on a line tell it without error.
-  const ClaimRecord later = falling(MadeUp(), "pt", 0.8, 0.5).judge(reachesScore());
-  EXPECT_EQ(later.verdict, kNotReached);
-  EXPECT_EQ(later.figure, "SSIM of pt is 0.8; at this rate 0.9 after 64 s (64 to 64 s)");
-  // Points about the line leave room: of one degree of freedom.
-  const ClaimRecord noisy = MadeUp().curve("pt", "ssim", {0.2, 0.43, 0.602, 0.715, 0.802}).judge(reachesScore());
-  EXPECT_EQ(noisy.verdict, kNotReached);
-  EXPECT_EQ(noisy.figure, "SSIM of pt is 0.802; at this rate 0.9 after 63 s (32 to 120 s)");
-  // Two seeds have the interval of their times, 60.5 and 67.7 s: 12.7 standard errors of the logarithm.
-  const ClaimRecord seeds = falling(falling(MadeUp(), "pt", 0.778, 0.5), "pt", 0.823, 0.5).judge(reachesScore());
-  EXPECT_EQ(seeds.verdict, kNotReached);
-  EXPECT_EQ(seeds.figure, "SSIM of pt is 0.8; at this rate 0.9 after 64 s (31 to 130 s)");
-  // Only a score that has to be reached can be missed for want of time.
-  Condition misses = reachesScore();
-  misses.kind = ConditionKind::misses;
-  EXPECT_EQ(falling(MadeUp(), "pt", 0.3, 0.5).verdict(misses), kFails);
-}
-
-TEST(JudgeClaims, aLossThatFallsTooSlowlyOrNotAtAllDoesNotReachTheScore) {
-  // 0.2 at the end, and half of it after 2^(1 / power) times as long: 91 and 114 times.
-  EXPECT_EQ(falling(MadeUp(), "pt", 0.2 * std::pow(16, 1 / 6.5), 1 / 6.5).verdict(reachesScore()), kNotReached);
-  EXPECT_EQ(falling(MadeUp(), "pt", 0.2 * std::pow(16, 1 / 7.0), 1 / 7.0).verdict(reachesScore()), kFails);
-  EXPECT_EQ(falling(MadeUp(), "pt", 0.2, 0).verdict(reachesScore()), kFails) << "flat";
-  EXPECT_EQ(falling(MadeUp(), "pt", 0.1, -0.25).verdict(reachesScore()), kFails) << "rises";
-  const ClaimRecord wavers = MadeUp().curve("pt", "ssim", {0.2, 0.4, 0.7, 0.85, 0.82}).judge(reachesScore());
-  EXPECT_EQ(wavers.verdict, kFails) << "falls, but not beyond the interval of the slope";
-  EXPECT_EQ(wavers.figure, "SSIM of pt is 0.82, limit 0.9");
-  EXPECT_EQ(MadeUp().curve("pt", "ssim", {0.6, 0.7}).verdict(reachesScore()), kFails) << "two points tell no rate";
-}
-
-TEST(JudgeClaims, oneOfSeveralConditionsOrMethodsThatFailsDecides) {
-  Condition both = reachesScore();
-  both.methods = {"pt", "lt", "bpt"};
-  const auto made = [](double lt) { return falling(falling(MadeUp(), "pt", 0.8, 0.5), "lt", lt, lt == 0.8 ? 0.4 : 0); };
-  const ClaimRecord last = falling(made(0.8), "bpt", 0.1, 0.5).judge(both);
-  EXPECT_EQ(last.verdict, kNotReached);
-  EXPECT_EQ(last.figure, "SSIM of lt is 0.736; at this rate 0.9 after 180 s (180 to 180 s)") << "the last to reach it";
-  EXPECT_EQ(falling(made(0.2), "bpt", 0.1, 0.5).verdict(both), kFails) << "lt does not get better";
-  EXPECT_EQ(made(0.8).verdict(both), kNotReached) << "though bpt was not measured";
-  // Beside another condition.
-  const auto verdict = [&](Condition other) {
-    const MadeUp results = falling(made(0.8), "bpt", 0.1, 0.5);
-    return judgeClaim({.id = "c", .scene = "s", .statement = "so", .conditions = {reachesScore(), std::move(other)}},
-                      results.results())
-        .verdict;
-  };
-  EXPECT_EQ(verdict(condition(ConditionKind::better, "ssim", {"bpt"}, {"pt"})), kNotReached) << "which holds";
-  EXPECT_EQ(verdict(condition(ConditionKind::better, "ssim", {"pt"}, {"bpt"})), kFails);
-  EXPECT_EQ(verdict(condition(ConditionKind::biased, "", {"pt"})), kNotReached) << "which cannot be judged";
-}
-
 TEST(JudgeClaims, stalls) {
   Condition stalls{.kind = ConditionKind::stalls, .methods = {"pt"}, .than = {"vcm"}};
   stalls.slope = -0.25;
@@ -401,23 +241,6 @@ TEST(JudgeClaims, generalClaimsCountScenes) {
   EXPECT_EQ(judgeClaim(claim, one.results()).verdict, kNotJudged);
   claim.atLeast = 3;
   EXPECT_EQ(judgeClaim(claim, made(4).results()).verdict, kFails) << "two of three is all there can be";
-}
-
-TEST(JudgeClaims, ofGeneralClaimsAScoreNotReachedInThisTimeLeavesItsSceneOpen) {
-  Claim claim{.id = "c",
-              .scene = "general",
-              .statement = "so",
-              .conditions = {reachesScore()},
-              .scenes = {"box", "room"},
-              .atLeast = 2};
-  const auto verdict = [&](double power) {
-    MadeUp made = falling(falling(MadeUp(), "pt", 0.1, 0.5).scene("box"), "pt", 0.8, power).scene("room");
-    return judgeClaim(claim, made.results()).verdict;
-  };
-  EXPECT_EQ(verdict(0.5), kUndecided) << "holds in box, and may in room";
-  EXPECT_EQ(verdict(0), kFails);
-  claim.atLeast = 1;
-  EXPECT_EQ(verdict(0.5), kHolds);
 }
 
 TEST(JudgeClaims, evidenceGivesValuesAndBands) {
