@@ -40,7 +40,7 @@ RenderSettings settingsOfPart(const RenderOptions& options, const RenderSettings
   if (mlt && !options.outputs.empty()) {
     throw UsageError("--part: some of the chains of mlt make no image; expected no -o, but `wavecrest merge -o`");
   }
-  if (settings.method == Method::gpt && settings.guide != GuideTarget::off) {
+  if (mayLearn(settings)) {
     throw UsageError(
         "--part: gpt draws directions by what all earlier iterations have learned, and a part has only its "
         "own; expected another method, or --guide off");

@@ -106,7 +106,7 @@ RenderSettings RenderRanks::share(const RenderSettings& settings, const FilmArea
     warn(kind, fmt::format("--spp {}: {} processes share as many iterations; some of them have none",
                            *settings.iterations, ranks_->count()));
   }
-  if (settings.method == Method::gpt && settings.guide != GuideTarget::off) {
+  if (mayLearn(settings)) {
     note(kind, fmt::format("gpt: each of {} processes learns from its own share of the iterations", ranks_->count()));
   }
   RenderSettings own = settingsOfJointShare(settings, ranks_->rank(), ranks_->count());

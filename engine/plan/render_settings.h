@@ -158,6 +158,11 @@ inline void takeProgramDefaults(RenderSettings& settings) {
   settings.guide = GuideTarget::automatic;
 }
 
+// Whether the render learns a guide, or may once trials have decided.
+inline bool mayLearn(const RenderSettings& settings) {
+  return settings.method == Method::gpt && settings.guide != GuideTarget::off;
+}
+
 // Whether trials decide by what an image is rendered (engine/trials/choose_method.h).
 inline bool areTried(const RenderSettings& settings) {
   return isChosenByTrials(settings.method) ||

@@ -18,7 +18,7 @@ std::optional<SurvivalRule> survivalRule(const RenderSettings& settings, Walk wa
   if (settings.roulette == Roulette::albedo) return SurvivalRule{.byAlbedo = true};
   if (settings.roulette == Roulette::throughput) return std::nullopt;
   // A guide leads paths that are dark so far to light.
-  if (settings.method == Method::gpt && settings.guide != GuideTarget::off) return SurvivalRule{.byAlbedo = true};
+  if (mayLearn(settings)) return SurvivalRule{.byAlbedo = true};
   return SurvivalRule{.scale = efficientScale(settings.method, walk)};
 }
 
