@@ -11,8 +11,8 @@
 namespace wavecrest {
 namespace {
 
-// A value of a typical pixel's brightness has 2^20 units, its square 2^28.
-constexpr int kUnitBits = 20, kSquareUnitBits = 28;
+// A value of a typical pixel's brightness has 2^20 units, its square 2^28; a visit 2^8.
+constexpr int kUnitBits = 20, kSquareUnitBits = 28, kVisitBits = 8;
 // A cell with more records is split, one with fewer than kLeastRecords keeps to the BSDF.
 constexpr uint64_t kSplitRecords = 8192, kLeastRecords = 512;
 // Before it knows better a cell asks BSDF and guide alike.
@@ -66,7 +66,7 @@ double luminanceOf(const Radiance<S>& radiance, uint32_t lane) {
 }  // namespace
 
 size_t Guide::bytesOfCell() {
-  return CellTree::bytesOfCell() + sizeof(CellSums) + sizeof(float) +
+  return CellTree::bytesOfCell() + sizeof(CellSums) + 2 * sizeof(float) +
          kGuideBins * (sizeof(uint64_t) + sizeof(uint32_t));
 }
 
@@ -89,8 +89,9 @@ Guide::Guide(const double (&center)[3], const double (&halfExtent)[3], GuideTarg
   cellSums_ = zeros<CellSums>(cells);
   bins_ = zeros<uint32_t>(cells * kGuideBins);
   share_ = zeros<float>(cells);
+  roots_ = zeros<float>(cells);
   std::fill_n(share_.get(), tree_.cells(), 1.0f);
-  view_ = {.share = share_.get(), .bins = bins_.get(), .draws = false};
+  view_ = {.share = share_.get(), .bins = bins_.get(), .draws = false, .roots = roots_.get()};
 }
 
 template <class S>
@@ -101,9 +102,13 @@ void Guide::gather(const DirectionRecords& records, const Radiance<S>& radiance)
     const uint32_t bin = records.bin[i];
     CellSums& cell = cellSums_[bin >> kGuideBinBits];
     addTo(cell.records, 1);
+    // A path that went on stands for those that ended there, too.
+    const double survival = static_cast<double>(records.survival[i]);
+    addTo(cell.visits, toAddend(std::ldexp(1 / survival, kVisitBits)));
     const double brought = luminanceOf(radiance, records.lane[i]) - static_cast<double>(records.before[i]);
     const double value = brought * static_cast<double>(records.inverseThroughput[i]);
     if (!(value > 0) || !std::isfinite(value)) continue;
+    addTo(cell.squares, toAddend(value * value * survival * squareUnit_));
     // The sum of values is the integral of what comes from the bin, that of value^2 density of its square.
     const double pdf = static_cast<double>(records.pdf[i]);
     const double weight = squares ? value * value * squareUnit_ : value * unit_;
@@ -134,9 +139,13 @@ void Guide::splitCells() {
   for (uint32_t cell = 0; cell < tree_.cells(); ++cell) {
     while (cellSums_[cell].records > kSplitRecords && tree_.canSplit(cell)) {
       const uint32_t added = tree_.split(cell);
-      cellSums_[cell].records /= 2;
-      cellSums_[added] = cellSums_[cell];
+      CellSums& sums = cellSums_[cell];
+      sums.records /= 2;
+      sums.visits /= 2;
+      sums.squares /= 2;
+      cellSums_[added] = sums;
       share_[added] = share_[cell];
+      roots_[added] = roots_[cell];
       uint64_t* const from = &binSums_[cell * size_t{kGuideBins}];
       for (size_t bin = 0; bin < kGuideBins; ++bin) from[bin] /= 2;
       std::copy_n(from, kGuideBins, &binSums_[added * size_t{kGuideBins}]);
@@ -161,7 +170,11 @@ void Guide::makeHistogram(size_t cell) {
     makeAliasTable(unitsOf(weights), &bins_[cell * kGuideBins]);
   }
   for (size_t bin = 0; bin < kGuideBins; ++bin) bins[bin] /= 2;
-  sums = {.records = sums.records / 2};
+  if (sums.records >= kLeastRecords) {
+    const double mean = std::ldexp(static_cast<double>(sums.squares), kVisitBits) / static_cast<double>(sums.visits);
+    roots_[cell] = static_cast<float>(std::sqrt(mean / squareUnit_));
+  }
+  sums = {.records = sums.records / 2, .visits = sums.visits / 2, .squares = sums.squares / 2};
 }
 
 void Guide::fold() {
@@ -171,6 +184,7 @@ void Guide::fold() {
     const auto records = static_cast<double>(cellSums_[cell].records);
     guided += records * (1 - static_cast<double>(share_[cell]));
     all += records;
+    saturated_ += cellSums_[cell].squares >= kSumLimit ? 1 : 0;
     for (size_t bin = 0; bin < kGuideBins; ++bin) saturated_ += binSums_[cell * kGuideBins + bin] >= kSumLimit ? 1 : 0;
   }
   guidedShare_ = all > 0 ? guided / all : 0;
@@ -219,6 +233,7 @@ void Guide::save(StateWriter& out) const {
   out.items(cellSums_.get(), cells);
   out.items(bins_.get(), cells * kGuideBins);
   out.items(share_.get(), cells);
+  out.items(roots_.get(), cells);
 }
 
 void Guide::restore(StateReader& in) {
@@ -232,10 +247,12 @@ void Guide::restore(StateReader& in) {
   in.items(cellSums_.get(), cells);
   in.items(bins_.get(), cells * kGuideBins);
   in.items(share_.get(), cells);
+  in.items(roots_.get(), cells);
   for (size_t cell = 0; cell < cells; ++cell) {
     const bool taught = share_[cell] < 1;
-    if (!(share_[cell] >= kLeastBsdfShare) || share_[cell] > 1 ||
-        (taught && !isAliasTable(&bins_[cell * size_t{kGuideBins}]))) {
+    const bool sound = share_[cell] >= kLeastBsdfShare && share_[cell] <= 1 && roots_[cell] >= 0 &&
+                       std::isfinite(roots_[cell]) && (!taught || isAliasTable(&bins_[cell * size_t{kGuideBins}]));
+    if (!sound) {
       throw StateError("what it has learned is damaged");
     }
   }

@@ -69,6 +69,8 @@ class Guide {
     uint64_t records = 0;
     // Of what records weigh: times slope where that is positive; times -slope where negative; times slope^2.
     uint64_t up = 0, down = 0, curvature = 0;
+    // Visits, those included whose paths ended, in units of 2^-kVisitBits; and over them the squares of values.
+    uint64_t visits = 0, squares = 0;
   };
   struct Free {
     void operator()(void* p) const { std::free(p); }
@@ -92,6 +94,7 @@ class Guide {
   Zeros<CellSums> cellSums_;
   Zeros<uint32_t> bins_;  // the histograms, as kernels read them
   Zeros<float> share_;
+  Zeros<float> roots_;  // root mean square of values
   GuideView view_;
   uint64_t folds_ = 0, saturated_ = 0;
   double guidedShare_ = 0;

@@ -24,6 +24,19 @@ std::optional<uint32_t> cellSeen(const RenderPlan<S>& plan, const RenderSettings
   return cell;
 }
 
+std::vector<float> luminanceInWaveOrder(const Film& film) {
+  const FilmArea& area = film.area();
+  const std::vector<float> image = film.resolve();
+  std::vector<float> luminance;
+  luminance.reserve(area.pixels.size());
+  for (const uint32_t pixel : area.pixels) {
+    const size_t x = (pixel & 0xffff) - area.x0, y = (pixel >> 16) - area.y0;
+    const float* const rgb = &image[3 * (y * area.width + x)];
+    luminance.push_back(0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
+  }
+  return luminance;
+}
+
 }  // namespace
 
 template <class S>
@@ -32,6 +45,9 @@ Learner<S>::Learner(const RenderPlan<S>& plan, const RenderSettings& settings, s
   const SceneView<S>& scene = plan.view;
   if (plan.pipeline.has(Fold::guide)) {
     guide_.emplace(scene.center, scene.halfExtent, settings.guide, settings.guideBytes, plan.typicalBrightness);
+    worth_.emplace(pixels);
+    worthDecides_ = settings.roulette == Roulette::efficiency;
+    showView();
   }
 }
 
@@ -39,18 +55,30 @@ template <class S>
 void Learner<S>::prepare(StageContext<S>& context, uint64_t iteration) const {
   if (!guide_) return;
   context.cellTree = &guide_->cellTree();
-  context.guide = &guide_->view();
+  context.guide = &view_;
   context.recordsDirections = gathers(iteration, gathering_);
 }
 
 template <class S>
 void Learner<S>::gather(const Wave<S>& wave, uint64_t iteration) {
-  if (guide_ && gathers(iteration, gathering_)) guide_->gather(wave.directions, wave.radiance);
+  if (!guide_ || !gathers(iteration, gathering_)) return;
+  guide_->gather(wave.directions, wave.radiance);
+  worth_->gather(wave.directions);
 }
 
 template <class S>
-void Learner<S>::fold() {
-  if (guide_) guide_->fold();
+void Learner<S>::showView() {
+  view_ = guide_->view();
+  worth_->addTo(view_, worthDecides_);
+}
+
+template <class S>
+void Learner<S>::fold(const Film& film) {
+  if (guide_) {
+    guide_->fold();
+    worth_->fold(luminanceInWaveOrder(film));
+    showView();
+  }
   blockEnd_ = endOfBlock(blockEnd_);
 }
 
@@ -72,7 +100,9 @@ template <class S>
 void Learner<S>::save(StateWriter& out) const {
   if (!learns()) return;
   out.value(blockEnd_);
-  if (guide_) guide_->save(out);
+  if (!guide_) return;
+  guide_->save(out);
+  worth_->save(out);
 }
 
 template <class S>
@@ -80,7 +110,10 @@ void Learner<S>::restore(StateReader& in) {
   if (!learns()) return;
   blockEnd_ = in.value<uint64_t>();
   if (!std::has_single_bit(blockEnd_)) throw StateError("its blocks of iterations are others");
-  if (guide_) guide_->restore(in);
+  if (!guide_) return;
+  guide_->restore(in);
+  worth_->restore(in);
+  showView();
 }
 
 template class Learner<float>;

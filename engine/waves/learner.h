@@ -7,8 +7,10 @@
 
 #include <optional>
 
+#include "engine/film/film.h"
 #include "engine/learn/blocks.h"
 #include "engine/learn/guide.h"
+#include "engine/learn/path_worth.h"
 #include "engine/plan/render_plan.h"
 
 namespace wavecrest {
@@ -33,8 +35,8 @@ class Learner {
   void prepare(StageContext<S>& context, uint64_t iteration) const;
   // Takes what the walk has left in the wave. Safe from several threads.
   void gather(const Wave<S>& wave, uint64_t iteration);
-  // All waves have ended the block. Begins the next one.
-  void fold();
+  // All waves have ended the block. Begins the next one. film: of the session, which has all of its samples.
+  void fold(const Film& film);
 
   std::optional<GuideStatistics> guideStatistics() const;
   // At the first vertex with more than delta lobes of a path through a pixel of the image; none where the path has no
@@ -47,7 +49,12 @@ class Learner {
   void restore(StateReader& in);
 
  private:
+  void showView();
+
   std::optional<Guide> guide_;
+  std::optional<PathWorth> worth_;
+  GuideView view_;
+  bool worthDecides_ = false;
   uint64_t gathering_ = 0;  // iterations of a block that gather, at most
   uint64_t blockEnd_ = 1;
 };

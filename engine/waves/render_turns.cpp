@@ -82,7 +82,7 @@ void WaveSession<S>::renderBlocks(const Finished& finished, double end) {
     const bool over = std::all_of(camera_.begin(), camera_.end(),
                                   [&](const CameraProgress& progress) { return progress.next == blockEnd; });
     if (!over || finished(blockEnd)) return;
-    learner_.fold();
+    learner_.fold(film_);
   }
 }
 

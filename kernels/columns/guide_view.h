@@ -37,7 +37,14 @@ struct GuideView {
   const float* share = nullptr;    // of each cell: probability of the BSDF; 1 where the cell has no histogram
   const uint32_t* bins = nullptr;  // words of GuideBin, kGuideBins to a cell
   bool draws = false;              // any share is below 1
+  // What paths are worth to the image (engine/learn/path_worth.h): the root of the second moment of what comes back
+  // from each cell, 0 where it is not known, times what the pixels of each run of kWorthRun, in the order of waves,
+  // make of it. None: nothing is known.
+  const float* roots = nullptr;
+  const float* perBrightness = nullptr;
+  bool decidesSurvival = false;
 };
+constexpr uint32_t kWorthRunBits = 6, kWorthRun = 1u << kWorthRunBits;  // pixels
 
 // The least and greatest share of the BSDF where there is a histogram.
 constexpr float kLeastBsdfShare = 0.1f, kMostBsdfShare = 0.95f;

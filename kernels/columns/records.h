@@ -132,7 +132,9 @@ struct DirectionRecords : Columns<DirectionRecords> {
   Column<float> inverseThroughput;  // of the luminance of the throughput at the vertex
   Column<float> pdf;                // of the direction, per area of the guide's square; 0: of a delta lobe
   Column<float> slope;              // (density of the BSDF - density of the guide) / density
-  auto all() { return std::tie(lane, bin, before, inverseThroughput, pdf, slope); }
+  Column<float> survival;           // the probability with which the path went on
+  Column<float> worth;              // what the vertex is worth to the pixel (guide_view.h); 0 behind the first depth
+  auto all() { return std::tie(lane, bin, before, inverseThroughput, pdf, slope, survival, worth); }
 };
 
 // Contributions of light walks and of Markov chains on their way to the film. Pushed by occlude and acceptMutations, at

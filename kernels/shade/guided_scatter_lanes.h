@@ -9,11 +9,17 @@ WAVECREST_SIMD_BEGIN
 
 // sample: its pdf is the mixture's, and of a delta lobe the mixture's discrete probability. slope: (p_bsdf - p_guide) /
 // p, by which a greater share of the BSDF would change the logarithm of p. albedo: of the BSDF alone, f c / p_bsdf,
-// without refraction's change of radiance.
+// without refraction's change of radiance. worth: as of DirectionRecords, at any depth; 0 where it is not known.
 template <class Real>
 struct GuidedSample {
   BsdfSample<Real> sample;
-  Real slope, albedo;
+  Real slope, albedo, worth;
+
+  // What survival goes by: the worth of the path where it is known, else the share that the BSDF alone would leave,
+  // whoever drew, as the guide leads dark paths to light.
+  WAVECREST_INLINE Real measure(const GuideView& guide) const {
+    return guide.decidesSurvival ? select(worth > Real(0), worth, albedo) : albedo;
+  }
 };
 
 template <class Real>
@@ -39,18 +45,34 @@ WAVECREST_INLINE typename P::Real guidedEtaRatio(const ShadingLanes<P, kBsdfs>& 
   return Real(1);
 }
 
+// What the image gets from the vertices [i, i + kLanes), as a path in these lanes brings it: the throughput's luminance
+// times root and brightness of the view.
+template <class S>
+WAVECREST_INLINE Float worthOf(const GuideView& guide, const Wave<S>& wave, Mask active, size_t i, UInt lane, UInt cell,
+                               Float luminance) {
+  if (guide.perBrightness == nullptr) return Float(0);
+  const Mask joinable = active & firstLanes(wave.joinable - std::min(i, wave.joinable));
+  const UInt run =
+      shiftRight<kWorthRunBits>(shiftRight(lane, wave.iterationBits) + UInt(static_cast<uint32_t>(wave.firstPath)));
+  const Float worth = luminance * gather(guide.roots, select(joinable, cell, UInt(0u))) *
+                      gather(guide.perBrightness, select(joinable, run, UInt(0u)));
+  return zeroUnless(joinable, worth);
+}
+
 // sample: what the BSDF drew. Lanes whose number says so go where the guide draws instead. Copies of the arguments: a
 // reference would keep them in memory in scatter as a whole.
 template <class P, uint32_t kBsdfs>
 WAVECREST_NOINLINE GuidedSample<typename P::Real> guideSample(const StageContext<typename P::Storage>& context,
                                                               const Wave<typename P::Storage>& wave, size_t i,
-                                                              Mask active, UInt lane, ShadingLanes<P, kBsdfs> shading,
+                                                              Mask active, UInt lane, Vec3<typename P::Real> arriving,
+                                                              ShadingLanes<P, kBsdfs> shading,
                                                               BsdfSample<typename P::Real> sample) {
   using Real = typename P::Real;
   const GuideView& guide = *context.guide;
-  GuidedSample<Real> out{sample, Real(0), maxComponent(sample.weight)};
+  GuidedSample<Real> out{sample, Real(0), maxComponent(sample.weight), Real(0)};
   out.albedo = out.albedo * reciprocal(sample.etaRatio * sample.etaRatio);
   const GuideLanes at(guide, wave, active, i);
+  out.worth = to<Real>(worthOf(guide, wave, active, i, lane, at.cell, to<Float>(luminanceOf(arriving))));
   const Mask guided = active & at.draws();
   if (none(guided)) return out;
   // Which of the two draws, and the guide's direction.
@@ -85,12 +107,13 @@ WAVECREST_NOINLINE GuidedSample<typename P::Real> guideSample(const StageContext
 }
 
 // Leaves a record of each vertex in m that goes on, before its path does. throughput: at the vertex, before it
-// scatters. pdf, slope: of the direction.
+// scatters. pdf, slope: of the direction. survival: the probability with which the path goes on.
 template <class P>
 WAVECREST_NOINLINE void recordDirections(const StageContext<typename P::Storage>& context,
                                          Wave<typename P::Storage>& wave, size_t i, Mask m, UInt lane,
                                          Vec3<typename P::Real> throughput, Vec3<typename P::Real> direction,
-                                         typename P::Real pdf, typename P::Real slope, Mask specular) {
+                                         typename P::Real pdf, typename P::Real slope, Mask specular,
+                                         typename P::Real worth, typename P::Real survival) {
   using Real = typename P::Real;
   if (context.depth > kRecordedDepths) return;
   const auto carried = to<Float>(luminanceOf(throughput));
@@ -109,6 +132,8 @@ WAVECREST_NOINLINE void recordDirections(const StageContext<typename P::Storage>
   // A delta lobe is no place in the histogram.
   append(zeroUnless(!specular, to<Float>(pdf) * at.solidAngle), m, records.pdf, out);
   append(to<Float>(slope), m, records.slope, out);
+  append(to<Float>(survival), m, records.survival, out);
+  append(context.depth == 1 ? to<Float>(worth) : Float(0), m, records.worth, out);
 }
 
 WAVECREST_SIMD_END

@@ -42,17 +42,18 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     const Uniform4 u = draw(context, pathOf(context, wave, lane), Block::scatter);
     auto sample = shading.sampled(active, u);
     // Where a render learns directions, the guide may replace the sample.
-    Real slope(0), albedo(0);
+    const Vec3<Real> arriving = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
+    Real slope(0), measure(0), worth(0);
     if (context.guide != nullptr) [[unlikely]] {
-      const auto guided = guideSample<P, kBsdfs>(context, wave, i, active, lane, shading, sample);
+      const auto guided = guideSample<P, kBsdfs>(context, wave, i, active, lane, arriving, shading, sample);
       sample = guided.sample;
       slope = guided.slope;
-      albedo = guided.albedo;
+      measure = guided.measure(*context.guide);
+      worth = guided.worth;
     }
     const Vec3<Real> direction = shading.toWorld(sample.wo);
     const Real woCosine = abs(dot(direction, shading.normal));
 
-    const Vec3<Real> arriving = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     Vec3<Real> throughput = arriving * sample.weight;
     Mask alive = active & (maxComponent(throughput) > Real(0)) & (sample.pdf > Real(0));
     if (lobes == Lobes::specularOnly) alive = alive & sample.specular;
@@ -63,7 +64,7 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
             throughput * (abs(shading.wi.z) * woCosine * reciprocal(wiCosine * max(abs(sample.wo.z), Real(1e-12f))));
       }
     }
-    Real rouletteScale(1), scaleBefore(1);
+    Real rouletteScale(1), scaleBefore(1), q(1);
     if constexpr (hasRouletteScale(kFeatures)) {
       scaleBefore = rouletteScale = load(paths.rouletteScale, i);
       if (context.walk == Walk::camera) rouletteScale = rouletteScale / (sample.etaRatio * sample.etaRatio);
@@ -71,15 +72,15 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     if (roulette) {
       const Real carried = maxComponent(throughput) * rouletteScale;
       Real before = maxComponent(arriving) * scaleBefore;
-      // By albedo the share that the BSDF alone would leave, whoever drew: the guide leads dark paths to light.
-      if (context.guide != nullptr) before = carried * reciprocal(max(albedo, Real(1e-12f)));
-      const Real q = survival(context.survival, carried, before);
+      if (context.guide != nullptr) before = carried * reciprocal(max(measure, Real(1e-12f)));
+      q = survival(context.survival, carried, before);
       alive = alive & (to<Real>(u.d) < q);
       throughput = throughput * reciprocal(q);
     }
 
     if (context.recordsDirections) [[unlikely]] {
-      recordDirections<P>(context, wave, i, alive, lane, arriving, direction, sample.pdf, slope, sample.specular);
+      recordDirections<P>(context, wave, i, alive, lane, arriving, direction, sample.pdf, slope, sample.specular, worth,
+                          q);
     }
 
     const MisSums<Real> before = loadMis<kFeatures>(paths, i);

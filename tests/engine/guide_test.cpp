@@ -10,6 +10,7 @@
 #include "engine/learn/blocks.h"
 #include "engine/learn/cell_tree.h"
 #include "engine/plan/render_plan.h"
+#include "engine/plan/survival.h"
 #include "engine/tasks/flush_to_zero.h"
 #include "engine/walks/run_walk.h"
 #include "tests/effort.h"
@@ -31,18 +32,33 @@ RenderSettings guideSettings(Method method = Method::gpt) {
 
 // ---- guides that are wrong on purpose -------------------------------------------------------------------------------
 
+struct WrongGuide {
+  float bsdfShare;
+  std::array<double, kGuideBins> weights;
+  bool decidesSurvival =
+      false;  // as if light came to every third cell alone, in the eyes of every second run of pixels
+};
+
 // One histogram for all cells: a guide that no render would learn.
 struct FixedGuide {
-  FixedGuide(const SceneView<float>& view, float bsdfShare, const std::array<double, kGuideBins>& weights)
-      : tree(view.center, view.halfExtent, kCellRoots), share(kCellRoots, bsdfShare) {
+  FixedGuide(const SceneView<float>& view, const WrongGuide& wrong, size_t pixels)
+      : tree(view.center, view.halfExtent, kCellRoots), share(kCellRoots, wrong.bsdfShare) {
     std::array<uint32_t, kGuideBins> words{};
-    makeAliasTable(unitsOf(weights), words.data());
-    for (uint32_t cell = 0; cell < kCellRoots; ++cell) bins.insert(bins.end(), words.begin(), words.end());
+    makeAliasTable(unitsOf(wrong.weights), words.data());
+    for (uint32_t cell = 0; cell < kCellRoots; ++cell) {
+      bins.insert(bins.end(), words.begin(), words.end());
+      roots.push_back(cell % 3 == 0 ? 4.0f : 0.2f);
+    }
+    for (size_t run = 0; run * kWorthRun < pixels; ++run) perBrightness.push_back(run % 2 == 0 ? 1.0f : 0.25f);
     guide = {.share = share.data(), .bins = bins.data(), .draws = true};
+    if (!wrong.decidesSurvival) return;
+    guide.roots = roots.data();
+    guide.perBrightness = perBrightness.data();
+    guide.decidesSurvival = true;
   }
 
   CellTree tree;
-  std::vector<float> share;
+  std::vector<float> share, roots, perBrightness;
   std::vector<uint32_t> bins;
   GuideView guide;
 };
@@ -57,16 +73,18 @@ std::array<double, kGuideBins> histogram(const std::function<double(size_t)>& we
 constexpr uint32_t kWrongDepth = 4;
 
 // Images by the page of gpt with this guide in place of a learned one; without one: by path tracing's page.
-SeedMeans imagesWith(const Scene& scene, std::optional<std::pair<float, std::array<double, kGuideBins>>> fixed,
-                     uint64_t iterations, uint64_t firstSeed) {
+SeedMeans imagesWith(const Scene& scene, const std::optional<WrongGuide>& wrong, uint64_t iterations,
+                     uint64_t firstSeed) {
   const FlushToZero flushToZero;
   RenderSettings settings = guideSettings();
   settings.limits.maxDepth = kWrongDepth;
+  if (wrong && wrong->decidesSurvival) settings.limits.rouletteDepth = 1;
   RenderPlan<float> plan = planRender<float>(scene, settings);
   std::optional<FixedGuide> guide;
-  if (fixed) guide.emplace(plan.view, fixed->first, fixed->second);
+  if (wrong) guide.emplace(plan.view, *wrong, size_t{scene.film.width} * scene.film.height);
   SeedMeans out;
   out.width = scene.film.width;
+  const std::optional<SurvivalRule> rule = survivalRule(settings, Walk::camera);
   for (size_t seed = 0; seed < kSeeds; ++seed) {
     Film film(filmArea(scene.film));
     const size_t pixels = film.area().pixels.size();
@@ -76,6 +94,7 @@ SeedMeans imagesWith(const Scene& scene, std::optional<std::pair<float, std::arr
     context.scene = &plan.view;
     context.pixels = film.area().pixels.data();
     context.limits = settings.limits;
+    context.survival = pointerTo(rule);
     context.mis = plan.pipeline.cameraPass().strategies;
     context.counters = &counters;
     context.film = film.area().window();
@@ -103,16 +122,71 @@ SeedMeans imagesWith(const Scene& scene, std::optional<std::pair<float, std::arr
 void expectAnyGuideIsRight(const Scene& scene, const std::string& where) {
   const uint64_t iterations = effort(64, 4);
   const SeedMeans truth = imagesWith(scene, std::nullopt, 2 * iterations, 100);
-  const auto check = [&](float share, const std::array<double, kGuideBins>& weights, const char* name) {
+  const auto check = [&](const WrongGuide& wrong, const char* name) {
     // The less the BSDF draws, the rarer and brighter are its samples, and the more of them a mean takes to be normal.
-    const auto more = static_cast<uint64_t>(0.5f / share);
-    expectSameTruth(truth, imagesWith(scene, std::pair(share, weights), std::max<uint64_t>(more, 1) * iterations, 5000),
+    // The same is true of survivors.
+    const auto more = wrong.decidesSurvival ? 4 : static_cast<uint64_t>(0.5f / wrong.bsdfShare);
+    expectSameTruth(truth, imagesWith(scene, wrong, std::max<uint64_t>(more, 1) * iterations, 5000),
                     where + ", " + name);
   };
-  check(0.5f, histogram([](size_t) { return 1.0; }), "uniform");
-  check(kLeastBsdfShare, histogram([](size_t bin) { return 1.0 + static_cast<double>(bin * 7919 % 64); }), "random");
-  check(0.9f, histogram([](size_t bin) { return bin == 0 ? 1.0 : 0.0; }), "one bin");
-  check(0.5f, histogram([](size_t bin) { return bin % 2 == 0 ? 0.0 : 1.0; }), "gaps");
+  const auto uniform = histogram([](size_t) { return 1.0; });
+  check({0.5f, uniform}, "uniform");
+  check({kLeastBsdfShare, histogram([](size_t bin) { return 1.0 + static_cast<double>(bin * 7919 % 64); })}, "random");
+  check({0.9f, histogram([](size_t bin) { return bin == 0 ? 1.0 : 0.0; })}, "one bin");
+  check({0.5f, histogram([](size_t bin) { return bin % 2 == 0 ? 0.0 : 1.0; })}, "gaps");
+  check({0.5f, uniform, true}, "survival");
+}
+
+// Of paths whose first vertices are worth `worth`, that share goes on: the rays of two edges are counted.
+TEST(Guide, letsPathsGoOnByWhatTheyAreWorth) {
+  const FlushToZero flushToZero;
+  const Scene scene = roomScene({.light = RoomLight::quad, .width = 64, .height = 64});
+  for (const Isa isa : availableIsas()) {
+    RenderSettings settings = guideSettings();
+    settings.isa = isa;
+    settings.limits = {.maxDepth = 2, .rouletteDepth = 1};
+    const RenderPlan<float> plan = planRender<float>(scene, settings);
+    FixedGuide guide(plan.view, {.bsdfShare = 1, .weights = histogram([](size_t) { return 1.0; })},
+                     size_t{scene.film.width} * scene.film.height);
+    guide.guide.draws = false;
+    guide.guide.decidesSurvival = true;
+    guide.guide.roots = guide.roots.data();
+    guide.guide.perBrightness = guide.perBrightness.data();
+    std::fill(guide.roots.begin(), guide.roots.end(), 2.0f);
+    const std::optional<SurvivalRule> rule = survivalRule(settings, Walk::camera);
+    const FilmArea area = filmArea(scene.film);
+    const size_t pixels = area.pixels.size();
+    const auto raysWith = [&](float first, float second) {
+      // The first run of pixels, and all others.
+      for (size_t run = 0; run < guide.perBrightness.size(); ++run)
+        guide.perBrightness[run] = run == 0 ? first : second;
+      Wave<float> wave(pixels, plan.needs);
+      StageCounters counters;
+      StageContext<float> context;
+      context.scene = &plan.view;
+      context.pixels = area.pixels.data();
+      context.limits = settings.limits;
+      context.survival = pointerTo(rule);
+      context.mis = plan.pipeline.cameraPass().strategies;
+      context.counters = &counters;
+      context.film = area.window();
+      context.cellTree = &guide.tree.view();
+      context.guide = &guide.guide;
+      context.sampler = {SamplerKind::independent, 5, 0};
+      wave.pathCount = pixels;
+      runPass<float>(plan.pipeline.cameraPass(), context, wave, nullptr);
+      return static_cast<double>(counters.raysClosest) - static_cast<double>(pixels);
+    };
+    const double all = raysWith(100, 100) / 0.95;
+    const auto expected = [&](double first, double second) {
+      const double runs = static_cast<double>(pixels) / kWorthRun;
+      return all * (first / runs + second * (1 - 1 / runs));
+    };
+    const double slack = 5 * std::sqrt(static_cast<double>(pixels)) / 2;
+    EXPECT_NEAR(raysWith(0.2f, 0.2f), expected(0.4, 0.4), slack) << toString(isa);
+    EXPECT_NEAR(raysWith(0.4f, 0.05f), expected(0.8, 0.1), slack) << toString(isa);
+    EXPECT_NEAR(raysWith(1e-6f, 1e-6f), expected(0.05, 0.05), slack) << toString(isa);
+  }
 }
 
 TEST(Guide, givesTheRightMeanHoweverWrongItIs) {

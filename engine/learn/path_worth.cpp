@@ -1,0 +1,81 @@
+#include "engine/learn/path_worth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/learn/integer_sums.h"
+
+namespace wavecrest {
+namespace {
+
+// So that the squares of a block's first vertices, of which there are a million, stay far from the sums' limit.
+constexpr int kSquareBits = 8;
+constexpr float kMostWorth = 0x1p16f;
+// A run of pixels counts as at least this part of the image's mean brightness.
+constexpr double kDarkest = 0.05;
+// The worth of what the first vertices have in the root mean square: below 12 walks end that would bring more than
+// they cost (measured; engine/methods/METHODS.md, 12.6).
+constexpr double kFirstWorth = 12;
+
+}  // namespace
+
+void PathWorth::gather(const DirectionRecords& records) {
+  uint64_t count = 0, squares = 0;
+  for (size_t i = 0; i < records.size; ++i) {
+    const float worth = std::min(records.worth[i], kMostWorth);
+    if (!(worth > 0)) continue;
+    ++count;
+    squares += toAddend(std::ldexp(static_cast<double>(worth) * static_cast<double>(worth), kSquareBits));
+  }
+  wavecrest::addTo(count_, count);
+  wavecrest::addTo(squares_, squares);
+}
+
+void PathWorth::fold(std::span<const float> luminance) {
+  if (count_ > 0 && folds_ > 0) {
+    norm_ *=
+        std::sqrt(std::ldexp(static_cast<double>(squares_), -kSquareBits) / static_cast<double>(count_)) / kFirstWorth;
+    ++norms_;
+  }
+  squares_ = count_ = 0;
+  const double mean = std::accumulate(luminance.begin(), luminance.end(), 0.0) / static_cast<double>(luminance.size());
+  for (size_t run = 0; run < perBrightness_.size(); ++run) {
+    const size_t begin = run * kWorthRun, count = std::min<size_t>(kWorthRun, luminance.size() - begin);
+    const auto pixels = luminance.subspan(begin, count);
+    const double brightness = std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(count);
+    const double per = kFirstWorth / (norm_ * std::max(brightness, kDarkest * mean));
+    perBrightness_[run] = std::isfinite(per) ? static_cast<float>(per) : 0;
+  }
+  ++folds_;
+}
+
+void PathWorth::addTo(GuideView& guide, bool decides) const {
+  if (folds_ == 0) return;
+  guide.perBrightness = perBrightness_.data();
+  guide.decidesSurvival = decides && norms_ > 0;
+}
+
+void PathWorth::save(StateWriter& out) const {
+  out.value(squares_);
+  out.value(count_);
+  out.value(norm_);
+  out.value(folds_);
+  out.value(norms_);
+  out.items(perBrightness_.data(), perBrightness_.size());
+}
+
+void PathWorth::restore(StateReader& in) {
+  squares_ = in.value<uint64_t>();
+  count_ = in.value<uint64_t>();
+  norm_ = in.value<double>();
+  folds_ = in.value<uint64_t>();
+  norms_ = in.value<uint64_t>();
+  in.items(perBrightness_.data(), perBrightness_.size());
+  const bool sound = norm_ > 0 && std::isfinite(norm_) &&
+                     std::all_of(perBrightness_.begin(), perBrightness_.end(),
+                                 [](float per) { return per >= 0 && std::isfinite(per); });
+  if (!sound) throw StateError("what it has learned is damaged");
+}
+
+}  // namespace wavecrest
