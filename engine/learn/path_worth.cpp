@@ -28,12 +28,12 @@ void PathWorth::gather(const DirectionRecords& records) {
     ++count;
     squares += toAddend(std::ldexp(static_cast<double>(worth) * static_cast<double>(worth), kSquareBits));
   }
-  wavecrest::addTo(count_, count);
-  wavecrest::addTo(squares_, squares);
+  addTo(count_, count);
+  addTo(squares_, squares);
 }
 
 void PathWorth::fold(std::span<const float> luminance) {
-  if (count_ > 0 && folds_ > 0) {
+  if (squares_ > 0 && folds_ > 0) {
     norm_ *=
         std::sqrt(std::ldexp(static_cast<double>(squares_), -kSquareBits) / static_cast<double>(count_)) / kFirstWorth;
     ++norms_;
@@ -45,12 +45,13 @@ void PathWorth::fold(std::span<const float> luminance) {
     const auto pixels = luminance.subspan(begin, count);
     const double brightness = std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(count);
     const double per = kFirstWorth / (norm_ * std::max(brightness, kDarkest * mean));
-    perBrightness_[run] = std::isfinite(per) ? static_cast<float>(per) : 0;
+    // Where nothing is bright, or a filter with negative lobes sums to less than nothing, no worth is known.
+    perBrightness_[run] = per > 0 && std::isfinite(per) ? static_cast<float>(per) : 0;
   }
   ++folds_;
 }
 
-void PathWorth::addTo(GuideView& guide, bool decides) const {
+void PathWorth::showIn(GuideView& guide, bool decides) const {
   if (folds_ == 0) return;
   guide.perBrightness = perBrightness_.data();
   guide.decidesSurvival = decides && norms_ > 0;

@@ -24,8 +24,8 @@ class PathWorth {
   void gather(const DirectionRecords& records);
   // luminance: of the film's pixels, in the order of waves. Nothing may be gathering.
   void fold(std::span<const float> luminance);
-  // The guide with what paths are worth. decides: roulette may go by it.
-  void addTo(GuideView& guide, bool decides) const;
+  // Adds what paths are worth to what kernels read. decides: roulette may go by it.
+  void showIn(GuideView& guide, bool decides) const;
 
   void save(StateWriter& out) const;
   // Throws StateError.

@@ -69,7 +69,7 @@ void Learner<S>::gather(const Wave<S>& wave, uint64_t iteration) {
 template <class S>
 void Learner<S>::showView() {
   view_ = guide_->view();
-  worth_->addTo(view_, worthDecides_);
+  worth_->showIn(view_, worthDecides_);
 }
 
 template <class S>

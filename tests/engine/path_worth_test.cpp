@@ -1,0 +1,121 @@
+// What paths are worth to an image (engine/learn/path_worth.h).
+#include "engine/learn/path_worth.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "tests/engine/saved_state.h"
+
+namespace wavecrest {
+namespace {
+
+constexpr size_t kPixels = 3 * kWorthRun + 5;  // the last run is short
+
+// Records of vertices of the first depth, worth so much.
+class Records {
+ public:
+  explicit Records(std::span<const float> worths) : arena_(records_.bytes(worths.size())) {
+    records_.bind(arena_, worths.size());
+    records_.size = worths.size();
+    for (size_t i = 0; i < worths.size(); ++i) records_.worth[i] = worths[i];
+  }
+  const DirectionRecords& get() const { return records_; }
+
+ private:
+  DirectionRecords records_;
+  Arena arena_;
+};
+
+GuideView viewOf(const PathWorth& worth, bool decides = true) {
+  GuideView view;
+  worth.showIn(view, decides);
+  return view;
+}
+
+std::vector<float> bright(std::array<float, 4> runs) {
+  std::vector<float> luminance;
+  for (size_t pixel = 0; pixel < kPixels; ++pixel) luminance.push_back(runs[pixel / kWorthRun]);
+  return luminance;
+}
+
+TEST(PathWorth, knowsNothingAtFirst) {
+  PathWorth worth(kPixels);
+  EXPECT_EQ(viewOf(worth).perBrightness, nullptr);
+  worth.fold(bright({1, 1, 1, 1}));
+  EXPECT_NE(viewOf(worth).perBrightness, nullptr);
+  EXPECT_FALSE(viewOf(worth).decidesSurvival) << "what the first vertices are worth is not known yet";
+}
+
+TEST(PathWorth, isTwelveAtTheFirstVerticesWhateverTheUnits) {
+  for (const float unit : {1e-3f, 1.0f, 1e3f}) {
+    PathWorth worth(kPixels);
+    worth.fold(bright({unit, 2 * unit, 4 * unit, 8 * unit}));
+    // Roots of a cell in which three times a pixel's brightness comes back.
+    for (int block = 0; block < 3; ++block) {
+      const float* const per = viewOf(worth).perBrightness;
+      std::vector<float> worths;
+      for (size_t run = 0; run < 4; ++run) worths.push_back(per[run] * 3 * unit * std::exp2f(static_cast<float>(run)));
+      worth.gather(Records(worths).get());
+      worth.fold(bright({unit, 2 * unit, 4 * unit, 8 * unit}));
+    }
+    EXPECT_TRUE(viewOf(worth).decidesSurvival);
+    EXPECT_FALSE(viewOf(worth, false).decidesSurvival);
+    for (size_t run = 0; run < 4; ++run) {
+      const float brightness = unit * std::exp2f(static_cast<float>(run));
+      EXPECT_NEAR(viewOf(worth).perBrightness[run] * 3 * brightness, 12, 0.05) << unit << ", run " << run;
+    }
+  }
+}
+
+TEST(PathWorth, takesNoPixelForDarkerThanATwentiethOfTheImage) {
+  PathWorth worth(kPixels);
+  worth.fold(bright({0, 1e-9f, 3, 3}));
+  const float* const per = viewOf(worth).perBrightness;
+  EXPECT_EQ(per[0], per[1]);
+  const double mean = 3 * static_cast<double>(kPixels - 2 * kWorthRun) / kPixels;
+  EXPECT_NEAR(per[0] / per[2], 20 * 3 / mean, 1e-3);
+}
+
+TEST(PathWorth, isUnknownWhereNothingIsBrightAndWhereNothingIsFinite) {
+  for (const float luminance : {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN()}) {
+    PathWorth worth(kPixels);
+    worth.fold(bright({luminance, luminance, luminance, luminance}));
+    for (size_t run = 0; run < 4; ++run) EXPECT_EQ(viewOf(worth).perBrightness[run], 0) << luminance;
+  }
+  // Records that are worth nothing, not finite, or very much teach no norm that is not.
+  PathWorth worth(kPixels);
+  worth.fold(bright({1, 1, 1, 1}));
+  const std::array odd{0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e30f};
+  worth.gather(Records(odd).get());
+  worth.fold(bright({1, 1, 1, 1}));
+  for (size_t run = 0; run < 4; ++run) {
+    EXPECT_GT(viewOf(worth).perBrightness[run], 0);
+    EXPECT_TRUE(std::isfinite(viewOf(worth).perBrightness[run]));
+  }
+}
+
+TEST(PathWorth, comesBackFromItsBytesAndFromNoOthers) {
+  PathWorth worth(kPixels);
+  worth.fold(bright({1, 2, 3, 4}));
+  worth.gather(Records(std::array{3.0f, 5.0f}).get());
+  const std::vector<unsigned char> saved = savedState(worth);
+  PathWorth other(kPixels);
+  restoreState(other, saved);
+  EXPECT_EQ(savedState(other), saved);
+  worth.fold(bright({4, 3, 2, 1}));
+  other.fold(bright({4, 3, 2, 1}));
+  for (size_t run = 0; run < 4; ++run) EXPECT_EQ(viewOf(other).perBrightness[run], viewOf(worth).perBrightness[run]);
+  // The last four bytes are the last run's, of a float that is not finite.
+  std::vector<unsigned char> damaged = saved;
+  std::fill(damaged.end() - 4, damaged.end(), 0xff);
+  EXPECT_THROW(restoreState(other, damaged), StateError);
+}
+
+}  // namespace
+}  // namespace wavecrest
