@@ -212,13 +212,13 @@ TEST(JudgeClaims, claimsNeedLightPathsAndTime) {
   claim.needs.lightPaths = 0.019;
   EXPECT_EQ(judgeClaim(claim, made.results()).verdict, kHolds);
   claim.needs.paths = 0.1;
-  EXPECT_EQ(judgeClaim(claim, made.results()).figure, "lt made 0.084 of the study's paths per pixel; needs 0.1");
+  EXPECT_EQ(judgeClaim(claim, made.results()).figure, "lt made 0.044 of the study's paths per pixel; needs 0.1");
   // Of methods that merge, iterations count and not the light paths of each.
   const char* const rich = R"({"iterations": 100, "light_paths": 25165824, "camera_paths": 1572864, "width": 128,
                                "height": 64, "radius": 0.001})";
   claim.conditions = {condition(ConditionKind::better, "rmse", {"ppm"}, {"ppm"})};
   EXPECT_EQ(judgeClaim(claim, MadeUp(made).stats(rich).results()).figure,
-            "ppm made 0.084 of the study's paths per pixel; needs 0.1");
+            "ppm made 0.044 of the study's paths per pixel; needs 0.1");
   claim.conditions = {condition(ConditionKind::better, "rmse", {"ppm"}, {"lt"})};
   claim.needs = {.lightPaths = 0.3};
   const char* const wide = R"({"iterations": 100, "light_paths": 1572864, "radius": 0.004})";
