@@ -16,6 +16,9 @@ TILE = 8
 FALSE_ALARM_RATE = 1e-3
 # Means of equal renderers still differ by rounding where there is no noise at all (a lamp seen directly).
 RELATIVE_ROUNDING = 1e-5
+# How far rounding may move a tile of two pictures of the same random numbers: by a few paths of 2,000 that meet another
+# surface. Noise is ten times as much and more.
+SAME_PATHS = 2e-3
 
 
 @dataclasses.dataclass
@@ -47,6 +50,14 @@ def tile_means(image, tile=TILE):
     heights = np.diff(np.append(rows, image.shape[0]))
     widths = np.diff(np.append(columns, image.shape[1]))
     return sums / (heights[:, None, None] * widths[None, :, None])
+
+
+def tile_difference(test, reference):
+    """The largest relative difference of a tile between two pictures (height, width, 3); black ones are related to the mean."""
+    if test.shape != reference.shape:
+        raise ValueError(f"image sizes differ: {test.shape} and {reference.shape}")
+    test, reference = tile_means(test), tile_means(reference)
+    return float(np.max(np.abs(test - reference) / np.maximum(reference, 1e-3 * reference.mean())))
 
 
 def welch_z(test, reference):

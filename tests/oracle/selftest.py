@@ -66,6 +66,14 @@ class Statistics(unittest.TestCase):
         self.assertTrue(image_statistics.compare(constant, constant * (1 + 1e-6)).equal)
         self.assertFalse(image_statistics.compare(constant, constant * (1 + 1e-3)).equal)
 
+    def test_the_largest_difference_of_a_tile_is_found(self):
+        picture = noise(np.random.default_rng(6), 1)[0]
+        other = picture.copy()
+        other[8:16, 16:24, 1] *= 1.003
+        self.assertAlmostEqual(image_statistics.tile_difference(other, picture), 0.003)
+        other[3, 3] = np.nan
+        self.assertFalse(image_statistics.tile_difference(other, picture) <= 1)
+
     def test_non_finite_pixels_are_a_difference(self):
         generator = np.random.default_rng(5)
         test, reference = noise(generator, 16), noise(generator, 16)
