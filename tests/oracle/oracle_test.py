@@ -30,20 +30,20 @@ class Case:
     name: str
     scene: pathlib.Path
     spp: int
-    methods: list
+    methods: list  # each may be followed by arguments for wavecrest
     size: tuple = (96, 96)  # None: the scene's own, crop window included
     max_depth: int = -1
-    options: tuple = ()  # further arguments for wavecrest
     filters: bool = False  # the scene is about a reconstruction filter other than the box
     reference: pathlib.Path | None = None  # the same scene in other words, for what Mitsuba 3 cannot read
 
     def run(self, method):
         """What wavecrest renders. Methods of many strategies take longer to a sample and leave less noise."""
+        method, *options = method.split()
         spp = self.spp // 2 if method in ("bpt", "vcm") else self.spp
         depths = ("--max-depth", self.max_depth, "--rr-depth", renderers.RUSSIAN_ROULETTE_DEPTH)
         # The bias of merges of the study's radius is far below the noise.
         radius = ("--radius", "0.001") if method == "vcm" else ()
-        return renderers.WavecrestRun(self.scene, method, spp, self.size, (*depths, *radius, *self.options))
+        return renderers.WavecrestRun(self.scene, method, spp, self.size, (*depths, *radius, *options))
 
 
 def read_cases(group=None, name=None, method=None):
@@ -77,7 +77,7 @@ def leave_evidence(mitsuba, folder, ours, theirs, verdict):
 
 def same_picture(wavecrest, case, method, mitsuba, theirs, out):
     """Renders the case and says whether it agrees with Mitsuba's images; what they showed is kept if they do not."""
-    folder = out / f"{case.name}-{method}"
+    folder = out / f"{case.name}-{method.replace(' ', '-')}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
 

@@ -87,7 +87,7 @@ class MitsubaAgainstItself(unittest.TestCase):
     @staticmethod
     @functools.cache
     def render(scene, seeds, **defaults):
-        return renderers.MitsubaScene(SCENES / scene, (96, 96), -1, defaults).render(64, seeds)
+        return renderers.MitsubaScene(SCENES / scene, (64, 48), -1, defaults).render(64, seeds)
 
     def test_other_seeds_pass(self):
         for scene in ("diffuse.xml", "glass.xml"):
