@@ -134,16 +134,17 @@ TEST_P(SessionStateTest, iterationsInSeveralSessionsGiveTheImageOfOne) {
 
 // Wherever the clock stops it: within bootstraps, iterations and direct passes.
 TEST_P(SessionStateTest, stopsByTheClockChangeNothing) {
-  constexpr uint64_t kMany = 40;  // so many that paths of a pixel are traced together
+  constexpr uint64_t kMany = effort(40, 16);  // so many that paths of a pixel are traced together
   const auto whole = session(settings());
   whole->renderUntil(kMany, std::nullopt);
   std::vector<unsigned char> state = savedState(*session(settings()));
   int uneven = 0;
-  for (uint32_t stop = 0; stop < 40; ++stop) {
+  constexpr double kShortest = kFullSpeed ? 5e-4 : 2e-3;  // seconds between stops
+  for (uint32_t stop = 0; stop < effort(40, 10); ++stop) {
     RenderSettings own = settings(1 + stop % 3, stop % 2 == 0 ? 64 : 200);
     own.clock = ClockKind::cpu;  // which stands still while other programs run
     const auto part = restored(own, state);
-    part->renderUntil(kMany, part->progressSeconds() + 5e-4 * (1 + stop % 8));
+    part->renderUntil(kMany, part->progressSeconds() + kShortest * (1 + stop % 8));
     uneven += part->film().minSamples() != part->film().maxSamples() ? 1 : 0;
     state = savedState(*part);
   }

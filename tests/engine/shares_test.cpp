@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "engine/plan/share_iterations.h"
+#include "tests/effort.h"
 #include "tests/engine/render_statistics.h"
 #include "tests/engine/rendered_session.h"
 #include "tests/engine/saved_state.h"
@@ -65,6 +66,8 @@ TEST(SharesTest, filmsAddUpToThatOfOneSession) {
   std::vector<ShareCase> cases{{.method = Method::pt, .spreads = true}, {.method = Method::bpt, .spreads = true}};
   for (const MethodEntry& entry : kMethods) {
     for (const Precision precision : {Precision::floating, Precision::doubled}) {
+      // Films are of doubles in both precisions: under sanitizers one method stands for all.
+      if (!kFullSpeed && precision == Precision::doubled && entry.method != Method::vcm) continue;
       cases.push_back({.method = entry.method, .precision = precision});
     }
   }
@@ -152,7 +155,7 @@ TEST(SharesTest, filmsOfSharesAtTheSameTimeAddUp) {
     for (const MethodEntry& entry : kMethods) {
       if (entry.method == Method::gpt) continue;  // which learns from what it has rendered itself
       RenderSettings settings = settingsOf({.method = entry.method});
-      settings.iterations = 50;  // so that path tracing takes several at once
+      settings.iterations = effort(50, 16);  // so that path tracing takes several at once
       const std::unique_ptr<Session> whole = renderedSession(scene, settings);
       std::unique_ptr<Film> sum;
       for (uint32_t part = 0; part < kShares; ++part) {
@@ -168,7 +171,7 @@ TEST(SharesTest, filmsOfSharesAtTheSameTimeAddUp) {
       }
       EXPECT_EQ(sum->allSamples(), whole->film().allSamples());
       EXPECT_EQ(sum->splatCount(), whole->film().splatCount());
-      // Sums of 50 samples in another order.
+      // Sums of as many samples in another order.
       EXPECT_LE(worstDistance(sum->resolve(), whole->film().resolve()), 1) << toString(entry.method);
     }
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "tests/effort.h"
 #include "tests/engine/test_scenes.h"
 
 namespace wavecrest {
@@ -138,7 +139,7 @@ TEST_P(BootstrapTest, mutationsComeAfterDirectLight) {
 
 // What a method does before its first path of the image, Metropolis' bootstrap above all, ends with the time as well.
 TEST_P(SnapshotsTest, preparationsKeepToTheTime) {
-  settings_.metropolis.bootstrapSamples = 1 << 18;
+  settings_.metropolis.bootstrapSamples = effort(1 << 18, 1 << 14);
   const auto whole = session();
   whole->renderUntil(20, std::nullopt);
   settings_.seconds = 1e-4;
@@ -149,7 +150,7 @@ TEST_P(SnapshotsTest, preparationsKeepToTheTime) {
 
 // A bootstrap that is stopped, over and over, is that of an unbroken render.
 TEST_P(BootstrapTest, goesOnWhereItStopped) {
-  settings_.metropolis.bootstrapSamples = 1 << 16;
+  settings_.metropolis.bootstrapSamples = effort(1 << 16, 1 << 13);
   const auto whole = session(), own = session();
   whole->renderUntil(20, std::nullopt);
   ShortStretches stretches(*own);
