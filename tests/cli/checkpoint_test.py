@@ -45,7 +45,7 @@ class Broken(Checkpoints):
             process = self.start(*self.arguments(method, "parts.pfm", *more, threads=threads))
             try:
                 # After some breaks as long as it takes: a render must come to its end.
-                process.wait(moments.uniform(0.02, 0.25) if broken < 8 else TIMEOUT_SECONDS)
+                process.wait(moments.uniform(0.02, 0.14) if broken < 8 else TIMEOUT_SECONDS)
             except subprocess.TimeoutExpired:
                 process.send_signal(number)
             _, error = process.communicate()

@@ -1,7 +1,7 @@
 """A newcomer's path as it is written: README's commands from the top, then the tutorial's, in a copy of the checkout.
 
 Commands are taken from the pages. README's run for a second where they say hours, and one that is not known here is a
-failure. The tutorial's run for a fifth of their seconds. In place of ./quickstart, which builds for minutes, stands the program of
+failure. The tutorial's run for a tenth of their seconds. In place of ./quickstart, which builds for minutes, stands the program of
 this build. With NEWCOMER_ROOT, the folder of a Debian 12, the path is walked within it (chroot), ./quickstart is run, and the
 tutorial's commands take all of their seconds: newcomer-test.
 """
@@ -38,9 +38,9 @@ KNOWN = {
     "wavecrest merge part? -o my.exr": Step(leaves=["my.exr"]),
     "wavecrest render my/scene.xml --time 8h --view -o my.exr": Step({"8h": "1s"}, ["my.exr"]),
     "wavecrest inspect my/scene.xml": Step(),
-    "wavecrest recommend my/scene.xml --target-ssim 0.95": Step({"0.95": "0.95 --budget 4s"}),
-    "wavecrest reference my/scene.xml --time 1h": Step({"1h": "2s"}, ["scene.reference.exr"]),
-    "wavecrest converge my/scene.xml --profile standard": Step({"standard": "standard --time-factor 0.02 --seeds 1"}, ["out/converge/report.html"]),
+    "wavecrest recommend my/scene.xml --target-ssim 0.95": Step({"0.95": "0.95 --budget 2s"}),
+    "wavecrest reference my/scene.xml --time 1h": Step({"1h": "1s"}, ["scene.reference.exr"]),
+    "wavecrest converge my/scene.xml --profile standard": Step({"standard": "standard --time-factor 0.01 --seeds 1"}, ["out/converge/report.html"]),
     "wavecrest report out/converge": Step(leaves=["out/converge/report.html"]),
     "wavecrest compare scene.reference.exr my.exr --html cmp.html": Step(leaves=["cmp.html"]),
 }
@@ -143,7 +143,7 @@ class Newcomer(unittest.TestCase):
         commands = commands_of(tutorial)
         self.assertGreater(len(commands), 10)
         for command in commands:
-            shorter = command if BARE else re.sub(r"\b(\d+)s\b", lambda seconds: f"{int(seconds[1]) / 5:g}s", command)
+            shorter = command if BARE else re.sub(r"\b(\d+)s\b", lambda seconds: f"{int(seconds[1]) / 10:g}s", command)
             self.run_command(shorter, "tour")
         for made in ["room.exr", "room.png", "references/room.exr", "out/room/report.html", "others/report.html"]:
             self.assertTrue(self.file(f"tour/{made}").is_file(), made)
