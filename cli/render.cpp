@@ -189,9 +189,9 @@ void RenderRun::check() {
   checkOutputs(names_, {findScene(options_.scene.scene)}, options_.until.reference);
   checkpointing_.emplace(options_.checkpoint);
   earlier_ = checkpointing_->takeEarlier();
-  // Removes temporary files of a render that was killed while it wrote its images. The lock keeps other processes from
-  // going on with this render at the same time.
-  if (!earlier_) return;
+  // Removes temporary files of a render that was killed while it tried or wrote its outputs. The lock, which is there
+  // before the first checkpoint, keeps other processes from going on with this render at the same time.
+  if (options_.checkpoint.file.empty()) return;
   for (const std::string& output : options_.outputs) removeTemporaries(output);
 }
 
