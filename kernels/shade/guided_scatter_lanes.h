@@ -8,18 +8,13 @@
 WAVECREST_SIMD_BEGIN
 
 // sample: its pdf is the mixture's, and of a delta lobe the mixture's discrete probability. slope: (p_bsdf - p_guide) /
-// p, by which a greater share of the BSDF would change the logarithm of p. albedo: of the BSDF alone, f c / p_bsdf,
-// without refraction's change of radiance. worth: as of DirectionRecords, at any depth; 0 where it is not known.
+// p, by which a greater share of the BSDF would change the logarithm of p. measure: what survival goes by, the worth of
+// the path where it is known, else the albedo, f c / p_bsdf without refraction's change of radiance: what the BSDF
+// alone would leave, whoever drew, as the guide leads dark paths to light.
 template <class Real>
 struct GuidedSample {
   BsdfSample<Real> sample;
-  Real slope, albedo, worth;
-
-  // What survival goes by: the worth of the path where it is known, else the share that the BSDF alone would leave,
-  // whoever drew, as the guide leads dark paths to light.
-  WAVECREST_INLINE Real measure(const GuideView& guide) const {
-    return guide.decidesSurvival ? select(worth > Real(0), worth, albedo) : albedo;
-  }
+  Real slope, measure;
 };
 
 template <class Real>
@@ -64,15 +59,20 @@ WAVECREST_INLINE Float worthOf(const GuideView& guide, const Wave<S>& wave, Mask
 template <class P, uint32_t kBsdfs>
 WAVECREST_NOINLINE GuidedSample<typename P::Real> guideSample(const StageContext<typename P::Storage>& context,
                                                               const Wave<typename P::Storage>& wave, size_t i,
-                                                              Mask active, UInt lane, Vec3<typename P::Real> arriving,
-                                                              ShadingLanes<P, kBsdfs> shading,
+                                                              Mask active, UInt lane, ShadingLanes<P, kBsdfs> shading,
                                                               BsdfSample<typename P::Real> sample) {
   using Real = typename P::Real;
   const GuideView& guide = *context.guide;
-  GuidedSample<Real> out{sample, Real(0), maxComponent(sample.weight), Real(0)};
-  out.albedo = out.albedo * reciprocal(sample.etaRatio * sample.etaRatio);
+  GuidedSample<Real> out{sample, Real(0), Real(0)};
   const GuideLanes at(guide, wave, active, i);
-  out.worth = to<Real>(worthOf(guide, wave, active, i, lane, at.cell, to<Float>(luminanceOf(arriving))));
+  const auto& paths = wave.paths;
+  const Vec3<Real> arriving = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
+  const Float worth = worthOf(guide, wave, active, i, lane, at.cell, to<Float>(luminanceOf(arriving)));
+  const auto measureOf = [&](Real albedo) WAVECREST_LAMBDA {
+    return guide.decidesSurvival ? select(to<Real>(worth) > Real(0), to<Real>(worth), albedo) : albedo;
+  };
+  const Real own = maxComponent(sample.weight) * reciprocal(sample.etaRatio * sample.etaRatio);
+  out.measure = measureOf(own);
   const Mask guided = active & at.draws();
   if (none(guided)) return out;
   // Which of the two draws, and the guide's direction.
@@ -96,7 +96,7 @@ WAVECREST_NOINLINE GuidedSample<typename P::Real> guideSample(const StageContext
   const Real albedo = maxComponent(value.f) * value.lightCosine * reciprocal(max(value.pdf, Real(1e-30f)));
   const Real etaRatio = guidedEtaRatio(shading, drawn, wo.z);
   out.slope = zeroUnless(guided, (pdfBsdf - pdfGuide) * inversePdf);
-  out.albedo = select(drawn, albedo * reciprocal(etaRatio * etaRatio), out.albedo);
+  out.measure = measureOf(select(drawn, albedo * reciprocal(etaRatio * etaRatio), own));
   out.sample = {select(drawn, wo, sample.wo),
                 select(guided, weight, sample.weight),
                 select(andNot(guided, failed), pdf, sample.pdf),
@@ -107,13 +107,13 @@ WAVECREST_NOINLINE GuidedSample<typename P::Real> guideSample(const StageContext
 }
 
 // Leaves a record of each vertex in m that goes on, before its path does. throughput: at the vertex, before it
-// scatters. pdf, slope: of the direction. survival: the probability with which the path goes on.
+// scatters, and without and with what roulette has made of it. pdf, slope: of the direction.
 template <class P>
 WAVECREST_NOINLINE void recordDirections(const StageContext<typename P::Storage>& context,
                                          Wave<typename P::Storage>& wave, size_t i, Mask m, UInt lane,
                                          Vec3<typename P::Real> throughput, Vec3<typename P::Real> direction,
                                          typename P::Real pdf, typename P::Real slope, Mask specular,
-                                         typename P::Real worth, typename P::Real survival) {
+                                         Vec3<typename P::Real> before, Vec3<typename P::Real> after) {
   using Real = typename P::Real;
   if (context.depth > kRecordedDepths) return;
   const auto carried = to<Float>(luminanceOf(throughput));
@@ -132,8 +132,9 @@ WAVECREST_NOINLINE void recordDirections(const StageContext<typename P::Storage>
   // A delta lobe is no place in the histogram.
   append(zeroUnless(!specular, to<Float>(pdf) * at.solidAngle), m, records.pdf, out);
   append(to<Float>(slope), m, records.slope, out);
-  append(to<Float>(survival), m, records.survival, out);
-  append(context.depth == 1 ? to<Float>(worth) : Float(0), m, records.worth, out);
+  append(to<Float>(maxComponent(before) * reciprocal(maxComponent(after))), m, records.survival, out);
+  append(context.depth == 1 ? worthOf(*context.guide, wave, m, i, lane, cell, carried) : Float(0), m, records.worth,
+         out);
 }
 
 WAVECREST_SIMD_END

@@ -42,18 +42,17 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     const Uniform4 u = draw(context, pathOf(context, wave, lane), Block::scatter);
     auto sample = shading.sampled(active, u);
     // Where a render learns directions, the guide may replace the sample.
-    const Vec3<Real> arriving = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
-    Real slope(0), measure(0), worth(0);
+    Real slope(0), measure(0);
     if (context.guide != nullptr) [[unlikely]] {
-      const auto guided = guideSample<P, kBsdfs>(context, wave, i, active, lane, arriving, shading, sample);
+      const auto guided = guideSample<P, kBsdfs>(context, wave, i, active, lane, shading, sample);
       sample = guided.sample;
       slope = guided.slope;
-      measure = guided.measure(*context.guide);
-      worth = guided.worth;
+      measure = guided.measure;
     }
     const Vec3<Real> direction = shading.toWorld(sample.wo);
     const Real woCosine = abs(dot(direction, shading.normal));
 
+    const Vec3<Real> arriving = loadVec3(paths.throughputR, paths.throughputG, paths.throughputB, i);
     Vec3<Real> throughput = arriving * sample.weight;
     Mask alive = active & (maxComponent(throughput) > Real(0)) & (sample.pdf > Real(0));
     if (lobes == Lobes::specularOnly) alive = alive & sample.specular;
@@ -64,7 +63,7 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
             throughput * (abs(shading.wi.z) * woCosine * reciprocal(wiCosine * max(abs(sample.wo.z), Real(1e-12f))));
       }
     }
-    Real rouletteScale(1), scaleBefore(1), q(1);
+    Real rouletteScale(1), scaleBefore(1);
     if constexpr (hasRouletteScale(kFeatures)) {
       scaleBefore = rouletteScale = load(paths.rouletteScale, i);
       if (context.walk == Walk::camera) rouletteScale = rouletteScale / (sample.etaRatio * sample.etaRatio);
@@ -73,14 +72,14 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
       const Real carried = maxComponent(throughput) * rouletteScale;
       Real before = maxComponent(arriving) * scaleBefore;
       if (context.guide != nullptr) before = carried * reciprocal(max(measure, Real(1e-12f)));
-      q = survival(context.survival, carried, before);
+      const Real q = survival(context.survival, carried, before);
       alive = alive & (to<Real>(u.d) < q);
       throughput = throughput * reciprocal(q);
     }
 
     if (context.recordsDirections) [[unlikely]] {
-      recordDirections<P>(context, wave, i, alive, lane, arriving, direction, sample.pdf, slope, sample.specular, worth,
-                          q);
+      recordDirections<P>(context, wave, i, alive, lane, arriving, direction, sample.pdf, slope, sample.specular,
+                          arriving * sample.weight, throughput);
     }
 
     const MisSums<Real> before = loadMis<kFeatures>(paths, i);
