@@ -30,8 +30,8 @@ constexpr double studyMinutes(std::string_view scene) {
 }
 
 // The study counts no paths. Its photon mapping follows SmallVCM, whose ppm traces 0.12 million camera paths and as
-// many light paths a second on one core of an AMD EPYC (bench/peers); the study had eight cores, of 2012. This is known
-// to a factor of three, so what depends on it only tells a tenth from a whole.
+// many light paths a second on one core of an AMD EPYC (bench/peers); the study had eight cores, of 2012. The
+// figure is good to a factor of three: enough to tell a tenth of the study's paths from all of them.
 constexpr double kStudyCores = 8, kPathsPerSecondOfCore = 2 * 0.12e6;  // light and camera paths
 constexpr double studyPathsPerPixel(std::string_view scene) {
   return kStudyCores * kPathsPerSecondOfCore * 60 * studyMinutes(scene) / kStudyPixels;

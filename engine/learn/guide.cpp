@@ -6,6 +6,7 @@
 
 #include "engine/learn/alias_table.h"
 #include "engine/learn/integer_sums.h"
+#include "engine/scene/vector_math.h"
 #include "engine/tasks/for_each.h"
 
 namespace wavecrest {
@@ -59,8 +60,8 @@ std::array<double, kGuideBins> smoothed(const uint64_t* sums) {
 
 template <class S>
 double luminanceOf(const Radiance<S>& radiance, uint32_t lane) {
-  return 0.2126 * static_cast<double>(radiance.red[lane]) + 0.7152 * static_cast<double>(radiance.green[lane]) +
-         0.0722 * static_cast<double>(radiance.blue[lane]);
+  return luminance({static_cast<double>(radiance.red[lane]), static_cast<double>(radiance.green[lane]),
+                    static_cast<double>(radiance.blue[lane])});
 }
 
 }  // namespace
@@ -139,11 +140,7 @@ void Guide::splitCells() {
   for (uint32_t cell = 0; cell < tree_.cells(); ++cell) {
     while (cellSums_[cell].records > kSplitRecords && tree_.canSplit(cell)) {
       const uint32_t added = tree_.split(cell);
-      CellSums& sums = cellSums_[cell];
-      sums.records /= 2;
-      sums.visits /= 2;
-      sums.squares /= 2;
-      cellSums_[added] = sums;
+      cellSums_[cell] = cellSums_[added] = cellSums_[cell].halved();
       share_[added] = share_[cell];
       roots_[added] = roots_[cell];
       uint64_t* const from = &binSums_[cell * size_t{kGuideBins}];
@@ -174,7 +171,7 @@ void Guide::makeHistogram(size_t cell) {
     const double mean = std::ldexp(static_cast<double>(sums.squares), kVisitBits) / static_cast<double>(sums.visits);
     roots_[cell] = static_cast<float>(std::sqrt(mean / squareUnit_));
   }
-  sums = {.records = sums.records / 2, .visits = sums.visits / 2, .squares = sums.squares / 2};
+  sums = sums.halved();
 }
 
 void Guide::fold() {

@@ -71,6 +71,9 @@ class Guide {
     uint64_t up = 0, down = 0, curvature = 0;
     // Visits, those included whose paths ended, in units of 2^-kVisitBits; and over them the squares of values.
     uint64_t visits = 0, squares = 0;
+
+    // What a half of a cell begins with, and what a block leaves to the next: half of all but the sums of slopes.
+    CellSums halved() const { return {.records = records / 2, .visits = visits / 2, .squares = squares / 2}; }
   };
   struct Free {
     void operator()(void* p) const { std::free(p); }

@@ -14,8 +14,8 @@ constexpr int kSquareBits = 8;
 constexpr float kMostWorth = 0x1p16f;
 // A run of pixels counts as at least this part of the image's mean brightness.
 constexpr double kDarkest = 0.05;
-// The worth of what the first vertices have in the root mean square: below 12 walks end that would bring more than
-// they cost (measured; engine/methods/METHODS.md, 12.6).
+// Root mean square of the worths at the first vertices. With less, paths end that would bring more than they cost
+// (measured; METHODS 12.6).
 constexpr double kFirstWorth = 12;
 
 }  // namespace
@@ -33,10 +33,10 @@ void PathWorth::gather(const DirectionRecords& records) {
 }
 
 void PathWorth::fold(std::span<const float> luminance) {
-  if (squares_ > 0 && folds_ > 0) {
+  if (squares_ > 0) {
     norm_ *=
         std::sqrt(std::ldexp(static_cast<double>(squares_), -kSquareBits) / static_cast<double>(count_)) / kFirstWorth;
-    ++norms_;
+    hasNorm_ = true;
   }
   squares_ = count_ = 0;
   const double mean = std::accumulate(luminance.begin(), luminance.end(), 0.0) / static_cast<double>(luminance.size());
@@ -45,24 +45,24 @@ void PathWorth::fold(std::span<const float> luminance) {
     const auto pixels = luminance.subspan(begin, count);
     const double brightness = std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(count);
     const double per = kFirstWorth / (norm_ * std::max(brightness, kDarkest * mean));
-    // Where nothing is bright, or a filter with negative lobes sums to less than nothing, no worth is known.
+    // 0, unknown, where the image is black, or negative by a filter with negative lobes.
     perBrightness_[run] = per > 0 && std::isfinite(per) ? static_cast<float>(per) : 0;
   }
-  ++folds_;
+  hasBrightness_ = true;
 }
 
-void PathWorth::showIn(GuideView& guide, bool decides) const {
-  if (folds_ == 0) return;
+void PathWorth::showIn(GuideView& guide) const {
+  if (!hasBrightness_) return;
   guide.perBrightness = perBrightness_.data();
-  guide.decidesSurvival = decides && norms_ > 0;
+  guide.decidesSurvival = hasNorm_;
 }
 
 void PathWorth::save(StateWriter& out) const {
   out.value(squares_);
   out.value(count_);
   out.value(norm_);
-  out.value(folds_);
-  out.value(norms_);
+  out.value(uint64_t{hasBrightness_});
+  out.value(uint64_t{hasNorm_});
   out.items(perBrightness_.data(), perBrightness_.size());
 }
 
@@ -70,8 +70,8 @@ void PathWorth::restore(StateReader& in) {
   squares_ = in.value<uint64_t>();
   count_ = in.value<uint64_t>();
   norm_ = in.value<double>();
-  folds_ = in.value<uint64_t>();
-  norms_ = in.value<uint64_t>();
+  hasBrightness_ = in.value<uint64_t>() != 0;
+  hasNorm_ = in.value<uint64_t>() != 0;
   in.items(perBrightness_.data(), perBrightness_.size());
   const bool sound = norm_ > 0 && std::isfinite(norm_) &&
                      std::all_of(perBrightness_.begin(), perBrightness_.end(),

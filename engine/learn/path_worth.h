@@ -1,8 +1,8 @@
-// What paths are worth to an image, which their roulette goes by (METHODS 12.4; Rath et al. 2022, EARS).
+// How much a path is expected to add to its pixel, relative to the pixel's brightness: its worth, by which roulette of
+// gpt decides (METHODS 12.6; Rath et al. 2022, EARS).
 //
-// The guide knows how much light comes back from each cell, in the root mean square; a pixel's brightness says what
-// that is to the image. The product of a path's throughput, the root and the reciprocal of the brightness is 1 in the
-// root mean square over the first vertices of camera paths.
+// worth = luminance of the throughput x root mean square of the light that came back to the cell (Guide) / brightness
+// of the pixel, scaled so that the root mean square over the first vertices of all camera paths is 12.
 #pragma once
 
 #include <cstdint>
@@ -20,22 +20,22 @@ class PathWorth {
   // pixels: of the film.
   explicit PathWorth(size_t pixels) : perBrightness_((pixels + kWorthRun - 1) / kWorthRun) {}
 
-  // Adds the records of a walk that is over. Safe from several threads.
+  // Adds the records of a finished walk. Thread-safe.
   void gather(const DirectionRecords& records);
-  // luminance: of the film's pixels, in the order of waves. Nothing may be gathering.
+  // Ends a block. luminance: of the film's pixels, in the order of waves. No thread may be in gather().
   void fold(std::span<const float> luminance);
-  // Adds what paths are worth to what kernels read. decides: roulette may go by it.
-  void showIn(GuideView& guide, bool decides) const;
+  // Sets the members of the view by which kernels find a path's worth, and whether roulette goes by it.
+  void showIn(GuideView& guide) const;
 
   void save(StateWriter& out) const;
   // Throws StateError.
   void restore(StateReader& in);
 
  private:
-  std::vector<float> perBrightness_;
-  uint64_t squares_ = 0, count_ = 0;  // of what vertices of the first depth were worth, in units of 2^-kSquareBits
-  double norm_ = 1;                   // what is worth 1
-  uint64_t folds_ = 0, norms_ = 0;    // norms: folds that found it
+  std::vector<float> perBrightness_;  // scale / brightness, of runs of pixels
+  uint64_t squares_ = 0, count_ = 0;  // over vertices of the first depth: sum of worth^2, in units of 2^-kSquareBits
+  double norm_ = 1;                   // by which worths are divided
+  bool hasBrightness_ = false, hasNorm_ = false;
 };
 
 }  // namespace wavecrest

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "engine/pilot/view_walk.h"
+#include "engine/scene/vector_math.h"
 
 namespace wavecrest {
 namespace {
@@ -27,14 +28,14 @@ std::optional<uint32_t> cellSeen(const RenderPlan<S>& plan, const RenderSettings
 std::vector<float> luminanceInWaveOrder(const Film& film) {
   const FilmArea& area = film.area();
   const std::vector<float> image = film.resolve();
-  std::vector<float> luminance;
-  luminance.reserve(area.pixels.size());
+  std::vector<float> luminances;
+  luminances.reserve(area.pixels.size());
   for (const uint32_t pixel : area.pixels) {
     const size_t x = (pixel & 0xffff) - area.x0, y = (pixel >> 16) - area.y0;
     const float* const rgb = &image[3 * (y * area.width + x)];
-    luminance.push_back(0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
+    luminances.push_back(static_cast<float>(luminance({rgb[0], rgb[1], rgb[2]})));
   }
-  return luminance;
+  return luminances;
 }
 
 }  // namespace
@@ -45,9 +46,8 @@ Learner<S>::Learner(const RenderPlan<S>& plan, const RenderSettings& settings, s
   const SceneView<S>& scene = plan.view;
   if (plan.pipeline.has(Fold::guide)) {
     guide_.emplace(scene.center, scene.halfExtent, settings.guide, settings.guideBytes, plan.typicalBrightness);
-    worth_.emplace(pixels);
-    worthDecides_ = settings.roulette == Roulette::efficiency;
-    showView();
+    if (settings.roulette == Roulette::efficiency) worth_.emplace(pixels);
+    updateView();
   }
 }
 
@@ -63,21 +63,21 @@ template <class S>
 void Learner<S>::gather(const Wave<S>& wave, uint64_t iteration) {
   if (!guide_ || !gathers(iteration, gathering_)) return;
   guide_->gather(wave.directions, wave.radiance);
-  worth_->gather(wave.directions);
+  if (worth_) worth_->gather(wave.directions);
 }
 
 template <class S>
-void Learner<S>::showView() {
+void Learner<S>::updateView() {
   view_ = guide_->view();
-  worth_->showIn(view_, worthDecides_);
+  if (worth_) worth_->showIn(view_);
 }
 
 template <class S>
 void Learner<S>::fold(const Film& film) {
   if (guide_) {
     guide_->fold();
-    worth_->fold(luminanceInWaveOrder(film));
-    showView();
+    if (worth_) worth_->fold(luminanceInWaveOrder(film));
+    updateView();
   }
   blockEnd_ = endOfBlock(blockEnd_);
 }
@@ -102,7 +102,7 @@ void Learner<S>::save(StateWriter& out) const {
   out.value(blockEnd_);
   if (!guide_) return;
   guide_->save(out);
-  worth_->save(out);
+  if (worth_) worth_->save(out);
 }
 
 template <class S>
@@ -112,8 +112,8 @@ void Learner<S>::restore(StateReader& in) {
   if (!std::has_single_bit(blockEnd_)) throw StateError("its blocks of iterations are others");
   if (!guide_) return;
   guide_->restore(in);
-  worth_->restore(in);
-  showView();
+  if (worth_) worth_->restore(in);
+  updateView();
 }
 
 template class Learner<float>;

@@ -49,12 +49,11 @@ class Learner {
   void restore(StateReader& in);
 
  private:
-  void showView();
+  void updateView();
 
   std::optional<Guide> guide_;
-  std::optional<PathWorth> worth_;
+  std::optional<PathWorth> worth_;  // none where roulette does not go by it
   GuideView view_;
-  bool worthDecides_ = false;
   uint64_t gathering_ = 0;  // iterations of a block that gather, at most
   uint64_t blockEnd_ = 1;
 };

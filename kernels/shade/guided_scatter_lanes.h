@@ -40,8 +40,8 @@ WAVECREST_INLINE typename P::Real guidedEtaRatio(const ShadingLanes<P, kBsdfs>& 
   return Real(1);
 }
 
-// What the image gets from the vertices [i, i + kLanes), as a path in these lanes brings it: the throughput's luminance
-// times root and brightness of the view.
+// Worth of the paths at the vertices [i, i + kLanes), as GuideView says; 0 where it is not known. luminance: of their
+// throughput.
 template <class S>
 WAVECREST_INLINE Float worthOf(const GuideView& guide, const Wave<S>& wave, Mask active, size_t i, UInt lane, UInt cell,
                                Float luminance) {
@@ -106,8 +106,8 @@ WAVECREST_NOINLINE GuidedSample<typename P::Real> guideSample(const StageContext
   return out;
 }
 
-// Leaves a record of each vertex in m that goes on, before its path does. throughput: at the vertex, before it
-// scatters, and without and with what roulette has made of it. pdf, slope: of the direction.
+// Leaves a record of each vertex in m that goes on, before its path does. throughput: at the vertex, before scattering.
+// before, after: throughput after scattering, before and after roulette. pdf, slope: of the direction.
 template <class P>
 WAVECREST_NOINLINE void recordDirections(const StageContext<typename P::Storage>& context,
                                          Wave<typename P::Storage>& wave, size_t i, Mask m, UInt lane,

@@ -57,6 +57,11 @@ struct FixedGuide {
     guide.decidesSurvival = true;
   }
 
+  void addTo(StageContext<float>& context) const {
+    context.cellTree = &tree.view();
+    context.guide = &guide;
+  }
+
   CellTree tree;
   std::vector<float> share, roots, perBrightness;
   std::vector<uint32_t> bins;
@@ -67,6 +72,20 @@ std::array<double, kGuideBins> histogram(const std::function<double(size_t)>& we
   std::array<double, kGuideBins> weights{};
   for (size_t bin = 0; bin < kGuideBins; ++bin) weights[bin] = weight(bin);
   return weights;
+}
+
+// For the camera pass of the plan's page, without a guide.
+StageContext<float> contextOf(const RenderPlan<float>& plan, const RenderSettings& settings,
+                              const std::optional<SurvivalRule>& rule, const FilmArea& area, StageCounters& counters) {
+  StageContext<float> context;
+  context.scene = &plan.view;
+  context.pixels = area.pixels.data();
+  context.limits = settings.limits;
+  context.survival = pointerTo(rule);
+  context.mis = plan.pipeline.cameraPass().strategies;
+  context.counters = &counters;
+  context.film = area.window();
+  return context;
 }
 
 // At each vertex a guide that is wrong makes some samples ten times as bright. A few edges keep the variance finite.
@@ -90,18 +109,8 @@ SeedMeans imagesWith(const Scene& scene, const std::optional<WrongGuide>& wrong,
     const size_t pixels = film.area().pixels.size();
     Wave<float> wave(pixels, plan.needs);
     StageCounters counters;
-    StageContext<float> context;
-    context.scene = &plan.view;
-    context.pixels = film.area().pixels.data();
-    context.limits = settings.limits;
-    context.survival = pointerTo(rule);
-    context.mis = plan.pipeline.cameraPass().strategies;
-    context.counters = &counters;
-    context.film = film.area().window();
-    if (guide) {
-      context.cellTree = &guide->tree.view();
-      context.guide = &guide->guide;
-    }
+    StageContext<float> context = contextOf(plan, settings, rule, film.area(), counters);
+    if (guide) guide->addTo(context);
     for (uint64_t i = 0; i < iterations; ++i) {
       context.sampler = {SamplerKind::independent, firstSeed + seed, i};
       wave.firstPath = 0;
@@ -137,7 +146,7 @@ void expectAnyGuideIsRight(const Scene& scene, const std::string& where) {
   check({0.5f, uniform, true}, "survival");
 }
 
-// Of paths whose first vertices are worth `worth`, that share goes on: the rays of two edges are counted.
+// A path whose first vertex is worth w < 1 goes on with the probability w: of two edges, so many have second rays.
 TEST(Guide, letsPathsGoOnByWhatTheyAreWorth) {
   const FlushToZero flushToZero;
   const Scene scene = roomScene({.light = RoomLight::quad, .width = 64, .height = 64});
@@ -146,12 +155,9 @@ TEST(Guide, letsPathsGoOnByWhatTheyAreWorth) {
     settings.isa = isa;
     settings.limits = {.maxDepth = 2, .rouletteDepth = 1};
     const RenderPlan<float> plan = planRender<float>(scene, settings);
-    FixedGuide guide(plan.view, {.bsdfShare = 1, .weights = histogram([](size_t) { return 1.0; })},
-                     size_t{scene.film.width} * scene.film.height);
+    const WrongGuide wrong{.bsdfShare = 1, .weights = histogram([](size_t) { return 1.0; }), .decidesSurvival = true};
+    FixedGuide guide(plan.view, wrong, size_t{scene.film.width} * scene.film.height);
     guide.guide.draws = false;
-    guide.guide.decidesSurvival = true;
-    guide.guide.roots = guide.roots.data();
-    guide.guide.perBrightness = guide.perBrightness.data();
     std::fill(guide.roots.begin(), guide.roots.end(), 2.0f);
     const std::optional<SurvivalRule> rule = survivalRule(settings, Walk::camera);
     const FilmArea area = filmArea(scene.film);
@@ -162,16 +168,8 @@ TEST(Guide, letsPathsGoOnByWhatTheyAreWorth) {
         guide.perBrightness[run] = run == 0 ? first : second;
       Wave<float> wave(pixels, plan.needs);
       StageCounters counters;
-      StageContext<float> context;
-      context.scene = &plan.view;
-      context.pixels = area.pixels.data();
-      context.limits = settings.limits;
-      context.survival = pointerTo(rule);
-      context.mis = plan.pipeline.cameraPass().strategies;
-      context.counters = &counters;
-      context.film = area.window();
-      context.cellTree = &guide.tree.view();
-      context.guide = &guide.guide;
+      StageContext<float> context = contextOf(plan, settings, rule, area, counters);
+      guide.addTo(context);
       context.sampler = {SamplerKind::independent, 5, 0};
       wave.pathCount = pixels;
       runPass<float>(plan.pipeline.cameraPass(), context, wave, nullptr);
@@ -296,6 +294,18 @@ TEST(Guide, goesOnInTheMiddleOfABlock) {
     second->renderUntil(29, std::nullopt);
     EXPECT_EQ(second->film().resolve(), image) << stop;
   }
+}
+
+// What a path is worth is learned, and is in checkpoints, only where roulette goes by it.
+TEST(Guide, learnsNoWorthWhereRouletteGoesByAlbedo) {
+  const Scene scene = sceneFile("cornell-glossy", 40, 27);
+  const auto stateSize = [&](Roulette roulette) {
+    RenderSettings settings = guideSettings();
+    settings.roulette = roulette;
+    return savedState(*Session::create(scene, settings)).size();
+  };
+  EXPECT_LT(stateSize(Roulette::albedo), stateSize(Roulette::efficiency));
+  EXPECT_EQ(stateSize(Roulette::albedo), stateSize(Roulette::throughput));
 }
 
 TEST(Guide, thatIsOffLeavesPathTracing) {

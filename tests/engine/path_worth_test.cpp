@@ -17,7 +17,7 @@ namespace {
 
 constexpr size_t kPixels = 3 * kWorthRun + 5;  // the last run is short
 
-// Records of vertices of the first depth, worth so much.
+// Records of vertices of the first depth that have these worths.
 class Records {
  public:
   explicit Records(std::span<const float> worths) : arena_(records_.bytes(worths.size())) {
@@ -32,9 +32,9 @@ class Records {
   Arena arena_;
 };
 
-GuideView viewOf(const PathWorth& worth, bool decides = true) {
+GuideView viewOf(const PathWorth& worth) {
   GuideView view;
-  worth.showIn(view, decides);
+  worth.showIn(view);
   return view;
 }
 
@@ -65,7 +65,6 @@ TEST(PathWorth, isTwelveAtTheFirstVerticesWhateverTheUnits) {
       worth.fold(bright({unit, 2 * unit, 4 * unit, 8 * unit}));
     }
     EXPECT_TRUE(viewOf(worth).decidesSurvival);
-    EXPECT_FALSE(viewOf(worth, false).decidesSurvival);
     for (size_t run = 0; run < 4; ++run) {
       const float brightness = unit * std::exp2f(static_cast<float>(run));
       EXPECT_NEAR(viewOf(worth).perBrightness[run] * 3 * brightness, 12, 0.05) << unit << ", run " << run;
@@ -88,7 +87,7 @@ TEST(PathWorth, isUnknownWhereNothingIsBrightAndWhereNothingIsFinite) {
     worth.fold(bright({luminance, luminance, luminance, luminance}));
     for (size_t run = 0; run < 4; ++run) EXPECT_EQ(viewOf(worth).perBrightness[run], 0) << luminance;
   }
-  // Records that are worth nothing, not finite, or very much teach no norm that is not.
+  // After worths of 0, NaN, infinity and 1e30 all is still finite and positive.
   PathWorth worth(kPixels);
   worth.fold(bright({1, 1, 1, 1}));
   const std::array odd{0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e30f};
@@ -111,7 +110,7 @@ TEST(PathWorth, comesBackFromItsBytesAndFromNoOthers) {
   worth.fold(bright({4, 3, 2, 1}));
   other.fold(bright({4, 3, 2, 1}));
   for (size_t run = 0; run < 4; ++run) EXPECT_EQ(viewOf(other).perBrightness[run], viewOf(worth).perBrightness[run]);
-  // The last four bytes are the last run's, of a float that is not finite.
+  // The last four bytes are the last run's brightness, here a NaN.
   std::vector<unsigned char> damaged = saved;
   std::fill(damaged.end() - 4, damaged.end(), 0xff);
   EXPECT_THROW(restoreState(other, damaged), StateError);

@@ -6,8 +6,8 @@
 //  - the mean of t^2 over all tiles, whose expectation is 15/13 and whose standard deviation 1.84 / sqrt(tiles): at
 //  most
 //    6 of these above.
-// Seeds are fixed, so a test that passes once passes always. Where iterations are uncorrelated, four runs of them stand
-// for four seeds (renderSeeds).
+// Seeds are fixed, so a test that passes once passes always. Where iterations are uncorrelated, four runs of iterations
+// of one session take the place of four seeds (renderSeeds).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -62,8 +62,8 @@ inline void appendRuns(Session& session, size_t runs, uint64_t iterations, std::
   }
 }
 
-// Compiling a scene and tracing the paths that finish its plan take longer than the iterations of most tests: a session
-// renders several of the images where its iterations are uncorrelated.
+// Creating a session takes longer than the iterations of most tests, so one session renders several of the images where
+// its iterations are uncorrelated.
 inline SeedMeans renderSeeds(const Scene& scene, RenderSettings settings, uint64_t iterations,
                              uint64_t firstSeed = 1000) {
   SeedMeans out;
