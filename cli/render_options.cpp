@@ -11,7 +11,7 @@ void addMethodOptions(const Command& command, RenderOptions& options) {
   // Merging, connections and memory.
   command
       .add("--radius", options.radius,
-           "first merge radius of ppm, bpm and vcm, relative to the bounding sphere; auto: by the size of pixels")
+           "first merge radius of ppm, bpm and vcm, relative to the bounding sphere; auto: by view and photons")
       .betweenOrAuto(kRadiusRange);
   command.add("--radius-alpha", options.radiusAlpha, "how slowly the radius shrinks, 0 to 1")
       .showDefault()

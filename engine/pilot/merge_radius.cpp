@@ -87,23 +87,29 @@ ViewLook<S> placesOf(const CameraView& camera, std::vector<CameraPath>& paths, s
   };
 }
 
-// METHODS 6.5, relative to the scene's radius. photonsPerArea: of an iteration with a light path for each pixel of the
-// whole film, or as many as the settings ask for.
-double radiusOfImage(const MergeRadius& found, double photonsPerArea, const RenderSettings& settings) {
+// METHODS 6.5, relative to the scene's radius. filmPixels: of the whole film; lightPaths: of an iteration;
+// photonsPerArea: of a light path.
+double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPaths, double photonsPerArea,
+                     const RenderSettings& settings) {
   if (!(found.pixel > 0)) return kFixedRadius;
   constexpr double kFirstVertex = 2.5, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
   constexpr double kBesideConnections = 5;                  // photons in a search
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
-  const double photons = std::numbers::pi * found.pixel * found.pixel * photonsPerArea;
+  constexpr double kUsualFilm = 256 * 192;  // pixels, and as many light paths to an iteration: what constants are for
+  const double pixel = found.pixel * std::sqrt(filmPixels / kUsualFilm);
+  const double photons = std::numbers::pi * pixel * pixel * photonsPerArea * kUsualFilm;
   const bool connects = choosesMergeVertices(settings.method);
   const bool atFirst =
       connects ? settings.mergeVertices == MergeVertices::first : strategiesOf(settings.method).mergeAtFirstVertex;
   const double pixels = connects && atFirst ? std::sqrt(kBesideConnections / photons)
                                             : (atFirst ? kFirstVertex : kAllVertices) * std::cbrt(1 / photons);
+  // Radii of equally many light paths since the first are equal, however many there are to an iteration.
+  const double shrunk = std::pow(lightPaths / kUsualFilm, (settings.radiusAlpha - 1) / 2);
+  const double wanted =
+      std::max(std::min(pixels, kMostPixels) * pixel * shrunk, kLeastPixels * found.pixel) / found.scene;
   // Three digits, so that the last bits, in which instruction sets and precisions differ, do not change the choice.
-  const double asked = std::clamp(pixels, kLeastPixels, kMostPixels) * found.pixel / found.scene;
-  const double unit = std::pow(10, std::floor(std::log10(asked)) - 2);
-  const double chosen = std::round(asked / unit) * unit;
+  const double unit = std::pow(10, std::floor(std::log10(wanted)) - 2);
+  const double chosen = std::round(wanted / unit) * unit;
   // Weights that take photons which share a camera path for independent ones make vcm pay for larger radii.
   return connects && !atFirst ? std::min(chosen, kFixedRadius) : chosen;
 }
@@ -168,8 +174,9 @@ MergeRadius chosenRadius(const RenderPlan<S>& plan, const RenderSettings& settin
   radius.photonsPerArea = ofPath * static_cast<double>(plan.memory.lightPaths);
   if (settings.radius) return radius;
   const CameraView& camera = plan.view.camera;
-  const size_t lightPaths = lightPathsWanted(settings, size_t{camera.width} * camera.height);
-  radius.first = radiusOfImage(radius, ofPath * static_cast<double>(lightPaths), settings);
+  const size_t filmPixels = size_t{camera.width} * camera.height;
+  radius.first = radiusOfImage(radius, static_cast<double>(filmPixels),
+                               static_cast<double>(lightPathsWanted(settings, filmPixels)), ofPath, settings);
   return radius;
 }
 template MergeRadius chosenRadius(const RenderPlan<float>&, const RenderSettings&, const FilmArea&);

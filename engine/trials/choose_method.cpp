@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/pilot/finished_plan.h"
 #include "engine/trials/trial_error.h"
 #include "engine/waves/wave_session.h"
 
@@ -80,7 +81,9 @@ FilmSettings trialFilm(FilmSettings film) {
   return film;
 }
 
-RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings, Method method) {
+template <class S>
+RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings, Method method,
+                             const std::shared_ptr<const CompiledScene<S>>& compiled) {
   RenderSettings trial = withMethod(settings, method);
   trial.film = trialFilm(scene.film);
   trial.seed = kTrialSeed;
@@ -91,9 +94,14 @@ RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings,
   trial.seconds.reset();
   trial.memoryBytes.reset();
   const FilmSettings &film = scene.film, &small = *trial.film;
+  const double share = static_cast<double>(small.imageWidth()) * small.imageHeight() /
+                       (static_cast<double>(film.imageWidth()) * film.imageHeight());
+  if (strategiesOf(method).merge) {
+    // As many pixels as in the render, so that as many photons are within.
+    const RenderPlan<S> plan = finishedPlan<S>(scene, withMethod(settings, method), filmArea(scene.film), compiled);
+    trial.radius = plan.mergeRadius.first / std::sqrt(share);
+  }
   if (trial.lightPaths) {
-    const double share = static_cast<double>(small.imageWidth()) * small.imageHeight() /
-                         (static_cast<double>(film.imageWidth()) * film.imageHeight());
     trial.lightPaths = std::max<uint64_t>(static_cast<uint64_t>(share * static_cast<double>(*trial.lightPaths)), 1);
   }
   trial.waveSize = kTrialWave;
@@ -156,7 +164,7 @@ MethodChoice runTrials(const Scene& scene, const RenderSettings& settings,
   std::vector<TrialImages> images;
   const Trials kind = trialsOf(settings.method);
   for (const Method method : kind.candidates) {
-    const RenderSettings trial = trialSettings(scene, settings, method);
+    const RenderSettings trial = trialSettings<S>(scene, settings, method, compiled);
     candidates.push_back({method, makeWaveSession<S>(scene, trial, {.scene = compiled})});
     if (method == Method::gpt) candidates.back().session->renderUntil(kLearningIterations, std::nullopt);
     const FilmArea& area = candidates.back().session->film().area();

@@ -1,5 +1,5 @@
-// --radius auto: the first radius of merges follows from the size of pixels where camera paths first merge, and from
-// nothing that differs between renders of one image.
+// --radius auto: the first radius of merges follows from the view, from the photons where camera paths first merge and
+// from the number of light paths, and from nothing that differs between renders of one image.
 #include "engine/pilot/merge_radius.h"
 
 #include <gtest/gtest.h>
@@ -61,15 +61,18 @@ TEST(AutoRadius, isAMultipleOfThePixel) {
   EXPECT_LT(radius.inPixels(), 8) << "or the other tests see the limit alone";
 }
 
-// METHODS 6.5: the cube root of the photons, one and eight light paths a pixel.
-TEST(AutoRadius, halvesWithEightTimesTheLightPaths) {
-  RenderSettings settings = automatic();
-  settings.lightPaths = 64 * 64;
-  const MergeRadius few = radiusOf(floorFromAbove(), settings);
-  settings.lightPaths = 8 * 64 * 64;
-  const MergeRadius many = radiusOf(floorFromAbove(), settings);
-  EXPECT_NEAR(few.first / many.first, 2, 0.02) << "but for the rounding to three digits";
-  EXPECT_NEAR(many.photonsPerArea / few.photonsPerArea, 8, 1e-6);
+// METHODS 6.5: one and eight light paths a pixel.
+TEST(AutoRadius, isThatOfEquallyManyLightPaths) {
+  for (const double alpha : {0.0, 0.75, 1.0}) {
+    RenderSettings settings = automatic();
+    settings.radiusAlpha = alpha;
+    settings.lightPaths = 64 * 64;
+    const MergeRadius few = radiusOf(floorFromAbove(), settings);
+    settings.lightPaths = 8 * 64 * 64;
+    const MergeRadius many = radiusOf(floorFromAbove(), settings);
+    EXPECT_NEAR(few.at(7) / many.at(0), 1, 0.01) << "but for the rounding to three digits";
+    EXPECT_NEAR(many.photonsPerArea / few.photonsPerArea, 8, 1e-6);
+  }
 }
 
 TEST(AutoRadius, scalesWithTheScene) {
@@ -78,11 +81,13 @@ TEST(AutoRadius, scalesWithTheScene) {
   EXPECT_NEAR(large.first / one.first, 1, 1e-4);
 }
 
-TEST(AutoRadius, halvesOnAFilmOfTwiceTheSize) {
-  const double ratio =
-      radiusOf(floorFromAbove(1, kRadiusWidth)).at(0) / radiusOf(floorFromAbove(1, 2 * kRadiusWidth)).at(0);
-  EXPECT_NEAR(ratio, 2, 0.05);
+// Four times the light paths, one for each pixel, and the place alike.
+TEST(AutoRadius, isThatOfEquallyManyLightPathsOnAnyFilm) {
+  const MergeRadius small = radiusOf(floorFromAbove()), large = radiusOf(floorFromAbove(1, 2 * kRadiusWidth));
+  EXPECT_NEAR(small.at(3) / large.at(0), 1, 0.03);
 }
+
+TEST(AutoRadius, isAtLeastHalfAPixel) { EXPECT_NEAR(radiusOf(floorFromAbove(1, 4)).inPixels(), 0.5, 0.01); }
 
 // What a camera does not see changes the scene's sphere, and no radius in units of the scene. So it makes no difference
 // whether the sphere contains the camera.
@@ -156,13 +161,14 @@ TEST(AutoRadius, leavesAFixedOneAlone) {
 // Its weights take photons that share a camera path for independent ones.
 TEST(AutoRadius, ofVcmThatMergesEverywhereIsNeverMoreThanTheFixedOne) {
   EXPECT_EQ(radiusOf(sceneFile("cornell-diffuse", 40, 30), automatic(Method::vcm)).first, kFixedRadius);
-  const MergeRadius fine = radiusOf(sceneFile("cornell-diffuse", 4000, 3000), automatic(Method::vcm));
-  EXPECT_LT(fine.first, kFixedRadius);
+  RenderSettings shrinking = automatic(Method::vcm);
+  shrinking.radiusAlpha = 0;
+  EXPECT_LT(radiusOf(sceneFile("cornell-diffuse", 4000, 3000), shrinking).first, kFixedRadius);
 }
 // Connections do most where photons are many: a search of vcm has the same number of them wherever no limit is reached.
 TEST(AutoRadius, ofVcmThatMergesAtFirstVerticesHasFivePhotonsInASearch) {
-  for (const auto& [name, width, height] : {std::tuple("cornell-diffuse", 80u, 60u), {"lafortune-room", 160u, 120u}}) {
-    const Scene scene = sceneFile(name, width, height);
+  for (const char* name : {"cornell-diffuse", "lafortune-room"}) {
+    const Scene scene = sceneFile(name, 256, 192);
     RenderSettings first = automatic(Method::vcm);
     first.mergeVertices = MergeVertices::first;
     EXPECT_NEAR(radiusOf(scene, first).photonsPerSearch(), 5, 0.1) << name;
