@@ -1,22 +1,20 @@
-// What every stage may rely on and must leave behind, checked in the library wavecrest_checked_engine, which
-// contracts_test links. Other builds have none of it.
+// What every stage may rely on and must leave behind, checked where checksContracts
+// is set: contracts_test sets it.
 //
 // Queues fit their memory, counts agree with each other, indices lead to something, directions are unit vectors, and no
 // number is NaN. Columns.h and kernels/stages.h say the contracts in words; this is the one place that tests them, so
 // that kernels stay free of it, and each instruction set and specialisation is tested alike.
 #pragma once
 
+#include <atomic>
 #include <string_view>
 
 #include "kernels/stages.h"
 
 namespace wavecrest {
 
-#ifndef WAVECREST_CHECKED
-constexpr bool kChecksContracts = false;
-#else
-constexpr bool kChecksContracts = true;
-#endif
+// Whether walks check the contracts around each of their stages. To be changed while no session renders.
+inline std::atomic<bool> checksContracts{false};
 
 // Ends the program with a line that names the stage and what does not hold.
 template <class S>

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/plan/render_plan.h"
+#include "engine/walks/run_walk.h"
 #include "kernels/columns/light_vertices.h"
 #include "tests/engine/light_scenes.h"
 #include "tests/engine/render_statistics.h"
@@ -153,6 +154,22 @@ TEST_F(StageContractsTest, ofLightVertices) {
   vertices.next[0] = next;
   vertices.lane[0] = kPaths;
   expectBroken("store", "light vertices of the wave's paths");
+}
+
+// contracts_test rests on this.
+TEST_F(StageContractsTest, endTheProgramWhereAWalkChecksThem) {
+  const StageCall<float> damage{.name = "scatter",
+                                .run = [](const StageContext<float>&, Wave<float>& wave) { wave.paths.dVCM[3] = -1; },
+                                .items = [](const Wave<float>& wave) { return wave.rays.size; },
+                                .lanes = 1};
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_DEATH(
+      {
+        checksContracts = true;
+        runStage(damage, context_, wave_, nullptr);
+      },
+      "scatter.*MIS sums from 0");
+  runStage(damage, context_, wave_, nullptr);  // unchecked
 }
 
 }  // namespace
