@@ -25,10 +25,15 @@ function(set_lane_options target isa)
   target_compile_definitions(${target} PRIVATE ${WAVECREST_ISA_DEFINES_${isa}})
   target_link_libraries(${target} PRIVATE wavecrest_options wavecrest_lane_options)
 endfunction()
+
+# Highway takes g++ longer to read than most lane sources, so it is precompiled once per instruction set.
 foreach(isa IN LISTS WAVECREST_ISAS)
   if(NOT DEFINED WAVECREST_ISA_DEFINES_${isa})
     message(FATAL_ERROR "WAVECREST_ISAS: unknown instruction set '${isa}'; known: scalar sse4 avx2 avx512")
   endif()
+  add_header_target(wavecrest_lane_headers_${isa}
+    <algorithm> <array> <cmath> <cstdint> <hwy/highway.h> <limits> <type_traits>)
+  set_lane_options(wavecrest_lane_headers_${isa} ${isa})
 endforeach()
 
 # add_lane_sources(NAME source...): object libraries NAME_<instruction set> of lane sources. Those of tests and
@@ -37,6 +42,7 @@ function(add_lane_sources name)
   foreach(isa IN LISTS WAVECREST_ISAS)
     add_library(${name}_${isa} OBJECT ${ARGN})
     set_lane_options(${name}_${isa} ${isa})
+    reuse_precompiled_headers(${name}_${isa} wavecrest_lane_headers_${isa} -Wno-uninitialized)
   endforeach()
 endfunction()
 

@@ -7,20 +7,34 @@ if(CMAKE_CXX_COMPILER_LAUNCHER AND NOT DEFINED CMAKE_DISABLE_PRECOMPILE_HEADERS)
   set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
 endif()
 
+# add_header_target(NAME header...): has nothing but the headers. What compiles with them takes the same options.
+function(add_header_target name)
+  set(source ${PROJECT_BINARY_DIR}/generated/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "// There for its headers alone.\n")
+  add_library(${name} OBJECT EXCLUDE_FROM_ALL ${source})
+  target_precompile_headers(${name} PRIVATE ${ARGN})
+endfunction()
+
+# reuse_precompiled_headers(TARGET NAME option...): options are against false findings: g++ 12 no longer knows that they
+# are in a header of the system. Elsewhere they stay on.
+function(reuse_precompiled_headers target name)
+  target_precompile_headers(${target} REUSE_FROM ${name})
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    target_compile_options(${target} PRIVATE "$<$<CXX_COMPILER_ID:GNU>:${ARGN}>")
+  endif()
+endfunction()
+
 # add_precompiled_headers(NAME LIBRARIES library... HEADERS header...): for lightly optimised files (warnings.cmake), as
 # g++ crashes where they are compiled with other optimisations than the headers.
 function(add_precompiled_headers name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "LIBRARIES;HEADERS")
-  set(source ${PROJECT_BINARY_DIR}/generated/${name}.cpp)
-  file(CONFIGURE OUTPUT ${source} CONTENT "// There for its headers alone.\n")
-  add_library(${name} OBJECT EXCLUDE_FROM_ALL ${source})
+  add_header_target(${name} ${ARG_HEADERS})
   target_compile_options(${name} PRIVATE ${WAVECREST_LIGHT_OPTIMIZATION})
   target_link_libraries(${name} PRIVATE wavecrest_options ${ARG_LIBRARIES})
-  target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
 endfunction()
 
 # For the libraries and executables of a folder and those below that link `library` themselves, whose macros the headers
-# depend on; not for lane sources.
+# depend on; not for lane sources, which have their own (kernel_library.cmake).
 function(use_precompiled_headers name library directory)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
@@ -30,12 +44,7 @@ function(use_precompiled_headers name library directory)
     endif()
     get_target_property(linked ${target} LINK_LIBRARIES)
     if(${library} IN_LIST linked)
-      target_precompile_headers(${target} REUSE_FROM ${name})
-      # g++ 12 no longer knows that these false findings are in a header of the system. Elsewhere they stay on.
-      if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
-        target_compile_options(${target} PRIVATE
-          $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow>)
-      endif()
+      reuse_precompiled_headers(${target} ${name} -Wno-array-bounds -Wno-stringop-overflow)
     endif()
   endforeach()
   get_property(folders DIRECTORY ${directory} PROPERTY SUBDIRECTORIES)
