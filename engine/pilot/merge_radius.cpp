@@ -95,7 +95,6 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
   constexpr double kFirstVertex = 2.5, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
   constexpr double kBesideConnections = 5;                  // photons in a search
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
-  constexpr double kUsualFilm = 256 * 192;  // pixels, and as many light paths to an iteration: what constants are for
   const double pixel = found.pixel * std::sqrt(filmPixels / kUsualFilm);
   const double photons = std::numbers::pi * pixel * pixel * photonsPerArea * kUsualFilm;
   const bool connects = choosesMergeVertices(settings.method);

@@ -10,6 +10,9 @@
 
 namespace wavecrest {
 
+// Pixels, and light paths of an iteration, of the films that the constants of METHODS 6.5 are fitted to.
+constexpr uint32_t kUsualFilm = 256 * 192;
+
 // A point where a camera path merges first.
 struct MergePlace {
   std::array<float, 3> position{};

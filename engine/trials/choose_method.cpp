@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/pilot/finished_plan.h"
+#include "engine/pilot/merge_radius.h"
 #include "engine/trials/trial_error.h"
 #include "engine/waves/wave_session.h"
 
@@ -66,10 +67,11 @@ double unseenError(Method method) {
   return strategies.camera || strategies.connect ? 1 : 1.25;
 }
 
-// The film, scaled down to at most kTrialPixels pixels in its crop window.
-FilmSettings trialFilm(FilmSettings film) {
-  const double pixels = static_cast<double>(film.imageWidth()) * film.imageHeight();
-  const double scale = std::min(std::sqrt(kTrialPixels / pixels), 1.0);
+uint64_t pixelsOf(const FilmSettings& film) { return uint64_t{film.imageWidth()} * film.imageHeight(); }
+
+// The film, scaled down to at most so many pixels in its crop window.
+FilmSettings smallFilm(FilmSettings film, uint32_t pixels) {
+  const double scale = std::min(std::sqrt(pixels / static_cast<double>(pixelsOf(film))), 1.0);
   const auto scaled = [scale](uint32_t size) { return static_cast<uint32_t>(std::lround(scale * size)); };
   film.width = std::max(scaled(film.width), 1u);
   film.height = std::max(scaled(film.height), 1u);
@@ -81,11 +83,27 @@ FilmSettings trialFilm(FilmSettings film) {
   return film;
 }
 
+// The settings on the scene's film, scaled down to at most so many pixels.
+RenderSettings onSmallFilm(const Scene& scene, RenderSettings settings, uint32_t pixels) {
+  settings.film = smallFilm(scene.film, pixels);
+  if (settings.lightPaths) {
+    settings.lightPaths = std::max<uint64_t>(*settings.lightPaths * pixelsOf(*settings.film) / pixelsOf(scene.film), 1);
+  }
+  return settings;
+}
+
 template <class S>
 RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings, Method method,
                              const std::shared_ptr<const CompiledScene<S>>& compiled) {
-  RenderSettings trial = withMethod(settings, method);
-  trial.film = trialFilm(scene.film);
+  const RenderSettings own = withMethod(settings, method);
+  RenderSettings trial = onSmallFilm(scene, own, kTrialPixels);
+  if (strategiesOf(method).merge) {
+    // As many pixels as on a usual film, so that searches see as many photons as there.
+    const RenderSettings usual = onSmallFilm(scene, own, kUsualFilm);
+    const RenderPlan<S> plan = finishedPlan<S>(scene, usual, filmArea(*usual.film), compiled);
+    const double pixels = static_cast<double>(pixelsOf(*usual.film)) / static_cast<double>(pixelsOf(*trial.film));
+    trial.radius = plan.mergeRadius.first * std::sqrt(pixels);
+  }
   trial.seed = kTrialSeed;
   if (trialsOf(settings.method).independent) trial.sampler = SamplerKind::independent;
   trial.share = {};
@@ -93,17 +111,6 @@ RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings,
   trial.iterations.reset();
   trial.seconds.reset();
   trial.memoryBytes.reset();
-  const FilmSettings &film = scene.film, &small = *trial.film;
-  const double share = static_cast<double>(small.imageWidth()) * small.imageHeight() /
-                       (static_cast<double>(film.imageWidth()) * film.imageHeight());
-  if (strategiesOf(method).merge) {
-    // As many pixels as in the render, so that as many photons are within.
-    const RenderPlan<S> plan = finishedPlan<S>(scene, withMethod(settings, method), filmArea(scene.film), compiled);
-    trial.radius = plan.mergeRadius.first / std::sqrt(share);
-  }
-  if (trial.lightPaths) {
-    trial.lightPaths = std::max<uint64_t>(static_cast<uint64_t>(share * static_cast<double>(*trial.lightPaths)), 1);
-  }
   trial.waveSize = kTrialWave;
   trial.piecesForThreads = kTrialPieces;
   return trial;
