@@ -11,7 +11,7 @@
 namespace wavecrest {
 
 // Pixels, and light paths of an iteration, of the films that the constants of METHODS 6.5 are fitted to.
-constexpr uint32_t kUsualFilm = 256 * 192;
+constexpr double kUsualFilm = 256 * 192;
 
 // A point where a camera path merges first.
 struct MergePlace {

@@ -15,7 +15,7 @@ namespace wavecrest {
 namespace {
 
 constexpr uint64_t kTrialSeed = 0x747269616c73;
-constexpr uint32_t kTrialPixels = 64 * 48;  // of the trial image, at most
+constexpr double kTrialPixels = 64 * 48;  // of the trial image, at most
 constexpr uint32_t kTrialWave = 2048, kTrialPieces = 8;
 
 // A round renders two images of so many iterations each. Then candidates with more than `within` times the least
@@ -69,9 +69,7 @@ double unseenError(Method method) {
 
 uint64_t pixelsOf(const FilmSettings& film) { return uint64_t{film.imageWidth()} * film.imageHeight(); }
 
-// The film, scaled down to at most so many pixels in its crop window.
-FilmSettings smallFilm(FilmSettings film, uint32_t pixels) {
-  const double scale = std::min(std::sqrt(pixels / static_cast<double>(pixelsOf(film))), 1.0);
+FilmSettings scaledFilm(FilmSettings film, double scale) {
   const auto scaled = [scale](uint32_t size) { return static_cast<uint32_t>(std::lround(scale * size)); };
   film.width = std::max(scaled(film.width), 1u);
   film.height = std::max(scaled(film.height), 1u);
@@ -83,11 +81,14 @@ FilmSettings smallFilm(FilmSettings film, uint32_t pixels) {
   return film;
 }
 
-// The settings on the scene's film, scaled down to at most so many pixels.
-RenderSettings onSmallFilm(const Scene& scene, RenderSettings settings, uint32_t pixels) {
-  settings.film = smallFilm(scene.film, pixels);
+// The settings on the scene's film, scaled to about so many pixels in its crop window.
+RenderSettings onFilmOf(double pixels, const FilmSettings& film, RenderSettings settings) {
+  const auto all = static_cast<double>(pixelsOf(film));
+  settings.film = scaledFilm(film, std::sqrt(pixels / all));
   if (settings.lightPaths) {
-    settings.lightPaths = std::max<uint64_t>(*settings.lightPaths * pixelsOf(*settings.film) / pixelsOf(scene.film), 1);
+    const double paths =
+        static_cast<double>(*settings.lightPaths) * static_cast<double>(pixelsOf(*settings.film)) / all;
+    settings.lightPaths = std::max<uint64_t>(static_cast<uint64_t>(paths), 1);
   }
   return settings;
 }
@@ -96,13 +97,13 @@ template <class S>
 RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings, Method method,
                              const std::shared_ptr<const CompiledScene<S>>& compiled) {
   const RenderSettings own = withMethod(settings, method);
-  RenderSettings trial = onSmallFilm(scene, own, kTrialPixels);
+  const double pixels = std::min(static_cast<double>(pixelsOf(scene.film)), kTrialPixels);
+  RenderSettings trial = onFilmOf(pixels, scene.film, own);
   if (strategiesOf(method).merge) {
     // As many pixels as on a usual film, so that searches see as many photons as there.
-    const RenderSettings usual = onSmallFilm(scene, own, kUsualFilm);
+    const RenderSettings usual = onFilmOf(kUsualFilm, scene.film, own);
     const RenderPlan<S> plan = finishedPlan<S>(scene, usual, filmArea(*usual.film), compiled);
-    const double pixels = static_cast<double>(pixelsOf(*usual.film)) / static_cast<double>(pixelsOf(*trial.film));
-    trial.radius = plan.mergeRadius.first * std::sqrt(pixels);
+    trial.radius = plan.mergeRadius.first * std::sqrt(kUsualFilm / pixels);
   }
   trial.seed = kTrialSeed;
   if (trialsOf(settings.method).independent) trial.sampler = SamplerKind::independent;
