@@ -102,8 +102,9 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
       connects ? settings.mergeVertices == MergeVertices::first : strategiesOf(settings.method).mergeAtFirstVertex;
   const double pixels = connects && atFirst ? std::sqrt(kBesideConnections / photons)
                                             : (atFirst ? kFirstVertex : kAllVertices) * std::cbrt(1 / photons);
-  // Radii of equally many light paths since the first are equal, however many there are to an iteration.
-  const double shrunk = std::pow(lightPaths / kUsualFilm, (settings.radiusAlpha - 1) / 2);
+  // Radii of equally many light paths since the first are equal, however many there are to an iteration; but where all
+  // vertices merge, searches take most of the time, and as many photons as there would then be in one are too many.
+  const double shrunk = std::pow(lightPaths / kUsualFilm, (settings.radiusAlpha - 1) / 2 - (atFirst ? 0 : 0.25));
   const double wanted =
       std::max(std::min(pixels, kMostPixels) * pixel * shrunk, kLeastPixels * found.pixel) / found.scene;
   // Three digits, so that the last bits, in which instruction sets and precisions differ, do not change the choice.

@@ -75,6 +75,16 @@ TEST(AutoRadius, isThatOfEquallyManyLightPaths) {
   }
 }
 
+// Searches of bpm, at all vertices, are most of its time.
+TEST(AutoRadius, ofBpmIsSmallerWhereAnIterationHasManyLightPaths) {
+  RenderSettings settings = automatic(Method::bpm);
+  settings.lightPaths = 64 * 64;
+  const MergeRadius few = radiusOf(floorFromAbove(), settings);
+  settings.lightPaths = 16 * 64 * 64;
+  const MergeRadius many = radiusOf(floorFromAbove(), settings);
+  EXPECT_NEAR(few.at(15) / many.at(0), 2, 0.02);
+}
+
 TEST(AutoRadius, scalesWithTheScene) {
   const MergeRadius one = radiusOf(floorFromAbove(1)), large = radiusOf(floorFromAbove(1024));
   EXPECT_NEAR(large.at(0) / one.at(0), 1024, 1024 * 1e-4);
