@@ -92,7 +92,7 @@ ViewLook<S> placesOf(const CameraView& camera, std::vector<CameraPath>& paths, s
 double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPaths, double photonsPerArea,
                      const RenderSettings& settings) {
   if (!(found.pixel > 0)) return kFixedRadius;
-  constexpr double kFirstVertex = 2.5, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
+  constexpr double kFirstVertex = 2.1, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
   constexpr double kBesideConnections = 5;                  // photons in a search
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
   const double pixel = found.pixel * std::sqrt(filmPixels / kUsualFilm);
