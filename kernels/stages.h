@@ -10,6 +10,7 @@
 #include <optional>
 #include <string_view>
 
+#include "kernels/columns/columns.h"
 #include "kernels/columns/filter_spread.h"
 #include "kernels/columns/photon_grid.h"
 #include "kernels/columns/splat_sums.h"
@@ -167,42 +168,67 @@ struct DepthRange {
   uint32_t first = 1, last = ~0u;
 };
 
+// What methods with light paths add: light vertices to connect to, and photons to merge with.
+template <class S>
+struct LightContext {
+  LightStore<S>* store = nullptr;  // light vertices of this wave's paths
+  DepthRange depths{};             // of those that connectVertices joins
+  // Limit for Russian roulette of connections (METHODS 5.9), compared with the largest channel of a contribution. 0: no
+  // roulette, all connections are joined.
+  S rouletteBelow = 0;
+  uint32_t repetition = 0;                // of the stages that join vertices until none is left
+  const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place
+  PhotonGrid<S> grid{};                   // where they are in it, if they are to be merged
+};
+
+// What Markov chains add: one chain to a lane.
+template <class S>
+struct ChainContext {
+  ChainState* state = nullptr;
+  WalkEnds<S>* ends = nullptr;        // of multiplexed chains: where walks stop to be joined
+  PathMutations<S>* paths = nullptr;  // of path space: the paths and what is to change about them
+};
+
+// What is already settled of the path of each lane, before it is walked. Null: nothing.
+struct LaneColumns {
+  const uint32_t* lightPaths = nullptr;     // lanes in which light paths begin; null: the first ones
+  const uint32_t* emissionDepth = nullptr;  // the one depth at which emission counts, of camera walks
+  const uint32_t* edges = nullptr;          // of the whole path, of which a walk may be a part
+  // Where lanes keep the pixel of a path that chooses its own, over the film's window. Contributions go to such lanes,
+  // and no lane has its neighbour's view.
+  Column<uint32_t> pixel;
+};
+
+// What renders that learn add.
+struct LearnedContext {
+  const CellTreeView* cells = nullptr;  // of vertices
+  const GuideView* guide = nullptr;     // what directions are drawn by
+  bool records = false;                 // whether scatter keeps records
+};
+
+// What an iteration gives to every stage, and what its method adds.
 template <class S>
 struct StageContext {
   const SceneView<S>* scene = nullptr;
-  // Raster (y << 16 | x) of each path of the iteration, in the order of waves. None: paths choose their own pixel, over
-  // the film's window.
-  const uint32_t* pixels = nullptr;
-  const uint32_t* lanes = nullptr;  // lanes in which light paths begin; none: the first ones
+  const uint32_t* pixels = nullptr;  // raster (y << 16 | x) of each path of the iteration, in the order of waves
   SamplerSettings sampler;
   PathLimits limits;
   const SurvivalRule* survival = nullptr;  // of Russian roulette; none: by throughput
   Walk walk = Walk::camera;
   MisSettings mis;
-  uint32_t depth = 0;        // index of the vertex that the stage works on; 0 is the path's origin
-  DepthRange lightDepths{};  // of the light vertices that connectVertices joins
-  // Limit for Russian roulette of connections (METHODS 5.9), compared with the largest channel of a contribution. 0: no
-  // roulette, all connections are joined.
-  S rouletteBelow = 0;
-  uint32_t repetition = 0;                // of the stages that join vertices until none is left
-  LightStore<S>* light = nullptr;         // light vertices of this wave's paths
-  PhotonGrid<S> photonGrid{};             // where they are in it, if they are to be merged
-  const PhotonMap<S>* photons = nullptr;  // light vertices of the whole iteration, by place
+  uint32_t depth = 0;  // index of the vertex that the stage works on; 0 is the path's origin
   FilmWindow film;
   // Camera paths of an iteration all have the same place in their pixel's filter, and the film spreads their samples
   // (kernels/columns/filter_spread.h).
   bool sharedPlace = false;
-  bool splatting = true;              // light walks push Splats; else they add to their lanes, as those of chains do
-  ChainState* chains = nullptr;       // of Markov chains: their state, one chain to a lane
-  WalkEnds<S>* ends = nullptr;        // of multiplexed chains: where walks stop to be joined
-  PathMutations<S>* paths = nullptr;  // of chains in path space: the paths and what is to change about them
-  // Of renders that learn: the cells of vertices, what directions are drawn by, and whether scatter keeps records.
-  const CellTreeView* cellTree = nullptr;
-  const GuideView* guide = nullptr;
-  bool recordsDirections = false;
   StageCounters* counters = nullptr;
+  LightContext<S> light{};
+  ChainContext<S> chains{};
+  LaneColumns lanes{};
+  LearnedContext learned{};
 
-  bool contributesToLanes() const { return walk == Walk::camera || !splatting; }
+  // Contributions of other light walks are splats.
+  bool contributesToLanes() const { return walk == Walk::camera || lanes.pixel != nullptr; }
 };
 
 template <class S>

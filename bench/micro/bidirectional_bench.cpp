@@ -197,7 +197,7 @@ void measureBuild(benchmark::State& state, size_t photons) {
 void measureMerge(benchmark::State& state, Stage<float> merge, Stage<float> twin, size_t photons) {
   StageCounters counters;
   StageContext<float> context = contextFor(photons, counters);
-  context.photons = &PhotonField::of(photons).map;
+  context.light.photons = &PhotonField::of(photons).map;
   Random random(3);
   // As many of the camera's vertices as photons on the whole floor.
   const double side = std::sqrt(std::min(1.0, static_cast<double>(kWave) / static_cast<double>(photons)));
@@ -239,7 +239,7 @@ void measureConnection(benchmark::State& state, Walk walk, Stage<float> stage, S
   fillWave(wave, items, 1, random);
   LightStore<float> store(items, kNeeds);
   fillStore(store, {}, items, 1, random);
-  context.light = &store;
+  context.light.store = &store;
   twin(context, wave);
   const double expected = sumOf(wave.shadowRays.red, wave.shadowRays.size);
   stage(context, wave);

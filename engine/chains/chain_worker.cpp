@@ -16,8 +16,7 @@ StageContext<S> chainContext(const RenderPlan<S>& plan, const RenderSettings& se
                           .sampler = {.kind = SamplerKind::chain, .seed = settings.seed, .iteration = 0},
                           .limits = settings.limits,
                           .mis = misSettings(pass.strategies, plan.mergeRadius, area.pixels.size(), 0),
-                          .film = area.window(),
-                          .splatting = false};  // contributions go to the chain's lane
+                          .film = area.window()};
   // A strategy's walks have their lengths; roulette would only lose some.
   if (plan.pipeline.lightPass()) context.limits.rouletteDepth = std::numeric_limits<uint32_t>::max();
   return context;
@@ -65,8 +64,8 @@ void ChainWorker<S>::walkPaths(const Pass<S>& pass, StageContext<S>& context, si
   const bool light = ends_ && pass.walk == Walk::light;
   if (light) {
     ends_->atOrigin.setVertices(0, 0);
-    wave_.pathCount = chooseLightLanes(context.chains->columns, count);
-    context.lanes = lightLanes_;
+    wave_.pathCount = chooseLightLanes(context.chains.state->columns, count);
+    context.lanes.lightPaths = lightLanes_;
   }
   runPass(pass, context, wave_, tally);
   wave_.pathCount = count;
@@ -75,7 +74,7 @@ void ChainWorker<S>::walkPaths(const Pass<S>& pass, StageContext<S>& context, si
     // Vertices where light walks have ended become light vertices, all of one depth.
     light_.clear();
     light_.beginDepth(ends_->lightAtVertex.rays.size);
-    context.light = &light_;
+    context.light.store = &light_;
   }
 }
 
@@ -100,7 +99,10 @@ template <class S>
 void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t count, bool measure,
                            PathStore<S>* paths) {
   // Each chain gets one path, made of the chain's random numbers.
-  context.chains = &chains;
+  context.chains.state = &chains;
+  context.lanes.pixel = chains.columns.proposedPixel;
+  // Multiplexed chains make each path by one strategy: emission counts at the vertex where s = 0 ends.
+  if (chains.multiplexed) context.lanes.emissionDepth = chains.columns.emissionDepth;
   context.sampler.chain = &chains.samples;
   context.counters = &counters;
   wave_.firstPath = 0;
@@ -109,12 +111,13 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
   if (paths_) {
     assert(paths == nullptr || paths->stride() == paths_->proposed.stride());
     paths_->current = paths;
-    context.paths = &*paths_;
+    context.chains.paths = &*paths_;
+    context.lanes.edges = paths_->proposed.headers.edges;
     context.limits.maxDepth = law_.maxEdges + 1;  // arrive lets no path go on at the last vertex
   }
   // No walk has come to its end yet.
   if (ends_) {
-    context.ends = &*ends_;
+    context.chains.ends = &*ends_;
     for (Wave<S>* ends : {&ends_->atOrigin, &ends_->cameraAtVertex, &ends_->lightAtVertex}) {
       ends->pathCount = count;
       ends->setVertices(0, 0);
@@ -139,10 +142,10 @@ void ChainWorker<S>::trace(StageContext<S> context, ChainState& chains, size_t c
 
 template <class S>
 void ChainWorker<S>::decide(StageContext<S> context, ChainState& chains, bool measure) {
-  context.chains = &chains;
+  context.chains.state = &chains;
   context.sampler.chain = &chains.samples;
   context.counters = &counters;
-  if (paths_) context.paths = &*paths_;
+  if (paths_) context.chains.paths = &*paths_;
   const OnceCalls<S>& deciding = std::get<OnceCalls<S>>(pipeline_.stretches.front().phases.back());
   // These stages have the last rows of the tallies. Their times include the drain of splats.
   StageTally* tally = measure ? tallies.data() + (tallies.size() - deciding.stages.size()) : nullptr;

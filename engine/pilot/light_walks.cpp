@@ -25,7 +25,7 @@ LightPilot walkLightPaths(const RenderPlan<S>& plan, const RenderSettings& setti
   const std::optional<SurvivalRule> rule = survivalRule(settings, Walk::light);
   context.survival = pointerTo(rule);
   context.mis = misSettings(plan.pipeline.lightPass()->strategies, plan.mergeRadius, lightPaths, 0);
-  context.light = &store;
+  context.light.store = &store;
   context.film = area.window();
   context.counters = &counters;
   LightPilot pilot;

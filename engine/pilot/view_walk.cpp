@@ -20,8 +20,8 @@ void walkViews(const RenderPlan<S>& plan, const RenderSettings& settings, std::s
                           .limits = settings.limits,
                           .mis = misSettings(pass.strategies, plan.mergeRadius, 1, 0),
                           .film = {.x0 = 0, .y0 = 0, .width = view.camera.width, .height = view.camera.height},
-                          .cellTree = cells,
-                          .counters = &counters};
+                          .counters = &counters,
+                          .learned = {.cells = cells}};
   Wave<S> wave(pixels.size(), plan.needs);
   wave.pathCount = pixels.size();
   // Depth by depth, as runPass does.

@@ -16,7 +16,7 @@ void timeStage(const StageCall<S>& stage, const StageContext<S>& context, Wave<S
     return;
   }
   // Items are counted first, because the stage changes the sizes of the queues.
-  const size_t items = stage.countedOnce && context.repetition != 0 ? 0 : stage.items(wave);
+  const size_t items = stage.countedOnce && context.light.repetition != 0 ? 0 : stage.items(wave);
   tally->items += items;
   tally->laneSlots += (items + stage.lanes - 1) / stage.lanes * stage.lanes;
   // The observer's own time stays outside of the measured ticks.
@@ -55,12 +55,12 @@ void runDepth(const std::vector<StageCall<S>>& stages, StageContext<S>& context,
     // Neighbouring stages with untilJoined repeat together until no pair of vertices is left to join.
     size_t end = i;
     while (end < stages.size() && stages[end].repeat == Repeat::untilJoined) ++end;
-    context.repetition = 0;
+    context.light.repetition = 0;
     do {
       for (size_t k = i; k < end; ++k) runStage(stages[k], context, wave, tallyOf(k));
-      ++context.repetition;
+      ++context.light.repetition;
     } while (wave.openPairs != 0);
-    context.repetition = 0;
+    context.light.repetition = 0;
     i = end;
   }
 }
@@ -73,8 +73,8 @@ void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, Stage
   // Begin without light vertices and without splats.
   context.walk = pass.walk;
   context.depth = 0;
-  const bool storing = pass.walk == Walk::light && context.light != nullptr;
-  if (storing) context.light->clear();
+  const bool storing = pass.walk == Walk::light && context.light.store != nullptr;
+  if (storing) context.light.store->clear();
   wave.splats.size = 0;
   // Empties the queue of splats. The drain has the last row of the tally.
   const auto drainSplats = [&] {
@@ -95,7 +95,7 @@ void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, Stage
   // Go depth by depth until no path is left.
   for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {
     // Each live path may leave one light vertex.
-    if (storing) context.light->beginDepth(wave.rays.size);
+    if (storing) context.light.store->beginDepth(wave.rays.size);
     if (context.depth == 1 && !pass.firstDepth.empty()) {
       runDepth(pass.firstDepth, context, wave, first);
     } else {

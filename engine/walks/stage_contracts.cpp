@@ -47,7 +47,8 @@ std::string_view brokenQueues(const StageContext<S>& context, const Wave<S>& wav
   // Counts must agree with each other.
   if (wave.pathCount > wave.rays.capacity()) return "no more paths than lanes";
   if (wave.rays.size != wave.paths.size) return "a state for each ray";
-  if (context.light != nullptr && !hasMemory(context.light->vertices)) return "light vertices within their memory";
+  if (context.light.store != nullptr && !hasMemory(context.light.store->vertices))
+    return "light vertices within their memory";
   return {};
 }
 
@@ -156,7 +157,7 @@ std::string_view brokenContract(std::string_view stage, const StageContext<S>& c
   if (stage.starts_with("extend")) return brokenHits(*context.scene, wave);
   if (stage.starts_with("arrive")) return brokenVertices(*context.scene, wave);
   if (stage.starts_with("connect") || stage.starts_with("next event")) return brokenShadowRays(context, wave);
-  if (stage.starts_with("store") && context.light != nullptr) return brokenLinks(*context.light);
+  if (stage.starts_with("store") && context.light.store != nullptr) return brokenLinks(*context.light.store);
   return {};
 }
 

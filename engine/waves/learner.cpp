@@ -54,9 +54,9 @@ Learner<S>::Learner(const RenderPlan<S>& plan, const RenderSettings& settings, s
 template <class S>
 void Learner<S>::prepare(StageContext<S>& context, uint64_t iteration) const {
   if (!guide_) return;
-  context.cellTree = &guide_->cellTree();
-  context.guide = &view_;
-  context.recordsDirections = gathers(iteration, gathering_);
+  context.learned.cells = &guide_->cellTree();
+  context.learned.guide = &view_;
+  context.learned.records = gathers(iteration, gathering_);
 }
 
 template <class S>

@@ -25,13 +25,13 @@ void WaveSession<S>::tracePass(const Pass<S>& pass, uint64_t iteration, LightSto
                           .limits = settings_.limits,
                           .survival = pointerTo(rule),
                           .mis = mis,
-                          .rouletteBelow = plan_.connectionRouletteBelow,
-                          .light = light,
-                          .photonGrid = photonGrid(mis.radius),
-                          .photons = photons_.mapOf(iteration),
                           .film = area.window(),
                           .sharedPlace = film_.spreads(),
-                          .counters = &worker.counters};
+                          .counters = &worker.counters,
+                          .light = {.store = light,
+                                    .rouletteBelow = plan_.connectionRouletteBelow,
+                                    .photons = photons_.mapOf(iteration),
+                                    .grid = photonGrid(mis.radius)}};
   if (learner_.learns()) {
     learner_.prepare(context, iteration);
     worker.wave.directions.size = 0;

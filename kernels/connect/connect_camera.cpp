@@ -2,10 +2,9 @@
 // sees it.
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: ShadowRays [<= n] in that order, whose
-// targets are pixels of the film's window; of chains their lanes, and the pixels go to Chains::proposedPixel.
+// targets are pixels of the film's window; or lanes, where those keep their pixels.
 // METHODS 4.3, 5.6. The contribution leaves out 1/N_L: the film divides by the number of light paths, as the average
 // over passes does. Densities are per pixel whatever the reconstruction filter, so weights do not depend on it.
-#include "kernels/columns/chains.h"
 #include "kernels/endpoints/camera_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/shade/bsdf_ranges.h"
@@ -16,11 +15,12 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Place on the lens (a, b) and choice of the pixel (c, d). A chain's numbers for both are those that its camera walk
-// has at the lens, whatever the strategy: a step that changes the strategy keeps the place on the lens.
+// Place on the lens (a, b) and choice of the pixel (c, d). Numbers for both of a lane that chooses its pixel, as a
+// Markov chain does, are those that its camera walk has at the lens, whatever the strategy: a step that changes the
+// strategy keeps the place on the lens.
 template <class S>
 WAVECREST_INLINE Uniform4 lensNumbers(const StageContext<S>& context, const Wave<S>& wave, UInt lane) {
-  if (context.chains == nullptr) return draw(context, pathOf(context, wave, lane), Block::light);
+  if (context.lanes.pixel == nullptr) return draw(context, pathOf(context, wave, lane), Block::light);
   const Uniform4 u = uniform4(context.sampler, lane, static_cast<uint32_t>(Block::scatter), Stream::camera);
   return {u.c, u.d, u.a, u.b};
 }
@@ -76,7 +76,7 @@ WAVECREST_NOINLINE size_t joinLens(const StageContext<typename P::Storage>& cont
     appendVec3(contribution, lit, shadow.red, shadow.green, shadow.blue, out);
     if (context.contributesToLanes()) {
       const UInt lane = select(lit, load(paths.lane, i), UInt(0u));
-      storeWhere(pixel, lit, context.chains->columns.proposedPixel, lane);
+      storeWhere(pixel, lit, context.lanes.pixel, lane);
       append(lane, lit, shadow.target, out);
     } else {
       append(pixel, lit, shadow.target, out);

@@ -36,11 +36,11 @@ template <class S>
 class PairLister {
  public:
   PairLister(const StageContext<S>& context, Wave<S>& wave)
-      : wave_(wave), firstOfLane_(context.light->firstOfLane()), next_(context.light->vertices.next) {
+      : wave_(wave), firstOfLane_(context.light.store->firstOfLane()), next_(context.light.store->vertices.next) {
     // k = len_L + 1 + len_C
     const uint32_t longest = context.limits.maxDepth - context.depth - 1;
-    begin_ = static_cast<uint32_t>(context.light->firstOf(context.lightDepths.first));
-    end_ = static_cast<uint32_t>(context.light->firstOf(std::min(longest, context.lightDepths.last) + 1));
+    begin_ = static_cast<uint32_t>(context.light.store->firstOf(context.light.depths.first));
+    end_ = static_cast<uint32_t>(context.light.store->firstOf(std::min(longest, context.light.depths.last) + 1));
   }
 
   // The next pairs, from the front of the list; how many.
@@ -102,8 +102,8 @@ constexpr size_t kRowsAhead = 128;
 template <class S>
 WAVECREST_INLINE Float rouletteNumbers(const StageContext<S>& context, const Wave<S>& wave, UInt lane, UInt light) {
   UInt depth(1u);
-  for (uint32_t d = 2; d <= context.light->depths(); ++d) {
-    const Mask shallower = light < UInt(static_cast<uint32_t>(context.light->firstOf(d)));
+  for (uint32_t d = 2; d <= context.light.store->depths(); ++d) {
+    const Mask shallower = light < UInt(static_cast<uint32_t>(context.light.store->firstOf(d)));
     depth = depth + select(shallower, UInt(0u), UInt(1u));
   }
   return rouletteNumber(draw(context, pathOf(context, wave, lane), Block::opacity).d, depth);
@@ -116,7 +116,7 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
                                     const VertexPairs& pairs, size_t i, Mask active, size_t out) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
-  const auto& vertices = context.light->vertices;
+  const auto& vertices = context.light.store->vertices;
   auto& shadow = wave.shadowRays;
 
   HWY_ALIGN uint32_t lanes[kLanes];
@@ -154,8 +154,8 @@ WAVECREST_NOINLINE size_t joinBlock(const StageContext<typename P::Storage>& con
   const Mask carries = active & (maxComponent(contribution) > Real(0)), tooClose = carries & (dist2 <= apart * apart);
   if (any(tooClose)) context.counters->closePairs += countTrue(tooClose);
   Mask lit = andNot(carries, tooClose);
-  if (context.rouletteBelow > 0) {
-    const Real chance = rouletteChance(maxComponent(contribution), Real(context.rouletteBelow));
+  if (context.light.rouletteBelow > 0) {
+    const Real chance = rouletteChance(maxComponent(contribution), Real(context.light.rouletteBelow));
     if (any(lit & (chance < Real(1)))) {
       const UInt light = load(pairs.light, i);
       lit = lit & (to<Real>(rouletteNumbers(context, wave, load(lanes), light)) < chance);
@@ -195,7 +195,7 @@ size_t sortPairs(Wave<S>& wave, size_t count) {
 // Weighted contributions of the listed pairs, as shadow rays; how many.
 template <class P, uint32_t kFeatures>
 size_t joinPairs(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave, size_t count) {
-  const auto& rows = context.light->vertices.row;
+  const auto& rows = context.light.store->vertices.row;
   size_t diffuse = count;
   if constexpr (!onlyDiffuse(kFeatures)) diffuse = sortPairs(wave, count);
   const VertexPairs& pairs = onlyDiffuse(kFeatures) ? wave.pairs : wave.sortedPairs;
@@ -218,11 +218,11 @@ template <class P, uint32_t kFeatures>
 void connectVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   auto& shadow = wave.shadowRays;
   shadow.size = 0;
-  if (context.repetition == 0) wave.openPairs = 0;
+  if (context.light.repetition == 0) wave.openPairs = 0;
   if (context.depth + 2 > context.limits.maxDepth) return;  // one edge, and one to each vertex's origin at least
   packVertexRows<kFeatures>(context, wave);
 
-  const size_t pairs = PairLister(context, wave).list(context.repetition == 0);
+  const size_t pairs = PairLister(context, wave).list(context.light.repetition == 0);
   context.counters->connections += pairs;
   shadow.claim(pairs);
   shadow.size = joinPairs<P, kFeatures>(context, wave, pairs);

@@ -40,7 +40,7 @@ WAVECREST_NOINLINE size_t sampleLights(const StageContext<typename P::Storage>& 
     Real wLight(0), wCamera(0);
     if (context.mis.emission) {
       Real pdf = bsdf.pdf;
-      if (context.guide != nullptr) pdf = mixedPdf<Real>(context, wave, active, i, sample.direction, pdf);
+      if (context.learned.guide != nullptr) pdf = mixedPdf<Real>(context, wave, active, i, sample.direction, pdf);
       wLight = select(sample.delta, Real(0), pdf * inversePdf);
     }
     if constexpr (has(kFeatures, kBidirectional)) {

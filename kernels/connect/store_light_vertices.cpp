@@ -57,7 +57,7 @@ WAVECREST_INLINE void storeColumns(const Wave<S>& wave, size_t i, LightVertices<
 
 template <class P, uint32_t kFeatures>
 void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  LightStore<typename P::Storage>& store = *context.light;
+  LightStore<typename P::Storage>& store = *context.light.store;
   auto& vertices = store.vertices;
   // Connections alone read vertices soon; for merging all waves of an iteration are stored before one is read.
   const bool connected = store.keepsLanes(), merged = store.keepsPlaces();
@@ -66,7 +66,7 @@ void storeLightVertices(const StageContext<typename P::Storage>& context, Wave<t
   for (size_t i = 0; i < wave.joinable; i += kLanes) {
     storeRows<kFeatures>(context, wave, i, vertices, first + i, merged);
     if (connected) storeColumns<kFeatures, typename P::Real>(wave, i, vertices, first + i);
-    if (merged) storePlaces(context.photonGrid, wave.rays, i, vertices, first + i);
+    if (merged) storePlaces(context.light.grid, wave.rays, i, vertices, first + i);
   }
   if (merged) flushStream();
   if (connected) store.link(wave.joinable, onlyDiffuse(kFeatures) ? wave.joinable : wave.diffuse);

@@ -81,8 +81,8 @@ WAVECREST_INLINE void extendThrough(const StageContext<S>& context, Wave<S>& wav
   context.counters->raysClosest += count;
   wave.hits.size = 0;
   wave.hits.claim(count);
-  // Rays from the eye stay together; those of Markov chains, each through a pixel of its own, do not.
-  if (context.walk == Walk::camera && context.depth == 1 && context.chains == nullptr) {
+  // Rays from the eye stay together, but for those through pixels that lanes choose.
+  if (context.walk == Walk::camera && context.depth == 1 && context.lanes.pixel == nullptr) {
     walkTogether<Packet>(scene, wave.rays, wave.hits);
   } else {
     walkAlone<Ray>(scene, wave.rays, wave.hits);

@@ -3,7 +3,6 @@
 // in: the pixels of paths [firstPath, firstPath + pathCount), or none for paths that choose them. out: Rays, PathStates
 // [pathCount], in lane order; Radiance set to zero. The raster position is uniform in the pixel, so W_j cos / p = 1 and
 // the throughput begins at 1.
-#include "kernels/columns/chains.h"
 #include "kernels/endpoints/camera_lanes.h"
 #include "kernels/mis_lanes.h"
 #include "kernels/stage_declarations.h"
@@ -40,7 +39,7 @@ template <class S>
 WAVECREST_INLINE void recordPixel(const StageContext<S>& context, const PixelLanes& pixel, size_t i) {
   const FilmWindow& film = context.film;
   const UInt index = (pixel.y - UInt(film.y0)) * UInt(film.width) + pixel.x - UInt(film.x0);
-  store(index, context.chains->columns.proposedPixel, i);
+  store(index, context.lanes.pixel, i);
 }
 
 }  // namespace
@@ -58,7 +57,7 @@ void generateCameraPaths(const StageContext<typename P::Storage>& context, Wave<
   for (size_t i = 0; i < count; i += kLanes) {
     const UInt lane = min(laneIndex(static_cast<uint32_t>(i)), UInt(static_cast<uint32_t>(count - 1)));
     const CameraSample sample = cameraSample(context, wave, lane);
-    if (context.chains != nullptr) recordPixel(context, sample.pixel, i);
+    if (context.lanes.pixel != nullptr) recordPixel(context, sample.pixel, i);
     const PixelLanes& pixel = sample.pixel;
     const Uniform4& u = sample.u;
     Vec2<Real> place{to<Real>(u.a), to<Real>(u.b)};

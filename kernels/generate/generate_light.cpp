@@ -173,7 +173,7 @@ void generateLightPaths(const StageContext<typename P::Storage>& context, Wave<t
   for (size_t i = 0; i < count; i += kLanes) {
     // Choose a light.
     UInt lane = laneIndex(static_cast<uint32_t>(i));
-    if (context.lanes != nullptr) lane = load(context.lanes + i);
+    if (context.lanes.lightPaths != nullptr) lane = load(context.lanes.lightPaths + i);
     const UInt path = pathOf(context, wave, lane);
     const Uniform4 u = draw(context, path, Block::scatter), v = draw(context, path, Block::light);
     const UInt picked = pickLight(scene, u.a, u.d);

@@ -10,7 +10,7 @@ WAVECREST_SIMD_BEGIN
 template <class P>
 void findCells(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   wave.cells.size = 0;
-  if (context.cellTree == nullptr) return;
+  if (context.learned.cells == nullptr) return;
   const auto& rays = wave.rays;
   const auto& surfaces = wave.surfaces;
   const size_t count = rays.size;
@@ -20,7 +20,7 @@ void findCells(const StageContext<typename P::Storage>& context, Wave<typename P
     const auto direction = to<Float>(loadVec3(rays.directionX, rays.directionY, rays.directionZ, i));
     const auto normal = to<Float>(loadVec3(surfaces.normalX, surfaces.normalY, surfaces.normalZ, i));
     const Vec3<Float> facing = select(dot(normal, direction) > Float(0), -normal, normal);
-    store(cellOf(*context.cellTree, firstLanes(count - i), place, facing), wave.cells.cell, i);
+    store(cellOf(*context.learned.cells, firstLanes(count - i), place, facing), wave.cells.cell, i);
   }
 }
 

@@ -47,9 +47,9 @@ WAVECREST_INLINE Vec3<Float> drawFromGuide(const GuideView& guide, UInt cell, co
 template <class Real, class S>
 WAVECREST_NOINLINE Real mixedPdf(const StageContext<S>& context, const Wave<S>& wave, Mask active, size_t i,
                                  Vec3<Real> direction, Real pdf) {
-  const GuideLanes at(*context.guide, wave, active, i);
+  const GuideLanes at(*context.learned.guide, wave, active, i);
   if (none(active & at.draws())) return pdf;
-  const Real guided = to<Real>(guideDensity(*context.guide, at.cell, to<Float>(direction)));
+  const Real guided = to<Real>(guideDensity(*context.learned.guide, at.cell, to<Float>(direction)));
   const Real share = to<Real>(at.share);
   return select(at.draws(), share * pdf + (Real(1) - share) * guided, pdf);
 }

@@ -32,7 +32,7 @@ class Merger {
 
  public:
   Merger(const StageContext<S>& context, Wave<S>& wave)
-      : context_(context), wave_(wave), map_(*context.photons), inGrid_(map_.grid) {}
+      : context_(context), wave_(wave), map_(*context.light.photons), inGrid_(map_.grid) {}
 
   // Buckets, photons and rows are all over memory: each is prefetched some blocks of vertices before it is read, and
   // rows are read once the next ones have been prefetched.
@@ -347,7 +347,7 @@ class Merger {
 
 template <class P, uint32_t kFeatures>
 void merge(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  if (context.depth + 1 > context.limits.maxDepth || context.photons->size == 0) return;
+  if (context.depth + 1 > context.limits.maxDepth || context.light.photons->size == 0) return;
   packVertexRows<kFeatures>(context, wave);
   Merger<P, kFeatures>(context, wave).run();
 }

@@ -68,8 +68,8 @@ WAVECREST_INLINE void countSteps(ChainCounters& counters, Mask active, UInt kind
 // What kind of step a chain takes: in primary samples large where nothing is perturbed.
 template <class S>
 WAVECREST_INLINE UInt kindOf(const StageContext<S>& context, size_t i) {
-  if (context.paths != nullptr) return load(context.paths->plans.kind, i);
-  const Mask large = load(context.chains->columns.cameraLive, i) == UInt(0u);
+  if (context.chains.paths != nullptr) return load(context.chains.paths->plans.kind, i);
+  const Mask large = load(context.chains.state->columns.cameraLive, i) == UInt(0u);
   return select(large, UInt(static_cast<uint32_t>(Mutation::large)), UInt(static_cast<uint32_t>(Mutation::small)));
 }
 
@@ -100,7 +100,7 @@ WAVECREST_INLINE void addEstimates(ChainState& state, Mask large, Float estimate
 template <class P>
 void acceptMutations(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   using Real = typename P::Real;
-  ChainState& state = *context.chains;
+  ChainState& state = *context.chains.state;
   const Chains& chains = state.columns;
   const size_t count = wave.pathCount;
   wave.splats.size = 0;
@@ -120,7 +120,7 @@ void acceptMutations(const StageContext<typename P::Storage>& context, Wave<type
     countSteps(state.counters, active, kind, accepted);
     const Mask large = active & (kind == UInt(static_cast<uint32_t>(Mutation::large)));
     if (any(large)) {
-      addEstimates(state, large, context.paths != nullptr ? load(chains.estimate, i) : proposed.target, i);
+      addEstimates(state, large, context.chains.paths != nullptr ? load(chains.estimate, i) : proposed.target, i);
     }
     countRejections(state, active, accepted, i);
 

@@ -60,9 +60,9 @@ class Rows {
 
   WAVECREST_INLINE Rows(const StageContext<S>& context, UInt lane)
       : context_(context),
-        v_(context.paths->proposed.vertices),
-        headers_(context.paths->proposed.headers),
-        stride_(static_cast<uint32_t>(context.paths->proposed.stride())),
+        v_(context.chains.paths->proposed.vertices),
+        headers_(context.chains.paths->proposed.headers),
+        stride_(static_cast<uint32_t>(context.chains.paths->proposed.stride())),
         lane_(lane),
         edges_(gather(headers_.edges, lane)) {}
 
@@ -156,7 +156,7 @@ WAVECREST_INLINE void gatherLanes(PathMutations<S>& paths, const Wave<S>& wave) 
 
 template <class P, uint32_t kFeatures>
 void evaluatePaths(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  auto& paths = *context.paths;
+  auto& paths = *context.chains.paths;
   const PathPlans& plans = paths.plans;
   gatherLanes(paths, wave);
   const UInt zero(0u), one(1u);

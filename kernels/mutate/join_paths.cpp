@@ -28,7 +28,7 @@ template <class P, uint32_t kFeatures>
 void joinPaths(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
-  auto& paths = *context.paths;
+  auto& paths = *context.chains.paths;
   const PathPlans& plans = paths.plans;
   const auto& v = paths.proposed.vertices;
   const auto& headers = paths.proposed.headers;

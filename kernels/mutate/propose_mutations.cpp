@@ -14,7 +14,7 @@ namespace {
 // an emitter in view, which nothing but s = 0 makes. Both walks then have one vertex less than s and t, as edges.
 template <class S>
 WAVECREST_INLINE void chooseStrategy(const StageContext<S>& context, UInt lane, size_t i) {
-  const Chains& chains = context.chains->columns;
+  const Chains& chains = context.chains.state->columns;
   const UInt length = load(chains.length, i);
   const UInt zero(0u), one(1u);
   const UInt strategies = select(length == one, one, length + one);
@@ -39,7 +39,7 @@ WAVECREST_INLINE void chooseStrategy(const StageContext<S>& context, UInt lane, 
 
 template <class P>
 void proposeMutations(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  const ChainState& state = *context.chains;
+  const ChainState& state = *context.chains.state;
   const Chains& chains = state.columns;
   const size_t count = wave.pathCount;
   for (size_t i = 0; i < count; i += kLanes) {

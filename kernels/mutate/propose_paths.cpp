@@ -149,8 +149,8 @@ WAVECREST_INLINE void storePlan(const Plan& plan, UInt edges, const PathMutation
 // The same for every feature set, so there is one for each storage type.
 template <class S>
 WAVECREST_NOINLINE void proposeWave(const StageContext<S>& context, const Wave<S>& wave) {
-  const Chains& chains = context.chains->columns;
-  PathMutations<S>& paths = *context.paths;
+  const Chains& chains = context.chains.state->columns;
+  PathMutations<S>& paths = *context.chains.paths;
   const PathLaw& law = *paths.law;
   const PathPlans& plans = paths.plans;
   const auto& proposed = paths.proposed.headers;
@@ -163,7 +163,7 @@ WAVECREST_NOINLINE void proposeWave(const StageContext<S>& context, const Wave<S
     const ChainNumbers more = chainBits(context.sampler, source, 1, ChainUse::step);
     store(mulAdd(toUnitInterval(step.c), Float(0x1p-24f), toUnitInterval(step.b)), chains.threshold, i);
     const UInt edges = paths.current == nullptr ? zero : load(paths.current->headers.edges, i);
-    const Mask large = (toUnitInterval(step.a) < Float(context.chains->samples.largeStep)) | (edges == zero);
+    const Mask large = (toUnitInterval(step.a) < Float(context.chains.state->samples.largeStep)) | (edges == zero);
 
     // Large steps, and chains that are nowhere yet, plan a whole path.
     Plan plan = anew(law, edges, load(chains.length, i), more.a, toUnitInterval(more.d));

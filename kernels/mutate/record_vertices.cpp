@@ -8,7 +8,7 @@ WAVECREST_SIMD_BEGIN
 
 template <class P>
 void recordVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  uint32_t* const vertices = context.chains->columns.proposedCamera;
+  uint32_t* const vertices = context.chains.state->columns.proposedCamera;
   const uint32_t* const lanes = wave.paths.lane;
   for (size_t i = 0; i < wave.rays.size; ++i) vertices[lanes[i]] = context.depth + 1;
 }

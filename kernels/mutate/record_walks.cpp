@@ -14,12 +14,12 @@ template <class P, uint32_t kFeatures>
 void recordMisses(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   const auto& scene = *context.scene;
   if (scene.infiniteLight == kNoIndex || context.walk != Walk::camera) return;
-  const auto& v = context.paths->proposed.vertices;
+  const auto& v = context.chains.paths->proposed.vertices;
   for (size_t i = 0; i < wave.rays.size; ++i) {
     const uint32_t lane = wave.paths.lane[i];
-    if (wave.hits.primitive[i] != kMiss || context.chains->columns.emissionDepth[lane] != context.depth) continue;
+    if (wave.hits.primitive[i] != kMiss || context.chains.state->columns.emissionDepth[lane] != context.depth) continue;
     // Walks begin at any vertex of the path: only a path of one edge shows the light itself to the camera.
-    if (scene.hidesInfinite && context.paths->proposed.headers.edges[lane] == 1) continue;
+    if (scene.hidesInfinite && context.chains.paths->proposed.headers.edges[lane] == 1) continue;
     v.positionX[lane] = wave.rays.directionX[i];
     v.positionY[lane] = wave.rays.directionY[i];
     v.positionZ[lane] = wave.rays.directionZ[i];
@@ -27,13 +27,13 @@ void recordMisses(const StageContext<typename P::Storage>& context, Wave<typenam
     v.offset[lane] = 0;
     v.primitive[lane] = scene.infiniteLight;
     v.event[lane] = 0;
-    context.paths->plans.eyeReached[lane] = context.depth;
+    context.chains.paths->plans.eyeReached[lane] = context.depth;
   }
 }
 
 template <class P, uint32_t kFeatures>
 void recordPathVertices(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  auto& paths = *context.paths;
+  auto& paths = *context.chains.paths;
   const auto& v = paths.proposed.vertices;
   const size_t stride = paths.proposed.stride();
   const bool camera = context.walk == Walk::camera;

@@ -55,7 +55,7 @@ WAVECREST_INLINE void moveVertices(const Wave<typename P::Storage>& from, size_t
 
 template <class P, uint32_t kFeatures>
 void admitWalks(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  const Chains& chains = context.chains->columns;
+  const Chains& chains = context.chains.state->columns;
   const uint32_t* const edges = context.walk == Walk::camera ? chains.cameraEdges : chains.lightGranted;
   const size_t count = wave.rays.size;
   size_t out = 0;
@@ -71,12 +71,12 @@ void admitWalks(const StageContext<typename P::Storage>& context, Wave<typename 
 
 template <class P, uint32_t kFeatures>
 void takeEnds(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  const Chains& chains = context.chains->columns;
+  const Chains& chains = context.chains.state->columns;
   const bool camera = context.walk == Walk::camera;
   const uint32_t* const mine = camera ? chains.cameraEdges : chains.lightGranted;
   const uint32_t* const other = camera ? chains.lightEdges : chains.cameraEdges;
-  Wave<typename P::Storage>& atOrigin = context.ends->atOrigin;
-  Wave<typename P::Storage>& atVertex = context.ends->atVertex(camera);
+  Wave<typename P::Storage>& atOrigin = context.chains.ends->atOrigin;
+  Wave<typename P::Storage>& atVertex = context.chains.ends->atVertex(camera);
   const size_t count = wave.rays.size;
   size_t out = 0, joinable = 0, diffuse = 0;
   for (size_t i = 0; i < count; i += kLanes) {

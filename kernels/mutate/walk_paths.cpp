@@ -48,7 +48,7 @@ struct Raster {
 template <class S>
 WAVECREST_NOINLINE Raster<S> newRaster(const StageContext<S>& context, UInt lane, Mask near, const Uniform4& u) {
   const FilmWindow& film = context.film;
-  const auto& headers = context.paths->proposed.headers;
+  const auto& headers = context.chains.paths->proposed.headers;
   const RasterArea area = rasterArea(context);
   const Float left(static_cast<float>(area.left)), top(static_cast<float>(area.top));
   Float x = mulAdd(u.a, Float(static_cast<float>(area.width)), left),
@@ -72,7 +72,7 @@ WAVECREST_NOINLINE WalkStep<typename P::Real> leave(const StageContext<typename 
                                                     const ShadingLanes<P, kFeatures>& shading, Mask active, UInt lane,
                                                     UInt row) {
   using Real = typename P::Real;
-  const auto& paths = *context.paths;
+  const auto& paths = *context.chains.paths;
   const UInt zero(0u), one(1u);
   const bool camera = context.walk == Walk::camera;
   const Uniform4 u = draw(context, lane, Block::scatter);
@@ -108,7 +108,7 @@ template <class P, uint32_t kFeatures>
 WAVECREST_NOINLINE size_t leaveKept(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave,
                                     Mask m, UInt lane, size_t out) {
   using Real = typename P::Real;
-  const auto& paths = *context.paths;
+  const auto& paths = *context.chains.paths;
   const bool camera = context.walk == Walk::camera;
   const auto& v = paths.proposed.vertices;
   const UInt zero(0u), one(1u), stride(static_cast<uint32_t>(paths.proposed.stride()));
@@ -154,7 +154,7 @@ WAVECREST_NOINLINE size_t leaveKept(const StageContext<typename P::Storage>& con
 template <class P>
 WAVECREST_NOINLINE void chooseAngles(const StageContext<typename P::Storage>& context, Mask m, UInt lane) {
   using Real = typename P::Real;
-  auto& paths = *context.paths;
+  auto& paths = *context.chains.paths;
   const auto& current = *paths.current;
   const CausticRange<Real> range =
       causticRange<Real>(context, current.vertices, current.stride(), gather(current.headers.edges, lane),
@@ -170,7 +170,7 @@ WAVECREST_NOINLINE void recordLights(const StageContext<typename P::Storage>& co
                                      const Wave<typename P::Storage>& wave, size_t count) {
   using Real = typename P::Real;
   const auto& scene = *context.scene;
-  auto& paths = *context.paths;
+  auto& paths = *context.chains.paths;
   const auto& v = paths.proposed.vertices;
   for (size_t i = 0; i < count; i += kLanes) {
     const Mask active = firstLanes(count - i);
@@ -211,7 +211,7 @@ WAVECREST_NOINLINE void recordLights(const StageContext<typename P::Storage>& co
 template <class P, uint32_t kFeatures>
 void beginEyeWalks(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   using Real = typename P::Real;
-  auto& paths = *context.paths;
+  auto& paths = *context.chains.paths;
   const auto& v = paths.proposed.vertices;
   const auto& headers = paths.proposed.headers;
   const CameraView& camera = context.scene->camera;
@@ -264,7 +264,7 @@ void beginEyeWalks(const StageContext<typename P::Storage>& context, Wave<typena
 
 template <class P, uint32_t kFeatures>
 void beginLightWalks(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
-  auto& paths = *context.paths;
+  auto& paths = *context.chains.paths;
   const PathPlans& plans = paths.plans;
   const size_t count = wave.pathCount;
   // Lanes whose light walk begins at a new x_0, if the eye's walk has reached its end. Those whose walk goes on to x_1
@@ -283,7 +283,7 @@ void beginLightWalks(const StageContext<typename P::Storage>& context, Wave<type
   std::fill_n(lanes + fresh, kColumnPadding, 0u);
   // Sample emission for all of them and keep x_0. The rays of walks that end at x_0 are dropped.
   StageContext<typename P::Storage> onLights = context;
-  onLights.lanes = lanes;
+  onLights.lanes.lightPaths = lanes;
   wave.pathCount = fresh;
   generateLightPaths<P, kFeatures>(onLights, wave);
   wave.pathCount = count;
@@ -313,7 +313,7 @@ void beginLightWalks(const StageContext<typename P::Storage>& context, Wave<type
 template <class P, uint32_t kFeatures>
 void walkPaths(const StageContext<typename P::Storage>& context, Wave<typename P::Storage>& wave) {
   using Real = typename P::Real;
-  auto& paths = *context.paths;
+  auto& paths = *context.chains.paths;
   const uint32_t* const edges = context.walk == Walk::camera ? paths.plans.eyeRays : paths.plans.lightRays;
   const UInt zero(0u), stride(static_cast<uint32_t>(paths.proposed.stride()));
   const size_t count = wave.rays.size;

@@ -143,7 +143,7 @@ template <class Real, class S>
 WAVECREST_NOINLINE Double restOfReference(const StageContext<S>& context, const PathBlock<S>& path, UInt end,
                                           const PathBlock<S>& from, UInt fromEnd, UInt fromKinds, Mask m, UInt kind,
                                           UInt kept, Real angle) {
-  const PathLaw& law = *context.paths->law;
+  const PathLaw& law = *context.chains.paths->law;
   const Mask large = m & (kind == mutationCode(Mutation::large));
   const Mask replaces = m & (kind == mutationCode(Mutation::bidirectional));
   const Mask fromEye = m & ((kind == mutationCode(Mutation::lens)) | (kind == mutationCode(Mutation::multiChain)));
@@ -188,7 +188,7 @@ WAVECREST_INLINE Real luminanceOf(Vec3<Real> c) {
 // What suits the proposals, one by one: loops over events end after a few rows.
 template <class S>
 WAVECREST_INLINE void findPatterns(const StageContext<S>& context) {
-  PathMutations<S>& paths = *context.paths;
+  PathMutations<S>& paths = *context.chains.paths;
   const auto& v = paths.proposed.vertices;
   const auto& headers = paths.proposed.headers;
   for (size_t i = 0; i < paths.laneCount; ++i) {
@@ -215,7 +215,7 @@ WAVECREST_INLINE ProposedPixel choosePixel(const StageContext<S>& context, UInt 
   const FilmWindow& film = context.film;
   Float u(0), v(0);
   if (camera.filter != FilterKind::box) {
-    const UInt source = gather(context.chains->columns.source, lane);
+    const UInt source = gather(context.chains.state->columns.source, lane);
     const ChainNumbers bits = chainBits(context.sampler, source, kPixelBlock, ChainUse::step);
     u = toUnitInterval(bits.a);
     v = toUnitInterval(bits.b);
@@ -230,9 +230,9 @@ WAVECREST_INLINE ProposedPixel choosePixel(const StageContext<S>& context, UInt 
 // The same for every feature set, so there is one for each storage type.
 template <class Real, class S>
 WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave) {
-  PathMutations<S>& paths = *context.paths;
+  PathMutations<S>& paths = *context.chains.paths;
   const PathPlans& plans = paths.plans;
-  const Chains& chains = context.chains->columns;
+  const Chains& chains = context.chains.state->columns;
   findPatterns(context);
   for (size_t i = 0; i < paths.laneCount; i += kLanes) {
     const Mask active = firstLanes(paths.laneCount - i);
@@ -290,12 +290,12 @@ WAVECREST_NOINLINE void weighWave(const StageContext<S>& context, Wave<S>& wave)
 
 template <class S>
 WAVECREST_NOINLINE void commitWave(const StageContext<S>& context, const Wave<S>& wave) {
-  PathMutations<S>& paths = *context.paths;
+  PathMutations<S>& paths = *context.chains.paths;
   if (paths.current == nullptr) return;
   const UInt zero(0u);
   const size_t count = wave.pathCount, stride = paths.proposed.stride();
   for (size_t i = 0; i < count; i += kLanes) {
-    const Mask accepted = firstLanes(count - i) & (load(context.chains->columns.rejections, i) == zero);
+    const Mask accepted = firstLanes(count - i) & (load(context.chains.state->columns.rejections, i) == zero);
     if (none(accepted)) continue;
     const UInt edges = load(paths.proposed.headers.edges, i);
     const auto replace = [&](size_t at, Mask m) WAVECREST_LAMBDA {

@@ -160,7 +160,7 @@ WAVECREST_INLINE size_t passLight(const StageContext<typename P::Storage>& conte
       met.passes & ((dot(to<Real>(end) - met.position, met.normal) * dot(direction, met.normal)) > zero);
   const Real pass = one - met.passage.stop;
   Mask m = between & (pass > zero) & (maxComponent(met.passage.colour) > zero);
-  const bool decides = context.paths != nullptr;  // paths of chains are visible or not
+  const bool decides = context.chains.paths != nullptr;  // paths of chains are visible or not
   if (decides) m = m & (to<Real>(number) < pass);
   if (none(m)) return out;
 
@@ -195,7 +195,7 @@ size_t beginShadows(const StageContext<typename P::Storage>& context, Wave<typen
     storeVec3(direction, passing.rays.directionX, passing.rays.directionY, passing.rays.directionZ, i);
     store(laneIndex(static_cast<uint32_t>(i)), passing.marks.index, i);
     Float number(0);
-    if (context.paths != nullptr) {
+    if (context.chains.paths != nullptr) {
       const UInt lane = select(active, load(shadow.target, i), UInt(0u));
       number = toUnitInterval(
           chainBits(context.sampler, gather(context.sampler.chain->source, lane), kPassageBlock, ChainUse::step).a);

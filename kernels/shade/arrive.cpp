@@ -8,8 +8,6 @@
 // strategy s = 0 with its weight (5.6), which needs the distance and cosine of this edge.
 #include <cmath>
 
-#include "kernels/columns/chain_paths.h"
-#include "kernels/columns/chains.h"
 #include "kernels/endpoints/camera_lanes.h"
 #include "kernels/endpoints/light_lanes.h"
 #include "kernels/endpoints/scene_box_lanes.h"
@@ -28,8 +26,8 @@ namespace {
 template <class S>
 WAVECREST_INLINE Mask showsInfinite(const StageContext<S>& context, UInt lane, Mask active) {
   if (!context.scene->hidesInfinite || context.depth > 1) return active;
-  if (context.paths == nullptr) return noLanes();
-  const UInt edges = gather(context.paths->proposed.headers.edges, select(active, lane, UInt(0u)));
+  if (context.lanes.edges == nullptr) return noLanes();
+  const UInt edges = gather(context.lanes.edges, select(active, lane, UInt(0u)));
   return andNot(active, edges == UInt(1u));
 }
 
@@ -39,16 +37,13 @@ struct EmissionRule {
   // Photon mapping: merging samples every path that has a vertex to merge at. Emission counts for paths of delta lobes
   // only. No other strategy samples these, so their MIS sums are 0.
   bool mergingAlone;
-  // Of each lane the one depth at which emission counts, or null. Multiplexed chains make each path by one strategy:
-  // emission counts at the vertex where s = 0 ends.
-  const uint32_t* depths = nullptr;
+  const uint32_t* depths;  // of each lane the one at which emission counts, or null
   uint32_t depth;
 
   explicit EmissionRule(const StageContext<S>& context)
-      : mergingAlone(context.mis.merge && !context.mis.nextEvent), depth(context.depth) {
-    const bool chooses = context.walk == Walk::camera && context.chains != nullptr && context.chains->multiplexed;
-    if (chooses) depths = context.chains->columns.emissionDepth;
-  }
+      : mergingAlone(context.mis.merge && !context.mis.nextEvent),
+        depths(context.walk == Walk::camera ? context.lanes.emissionDepth : nullptr),
+        depth(context.depth) {}
   template <class Real>
   WAVECREST_INLINE Mask counts(UInt lane, Mask active, const MisSums<Real>& mis) const {
     Mask counted = active;

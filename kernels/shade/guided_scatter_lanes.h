@@ -62,7 +62,7 @@ WAVECREST_NOINLINE GuidedSample<typename P::Real> guideSample(const StageContext
                                                               Mask active, UInt lane, ShadingLanes<P, kBsdfs> shading,
                                                               BsdfSample<typename P::Real> sample) {
   using Real = typename P::Real;
-  const GuideView& guide = *context.guide;
+  const GuideView& guide = *context.learned.guide;
   GuidedSample<Real> out{sample, Real(0), Real(0)};
   const GuideLanes at(guide, wave, active, i);
   const auto& paths = wave.paths;
@@ -133,8 +133,8 @@ WAVECREST_NOINLINE void recordDirections(const StageContext<typename P::Storage>
   append(zeroUnless(!specular, to<Float>(pdf) * at.solidAngle), m, records.pdf, out);
   append(to<Float>(slope), m, records.slope, out);
   append(to<Float>(maxComponent(before) * reciprocal(maxComponent(after))), m, records.survival, out);
-  append(context.depth == 1 ? worthOf(*context.guide, wave, m, i, lane, cell, carried) : Float(0), m, records.worth,
-         out);
+  append(context.depth == 1 ? worthOf(*context.learned.guide, wave, m, i, lane, cell, carried) : Float(0), m,
+         records.worth, out);
 }
 
 WAVECREST_SIMD_END

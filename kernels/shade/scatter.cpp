@@ -43,7 +43,7 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     auto sample = shading.sampled(active, u);
     // Where a render learns directions, the guide may replace the sample.
     Real slope(0), measure(0);
-    if (context.guide != nullptr) [[unlikely]] {
+    if (context.learned.guide != nullptr) [[unlikely]] {
       const auto guided = guideSample<P, kBsdfs>(context, wave, i, active, lane, shading, sample);
       sample = guided.sample;
       slope = guided.slope;
@@ -71,13 +71,13 @@ WAVECREST_NOINLINE size_t scatterRange(const StageContext<typename P::Storage>& 
     if (roulette) {
       const Real carried = maxComponent(throughput) * rouletteScale;
       Real before = maxComponent(arriving) * scaleBefore;
-      if (context.guide != nullptr) before = carried * reciprocal(max(measure, Real(1e-12f)));
+      if (context.learned.guide != nullptr) before = carried * reciprocal(max(measure, Real(1e-12f)));
       const Real q = survival(context.survival, carried, before);
       alive = alive & (to<Real>(u.d) < q);
       throughput = throughput * reciprocal(q);
     }
 
-    if (context.recordsDirections) [[unlikely]] {
+    if (context.learned.records) [[unlikely]] {
       recordDirections<P>(context, wave, i, alive, lane, arriving, direction, sample.pdf, slope, sample.specular,
                           arriving * sample.weight, throughput);
     }

@@ -80,11 +80,11 @@ class BidirectionalWalk {
     context_.sampler = {SamplerKind::independent, settings.seed, settings.iteration};
     context_.limits = settings.limits;
     context_.mis = misOf(strategies, compiled_->view.radius, settings);
-    context_.photonGrid = PhotonGrid<S>::over(compiled_->view.center, compiled_->view.radius, context_.mis.radius,
+    context_.light.grid = PhotonGrid<S>::over(compiled_->view.center, compiled_->view.radius, context_.mis.radius,
                                               static_cast<double>(settings.lightPaths));
     context_.counters = &counters;
     context_.film = area_.window();
-    context_.rouletteBelow = static_cast<S>(settings.rouletteBelow);
+    context_.light.rouletteBelow = static_cast<S>(settings.rouletteBelow);
   }
 
   StageCounters counters;
@@ -104,7 +104,7 @@ class BidirectionalWalk {
   const FilmArea& area() const { return area_; }
   const LightStore<S>& light() const { return light_; }
   const MisSettings& mis() const { return context_.mis; }
-  const PhotonGrid<S>& photonGrid() const { return context_.photonGrid; }
+  const PhotonGrid<S>& photonGrid() const { return context_.light.grid; }
   const PathLimits& limits() const { return settings_.limits; }
   const Stages<S>& stages() const { return stages_; }
   static constexpr ColumnNeeds kNeeds{
@@ -114,7 +114,7 @@ class BidirectionalWalk {
   void walkLight(WalkVisitor<S>& visitor) {
     context_.walk = Walk::light;
     context_.depth = 0;
-    context_.light = &light_;
+    context_.light.store = &light_;
     light_.clear();
     stages_.generateLightPaths(context_, wave_);
     visitor.generated(Walk::light, wave_);
@@ -158,12 +158,12 @@ class BidirectionalWalk {
 
   // One depth of light vertices has at most one pair to a lane: the first repetition joins them all.
   void connect(uint32_t lightDepth, WalkVisitor<S>& visitor) {
-    context_.lightDepths = {lightDepth, lightDepth};
-    context_.repetition = 0;
+    context_.light.depths = {lightDepth, lightDepth};
+    context_.light.repetition = 0;
     stages_.connectVertices(context_, wave_);
     visitor.connection(lightDepth, context_.depth, wave_);
     while (wave_.openPairs != 0) {
-      ++context_.repetition;
+      ++context_.light.repetition;
       stages_.connectVertices(context_, wave_);
       if (wave_.shadowRays.size != 0) throw std::logic_error("connect: a pair of another depth");
     }

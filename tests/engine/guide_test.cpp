@@ -58,8 +58,8 @@ struct FixedGuide {
   }
 
   void addTo(StageContext<float>& context) const {
-    context.cellTree = &tree.view();
-    context.guide = &guide;
+    context.learned.cells = &tree.view();
+    context.learned.guide = &guide;
   }
 
   CellTree tree;

@@ -109,7 +109,7 @@ class Recount : public WalkVisitor<float> {
       checkPlaces();
       buildMap();
     }
-    context.photons = &map_;
+    context.light.photons = &map_;
     walk_.stages().merge(context, wave);
     const size_t expected = depth + 1 > walk_.limits().maxDepth ? 0 : bruteForceMerges(depth, wave);
     EXPECT_EQ(walk_.counters.merges, merges + expected) << "depth " << depth;
@@ -231,16 +231,16 @@ class ConnectionsTogether : public WalkVisitor<float> {
   void connection(uint32_t, uint32_t, Wave<float>& wave) override { note(wave, oneByOne_); }
   void merging(uint32_t depth, Wave<float>& wave, StageContext<float>& context) override {
     std::multiset<Segment> together;
-    context.lightDepths = {};
-    context.repetition = 0;
+    context.light.depths = {};
+    context.light.repetition = 0;
     do {
       walk_.stages().connectVertices(context, wave);
       note(wave, together);
-      ++context.repetition;
+      ++context.light.repetition;
     } while (wave.openPairs != 0);
     EXPECT_EQ(together, oneByOne_) << "depth " << depth;
     segments += together.size();
-    repetitions = std::max(repetitions, context.repetition);
+    repetitions = std::max(repetitions, context.light.repetition);
     oneByOne_.clear();
   }
   size_t segments = 0;

@@ -130,7 +130,7 @@ class PathRecorder : public WalkVisitor<S> {
       for (size_t i = light.firstOf(lightDepth); i < light.firstOf(lightDepth + 1); i += 7) {
         const uint32_t lane = light.vertices.lane[i];
         takeSinglePhoton(static_cast<uint32_t>(i));
-        context.photons = &photon_;
+        context.light.photons = &photon_;
         walk_.stages().merge(context, wave);
         recordMerges(lightDepth, depth, lane, wave);
       }

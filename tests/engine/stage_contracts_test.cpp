@@ -26,7 +26,7 @@ class StageContractsTest : public testing::Test {
     context_.mis = plan_.pipeline.cameraPass().strategies;
     context_.mis.lightPaths = kPaths;
     context_.counters = &counters_;
-    context_.light = &store_;
+    context_.light.store = &store_;
     context_.limits = {.maxDepth = 6, .rouletteDepth = 6};
     wave_.pathCount = kPaths;
     walk(Walk::light, stages_.generateLightPaths);

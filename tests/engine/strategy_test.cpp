@@ -61,7 +61,7 @@ class StrategyImages : public WalkVisitor<float> {
     if (depth == 1) buildMaps();
     for (uint32_t lightDepth = 1; lightDepth <= maps_.size(); ++lightDepth) {
       if (lightDepth + depth > kLongest) continue;
-      context.photons = &maps_[lightDepth - 1];
+      context.light.photons = &maps_[lightDepth - 1];
       walk_.stages().merge(context, wave);
       add({true, lightDepth, lightDepth + depth}, wave);
     }

@@ -45,9 +45,9 @@ double meanOf(const MethodPage& page, const Scene& scene, uint64_t seed, uint32_
   StageContext<float> context;
   context.scene = &view;
   if (page.has(Fold::guide)) {
-    context.cellTree = &guide.cellTree();
-    context.guide = &guide.view();
-    context.recordsDirections = true;
+    context.learned.cells = &guide.cellTree();
+    context.learned.guide = &guide.view();
+    context.learned.records = true;
   }
   context.pixels = film.area().pixels.data();
   context.limits = settings.limits;

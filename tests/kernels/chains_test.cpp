@@ -43,7 +43,8 @@ class ToyChains {
     context.scene = &scene_;
     context.sampler = {SamplerKind::chain, 17, number, &state.samples};
     context.film = {0, 0, kWidth, kHeight};
-    context.chains = &state;
+    context.chains.state = &state;
+    context.lanes.pixel = state.columns.proposedPixel;
     context.counters = &counters;
     stages_.proposeMutations(context, wave_);
     stages_.generateCameraPaths(context, wave_);

@@ -100,7 +100,7 @@ class LightComparison {
 
   void call(Stage<S> stage, LightState<S>& state, StageCounters& counters) {
     context_.counters = &counters;
-    context_.light = &state.store;
+    context_.light.store = &state.store;
     stage(context_, state.wave);
   }
   void step(Stage<S> stage, LightState<S>& state) {
@@ -154,7 +154,7 @@ class LightComparison {
     copyStore(input.store, state.store, stage);
     context_.walk = stage.walk;
     context_.depth = stage.depth;
-    context_.repetition = 0;
+    context_.light.repetition = 0;
     StageCounters counters;
     call(stages.*stage.stage, state, counters);
     return counters;

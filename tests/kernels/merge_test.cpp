@@ -209,7 +209,7 @@ uint64_t runMerge(const MergeCase& param, const Cloud<S>& cloud, const Photons<S
   context.scene = &scene.view;
   context.mis = {.merge = true, .mergeWeights = false, .mergeNorm = 1, .radius = radius};
   context.depth = 1;
-  context.photons = &found.map;
+  context.light.photons = &found.map;
   context.counters = &counters;
   findStages<S>(param.isa, param.precision,
                 chooseSpecialization(featuresOf(Specialization::diffuseBidirectional), param.precision))
