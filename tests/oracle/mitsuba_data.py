@@ -16,6 +16,8 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 
+import numpy as np
+
 import image_statistics
 import renderers
 from oracle_test import leave_evidence
@@ -150,7 +152,7 @@ def compare_scene(mitsuba, arguments, path):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     run = renderers.WavecrestRun(path, "pt", arguments.spp, size, options=words)
-    ours = renderers.render_wavecrest(arguments.wavecrest, run, SEEDS, folder, reference.read_exr)
+    ours = np.stack([renderers.render_wavecrest(arguments.wavecrest, run, seed, folder, reference.read_exr) for seed in SEEDS])
     theirs = reference.render(arguments.spp, SEEDS)
     verdict = image_statistics.compare(ours, theirs)
     if verdict.equal:

@@ -1,9 +1,10 @@
 """Oracle tests: wavecrest and Mitsuba 3 must show the same pictures of scenes of cases.json, but for noise.
 
-    oracle_test.py --wavecrest PROGRAM (--group NAME | --case NAME) [--method METHOD] --out FOLDER
+    oracle_test.py --wavecrest PROGRAM --renders ORACLE_RENDERS (--group NAME | --case NAME) [--method METHOD] --out FOLDER
 
 A group is one process, because starting Mitsuba takes longer than a small picture, and Mitsuba renders each scene once
-for all methods. Status 0 if all are the same.
+for all methods. The images of wavecrest come from oracle_renders, one process for all seeds, and the first of them must be
+what the program writes. Status 0 if all are the same.
 Otherwise 1, and FOLDER/NAME-METHOD of each scene that differs holds wavecrest.exr, mitsuba.exr (means over all renders)
 and z.exr (per 8 x 8 tile and channel, how many standard deviations wavecrest is too bright).
 """
@@ -21,6 +22,8 @@ import image_statistics
 import renderers
 
 SEEDS = range(1, 17)  # a render of each program by each: enough for the variance of a tile to be known to 20 %
+# How far rounding may move a pixel: threads add up what is splatted and merged in any order.
+SAME_IMAGE = 1e-5
 
 
 @dataclasses.dataclass
@@ -75,13 +78,17 @@ def leave_evidence(mitsuba, folder, ours, theirs, verdict):
     print(f"oracle_test: see wavecrest.exr, mitsuba.exr and z.exr in {folder}")
 
 
-def same_picture(wavecrest, case, method, mitsuba, theirs, out):
+def same_picture(programs, case, method, mitsuba, theirs, out):
     """Renders the case and says whether it agrees with Mitsuba's images; what they showed is kept if they do not."""
     folder = out / f"{case.name}-{method.replace(' ', '-')}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
 
-    ours = renderers.render_wavecrest(wavecrest, case.run(method), SEEDS, folder, mitsuba.read_exr)
+    run = case.run(method)
+    ours = renderers.render_seeds(programs.renders, run, SEEDS, theirs.shape[1:])
+    written = renderers.render_wavecrest(programs.wavecrest, run, SEEDS[0], folder, mitsuba.read_exr)
+    if not np.allclose(written, ours[0], rtol=SAME_IMAGE, atol=SAME_IMAGE * ours.mean()):
+        sys.exit(f"oracle_test: {case.name} by {method}: `wavecrest render` writes another image than oracle_renders")
     if np.array_equal(ours[0], ours[1]):
         sys.exit(f"oracle_test: {case.name}: wavecrest gave the same image for two seeds; expected independent ones")
 
@@ -94,16 +101,17 @@ def same_picture(wavecrest, case, method, mitsuba, theirs, out):
     return verdict.equal
 
 
-def same_pictures(wavecrest, case, out):
+def same_pictures(programs, case, out):
     """Whether all methods of a case agree with Mitsuba."""
     mitsuba = renderers.MitsubaScene(case.reference, case.size, case.max_depth, any_filter=case.filters)
     theirs = mitsuba.render(case.spp, SEEDS)
-    return all([same_picture(wavecrest, case, method, mitsuba, theirs, out) for method in case.methods])
+    return all([same_picture(programs, case, method, mitsuba, theirs, out) for method in case.methods])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--wavecrest", required=True, type=pathlib.Path)
+    parser.add_argument("--renders", required=True, type=pathlib.Path)
     parser.add_argument("--group")
     parser.add_argument("--case")
     parser.add_argument("--method")
@@ -111,7 +119,7 @@ def main():
     arguments = parser.parse_args()
 
     cases = read_cases(arguments.group, arguments.case, arguments.method)
-    equal = [same_pictures(arguments.wavecrest, case, arguments.out) for case in cases]
+    equal = [same_pictures(arguments, case, arguments.out) for case in cases]
     sys.exit(0 if all(equal) else 1)
 
 

@@ -83,18 +83,25 @@ class WavecrestRun:
     options: tuple = ()  # further arguments
 
 
-def render_wavecrest(program, run, seeds, folder, read_exr):
-    """Runs the program once per seed, leaving its images in the folder."""
-    images = []
-    for seed in seeds:
-        output = folder / f"wavecrest-{seed}.exr"
+    def words(self):
+        """Arguments of `wavecrest render`, and of oracle_renders."""
         # Independent numbers: between seeds of Sobol points lies so little that Mitsuba's noise would decide alone, with
         # half of the degrees of freedom that the limits are for.
-        command = [program, "render", run.scene, "--method", run.method, "--spp", run.spp, "--seed", seed]
-        command += ["--sampler", "independent"]
-        if run.size:
-            command += ["--size", f"{run.size[0]}x{run.size[1]}"]
-        command += ["--progress", "none", "-o", output, *run.options]
-        subprocess.run([str(word) for word in command], check=True)
-        images.append(read_exr(output))
-    return np.stack(images)
+        size = ("--size", f"{self.size[0]}x{self.size[1]}") if self.size else ()
+        words = ("--method", self.method, "--spp", self.spp, "--sampler", "independent", *size, *self.options)
+        return [str(word) for word in words]
+
+
+def render_wavecrest(program, run, seed, folder, read_exr):
+    """Runs the program, leaving its image in the folder."""
+    output = str(folder / f"wavecrest-{seed}.exr")
+    command = [program, "render", run.scene, *run.words(), "--seed", str(seed), "--progress", "none", "-o", output]
+    subprocess.run(command, check=True)
+    return read_exr(output)
+
+
+def render_seeds(renders, run, seeds, shape):
+    """Runs oracle_renders, which is one process for consecutive seeds; shape is that of an image."""
+    command = [renders, run.scene, str(seeds[0]), str(seeds[-1]), *run.words()]
+    output = subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout
+    return np.frombuffer(output, np.float32).reshape(len(seeds), *shape)
