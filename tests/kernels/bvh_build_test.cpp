@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "kernels/extend/bvh.h"
+#include "tests/effort.h"
 #include "tests/kernels/closed_bodies.h"
 #include "tests/kernels/intersectors.h"
 
@@ -81,7 +82,7 @@ class Contents {
 };
 
 TEST(BvhTest, boxesHoldEverythingBelowThem) {
-  for (const size_t count : {1u, 2u, 4u, 5u, 30u, 3000u}) {
+  for (const size_t count : {size_t{1}, size_t{2}, size_t{4}, size_t{5}, size_t{30}, effort(3000, 500)}) {
     const auto list = crowd(count);
     const StageScene<float> scene(list);
     Contents contents;

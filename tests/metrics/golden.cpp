@@ -3,6 +3,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "tests/effort.h"
 #include "tests/metrics/golden_json.h"
 
 namespace wavecrest::test {
@@ -19,12 +20,16 @@ nlohmann::json goldenFigures(const std::string& file, const std::string& pair) {
   throw std::runtime_error("no golden figures for " + pair);
 }
 
+// Two thirds of all pixels. Odd sides and several levels are what the others have too.
+constexpr const char* kLargestPair = "p5_room_1024x768";
+
 const std::vector<GoldenPair>& goldenPairs() {
   static const std::vector<GoldenPair> pairs = [] {
     std::vector<GoldenPair> list;
     const auto figures = goldenJson("rmse.json");
     for (const auto& entry : figures["pairs"]) {
       const std::string name = entry["pair"];
+      if (!kFullSpeed && name == kLargestPair) continue;
       list.push_back({name, readCodes(goldenPath(name + "_ref.png")), readCodes(goldenPath(name + "_test.png"))});
     }
     return list;

@@ -27,6 +27,7 @@ struct GoldenPair {
   Image8 reference, test;
 };
 
+// All of them; under sanitizers without the largest.
 const std::vector<GoldenPair>& goldenPairs();
 
 // A figure of one pair in one golden file: a number, or one of a list.
