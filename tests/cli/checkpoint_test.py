@@ -81,9 +81,10 @@ class Broken(Checkpoints):
 class GoingOn(Checkpoints):
     def test_usr1_saves_now(self):
         for method in ("pt", "mlt", "vcm"):
-            whole, parts = (self.arguments(method, name, times=4) for name in ("whole.pfm", "parts.pfm"))
+            whole, parts = (self.arguments(method, name, times=2) for name in ("whole.pfm", "parts.pfm"))
             process = self.start(*parts, "--checkpoint", method)
-            time.sleep(0.2)
+            self.wait_for(lambda: (self.folder / f"{method}.lock").exists())
+            time.sleep(0.1)
             process.send_signal(signal.SIGUSR1)
             self.wait_for(lambda: (self.folder / method).exists())
             process.kill()

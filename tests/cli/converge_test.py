@@ -143,7 +143,7 @@ class Checks(Converge):
     def refuting(self):
         """A campaign that refutes a finding: a scene of this name in which path tracing does not fail at all."""
         room = self.write("pool-interior.xml", ROOM.replace("RADIANCE", "1"))
-        return [room, "--methods", "pt,lt", "--size", "32x24", "--time", "0.2s", "--clock", "cpu", "--seeds", "3"]
+        return [room, "--methods", "pt,lt", "--size", "32x24", "--time", "0.05s", "--clock", "cpu", "--seeds", "3"]
 
     def test_a_finding_that_does_not_hold_is_exit_code_4(self):
         result = self.converge(*self.refuting(), "--out", "a", "--check", expect=CHECK)
@@ -261,7 +261,7 @@ class Rows(Converge):
             self.assertEqual(campaign["merge_vertices"], vertices, profile)
 
     def test_a_run_is_charged_by_the_clock_that_is_asked_for(self):
-        arguments = ["--methods", "pt", "--size", "32x24", "--time", "0.2s", "--seeds", "1", "--threads", "2"]
+        arguments = ["--methods", "pt", "--size", "32x24", "--time", "0.05s", "--seeds", "1", "--threads", "2"]
         self.converge("cornell-diffuse", *arguments, "--clock", "cpu", "--out", "a")
         stats = self.runs("a")[0]["pt"]
         self.assertEqual(stats["clock"], "cpu")
