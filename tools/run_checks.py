@@ -81,7 +81,8 @@ def test(tally, preset, *selection, batches=True, **environment):
     shutil.rmtree(report.parent / "batches", ignore_errors=True)
     command = ["ctest", "--test-dir", f"build/{preset}", *(["--build-config", "batches"] if batches else [])]
     command += ["--output-junit", str(report), "--output-on-failure"]
-    command += ["--no-tests=error", "--parallel", str(JOBS), "--timeout", str(TEST_TIMEOUT_SECONDS), *selection]
+    # One more than there are cores: some tests wait more than they compute.
+    command += ["--no-tests=error", "--parallel", str(JOBS + 1), "--timeout", str(TEST_TIMEOUT_SECONDS), *selection]
     print(f"\n=== {step}: {' '.join(command)}", flush=True)
     start = time.monotonic()
     status = subprocess.run(command, cwd=ROOT, env={**os.environ, **environment}, check=False).returncode
