@@ -16,7 +16,11 @@
 
 namespace {
 
-using namespace wavecrest::api;
+using wavecrest::api::Image;
+using wavecrest::api::LoadOptions;
+using wavecrest::api::Render;
+using wavecrest::api::RenderOptions;
+using wavecrest::api::Scene;
 
 struct Choices {
   LoadOptions load{};
