@@ -93,15 +93,16 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
                      const RenderSettings& settings) {
   if (!(found.pixel > 0)) return kFixedRadius;
   constexpr double kFirstVertex = 2.1, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
-  constexpr double kBesideConnections = 5;                  // photons in a search
+  constexpr double kPhotons = 5;                            // in a search: all that vcm needs, and the least of ppm
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
   const double pixel = found.pixel * std::sqrt(filmPixels / kUsualFilm);
   const double photons = std::numbers::pi * pixel * pixel * photonsPerArea * kUsualFilm;
   const bool connects = choosesMergeVertices(settings.method);
   const bool atFirst =
       connects ? settings.mergeVertices == MergeVertices::first : strategiesOf(settings.method).mergeAtFirstVertex;
-  const double pixels = connects && atFirst ? std::sqrt(kBesideConnections / photons)
-                                            : (atFirst ? kFirstVertex : kAllVertices) * std::cbrt(1 / photons);
+  const double ofPhotons = std::sqrt(kPhotons / photons), smooth = std::cbrt(1 / photons);
+  double pixels = kAllVertices * smooth;
+  if (atFirst) pixels = connects ? ofPhotons : std::max(kFirstVertex * smooth, ofPhotons);
   // Radii of equally many light paths since the first are equal, however many there are to an iteration; but where all
   // vertices merge, searches take most of the time, and as many photons as there would then be in one are too many.
   const double shrunk = std::pow(lightPaths / kUsualFilm, (settings.radiusAlpha - 1) / 2 - (atFirst ? 0 : 0.25));
