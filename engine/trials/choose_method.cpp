@@ -81,14 +81,13 @@ FilmSettings scaledFilm(FilmSettings film, double scale) {
   return film;
 }
 
-// The settings on the scene's film, scaled to about so many pixels in its crop window.
-RenderSettings onFilmOf(double pixels, const FilmSettings& film, RenderSettings settings) {
-  const auto all = static_cast<double>(pixelsOf(film));
-  settings.film = scaledFilm(film, std::sqrt(pixels / all));
+// The settings on a scaled film, with light paths in proportion.
+RenderSettings onScaledFilm(RenderSettings settings, const FilmSettings& film, double scale) {
+  settings.film = scaledFilm(film, scale);
   if (settings.lightPaths) {
-    const double paths =
-        static_cast<double>(*settings.lightPaths) * static_cast<double>(pixelsOf(*settings.film)) / all;
-    settings.lightPaths = std::max<uint64_t>(static_cast<uint64_t>(paths), 1);
+    const double share = static_cast<double>(pixelsOf(*settings.film)) / static_cast<double>(pixelsOf(film));
+    settings.lightPaths =
+        std::max<uint64_t>(static_cast<uint64_t>(share * static_cast<double>(*settings.lightPaths)), 1);
   }
   return settings;
 }
@@ -96,14 +95,17 @@ RenderSettings onFilmOf(double pixels, const FilmSettings& film, RenderSettings 
 template <class S>
 RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings, Method method,
                              const std::shared_ptr<const CompiledScene<S>>& compiled) {
-  const RenderSettings own = withMethod(settings, method);
-  const double pixels = std::min(static_cast<double>(pixelsOf(scene.film)), kTrialPixels);
-  RenderSettings trial = onFilmOf(pixels, scene.film, own);
+  const FilmSettings& film = scene.film;
+  RenderSettings own = withMethod(settings, method);
+  own.memoryBytes.reset();  // of the render, which may be smaller than a usual film
+  const double scale = std::min(std::sqrt(kTrialPixels / static_cast<double>(pixelsOf(film))), 1.0);
+  RenderSettings trial = onScaledFilm(own, film, scale);
   if (strategiesOf(method).merge) {
     // As many pixels as on a usual film, so that searches see as many photons as there.
-    const RenderSettings usual = onFilmOf(kUsualFilm, scene.film, own);
+    const double usualScale = std::sqrt(kUsualFilm / (static_cast<double>(film.width) * film.height));
+    const RenderSettings usual = onScaledFilm(own, film, usualScale);
     const RenderPlan<S> plan = finishedPlan<S>(scene, usual, filmArea(*usual.film), compiled);
-    trial.radius = plan.mergeRadius.first * std::sqrt(kUsualFilm / pixels);
+    trial.radius = plan.mergeRadius.first * usualScale / scale;
   }
   trial.seed = kTrialSeed;
   if (trialsOf(settings.method).independent) trial.sampler = SamplerKind::independent;
@@ -111,7 +113,6 @@ RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings,
   trial.firstIteration = 0;
   trial.iterations.reset();
   trial.seconds.reset();
-  trial.memoryBytes.reset();
   trial.waveSize = kTrialWave;
   trial.piecesForThreads = kTrialPieces;
   return trial;

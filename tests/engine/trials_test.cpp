@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "engine/pilot/finished_plan.h"
 #include "engine/session/session.h"
 #include "engine/trials/choose_method.h"
 #include "engine/trials/trial_error.h"
@@ -156,6 +157,15 @@ TEST(Evcm, looksAtNoMoreThanASmallImage) {
   for (size_t i = 0; i < small.trials.size(); ++i) {
     EXPECT_EQ(large.trials[i].inefficiency(), small.trials[i].inefficiency()) << i;
   }
+}
+
+TEST(Evcm, isNotHeldToTheBudgetOfASmallFilm) {
+  const Scene scene = sceneFile("cornell-diffuse", 16, 12);
+  RenderSettings settings = evcmSettings();
+  RenderSettings vcm = settings;
+  vcm.method = Method::vcm;
+  settings.memoryBytes = planMemory(scene, vcm).use.total();
+  EXPECT_EQ(choiceFor(scene, settings).method, choiceFor(scene).method);
 }
 
 TEST(Evcm, takesAllStrategiesWhereTrialsFindNoLight) {
