@@ -189,13 +189,13 @@ struct ChainContext {
   PathMutations<S>* paths = nullptr;  // of path space: the paths and what is to change about them
 };
 
-// What is already settled of the path of each lane, before it is walked. Null: nothing.
+// Columns by lane for walks whose paths are partly decided in advance, as those of Markov chains. Null: not decided.
 struct LaneColumns {
   const uint32_t* lightPaths = nullptr;     // lanes in which light paths begin; null: the first ones
   const uint32_t* emissionDepth = nullptr;  // the one depth at which emission counts, of camera walks
   const uint32_t* edges = nullptr;          // of the whole path, of which a walk may be a part
-  // Where lanes keep the pixel of a path that chooses its own, over the film's window. Contributions go to such lanes,
-  // and no lane has its neighbour's view.
+  // Output: the pixel that each lane's path chose in the film's window. If set, contributions add to lanes instead of
+  // splats, and camera rays of neighbouring lanes are not coherent. Null: pixels follow from StageContext::pixels.
   Column<uint32_t> pixel;
 };
 

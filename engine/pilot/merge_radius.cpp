@@ -93,7 +93,7 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
                      const RenderSettings& settings) {
   if (!(found.pixel > 0)) return kFixedRadius;
   constexpr double kFirstVertex = 2.1, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
-  constexpr double kPhotons = 5;                            // in a search: all that vcm needs, and the least of ppm
+  constexpr double kPhotons = 5;                            // in a search: those of vcm, the least of ppm
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
   const double pixel = found.pixel * std::sqrt(filmPixels / kUsualFilm);
   const double photons = std::numbers::pi * pixel * pixel * photonsPerArea * kUsualFilm;
@@ -103,8 +103,8 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
   const double ofPhotons = std::sqrt(kPhotons / photons), smooth = std::cbrt(1 / photons);
   double pixels = kAllVertices * smooth;
   if (atFirst) pixels = connects ? ofPhotons : std::max(kFirstVertex * smooth, ofPhotons);
-  // Radii of equally many light paths since the first are equal, however many there are to an iteration; but where all
-  // vertices merge, searches take most of the time, and as many photons as there would then be in one are too many.
+  // The radius depends on the total number of light paths so far, not on how many an iteration has. Where all vertices
+  // merge, photon searches dominate the cost, so the radius shrinks faster with the light paths of an iteration.
   const double shrunk = std::pow(lightPaths / kUsualFilm, (settings.radiusAlpha - 1) / 2 - (atFirst ? 0 : 0.25));
   const double wanted =
       std::max(std::min(pixels, kMostPixels) * pixel * shrunk, kLeastPixels * found.pixel) / found.scene;

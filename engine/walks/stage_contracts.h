@@ -1,5 +1,4 @@
-// What every stage may rely on and must leave behind, checked where checksContracts
-// is set: contracts_test sets it.
+// What every stage may rely on and must leave behind. Checked only while checksContracts is set, as in contracts_test.
 //
 // Queues fit their memory, counts agree with each other, indices lead to something, directions are unit vectors, and no
 // number is NaN. Columns.h and kernels/stages.h say the contracts in words; this is the one place that tests them, so

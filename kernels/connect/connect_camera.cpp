@@ -2,7 +2,7 @@
 // sees it.
 //
 // in: Rays (at vertices), Hits, Surfaces, PathStates [n] of a light walk. out: ShadowRays [<= n] in that order, whose
-// targets are pixels of the film's window; or lanes, where those keep their pixels.
+// targets are pixels of the film's window; or lanes, where LaneColumns::pixel is set.
 // METHODS 4.3, 5.6. The contribution leaves out 1/N_L: the film divides by the number of light paths, as the average
 // over passes does. Densities are per pixel whatever the reconstruction filter, so weights do not depend on it.
 #include "kernels/endpoints/camera_lanes.h"
@@ -15,9 +15,9 @@ WAVECREST_SIMD_BEGIN
 
 namespace {
 
-// Place on the lens (a, b) and choice of the pixel (c, d). Numbers for both of a lane that chooses its pixel, as a
-// Markov chain does, are those that its camera walk has at the lens, whatever the strategy: a step that changes the
-// strategy keeps the place on the lens.
+// Place on the lens (a, b) and choice of the pixel (c, d). A lane that chooses its pixel (a Markov chain) takes both
+// from the numbers of its camera walk, whatever the strategy: a mutation that changes the strategy keeps the lens
+// position.
 template <class S>
 WAVECREST_INLINE Uniform4 lensNumbers(const StageContext<S>& context, const Wave<S>& wave, UInt lane) {
   if (context.lanes.pixel == nullptr) return draw(context, pathOf(context, wave, lane), Block::light);

@@ -81,7 +81,7 @@ WAVECREST_INLINE void extendThrough(const StageContext<S>& context, Wave<S>& wav
   context.counters->raysClosest += count;
   wave.hits.size = 0;
   wave.hits.claim(count);
-  // Rays from the eye stay together, but for those through pixels that lanes choose.
+  // Camera rays of neighbouring lanes are coherent, except where each lane chooses a pixel of its own.
   if (context.walk == Walk::camera && context.depth == 1 && context.lanes.pixel == nullptr) {
     walkTogether<Packet>(scene, wave.rays, wave.hits);
   } else {

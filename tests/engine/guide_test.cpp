@@ -296,7 +296,7 @@ TEST(Guide, goesOnInTheMiddleOfABlock) {
   }
 }
 
-// What a path is worth is learned, and is in checkpoints, only where roulette goes by it.
+// The worth of paths is learned, and saved in checkpoints, only if Russian roulette uses it.
 TEST(Guide, learnsNoWorthWhereRouletteGoesByAlbedo) {
   const Scene scene = sceneFile("cornell-glossy", 40, 27);
   const auto stateSize = [&](Roulette roulette) {

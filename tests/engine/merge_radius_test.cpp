@@ -75,7 +75,7 @@ TEST(AutoRadius, isThatOfEquallyManyLightPaths) {
   }
 }
 
-// Searches of bpm, at all vertices, are most of its time.
+// bpm searches photons at every vertex, which dominates its cost.
 TEST(AutoRadius, ofBpmIsSmallerWhereAnIterationHasManyLightPaths) {
   RenderSettings settings = automatic(Method::bpm);
   settings.lightPaths = 64 * 64;
