@@ -172,8 +172,10 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   };
   // What the campaign is: stored with the results, and compared with them by --resume.
   defining("scenes", "built-in scenes or XML files; default: the nine, as far as they are there");
-  defining("--methods",
-           "methods, separated by commas; also mlt-pathspace, mlt-pssmlt, ppm-direct; default: all methods")
+  defining(
+      "--methods",
+      "methods, separated by commas; also mlt-pathspace, mlt-pssmlt, ppm-direct, and METHOD-auto, with the settings of "
+      "profile quick; default: the profile's")
       .separatedByCommas()
       .repeatable();
   defining("--profile", "quick, standard, study or paper; default: quick").oneValue();
@@ -197,7 +199,7 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
       .oneValue();
   defining("--roulette", "what decides whether walks go on: throughput, albedo or efficiency; default: the profile's")
       .oneValue();
-  defining("--mlt", "rows of mlt: pathspace, mmlt, pssmlt, separated by commas; default: the profile's")
+  defining("--mlt", "what the row mlt stands for: pathspace, mmlt, pssmlt, separated by commas; default: mmlt")
       .separatedByCommas()
       .repeatable();
   command.addFlag("--direct-pass", options->directPass, "ppm also with direct light by next event estimation");
@@ -213,6 +215,9 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   command.add("--shard", options->shard, "i/n: do only the i-th of n parts").showDefault();
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
   addViewOption(command, options->view);
+  command.addFlag(
+      "--checkpoints", options->checkpoints,
+      "keep the state of each run every minute and at its end: --resume goes on within it, also with more time");
   command.addFlag("--resume", options->resume,
                   "go on with the campaign in --out, or extend it: more scenes, methods, seeds, time");
   command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");

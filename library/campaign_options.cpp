@@ -77,14 +77,13 @@ const Profile& chosenProfile(const CampaignOptions& options) {
   return profiles()[parseChoice("--profile", get(options, "--profile", "quick"), names)];
 }
 
-// Run time and snapshot interval of a scene: the profile's, scaled by --time-factor or replaced by --time and
-// --snapshot-every.
+// Run time and snapshot interval of a scene: the profile's, the time scaled by --time-factor, or those of --time and
+// --snapshot-every. A longer run has the snapshots of a shorter one, and further ones.
 Effort effortOf(const CampaignOptions& options, const Profile& profile, std::string_view scene) {
   Effort effort = profile.effort(scene);
   if (has(options, "--time-factor")) {
     const double factor = parseNumber("--time-factor", get(options, "--time-factor"), kTimeFactorRange);
     effort.seconds *= factor;
-    effort.snapshotSeconds *= factor;
   }
   if (has(options, "--time")) effort.seconds = parseDuration("--time", get(options, "--time"));
   if (has(options, "--snapshot-every")) {
@@ -203,6 +202,7 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
   // Files: outputs, images to keep, and references.
   settings.out = options.out;
   settings.shard = parseShard(options.shard);
+  settings.keepStates = options.checkpoints;
   settings.keepImages = parseChoice("--images", get(options, "--images", "all"), kImageChoices) == 0;
   settings.referenceRequired = !options.reference.empty();
   settings.referenceFolder = options.reference.empty() ? sceneReferences(settings.size) : fs::path(options.reference);

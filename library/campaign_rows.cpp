@@ -19,49 +19,49 @@ const std::vector<std::string>* given(const CampaignWords& words, const char* na
   return found == words.end() || found->second.empty() ? nullptr : &found->second;
 }
 
-// Rows that --methods can ask for alone.
-const std::array kSpecialRows{CampaignMethod{.method = Method::mlt, .variant = MetropolisVariant::pathspace},
-                              CampaignMethod{.method = Method::mlt, .variant = MetropolisVariant::pssmlt},
-                              CampaignMethod{.method = Method::ppm, .directPass = true}};
+// The row of each name that --methods takes: a plain one of each method, then those of other choices.
+std::vector<CampaignMethod> allRows() {
+  std::vector<CampaignMethod> rows;
+  for (const MethodEntry& entry : kMethods) rows.push_back({.method = entry.method});
+  rows.push_back({.method = Method::mlt, .variant = MetropolisVariant::pathspace});
+  rows.push_back({.method = Method::mlt, .variant = MetropolisVariant::pssmlt});
+  rows.push_back({.method = Method::ppm, .directPass = true});
+  for (const MethodEntry& entry : kMethods) {
+    if (entry.method != Method::mlt) rows.push_back({.method = entry.method, .automatic = true});
+  }
+  return rows;
+}
 
-// The variants of mlt that are rows of the campaign: those of --mlt, or by the profile mmlt and perhaps path space.
-std::vector<MetropolisVariant> chosenVariants(const CampaignWords& words, const Profile& profile) {
-  std::vector<MetropolisVariant> variants;
-  if (const auto* named = given(words, "--mlt")) {
-    for (const std::string& word : *named) {
-      variants.push_back(static_cast<MetropolisVariant>(parseChoice("--mlt", word, kMetropolisVariantNames)));
+// The rows for a word of --methods: that of this name. --mlt says which rows "mlt" stands for, --direct-pass adds one
+// to "ppm".
+std::vector<CampaignMethod> rowsOfWord(const std::string& word, const CampaignWords& words) {
+  const CampaignMethod row = allRows()[parseChoice("--methods", word, campaignMethodNames())];
+  std::vector<CampaignMethod> rows{row};
+  const auto* variants = given(words, "--mlt");
+  if (row == CampaignMethod{.method = Method::mlt} && variants != nullptr) {
+    rows.clear();
+    for (const std::string& name : *variants) {
+      const size_t variant = parseChoice("--mlt", name, kMetropolisVariantNames);
+      rows.push_back({.method = Method::mlt, .variant = static_cast<MetropolisVariant>(variant)});
     }
-    return variants;
   }
-  if (profile.studyRows) variants.push_back(MetropolisVariant::pathspace);
-  variants.push_back(MetropolisVariant::mmlt);
-  return variants;
+  if (row == CampaignMethod{.method = Method::ppm} && given(words, "--direct-pass") != nullptr) {
+    rows.push_back({.method = Method::ppm, .directPass = true});
+  }
+  return rows;
 }
 
-// The rows for a word of --methods. A plain method has all rows that the profile and the options give it. The name of a
-// row ("mlt-pathspace", "ppm-direct") stands for that row alone.
-std::vector<CampaignMethod> rowsOfWord(const std::string& word, const std::vector<MetropolisVariant>& variants,
-                                       DirectPass directPass) {
-  const size_t at = parseChoice("--methods", word, campaignMethodNames());
-  if (at < std::size(kMethods)) return rowsOf(kMethods[at].method, variants, directPass);
-  return {kSpecialRows[at - std::size(kMethods)]};
-}
-
-// All rows of the campaign in the order of the words, each once.
+// All rows of the campaign in the order of the words, each once: two words may stand for the same row.
 std::vector<CampaignMethod> chosenMethods(const CampaignWords& words, const Profile& profile) {
-  const std::vector<MetropolisVariant> variants = chosenVariants(words, profile);
-  // ppm has a second row, with a direct pass, if the profile or the options ask for it.
-  const bool direct = profile.studyRows || given(words, "--direct-pass") != nullptr;
-  std::vector<std::string> names;
-  if (const auto* named = given(words, "--methods")) {
-    names = *named;
-  } else {
-    names = defaultMethods(profile);
+  const auto* named = given(words, "--methods");
+  std::vector<std::string> names = named != nullptr ? *named : defaultMethods(profile);
+  // --mlt takes the place of the profile's choice.
+  if (named == nullptr && given(words, "--mlt") != nullptr) {
+    std::erase_if(names, [](const std::string& name) { return name.starts_with("mlt-"); });
   }
-  // Two words may stand for the same row.
   std::vector<CampaignMethod> methods;
   for (const std::string& name : names) {
-    for (const CampaignMethod& row : rowsOfWord(name, variants, direct ? DirectPass::both : DirectPass::no)) {
+    for (const CampaignMethod& row : rowsOfWord(name, words)) {
       if (std::find(methods.begin(), methods.end(), row) == methods.end()) methods.push_back(row);
     }
   }
@@ -71,25 +71,20 @@ std::vector<CampaignMethod> chosenMethods(const CampaignWords& words, const Prof
 }  // namespace
 
 std::span<const std::string_view> campaignMethodNames() {
-  static const auto special = [] {
-    std::array<std::string, kSpecialRows.size()> names;
-    for (size_t i = 0; i < names.size(); ++i) names[i] = kSpecialRows[i].name();
-    return names;
-  }();
-  static const auto names = [] {
-    std::vector<std::string_view> all;
-    all.reserve(kMethods.size());
-    for (const MethodEntry& entry : kMethods) all.push_back(entry.name);
-    all.insert(all.end(), special.begin(), special.end());
+  static const auto texts = [] {
+    std::vector<std::string> all;
+    for (const CampaignMethod& row : allRows()) all.push_back(row.name());
     return all;
   }();
+  static const std::vector<std::string_view> names(texts.begin(), texts.end());
   return names;
 }
 
 std::vector<std::string> defaultMethods(const Profile& profile) {
-  const size_t count = profile.studyRows ? kStudyMethods : kMethods.size();
   std::vector<std::string> names;
-  for (const MethodEntry& entry : std::span(kMethods).first(count)) names.emplace_back(entry.name);
+  for (const CampaignMethod& row : profile.rows) names.push_back(row.name());
+  if (!names.empty()) return names;
+  for (const MethodEntry& entry : kMethods) names.emplace_back(entry.name);
   return names;
 }
 
@@ -139,25 +134,32 @@ void refuseUnusedWords(const CampaignWords& words, const CampaignSettings& setti
   const auto anyRow = [&](const auto& test) {
     return std::any_of(settings.methods.begin(), settings.methods.end(), test);
   };
+  // Rows with settings of their own, "-auto", have no use for any of the campaign's.
+  const auto anyMethod = [&](bool (*test)(Method)) {
+    return anyRow([test](const CampaignMethod& row) { return !row.automatic && test(row.method); });
+  };
   // Options of merging methods.
   const std::pair<const char*, bool> merging[] = {
       {"--radius", given(words, "--radius") != nullptr},
       {"--radius-alpha", settings.render.radiusAlpha != RenderSettings().radiusAlpha},
       {"--light-paths", given(words, "--light-paths") != nullptr}};
-  const bool merges = anyRow([](const CampaignMethod& row) { return mergesPaths(row.method); });
+  const bool merges = anyMethod(mergesPaths);
   for (const auto& [name, chosen] : merging) {
     if (!chosen || merges) continue;
     throw UsageError(fmt::format("{}: no method of the campaign merges; expected {} among --methods", name,
                                  methodsWith(mergesPaths)));
   }
-  const bool walks = anyRow([](const CampaignMethod& row) { return hasRouletteChoice(row.method); });
+  const bool walks = anyMethod(hasRouletteChoice);
   if (given(words, "--roulette") != nullptr && !walks) {
     throw UsageError(fmt::format("--roulette: no method of the campaign has the choice; expected {} among --methods",
                                  methodsWith(hasRouletteChoice)));
   }
-  const bool choosesVertices = anyRow([](const CampaignMethod& row) { return choosesMergeVertices(row.method); });
+  const bool choosesVertices = anyMethod(choosesMergeVertices);
   if (given(words, "--merge-vertices") != nullptr && !choosesVertices) {
     throw UsageError("--merge-vertices: is for vcm alone; expected vcm among --methods");
+  }
+  if (given(words, "--sampler") != nullptr && !anyMethod([](Method) { return true; })) {
+    throw UsageError("--sampler: is for no row of the campaign; expected one without -auto among --methods");
   }
   // Options that make rows of ppm and mlt.
   if (given(words, "--direct-pass") != nullptr && !anyRow([](const CampaignMethod& row) { return row.directPass; })) {

@@ -14,10 +14,11 @@ namespace wavecrest {
 
 using CampaignWords = std::map<std::string, std::vector<std::string>>;  // by option name; only what was given
 
-// What --methods of a campaign takes: all methods, and the rows that have names of their own ("ppm-direct").
+// What --methods of a campaign takes, each the name of one row: all methods, and those of other choices ("ppm-direct",
+// "vcm-auto").
 std::span<const std::string_view> campaignMethodNames();
 
-// The methods of a campaign without --methods: all, or of the study's profiles those of the study.
+// The rows of a campaign without --methods: those of the profile, or one of each method.
 std::vector<std::string> defaultMethods(const Profile& profile);
 
 // NAME=VALUE of a scene's variables; UsageError for any other word.

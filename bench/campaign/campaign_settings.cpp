@@ -16,15 +16,36 @@ Effort paperEffort(std::string_view scene) {
   return {.seconds = 60 * studyMinutes(scene), .snapshotSeconds = simple ? 6.0 : 20.0};
 }
 
-// A tenth of that: 3, 6 or 12 minutes, in the study's proportions 1 : 2 : 4. Snapshots are close together at first,
-// where curves are steep, and a 24th of the run apart later.
+// A fifth of that: 6, 12 or 24 minutes, in the study's proportions 1 : 2 : 4, in which two cores make the study's
+// number of iterations (bench/claims/README.md). Snapshots are close together at first, where curves are steep, and a
+// 24th of the run apart later.
 Effort studyEffort(std::string_view scene) {
-  const double seconds = 6 * studyMinutes(scene);
+  const double seconds = 12 * studyMinutes(scene);
   return {.seconds = seconds, .snapshotSeconds = seconds / 24, .logarithmicFirst = true};
 }
 
 // Light paths of an iteration in the study: as many as its images have pixels.
 constexpr uint64_t kStudyLightPaths = 1024 * 768;
+
+constexpr CampaignMethod rowOf(Method method) { return {.method = method}; }
+constexpr CampaignMethod automatic(Method method) { return {.method = method, .automatic = true}; }
+constexpr CampaignMethod kPathSpace{.method = Method::mlt, .variant = MetropolisVariant::pathspace};
+
+// The methods of the study, which is ambiguous about mlt and the direct light of ppm.
+constexpr std::array kStandardRows{rowOf(Method::pt),
+                                   rowOf(Method::lt),
+                                   rowOf(Method::bpt),
+                                   kPathSpace,
+                                   rowOf(Method::mlt),
+                                   rowOf(Method::ppm),
+                                   CampaignMethod{.method = Method::ppm, .directPass = true},
+                                   rowOf(Method::bpm),
+                                   rowOf(Method::vcm)};
+// Those of the study with its settings, and the best that there is now.
+constexpr std::array kStudyRows{
+    rowOf(Method::pt),      rowOf(Method::lt),  rowOf(Method::bpt),     kPathSpace,
+    rowOf(Method::ppm),     rowOf(Method::vcm), automatic(Method::ppm), automatic(Method::bpm),
+    automatic(Method::vcm), rowOf(Method::mlt), automatic(Method::gpt), automatic(Method::evcm)};
 
 // Snapshots without an interval are at render times of a fixed ratio.
 constexpr std::array kProfiles{
@@ -33,8 +54,8 @@ constexpr std::array kProfiles{
             .size = {256, 192},
             .seeds = 2,
             .ownReferences = false,
+            .rows = {},
             .lightPaths = 0,
-            .studyRows = false,
             .radius = {},
             .roulette = Roulette::efficiency,
             .mergeVertices = MergeVertices::first,
@@ -46,8 +67,8 @@ constexpr std::array kProfiles{
             .size = {256, 192},
             .seeds = 3,
             .ownReferences = false,
+            .rows = kStandardRows,
             .lightPaths = kStudyLightPaths,
-            .studyRows = true,
             .radius = kStudyRadius,
             .roulette = Roulette::throughput,
             .mergeVertices = MergeVertices::all,
@@ -55,12 +76,12 @@ constexpr std::array kProfiles{
             .balancedWalks = false,
             .effort = [](std::string_view) { return Effort{.seconds = 30}; }},
     Profile{.name = "study",
-            .description = "the study's size, light paths and radius in a tenth of its time: ten hours a seed",
+            .description = "the study's size, light paths and radius, and its number of iterations: 25 hours a seed",
             .size = {1024, 768},
             .seeds = 1,
             .ownReferences = true,
+            .rows = kStudyRows,
             .lightPaths = kStudyLightPaths,
-            .studyRows = true,
             .radius = kStudyRadius,
             .roulette = Roulette::throughput,
             .mergeVertices = MergeVertices::all,
@@ -72,8 +93,8 @@ constexpr std::array kProfiles{
             .size = {1024, 768},
             .seeds = 1,
             .ownReferences = true,
+            .rows = kStudyRows,
             .lightPaths = kStudyLightPaths,
-            .studyRows = true,
             .radius = kStudyRadius,
             .roulette = Roulette::throughput,
             .mergeVertices = MergeVertices::all,
@@ -98,21 +119,8 @@ std::string CampaignMethod::name() const {
   if (method == Method::mlt && variant != MetropolisVariant::mmlt) {
     name += "-" + std::string(kMetropolisVariantNames[static_cast<size_t>(variant)]);
   }
-  return directPass ? name + "-direct" : name;
-}
-
-std::vector<CampaignMethod> rowsOf(Method method, std::span<const MetropolisVariant> variants, DirectPass directPass) {
-  std::vector<CampaignMethod> rows;
-  // A row for each variant of mlt; a row with and one without the direct pass of ppm; one row for others.
-  if (method == Method::mlt) {
-    for (const MetropolisVariant variant : variants) rows.push_back({.method = method, .variant = variant});
-  } else if (method == Method::ppm) {
-    if (directPass != DirectPass::only) rows.push_back({.method = method});
-    if (directPass != DirectPass::no) rows.push_back({.method = method, .directPass = true});
-  } else {
-    rows.push_back({.method = method});
-  }
-  return rows;
+  if (directPass) name += "-direct";
+  return automatic ? name + "-auto" : name;
 }
 
 std::filesystem::path resultsFile(const CampaignSettings& settings) {

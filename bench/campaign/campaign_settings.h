@@ -15,19 +15,17 @@
 namespace wavecrest {
 
 // A row of a campaign: a method with the choices that make it another one, which its name tells: "mlt-pathspace" is mlt
-// with chains in path space, "ppm-direct" ppm with direct light by next event estimation.
+// with chains in path space, "ppm-direct" ppm with direct light by next event estimation, "ppm-auto" ppm with the
+// settings of profile quick, whatever the campaign's own.
 struct CampaignMethod {
   Method method = Method::pt;
   MetropolisVariant variant = MetropolisVariant::mmlt;
   bool directPass = false;
+  bool automatic = false;  // radius, light paths, roulette, merges and sampler as the image and the method need
 
   std::string name() const;
   bool operator==(const CampaignMethod&) const = default;
 };
-
-// The rows of a method: one, but of mlt one for each variant, and of ppm where both are asked for the plain one first.
-enum class DirectPass { no, only, both };
-std::vector<CampaignMethod> rowsOf(Method method, std::span<const MetropolisVariant> variants, DirectPass directPass);
 
 // Render time of each run of a scene, and when its snapshots are taken.
 struct Effort {
@@ -43,12 +41,10 @@ struct Profile {
   std::string_view description;  // one line
   std::array<uint32_t, 2> size;
   unsigned seeds;
-  bool ownReferences;  // renders them itself, if none are given
-  // Of methods that merge: light paths of an iteration, 0 for one per pixel; of mlt: in path space as well; of ppm:
-  // with a direct pass as well.
-  uint64_t lightPaths;
-  bool studyRows;
-  std::optional<double> radius;  // of the first merges; unset: what the image needs
+  bool ownReferences;                    // renders them itself, if none are given
+  std::span<const CampaignMethod> rows;  // none: one of each method
+  uint64_t lightPaths;                   // of methods that merge, in an iteration; 0: one per pixel
+  std::optional<double> radius;          // of the first merges; unset: what the image needs
   Roulette roulette;
   MergeVertices mergeVertices;         // of vcm
   std::optional<SamplerKind> sampler;  // unset: the best of each method
@@ -86,6 +82,7 @@ struct CampaignSettings {
   std::filesystem::path referenceFolder;           // of SCENE.exr
   bool referenceRequired = false;                  // a reference that is not there is an error, else it is rendered
   bool keepImages = true;                          // of all snapshots, else of the last of each run
+  bool keepStates = false;                         // of all runs, so that longer ones go on with them
   Shard shard;
 };
 

@@ -7,6 +7,7 @@
 
 #include "bench/campaign/bias.h"
 #include "bench/campaign/environment.h"
+#include "bench/campaign/kept_run.h"
 #include "bench/campaign/render_stats.h"
 #include "bench/film_image.h"
 #include "bench/machine/machine_watch.h"
@@ -37,11 +38,41 @@ void removeUnfinished(const fs::path& out, const RunRecord& run) {
   }
 }
 
+// How often a run's state is kept while it is rendered, in seconds of wall time.
+constexpr double kKeepEvery = 60;
+
 // Takes snapshots of one session: writes the image, measures it and adds a row to the run.
 class SnapshotTaker {
  public:
-  SnapshotTaker(const RunRequest& request, RunRecord& run, const Session& session)
-      : request_(request), run_(run), session_(session) {}
+  SnapshotTaker(const RunRequest& request, const RenderSettings& settings, RunRecord& run, const Session& session)
+      : request_(request), settings_(settings), run_(run), session_(session) {}
+
+  // Takes over the snapshots of an earlier process, up to the number of the next one. Images that are gone are left
+  // out.
+  void goOnFrom(RunSoFar earlier, unsigned next) {
+    leftOut_ = earlier.leftOut;
+    earlierDoubts_ = std::move(earlier.doubts);
+    for (SnapshotRecord& snapshot : earlier.snapshots) {
+      if (snapshot.number >= next) continue;
+      const bool isThere = !snapshot.file.empty() && (fs::exists(request_.out / snapshot.file) ||
+                                                      fs::exists(unfinishedFile(request_.out, snapshot.file)));
+      if (!isThere) snapshot.file.clear();
+      run_.snapshots.push_back(std::move(snapshot));
+    }
+  }
+
+  void takeAndKeep(unsigned number) {
+    take(number);
+    if (std::chrono::duration<double>(Clock::now() - kept_).count() >= kKeepEvery) keep();
+  }
+
+  // Writes the state of the run, if it is to be kept.
+  void keep() {
+    if (request_.checkpoint.empty()) return;
+    writeCheckpoint(request_.checkpoint.string(), request_.scene, settings_, session_,
+                    notesOf({.snapshots = run_.snapshots, .leftOut = leftOut_, .doubts = doubts()}));
+    kept_ = Clock::now();
+  }
 
   void take(unsigned number) {
     // The record. An image counts from its first whole pass on.
@@ -91,21 +122,64 @@ class SnapshotTaker {
     all["cpu"] = cpuName();
     if (request_.settings.seconds) {
       all["asked_seconds"] = *request_.settings.seconds;
-      all["doubts"] = doubtsAbout(machine_.state());
+      all["doubts"] = doubts();
     }
     all["snapshots_left_out"] = leftOut_;
     return all;
   }
 
  private:
+  // What disturbed this process, and those before.
+  std::vector<std::string> doubts() const {
+    std::vector<std::string> all = earlierDoubts_;
+    for (const std::string& doubt : doubtsAbout(machine_.state())) {
+      if (std::find(all.begin(), all.end(), doubt) == all.end()) all.push_back(doubt);
+    }
+    return all;
+  }
+
   const RunRequest& request_;
+  const RenderSettings& settings_;
   RunRecord& run_;
   const Session& session_;
   const Clock::time_point begin_ = Clock::now();
   uint64_t paths_ = 0;
   const MachineWatch machine_;
   unsigned leftOut_ = 0;  // snapshots that were due before the first whole image
+  std::vector<std::string> earlierDoubts_;
+  Clock::time_point kept_ = Clock::now();
 };
+
+// A run's session, and what an earlier process has measured if it goes on from the state that one has kept.
+struct BegunRun {
+  std::unique_ptr<Session> session;
+  std::optional<RunSoFar> earlier = {};
+};
+
+// Goes on from the kept state, or begins anew where there is none or it is of another run. settings: light paths are
+// cut as in the kept state.
+BegunRun beginRun(const RunRequest& request, RenderSettings& settings) {
+  const auto anew = [&](const std::string& why) {
+    if (request.say) request.say(why + "; the run is rendered anew");
+    settings = request.settings;
+  };
+  try {
+    if (const std::unique_ptr<Checkpoint> kept = keptCheckpoint(request.checkpoint)) {
+      kept->cutAlike(settings);
+      BegunRun begun{.session = Session::create(request.scene, settings)};
+      kept->restore(request.scene, settings, *begun.session);
+      begun.earlier = runOfNotes(kept->header().notes);
+      return begun;
+    }
+  } catch (const CheckpointError& error) {
+    anew(error.what());
+  } catch (const ImageError& error) {
+    anew(error.what());
+  } catch (const nlohmann::json::exception&) {
+    anew(request.checkpoint.string() + ": has notes that are none");
+  }
+  return {.session = Session::create(request.scene, settings)};
+}
 
 }  // namespace
 
@@ -128,32 +202,42 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHoo
                 .method = request.row.empty() ? std::string(toString(request.settings.method)) : request.row,
                 .seed = request.settings.seed};
   // Makes the session. A scene that the method cannot render gives a run that is refused.
-  std::unique_ptr<Session> session;
+  RenderSettings settings = request.settings;
+  BegunRun begun;
   try {
     const IdleScope building(hooks);
-    session = Session::create(request.scene, request.settings);
+    begun = beginRun(request, settings);
   } catch (const SceneError& error) {
     run.state = RunState::refused;
     run.reason = error.what();
     return run;
   }
-  // Renders from snapshot to snapshot. An interrupted run is dropped.
-  removeUnfinished(request.out, run);
-  SnapshotTaker taker(request, run, *session);
-  const auto takeSnapshot = [&](unsigned number) { taker.take(number); };
+  // Renders from snapshot to snapshot, beginning with the first that is due after what there is.
+  const std::unique_ptr<Session> session = std::move(begun.session);
+  SnapshotTaker taker(request, settings, run, *session);
   unsigned count = 0;
+  if (begun.earlier) {
+    const RenderStatistics statistics = session->statistics();
+    count = request.schedule.firstAfter(statistics.renderSeconds, statistics.iterations);
+    taker.goOnFrom(std::move(*begun.earlier), count);
+  } else {
+    removeUnfinished(request.out, run);
+  }
+  const auto takeSnapshot = [&](unsigned number) { taker.takeAndKeep(number); };
   {
     const WatchScope watch(hooks, *session);
-    count = renderWithSnapshots(*session, request.settings, request.schedule, takeSnapshot, hooks.goesOn);
+    count = renderWithSnapshots(*session, settings, request.schedule, takeSnapshot, hooks.goesOn, count);
   }
   // A request to save that came too late for the loop above does not end the run.
   const bool stopped = session->interrupted() && !(hooks.goesOn && hooks.goesOn());
   if (stopped) {
-    removeUnfinished(request.out, run);
+    taker.keep();
+    if (request.checkpoint.empty()) removeUnfinished(request.out, run);
     return std::nullopt;
   }
   // The end of the run is always a snapshot.
   if (taker.outdated()) taker.take(count);
+  taker.keep();
   const RenderStatistics statistics = session->statistics();
   run.stats = taker.stats(statistics).dump();
   if (!statistics.hasWholeImage()) {
@@ -167,7 +251,10 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHoo
 
 void placeImages(const fs::path& out, const RunRecord& run) {
   for (const SnapshotRecord& snapshot : run.snapshots) {
-    if (!snapshot.file.empty()) fs::rename(unfinishedFile(out, snapshot.file), out / snapshot.file);
+    if (snapshot.file.empty()) continue;
+    // Images of a run that went on from a stored one have their names already.
+    const fs::path unfinished = unfinishedFile(out, snapshot.file), placed = out / snapshot.file;
+    if (fs::exists(unfinished) || !fs::exists(placed)) fs::rename(unfinished, placed);
   }
 }
 

@@ -84,7 +84,8 @@ class Campaign {
   bool run(const std::map<std::string, std::string>& keys) {
     if (!settings_.leftOut.empty()) hooks_.say(settings_.leftOut);
     // The folder may have come from others.
-    for (const fs::path& name : {resultsFile(settings_).filename(), fs::path("images"), fs::path("references")}) {
+    for (const fs::path& name :
+         {resultsFile(settings_).filename(), fs::path("images"), fs::path("references"), fs::path("checkpoints")}) {
       withinFolder(settings_.out, name);
     }
     // Opens or makes the results file. plan() throws where the campaign cannot run, so a new campaign makes its folder
@@ -97,6 +98,7 @@ class Campaign {
       // Removes temporary files of a process that was killed while it wrote.
       removeTemporariesIn((settings_.out / "images").string());
       removeTemporariesIn((settings_.out / "references").string());
+      removeTemporariesIn((settings_.out / "checkpoints").string());
     } else {
       plan();
       create();
@@ -112,7 +114,8 @@ class Campaign {
 
  private:
   void createFolders() const {
-    for (const char* name : {"images", "references"}) {
+    for (const char* name : {"images", "references", "checkpoints"}) {
+      if (name == std::string_view("checkpoints") && !settings_.keepStates) continue;
       std::error_code error;
       fs::create_directories(settings_.out / name, error);
       if (!error) continue;
@@ -292,6 +295,8 @@ class Campaign {
                                                           .row = method.name(),
                                                           .out = settings_.out,
                                                           .keepImages = settings_.keepImages,
+                                                          .checkpoint = checkpointOf(entry, method, seed),
+                                                          .say = hooks_.say,
                                                           .loadSeconds = loadSeconds},
                                                          hooks_.session);
         if (!run || stopped()) return false;
@@ -301,6 +306,12 @@ class Campaign {
       }
     }
     return true;
+  }
+
+  // Where the state of a run is kept; nowhere unless that is asked for.
+  fs::path checkpointOf(const CampaignScene& entry, const CampaignMethod& method, uint64_t seed) const {
+    if (!settings_.keepStates) return {};
+    return settings_.out / "checkpoints" / fmt::format("{}.{}.{}.checkpoint", entry.name, method.name(), seed);
   }
 
   // Stores a run and its images; those of a shorter one that it replaces go once it is stored.
@@ -322,7 +333,17 @@ class Campaign {
                              uint64_t seed) const {
     RenderSettings render = settings_.render;
     render.method = method.method;
-    render.sampler = settings_.sampler.value_or(bestSampler(render));
+    std::optional<SamplerKind> sampler = settings_.sampler;
+    if (method.automatic) {
+      const Profile& quick = *findProfile("quick");
+      render.radius = quick.radius;
+      render.lightPaths.reset();
+      render.roulette = quick.roulette;
+      render.mergeVertices = quick.mergeVertices;
+      render.balancedWalks = quick.balancedWalks;
+      sampler = quick.sampler;
+    }
+    render.sampler = sampler.value_or(bestSampler(render));
     render.metropolis.variant = method.variant;
     render.directPass = method.directPass;
     if (!strategiesOf(method.method).merge) render.lightPaths.reset();

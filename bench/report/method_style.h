@@ -16,19 +16,27 @@ struct MethodStyle {
   CurveMark mark;
 };
 
-inline constexpr std::array<MethodStyle, 12> kMethodStyles = {{
+inline constexpr std::array<MethodStyle, 20> kMethodStyles = {{
     {"pt", "path tracing", CurveMark::kCircle},
+    {"pt-auto", "path tracing, default settings", CurveMark::kCircle},
     {"lt", "light tracing", CurveMark::kSquare},
+    {"lt-auto", "light tracing, default settings", CurveMark::kSquare},
     {"bpt", "bidirectional path tracing", CurveMark::kTriangleUp},
+    {"bpt-auto", "bidirectional path tracing, default settings", CurveMark::kTriangleUp},
     {"mlt-pathspace", "Metropolis light transport in path space", CurveMark::kDiamond},
     {"mlt", "Metropolis light transport, multiplexed", CurveMark::kDiamond},
     {"mlt-pssmlt", "Metropolis light transport in primary sample space", CurveMark::kDiamond},
     {"ppm", "progressive photon mapping", CurveMark::kTriangleDown},
+    {"ppm-auto", "progressive photon mapping, default settings", CurveMark::kTriangleDown},
     {"ppm-direct", "progressive photon mapping, direct light by next event estimation", CurveMark::kTriangleDown},
     {"bpm", "bidirectional photon mapping", CurveMark::kPlus},
+    {"bpm-auto", "bidirectional photon mapping, default settings", CurveMark::kPlus},
     {"vcm", "vertex connection and merging", CurveMark::kCross},
+    {"vcm-auto", "vertex connection and merging, default settings", CurveMark::kCross},
     {"gpt", "guided path tracing", CurveMark::kCircle},
+    {"gpt-auto", "guided path tracing, default settings", CurveMark::kCircle},
     {"evcm", "efficiency-aware vertex connection and merging", CurveMark::kCross},
+    {"evcm-auto", "efficiency-aware vertex connection and merging, default settings", CurveMark::kCross},
 }};
 
 /// The style of a method; one that is not listed gets a plain one under its own name.

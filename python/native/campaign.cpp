@@ -17,7 +17,7 @@ using Words = std::map<std::string, std::vector<std::string>>;
 // say: called with a line now and then, from this thread; an exception of it ends the campaign after the run under way
 // and is thrown then. False: Ctrl-C ended it.
 bool converge(const Words& defining, const std::string& out, const std::string& reference, const std::string& shard,
-              const std::string& isa, uint32_t threads, bool resume, bool check,
+              const std::string& isa, uint32_t threads, bool checkpoints, bool resume, bool check,
               const std::function<void(const std::string&)>& say) {
   const api::CampaignOptions options{.defining = defining,
                                      .out = out,
@@ -25,6 +25,7 @@ bool converge(const Words& defining, const std::string& out, const std::string& 
                                      .shard = shard,
                                      .isa = isa,
                                      .threads = threads,
+                                     .checkpoints = checkpoints,
                                      .resume = resume,
                                      .check = check};
   api::StopRequest stop;
@@ -134,7 +135,8 @@ nb::dict readResults(const std::string& path) {
 
 void addCampaign(nb::module_& module) {
   module.def("converge", &converge, nb::arg("defining"), nb::arg("out"), nb::arg("reference"), nb::arg("shard"),
-             nb::arg("isa"), nb::arg("threads"), nb::arg("resume"), nb::arg("check"), nb::arg("say"));
+             nb::arg("isa"), nb::arg("threads"), nb::arg("checkpoints"), nb::arg("resume"), nb::arg("check"),
+             nb::arg("say"));
   module.def("read_results", &readResults, nb::arg("path"),
              nb::sig("def read_results(path: str) -> dict[str, typing.Any]"));
   module.def("write_report", &api::writeReport, nb::arg("folder"), nb::call_guard<nb::gil_scoped_release>());

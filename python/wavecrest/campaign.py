@@ -93,6 +93,7 @@ def converge(
     shard: str = "1/1",
     isa: str = "auto",
     threads: int | None = None,
+    checkpoints: bool = False,
     resume: bool = False,
     check: bool = False,
     say: Callable[[str], None] | None = None,
@@ -104,7 +105,8 @@ def converge(
     dashes; True sets a flag (direct_pass), False leaves it out. D: values of the scenes' $names, by name or as
     "NAME=VALUE". The campaign can go on with resume=True, here or on the command line, and may then become larger: more
     scenes, methods, seeds or time. say: takes a line of progress now and then, default: stderr. Ctrl-C raises
-    Interrupted; whole runs are kept.
+    Interrupted; whole runs are kept, and with
+    checkpoints=True the state of each run, from which it goes on, also for longer.
     """
     given: dict[str, object] = {
         "methods": methods,
@@ -129,6 +131,7 @@ def converge(
         shard,
         isa,
         threads or 0,
+        checkpoints,
         resume,
         check,
         say or (lambda line: print(line, file=sys.stderr, flush=True)),

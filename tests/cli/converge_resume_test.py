@@ -3,6 +3,7 @@
 KILLS says how often the kill test kills campaigns, each a few times before it may finish.
 """
 
+import contextlib
 import json
 import os
 import pathlib
@@ -194,6 +195,25 @@ class Extending(Converge):
             self.assertEqual(process.wait(timeout=TIMEOUT_SECONDS), INTERRUPTED)
             self.assertEqual({path.name: path.read_bytes() for path in folder.iterdir()}, before)
             self.run_wavecrest("report", images)
+
+    def test_with_checkpoints_more_iterations_go_on_with_those_there_are(self):
+        given = ["cornell-diffuse", "--methods", "vcm,mlt", "--size", "20x20", "--seeds", "1", "--images", "last"]
+        os.mkdir(self.path("given"))
+        self.run_wavecrest("reference", *given[:1], "--size", "20x20", "--spp", "8", "-o", "given/cornell-diffuse.exr")
+        self.converge(*given, "--spp", "8", "--reference", "given", "--out", "a", "--checkpoints")
+        self.converge("--out", "a", "--resume", "--spp", "16", "--checkpoints")
+        self.converge(*given, "--spp", "16", "--reference", "given", "--out", "b")
+        self.assertEqual(self.image_names("a"), self.image_names("b"))
+        for name in self.image_names("a"):
+            one, other = (pathlib.Path(self.path(f"{folder}/images/{name}")).read_bytes() for folder in "ab")
+            self.assertEqual(len(one), len(other), name)
+        values = "SELECT run.method, m.number, m.metric, m.value FROM run JOIN measurement m ON m.run = run.id ORDER BY 1, 2, 3"
+        measured = []
+        for folder in "ab":
+            with contextlib.closing(sqlite3.connect(self.results(folder))) as database:
+                measured.append(database.execute(values).fetchall())
+        self.assertEqual(*measured)
+        self.assertFalse(pathlib.Path(self.path("b/checkpoints")).exists(), "only where it is asked for")
 
     def test_by_a_larger_part_of_the_profiles_time(self):
         quick = ["cornell-diffuse", "--methods", "pt", "--size", "20x20", "--seeds", "1", "--out", "a", "--images", "last"]

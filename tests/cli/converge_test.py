@@ -216,6 +216,16 @@ class Rows(Converge):
         self.converge("--out", "a", "--resume", "--methods", "mlt-pssmlt")
         self.assertIn("mlt-pssmlt", self.runs("a")[0])
 
+    def test_automatic_rows_have_the_settings_of_profile_quick(self):
+        tiny = ["cornell-diffuse", "--size", "16x12", "--spp", "1", "--seeds", "1"]
+        self.converge(*tiny, "--profile", "study", "--methods", "vcm,vcm-auto", "--light-paths", "99", "--out", "a")
+        self.converge(*tiny, "--methods", "vcm", "--out", "quick")
+        runs, quick = self.runs("a")[0], self.runs("quick")[0]["vcm"]
+        of_study = {"radius_choice": "fixed", "roulette": "throughput", "merge_vertices": "all", "light_paths": 99}
+        self.assertEqual({key: runs["vcm"][key] for key in of_study}, of_study)
+        for key in (*of_study, "sampler", "radius"):
+            self.assertEqual(runs["vcm-auto"][key], quick[key], key)
+
     def test_the_first_merge_radius_is_the_profiles(self):
         tiny = ["cornell-diffuse", "--methods", "ppm", "--size", "16x12", "--spp", "1", "--seeds", "1", "--light-paths", "99"]
         for profile, more, choice in (
@@ -318,6 +328,9 @@ class Refusals(Converge):
             ["--methods", "pt,bpt", "--light-paths", "500"],
             ["--methods", "ppm", "--merge-vertices", "all"],
             ["--methods", "vcm", "--merge-vertices", "last"],
+            ["--methods", "pt,vcm-auto", "--radius", "0.01"],
+            ["--methods", "pt-auto,vcm-auto", "--sampler", "sobol"],
+            ["--methods", "pt,vcm-auto", "--light-paths", "500"],
             ["--methods", "pt,vcm", "--direct-pass"],
             ["--methods", "pt", "--mlt", "pathspace"],
             ["--methods", "mlt-pathspace", "--mlt", "pssmlt"],

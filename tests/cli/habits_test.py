@@ -110,7 +110,8 @@ class Words(CommandTest):
             ("render", "--progress", "auto bar jsonl none"),
             ("reference", "-m", "auto pt lt bpt mlt ppm bpm vcm gpt evcm"),
             ("converge", "--profile", "quick standard study paper"),
-            ("converge", "--methods", "pt lt bpt mlt ppm bpm vcm gpt evcm mlt-pathspace mlt-pssmlt ppm-direct"),
+            ("converge", "--methods", "pt lt bpt mlt ppm bpm vcm gpt evcm mlt-pathspace mlt-pssmlt ppm-direct "
+             + " ".join(f"{method}-auto" for method in "pt lt bpt ppm bpm vcm gpt evcm".split())),
             ("converge", "--clock", "wall cpu"),
             ("converge", "--images", "all last"),
             ("bench", "--methods", "pt lt bpt mlt ppm bpm vcm gpt evcm"),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "engine/load/load.h"
@@ -42,7 +43,9 @@ class MeasuredRunTest : public testing::Test {
                                                 .schedule = schedule,
                                                 .reference = reference_,
                                                 .out = folder_.folder(),
-                                                .keepImages = keepImages},
+                                                .keepImages = keepImages,
+                                                .checkpoint = checkpoint_,
+                                                .say = [&](const std::string& line) { said_.push_back(line); }},
                                                {.watch = watch_});
     if (run) placeImages(folder_.folder(), *run);
     return run;
@@ -56,6 +59,8 @@ class MeasuredRunTest : public testing::Test {
   const PreparedReference reference_{
       "grey", {{.width = 32, .height = 24, .channels = 3, .pixels = std::vector<float>(3 * 32 * 24, 0.3f)}, {}, {}}};
   std::function<void(Session*)> watch_;
+  std::filesystem::path checkpoint_;
+  std::vector<std::string> said_;
   MetropolisVariant variant_ = MetropolisVariant::mmlt;
 };
 
@@ -148,6 +153,58 @@ TEST_F(MeasuredRunTest, anInterruptedRunIsNone) {
     if (session != nullptr) session->interrupt();
   };
   EXPECT_FALSE(run(Method::pt, 100).has_value());
+}
+
+TEST_F(MeasuredRunTest, withItsStateALongerRunGoesOnAsIfItHadNotEnded) {
+  for (const MethodEntry& method : kMethods) {
+    checkpoint_.clear();
+    const RunRecord whole = run(method.method, 110).value();
+    checkpoint_ = folder_.folder() / "state";
+    std::filesystem::remove(checkpoint_);
+    // The last snapshot of the shorter run is not due in the longer one.
+    EXPECT_EQ(run(method.method, 50).value().snapshots.back().number, 6u) << method.name;
+    uint64_t before = 0;
+    watch_ = [&](Session* session) {
+      if (session != nullptr) before = session->statistics().iterations;
+    };
+    const RunRecord longer = run(method.method, 110).value();
+    watch_ = {};
+    EXPECT_GE(before, 50u) << method.name << " begins anew";
+    ASSERT_EQ(longer.snapshots.size(), whole.snapshots.size()) << method.name;
+    for (size_t i = 0; i < whole.snapshots.size(); ++i) {
+      EXPECT_EQ(longer.snapshots[i].number, whole.snapshots[i].number) << method.name;
+      EXPECT_EQ(longer.snapshots[i].iterations, whole.snapshots[i].iterations) << method.name;
+      EXPECT_EQ(longer.snapshots[i].values, whole.snapshots[i].values) << method.name;
+    }
+    const auto count = [](const RunRecord& one) { return nlohmann::json::parse(one.stats).at("camera_paths"); };
+    EXPECT_EQ(count(longer), count(whole)) << method.name;
+  }
+  EXPECT_TRUE(said_.empty());
+}
+
+TEST_F(MeasuredRunTest, withItsStateAnInterruptedRunGoesOn) {
+  const RunRecord whole = run(Method::bpt, 8).value();
+  checkpoint_ = folder_.folder() / "state";
+  watch_ = [](Session* session) {
+    if (session != nullptr) session->interrupt();
+  };
+  EXPECT_FALSE(run(Method::bpt, 8).has_value());
+  EXPECT_TRUE(std::filesystem::exists(checkpoint_));
+  watch_ = {};
+  EXPECT_EQ(run(Method::bpt, 8).value().snapshots.back().values, whole.snapshots.back().values);
+}
+
+TEST_F(MeasuredRunTest, aStateOfAnotherRunIsLeftAndTold) {
+  checkpoint_ = folder_.folder() / "state";
+  run(Method::pt, 5);
+  const RunRecord other = run(Method::lt, 6).value();
+  ASSERT_EQ(said_.size(), 1u);
+  EXPECT_NE(said_[0].find("rendered anew"), std::string::npos) << said_[0];
+  EXPECT_EQ(other.snapshots.size(), 4u);
+  // Neither a damaged one.
+  std::ofstream(checkpoint_) << "no state";
+  EXPECT_EQ(run(Method::lt, 6).value().snapshots.back().values, other.snapshots.back().values);
+  EXPECT_EQ(said_.size(), 2u);
 }
 
 }  // namespace
