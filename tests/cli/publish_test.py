@@ -9,18 +9,43 @@ import re
 import sqlite3
 import subprocess
 import sys
+import types
 import unittest
 
 from harness import TIMEOUT_SECONDS, WAVECREST, CommandTest
 
 CAMPAIGN = pathlib.Path(__file__).resolve().parents[2] / "bench" / "campaign"
+sys.path.insert(0, str(CAMPAIGN))
 PUBLISH, RESTORE = CAMPAIGN / "publish", CAMPAIGN / "restore"
+import curves  # noqa: E402
+import scene_figure  # noqa: E402
+import svg_plot  # noqa: E402
+
 README = "# A title\n\n<!-- results -->\nold\n<!-- /results -->\n\nThe end.\n"
+
+
+# Scores of a made-up campaign after 1, 10 and 100 seconds: (SSIM, relMSE) by scene and method.
+PT, BPT, AUTO = (
+    ((0.5, 0.7, 0.9), (1, 0.1, 0.01)),
+    ((0.5, 0.9, 1.0), (0.5, 0.05, 0.005)),
+    ((0.6, 0.95, 0.99), (0.1, 0.01, 0.001)),
+)
+SLOW, BAD, FAST = (
+    ((0.5, 0.6, 0.94), (1, 0.5, 0.2)),
+    ((0.1, 0.2, 0.3), (9, 5, 2)),
+    ((0.96, 0.97, 0.98), (0.003, 0.002, 0.001)),
+)
+MADE_UP = {
+    "cornell-diffuse": {"pt": PT, "bpt": BPT, "vcm-auto": AUTO},
+    "cornell-mirror": {"pt": PT, "bpt": SLOW, "vcm-auto": AUTO},
+    "cornell-glossy": {"pt": PT, "bpt": SLOW, "vcm-auto": BAD},
+    "lafortune-room": {"pt": PT, "bpt": FAST},
+    "veach-door": {"bpt": SLOW, "vcm-auto": FAST},
+}
 
 
 def publish_module():
     """bench/campaign/publish, a program without an ending, as a module."""
-    sys.path.insert(0, str(CAMPAIGN))
     loader = importlib.machinery.SourceFileLoader("publish", str(PUBLISH))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("publish", loader))
     loader.exec_module(module)
@@ -32,11 +57,30 @@ class Publishing(CommandTest):
         arguments = ["--methods", methods, "--size", "32x24", "--time", "0.05s", "--seeds", "2", "--out", "a"]
         self.run_wavecrest("converge", scene, *arguments)
 
-    def publish(self, readme=README, plot="cornell-diffuse.ssim", program=WAVECREST):
+    def made_up_campaign(self, scenes=MADE_UP):
+        """A results file with these scores, in "a"."""
+        facts = json.loads((CAMPAIGN / "standard" / "campaign.json").read_text())
+        methods = [m for m in ("pt", "bpt", "vcm-auto") if any(m in scores for scores in scenes.values())]
+        facts["settings"].update(methods=" ".join(methods), scenes=" ".join(scenes), seeds="1", time="100")
+        facts["scenes"] = {scene: {"hash": "0", "noise_floors": {"ssim": 0.93}} for scene in scenes}
+        facts["biases"] = []
+        stats = {"threads": 1, "iterations": 1000, "render_seconds": 100.0, "camera_paths": 1000}
+        runs = [(scene, method, scores) for scene, rows in scenes.items() for method, scores in rows.items()]
+        facts["runs"] = [{"scene": scene, "method": method, "seed": 1, "stats": stats} for scene, method, _ in runs]
+        lines = ["scene,method,seed,snapshot,seconds,iterations,ssim,relmse"]
+        for scene, method, scores in runs:
+            for k, (ssim, relmse) in enumerate(zip(*scores)):
+                lines.append(f"{scene},{method},1,{k},{10**k},{10**k},{ssim},{relmse}")
+        (self.folder / "published").mkdir()
+        self.write("published/campaign.json", json.dumps(facts))
+        self.write("published/measurements.csv", "\n".join(lines) + "\n")
+        subprocess.run([sys.executable, RESTORE, "published", "a"], cwd=self.folder, check=True, capture_output=True)
+
+    def publish(self, readme=README, program=WAVECREST):
         self.write("README.md", readme)
         command = [sys.executable, PUBLISH, "a", "--wavecrest", program, "--to", "standard", "--readme", "README.md"]
         return subprocess.run(
-            [*map(str, command), "--plot", plot],
+            [*map(str, command)],
             cwd=self.folder,
             capture_output=True,
             text=True,
@@ -74,7 +118,6 @@ class Publishing(CommandTest):
             )
         self.assertIn("](standard/README.md)", readme)
         self.assertIn('src="standard/overview.relmse.svg"', readme)
-        self.assertIn("| scene | first to SSIM 0.95 | first to Q_MOS 90 |", readme)
         self.assertRegex(readme, r"\| cornell-diffuse \| (pt|lt|–)[^|]* \|")
         overview = self.read("standard/overview.relmse.svg")
         self.assertEqual(overview.count("<polyline"), 2)
@@ -82,10 +125,13 @@ class Publishing(CommandTest):
         for metric, label in (("ssim", ">0.75</text>"), ("q_mos", ">75</text>"), ("rmse", "<polyline")):
             self.assertIn(label, self.read(f"standard/overview.{metric}.svg"))
             self.assertIn(f"](overview.{metric}.svg)", page)
-        self.assertTrue(readme.startswith("# A title\n\n<!-- results -->\nWho is first to look right"))
+        self.assertTrue(readme.startswith("# A title\n\n<!-- results -->\nWhich method is first at SSIM 0.95"))
         self.assertTrue(readme.endswith("\n<!-- /results -->\n\nThe end.\n"))
         self.assertNotIn("\nold\n", readme)
-        self.assertTrue(pathlib.Path(self.path("standard/cornell-diffuse.ssim.svg")).is_file())
+        figure = self.read("standard/cornell-diffuse.svg")
+        self.assertRegex(figure, r'<image [^>]*href="data:image/(png|jpeg);base64,[A-Za-z0-9+/=]{100}')
+        self.assertEqual(figure.count("<polyline"), 2 * 3, "two methods by RMSE, SSIM and Q_MOS")
+        self.assertIn("](cornell-diffuse.svg)", page)
         with open(self.path("standard/measurements.csv"), newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         database = sqlite3.connect(self.path("a/results.sqlite"))
@@ -94,6 +140,100 @@ class Publishing(CommandTest):
         self.assertEqual(len(rows), snapshots)
         last = [float(row["ssim"]) for row in rows if row["method"] == "pt"]
         self.assertAlmostEqual(max(last), max(last + self.last_scores("pt", "ssim")), places=4)
+
+    def test_times_and_speed_ups_are_those_of_the_report(self):
+        self.made_up_campaign()
+        self.assertEqual(self.publish().returncode, 0)
+        with open(self.path("a/measurements.csv"), newline="", encoding="utf-8") as file:
+            series = curves.read_series(csv.DictReader(file))
+        with open(self.path("a/summary.csv"), newline="", encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row["target"] and row["metric"] == "ssim"]
+        times = []
+        for row in rows:
+            time = curves.time_to(series[row["scene"], row["method"], "ssim"], float(row["target"]), higher=True)
+            shown = (float(row["seconds_to_target"]), row["at_most"] == "yes") if row["seconds_to_target"] else None
+            self.assertEqual(time is None, shown is None, row)
+            if time:
+                self.assertAlmostEqual(time[0], shown[0], places=9)
+                self.assertEqual(time[1], shown[1], row)
+                times.append(time)
+        self.assertEqual({at_most for _, at_most in times}, {True, False}, "both kinds of times are compared")
+        report = self.read("a/report.html").split("<summary>over pt</summary>")[1].split("</table>")[0]
+        for method in ("bpt", "vcm-auto"):
+            cells = re.findall(r"<td[^>]*>([^<]*)", report.split(f"</i>{method}")[1].split("<tr>")[0])
+            pairs = [(series.get((scene, method, "relmse")), series.get((scene, "pt", "relmse"))) for scene in MADE_UP]
+            own = [curves.speed_up(*pair) if all(pair) else None for pair in pairs]
+            signs = {0: "", 1: "≥ ", -1: "≤ "}
+            shown = [f"{signs[f[1]]}{f[0]:.3g} ×" if f else "–" for f in (curves.geometric_mean(own), *own)]
+            self.assertEqual(shown, cells)
+
+    def test_values_that_are_none_are_left_out_of_times_and_make_the_end_none(self):
+        nan = float("nan")
+        series = [[(0, 1.0, 0.5), (1, 10.0, nan), (2, 100.0, 0.9)], [(0, 3.0, 0.7), (1, 30.0, nan), (2, 300.0, nan)]]
+        self.assertEqual(curves.mean_curve(series), [(2.0, 0.6), (100.0, 0.9)])
+        self.assertAlmostEqual(curves.time_to(series, 0.75, higher=True)[0], 2.0 * 50.0**0.5)
+        self.assertNotEqual(curves.final_value(series), curves.final_value(series), "NaN")
+        self.assertIsNone(curves.speed_up(series, [[(0, 1.0, 0.5)]]))
+        self.assertIsNone(curves.geometric_mean([(2.0, 1), (3.0, -1)]))
+        self.assertEqual(curves.geometric_mean([(2.0, 1), None, (8.0, 0)]), (4.0, 1))
+
+    def test_tables_have_the_best_methods_and_what_they_gain(self):
+        self.made_up_campaign()
+        self.assertEqual(self.publish().returncode, 0)
+        page, readme = self.read("standard/README.md"), self.read("README.md")
+        perfect = "<br><sub>perfect image 0.930</sub>"
+        for row in (
+            "| cornell-diffuse | bpt | 32 s | vcm-auto" + perfect + " | 10 s | 3.2 |",
+            "| cornell-mirror | – <sub>bpt 0.940</sub> |  | vcm-auto" + perfect + " | 10 s | ≥ 10 |",
+            "| cornell-glossy | – <sub>bpt 0.940</sub> |  | – <sub>bpt 0.940</sub>" + perfect + " |  | – |",
+            "| veach-door | – <sub>bpt 0.940</sub> |  | vcm-auto" + perfect + " | ≤ 1 s | ≥ 100 |",
+        ):
+            self.assertIn(row, readme)
+        self.assertEqual(len(re.findall(r"^\|(---\|)+$", readme, re.MULTILINE)), 1, "one table")
+        self.assertEqual(readme.count("<img"), 1)
+        # No Q_MOS was measured, so the table has the two targets of SSIM.
+        self.assertIn("| scene | rows | SSIM 0.9 | SSIM 0.95 |", page)
+        self.assertIn("| cornell-diffuse | study<br>now | bpt 10 s<br>vcm-auto 7.2 s | bpt 32 s<br>vcm-auto 10 s", page)
+        speeds = page.split("## Speed-up over pt")[1].split("## ")[0]
+        self.assertIn("| scene | bpt | vcm-auto |", speeds)
+        self.assertIn("| cornell-diffuse | 1.3 | 10 |", speeds)
+        self.assertIn("| veach-door | – | – |", speeds)
+        self.assertIn("| lafortune-room | ≥ 100 | – |", speeds)
+        self.assertRegex(speeds, r"geometric mean\*\* \| ≥ [^|]* <sub>of 4</sub> \| ≤ [^|]* <sub>of 3</sub> \|")
+
+    def test_figures_have_what_was_measured(self):
+        self.made_up_campaign()
+        self.assertEqual(self.publish().returncode, 0)
+        figure = self.read("standard/cornell-diffuse.svg")
+        self.assertNotIn("<image", figure, "restored results have no images")
+        self.assertEqual(re.findall(r'class="name">([^<]*)<', figure), ["SSIM", "Time to equal relMSE"])
+        self.assertEqual(figure.count("<polyline"), 3)
+        # Lines of -auto rows are dashed, in the panel and in the legend.
+        self.assertEqual(figure.count("stroke-dasharray=\"7 4\""), 2)
+        # pt and bpt take ten and 2.8 times as long as vcm-auto to where they end.
+        self.assertEqual(re.findall(r"<rect [^>]*>\n<text[^>]*>([^<]*)<", figure), ["10", "2.8", "1"])
+        self.assertEqual(self.times_of(360.0), ["0 s", "100 s", "200 s", "300 s"])
+        self.assertEqual(self.times_of(10.0), ["0 s", "5 s", "10 s"])
+
+    def times_of(self, seconds):
+        """Labels of the axes of time in a scene's figure with a run of that time."""
+        series = [[(0, 0.1 * seconds, 0.5), (1, seconds, 0.9)]]
+        campaign = types.SimpleNamespace(
+            methods=["pt"], pictures={}, floors={}, series={("a", "pt", m): series for m in ("rmse", "ssim", "relmse")}
+        )
+        labels = re.findall(r">(\d+ s)<", scene_figure.scene_figure(campaign, "a"))
+        self.assertEqual(labels, 2 * labels[: len(labels) // 2], "the same in both panels")
+        return labels[: len(labels) // 2]
+
+    def test_a_long_legend_has_the_studys_rows_first(self):
+        methods = ["pt", "ppm-auto", "lt", "bpm-auto", "bpt", "vcm-auto", "mlt-pathspace", "mlt", "ppm", "gpt-auto", "vcm", "evcm-auto"]
+        parts, lines = svg_plot.legend(methods)
+        self.assertEqual(lines, 2)
+        first = [re.search(r">([^<]*)<", part)[1] for part in parts if part.startswith("<text") and 'y="26.0"' in part]
+        self.assertEqual(first, ["pt", "lt", "bpt", "mlt-pathspace", "ppm", "vcm"])
+        ends = [float(x) for part in parts for x in re.findall(r'x2="([\d.]+)"', part)]
+        self.assertLess(max(ends), svg_plot.WIDTH - 90, "names are within the figure")
+        self.assertEqual(svg_plot.legend(["pt", "vcm-auto"])[1], 1)
 
     def test_spreads_are_never_shown_as_zero(self):
         publish = publish_module()
@@ -110,8 +250,9 @@ class Publishing(CommandTest):
         page, readme = self.read("standard/README.md"), self.read("README.md")
         self.assertIn("none of the study's", result.stdout)
         self.assertIn("without an explanation: none", result.stdout)
-        self.assertRegex(page, r"\*\*not judged\*\* \| [^|]*(was not measured|paths per pixel)[^|]*<details>")
-        self.assertRegex(page, r"Not judged, and counted neither way, as .*too few scenes can be judged \(2\)")
+        self.assertRegex(page, r"\*\*Not judged:\*\* [^\n]*(was not measured|paths per pixel)")
+        self.assertRegex(page, r"Not judged, and counted neither way: .*too few scenes can be judged \(2\)")
+        self.assertIn("| cornell-diffuse | – |  | ", readme)
         self.assertIn("The study's findings: none of the study's", readme)
 
     def test_open_findings_without_an_explanation_are_named(self):
@@ -142,13 +283,18 @@ END
         self.assertIn("without an explanation: cornell-diffuse.all-converge", result.stdout)
         self.assertIn("The study's findings: 1 hold, 2 do not, 1 not in this time, 1 are undecided", self.read("README.md"))
         page = self.read("standard/README.md")
-        self.assertRegex(page, r"Judged here: 5 of its \d+ findings. 1 hold: cornell-diffuse: ")
-        self.assertIn("Does not hold: cornell-diffuse: All methods converge (SSIM of pt is 0.5, limit 0.9).", page)
-        self.assertRegex(page, r"\nNot reached in this time: [^\n]*\(SSIM of lt is 0\.8; at this rate 0\.9 after 9 s \(8 to 10 s\)\)\.\n")
-        self.assertRegex(page, r"\n1 are undecided within noise: [^\n]*\(RMSE lt 1, pt 1\.1\)\.\n")
-        self.assertRegex(page, r"\(RMSE lt 1, pt 2\)\. Noise of short runs\. It falls with time\.\n")
-        self.assertIn("Noise of short runs. It falls with time.<br>", page)
-        self.assertIn("(not explained yet: cornell-diffuse.all-converge in explanations.json)", page)
+        paragraphs = [line for line in page.splitlines() if line.startswith("The study: ")]
+        self.assertEqual(len(paragraphs), 2, "one of the scene, one of all scenes")
+        paragraph = paragraphs[0]
+        self.assertTrue(paragraph.startswith("The study: We noticed all methods converge to the reference solution."))
+        self.assertIn(
+            "Here: **Does not hold:** All methods converge (SSIM of pt is 0.5, limit 0.9). "
+            "(Not explained yet: cornell-diffuse.all-converge in explanations.json.) **Holds:** ",
+            paragraph,
+        )
+        self.assertIn("(RMSE lt 1, pt 2). Noise of short runs. It falls with time.", page)
+        self.assertRegex(page, r"\*\*Not reached in this time:\*\* [^\n]*0\.9 after 9 s \(8 to 10 s\)\)\.")
+        self.assertRegex(page, r"\*\*Undecided:\*\* [^\n]*\(RMSE lt 1, pt 1\.1\)\.")
 
     def test_a_campaign_is_restored_from_what_was_published(self):
         self.campaign()
