@@ -11,18 +11,18 @@ from svg_plot import COLOURS, WIDTH, Panel, decade_axis, document, even_axis, la
 HEIGHT, CELL = 500, (304, 244)
 LEFT, TOP, RIGHT, BOTTOM = 54, 30, 20, 30
 BARS = 2 * CELL[0] + 14  # where the third column begins
-FIRST = 0.02  # of the run: the axis of RMSE need not show what is earlier
+ERRORS_FROM, SCORES_FROM = 0.02, 0.2  # of the run: what is worse than the worst from then on is below the axis
 PANELS = {"rmse": "RMSE", "ssim": "SSIM", "q_mos": "Q_MOS of HDR-VDP-2"}
 STEPS = {"ssim": (0.1, 1.0), "q_mos": (20.0, 100.0)}  # what an axis begins at a multiple of, and its end
 
 
 def value_axis(metric, curves, end):
-    """Of a score from below the worst end to the best there is; of an error over what is seen of it after the first moments."""
+    """Of a score up to the best there is; of an error over what is seen of it."""
     if metric in STEPS:
         step, best = STEPS[metric]
-        worst = min(curve[-1][1] for curve in curves.values())
+        worst = min(next((v for t, v in curve if t >= SCORES_FROM * end), curve[-1][1]) for curve in curves.values())
         return even_axis(max(min(math.floor(worst / step), round(best / step) - 1) * step, 0.0), best, most=6)
-    seen = [v for curve in curves.values() for t, v in curve if t >= FIRST * end and v > 0]
+    seen = [v for curve in curves.values() for t, v in curve if t >= ERRORS_FROM * end and v > 0]
     return decade_axis(0.9 * min(seen), 1.1 * max(seen), fewest=3)
 
 
