@@ -14,7 +14,8 @@ import unittest
 
 from harness import TIMEOUT_SECONDS, WAVECREST, CommandTest
 
-CAMPAIGN = pathlib.Path(__file__).resolve().parents[2] / "bench" / "campaign"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CAMPAIGN = ROOT / "bench" / "campaign"
 sys.path.insert(0, str(CAMPAIGN))
 PUBLISH, RESTORE = CAMPAIGN / "publish", CAMPAIGN / "restore"
 import curves  # noqa: E402
@@ -320,6 +321,36 @@ END
         biases = "SELECT * FROM bias ORDER BY scene, method, number"
         self.assertEqual(rows("b", biases), rows("a", biases))
         self.assertGreater(len(rows("a", biases)), 0)
+
+    def test_a_figure_is_repeated_by_all_rows(self):
+        for name in ("bench", "scenes", "tools"):
+            (self.folder / name).symlink_to(ROOT / name)
+        # In place of a build and ten seconds a run: this program, with small and short runs.
+        small = "(10s) word=0.3s ;; scenes/references/1024x768) word=small ;;"
+        wrapper = f"""#!/bin/sh
+for word; do
+  case "$word" in {small} esac
+  set -- "$@" "$word"
+  shift
+done
+[ "$1" != converge ] || set -- "$@" --size 32x24
+exec {WAVECREST} "$@"
+"""
+        self.write("wrapper", wrapper)
+        stub = '#!/bin/sh\nmkdir -p build/quickstart && cp wrapper build/quickstart/wavecrest && chmod +x build/quickstart/wavecrest\n'
+        pathlib.Path(self.write("quickstart", stub + 'echo "$@" > asked\n')).chmod(0o755)
+        (self.folder / "small").mkdir()
+        self.run_wavecrest("reference", "cornell-mirror", "--size", "32x24", "--time", "0.1s", "-o", "small/cornell-mirror.exr")
+        result = subprocess.run(
+            ["bench/campaign/repeat-figure"], cwd=self.folder, capture_output=True, text=True, timeout=TIMEOUT_SECONDS, check=False
+        )
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.read("asked"), "--program-only\n")
+        figure = self.read("out/repeat-figure/page/cornell-mirror.svg")
+        self.assertEqual(figure.count("<polyline"), 12 * 3, "twelve rows by three metrics")
+        self.assertIn("<image", figure)
+        self.assertIn("open out/repeat-figure/page/cornell-mirror.svg", result.stdout)
+        self.assertIn("compare it with bench/campaign/study/cornell-mirror.svg", result.stdout)
 
     def test_a_readme_without_a_place_for_it_is_left_alone(self):
         self.campaign()
