@@ -22,6 +22,7 @@ const std::vector<std::string>* given(const CampaignWords& words, const char* na
 // The row of each name that --methods takes: a plain one of each method, then those of other choices.
 std::vector<CampaignMethod> allRows() {
   std::vector<CampaignMethod> rows;
+  rows.reserve(2 * kMethods.size() + 2);
   for (const MethodEntry& entry : kMethods) rows.push_back({.method = entry.method});
   rows.push_back({.method = Method::mlt, .variant = MetropolisVariant::pathspace});
   rows.push_back({.method = Method::mlt, .variant = MetropolisVariant::pssmlt});
