@@ -93,16 +93,22 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
                      const RenderSettings& settings) {
   if (!(found.pixel > 0)) return kFixedRadius;
   constexpr double kFirstVertex = 2.1, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
-  constexpr double kPhotons = 5;                            // in a search: those of vcm, the least of ppm
+  constexpr double kPhotons = 5, kLeastAllVertices = 3.5;  // in a search: of vcm and the least of ppm; the least of bpm
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
   const double pixel = found.pixel * std::sqrt(filmPixels / kUsualFilm);
   const double photons = std::numbers::pi * pixel * pixel * photonsPerArea * kUsualFilm;
   const bool connects = choosesMergeVertices(settings.method);
   const bool atFirst =
       connects ? settings.mergeVertices == MergeVertices::first : strategiesOf(settings.method).mergeAtFirstVertex;
-  const double ofPhotons = std::sqrt(kPhotons / photons), smooth = std::cbrt(1 / photons);
+  const double smooth = std::cbrt(1 / photons);
+  const auto ofPhotons = [photons](double count) { return std::sqrt(count / photons); };
   double pixels = kAllVertices * smooth;
-  if (atFirst) pixels = connects ? ofPhotons : std::max(kFirstVertex * smooth, ofPhotons);
+  if (connects) {
+    if (atFirst) pixels = ofPhotons(kPhotons);
+  } else {
+    pixels =
+        atFirst ? std::max(kFirstVertex * smooth, ofPhotons(kPhotons)) : std::max(pixels, ofPhotons(kLeastAllVertices));
+  }
   // The radius depends on the total number of light paths so far, not on how many an iteration has. Where all vertices
   // merge, photon searches dominate the cost, so the radius shrinks faster with the light paths of an iteration.
   const double shrunk = std::pow(lightPaths / kUsualFilm, (settings.radiusAlpha - 1) / 2 - (atFirst ? 0 : 0.25));

@@ -186,6 +186,13 @@ TEST(AutoRadius, ofVcmThatMergesAtFirstVerticesHasFivePhotonsInASearch) {
   }
 }
 
+// Where photons are few, light through a gap: as the cube root gives too few.
+TEST(AutoRadius, hasAtLeastSomePhotonsInASearch) {
+  const Scene door = sceneFile("veach-door", 256, 192);
+  EXPECT_NEAR(radiusOf(door, automatic(Method::ppm)).photonsPerSearch(), 5, 0.1);
+  EXPECT_NEAR(radiusOf(door, automatic(Method::bpm)).photonsPerSearch(), 3.5, 0.1);
+}
+
 TEST(PhotonDensity, isThatOfEvenPhotons) {
   // 64 x 64 positions on a unit square, each for three photons; places in its middle.
   std::vector<std::array<float, 3>> positions;
