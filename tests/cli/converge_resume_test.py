@@ -200,13 +200,10 @@ class Extending(Converge):
         given = ["cornell-diffuse", "--methods", "vcm,mlt", "--size", "20x20", "--seeds", "1", "--images", "last"]
         os.mkdir(self.path("given"))
         self.run_wavecrest("reference", *given[:1], "--size", "20x20", "--spp", "8", "-o", "given/cornell-diffuse.exr")
-        self.converge(*given, "--spp", "8", "--reference", "given", "--out", "a", "--checkpoints")
-        self.converge("--out", "a", "--resume", "--spp", "16", "--checkpoints")
-        self.converge(*given, "--spp", "16", "--reference", "given", "--out", "b")
+        self.converge(*given, "--spp", "64", "--reference", "given", "--out", "a", "--checkpoints")
+        self.converge("--out", "a", "--resume", "--spp", "256", "--checkpoints")
+        self.converge(*given, "--spp", "256", "--reference", "given", "--out", "b")
         self.assertEqual(self.image_names("a"), self.image_names("b"))
-        for name in self.image_names("a"):
-            one, other = (pathlib.Path(self.path(f"{folder}/images/{name}")).read_bytes() for folder in "ab")
-            self.assertEqual(len(one), len(other), name)
         values = "SELECT run.method, m.number, m.metric, m.value FROM run JOIN measurement m ON m.run = run.id ORDER BY 1, 2, 3"
         measured = []
         for folder in "ab":
