@@ -132,8 +132,10 @@ int runInspect(const InspectOptions& options) {
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
   takeProgramDefaults(settings);
+  settings.sampler = bestSampler(settings);
   // Scene and facts.
   const Scene scene = loadScene(options.scene);
+  settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   if (!options.guide.pixel.empty()) {
     writeGuidePicture(scene, settings, options.guide);
     return kExitDone;
