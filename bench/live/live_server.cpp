@@ -52,15 +52,16 @@ LiveServer::LiveServer(const HostPort& address, std::string page) : page_(std::m
 }
 
 LiveServer::~LiveServer() {
+  bool wereReaders = false;  // before any can have taken the end
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     over_ = true;
+    wereReaders = readers_ > 0;
   }
   network_->wake();
   {
     // Wait up to kFarewell until readers have left and the last image was fetched.
     std::unique_lock<std::mutex> lock(mutex_);
-    const bool wereReaders = readers_ > 0;
     changed_.wait_for(lock, kFarewell,
                       [&] { return readers_ == 0 && (!wereReaders || !image_ || sentImage_ == image_); });
   }
