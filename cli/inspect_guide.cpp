@@ -58,6 +58,7 @@ void writeGuidePicture(const Scene& scene, RenderSettings settings, const GuideO
   checkImageTarget(file);
   settings.method = Method::gpt;
   if (settings.guide == GuideTarget::automatic) settings.guide = GuideTarget::radiance;
+  settings.sampler = bestSampler(settings);
   const std::unique_ptr<Session> session = Session::create(scene, settings);
   session->renderUntil(std::nullopt, seconds);
   const std::optional<LearnedDirections> learned = session->learnedDirections(x, y);
