@@ -174,8 +174,8 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   defining("scenes", "built-in scenes or XML files; default: the nine, as far as they are there");
   defining(
       "--methods",
-      "methods, separated by commas; also mlt-pathspace, mlt-pssmlt, ppm-direct, and METHOD-auto, with the settings of "
-      "profile quick; default: the profile's")
+      "methods, separated by commas; also mlt-pathspace, mlt-pssmlt, ppm-direct, and METHOD-auto, with the defaults of "
+      "render; default: the profile's")
       .separatedByCommas()
       .repeatable();
   defining("--profile", "quick, standard, study or paper; default: quick").oneValue();
@@ -217,7 +217,7 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   addViewOption(command, options->view);
   command.addFlag(
       "--checkpoints", options->checkpoints,
-      "keep the state of each run every minute and at its end: --resume goes on within it, also with more time");
+      "write a checkpoint of each run every minute and at its end: --resume goes on from it, also with more time");
   command.addFlag("--resume", options->resume,
                   "go on with the campaign in --out, or extend it: more scenes, methods, seeds, time");
   command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");

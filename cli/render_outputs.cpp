@@ -13,6 +13,7 @@
 #include "bench/checkpoint/checkpoint.h"
 #include "bench/film_image.h"
 #include "bench/json_text.h"
+#include "bench/results/snapshot_notes.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/messages.h"
@@ -164,26 +165,16 @@ void RenderOutputs::write(const Rendered& rendered, const std::string& statsFile
 void RenderOutputs::writeCheckpoint(const Session& session, const std::string& file) {
   if (file.empty() || session.statistics().paths == 0) return;
   // The notes are what goOnFrom reads, time, schedule and snapshots so far, and the statistics for `merge`.
-  nlohmann::ordered_json snapshots = nlohmann::ordered_json::array();
-  for (const SnapshotRecord& snapshot : snapshots_) {
-    snapshots.push_back({snapshot.number, snapshot.renderSeconds, snapshot.iterations, snapshot.file});
-  }
   const nlohmann::ordered_json notes = {{"wall_seconds", wallSeconds()},
                                         {"snapshot_every", names_.snapshotEvery},
-                                        {"snapshots", snapshots},
+                                        {"snapshots", snapshotNotes(snapshots_)},
                                         {"stats", stats(session.statistics(), {})}};
   attempt([&] { wavecrest::writeCheckpoint(file, scene_, settings_, session, notes); });
 }
 
 void RenderOutputs::goOnFrom(const nlohmann::ordered_json& notes, const Session& session) {
   earlierSeconds_ = notes.at("wall_seconds").get<double>();
-  // A row is number, render seconds, iterations and file.
-  for (const auto& row : notes.at("snapshots")) {
-    snapshots_.push_back({.number = row.at(0).get<unsigned>(),
-                          .renderSeconds = row.at(1).get<double>(),
-                          .iterations = row.at(2).get<uint64_t>(),
-                          .file = row.at(3).get<std::string>()});
-  }
+  snapshots_ = snapshotsOfNotes(notes.at("snapshots"));
   sameSchedule_ = notes.at("snapshot_every") == names_.snapshotEvery;
   resumedFrom_ = session.statistics().iterations;
 }

@@ -189,13 +189,13 @@ struct ChainContext {
   PathMutations<S>* paths = nullptr;  // of path space: the paths and what is to change about them
 };
 
-// Columns by lane for walks whose paths are partly decided in advance, as those of Markov chains. Null: not decided.
+// What a walk is told beforehand about the path of each lane, as by Markov chains. Null: the walk draws it.
 struct LaneColumns {
   const uint32_t* lightPaths = nullptr;     // lanes in which light paths begin; null: the first ones
   const uint32_t* emissionDepth = nullptr;  // the one depth at which emission counts, of camera walks
   const uint32_t* edges = nullptr;          // of the whole path, of which a walk may be a part
-  // Output: the pixel that each lane's path chose in the film's window. If set, contributions add to lanes instead of
-  // splats, and camera rays of neighbouring lanes are not coherent. Null: pixels follow from StageContext::pixels.
+  // Output: the pixel that the path of each lane has chosen, in the film's window. Contributions are then summed by
+  // lane and not splatted, and rays of neighbouring lanes are incoherent. Null: StageContext::pixels gives the pixels.
   Column<uint32_t> pixel;
 };
 

@@ -202,7 +202,7 @@ CampaignSettings campaignSettings(const CampaignOptions& options) {
   // Files: outputs, images to keep, and references.
   settings.out = options.out;
   settings.shard = parseShard(options.shard);
-  settings.keepStates = options.checkpoints;
+  settings.checkpoints = options.checkpoints;
   settings.keepImages = parseChoice("--images", get(options, "--images", "all"), kImageChoices) == 0;
   settings.referenceRequired = !options.reference.empty();
   settings.referenceFolder = options.reference.empty() ? sceneReferences(settings.size) : fs::path(options.reference);

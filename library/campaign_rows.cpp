@@ -33,8 +33,9 @@ std::vector<CampaignMethod> allRows() {
   return rows;
 }
 
-// The rows for a word of --methods: that of this name. --mlt says which rows "mlt" stands for, --direct-pass adds one
-// to "ppm".
+// The rows that one word of --methods names: usually one. "mlt" means the variants of --mlt where that is given, and
+// with
+// --direct-pass "ppm" means "ppm-direct" as well.
 std::vector<CampaignMethod> rowsOfWord(const std::string& word, const CampaignWords& words) {
   const CampaignMethod row = allRows()[parseChoice("--methods", word, campaignMethodNames())];
   std::vector<CampaignMethod> rows{row};
@@ -135,7 +136,7 @@ void refuseUnusedWords(const CampaignWords& words, const CampaignSettings& setti
   const auto anyRow = [&](const auto& test) {
     return std::any_of(settings.methods.begin(), settings.methods.end(), test);
   };
-  // Rows with settings of their own, "-auto", have no use for any of the campaign's.
+  // Rows "-auto" have default settings and ignore all of these options.
   const auto anyMethod = [&](bool (*test)(Method)) {
     return anyRow([test](const CampaignMethod& row) { return !row.automatic && test(row.method); });
   };

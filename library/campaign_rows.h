@@ -14,8 +14,7 @@ namespace wavecrest {
 
 using CampaignWords = std::map<std::string, std::vector<std::string>>;  // by option name; only what was given
 
-// What --methods of a campaign takes, each the name of one row: all methods, and those of other choices ("ppm-direct",
-// "vcm-auto").
+// The names of rows that --methods of a campaign takes: each method, and its variants ("ppm-direct", "vcm-auto").
 std::span<const std::string_view> campaignMethodNames();
 
 // The rows of a campaign without --methods: those of the profile, or one of each method.

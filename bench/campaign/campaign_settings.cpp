@@ -41,7 +41,7 @@ constexpr std::array kStandardRows{rowOf(Method::pt),
                                    CampaignMethod{.method = Method::ppm, .directPass = true},
                                    rowOf(Method::bpm),
                                    rowOf(Method::vcm)};
-// Those of the study with its settings, and the best that there is now.
+// The study's methods with its settings, then today's best methods, with default settings where the two differ.
 constexpr std::array kStudyRows{
     rowOf(Method::pt),      rowOf(Method::lt),  rowOf(Method::bpt),     kPathSpace,
     rowOf(Method::ppm),     rowOf(Method::vcm), automatic(Method::ppm), automatic(Method::bpm),
@@ -127,6 +127,12 @@ std::filesystem::path resultsFile(const CampaignSettings& settings) {
   // Each shard has a file of its own, so several processes can work in one folder.
   if (settings.shard.count == 1) return settings.out / kResultsFile;
   return settings.out / fmt::format("results.{}-of-{}.sqlite", settings.shard.index, settings.shard.count);
+}
+
+std::filesystem::path checkpointFile(const CampaignSettings& settings, const CampaignScene& scene,
+                                     const CampaignMethod& row, uint64_t seed) {
+  if (!settings.checkpoints) return {};
+  return settings.out / "checkpoints" / fmt::format("{}.{}.{}.checkpoint", scene.name, row.name(), seed);
 }
 
 }  // namespace wavecrest

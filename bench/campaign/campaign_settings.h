@@ -16,12 +16,12 @@ namespace wavecrest {
 
 // A row of a campaign: a method with the choices that make it another one, which its name tells: "mlt-pathspace" is mlt
 // with chains in path space, "ppm-direct" ppm with direct light by next event estimation, "ppm-auto" ppm with the
-// settings of profile quick, whatever the campaign's own.
+// defaults of `wavecrest render` in place of the campaign's settings.
 struct CampaignMethod {
   Method method = Method::pt;
   MetropolisVariant variant = MetropolisVariant::mmlt;
   bool directPass = false;
-  bool automatic = false;  // radius, light paths, roulette, merges and sampler as the image and the method need
+  bool automatic = false;  // radius, light paths, roulette, merges and sampler are the defaults of `render`
 
   std::string name() const;
   bool operator==(const CampaignMethod&) const = default;
@@ -82,11 +82,15 @@ struct CampaignSettings {
   std::filesystem::path referenceFolder;           // of SCENE.exr
   bool referenceRequired = false;                  // a reference that is not there is an error, else it is rendered
   bool keepImages = true;                          // of all snapshots, else of the last of each run
-  bool keepStates = false;                         // of all runs, so that longer ones go on with them
+  bool checkpoints = false;                        // write one of each run, from which it and longer runs resume
   Shard shard;
 };
 
 // The campaign's results file: DIR/results.sqlite, or of a shard DIR/results.1-of-4.sqlite.
 std::filesystem::path resultsFile(const CampaignSettings& settings);
+
+// DIR/checkpoints/SCENE.ROW.SEED.checkpoint; empty where the campaign writes no checkpoints.
+std::filesystem::path checkpointFile(const CampaignSettings& settings, const CampaignScene& scene,
+                                     const CampaignMethod& row, uint64_t seed);
 
 }  // namespace wavecrest

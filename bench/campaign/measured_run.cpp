@@ -7,10 +7,11 @@
 
 #include "bench/campaign/bias.h"
 #include "bench/campaign/environment.h"
-#include "bench/campaign/kept_run.h"
 #include "bench/campaign/render_stats.h"
+#include "bench/checkpoint/checkpoint.h"
 #include "bench/film_image.h"
 #include "bench/machine/machine_watch.h"
+#include "bench/results/snapshot_notes.h"
 #include "engine/scene/scene_error.h"
 #include "metrics/image/image_io.h"
 #include "metrics/metric_list.h"
@@ -38,8 +39,26 @@ void removeUnfinished(const fs::path& out, const RunRecord& run) {
   }
 }
 
-// How often a run's state is kept while it is rendered, in seconds of wall time.
-constexpr double kKeepEvery = 60;
+// How often a checkpoint of the run is written while it is rendered, in seconds of wall time.
+constexpr double kCheckpointEvery = 60;
+
+// What earlier processes have measured of a run, as the notes of its checkpoint.
+struct RunSoFar {
+  std::vector<SnapshotRecord> snapshots = {};
+  unsigned leftOut = 0;  // snapshots that were due before the first whole image
+  std::vector<std::string> doubts = {};
+};
+
+nlohmann::ordered_json notesOf(const RunSoFar& run) {
+  return {{"snapshots", snapshotNotes(run.snapshots)}, {"snapshots_left_out", run.leftOut}, {"doubts", run.doubts}};
+}
+
+// Throws nlohmann::json::exception where the notes are of something else.
+RunSoFar runOfNotes(const nlohmann::ordered_json& notes) {
+  return {.snapshots = snapshotsOfNotes(notes.at("snapshots")),
+          .leftOut = notes.at("snapshots_left_out").get<unsigned>(),
+          .doubts = notes.at("doubts").get<std::vector<std::string>>()};
+}
 
 // Takes snapshots of one session: writes the image, measures it and adds a row to the run.
 class SnapshotTaker {
@@ -47,13 +66,13 @@ class SnapshotTaker {
   SnapshotTaker(const RunRequest& request, const RenderSettings& settings, RunRecord& run, const Session& session)
       : request_(request), settings_(settings), run_(run), session_(session) {}
 
-  // Takes over the snapshots of an earlier process, up to the number of the next one. Images that are gone are left
-  // out.
-  void goOnFrom(RunSoFar earlier, unsigned next) {
+  // Resumes a run. next: the number of the first snapshot that is due now; earlier ones from that number on are taken
+  // again. A snapshot whose image file is gone keeps its scores.
+  void resume(RunSoFar earlier, unsigned next) {
     leftOut_ = earlier.leftOut;
     earlierDoubts_ = std::move(earlier.doubts);
     for (SnapshotRecord& snapshot : earlier.snapshots) {
-      if (snapshot.number >= next) continue;
+      if (snapshot.number >= next) break;
       const bool isThere = !snapshot.file.empty() && (fs::exists(request_.out / snapshot.file) ||
                                                       fs::exists(unfinishedFile(request_.out, snapshot.file)));
       if (!isThere) snapshot.file.clear();
@@ -61,17 +80,17 @@ class SnapshotTaker {
     }
   }
 
-  void takeAndKeep(unsigned number) {
+  void takeAndSave(unsigned number) {
     take(number);
-    if (std::chrono::duration<double>(Clock::now() - kept_).count() >= kKeepEvery) keep();
+    if (std::chrono::duration<double>(Clock::now() - saved_).count() >= kCheckpointEvery) save();
   }
 
-  // Writes the state of the run, if it is to be kept.
-  void keep() {
+  // Writes a checkpoint of the run, if one is asked for.
+  void save() {
     if (request_.checkpoint.empty()) return;
     writeCheckpoint(request_.checkpoint.string(), request_.scene, settings_, session_,
                     notesOf({.snapshots = run_.snapshots, .leftOut = leftOut_, .doubts = doubts()}));
-    kept_ = Clock::now();
+    saved_ = Clock::now();
   }
 
   void take(unsigned number) {
@@ -145,38 +164,38 @@ class SnapshotTaker {
   const Clock::time_point begin_ = Clock::now();
   uint64_t paths_ = 0;
   const MachineWatch machine_;
-  unsigned leftOut_ = 0;  // snapshots that were due before the first whole image
+  unsigned leftOut_ = 0;
   std::vector<std::string> earlierDoubts_;
-  Clock::time_point kept_ = Clock::now();
+  Clock::time_point saved_ = Clock::now();
 };
 
-// A run's session, and what an earlier process has measured if it goes on from the state that one has kept.
+// A run's session, and what earlier processes have measured if it resumes a checkpoint.
 struct BegunRun {
   std::unique_ptr<Session> session;
   std::optional<RunSoFar> earlier = {};
 };
 
-// Goes on from the kept state, or begins anew where there is none or it is of another run. settings: light paths are
-// cut as in the kept state.
+// Resumes the run's checkpoint, or begins anew where there is none or it is of another run. settings: light paths are
+// cut into waves as in the checkpoint.
 BegunRun beginRun(const RunRequest& request, RenderSettings& settings) {
   const auto anew = [&](const std::string& why) {
     if (request.say) request.say(why + "; the run is rendered anew");
     settings = request.settings;
   };
-  try {
-    if (const std::unique_ptr<Checkpoint> kept = keptCheckpoint(request.checkpoint)) {
-      kept->cutAlike(settings);
-      BegunRun begun{.session = Session::create(request.scene, settings)};
-      kept->restore(request.scene, settings, *begun.session);
-      begun.earlier = runOfNotes(kept->header().notes);
-      return begun;
+  if (!request.checkpoint.empty() && fs::exists(request.checkpoint)) {
+    try {
+      const Checkpoint checkpoint(request.checkpoint.string());
+      checkpoint.cutAlike(settings);
+      std::unique_ptr<Session> session = Session::create(request.scene, settings);
+      checkpoint.restore(request.scene, settings, *session);
+      return {.session = std::move(session), .earlier = runOfNotes(checkpoint.header().notes)};
+    } catch (const CheckpointError& error) {
+      anew(error.what());
+    } catch (const ImageError& error) {
+      anew(error.what());
+    } catch (const nlohmann::json::exception&) {
+      anew(request.checkpoint.string() + ": has notes that are none");
     }
-  } catch (const CheckpointError& error) {
-    anew(error.what());
-  } catch (const ImageError& error) {
-    anew(error.what());
-  } catch (const nlohmann::json::exception&) {
-    anew(request.checkpoint.string() + ": has notes that are none");
   }
   return {.session = Session::create(request.scene, settings)};
 }
@@ -219,11 +238,11 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHoo
   if (begun.earlier) {
     const RenderStatistics statistics = session->statistics();
     count = request.schedule.firstAfter(statistics.renderSeconds, statistics.iterations);
-    taker.goOnFrom(std::move(*begun.earlier), count);
+    taker.resume(std::move(*begun.earlier), count);
   } else {
     removeUnfinished(request.out, run);
   }
-  const auto takeSnapshot = [&](unsigned number) { taker.takeAndKeep(number); };
+  const auto takeSnapshot = [&](unsigned number) { taker.takeAndSave(number); };
   {
     const WatchScope watch(hooks, *session);
     count = renderWithSnapshots(*session, settings, request.schedule, takeSnapshot, hooks.goesOn, count);
@@ -231,13 +250,13 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHoo
   // A request to save that came too late for the loop above does not end the run.
   const bool stopped = session->interrupted() && !(hooks.goesOn && hooks.goesOn());
   if (stopped) {
-    taker.keep();
+    taker.save();
     if (request.checkpoint.empty()) removeUnfinished(request.out, run);
     return std::nullopt;
   }
   // The end of the run is always a snapshot.
   if (taker.outdated()) taker.take(count);
-  taker.keep();
+  taker.save();
   const RenderStatistics statistics = session->statistics();
   run.stats = taker.stats(statistics).dump();
   if (!statistics.hasWholeImage()) {
@@ -252,7 +271,7 @@ std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHoo
 void placeImages(const fs::path& out, const RunRecord& run) {
   for (const SnapshotRecord& snapshot : run.snapshots) {
     if (snapshot.file.empty()) continue;
-    // Images of a run that went on from a stored one have their names already.
+    // Images that a resumed run had already when it was stored have their final names.
     const fs::path unfinished = unfinishedFile(out, snapshot.file), placed = out / snapshot.file;
     if (fs::exists(unfinished) || !fs::exists(placed)) fs::rename(unfinished, placed);
   }

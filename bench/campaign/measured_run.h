@@ -25,18 +25,19 @@ struct RunRequest {
   std::string row = {};               // under which the campaign keeps the run; empty: the method's name
   std::filesystem::path out;          // images go to its folder images
   bool keepImages = true;             // of all snapshots, else of the last
-  // The state of the run, kept there every minute or so, when it is stopped and at its end; where the file is one of
-  // the same run, the run goes on from it. Empty: no state is kept.
+  // Checkpoint of the run, written every minute or so, when the run is stopped and at its end. If the file exists and
+  // is of the same run, the run resumes from it. Empty: none.
   std::filesystem::path checkpoint = {};
-  std::function<void(const std::string&)> say = {};  // why it does not go on from a state that there is
+  std::function<void(const std::string&)> say = {};  // why a checkpoint that exists is not resumed
   double loadSeconds = 0;                            // of the scene, for the record
 };
 
-// The run, whose images are named as unfinished ones until placeImages(): what an earlier, shorter run has stays as it
-// is. Nothing if the run was interrupted; then its images are removed, unless its state is kept. A method that cannot
-// render the scene gives a run that is refused, and so does a time that is too short for one whole image; then its
-// stats say which time. Snapshots before the first whole image are left out, and the stats say how many
-// (snapshots_left_out). Those of a timed run also say what disturbed it (doubts).
+// Returns the run. Its images have names of unfinished ones until placeImages(), so that those of an earlier, shorter
+// run stay as they are. Returns nothing if the run was interrupted; its images are then removed, unless there is a
+// checkpoint to resume from. A run is refused if the method cannot render the scene, or if the time is too short for
+// one whole image; the stats then have the time that was asked for (asked_seconds). Snapshots before the first whole
+// image are left out and counted in the stats (snapshots_left_out). Stats of a timed run also list what disturbed it
+// (doubts).
 std::optional<RunRecord> measuredRun(const RunRequest& request, const SessionHooks& hooks);
 
 // Gives the images of a run the names that its record says, out/images/SCENE.METHOD.SEED.NUMBER.exr, in place of those

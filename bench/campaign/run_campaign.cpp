@@ -114,8 +114,9 @@ class Campaign {
 
  private:
   void createFolders() const {
-    for (const char* name : {"images", "references", "checkpoints"}) {
-      if (name == std::string_view("checkpoints") && !settings_.keepStates) continue;
+    std::vector<const char*> names{"images", "references"};
+    if (settings_.checkpoints) names.push_back("checkpoints");
+    for (const char* name : names) {
       std::error_code error;
       fs::create_directories(settings_.out / name, error);
       if (!error) continue;
@@ -295,7 +296,7 @@ class Campaign {
                                                           .row = method.name(),
                                                           .out = settings_.out,
                                                           .keepImages = settings_.keepImages,
-                                                          .checkpoint = checkpointOf(entry, method, seed),
+                                                          .checkpoint = checkpointFile(settings_, entry, method, seed),
                                                           .say = hooks_.say,
                                                           .loadSeconds = loadSeconds},
                                                          hooks_.session);
@@ -306,12 +307,6 @@ class Campaign {
       }
     }
     return true;
-  }
-
-  // Where the state of a run is kept; nowhere unless that is asked for.
-  fs::path checkpointOf(const CampaignScene& entry, const CampaignMethod& method, uint64_t seed) const {
-    if (!settings_.keepStates) return {};
-    return settings_.out / "checkpoints" / fmt::format("{}.{}.{}.checkpoint", entry.name, method.name(), seed);
   }
 
   // Stores a run and its images; those of a shorter one that it replaces go once it is stored.
@@ -333,17 +328,12 @@ class Campaign {
                              uint64_t seed) const {
     RenderSettings render = settings_.render;
     render.method = method.method;
-    std::optional<SamplerKind> sampler = settings_.sampler;
     if (method.automatic) {
-      const Profile& quick = *findProfile("quick");
-      render.radius = quick.radius;
+      takeProgramDefaults(render);
+      render.radiusAlpha = RenderSettings().radiusAlpha;
       render.lightPaths.reset();
-      render.roulette = quick.roulette;
-      render.mergeVertices = quick.mergeVertices;
-      render.balancedWalks = quick.balancedWalks;
-      sampler = quick.sampler;
     }
-    render.sampler = sampler.value_or(bestSampler(render));
+    render.sampler = method.automatic ? bestSampler(render) : settings_.sampler.value_or(bestSampler(render));
     render.metropolis.variant = method.variant;
     render.directPass = method.directPass;
     if (!strategiesOf(method.method).merge) render.lightPaths.reset();

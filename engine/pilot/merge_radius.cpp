@@ -93,7 +93,8 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
                      const RenderSettings& settings) {
   if (!(found.pixel > 0)) return kFixedRadius;
   constexpr double kFirstVertex = 2.1, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
-  constexpr double kPhotons = 5, kLeastAllVertices = 3.5;  // in a search: of vcm and the least of ppm; the least of bpm
+  // Photons in a search: of vcm, and at least of ppm; at least of bpm.
+  constexpr double kPhotons = 5, kLeastAllVertices = 3.5;
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
   const double pixel = found.pixel * std::sqrt(filmPixels / kUsualFilm);
   const double photons = std::numbers::pi * pixel * pixel * photonsPerArea * kUsualFilm;
@@ -103,12 +104,8 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
   const double smooth = std::cbrt(1 / photons);
   const auto ofPhotons = [photons](double count) { return std::sqrt(count / photons); };
   double pixels = kAllVertices * smooth;
-  if (connects) {
-    if (atFirst) pixels = ofPhotons(kPhotons);
-  } else {
-    pixels =
-        atFirst ? std::max(kFirstVertex * smooth, ofPhotons(kPhotons)) : std::max(pixels, ofPhotons(kLeastAllVertices));
-  }
+  if (atFirst) pixels = connects ? ofPhotons(kPhotons) : std::max(kFirstVertex * smooth, ofPhotons(kPhotons));
+  if (!atFirst && !connects) pixels = std::max(pixels, ofPhotons(kLeastAllVertices));
   // The radius depends on the total number of light paths so far, not on how many an iteration has. Where all vertices
   // merge, photon searches dominate the cost, so the radius shrinks faster with the light paths of an iteration.
   const double shrunk = std::pow(lightPaths / kUsualFilm, (settings.radiusAlpha - 1) / 2 - (atFirst ? 0 : 0.25));

@@ -104,9 +104,8 @@ def converge(
     What is not given is as there; further options (precision, sampler, images, ...) are its own, with underscores for
     dashes; True sets a flag (direct_pass), False leaves it out. D: values of the scenes' $names, by name or as
     "NAME=VALUE". The campaign can go on with resume=True, here or on the command line, and may then become larger: more
-    scenes, methods, seeds or time. say: takes a line of progress now and then, default: stderr. Ctrl-C raises
-    Interrupted; whole runs are kept, and with
-    checkpoints=True the state of each run, from which it goes on, also for longer.
+    scenes, methods, seeds or time. checkpoints: write one of each run, from which it goes on, also for longer. say: takes
+    a line of progress now and then, default: stderr. Ctrl-C raises Interrupted; whole runs are kept.
     """
     given: dict[str, object] = {
         "methods": methods,

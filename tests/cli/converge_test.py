@@ -218,10 +218,11 @@ class Rows(Converge):
 
     def test_automatic_rows_have_the_settings_of_profile_quick(self):
         tiny = ["cornell-diffuse", "--size", "16x12", "--spp", "1", "--seeds", "1"]
-        self.converge(*tiny, "--profile", "study", "--methods", "vcm,vcm-auto", "--light-paths", "99", "--out", "a")
+        self.converge(*tiny, "--profile", "study", "--methods", "vcm,vcm-auto", "--light-paths", "99", "--radius-alpha", "0.5",
+                      "--out", "a")
         self.converge(*tiny, "--methods", "vcm", "--out", "quick")
         runs, quick = self.runs("a")[0], self.runs("quick")[0]["vcm"]
-        of_study = {"radius_choice": "fixed", "roulette": "throughput", "merge_vertices": "all", "light_paths": 99}
+        of_study = {"radius_choice": "fixed", "radius_alpha": 0.5, "roulette": "throughput", "merge_vertices": "all", "light_paths": 99}
         self.assertEqual({key: runs["vcm"][key] for key in of_study}, of_study)
         for key in (*of_study, "sampler", "radius"):
             self.assertEqual(runs["vcm-auto"][key], quick[key], key)
