@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "engine/pilot/light_walks.h"
 #include "engine/pilot/median.h"
@@ -34,7 +36,10 @@ struct CameraPath {
   double place[3]{};   // of the latest vertex
   double length = 0;   // so far
   double density = 0;  // p_cam of METHODS 4.1, or of parallel rays per area
-  bool merged = false;
+  // Once it has merged: of MergePlace, and the normal there.
+  std::optional<size_t> merged;
+  double normal[3]{};
+  bool left = false;
 };
 
 template <class S>
@@ -51,45 +56,73 @@ void beginPaths(Wave<S>& wave, const CameraView& camera, std::vector<CameraPath>
   }
 }
 
-// Goes on to the vertices of a depth. Adds a place for each path that can merge for the first time.
+// Of a ray to or from the place where a path has merged, to its normal.
 template <class S>
-void visitVertices(Wave<S>& wave, bool parallel, std::vector<CameraPath>& paths, std::vector<MergePlace>& places) {
+double cosineOfRay(const Wave<S>& wave, size_t ray, const CameraPath& path) {
+  const double cosine = wave.rays.directionX[ray] * path.normal[0] + wave.rays.directionY[ray] * path.normal[1] +
+                        wave.rays.directionZ[ray] * path.normal[2];
+  return std::abs(cosine);
+}
+
+// Goes on to the vertices of a depth. Adds a place for each path that can merge for the first time. Whether any path
+// had not merged before.
+template <class S>
+bool visitVertices(Wave<S>& wave, bool parallel, std::vector<CameraPath>& paths, std::vector<MergePlace>& places) {
   constexpr double kLeastCosine = 1e-3;
+  bool any = false;
   for (size_t i = 0; i < wave.rays.size; ++i) {
     CameraPath& path = paths[wave.paths.lane[i]];
+    if (path.merged) continue;
+    any = true;
     const double vertex[3] = {static_cast<double>(wave.rays.originX[i]), static_cast<double>(wave.rays.originY[i]),
                               static_cast<double>(wave.rays.originZ[i])};
     path.length += std::hypot(vertex[0] - path.place[0], vertex[1] - path.place[1], vertex[2] - path.place[2]);
     std::copy_n(vertex, 3, path.place);
-    if (i >= wave.joinable || path.merged) continue;
-    path.merged = true;
+    if (i >= wave.joinable) continue;
+    path.merged = places.size();
+    path.normal[0] = wave.surfaces.normalX[i];
+    path.normal[1] = wave.surfaces.normalY[i];
+    path.normal[2] = wave.surfaces.normalZ[i];
     // As if mirrors and glass on the way were flat.
-    const auto cosine = static_cast<double>(wave.rays.directionX[i] * wave.surfaces.normalX[i] +
-                                            wave.rays.directionY[i] * wave.surfaces.normalY[i] +
-                                            wave.rays.directionZ[i] * wave.surfaces.normalZ[i]);
     const double across = (parallel ? 1 : path.length * path.length) / path.density;
-    MergePlace place{.pixel = std::sqrt(across / std::max(std::abs(cosine), kLeastCosine))};
+    MergePlace place{.pixel = std::sqrt(across / std::max(cosineOfRay(wave, i, path), kLeastCosine))};
     for (size_t axis = 0; axis < 3; ++axis) place.position[axis] = static_cast<float>(vertex[axis]);
     places.push_back(place);
   }
+  return any;
+}
+
+// Sets the `lobes` of places. Photons come from all sides, and count by f: with directions sampled by f, the mean of
+// f^2 over the square of the mean of f is the mean of pi p / cos. The cosine has a bound, as grazing directions, in
+// which few photons come, would have most of the mean.
+template <class S>
+ViewLeft<S> lobesOf(std::vector<CameraPath>& paths, std::vector<MergePlace>& places) {
+  constexpr double kLeastCosine = 0.05;
+  return [&](const Wave<S>& wave) {
+    for (size_t i = 0; i < wave.rays.size; ++i) {
+      CameraPath& path = paths[wave.paths.lane[i]];
+      if (!path.merged || std::exchange(path.left, true)) continue;
+      const auto inversePdf = static_cast<double>(wave.paths.dVCM[i]);
+      if (!(inversePdf > 0)) continue;
+      const double cosine = std::max(cosineOfRay(wave, i, path), kLeastCosine);
+      places[*path.merged].lobes = std::max(std::numbers::pi / (inversePdf * cosine), 1.0);
+    }
+  };
 }
 
 // For each depth of the camera walks: updates `paths`, and appends to `places` where a path can merge first.
 template <class S>
 ViewLook<S> placesOf(const CameraView& camera, std::vector<CameraPath>& paths, std::vector<MergePlace>& places) {
   return [&](Wave<S>& wave, uint32_t depth) {
-    if (depth == 0) {
-      beginPaths(wave, camera, paths);
-    } else {
-      visitVertices(wave, camera.parallel, paths, places);
-    }
+    if (depth != 0) return visitVertices(wave, camera.parallel, paths, places);
+    beginPaths(wave, camera, paths);
     return true;
   };
 }
 
 // METHODS 6.5, relative to the scene's radius. filmPixels: of the whole film; lightPaths: of an iteration;
-// photonsPerArea: of a light path.
-double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPaths, double photonsPerArea,
+// ofPath: photons of a light path.
+double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPaths, const PhotonDensity& ofPath,
                      const RenderSettings& settings) {
   if (!(found.pixel > 0)) return kFixedRadius;
   constexpr double kFirstVertex = 2.1, kAllVertices = 1.7;  // pixels, where a disc of one pixel's radius has one photon
@@ -97,10 +130,10 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
   constexpr double kPhotons = 5, kLeastAllVertices = 3.5;
   constexpr double kLeastPixels = 0.5, kMostPixels = 8;
   const double pixel = found.pixel * std::sqrt(filmPixels / kUsualFilm);
-  const double photons = std::numbers::pi * pixel * pixel * photonsPerArea * kUsualFilm;
   const bool connects = choosesMergeVertices(settings.method);
   const bool atFirst =
       connects ? settings.mergeVertices == MergeVertices::first : strategiesOf(settings.method).mergeAtFirstVertex;
+  const double photons = std::numbers::pi * pixel * pixel * ofPath.perArea * kUsualFilm;
   const double smooth = std::cbrt(1 / photons);
   const auto ofPhotons = [photons](double count) { return std::sqrt(count / photons); };
   double pixels = kAllVertices * smooth;
@@ -109,8 +142,11 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
   // The radius depends on the total number of light paths so far, not on how many an iteration has. Where all vertices
   // merge, photon searches dominate the cost, so the radius shrinks faster with the light paths of an iteration.
   const double shrunk = std::pow(lightPaths / kUsualFilm, (settings.radiusAlpha - 1) / 2 - (atFirst ? 0 : 0.25));
+  // Only ppm takes the light of narrow lobes from photons: the others sample or connect them. The sixth root: with so
+  // many times the noise at a radius, and bias as it is, that much more is best.
+  const double lobes = atFirst && !connects ? std::pow(ofPath.lobes, 1.0 / 6) : 1;
   const double wanted =
-      std::max(std::min(pixels, kMostPixels) * pixel * shrunk, kLeastPixels * found.pixel) / found.scene;
+      std::max(std::min(pixels, kMostPixels) * pixel * shrunk * lobes, kLeastPixels * found.pixel) / found.scene;
   // Three digits, so that the last bits, in which instruction sets and precisions differ, do not change the choice.
   const double unit = std::pow(10, std::floor(std::log10(wanted)) - 2);
   const double chosen = std::round(wanted / unit) * unit;
@@ -126,18 +162,19 @@ std::vector<MergePlace> findMergePlaces(const RenderPlan<S>& plan, const RenderS
   const std::vector<uint32_t> pixels = spreadPixels(camera);
   std::vector<CameraPath> paths(pixels.size());
   std::vector<MergePlace> places;
-  walkViews<S>(plan, settings, pixels, kPilotSeed, nullptr, placesOf<S>(camera, paths, places));
+  walkViews<S>(plan, settings, pixels, kPilotSeed, nullptr, placesOf<S>(camera, paths, places),
+               lobesOf<S>(paths, places));
   return places;
 }
 template std::vector<MergePlace> findMergePlaces(const RenderPlan<float>&, const RenderSettings&);
 template std::vector<MergePlace> findMergePlaces(const RenderPlan<double>&, const RenderSettings&);
 
-double photonDensity(std::span<const MergePlace> places, std::span<const Position> positions,
-                     double photonsPerPosition) {
+PhotonDensity photonDensity(std::span<const MergePlace> places, std::span<const Position> positions,
+                            double photonsPerPosition) {
   // The disc to the kNearest-th position has kNearest - 1 in it and one at its rim.
   constexpr size_t kNearest = 8, kMostPlaces = 256;
-  if (positions.size() < kNearest || places.empty()) return 0;
-  double areas = 0;
+  if (positions.size() < kNearest || places.empty()) return {};
+  double areas = 0, lobeAreas = 0;
   size_t count = 0;
   const size_t step = std::max<size_t>(places.size() / kMostPlaces, 1);
   for (size_t i = 0; i < places.size(); i += step) {
@@ -153,11 +190,14 @@ double photonDensity(std::span<const MergePlace> places, std::span<const Positio
       for (; k > 0 && square < nearest[k - 1]; --k) nearest[k] = nearest[k - 1];
       nearest[k] = square;
     }
-    areas += std::numbers::pi * nearest.back();
+    const double area = std::numbers::pi * nearest.back();
+    areas += area;
+    lobeAreas += area * places[i].lobes;
     ++count;
   }
   // Of even positions the disc of the k-th has k / density in the mean.
-  return areas > 0 ? kNearest * photonsPerPosition * static_cast<double>(count) / areas : 0;
+  if (!(areas > 0)) return {};
+  return {.perArea = kNearest * photonsPerPosition * static_cast<double>(count) / areas, .lobes = lobeAreas / areas};
 }
 
 template <class S>
@@ -174,8 +214,9 @@ MergeRadius chosenRadius(const RenderPlan<S>& plan, const RenderSettings& settin
   for (const MergePlace& place : places) pixels.push_back(place.pixel);
   MergeRadius radius = plan.mergeRadius;
   radius.pixel = medianOf(std::move(pixels));
-  const double ofPath = photonDensity(places, light.photons, 1 / static_cast<double>(std::max<size_t>(light.paths, 1)));
-  radius.photonsPerArea = ofPath * static_cast<double>(plan.memory.lightPaths);
+  const PhotonDensity ofPath =
+      photonDensity(places, light.photons, 1 / static_cast<double>(std::max<size_t>(light.paths, 1)));
+  radius.photonsPerArea = ofPath.perArea * static_cast<double>(plan.memory.lightPaths);
   if (settings.radius) return radius;
   const CameraView& camera = plan.view.camera;
   const size_t filmPixels = size_t{camera.width} * camera.height;

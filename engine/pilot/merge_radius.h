@@ -17,6 +17,7 @@ constexpr double kUsualFilm = 256 * 192;
 struct MergePlace {
   std::array<float, 3> position{};
   double pixel = 0;  // the side of the square that a pixel covers on the surface
+  double lobes = 1;  // how many times as many photons its BSDF takes for the noise that a diffuse one has
 };
 
 // Traces camera paths of pixels spread over the whole film, whatever its crop, until they can merge. Depends on the
@@ -24,10 +25,15 @@ struct MergePlace {
 template <class S>
 std::vector<MergePlace> findMergePlaces(const RenderPlan<S>& plan, const RenderSettings& settings);
 
-// Photons on a unit of area around the places, if each of the positions stands for so many photons: the harmonic mean,
-// as noise is that of the mean of its reciprocal. 0 where there are too few positions, or no places.
-double photonDensity(std::span<const MergePlace> places, std::span<const std::array<float, 3>> positions,
-                     double photonsPerPosition);
+struct PhotonDensity {
+  double perArea = 0;  // photons: the harmonic mean over places, as noise is that of the mean of the reciprocals
+  double lobes = 1;    // of MergePlace, the mean over what photons lie apart by
+};
+
+// Of the places, if each of the positions stands for so many photons. 0 where there are too few positions, or no
+// places.
+PhotonDensity photonDensity(std::span<const MergePlace> places, std::span<const std::array<float, 3>> positions,
+                            double photonsPerPosition);
 
 // The plan's radius with `pixel` and `photonsPerArea`, and with the first radius by METHODS 6.5 where the settings
 // leave it to the image. Of a method that merges, whose plan.memory is complete.

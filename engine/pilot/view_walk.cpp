@@ -7,11 +7,11 @@ namespace wavecrest {
 
 template <class S>
 void walkViews(const RenderPlan<S>& plan, const RenderSettings& settings, std::span<const uint32_t> pixels,
-               uint64_t seed, const CellTreeView* cells, const ViewLook<S>& look) {
+               uint64_t seed, const CellTreeView* cells, const ViewLook<S>& look, const ViewLeft<S>& left) {
   const FlushToZero flushToZero;
   const SceneView<S>& view = plan.view;
   using enum StageId;
-  const MethodPage page{{walk(Walk::camera, generateCameraPaths, {extend, arrive, findCells, scatterSpecular})}};
+  const MethodPage page{{walk(Walk::camera, generateCameraPaths, {extend, arrive, findCells, scatter})}};
   const Pass<S> pass = makePipeline(page, *plan.stages, chooseIntersector(*plan.stages, *plan.scene)).cameraPass();
   StageCounters counters;
   StageContext<S> context{.scene = &view,
@@ -32,11 +32,12 @@ void walkViews(const RenderPlan<S>& plan, const RenderSettings& settings, std::s
       if (stage + 1 == pass.perDepth.size() && !look(wave, context.depth)) return;
       runStage<S>(pass.perDepth[stage], context, wave, nullptr);
     }
+    if (left) left(wave);
   }
 }
 template void walkViews(const RenderPlan<float>&, const RenderSettings&, std::span<const uint32_t>, uint64_t,
-                        const CellTreeView*, const ViewLook<float>&);
+                        const CellTreeView*, const ViewLook<float>&, const ViewLeft<float>&);
 template void walkViews(const RenderPlan<double>&, const RenderSettings&, std::span<const uint32_t>, uint64_t,
-                        const CellTreeView*, const ViewLook<double>&);
+                        const CellTreeView*, const ViewLook<double>&, const ViewLeft<double>&);
 
 }  // namespace wavecrest

@@ -18,10 +18,11 @@ template <class S>
 std::optional<uint32_t> cellSeen(const RenderPlan<S>& plan, const RenderSettings& settings, const CellTreeView& cells,
                                  uint32_t pixel) {
   std::optional<uint32_t> cell;
-  walkViews<S>(plan, settings, {&pixel, 1}, settings.seed, &cells, [&](Wave<S>& wave, uint32_t depth) {
+  const ViewLook<S> look = [&](Wave<S>& wave, uint32_t depth) {
     if (depth != 0 && wave.joinable != 0) cell = wave.cells.cell[0];
     return !cell;
-  });
+  };
+  walkViews<S>(plan, settings, {&pixel, 1}, settings.seed, &cells, look, nullptr);
   return cell;
 }
 

@@ -85,6 +85,30 @@ TEST(AutoRadius, ofBpmIsSmallerWhereAnIterationHasManyLightPaths) {
   EXPECT_NEAR(few.at(15) / many.at(0), 2, 0.02);
 }
 
+// METHODS 6.5: photons from all sides of a cosine-power lobe, (n + 1) / 2 pi cos^n a, seen along its axis, have
+// (n + 1)^2 / 4 n times the variance of those on a diffuse surface. Only ppm takes all of the lobe from photons.
+TEST(AutoRadius, ofPpmIsLargerOnGlossySurfaces) {
+  constexpr double kExponent = 100;
+  Scene glossy = floorFromAbove();
+  glossy.materials[0].kind = Phong{.diffuseReflectance = {{0, 0, 0}}, .exponent = kExponent};
+  const double more = std::pow((kExponent + 1) * (kExponent + 1) / (4 * kExponent), 1.0 / 6);
+  for (const Method method : {Method::ppm, Method::bpm}) {
+    const double ratio =
+        radiusOf(glossy, automatic(method)).first / radiusOf(floorFromAbove(), automatic(method)).first;
+    EXPECT_NEAR(ratio / (method == Method::ppm ? more : 1), 1, 0.05) << toString(method);
+  }
+  RenderSettings first = automatic(Method::vcm);
+  first.mergeVertices = MergeVertices::first;
+  EXPECT_NEAR(radiusOf(glossy, first).first / radiusOf(floorFromAbove(), first).first, 1, 0.05);
+}
+
+// A smooth coat makes no noise of photons: its delta lobe is followed.
+TEST(AutoRadius, ofPpmIsThatOfTheDiffuseLobeUnderADeltaLobe) {
+  Scene coated = floorFromAbove();
+  coated.materials[0].kind = Plastic{};
+  EXPECT_NEAR(radiusOf(coated).first / radiusOf(floorFromAbove()).first, 1, 0.05);
+}
+
 TEST(AutoRadius, scalesWithTheScene) {
   const MergeRadius one = radiusOf(floorFromAbove(1)), large = radiusOf(floorFromAbove(1024));
   EXPECT_NEAR(large.at(0) / one.at(0), 1024, 1024 * 1e-4);
@@ -189,7 +213,7 @@ TEST(AutoRadius, ofVcmThatMergesAtFirstVerticesHasFivePhotonsInASearch) {
 // Where photons are few, light through a gap: as the cube root gives too few.
 TEST(AutoRadius, hasAtLeastSomePhotonsInASearch) {
   const Scene door = sceneFile("veach-door", 256, 192);
-  EXPECT_NEAR(radiusOf(door, automatic(Method::ppm)).photonsPerSearch(), 5, 0.1);
+  EXPECT_GE(radiusOf(door, automatic(Method::ppm)).photonsPerSearch(), 4.9);
   EXPECT_NEAR(radiusOf(door, automatic(Method::bpm)).photonsPerSearch(), 3.5, 0.1);
 }
 
@@ -204,9 +228,9 @@ TEST(PhotonDensity, isThatOfEvenPhotons) {
   }
   const std::vector<MergePlace> places(5, MergePlace{.position = {0.51f, 0.52f, 0}, .pixel = 1});
   // Positions on a grid: the eighth is off the even density's radius by up to half a step of three.
-  EXPECT_NEAR(photonDensity(places, positions, 3) / (3 * 64 * 64), 1, 0.4);
-  EXPECT_EQ(photonDensity({}, positions, 3), 0);
-  EXPECT_EQ(photonDensity(places, {}, 3), 0);
+  EXPECT_NEAR(photonDensity(places, positions, 3).perArea / (3 * 64 * 64), 1, 0.4);
+  EXPECT_EQ(photonDensity({}, positions, 3).perArea, 0);
+  EXPECT_EQ(photonDensity(places, {}, 3).perArea, 0);
 }
 
 // ---- renders --------------------------------------------------------------------------------------------------------
