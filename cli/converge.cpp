@@ -215,9 +215,9 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
   command.add("--shard", options->shard, "i/n: do only the i-th of n parts").showDefault();
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
   addViewOption(command, options->view);
-  command.addFlag(
-      "--checkpoints", options->checkpoints,
-      "write a checkpoint of each run every minute and at its end: --resume goes on from it, also with more time");
+  command.addFlag("--checkpoints", options->checkpoints,
+                  "write a checkpoint of each run with the first snapshot after each minute, and at its end: --resume "
+                  "goes on from it, also with more time");
   command.addFlag("--resume", options->resume,
                   "go on with the campaign in --out, or extend it: more scenes, methods, seeds, time");
   command.addFlag("--check", options->check, "fail with exit code 4 where a finding of the study does not hold");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -69,6 +70,18 @@ std::optional<CampaignOptions> extended(const CampaignOptions& before, const std
   return std::nullopt;
 }
 
+// Times are about one number of threads, which is what the campaign was begun with. stored: what its results file says,
+// of files of earlier versions a list. Throws UsageError for another number in a campaign by time.
+void keepThreads(CampaignOptions& options, const std::string& stored, const std::filesystem::path& results) {
+  const std::string latest = stored.substr(stored.rfind(' ') + 1);
+  const uint32_t begun = static_cast<uint32_t>(std::strtoul(latest.c_str(), nullptr, 10));
+  if (begun == 0) return;
+  if (options.threads == 0) options.threads = begun;
+  if (options.threads == begun || campaignSettings(options).iterations) return;
+  throw UsageError(fmt::format("--threads {}: {} was begun with {}; expected the same, or another --out",
+                               options.threads, results.string(), begun));
+}
+
 // A profile may choose otherwise than when the campaign began: what it chose then is asked for by name, so that all
 // runs have one radius, one roulette and one kind of vcm. Files of earlier versions do not name all of them.
 void keepFormerChoices(CampaignOptions& options, const std::map<std::string, std::string>& stored) {
@@ -129,6 +142,8 @@ void resumeCampaign(CampaignOptions& options, const std::filesystem::path& resul
     all = *larger;
   }
   options.defining = all.defining;
+  const auto threads = before.campaign.find("threads");
+  if (threads != before.campaign.end()) keepThreads(options, threads->second, results);
 }
 
 }  // namespace wavecrest

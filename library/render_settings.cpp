@@ -125,7 +125,12 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   settings.balancedWalks = true;
   settings.connectionRoulette = options.connectionRoulette;
   settings.guide = static_cast<GuideTarget>(parseChoice("--guide", options.guide, kGuideTargetNames));
-  settings.sampler = parseSamplerOrAuto("--sampler", options.sampler).value_or(bestSampler(settings));
+  const std::optional<SamplerKind> sampler = parseSamplerOrAuto("--sampler", options.sampler);
+  settings.samplerIsChosen = sampler.has_value();
+  settings.sampler = sampler.value_or(bestSampler(settings));
+  if (!options.guideMemory.empty() && settings.guide == GuideTarget::off) {
+    throw UsageError("--guide-memory: --guide off learns no guide; expected only one of them");
+  }
   if (!options.guideMemory.empty()) settings.guideBytes = parseMemory("--guide-memory", options.guideMemory);
   if (options.lightPaths != 0) settings.lightPaths = options.lightPaths;
   settings.directPass = options.directPass;

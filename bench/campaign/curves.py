@@ -48,16 +48,16 @@ def is_better(a, b, higher):
 
 
 def time_to(series, target, higher):
-    """(seconds, whether the first snapshot has it already) to a score, by lines over the logarithm of time; or None."""
-    before = None
-    for seconds, value in mean_curve(series):
-        if not is_better(target, value, higher):
-            break
-        before = (seconds, value)
-    else:
+    """(seconds, whether the first snapshot has it already) to a score that is kept from then on, by lines over log time; or None."""
+    curve = mean_curve(series)
+    worse = [k for k, (_, value) in enumerate(curve) if is_better(target, value, higher)]
+    first = worse[-1] + 1 if worse else 0
+    if first == len(curve):
         return None
-    if before is None:
+    seconds, value = curve[first]
+    if first == 0:
         return seconds, True
+    before = curve[first - 1]
     part = (target - before[1]) / (value - before[1])
     if before[0] <= 0:
         return before[0] + part * (seconds - before[0]), False

@@ -45,17 +45,41 @@ constexpr double kCheckpointEvery = 60;
 // What earlier processes have measured of a run, as the notes of its checkpoint.
 struct RunSoFar {
   std::vector<SnapshotRecord> snapshots = {};
+  uint64_t paths = 0;    // of the render at the last of them
   unsigned leftOut = 0;  // snapshots that were due before the first whole image
   std::vector<std::string> doubts = {};
 };
 
-nlohmann::ordered_json notesOf(const RunSoFar& run) {
-  return {{"snapshots", snapshotNotes(run.snapshots)}, {"snapshots_left_out", run.leftOut}, {"doubts", run.doubts}};
+// What the scores and times of earlier snapshots depend on, besides what a checkpoint is of: those of the rest have to
+// go with them. References differ in their noise floors.
+nlohmann::ordered_json conditionsOf(const RunRequest& request) {
+  nlohmann::ordered_json conditions = {{"snapshots", request.schedule.text()}};
+  if (request.halves != nullptr) conditions["noise_floors"] = request.halves->noiseFloors;
+  if (!request.settings.iterations) {
+    conditions["clock"] = kClockNames[static_cast<size_t>(request.settings.clock)];
+    conditions["threads"] = request.settings.threads;
+  }
+  return conditions;
 }
 
-// Throws nlohmann::json::exception where the notes are of something else.
-RunSoFar runOfNotes(const nlohmann::ordered_json& notes) {
+nlohmann::ordered_json notesOf(const RunRequest& request, const RunSoFar& run) {
+  return {{"conditions", conditionsOf(request)},
+          {"snapshots", snapshotNotes(run.snapshots)},
+          {"paths", run.paths},
+          {"snapshots_left_out", run.leftOut},
+          {"doubts", run.doubts}};
+}
+
+// Throws nlohmann::json::exception where the notes are of something else, CheckpointError where they are of a run under
+// other conditions.
+RunSoFar runOfNotes(const RunRequest& request, const nlohmann::ordered_json& notes) {
+  const nlohmann::ordered_json conditions = conditionsOf(request);
+  for (const auto& [name, value] : conditions.items()) {
+    if (notes.at("conditions").at(name).dump() == value.dump()) continue;  // which are the same for NaN
+    throw CheckpointError(fmt::format("{}: its run had other {}", request.checkpoint.string(), name));
+  }
   return {.snapshots = snapshotsOfNotes(notes.at("snapshots")),
+          .paths = notes.at("paths").get<uint64_t>(),
           .leftOut = notes.at("snapshots_left_out").get<unsigned>(),
           .doubts = notes.at("doubts").get<std::vector<std::string>>()};
 }
@@ -78,6 +102,7 @@ class SnapshotTaker {
       if (!isThere) snapshot.file.clear();
       run_.snapshots.push_back(std::move(snapshot));
     }
+    if (run_.snapshots.size() == earlier.snapshots.size()) paths_ = earlier.paths;
   }
 
   void takeAndSave(unsigned number) {
@@ -88,8 +113,9 @@ class SnapshotTaker {
   // Writes a checkpoint of the run, if one is asked for.
   void save() {
     if (request_.checkpoint.empty()) return;
-    writeCheckpoint(request_.checkpoint.string(), request_.scene, settings_, session_,
-                    notesOf({.snapshots = run_.snapshots, .leftOut = leftOut_, .doubts = doubts()}));
+    writeCheckpoint(
+        request_.checkpoint.string(), request_.scene, settings_, session_,
+        notesOf(request_, {.snapshots = run_.snapshots, .paths = paths_, .leftOut = leftOut_, .doubts = doubts()}));
     saved_ = Clock::now();
   }
 
@@ -188,7 +214,7 @@ BegunRun beginRun(const RunRequest& request, RenderSettings& settings) {
       checkpoint.cutAlike(settings);
       std::unique_ptr<Session> session = Session::create(request.scene, settings);
       checkpoint.restore(request.scene, settings, *session);
-      return {.session = std::move(session), .earlier = runOfNotes(checkpoint.header().notes)};
+      return {.session = std::move(session), .earlier = runOfNotes(request, checkpoint.header().notes)};
     } catch (const CheckpointError& error) {
       anew(error.what());
     } catch (const ImageError& error) {

@@ -25,8 +25,8 @@ struct RunRequest {
   std::string row = {};               // under which the campaign keeps the run; empty: the method's name
   std::filesystem::path out;          // images go to its folder images
   bool keepImages = true;             // of all snapshots, else of the last
-  // Checkpoint of the run, written every minute or so, when the run is stopped and at its end. If the file exists and
-  // is of the same run, the run resumes from it. Empty: none.
+  // Checkpoint of the run, written with the first snapshot after each minute, when the run is stopped and at its end.
+  // If the file exists and is of the same run, the run resumes from it. Empty: none.
   std::filesystem::path checkpoint = {};
   std::function<void(const std::string&)> say = {};  // why a checkpoint that exists is not resumed
   double loadSeconds = 0;                            // of the scene, for the record

@@ -95,10 +95,12 @@ class Campaign {
       store_.emplace(resultsFile(settings_));
       plan();
       createFolders();
-      // Removes temporary files of a process that was killed while it wrote.
-      removeTemporariesIn((settings_.out / "images").string());
-      removeTemporariesIn((settings_.out / "references").string());
-      removeTemporariesIn((settings_.out / "checkpoints").string());
+      // Removes temporary files of a process that was killed while it wrote. Other shards may be writing theirs.
+      if (settings_.shard.count == 1) {
+        for (const char* name : {"images", "references", "checkpoints"}) {
+          removeTemporariesIn((settings_.out / name).string());
+        }
+      }
     } else {
       plan();
       create();
@@ -333,6 +335,7 @@ class Campaign {
       render.radiusAlpha = RenderSettings().radiusAlpha;
       render.lightPaths.reset();
     }
+    render.samplerIsChosen = !method.automatic && settings_.sampler.has_value();
     render.sampler = method.automatic ? bestSampler(render) : settings_.sampler.value_or(bestSampler(render));
     render.metropolis.variant = method.variant;
     render.directPass = method.directPass;

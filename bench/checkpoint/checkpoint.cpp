@@ -238,9 +238,11 @@ void requireSameRender(const std::string& file, const Json& found, const Json& w
 }
 
 void Checkpoint::restore(const Scene& scene, const RenderSettings& settings, Session& session) const {
-  if (!header_.holds.goesOn()) {
-    failCheckpoint(file_, "is a sum of parts that no render goes on from",
-                   "expected a checkpoint of `render`, or a sum of iterations without gaps; not of mlt");
+  const bool forgot = header_.holds.sum && session.statistics().guide;
+  if (!header_.holds.goesOn() || forgot) {
+    failCheckpoint(
+        file_, "is a sum of parts that no render goes on from",
+        "expected a checkpoint of `render`, or a sum of iterations without gaps; not of mlt, nor with a guide");
   }
   requireSameRender(file_, header_.render, renderIdentity(scene, settings, session));
   try {

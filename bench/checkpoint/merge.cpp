@@ -206,6 +206,7 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
     comparable = comparable && (film->minSamples() != 0 || film->maxSamples() == 0);
     if (!merged.film) {
       merged.header = header;
+      merged.header.holds.sum = true;  // of one part too: chains and guides are left out
       merged.film = std::move(film);
       merged.work = std::move(work);
       stats = statsOf(header);
@@ -223,10 +224,8 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
     seconds += secondsIn(header);
   }
   const Holdings& holds = merged.header.holds;
-  if (holds.sum) {
-    merged.header.render["process"] = "1/1";
-    if (!holds.runs.empty()) merged.header.render["first_iteration"] = holds.runs.front().begin;
-  }
+  merged.header.render["process"] = "1/1";
+  if (!holds.runs.empty()) merged.header.render["first_iteration"] = holds.runs.front().begin;
   stats["iterations"] = iterationsOf(holds);
   merged.missing = holds.missing(merged.header.render.value("chains", uint64_t{0}));
   if (halves) merged.whyNoHalves = whyNoHalves(merged, spread, independent);

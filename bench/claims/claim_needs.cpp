@@ -53,6 +53,22 @@ std::optional<double> pathShare(const json& stats, const std::string& method, co
   return paths / pixels / studyPathsPerPixel(scene);
 }
 
+// The runs of all methods have equal time, unless the campaign is being extended: otherwise a text of two that differ.
+std::string unequalTimes(const std::set<std::string>& methods, const SceneLosses& scene) {
+  std::optional<double> shortest, longest;
+  for (const std::string& method : methods) {
+    for (const RunRecord* run : scene.runs(method)) {
+      const json stats = json::parse(run->stats, nullptr, false);
+      if (!stats.is_object() || !stats.contains("asked_seconds")) continue;
+      const double asked = stats["asked_seconds"];
+      shortest = std::min(shortest.value_or(asked), asked);
+      longest = std::max(longest.value_or(asked), asked);
+    }
+  }
+  if (shortest == longest) return "";
+  return fmt::format("runs of {:.3g} s and of {:.3g} s stand side by side", *shortest, *longest);
+}
+
 // The least share over the runs of a method; nothing where none says.
 template <class Share>
 std::optional<double> leastShare(const SceneLosses& scene, const std::string& method, Share share) {
@@ -69,7 +85,9 @@ std::optional<double> leastShare(const SceneLosses& scene, const std::string& me
 }  // namespace
 
 std::string unmetNeed(const Claim& claim, const SceneLosses& scene) {
-  for (const std::string& method : methodsOf(claim)) {
+  const std::set<std::string> methods = methodsOf(claim);
+  if (std::string times = unequalTimes(methods, scene); !times.empty()) return times;
+  for (const std::string& method : methods) {
     // Light paths: only merging methods search for photons.
     if (claim.needs.lightPaths > 0 && merges(method)) {
       const std::optional<double> share = leastShare(scene, method, lightPathShare);

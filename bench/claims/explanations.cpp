@@ -21,6 +21,7 @@ std::vector<Explanation> parseExplanations(std::string_view text) {
         Explanation& explanation = explanations.emplace_back();
         explanation.profile = profile;
         entry.at("text").get_to(explanation.text);
+        entry.at("verdict").get_to(explanation.verdict);
         entry.at("claims").get_to(explanation.claims);
         if (explanation.claims.empty()) throw ClaimListError("explanations: one of " + profile + " is of no claim");
         for (const std::string& claim : explanation.claims) {
@@ -44,11 +45,12 @@ const std::vector<Explanation>& studyExplanations() {
   return explanations;
 }
 
-const Explanation* findExplanation(std::string_view claim, std::string_view profile) {
+const Explanation* findExplanation(std::string_view claim, std::string_view verdict, std::string_view profile) {
   const std::vector<Explanation>& all = studyExplanations();
   for (const std::string_view wanted : std::array<std::string_view, 3>{profile, "study", "standard"}) {
     const auto found = std::ranges::find_if(all, [&](const Explanation& explanation) {
-      return explanation.profile == wanted && std::ranges::count(explanation.claims, claim) != 0;
+      return explanation.profile == wanted && explanation.verdict == verdict &&
+             std::ranges::count(explanation.claims, claim) != 0;
     });
     if (found != all.end()) return &*found;
   }

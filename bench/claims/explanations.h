@@ -9,6 +9,7 @@ namespace wavecrest {
 
 struct Explanation {
   std::string profile;  // of the campaign that it was written about
+  std::string verdict;  // which it explains
   std::string text;
   std::vector<std::string> claims = {};  // ids, at least one
 };
@@ -18,7 +19,8 @@ struct Explanation {
 std::vector<Explanation> parseExplanations(std::string_view json);
 
 const std::vector<Explanation>& studyExplanations();
-// That of the profile; else that of another profile, of which the study's comes first. Null if there is none.
-const Explanation* findExplanation(std::string_view claim, std::string_view profile);
+// Of this verdict, that of the profile; else that of another profile, of which the study's comes first. Null if there
+// is none.
+const Explanation* findExplanation(std::string_view claim, std::string_view verdict, std::string_view profile);
 
 }  // namespace wavecrest

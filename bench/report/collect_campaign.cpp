@@ -290,7 +290,7 @@ ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile) {
   // An explanation is shown where the claim does not hold or is open.
   const bool open =
       record.verdict != toString(ClaimVerdict::holds) && record.verdict != toString(ClaimVerdict::notJudged);
-  const Explanation* explanation = open ? findExplanation(claim->id, profile) : nullptr;
+  const Explanation* explanation = open ? findExplanation(claim->id, record.verdict, profile) : nullptr;
   if (explanation == nullptr) return shown;
   if (explanation->profile != profile) shown.explanation = "In the " + explanation->profile + " campaign: ";
   shown.explanation += explanation->text;

@@ -87,10 +87,12 @@ double bestFinalValue(const ReportScene& scene, const ReportMetric& metric, size
 
 std::optional<TargetTime> timeToReach(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
                                       double target) {
-  // Find the first point that is as good as the target.
+  // Find the first point from which on all are as good as the target: an image without what a method finds late can be
+  // better than the image with its noise.
   const std::vector<CurvePoint> curve = meanCurve(series, metricIndex);
-  const auto reached = std::find_if(curve.begin(), curve.end(),
-                                    [&](const CurvePoint& point) { return !isBetter(metric, target, point.mean); });
+  const auto worse = std::find_if(curve.rbegin(), curve.rend(),
+                                  [&](const CurvePoint& point) { return isBetter(metric, target, point.mean); });
+  const auto reached = worse.base();
   if (reached == curve.end()) return std::nullopt;
   // The first snapshot is good enough already: its time is an upper bound.
   if (reached == curve.begin()) return TargetTime{.seconds = reached->seconds, .atMost = true};

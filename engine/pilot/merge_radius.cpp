@@ -9,6 +9,7 @@
 
 #include "engine/pilot/light_walks.h"
 #include "engine/pilot/median.h"
+#include "engine/pilot/repeated_pixels.h"
 #include "engine/pilot/view_walk.h"
 
 namespace wavecrest {
@@ -48,6 +49,8 @@ void beginPaths(Wave<S>& wave, const CameraView& camera, std::vector<CameraPath>
     CameraPath& path = paths[wave.paths.lane[i]];
     const double along = wave.rays.directionX[i] * camera.axis[0] + wave.rays.directionY[i] * camera.axis[1] +
                          wave.rays.directionZ[i] * camera.axis[2];
+    // Distances are from the lens, and rays begin at the near clip.
+    path.length = camera.parallel ? 0 : camera.nearClip / along;
     path.density = camera.parallel ? std::sqrt(camera.inverseDu2 * camera.inverseDv2)
                                    : camera.pixelDistance * camera.pixelDistance / (along * along * along);
     path.place[0] = wave.rays.originX[i];
@@ -159,11 +162,16 @@ double radiusOfImage(const MergeRadius& found, double filmPixels, double lightPa
 template <class S>
 std::vector<MergePlace> findMergePlaces(const RenderPlan<S>& plan, const RenderSettings& settings) {
   const CameraView& camera = plan.view.camera;
-  const std::vector<uint32_t> pixels = spreadPixels(camera);
-  std::vector<CameraPath> paths(pixels.size());
+  const std::vector<uint32_t> all = spreadPixels(camera);
   std::vector<MergePlace> places;
-  walkViews<S>(plan, settings, pixels, kPilotSeed, nullptr, placesOf<S>(camera, paths, places),
-               lobesOf<S>(paths, places));
+  uint64_t seed = kPilotSeed;
+  for (const std::vector<size_t>& visit : visitsOf(all)) {
+    std::vector<uint32_t> pixels;
+    for (const size_t i : visit) pixels.push_back(all[i]);
+    std::vector<CameraPath> paths(pixels.size());
+    walkViews<S>(plan, settings, pixels, seed--, nullptr, placesOf<S>(camera, paths, places),
+                 lobesOf<S>(paths, places));
+  }
   return places;
 }
 template std::vector<MergePlace> findMergePlaces(const RenderPlan<float>&, const RenderSettings&);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/pilot/repeated_pixels.h"
 #include "engine/tasks/flush_to_zero.h"
 #include "engine/walks/run_walk.h"
 
@@ -27,23 +28,31 @@ std::vector<double> tracePilotPaths(const RenderPlan<S>& plan, const RenderSetti
     const size_t first = place * area.pixels.size() / places;
     for (size_t i = 0; i < pathsPerPlace; ++i) pixels.push_back(area.pixels[(first + i) % area.pixels.size()]);
   }
-  // All paths are in one wave. The complement of the seed gives random numbers that the render does not use.
+  // Paths of different pixels are in one wave. The complement of the seed gives random numbers that the render does not
+  // use.
   StageCounters counters;
+  std::vector<uint32_t> visited;
   StageContext<S> context{.scene = &view,
-                          .pixels = pixels.data(),
+                          .pixels = nullptr,
                           .sampler = {SamplerKind::independent, ~settings.seed, 0},
                           .limits = settings.limits,
                           .mis = misSettings(strategies, plan.mergeRadius, 1, 0),
                           .film = area.window(),
                           .counters = &counters};
   Wave<S> wave(static_cast<uint32_t>(pixels.size()), plan.needs);
-  wave.pathCount = pixels.size();
-  runPass(pass, context, wave, nullptr);
-  // Keep the brightest channel of each path.
   std::vector<double> brightness(pixels.size(), 0);
-  for (size_t i = 0; i < pixels.size(); ++i) {
-    const double value = std::max({wave.radiance.red[i], wave.radiance.green[i], wave.radiance.blue[i]});
-    if (std::isfinite(value)) brightness[i] = value;
+  for (const std::vector<size_t>& visit : visitsOf(pixels)) {
+    visited.clear();
+    for (const size_t path : visit) visited.push_back(pixels[path]);
+    context.pixels = visited.data();
+    wave.pathCount = visited.size();
+    runPass(pass, context, wave, nullptr);
+    // Keep the brightest channel of each path.
+    for (size_t i = 0; i < visit.size(); ++i) {
+      const double value = std::max({wave.radiance.red[i], wave.radiance.green[i], wave.radiance.blue[i]});
+      if (std::isfinite(value)) brightness[visit[i]] = value;
+    }
+    ++context.sampler.iteration;
   }
   return brightness;
 }

@@ -48,7 +48,11 @@ class Planner {
         spreadsSamples(plan_, settings_) ? SpreadSums::bytesFor(plan_.view.camera, area_) : pixels * 3 * sizeof(double);
     use.image = Film::imageBytesFor(pixels, spreadsSamples(plan_, settings_), plan_.pipeline.chains);
     // Count splats, and what chains or light paths hold.
-    if (plan_.pipeline.has(Fold::guide)) use.learned = Guide::bytesFor(settings_.guideBytes);
+    if (plan_.pipeline.has(Fold::guide)) {
+      use.learned = Guide::bytesFor(settings_.guideBytes);
+      // Luminances of pixels, and of tiles, while roulette learns from them (engine/waves/learner.cpp).
+      if (settings_.roulette == Roulette::efficiency) use.learned += pixels * sizeof(float) * 65 / 64;
+    }
     if (plan_.pipeline.splats()) use.splats = SplatFilms::bytesFor(pixels, settings_.threads);
     if (plan_.pipeline.chains) {
       addChains();

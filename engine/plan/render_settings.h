@@ -93,6 +93,7 @@ struct RenderSettings {
   Accel accel = Accel::automatic;
   Instancing instancing = Instancing::automatic;
   SamplerKind sampler = SamplerKind::independent;
+  bool samplerIsChosen = false;  // what trials decide for has it, whether or not it serves that
   FilterMode filterMode = FilterMode::spread;
   uint64_t seed = 0;
   uint32_t threads = 1;

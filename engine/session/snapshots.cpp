@@ -1,6 +1,9 @@
 #include "engine/session/snapshots.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace wavecrest {
@@ -52,6 +55,11 @@ unsigned SnapshotSchedule::firstAfter(double seconds, uint64_t iterations) const
   };
   while (isPast(due(number))) ++number;
   return number;
+}
+
+std::string SnapshotSchedule::text() const {
+  constexpr std::array kNames{"none", "regular", "log", "log then regular", "doubling"};  // by Kind
+  return fmt::format("{} {:g}", kNames[static_cast<size_t>(kind_)], interval_);
 }
 
 unsigned renderWithSnapshots(Session& session, const RenderSettings& settings, const SnapshotSchedule& schedule,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "engine/session/session.h"
 
@@ -28,6 +29,8 @@ class SnapshotSchedule {
   Due due(unsigned number) const;
   // The number of the first snapshot that is due after so much of a render.
   unsigned firstAfter(double seconds, uint64_t iterations) const;
+  // Another one for each other schedule, to tell them apart.
+  std::string text() const;
 
  private:
   enum class Kind { none, regular, time, timeThenRegular, doubling };

@@ -86,8 +86,8 @@ RenderSettings onScaledFilm(RenderSettings settings, const FilmSettings& film, d
   settings.film = scaledFilm(film, scale);
   if (settings.lightPaths) {
     const double share = static_cast<double>(pixelsOf(*settings.film)) / static_cast<double>(pixelsOf(film));
-    settings.lightPaths =
-        std::max<uint64_t>(static_cast<uint64_t>(share * static_cast<double>(*settings.lightPaths)), 1);
+    const double wanted = share * static_cast<double>(*settings.lightPaths);
+    settings.lightPaths = static_cast<uint64_t>(std::clamp(wanted, 1.0, static_cast<double>(kMostPaths)));
   }
   return settings;
 }
@@ -100,6 +100,9 @@ RenderSettings trialSettings(const Scene& scene, const RenderSettings& settings,
   own.memoryBytes.reset();  // of the render, which may be smaller than a usual film
   const double scale = std::min(std::sqrt(kTrialPixels / static_cast<double>(pixelsOf(film))), 1.0);
   RenderSettings trial = onScaledFilm(own, film, scale);
+  // Under wider filters the paths of an iteration share one place in their pixels, which two images tell little of.
+  trial.film->filter = ReconstructionFilter::box;
+  trial.film->filterRadius = FilmSettings().filterRadius;
   if (strategiesOf(method).merge) {
     // As many pixels as on a usual film, so that searches see as many photons as there.
     const double usualScale = std::sqrt(kUsualFilm / (static_cast<double>(film.width) * film.height));
@@ -210,8 +213,8 @@ const MethodTrial& bestOf(std::span<const MethodTrial> trials) {
 RenderSettings withMethod(RenderSettings settings, Method method) {
   settings.method = method;
   if (settings.guide == GuideTarget::automatic) settings.guide = GuideTarget::radiance;
-  // Sobol points only where they serve the method.
-  if (settings.sampler == SamplerKind::sobol) settings.sampler = bestSampler(method);
+  // Sobol points that were not chosen, only where they serve the method.
+  if (!settings.samplerIsChosen && settings.sampler == SamplerKind::sobol) settings.sampler = bestSampler(method);
   if (!strategiesOf(method).merge) settings.lightPaths.reset();
   return settings;
 }

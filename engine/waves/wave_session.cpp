@@ -85,15 +85,15 @@ RenderStatistics WaveSession<S>::statistics() const {
 template <class S>
 void WaveSession<S>::save(StateWriter& out) const {
   film_.save(out);
-  learner_.save(out);
   WorkDone::of(statistics()).save(out);
+  learner_.save(out);  // last: a sum of parts has none
 }
 
 template <class S>
 void WaveSession<S>::restore(StateReader& in) {
   film_.restore(in);
-  learner_.restore(in);
   earlier_.restore(in, statistics().stages);
+  learner_.restore(in);
   in.finish();
   // The next renderUntil levels pixels that have fewer samples than others.
   const uint64_t done = film_.maxSamples();

@@ -22,7 +22,7 @@ struct CampaignOptions {
   std::string reference{};           // folder of SCENE.exr; empty: those that come with the scenes
   std::string shard = "1/1";         // i/n: do only the i-th of n parts
   std::string isa = "auto";
-  uint32_t threads = 0;      // 0: all cores
+  uint32_t threads = 0;      // 0: as the campaign was begun, or all cores; campaigns by time are not resumed by others
   bool checkpoints = false;  // write one of each run into `out`, from which it and longer runs resume
   bool resume = false;       // go on with the campaign in `out`, if there is one
   bool check = false;        // the findings of the study are to be judged, so the campaign has to be able to

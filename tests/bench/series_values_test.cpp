@@ -97,6 +97,12 @@ TEST(TimeToReach, isTheFirstSnapshotAtLatestOrNever) {
       << "errors fall";
 }
 
+// An image without what its method finds late can be better than the image with its noise.
+TEST(TimeToReach, isTheTimeFromWhichOnTheScoreStays) {
+  EXPECT_EQ(timeToReach(seriesOf({{{1, 0.95}, {2, 0.6}, {4, 0.9}}}), rising(), 0, 0.9)->seconds, 4);
+  EXPECT_FALSE(timeToReach(seriesOf({{{1, 0.5}, {2, 0.95}, {4, 0.8}}}), rising(), 0, 0.9).has_value());
+}
+
 // Two seeds each, whose ends differ by 0.02 or by 0.4.
 TEST(IsClearlyBest, takesSeedsThatDoNotOverlap) {
   const auto seeds = [](double a, double b) { return seriesOf({{{1, 0.1}, {100, a}}, {{1, 0.1}, {100, b}}}); };

@@ -212,6 +212,45 @@ class Extending(Converge):
         self.assertEqual(*measured)
         self.assertFalse(pathlib.Path(self.path("b/checkpoints")).exists(), "only where it is asked for")
 
+    def given_reference(self, folder, iterations):
+        os.mkdir(self.path(folder))
+        self.run_wavecrest(
+            "reference", "cornell-diffuse", "--size", "20x20", "--spp", iterations, "-o", f"{folder}/cornell-diffuse.exr"
+        )
+
+    def test_a_run_that_ends_with_a_snapshot_and_was_not_stored_has_it_once(self):
+        self.given_reference("given", "8")
+        given = ["cornell-diffuse", "--methods", "pt", "--size", "20x20", "--seeds", "1", "--reference", "given"]
+        self.converge(*given, "--spp", "8", "--out", "a", "--checkpoints")
+        whole = rows(self.results("a"))
+        with contextlib.closing(sqlite3.connect(self.results("a"))) as database:
+            for table in ("measurement", "snapshot", "stage", "run"):
+                database.execute(f"DELETE FROM {table}")
+            database.commit()
+        self.converge("--out", "a", "--resume", "--checkpoints")
+        self.assertEqual(rows(self.results("a")), whole)
+
+    def test_a_checkpoint_of_other_conditions_is_not_gone_on_with(self):
+        self.given_reference("first", "8")
+        self.given_reference("second", "64")
+        given = ["cornell-diffuse", "--methods", "pt", "--size", "20x20", "--seeds", "1", "--spp", "8"]
+        self.converge(*given, "--reference", "second", "--out", "whole")
+        self.converge(*given, "--reference", "first", "--out", "a", "--checkpoints")
+        os.remove(self.results("a"))
+        shutil.rmtree(self.path("a/references"))
+        result = self.converge(*given, "--reference", "second", "--out", "a", "--checkpoints")
+        self.assertIn("had other noise_floors; the run is rendered anew", result.stderr)
+        self.assertEqual(rows(self.results("a")), rows(self.results("whole")))
+
+    def test_a_campaign_by_time_keeps_its_threads(self):
+        given = ["cornell-diffuse", "--methods", "pt", "--size", "20x20", "--seeds", "1"]
+        self.converge(*given, "--time", "0.05s", "--threads", "1", "--out", "a")
+        result = self.converge("--out", "a", "--resume", "--threads", "2", "--time", "0.1s", expect=USAGE)
+        self.assert_one_error_line(result, r".*--threads 2: .* was begun with 1; expected the same, or another --out")
+        self.converge("--out", "a", "--resume", "--time", "0.1s")
+        with contextlib.closing(sqlite3.connect(self.results("a"))) as database:
+            self.assertEqual(database.execute("SELECT value FROM campaign WHERE key = 'threads'").fetchall(), [("1",)])
+
     def test_by_a_larger_part_of_the_profiles_time(self):
         quick = ["cornell-diffuse", "--methods", "pt", "--size", "20x20", "--seeds", "1", "--out", "a", "--images", "last"]
         self.converge(*quick, "--time-factor", "0.02")

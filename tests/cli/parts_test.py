@@ -90,6 +90,15 @@ class Sums(PartsTest):
             self.run_wavecrest(*self.arguments(method, "-o", "whole.pfm", spp=2 * SPP))
             self.assert_equal_but_for_rounding(self.image("parts.pfm"), self.image("whole.pfm"), method)
 
+    def test_what_was_rendered_with_a_guide_is_a_sum_that_no_render_goes_on_from(self):
+        options = ["cornell-mirror", "-m", "gpt", "--guide", "radiance", "--size", "24x18", "--spp", "8"]
+        self.run_wavecrest("render", *options, "--checkpoint", "part", "-o", "whole.pfm")
+        self.merge("part", "--checkpoint", "sum", "-o", "merged.pfm")
+        self.assert_equal_but_for_rounding(self.image("merged.pfm"), self.image("whole.pfm"), "gpt")
+        more = [*options[:-1], "16", "--checkpoint", "sum", "--resume", "-o", "more.pfm"]
+        result = self.run_wavecrest("render", *more, expect=INPUT)
+        self.assert_one_error_line(result, r".*is a sum of parts that no render goes on from")
+
     def test_a_longer_render_takes_what_there_is_and_the_second_half_of_its_own_parts(self):
         first = self.all_parts("pt")
         second = [self.part(index, "pt", name="more", parts=4, spp=2 * SPP) for index in (3, 4)]

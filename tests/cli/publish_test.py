@@ -178,6 +178,29 @@ class Publishing(CommandTest):
         self.assertIsNone(curves.geometric_mean([(2.0, 1), (3.0, -1)]))
         self.assertEqual(curves.geometric_mean([(2.0, 1), None, (8.0, 0)]), (4.0, 1))
 
+    def test_a_score_that_is_lost_again_is_not_reached(self):
+        series = [[(0, 1.0, 0.95), (1, 2.0, 0.6), (2, 4.0, 0.9)]]
+        self.assertEqual(curves.time_to(series, 0.9, higher=True), (4.0, False))
+        self.assertIsNone(curves.time_to([[(0, 1.0, 0.5), (1, 2.0, 0.95), (2, 4.0, 0.8)]], 0.9, higher=True))
+
+    def test_campaigns_that_are_not_done_are_refused(self):
+        self.campaign()
+        database = sqlite3.connect(self.path("a/results.sqlite"))
+        (stats,) = database.execute("SELECT stats FROM run WHERE id = 1").fetchone()
+        longer = json.dumps({**json.loads(stats), "asked_seconds": 0.1})
+        database.execute("UPDATE run SET stats = ? WHERE id = 1", [longer])
+        database.commit()
+        self.assertIn("runs of 0.05 s and 0.1 s", self.publish().stderr)
+        database.execute("UPDATE run SET stats = ?, seed = 3, state = 'refused' WHERE id = 1", [stats])
+        database.commit()
+        self.assertIn("seeds of cornell-diffuse pt are missing", self.publish().stderr)
+        database.close()
+        self.assertFalse(pathlib.Path(self.path("standard")).exists(), "nothing is written")
+
+    def test_campaigns_by_iterations_are_refused(self):
+        self.run_wavecrest("converge", "cornell-diffuse", "--methods", "pt", "--size", "32x24", "--spp", "2", "--out", "a")
+        self.assertIn("counts iterations", self.publish().stderr)
+
     def test_tables_have_the_best_methods_and_what_they_gain(self):
         self.made_up_campaign()
         self.assertEqual(self.publish().returncode, 0)

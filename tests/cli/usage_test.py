@@ -95,6 +95,7 @@ class Usage(CommandTest):
             (["--guide", "off"], r"--guide: pt learns no guide; expected gpt$"),
             (["-m", "vcm", "--guide-memory", "8MiB"], r"--guide-memory: vcm learns no guide; expected gpt$"),
             (["-m", "gpt", "--guide", "light"], r"--guide light: unknown; expected one of auto, radiance, variance, off$"),
+            (["-m", "gpt", "--guide", "off", "--guide-memory", "8MiB"], r"--guide-memory: --guide off learns no guide; expected"),
             (["-m", "gpt", "--spp", "8", "--part", "1/2", "--checkpoint", "c"], r"--part: gpt .*; expected another method, or"),
             (["--mlt", "pathspace"], "--mlt: " + no_chains),
             (["--chains", "3"], "--chains: " + no_chains),

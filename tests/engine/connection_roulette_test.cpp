@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <vector>
 
+#include "engine/pilot/pilot_paths.h"
 #include "engine/pilot/typical_brightness.h"
 #include "tests/engine/bidirectional_walk.h"
 #include "tests/engine/render_statistics.h"
@@ -106,6 +108,15 @@ TEST(ConnectionRoulette, isTheSameWhateverTheThreads) {
   settings.threads = 3;
   settings.waveSize = 96;
   EXPECT_EQ(one, render(scene, settings, 3));
+}
+
+TEST(PilotPaths, ofAPixelAreDifferentOnes) {
+  const Scene scene = sceneFile("cornell-diffuse", 1, 1);
+  const RenderSettings settings = settingsWithRoulette(Method::bpt);
+  const RenderPlan<float> plan = planRender<float>(scene, settings);
+  const std::vector<double> paths = tracePilotPaths(plan, settings, filmArea(scene.film), 32, PilotLight::weighted);
+  ASSERT_EQ(paths.size(), kPilotPaths);
+  EXPECT_GT((std::set<double>(paths.begin(), paths.end()).size()), kPilotPaths / 2);
 }
 
 double brightnessOf(const Scene& scene) {

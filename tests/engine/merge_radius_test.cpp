@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <tuple>
 #include <vector>
 
@@ -119,6 +120,24 @@ TEST(AutoRadius, scalesWithTheScene) {
 TEST(AutoRadius, isThatOfEquallyManyLightPathsOnAnyFilm) {
   const MergeRadius small = radiusOf(floorFromAbove()), large = radiusOf(floorFromAbove(1, 2 * kRadiusWidth));
   EXPECT_NEAR(small.at(3) / large.at(0), 1, 0.03);
+}
+
+// Rays begin at the near clip, and distances at the lens.
+TEST(AutoRadius, doesNotDependOnTheNearClip) {
+  Scene clipped = floorFromAbove();
+  clipped.sensor.nearClip = 0.9 * kRadiusHeight;
+  EXPECT_NEAR(radiusOf(clipped).pixel / radiusOf(floorFromAbove()).pixel, 1, 1e-3);
+}
+
+// Paths of one pixel are different ones.
+TEST(MergePlaces, ofSmallFilmsAreAsManyAsOfLargeOnes) {
+  RenderSettings settings = automatic();
+  settings.radius = 0.01;
+  const Scene scene = sceneFile("cornell-diffuse", 1, 1);
+  const std::vector<MergePlace> places = findMergePlaces<float>(planRender<float>(scene, settings), settings);
+  std::set<std::array<float, 3>> positions;
+  for (const MergePlace& place : places) positions.insert(place.position);
+  EXPECT_GT(positions.size(), 900U) << "of 1024";
 }
 
 TEST(AutoRadius, isAtLeastHalfAPixel) { EXPECT_NEAR(radiusOf(floorFromAbove(1, 4)).inPixels(), 0.5, 0.01); }

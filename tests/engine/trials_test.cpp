@@ -168,6 +168,33 @@ TEST(Evcm, isNotHeldToTheBudgetOfASmallFilm) {
   EXPECT_EQ(choiceFor(scene, settings).method, choiceFor(scene).method);
 }
 
+// Searches of trials are as on a film of 256x192, for which they scale the light paths.
+TEST(Evcm, takesAsManyLightPathsOnASmallFilmAsVcm) {
+  RenderSettings settings = evcmSettings();
+  settings.lightPaths = 6000;
+  EXPECT_GT(choiceFor(sceneFile("cornell-diffuse", 1, 1), settings).trials.size(), 0u);
+}
+
+// Under a filter that spreads, all paths of an iteration share one place in their pixels.
+TEST(Trials, doNotDependOnTheFilter) {
+  Scene scene = sceneFile("cornell-mirror", 64, 48);
+  const MethodChoice box = choiceFor(scene, triedSettings(Method::gpt));
+  scene.film.filter = ReconstructionFilter::gaussian;
+  scene.film.filterRadius = 2;
+  const MethodChoice gaussian = choiceFor(scene, triedSettings(Method::gpt));
+  for (size_t i = 0; i < box.trials.size(); ++i) {
+    EXPECT_EQ(gaussian.trials[i].inefficiency(), box.trials[i].inefficiency()) << i;
+  }
+}
+
+TEST(Trials, keepASamplerThatWasChosen) {
+  RenderSettings settings = triedSettings(Method::gpt);
+  settings.sampler = SamplerKind::sobol;
+  EXPECT_EQ(withMethod(settings, Method::gpt).sampler, SamplerKind::independent);
+  settings.samplerIsChosen = true;
+  EXPECT_EQ(withMethod(settings, Method::gpt).sampler, SamplerKind::sobol);
+}
+
 TEST(Evcm, takesAllStrategiesWhereTrialsFindNoLight) {
   Scene scene = sceneFile("cornell-diffuse", 16, 12);
   for (Emitter& emitter : scene.emitters) {

@@ -65,24 +65,31 @@ TEST(StudyClaims, areJudgedForTheScenesOfATimedCampaignOnly) {
 }
 
 TEST(Explanations, areOfKnownClaimsAndOneOfEachInAProfile) {
-  const std::string entry = R"({"claims": ["pool-interior.pt-fails"], "text": "so"})";
+  const std::string entry = R"({"claims": ["pool-interior.pt-fails"], "verdict": "undecided", "text": "so"})";
   const auto explanations = parseExplanations(R"({"quick": [)" + entry + R"(], "study": [)" + entry + "]}");
   ASSERT_EQ(explanations.size(), 2u);
   EXPECT_EQ(explanations[1].profile, "study");
+  EXPECT_EQ(explanations[1].verdict, "undecided");
   EXPECT_EQ(explanations[1].text, "so");
   EXPECT_THROW(parseExplanations(R"({"study": [)" + entry + "," + entry + "]}"), ClaimListError);
-  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": ["nothing"], "text": "so"}]})"), ClaimListError);
-  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": [], "text": "so"}]})"), ClaimListError);
-  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": ["pool-interior.pt-fails"]}]})"), ClaimListError);
+  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": ["nothing"], "verdict": "undecided", "text": "so"}]})"),
+               ClaimListError);
+  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": [], "verdict": "undecided", "text": "so"}]})"),
+               ClaimListError);
+  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": ["pool-interior.pt-fails"], "verdict": "undecided"}]})"),
+               ClaimListError);
+  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": ["pool-interior.pt-fails"], "text": "so"}]})"),
+               ClaimListError);
   EXPECT_THROW(parseExplanations("["), ClaimListError);
 }
 
 TEST(Explanations, areOfTheProfileWhereItHasOne) {
-  const Explanation* standard = findExplanation("dragon-caustics.pt-stalls", "standard");
+  const Explanation* standard = findExplanation("dragon-caustics.pt-stalls", "does not hold", "standard");
   ASSERT_NE(standard, nullptr);
   EXPECT_EQ(standard->profile, "standard");
-  EXPECT_NE(findExplanation("dragon-caustics.pt-stalls", "quick"), nullptr);
-  EXPECT_EQ(findExplanation("nothing", "standard"), nullptr);
+  EXPECT_NE(findExplanation("dragon-caustics.pt-stalls", "does not hold", "quick"), nullptr);
+  EXPECT_EQ(findExplanation("dragon-caustics.pt-stalls", "undecided", "standard"), nullptr);
+  EXPECT_EQ(findExplanation("nothing", "does not hold", "standard"), nullptr);
 }
 
 }  // namespace

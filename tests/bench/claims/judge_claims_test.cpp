@@ -225,6 +225,21 @@ TEST(JudgeClaims, claimsNeedLightPathsAndTime) {
   EXPECT_EQ(judgeClaim(claim, MadeUp(made).stats(wide).results()).verdict, kHolds) << "16 times the area of search";
 }
 
+// A campaign that is being extended has runs of two lengths.
+TEST(JudgeClaims, runsOfUnequalTimeAreNotCompared) {
+  MadeUp made = MadeUp().with("ppm", "rmse", {1, 1.01}).with("lt", "rmse", {2, 2.01}).stats(R"({"asked_seconds": 45})");
+  const Claim claim{.id = "c",
+                    .scene = "s",
+                    .statement = "so",
+                    .conditions = {condition(ConditionKind::better, "rmse", {"ppm"}, {"lt"})}};
+  EXPECT_EQ(judgeClaim(claim, made.results()).verdict, kHolds);
+  CampaignResults extended = made.results();
+  extended.runs.front().stats = R"({"asked_seconds": 90})";
+  const ClaimRecord record = judgeClaim(claim, extended);
+  EXPECT_EQ(record.verdict, kNotJudged);
+  EXPECT_EQ(record.figure, "runs of 45 s and of 90 s stand side by side");
+}
+
 TEST(JudgeClaims, generalClaimsCountScenes) {
   Claim claim{.id = "c",
               .scene = "general",
