@@ -58,6 +58,9 @@ int runMerge(const MergeOptions& options) {
   }
   // Images, reference, checkpoint and statistics.
   if (!options.outputs.empty()) {
+    if (merged.header.holds.chains.empty() && merged.film->minSamples() == 0) {
+      throw InputError("no whole pass over the film: no image was written; expected parts of at least one");
+    }
     const FilmArea& area = merged.film->area();
     const Image image{.width = area.width, .height = area.height, .channels = 3, .pixels = merged.film->resolve()};
     for (const std::string& name : options.outputs) {

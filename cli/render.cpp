@@ -268,7 +268,10 @@ int RenderRun::runTogether() {
 bool RenderRun::goesOn() {
   if (guard_->interrupted()) return false;
   const bool save = guard_->takeSaveRequest();
-  if (guard_->takePauseRequest()) outputs_->writeCheckpoint(*session_);
+  if (guard_->takePauseRequest()) {
+    outputs_->writeCheckpoint(*session_);
+    guard_->takePauseRequest();  // of meanwhile: a save that takes longer than its interval must not end all progress
+  }
   guard_->takeAttentionRequest();
   ranks_.attend(*session_, save, *outputs_);
   guard_->goOn();

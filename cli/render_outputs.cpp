@@ -106,6 +106,7 @@ bool RenderOutputs::hasImage(const RenderStatistics& statistics) const {
 }
 
 void RenderOutputs::writeSnapshot(const Rendered& rendered, unsigned number) {
+  nextSnapshot_ = number + 1;
   const std::string file = snapshotFile(names_.images.front(), number);
   const RenderStatistics& statistics = rendered.statistics;
   if (!hasImage(statistics)) {
@@ -168,6 +169,7 @@ void RenderOutputs::writeCheckpoint(const Session& session, const std::string& f
   const nlohmann::ordered_json notes = {{"wall_seconds", wallSeconds()},
                                         {"snapshot_every", names_.snapshotEvery},
                                         {"snapshots", snapshotNotes(snapshots_)},
+                                        {"next_snapshot", nextSnapshot_},
                                         {"stats", stats(session.statistics(), {})}};
   attempt([&] { wavecrest::writeCheckpoint(file, scene_, settings_, session, notes); });
 }
@@ -175,18 +177,19 @@ void RenderOutputs::writeCheckpoint(const Session& session, const std::string& f
 void RenderOutputs::goOnFrom(const nlohmann::ordered_json& notes, const Session& session) {
   earlierSeconds_ = notes.at("wall_seconds").get<double>();
   snapshots_ = snapshotsOfNotes(notes.at("snapshots"));
+  nextSnapshot_ = notes.value("next_snapshot", 0u);  // which sums of parts have not
   sameSchedule_ = notes.at("snapshot_every") == names_.snapshotEvery;
   resumedFrom_ = session.statistics().iterations;
 }
 
 unsigned RenderOutputs::nextSnapshot(const SnapshotSchedule& schedule, const Session& session) {
-  // With the schedule of the earlier part, numbers simply go on.
-  if (sameSchedule_) return snapshots_.empty() ? 0 : snapshots_.back().number + 1;
+  // With the schedule of the earlier part, numbers simply go on, also after snapshots that were left out.
+  if (sameSchedule_) return nextSnapshot_;
   // With another schedule, the first snapshot is the next that is not due yet.
-  const unsigned next = schedule.firstAfter(session.progressSeconds(), session.statistics().iterations);
+  nextSnapshot_ = schedule.firstAfter(session.progressSeconds(), session.statistics().iterations);
   // Files of snapshots from that number on will be replaced, so their records go.
-  std::erase_if(snapshots_, [&](const SnapshotRecord& snapshot) { return snapshot.number >= next; });
-  return next;
+  std::erase_if(snapshots_, [&](const SnapshotRecord& snapshot) { return snapshot.number >= nextSnapshot_; });
+  return nextSnapshot_;
 }
 
 // Seconds on the wall, of this process and of those that rendered earlier parts.

@@ -89,6 +89,7 @@ class RenderOutputs {
   const ProgressKind kind_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::vector<SnapshotRecord> snapshots_;
+  unsigned nextSnapshot_ = 0;     // its number
   nlohmann::ordered_json until_;  // null: none was asked for
   double earlierSeconds_ = 0;     // on the wall, of processes that rendered earlier parts
   bool sameSchedule_ = false;     // of snapshots as in those

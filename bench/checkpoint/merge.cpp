@@ -226,7 +226,8 @@ MergedParts mergeParts(const std::vector<std::string>& files, bool halves) {
   const Holdings& holds = merged.header.holds;
   merged.header.render["process"] = "1/1";
   if (!holds.runs.empty()) merged.header.render["first_iteration"] = holds.runs.front().begin;
-  stats["iterations"] = iterationsOf(holds);
+  // Whole ones: a part that was stopped has pixels that lack the last one.
+  stats["iterations"] = holds.lacking == 0 ? iterationsOf(holds) : merged.film->minSamples();
   merged.missing = holds.missing(merged.header.render.value("chains", uint64_t{0}));
   if (halves) merged.whyNoHalves = whyNoHalves(merged, spread, independent);
   if (halves && merged.whyNoHalves.empty()) merged.halves = spread.halves();

@@ -50,8 +50,8 @@ class Planner {
     // Count splats, and what chains or light paths hold.
     if (plan_.pipeline.has(Fold::guide)) {
       use.learned = Guide::bytesFor(settings_.guideBytes);
-      // Luminances of pixels, and of tiles, while roulette learns from them (engine/waves/learner.cpp).
-      if (settings_.roulette == Roulette::efficiency) use.learned += pixels * sizeof(float) * 65 / 64;
+      // Beside the image its luminances, of pixels and of tiles, from which roulette learns (engine/waves/learner.cpp).
+      if (settings_.roulette == Roulette::efficiency) use.image += pixels * sizeof(float) * 65 / 64;
     }
     if (plan_.pipeline.splats()) use.splats = SplatFilms::bytesFor(pixels, settings_.threads);
     if (plan_.pipeline.chains) {

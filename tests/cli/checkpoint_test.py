@@ -121,6 +121,20 @@ class GoingOn(Checkpoints):
         self.render("-m", "bpt", "--spp", "8", "--checkpoint", "c", "--resume", "-o", "again.pfm")
         self.assertEqual(self.bytes_of("again.pfm"), self.bytes_of("whole.pfm"))
 
+    def test_saves_that_take_longer_than_their_interval_do_not_end_progress(self):
+        arguments = ["render", "cornell-diffuse", "--size", "128x96", "--spp", "64", "--threads", "1", "--progress", "none"]
+        self.run_wavecrest(*arguments, "--checkpoint", "c", "--checkpoint-every", "1ms", "-o", "parts.pfm")
+        self.run_wavecrest(*arguments, "-o", "whole.pfm")
+        self.assertEqual(self.bytes_of("parts.pfm"), self.bytes_of("whole.pfm"))
+
+    def test_snapshots_that_were_left_out_keep_their_numbers(self):
+        arguments = ["render", "cornell-diffuse", "--size", "1280x960", "--threads", "1", "--checkpoint", "c", "--resume"]
+        arguments += ["--snapshot-every", "10ms", "-o", "image.pfm"]
+        self.run_wavecrest(*arguments, "--time", "0.035s", expect=INPUT)
+        result = self.run_wavecrest(*arguments, "--spp", "1")
+        for number in range(3):
+            self.assertFalse((self.folder / f"image.000{number}.pfm").exists(), result.stderr)
+
     def test_a_render_goes_on_to_more_time(self):
         for method in METHODS:
             arguments = ["-m", method, "--checkpoint", method, "--stats", "stats.json"]

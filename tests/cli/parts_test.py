@@ -99,6 +99,14 @@ class Sums(PartsTest):
         result = self.run_wavecrest("render", *more, expect=INPUT)
         self.assert_one_error_line(result, r".*is a sum of parts that no render goes on from")
 
+    def test_less_than_a_whole_pass_is_no_image(self):
+        part = ["render", "cornell-diffuse", "--size", "1280x960", "--threads", "1", "--spp", "4", "--part", "1/2"]
+        part += ["--checkpoint", "part", "--time", "0.02s"]
+        self.run_wavecrest(*part, expect=None)
+        result = self.merge("part", "-o", "merged.pfm", expect=INPUT)
+        self.assertIn("no whole pass over the film: no image was written", result.stderr.splitlines()[-1])
+        self.assertFalse((self.folder / "merged.pfm").exists())
+
     def test_a_longer_render_takes_what_there_is_and_the_second_half_of_its_own_parts(self):
         first = self.all_parts("pt")
         second = [self.part(index, "pt", name="more", parts=4, spp=2 * SPP) for index in (3, 4)]
