@@ -100,8 +100,8 @@ bool visitVertices(Wave<S>& wave, bool parallel, std::vector<CameraPath>& paths,
 // which few photons come, would have most of the mean.
 template <class S>
 ViewLeft<S> lobesOf(std::vector<CameraPath>& paths, std::vector<MergePlace>& places) {
-  constexpr double kLeastCosine = 0.05;
   return [&](const Wave<S>& wave) {
+    constexpr double kLeastCosine = 0.05;
     for (size_t i = 0; i < wave.rays.size; ++i) {
       CameraPath& path = paths[wave.paths.lane[i]];
       if (!path.merged || std::exchange(path.left, true)) continue;
@@ -167,6 +167,7 @@ std::vector<MergePlace> findMergePlaces(const RenderPlan<S>& plan, const RenderS
   uint64_t seed = kPilotSeed;
   for (const std::vector<size_t>& visit : visitsOf(all)) {
     std::vector<uint32_t> pixels;
+    pixels.reserve(visit.size());
     for (const size_t i : visit) pixels.push_back(all[i]);
     std::vector<CameraPath> paths(pixels.size());
     walkViews<S>(plan, settings, pixels, seed--, nullptr, placesOf<S>(camera, paths, places),
