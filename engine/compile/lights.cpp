@@ -18,6 +18,9 @@ namespace {
 // place: a lamp above a table may give it as much as the sky does, with a thousandth of the sky's power.
 constexpr double kEvenShare = 0.5;
 
+// Kernels choose the entry of a table, and whether it is kept, by random numbers of 24 bits.
+constexpr size_t kNumbers = size_t{1} << 24;
+
 template <class S>
 Double3 widenedRecord(const S (&a)[3]) {
   return {a[0], a[1], a[2]};
@@ -76,6 +79,8 @@ LightRecord<S> areaLight(const PrimitiveRecord<S>& primitive, const Rgb& radianc
 // often each is picked.
 template <class S>
 class LightCollector {
+  static constexpr size_t kMostLights = std::min<size_t>(kMostIndexed<LightRecord<S>>, kNumbers);
+
  public:
   LightCollector(const Scene& scene, const BoundingSphere& bounds, const Double3& origin)
       : scene_(scene), bounds_(bounds), origin_(origin) {}
@@ -133,9 +138,9 @@ class LightCollector {
  private:
   // Adds a record of the emitter that `emitter_` names.
   void add(const LightRecord<S>& light, double power) {
-    if (lights_.records.size() >= kMostIndexed<LightRecord<S>>) {
-      throw SceneError({scene_.name}, "more than " + std::to_string(kMostIndexed<LightRecord<S>>) +
-                                          " primitives that emit light; expected fewer");
+    if (lights_.records.size() >= kMostLights) {
+      throw SceneError({scene_.name},
+                       "more than " + std::to_string(kMostLights) + " primitives that emit light; expected fewer");
     }
     lights_.records.push_back(light);
     power_.push_back(power);
@@ -332,7 +337,7 @@ PickedLights<S> withPicks(const Lights<S>& lights, const std::vector<double>& sh
   std::vector<double> picks(lights.records.size());
   for (size_t i = 0; i < picks.size(); ++i) picks[i] = lights.withinEmitter[i] * shares[lights.emitterOf[i]];
   PickedLights<S> picked{.records = lights.records, .table = makeAliasTable(picks)};
-  const std::vector<double> drawn = sharesOf(picked.table);
+  const std::vector<double> drawn = sharesOf(picked.table, entryShares(picks.size()));
   for (size_t i = 0; i < drawn.size(); ++i) picked.records[i].pick = static_cast<S>(drawn[i]);
   return picked;
 }
@@ -352,8 +357,7 @@ std::vector<double> evenedShares(const std::vector<double>& weights, double even
 }
 
 std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights) {
-  // Kernels compare `keep` with random numbers of 24 bits. On the same grid its probability is exact.
-  constexpr double kNumberGrid = 0x1p24;
+  constexpr double kNumberGrid = static_cast<double>(kNumbers);  // on which the probability of `keep` is exact
   const size_t count = weights.size();
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   // Scale the weights to a mean of 1, and tell those below 1 from the others.
@@ -380,13 +384,29 @@ std::vector<AliasEntry> makeAliasTable(const std::vector<double>& weights) {
   return table;  // what is left over differs from 1 by rounding only
 }
 
-std::vector<double> sharesOf(const std::vector<AliasEntry>& table) {
+std::vector<double> entryShares(size_t count) {
+  const auto entryOf = [count](size_t i) {
+    const float number = static_cast<float>(i) / static_cast<float>(kNumbers);
+    return std::min(static_cast<size_t>(number * static_cast<float>(count)), count - 1);
+  };
+  std::vector<double> shares;
+  size_t first = 0;  // number that chooses entry i
+  for (size_t i = 0; i < count; ++i) {
+    size_t end = (i + 1) * kNumbers / count;
+    while (end < kNumbers && entryOf(end) <= i) ++end;
+    while (end > first && entryOf(end - 1) > i) --end;
+    shares.push_back(static_cast<double>(end - first) / static_cast<double>(kNumbers));
+    first = end;
+  }
+  return shares;
+}
+
+std::vector<double> sharesOf(const std::vector<AliasEntry>& table, const std::vector<double>& chosen) {
   std::vector<double> shares(table.size(), 0);
-  const auto count = static_cast<double>(table.size());
   for (size_t i = 0; i < table.size(); ++i) {
     const auto keep = static_cast<double>(table[i].keep);
-    shares[i] += keep / count;
-    shares[table[i].other] += (1 - keep) / count;
+    shares[i] += keep * chosen[i];
+    shares[table[i].other] += (1 - keep) * chosen[i];
   }
   return shares;
 }

@@ -121,7 +121,12 @@ Environment compileEnvironment(const EnvmapEmitter& emitter, const SourceLocatio
   if (!(total > 0)) std::fill(weights.begin(), weights.end(), 1.0);  // black: sampled evenly, to no effect
   // The alias table and the probabilities. Kernels take columns and rows, so the table names those.
   out.table = makeAliasTable(weights);
-  for (const double share : sharesOf(out.table)) out.probability.push_back(static_cast<float>(share));
+  const std::vector<double> columns = entryShares(width), rows = entryShares(height);
+  std::vector<double> chosen;
+  for (const double row : rows) {
+    for (const double column : columns) chosen.push_back(row * column);
+  }
+  for (const double share : sharesOf(out.table, chosen)) out.probability.push_back(static_cast<float>(share));
   for (AliasEntry& entry : out.table) entry.other = entry.other % width | entry.other / width << kTexelBits;
 
   // The view, and the rotation to the map's frame.

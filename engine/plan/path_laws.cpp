@@ -62,7 +62,8 @@ void PathLaws::addDeletions(uint32_t edges) {
   // Entries of the alias table name each other relative to the first deletion of this length. Shares are those of the
   // table; ranges that delete the same number of edges have the same, but for rounding.
   const std::vector<AliasEntry> table = makeAliasTable(weights);
-  const std::vector<double> shares = sharesOf(table);
+  const std::vector<double> shares =
+      sharesOf(table, std::vector<double>(table.size(), 1 / static_cast<double>(table.size())));
   for (size_t i = 0; i < kept.size(); ++i) {
     const uint32_t deleted = (kept[i] >> 16) + 1 - (kept[i] & 0xffffu);
     deletionShare_[size_t{edges} * (maxEdges_ + 3) + deleted] = static_cast<float>(shares[i]);
