@@ -35,15 +35,16 @@ Checkpointing::Checkpointing(const CheckpointOptions& options)
                                  options.resume ? "--resume" : "--checkpoint-every"));
   }
   if (options.file == kStandardStream) throw UsageError("--checkpoint -: expected a file");
-  const bool exists = std::filesystem::exists(options.file);
-  if (exists && !options.resume) {
-    throw UsageError(
-        fmt::format("{} exists; expected --resume to go on with it, or another --checkpoint", options.file));
-  }
   try {
     lock_.emplace(options.file);
   } catch (const FileLockError& error) {
     throw InputError(error.what());
+  }
+  // Whether there is one does not change from here on.
+  const bool exists = std::filesystem::exists(options.file);
+  if (exists && !options.resume) {
+    throw UsageError(
+        fmt::format("{} exists; expected --resume to go on with it, or another --checkpoint", options.file));
   }
   removeTemporaries(options.file);
   if (exists) earlier_ = std::make_unique<Checkpoint>(options.file);

@@ -153,7 +153,7 @@ CommandLine::CommandLine(const std::string& description, const std::string& name
     : app_(std::make_unique<CLI::App>(description, name)) {
   app_->require_subcommand(1);
   // An unknown key in the settings file is an error, so that misspelt options are noticed.
-  app_->set_config("--config", "", "settings file (TOML): options of COMMAND under [COMMAND]")
+  app_->set_config("--config", "", "settings file (TOML): options of COMMAND under [COMMAND]; variables come after it")
       ->check(checkSettingsFile);
   app_->allow_config_extras(CLI::config_extras_mode::error);
 }

@@ -72,19 +72,29 @@ void onCpuLimit(int) {
   _exit(kExitInterrupted);
 }
 
+// The first word after options of the program itself, of which --config has a value; empty: none.
+std::string commandOf(const std::vector<std::string>& arguments) {
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i] == "--config") {
+      ++i;
+    } else if (!arguments[i].starts_with('-')) {
+      return arguments[i];
+    }
+  }
+  return {};
+}
+
 // Only a render shares its work between the processes of a launcher. Any other command would do everything in each of
 // them, and all would write the same files.
 void refuseLaunched(const std::vector<std::string>& arguments) {
   const std::optional<Launch> launch = launchOfThisProcess();
   constexpr std::array<std::string_view, 5> kAny{"render", "help", "scenes", "describe", "inspect"};
-  if (!launch || arguments.empty() || arguments.front().starts_with('-') ||
-      std::find(kAny.begin(), kAny.end(), arguments.front()) != kAny.end()) {
-    return;
-  }
+  const std::string command = commandOf(arguments);
+  if (!launch || command.empty() || std::find(kAny.begin(), kAny.end(), command) != kAny.end()) return;
   throw UsageError(fmt::format(
       "{}: {} has started {} processes, which only `render` can share its work between; expected one process, "
       "or {}=off, with which each works by itself",
-      arguments.front(), launch->by, launch->ranks, kMpiVariable));
+      command, launch->by, launch->ranks, kMpiVariable));
 }
 
 int run(std::vector<std::string> arguments) {

@@ -324,7 +324,7 @@ Ending RenderRun::render() {
 int RenderRun::end(Ending ending) {
   if (ranks_.several()) {
     outputs_->writeCheckpoint(*session_);
-    if (ending == Ending::stopped) outputs_->writeCheckpoint(*session_, ranks_.emergencyFile());
+    if (ending == Ending::stopped) ranks_.saveShare(*session_, *outputs_);
   }
   int exitCode = ending == Ending::stopped ? kExitInterrupted : kExitDone;
   if (const std::optional<Rendered> whole = ranks_.whole(*session_, *outputs_)) exitCode = write(ending, *whole);

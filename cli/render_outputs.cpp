@@ -85,16 +85,19 @@ void checkOutputs(const OutputNames& names, const std::vector<std::string>& inpu
   }
 }
 
-// A file that cannot be written is reported and remembered, but does not end the render, nor keep others from being
-// written.
+// A file that cannot be written is reported, and remembered until it is written after all, but does not end the render,
+// nor keep others from being written.
 template <class Step>
-void RenderOutputs::attempt(Step step) {
+bool RenderOutputs::attempt(const std::string& file, Step step) {
   try {
     step();
   } catch (const std::exception& error) {
     tell("wavecrest: error: {}", error.what());
-    failed_ = true;
+    failed_.insert(file);
+    return false;
   }
+  failed_.erase(file);
+  return true;
 }
 
 Rendered renderedBy(const Session& session) {
@@ -117,12 +120,9 @@ void RenderOutputs::writeSnapshot(const Rendered& rendered, unsigned number) {
   }
   snapshots_.push_back(
       {.number = number, .renderSeconds = statistics.renderSeconds, .iterations = statistics.iterations, .file = file});
-  // A snapshot that cannot be written leaves no record. For that, failed_ tells of this attempt alone for a moment.
-  const bool failedBefore = failed_;
-  failed_ = false;
-  attempt([&] { writeExr(file, rendered.image(), statsMetadata(stats(statistics, rendered.processes))); });
-  if (failed_) snapshots_.pop_back();
-  failed_ |= failedBefore;
+  const bool written =
+      attempt(file, [&] { writeExr(file, rendered.image(), statsMetadata(stats(statistics, rendered.processes))); });
+  if (!written) snapshots_.pop_back();  // no record of it
 }
 
 void RenderOutputs::write(const Rendered& rendered) { write(rendered, names_.stats, true); }
@@ -141,7 +141,7 @@ void RenderOutputs::save(const Rendered& rendered) {
 void RenderOutputs::write(const Rendered& rendered, const std::string& statsFile, bool images) {
   // The statistics go into the images as attributes, and into a file of their own.
   nlohmann::ordered_json all;
-  attempt([&] {
+  attempt(names_.stats, [&] {
     all = stats(rendered.statistics, rendered.processes);
     if (!until_.is_null()) all["until"] = until_;
   });
@@ -150,7 +150,7 @@ void RenderOutputs::write(const Rendered& rendered, const std::string& statsFile
   const std::vector<std::string>& names = images ? names_.images : none;
   const Image image = names.empty() ? Image() : rendered.image();
   for (const std::string& name : names) {
-    attempt([&] {
+    attempt(name, [&] {
       WritingProgress progress(kind_, name);
       const auto show = [&](double fraction) { progress.show(fraction); };
       if (names_.exposure != 0 && isPng(name)) {
@@ -160,18 +160,20 @@ void RenderOutputs::write(const Rendered& rendered, const std::string& statsFile
       }
     });
   }
-  if (!statsFile.empty() && !all.is_null()) attempt([&] { writeText(statsFile, jsonText(all, 2) + "\n"); });
+  if (!statsFile.empty() && !all.is_null()) {
+    attempt(statsFile, [&] { writeText(statsFile, jsonText(all, 2) + "\n"); });
+  }
 }
 
-void RenderOutputs::writeCheckpoint(const Session& session, const std::string& file) {
-  if (file.empty() || session.statistics().paths == 0) return;
+bool RenderOutputs::writeCheckpoint(const Session& session, const std::string& file) {
+  if (file.empty() || session.statistics().paths == 0) return false;
   // The notes are what goOnFrom reads, time, schedule and snapshots so far, and the statistics for `merge`.
   const nlohmann::ordered_json notes = {{"wall_seconds", wallSeconds()},
                                         {"snapshot_every", names_.snapshotEvery},
                                         {"snapshots", snapshotNotes(snapshots_)},
                                         {"next_snapshot", nextSnapshot_},
                                         {"stats", stats(session.statistics(), {})}};
-  attempt([&] { wavecrest::writeCheckpoint(file, scene_, settings_, session, notes); });
+  return attempt(file, [&] { wavecrest::writeCheckpoint(file, scene_, settings_, session, notes); });
 }
 
 void RenderOutputs::goOnFrom(const nlohmann::ordered_json& notes, const Session& session) {

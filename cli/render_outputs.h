@@ -7,6 +7,7 @@
 #include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,8 +62,8 @@ class RenderOutputs {
   void save(const Rendered& rendered);
   // The checkpoint, if one was asked for and there are paths to keep.
   void writeCheckpoint(const Session& session) { writeCheckpoint(session, names_.checkpoint); }
-  // The same as a file of this name; empty: none.
-  void writeCheckpoint(const Session& session, const std::string& file);
+  // The same as a file of this name; empty: none. Returns whether it was written.
+  bool writeCheckpoint(const Session& session, const std::string& file);
   // Takes over what writeCheckpoint has noted of an earlier part of the render.
   void goOnFrom(const nlohmann::ordered_json& notes, const Session& session);
   // The number of the next snapshot. Where an earlier part had another schedule, those that would have been due by now
@@ -71,16 +72,16 @@ class RenderOutputs {
   // What was reached of a quality that was asked for; goes into the statistics.
   void setUntil(nlohmann::ordered_json until) { until_ = std::move(until); }
   const nlohmann::ordered_json& until() const { return until_; }
-  // Whether some file could not be written.
-  bool failed() const { return failed_; }
+  // Whether some file could not be written when it was last tried.
+  bool failed() const { return !failed_.empty(); }
 
  private:
   nlohmann::ordered_json stats(const RenderStatistics& statistics, const nlohmann::ordered_json& processes) const;
   double wallSeconds() const;
   void write(const Rendered& rendered, const std::string& statsFile, bool images);  // statsFile: empty for none
-  // Runs a step that writes one file.
+  // Runs a step that writes the file. Returns whether it did.
   template <class Step>
-  void attempt(Step step);
+  bool attempt(const std::string& file, Step step);
 
   const OutputNames& names_;
   const Scene& scene_;
@@ -94,7 +95,7 @@ class RenderOutputs {
   double earlierSeconds_ = 0;     // on the wall, of processes that rendered earlier parts
   bool sameSchedule_ = false;     // of snapshots as in those
   uint64_t resumedFrom_ = 0;      // iterations
-  bool failed_ = false;
+  std::set<std::string> failed_;  // files
 };
 
 }  // namespace wavecrest

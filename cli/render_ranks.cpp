@@ -213,6 +213,10 @@ void RenderRanks::write(RankSum sum, RenderOutputs& outputs) {
   }
 }
 
+void RenderRanks::saveShare(const Session& session, RenderOutputs& outputs) {
+  shareSaved_ = outputs.writeCheckpoint(session, emergencyFile_);
+}
+
 std::optional<Rendered> RenderRanks::whole(const Session& session, RenderOutputs& outputs) {
   if (!several()) return renderedBy(session);
   ranks_->contribute(kFinalLabel, session, threads_);
@@ -239,7 +243,7 @@ int RenderRanks::leave(int exitCode) {
   }
   ranks_->finish();
   std::error_code ignored;
-  if (!emergencyFile_.empty() && (all == kExitDone || all == kExitInterrupted)) fs::remove(emergencyFile_, ignored);
+  if (shareSaved_ && (all == kExitDone || all == kExitInterrupted)) fs::remove(emergencyFile_, ignored);
   return all;
 }
 

@@ -66,7 +66,9 @@ class RenderRanks {
   // At the very end, with the exit codes of all: that of all processes.
   int leave(int exitCode);
 
-  // Without --checkpoint: the file that a share is saved in before a sum that may fail; empty with it.
+  // Without --checkpoint: saves the share before a sum that may fail. `leave` removes it.
+  void saveShare(const Session& session, RenderOutputs& outputs);
+  // The file of that; empty with --checkpoint.
   const std::string& emergencyFile() const { return emergencyFile_; }
 
  private:
@@ -77,6 +79,7 @@ class RenderRanks {
   std::optional<Ranks> ranks_;
   std::vector<std::string> places_;  // of all processes (placeOfThisProcess)
   std::string emergencyFile_;
+  bool shareSaved_ = false;  // in emergencyFile_, by this process
   uint32_t threads_ = 0;
   FilmArea area_;
 };

@@ -21,8 +21,6 @@ constexpr double kNews = 0.25;
 // Seconds of silence after which a process is lost; fewer once all are to stop, as launchers do not wait long. Longest
 // time that counts from one look to the next: a machine may have slept.
 constexpr double kLostAfter = 60, kLostAfterStop = 10, kLongestLook = 0.1;
-// Seconds that others may take to contribute after a stop: waves under way, or an iteration with a photon map.
-constexpr double kPatience = 60;
 
 constexpr size_t kHead = 2 * sizeof(uint64_t);
 
@@ -100,14 +98,9 @@ void Ranks::sendToOthers(Kind kind, uint64_t number) {
 }
 
 void Ranks::wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& ready) {
-  std::optional<Clock::time_point> since;
   while (!ready()) {
     if (!broken_.empty()) throw RanksError(broken_);
     if (lost_) throw RanksError(fmt::format("process {} of {} is lost", *lost_ + 1, count()));
-    if (stopping_ && !since) since = Clock::now();
-    if (since && secondsBetween(*since, Clock::now()) > kPatience) {
-      throw RanksError("not all processes have answered after the signal to stop");
-    }
     changed_.wait_for(lock, std::chrono::milliseconds(50));
   }
 }
@@ -195,10 +188,12 @@ void Ranks::received(uint32_t from, Mailbox::Bytes message) {
     case Kind::texts:
       allTexts_ = separated(content);
       break;
-    case Kind::contribution:
+    case Kind::contribution: {
+      const bool lastStands = !stopping_;
       lock.unlock();
-      takeContribution(from, number, std::move(message));
+      takeContribution(from, number, std::move(message), lastStands);
       return;
+    }
     case Kind::completed:
       std::erase_if(outstanding_, [&](SumLabel label) { return label <= number; });
       break;
@@ -246,11 +241,11 @@ void Ranks::takeText(uint32_t from, std::string text) {
   allTexts_ = std::move(all);
 }
 
-void Ranks::takeContribution(uint32_t from, SumLabel label, Mailbox::Bytes message) {
-  std::optional<std::vector<Mailbox::Bytes>> all = tree_->take(label, from, std::move(message));
-  if (!all) return;
+void Ranks::takeContribution(uint32_t from, SumLabel label, Mailbox::Bytes message, bool lastStands) {
   try {
-    complete(label, std::move(*all));
+    for (SumTree::Complete& sum : tree_->take(label, from, std::move(message), lastStands)) {
+      complete(sum.label, std::move(sum.contributions));
+    }
   } catch (const StateError& error) {
     const std::lock_guard<std::mutex> lock(mutex_);
     broken_ = fmt::format("films of processes do not add up: {}", error.what());
@@ -282,9 +277,11 @@ void Ranks::complete(SumLabel label, std::vector<Mailbox::Bytes> messages) {
   if (isSnapshot(label)) sendToOthers(Kind::completed, label);
   if (isSave(label)) saveUnderWay_ = false;
   const std::lock_guard<std::mutex> lock(mutex_);
-  sums_.push_back({label, sum_.statistics(own_.at(label)), std::move(image), std::move(processes)});
-  std::erase_if(own_, [&](const auto& entry) { return entry.first <= label && !isSave(entry.first); });
-  if (isSave(label)) own_.erase(label);
+  // Once this process is done, its last contribution may have stood for the others.
+  const RenderStatistics& own = own_.at(own_.contains(label) ? label : kFinalLabel);
+  sums_.push_back({label, sum_.statistics(own), std::move(image), std::move(processes)});
+  // Snapshots that a save overtakes are still to come.
+  std::erase_if(own_, [&](const auto& one) { return one.first == label || (isSnapshot(label) && one.first < label); });
   if (isSnapshot(label)) std::erase_if(outstanding_, [&](SumLabel one) { return one <= label; });
   if (hooks_.attend) hooks_.attend();
   changed_.notify_all();

@@ -84,11 +84,11 @@ class Ranks {
   void sendWithHead(uint32_t to, Kind kind, uint64_t number, Mailbox::Bytes message);
   void sendToOthers(Kind kind, uint64_t number);
   void takeText(uint32_t from, std::string text);
-  void takeContribution(uint32_t from, SumLabel label, Mailbox::Bytes message);
+  void takeContribution(uint32_t from, SumLabel label, Mailbox::Bytes message, bool lastStands);
   void complete(SumLabel label, std::vector<Mailbox::Bytes> messages);
   void callStop();
-  // Waits until ready() is true, with the mutex held. Throws RanksError where that takes too long after a stop, or a
-  // process is lost.
+  // Waits until ready() is true, with the mutex held, for as long as all processes live. Throws RanksError where one is
+  // lost, or a sum is broken.
   void wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& ready);
 
   std::unique_ptr<Mailbox> mailbox_;

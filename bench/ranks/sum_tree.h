@@ -5,10 +5,10 @@
 // Contributions are told apart by labels. Labels of one kind are used in ascending order by every process.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <optional>
 #include <vector>
 
 namespace wavecrest {
@@ -31,23 +31,25 @@ class SumTree {
   uint32_t parent() const { return rank_ & (rank_ - 1); }  // not of the root
   const std::vector<uint32_t>& children() const { return children_; }
 
-  // Takes a contribution of this process or of a child. Returns all that belong to this label once they are there, this
-  // process' own first and those of children in their order. Drops contributions that will never be complete: those of
-  // earlier labels of the same kind, and with the last label all.
-  std::optional<std::vector<Bytes>> take(SumLabel label, uint32_t from, Bytes contribution);
+  // All contributions to a label: this process' own first, then those of children in their order.
+  struct Complete {
+    SumLabel label = 0;
+    std::vector<Bytes> contributions;
+  };
+
+  // Takes a contribution of this process or of a child. Returns what is complete now, in ascending order. Drops
+  // contributions that will never be complete: those of earlier labels of the same kind, and with the last label all.
+  // lastStands: a process that is done contributes to no more labels, and its last contribution stands for those. Not
+  // so after a stop, when it may be from before they were due.
+  std::vector<Complete> take(SumLabel label, uint32_t from, Bytes contribution, bool lastStands);
 
   // Labels that wait for contributions.
   size_t waiting() const { return pending_.size(); }
 
  private:
-  struct Pending {
-    std::vector<Bytes> contributions;
-    size_t count = 0;
-  };
-
   uint32_t rank_;
   std::vector<uint32_t> children_;
-  std::map<SumLabel, Pending> pending_;
+  std::map<SumLabel, std::vector<Bytes>> pending_;  // empty where they are missing
 };
 
 }  // namespace wavecrest

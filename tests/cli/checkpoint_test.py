@@ -127,6 +127,18 @@ class GoingOn(Checkpoints):
         self.run_wavecrest(*arguments, "-o", "whole.pfm")
         self.assertEqual(self.bytes_of("parts.pfm"), self.bytes_of("whole.pfm"))
 
+    def test_a_save_that_fails_is_made_up_for_by_the_next(self):
+        place, away = self.folder / "place", self.folder / "away"
+        place.mkdir()
+        more = ["--checkpoint", "place/c", "--checkpoint-every", "20ms"]
+        process = self.start(*self.arguments("pt", "a.pfm", *more, times=10000))
+        self.wait_for((place / "c").exists)
+        place.rename(away)
+        self.assertTrue(any("error: place/c" in line for line in process.stderr))
+        away.rename(place)
+        process.send_signal(signal.SIGTERM)
+        self.end(process, INTERRUPTED)
+
     def test_snapshots_that_were_left_out_keep_their_numbers(self):
         arguments = ["render", "cornell-diffuse", "--size", "1280x960", "--threads", "1", "--checkpoint", "c", "--resume"]
         arguments += ["--snapshot-every", "10ms", "-o", "image.pfm"]
@@ -239,10 +251,13 @@ class Refused(Checkpoints):
         self.assertIn("--checkpoint: not together", self.render(*until, expect=USAGE).stderr)
 
     def test_two_at_a_time(self):
-        process = self.start("render", "cornell-diffuse", "--size", "32x24", "--time", "10m", "--checkpoint", "d")
-        self.wait_for(lambda: (self.folder / "d.lock").exists())
-        result = self.render("--spp", "1", "--checkpoint", "d", "--resume", expect=INPUT)
-        self.assert_one_error_line(result, "d: process .* works on it")
+        process = self.start("render", "cornell-diffuse", "--size", "32x24", "--time", "10m", "--checkpoint", "d",
+                             "--checkpoint-every", "50ms")  # fmt: skip
+        self.wait_for(lambda: (self.folder / "d").exists())
+        # Whether there is a checkpoint is for its holder to know.
+        for resume in ([], ["--resume"]):
+            result = self.render("--spp", "1", "--checkpoint", "d", *resume, expect=INPUT)
+            self.assert_one_error_line(result, "d: process .* works on it")
         process.send_signal(signal.SIGTERM)
         process.communicate()
 

@@ -140,6 +140,22 @@ class Sums(MpiTest):
             self.assertGreaterEqual(stats["camera_paths"], before)
 
 
+    # Short waves are slow: one process is done long before the other, which is then more than two snapshots ahead.
+    def test_snapshots_go_on_where_another_process_is_done(self):
+        for slow in (0, 1):
+            more = ["--spp", "1000", "--snapshot-every", "30ms", "-o", "a.exr", "--stats", "stats.json"]
+            first, second = (
+                self.arguments("pt", *more, "--wave", 16 if rank == slow else 2048, size="128x96") for rank in (0, 1)
+            )
+            self.mpirun(1, *first, ":", "-n", 1, WAVECREST, *second)
+            stats = read_json(self.path("stats.json"))
+            self.assertEqual(stats["iterations"], 1000)
+            last = read_exr_header(self.path(stats["snapshots"][-1]["file"]))
+            done = stats["process_list"][1 - slow]
+            self.assertGreater(float(last["wavecrest:render_seconds"]), done["render_seconds"])
+            self.assertGreater(int(last["wavecrest:camera_paths"]), done["camera_paths"])
+
+
 class Threads(MpiTest):
     def test_threads_follow_from_the_launcher(self):
         cores = len(os.sched_getaffinity(0))
@@ -205,6 +221,12 @@ class Signals(MpiTest):
             self.assertIn("missing are iterations 2", result.stderr)
             self.assertEqual(read_json(self.path("rest.json"))["parts"], 2)
             self.assertGreater(sum(self.image("rest.pfm")[2]), 0)
+
+    def test_shares_that_an_earlier_render_left_stay(self):
+        self.write("image.part-1-of-2", "a share")
+        for more in ([], ["--dry-run"]):
+            self.mpirun(2, *self.arguments("pt", "--spp", "2", *more, "-o", "image.pfm"))
+            self.assertEqual((self.folder / "image.part-1-of-2").read_text(), "a share")
 
     def test_a_save_on_request_is_of_all(self):
         mpirun, ranks = self.start_mpirun(

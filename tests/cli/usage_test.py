@@ -262,6 +262,13 @@ class Usage(CommandTest):
         self.run_wavecrest("scenes", variables={"WAVECREST_SEED": "six"})
         self.run_wavecrest("--config", "absent.toml", "scenes", expect=USAGE)
 
+    def test_commands_that_several_processes_cannot_share_are_refused_after_options_too(self):
+        self.write("render", "")
+        launch = {"OMPI_COMM_WORLD_SIZE": "2", "OMPI_COMM_WORLD_RANK": "0"}
+        for options in ([], ["--config", "render"], ["--config=render"]):
+            result = self.run_wavecrest(*options, "merge", "a", "-o", "b.pfm", expect=USAGE, variables=launch)
+            self.assert_one_error_line(result, "merge: mpirun has started 2 processes")
+
     def test_scenes_are_told_as_json(self):
         scenes = json.loads(self.run_wavecrest("scenes", "--json").stdout)
         self.assertEqual(len(scenes), 9)
