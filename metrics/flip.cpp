@@ -77,9 +77,9 @@ namespace {
 // The filmic curve of ACES in Narkowicz's fit, (a x^2 + b x + c) / (d x^2 + e x + f), exposure 0.6 included.
 constexpr double kAcesA = 0.36 * 2.51, kAcesB = 0.6 * 0.03, kAcesD = 0.36 * 2.43, kAcesE = 0.6 * 0.59, kAcesF = 0.14;
 
-// The curve's value, 0..1, at linear light x. NaN and negative light are black.
+// The curve's value, 0..1, at linear light x. Light that is negative or not finite is black.
 double toneMap(double x) {
-  if (!(x > 0)) return 0;
+  if (!(x > 0) || !std::isfinite(x)) return 0;
   x = std::min(x, 1e15);  // the curve is flat long before its squares overflow
   return std::min((kAcesA * x + kAcesB) * x / ((kAcesD * x + kAcesE) * x + kAcesF), 1.0);
 }
@@ -137,14 +137,22 @@ FlipModel::Opponents exposedOpponents(const Image& image, double exposure) {
 
 PreparedHdrFlip::PreparedHdrFlip(const Image& reference, double pixelsPerDegree, Isa isa)
     : model_(pixelsPerDegree, isa), exposures_(exposureSeries(reference)) {
-  for (double exposure : exposures_) references_.push_back(model_.analyze(exposedOpponents(reference, exposure)));
+  for (size_t i = 0; i < std::min(kKeptExposures, exposures_.size()); ++i)
+    references_.push_back(model_.analyze(exposedOpponents(reference, exposures_[i])));
+  if (references_.size() < exposures_.size()) light_ = reference;
 }
 
 FlipResult PreparedHdrFlip::compare(const Image& test, bool withMap) const {
   Plane map(test.width, test.height);
   // The map starts at zero and keeps the greatest error of all exposures (FlipModel::compare).
-  for (size_t i = 0; i < exposures_.size(); ++i)
-    model_.compare(references_[i], exposedOpponents(test, exposures_[i]), map);
+  for (size_t i = 0; i < exposures_.size(); ++i) {
+    const FlipModel::Opponents exposed = exposedOpponents(test, exposures_[i]);
+    if (i < references_.size()) {
+      model_.compare(references_[i], exposed, map);
+    } else {
+      model_.compare(model_.analyze(exposedOpponents(light_, exposures_[i])), exposed, map);
+    }
+  }
   return resultOf(map, withMap);
 }
 

@@ -38,18 +38,22 @@ class PreparedFlip {
   FlipModel::Features reference_;
 };
 
-// HDR-FLIP against one reference of linear light.
+// HDR-FLIP against one reference of linear light. Its pixels that are not finite do not choose exposures. Light of many
+// stops has many exposures: the reference's features are kept for the first kKeptExposures, and made again for the
+// others in each comparison.
 class PreparedHdrFlip {
  public:
   explicit PreparedHdrFlip(const Image& reference, double pixelsPerDegree = kFlipPixelsPerDegree, Isa isa = bestIsa());
   FlipResult compare(const Image& test, bool withMap = false) const;
 
+  static constexpr size_t kKeptExposures = 16;
   const std::vector<double>& exposures() const { return exposures_; }  // in stops
 
  private:
   FlipModel model_;
   std::vector<double> exposures_;
-  std::vector<FlipModel::Features> references_;  // for each exposure
+  std::vector<FlipModel::Features> references_;  // for the first exposures
+  Image light_;                                  // of the reference, for the others; empty where there are none
 };
 
 }  // namespace wavecrest

@@ -61,33 +61,45 @@ std::vector<float> errorMap(const ErrorPair& images, MapOf kind) {
   return map;
 }
 
-Measurement measureRmse(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
-  const bool bothCodes = reference.image().file.encoding == Encoding::srgb8 && test.file.encoding == Encoding::srgb8;
-  Measurement result;
-  // Two 8-bit files are compared as whole codes, which is exact. An exposure changes the codes but not the values as
-  // read, so the values are compared then.
-  if (reference.settings().gammaCorrectedErrors || (bothCodes && reference.settings().exposure == 0)) {
-    const Image8 &a = reference.image().codes, &b = test.codes;
-    result.scores = {{"", rmse(a, b, CodeScale::gammaCorrected).rmse}};
-    if (withMap) result.map = errorMap({toUnitRange(a), toUnitRange(b)}, MapOf::rmse);
-    return result;
+// Makes a pixel of the codes NaN where it is not finite in either image: there the codes are the reference's, which
+// would count as no error.
+void excludeNonFinite(const Image& reference, const Image& test, Image& codes) {
+  for (size_t pixel = 0; pixel < codes.pixelCount(); ++pixel) {
+    if (finitePixel(reference, pixel) && finitePixel(test, pixel)) continue;
+    codes.pixels[3 * pixel] = std::numeric_limits<float>::quiet_NaN();
   }
-  onOneScale(reference, test, [&](const ErrorPair& images) {
-    result.scores = {{"", rmse(images.reference, images.test).rmse}};
-    if (withMap) result.map = errorMap(images, MapOf::rmse);
-  });
-  return result;
 }
 
 // Calls measure with the pair, in codes where --gamma asks for that.
 template <class Function>
 void onOneScaleOrCodes(const PreparedReference& reference, const ComparedImage& test, Function measure) {
   if (reference.settings().gammaCorrectedErrors) {
-    const Image a = toUnitRange(reference.image().codes), b = toUnitRange(test.codes);
+    const Image a = toUnitRange(reference.image().codes);
+    Image b = toUnitRange(test.codes);
+    excludeNonFinite(reference.image().file.image, test.file.image, b);
     measure(ErrorPair{a, b});
   } else {
     onOneScale(reference, test, measure);
   }
+}
+
+Measurement measureRmse(const PreparedReference& reference, const ComparedImage& test, bool withMap) {
+  const bool bothCodes = reference.image().file.encoding == Encoding::srgb8 && test.file.encoding == Encoding::srgb8;
+  Measurement result;
+  // Two 8-bit files are compared as whole codes, which is exact. An exposure changes the codes but not the values as
+  // read, so the values are compared then.
+  const bool asCodes = reference.settings().gammaCorrectedErrors || (bothCodes && reference.settings().exposure == 0);
+  if (asCodes && test.nonFinitePixels == 0) {
+    const Image8 &a = reference.image().codes, &b = test.codes;
+    result.scores = {{"", rmse(a, b, CodeScale::gammaCorrected).rmse}};
+    if (withMap) result.map = errorMap({toUnitRange(a), toUnitRange(b)}, MapOf::rmse);
+    return result;
+  }
+  onOneScaleOrCodes(reference, test, [&](const ErrorPair& images) {
+    result.scores = {{"", rmse(images.reference, images.test).rmse}};
+    if (withMap) result.map = errorMap(images, MapOf::rmse);
+  });
+  return result;
 }
 
 Measurement measureRelmse(const PreparedReference& reference, const ComparedImage& test, bool withMap) {

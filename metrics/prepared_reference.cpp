@@ -99,10 +99,13 @@ const PreparedHdrVdp2& PreparedReference::hdrVdp2() const {
 const PreparedFlip& PreparedReference::flip() const {
   return get(parts_->flip, [&] { return PreparedFlip(image_.codes, kFlipPixelsPerDegree, settings_.isa); });
 }
-// HDR-FLIP chooses its exposures itself, so the exposure of the settings does not apply.
+// HDR-FLIP chooses its exposures itself, so the exposure of the settings does not apply. What is not finite does not
+// count there, so light is passed as it is.
 const PreparedHdrFlip& PreparedReference::hdrFlip() const {
-  return get(parts_->hdrFlip,
-             [&] { return PreparedHdrFlip(linearLight(image_.file), kFlipPixelsPerDegree, settings_.isa); });
+  return get(parts_->hdrFlip, [&] {
+    const bool linear = image_.file.encoding == Encoding::linear;
+    return PreparedHdrFlip(linear ? image_.file.image : linearLight(image_.file), kFlipPixelsPerDegree, settings_.isa);
+  });
 }
 
 const PreparedMsSsim& PreparedReference::msSsim() const {

@@ -120,20 +120,22 @@ Recommendation recommend(const Scene& scene, const RenderSettings& settings, con
     row.told = pilot.pilot.has_value();
     if (row.told) row.prediction = predict(reference, *pilot.pilot, request.targetSsim);
   };
-  // A short pilot of each method.
+  // A short pilot of each method. One without rivals gets the time of the longer pilot at once.
+  const bool alone = request.methods.size() == 1;
+  const double pilotPart = alone ? 1 - kReferencePart : kPilotPart / static_cast<double>(request.methods.size());
   for (const Method method : request.methods) {
     RecommendRow& row = result.rows.emplace_back();
     row.method = method;
     row.leavesOut = unsampled(classes, method);
     try {
-      predictRow(row, kPilotPart * request.seconds / static_cast<double>(request.methods.size()));
+      predictRow(row, pilotPart * request.seconds);
     } catch (const SceneError& error) {
       row.refusal = error.what();
     }
   }
   std::stable_sort(result.rows.begin(), result.rows.end(), sooner);
   // A longer pilot of the method that is first. The prediction may change, and the order with it.
-  if (!result.rows.empty() && result.rows.front().told) {
+  if (!alone && !result.rows.empty() && result.rows.front().told) {
     predictRow(result.rows.front(), (1 - kReferencePart - kPilotPart) * request.seconds);
   }
   judgeRows(result);

@@ -1,8 +1,9 @@
 // Which method brings a scene to a quality soonest, and how long that takes on this machine.
 //
 // Makes short test renders, called pilots (pilot_renders.h): one by the reference method of `inspect`, one by every
-// method, and a longer one by the method predicted to be first. A pilot is four whole images of different seeds. Its
-// noise, bias and speed predict the time (prediction.h). What the pilots cannot tell is said in place of a verdict.
+// method, and of several methods a longer one by that predicted to be first. A pilot is four whole images of different
+// seeds. Its noise, bias and speed predict the time (prediction.h). What the pilots cannot tell is said in place of a
+// verdict.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

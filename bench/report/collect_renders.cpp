@@ -292,9 +292,11 @@ ReportScene collectScene(const RenderFolder& from, const std::string& name, cons
 }  // namespace
 
 ConvergenceReport collectRenders(const fs::path& path, const fs::path& givenReference) {
-  const RenderFolder from{.folder = path.extension() == ".csv" ? path.parent_path() : path,
-                          .list = path.extension() == ".csv" ? path : path / kImageList,
-                          .reference = givenReference};
+  const bool isList = path.extension() == ".csv";
+  // The folder of a name without one is the current one.
+  const fs::path besideList = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const RenderFolder from{
+      .folder = isList ? besideList : path, .list = isList ? path : path / kImageList, .reference = givenReference};
   const std::vector<RunFile> files = readAllRuns(from);
   // List the scenes in order of first appearance.
   std::vector<const nlohmann::json*> stats;

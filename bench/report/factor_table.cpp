@@ -9,19 +9,19 @@
 namespace wavecrest {
 namespace {
 
-// One method against a baseline: in each scene, and together.
+// One series against a baseline: in each scene, and together.
 struct Row {
-  std::string method;
+  SeriesName name;
   std::vector<FactorCell> cells;  // by scene
   std::vector<FactorMean> means;  // by label
   bool shared = false;            // whether a scene has both
 };
 
-Row rowOf(const ConvergenceReport& report, const FactorTable& table, const std::string& method,
-          const std::string& baseline) {
-  Row row{.method = method, .cells = {}, .means = {}};
+Row rowOf(const ConvergenceReport& report, const FactorTable& table, const SeriesName& name,
+          const SeriesName& baseline) {
+  Row row{.name = name, .cells = {}, .means = {}};
   for (const ReportScene& scene : report.scenes) {
-    const ReportSeries *own = seriesOf(scene, method), *base = seriesOf(scene, baseline);
+    const ReportSeries *own = seriesOf(scene, name), *base = seriesOf(scene, baseline);
     const bool both = own != nullptr && base != nullptr;
     row.shared = row.shared || both;
     row.cells.push_back(both ? table.compare(*own, *base) : FactorCell{});
@@ -70,10 +70,10 @@ std::string renderMeans(const FactorTable& table, const Row& row, size_t scenes)
   return html;
 }
 
-std::string renderAgainst(const ConvergenceReport& report, const FactorTable& table, const std::string& baseline,
+std::string renderAgainst(const ConvergenceReport& report, const FactorTable& table, const SeriesName& baseline,
                           bool open) {
   std::vector<Row> rows;
-  for (const std::string& method : methodsOf(report)) rows.push_back(rowOf(report, table, method, baseline));
+  for (const SeriesName& name : seriesNamesOf(report)) rows.push_back(rowOf(report, table, name, baseline));
   std::erase_if(rows, [](const Row& row) { return !row.shared; });
   // The baseline's own row is always 1: there must be another.
   const auto compared = std::ranges::count_if(rows, [](const Row& row) { return row.means.front().counted > 0; });
@@ -87,12 +87,12 @@ std::string renderAgainst(const ConvergenceReport& report, const FactorTable& ta
   std::string html = fmt::format(
       "<details class=\"factors {0}\" name=\"{0}\"{1}><summary>over {2}</summary><div class=\"scroll\">"
       "<table class=\"heat\"><thead><tr><th>method",
-      table.group, open ? " open" : "", escapeHtml(baseline));
+      table.group, open ? " open" : "", escapeHtml(baseline.label));
   if (several) html += "<th class=\"n\">geometric mean";
   for (const ReportScene& scene : report.scenes) append(html, "<th class=\"n\">{}", escapeHtml(scene.name));
   html += "</thead><tbody>";
   for (const Row& row : rows) {
-    append(html, "<tr><th><i class=\"swatch m-{0}\"></i>{0}", escapeHtml(row.method));
+    append(html, "<tr><th><i class=\"swatch m-{}\"></i>{}", escapeHtml(row.name.method), escapeHtml(row.name.label));
     if (several) html += renderMeans(table, row, report.scenes.size());
     for (const FactorCell& cell : row.cells) html += renderCell(table, cell);
   }
@@ -126,12 +126,11 @@ std::string formatFactor(const std::optional<Factor>& factor) {
 }
 
 std::string renderFactorTables(const ConvergenceReport& report, const FactorTable& table) {
-  const std::vector<std::string> methods = methodsOf(report);
-  if (methods.empty()) return "";
-  const bool named = std::find(methods.begin(), methods.end(), report.baseline) != methods.end();
-  const std::string& chosen = named ? report.baseline : methods.front();
+  const std::vector<SeriesName> names = seriesNamesOf(report);
+  if (names.empty()) return "";
+  const SeriesName chosen = findSeriesName(report, report.baseline).value_or(names.front());
   std::string tables;
-  for (const std::string& baseline : methods) tables += renderAgainst(report, table, baseline, baseline == chosen);
+  for (const SeriesName& baseline : names) tables += renderAgainst(report, table, baseline, baseline == chosen);
   return tables;
 }
 

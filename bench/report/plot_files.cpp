@@ -1,7 +1,10 @@
 #include "bench/report/plot_files.h"
 
+#include <algorithm>
 #include <cctype>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "bench/report/scene_plots.h"
 #include "bench/report/series_values.h"
@@ -20,6 +23,18 @@ std::string fileName(std::string name) {
   return name;
 }
 
+// The name, with a number where an earlier scene has it. Not all file systems tell capitals from small letters.
+std::string freeName(const std::string& name, std::set<std::string>& taken) {
+  const auto take = [&](std::string candidate) {
+    std::transform(candidate.begin(), candidate.end(), candidate.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return taken.insert(std::move(candidate)).second;
+  };
+  std::string unused = name;
+  for (unsigned number = 2; !take(unused); ++number) unused = name + "." + std::to_string(number);
+  return unused;
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> writePlotFiles(const ConvergenceReport& report,
@@ -27,10 +42,12 @@ std::vector<std::filesystem::path> writePlotFiles(const ConvergenceReport& repor
   std::filesystem::create_directories(folder);
   std::vector<std::filesystem::path> paths;
   const std::string colours = coloursOfOthers(report);
+  std::set<std::string> taken;
   for (const ReportScene& scene : report.scenes) {
+    const std::string name = freeName(fileName(scene.name), taken);
     for (const ScenePlot& plot : scenePlots(report, scene)) {
       const std::string svg = renderPlotFile(plot.plot, colours);
-      paths.push_back(withinFolder(folder, fileName(scene.name) + "." + fileName(plot.key) + ".svg"));
+      paths.push_back(withinFolder(folder, name + "." + fileName(plot.key) + ".svg"));
       writeFileAtomically(paths.back().string(), svg);
     }
   }

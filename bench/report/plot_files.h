@@ -8,8 +8,8 @@
 
 namespace wavecrest {
 
-/// Writes FOLDER/SCENE.METRIC.svg for each, creating the folder; returns their paths. Throws ImageError if a file
-/// cannot be written.
+/// Writes FOLDER/SCENE.METRIC.svg for each, creating the folder; returns their paths. SCENE gets a number where an
+/// earlier scene's is the same but for capitals. Throws ImageError if a file cannot be written.
 std::vector<std::filesystem::path> writePlotFiles(const ConvergenceReport& report, const std::filesystem::path& folder);
 
 }  // namespace wavecrest

@@ -202,9 +202,34 @@ std::string coloursOfOthers(const ConvergenceReport& report) {
   return css;
 }
 
-const ReportSeries* seriesOf(const ReportScene& scene, const std::string& method) {
-  const auto found = std::find_if(scene.series.begin(), scene.series.end(),
-                                  [&](const ReportSeries& series) { return series.method == method; });
+std::vector<SeriesName> seriesNamesOf(const ConvergenceReport& report) {
+  std::vector<SeriesName> names;
+  for (const std::string& method : methodsOf(report)) {
+    for (const ReportScene& scene : report.scenes) {
+      for (const ReportSeries& series : scene.series) {
+        if (series.method != method) continue;
+        const SeriesName name{.method = method, .label = series.label};
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      }
+    }
+  }
+  return names;
+}
+
+std::optional<SeriesName> findSeriesName(const ConvergenceReport& report, const std::string& labelOrMethod) {
+  const std::vector<SeriesName> names = seriesNamesOf(report);
+  for (const auto part : {&SeriesName::label, &SeriesName::method}) {
+    const auto found =
+        std::find_if(names.begin(), names.end(), [&](const SeriesName& name) { return name.*part == labelOrMethod; });
+    if (found != names.end()) return *found;
+  }
+  return std::nullopt;
+}
+
+const ReportSeries* seriesOf(const ReportScene& scene, const SeriesName& name) {
+  const auto found = std::find_if(scene.series.begin(), scene.series.end(), [&](const ReportSeries& series) {
+    return series.method == name.method && series.label == name.label;
+  });
   return found == scene.series.end() ? nullptr : &*found;
 }
 

@@ -69,8 +69,21 @@ std::vector<std::string> methodsOf(const ConvergenceReport& report);
 /// Colours of the methods that have none in plot.css, as rules of a style sheet: in order of appearance.
 std::string coloursOfOthers(const ConvergenceReport& report);
 
-/// The first series of a method in a scene, or null.
-const ReportSeries* seriesOf(const ReportScene& scene, const std::string& method);
+/// What a table over scenes calls a series. Several series of a scene may share a method: those of other settings, and
+/// those of other programs whose names have one identifier.
+struct SeriesName {
+  std::string method, label;
+  bool operator==(const SeriesName&) const = default;
+};
+
+/// Every one that occurs, in the order of methodsOf().
+std::vector<SeriesName> seriesNamesOf(const ConvergenceReport& report);
+
+/// The first of them with this label, or else of this method.
+std::optional<SeriesName> findSeriesName(const ConvergenceReport& report, const std::string& labelOrMethod);
+
+/// The series of a scene with this name, or null.
+const ReportSeries* seriesOf(const ReportScene& scene, const SeriesName& name);
 
 // Seeds from which a share of bias is shown. It comes from pairs of seeds: two have one, and its error is as large as
 // itself.

@@ -68,27 +68,27 @@ HeatMap targetMap(const ReportMetric& metric, size_t index) {
       .higherIsBetter = false};
 }
 
-// The cells of one scene, one for each method. A method without a number gets a dash.
-std::string renderRow(const HeatMap& map, const ReportScene& scene, const std::vector<std::string>& methods) {
+// The cells of one scene, one for each name. A series without a number gets a dash.
+std::string renderRow(const HeatMap& map, const ReportScene& scene, const std::vector<SeriesName>& names) {
   // Find the values of the row and the best of them. isBetter only asks the metric for its direction.
   ReportMetric order;
   order.higherIsBetter = map.higherIsBetter;
   std::vector<double> values;
   double best = kNan;
-  for (const std::string& method : methods) {
-    const ReportSeries* series = seriesOf(scene, method);
+  for (const SeriesName& name : names) {
+    const ReportSeries* series = seriesOf(scene, name);
     values.push_back(series ? map.value(scene, *series) : kNan);
     if (isBetter(order, values.back(), best)) best = values.back();
   }
   // Write the cells.
   std::string html;
-  for (size_t i = 0; i < methods.size(); ++i) {
+  for (size_t i = 0; i < names.size(); ++i) {
     const double value = values[i];
     if (std::isnan(value)) {
       html += "<td class=\"n none\">–";
       continue;
     }
-    const ReportSeries& series = *seriesOf(scene, methods[i]);
+    const ReportSeries& series = *seriesOf(scene, names[i]);
     // The best is not behind itself, even where both are zero.
     const double behind = value == best ? 0 : map.behind(value, best);
     append(html, "<td class=\"n{}\" style=\"--behind:{:.2f}\">{}", map.isBest(scene, series) ? " best" : "",
@@ -97,40 +97,41 @@ std::string renderRow(const HeatMap& map, const ReportScene& scene, const std::v
   return html;
 }
 
-// One map as a figure: a row for each scene, a column for each method.
+// One map as a figure: a row for each scene, a column for each series.
 std::string renderHeatMap(const ConvergenceReport& report, const HeatMap& map) {
-  const std::vector<std::string> methods = methodsOf(report);
+  const std::vector<SeriesName> names = seriesNamesOf(report);
   std::string html = fmt::format(
       "<figure class=\"heatmap\" data-name=\"{0}\"><figcaption><b>{0}</b> <small>{1}</small></figcaption>"
       "<div class=\"scroll\"><table class=\"heat\"><thead><tr><th>scene",
       escapeHtml(map.name), escapeHtml(map.explanation));
-  for (const std::string& method : methods)
-    append(html, "<th class=\"n\"><i class=\"swatch m-{0}\"></i>{0}", escapeHtml(method));
+  for (const SeriesName& name : names) {
+    append(html, "<th class=\"n\"><i class=\"swatch m-{}\"></i>{}", escapeHtml(name.method), escapeHtml(name.label));
+  }
   html += "</thead><tbody>";
   for (size_t i = 0; i < report.scenes.size(); ++i) {
     append(html, "<tr><th><a href=\"#scene-{}\">{}</a>{}", i, escapeHtml(report.scenes[i].name),
-           renderRow(map, report.scenes[i], methods));
+           renderRow(map, report.scenes[i], names));
   }
   return html + "</tbody></table></div></figure>\n";
 }
 
-// How a method fares over the scenes that it was run on.
+// How a series fares over the scenes that it was run on.
 struct Standing {
-  std::string method;
+  SeriesName name;
   std::vector<double> ranks;   // mean rank over scenes, by metric
   std::vector<double> factor;  // by metric: geometric mean of its score over the best one's, where that makes sense
   size_t wins = 0;             // scenes where it is first by the first metric
 };
 
-// Ranks count from 1. Methods with equal scores share the better rank.
-Standing standingOf(const ConvergenceReport& report, const std::string& method) {
-  Standing standing{.method = method, .ranks = {}, .factor = {}};
+// Ranks count from 1. Series with equal scores share the better rank.
+Standing standingOf(const ConvergenceReport& report, const SeriesName& name) {
+  Standing standing{.name = name, .ranks = {}, .factor = {}};
   for (size_t m = 0; m < report.metrics.size(); ++m) {
     const ReportMetric& metric = report.metrics[m];
-    // Sum ranks and logarithms over the scenes that the method was run on.
+    // Sum ranks and logarithms over the scenes that the series was run on.
     double rankSum = 0, logSum = 0, scenes = 0;
     for (const ReportScene& scene : report.scenes) {
-      const ReportSeries* series = seriesOf(scene, method);
+      const ReportSeries* series = seriesOf(scene, name);
       const double value = series ? finalValue(*series, m) : kNan;
       if (std::isnan(value)) continue;
       const auto better = std::count_if(scene.series.begin(), scene.series.end(), [&](const ReportSeries& other) {
@@ -193,9 +194,9 @@ std::string renderHeatMaps(const ConvergenceReport& report) {
 }
 
 std::string renderRanking(const ConvergenceReport& report) {
-  // Order methods by their rank in the first metric. Those without a score come last.
+  // Order series by their rank in the first metric. Those without a score come last.
   std::vector<Standing> standings;
-  for (const std::string& method : methodsOf(report)) standings.push_back(standingOf(report, method));
+  for (const SeriesName& name : seriesNamesOf(report)) standings.push_back(standingOf(report, name));
   std::stable_sort(standings.begin(), standings.end(), [](const Standing& a, const Standing& b) {
     const double x = a.ranks.front(), y = b.ranks.front();
     return std::isnan(y) ? !std::isnan(x) : x < y;
@@ -205,10 +206,10 @@ std::string renderRanking(const ConvergenceReport& report) {
   std::string html = "<h3>Ranking</h3><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>method";
   for (const ReportMetric& metric : report.metrics) append(html, "<th class=\"n\">by {}", escapeHtml(metric.name));
   append(html, "<th class=\"n\">first by {0}<th class=\"n\">{0} over best</thead><tbody>", escapeHtml(first.name));
-  // Write a row for each method.
+  // Write a row for each series.
   for (const Standing& standing : standings) {
-    append(html, "<tr><th><i class=\"swatch m-{0}\"></i>{0} <small>{1}</small>", escapeHtml(standing.method),
-           escapeHtml(methodStyle(standing.method).name));
+    append(html, "<tr><th><i class=\"swatch m-{}\"></i>{} <small>{}</small>", escapeHtml(standing.name.method),
+           escapeHtml(standing.name.label), escapeHtml(methodStyle(standing.name.method).name));
     for (const double rank : standing.ranks) html += numberCell(rank, "");
     append(html, "<td class=\"n\">{} of {}", standing.wins, report.scenes.size());
     html += numberCell(standing.factor.front(), " ×");

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,19 +28,20 @@ fs::path write(const fs::path& folder, const char* name, const std::string& text
   return path;
 }
 
-// Throws ResultsError unless a method, if any is named, is in the report.
-void requireMethod(const ConvergenceReport& report, const std::string& method) {
-  const std::vector<std::string> known = methodsOf(report);
-  if (method.empty() || std::find(known.begin(), known.end(), method) != known.end()) return;
+// Throws ResultsError unless a baseline, if any is named, is in the report.
+void requireBaseline(const ConvergenceReport& report, const std::string& baseline) {
+  if (baseline.empty() || findSeriesName(report, baseline)) return;
+  std::vector<std::string> known;
+  for (const SeriesName& name : seriesNamesOf(report)) known.push_back(name.label);
   throw ResultsError(
-      fmt::format("--baseline {}: is not in the report; expected one of {}", method, fmt::join(known, ", ")));
+      fmt::format("--baseline {}: is not in the report; expected one of {}", baseline, fmt::join(known, ", ")));
 }
 
 }  // namespace
 
 WrittenReport writeReport(std::span<const fs::path> paths, const ReportFiles& files) {
   ConvergenceReport report = collectReport(paths, files.reference);
-  requireMethod(report, files.baseline);
+  requireBaseline(report, files.baseline);
   report.baseline = files.baseline;
   const fs::path folder = fs::is_directory(paths[0]) ? paths[0] : paths[0].parent_path();
   std::vector<fs::path> written{write(folder, "report.html", renderReport(report))};

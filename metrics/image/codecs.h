@@ -15,7 +15,7 @@ using Bytes = std::span<const unsigned char>;
 // Each decodes a whole file from memory; path serves error messages only. Throws ImageError.
 ImageFile decodeExr(const std::string& path, Bytes bytes);
 ImageFile decodePfm(const std::string& path, Bytes bytes);
-ImageFile decodeHdr(const std::string& path, Bytes bytes);  // pixels as stored, whatever ImageFile::exposure
+ImageFile decodeHdr(const std::string& path, Bytes bytes);  // pixels as stored, whatever exposure and primaries
 ImageFile decodePng(const std::string& path, Bytes bytes);
 
 Image decodeExrLayer(const std::string& path, Bytes bytes, const std::string& layer);
@@ -35,7 +35,7 @@ class HeaderReader {
  public:
   explicit HeaderReader(Bytes bytes) : bytes_(bytes) {}
   std::string line();   // up to the next newline, which is consumed; at most 4 KiB
-  std::string token();  // up to the next white space, one character of which is consumed
+  std::string token();  // up to the next white space, of which one character or a CR LF is consumed
   bool atEnd() const { return position_ >= bytes_.size(); }
   Bytes rest() const { return bytes_.subspan(position_); }
 

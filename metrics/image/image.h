@@ -39,7 +39,9 @@ struct ImageFile {
   Encoding encoding = Encoding::linear;
   std::map<std::string, std::string> metadata;  // string attributes of an EXR header
   std::array<int32_t, 2> corner{};              // of an EXR's data window, top left; {0, 0} of other files
-  double exposure = 1;  // of a Radiance file: what its pixels have been multiplied by, if that is above 0
+  // Of a Radiance file: what its channels have been multiplied by, if that is above 0.
+  std::array<double, 3> exposure{1, 1, 1};
+  std::string primaries{};  // of a Radiance file: those that it names, if they are neither Rec. 709's nor Radiance's
 };
 
 // An image file that cannot be read or written. The text is complete: "FILE: what is wrong; what was expected".

@@ -72,14 +72,17 @@ uint64_t imageLimit() {
   return number << shift;
 }
 
-// Restores the light before it was multiplied by the exposure.
+// Restores the light before it was multiplied by the exposure of each channel.
 void undoExposure(const std::string& path, ImageFile& file) {
-  if (file.exposure == 1) return;
-  if (!(file.exposure > 0) || !std::isfinite(file.exposure)) {
+  if (file.exposure == ImageFile{}.exposure) return;
+  for (const double factor : file.exposure) {
+    if (factor > 0 && std::isfinite(factor)) continue;
     throw ImageError(path, "exposure in the header is not a number above 0",
-                     "expected EXPOSURE= and a positive number");
+                     "expected EXPOSURE= and a positive number, or COLORCORR= and three");
   }
-  for (float& value : file.image.pixels) value = static_cast<float>(value / file.exposure);
+  for (size_t i = 0; i < file.image.pixels.size(); ++i) {
+    file.image.pixels[i] = static_cast<float>(file.image.pixels[i] / file.exposure[i % 3]);
+  }
 }
 
 // The list of formats that can be written.
@@ -121,6 +124,10 @@ ImageFile readImage(const std::string& path) {
   // An unknown extension is an error before the file is opened.
   const Format& format = formatOf(path, extensionOf(path));
   ImageFile file = format.decode(path, readFileBytes(path));
+  if (!file.primaries.empty()) {
+    throw ImageError(path, "colours of the primaries " + codecs::quoted(file.primaries),
+                     "expected those of Rec. 709, or no PRIMARIES= in the header");
+  }
   undoExposure(path, file);
   return file;
 }
@@ -188,7 +195,10 @@ std::string HeaderReader::token() {
   // Tokens of valid headers are short, so a longer one is cut.
   while (!atEnd() && text.size() < 64) {
     const unsigned char c = bytes_[position_++];
-    if (std::isspace(c)) break;
+    if (std::isspace(c)) {
+      if (c == '\r' && !atEnd() && bytes_[position_] == '\n') ++position_;
+      break;
+    }
     text.push_back(static_cast<char>(c));
   }
   return text;

@@ -28,7 +28,8 @@ constexpr uint64_t kImageLimit = uint64_t{2} << 30, kPlainRatio = 16;
 // Refuses an image of three channels that is larger than this. Throws ImageError, also where the variable is no size.
 void checkDecodedSize(const std::string& path, uint64_t width, uint64_t height, uint64_t fileBytes);
 
-// Three channels, top row first. The exposure of a Radiance file is undone. Throws ImageError.
+// Three channels, top row first. The exposure of a Radiance file is undone. Throws ImageError, also where
+// that has other primaries than Rec. 709's.
 ImageFile readImage(const std::string& path);
 
 // The same of a file in memory, with the pixels of a Radiance file as stored. `extension` is that of the format, in

@@ -1,7 +1,7 @@
 // Radiance picture files (.hdr, RGBE): a text header, a resolution line, then scan lines of 4-byte pixels, either plain
 // or run-length encoded per channel (the "new" encoding of Radiance 2; old-style runs of whole pixels are read too).
 // A pixel (r, g, b, e) stands for (r, g, b) * 2^(e - 136), and black when e = 0 (Ward 1991, "Real Pixels").
-// Only the usual orientation -Y H +X W is accepted, and only the RGBE primaries, not XYZE.
+// Only the usual orientation -Y H +X W is accepted, and only RGBE pixels, not XYZE.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -18,13 +18,38 @@ constexpr const char* kExpected = "expected a Radiance RGBE picture";
 
 struct RadianceHeader {
   uint64_t width = 0, height = 0;
-  double exposure = 1;  // product of all EXPOSURE= lines; 0 if one of them is no number
+  // Product of all EXPOSURE= and COLORCORR= lines; 0 if one of them is no number.
+  std::array<double, 3> exposure{1, 1, 1};
+  std::string primaries{};  // as of ImageFile
 };
+
+// The numbers of a header line, each 0 from the first one on that is none.
+template <size_t kCount>
+std::array<double, kCount> numbersOf(const std::string& text) {
+  std::istringstream in(text);
+  std::array<double, kCount> numbers{};
+  for (double& number : numbers) {
+    if (!(in >> number)) number = 0;
+  }
+  return numbers;
+}
+
+// Whether PRIMARIES= names those of Rec. 709 or Radiance's own, which files in sRGB have by default.
+bool isUsual(const std::string& primaries) {
+  constexpr double kRounding = 1e-3;  // as for chromaticities of an EXR
+  constexpr std::array<std::array<double, 8>, 2> kUsual{
+      {{0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290}, {0.64, 0.33, 0.29, 0.60, 0.15, 0.06, 1. / 3, 1. / 3}}};
+  const std::array<double, 8> own = numbersOf<8>(primaries);
+  return std::any_of(kUsual.begin(), kUsual.end(), [&](const std::array<double, 8>& usual) {
+    return std::equal(own.begin(), own.end(), usual.begin(),
+                      [](double a, double b) { return std::abs(a - b) <= kRounding; });
+  });
+}
 
 // The header up to the pixels. Throws ImageError for pixels that are not RGBE, and for other orientations.
 RadianceHeader readHeader(const std::string& path, HeaderReader& reader) {
   if (reader.line().rfind("#?", 0) != 0) throw ImageError(path, "does not start with '#?'", kExpected);
-  // Text lines up to an empty one. Lines other than FORMAT= and EXPOSURE= are skipped.
+  // Text lines up to an empty one. Lines of other variables are skipped.
   RadianceHeader header;
   for (;;) {
     if (reader.atEnd()) throw ImageError(path, "header has no end", kExpected);
@@ -33,11 +58,14 @@ RadianceHeader readHeader(const std::string& path, HeaderReader& reader) {
     if (line.rfind("FORMAT=", 0) == 0 && line != "FORMAT=32-bit_rle_rgbe")
       throw ImageError(path, "pixel format " + quoted(line.substr(7)), "expected 32-bit_rle_rgbe");
     if (line.rfind("EXPOSURE=", 0) == 0) {
-      std::istringstream text(line.substr(9));
-      double factor = 0;
-      if (!(text >> factor)) factor = 0;
-      header.exposure *= factor;
+      const double factor = numbersOf<1>(line.substr(9))[0];
+      for (double& exposure : header.exposure) exposure *= factor;
     }
+    if (line.rfind("COLORCORR=", 0) == 0) {
+      const std::array<double, 3> factors = numbersOf<3>(line.substr(10));
+      for (size_t c = 0; c < 3; ++c) header.exposure[c] *= factors[c];
+    }
+    if (line.rfind("PRIMARIES=", 0) == 0) header.primaries = isUsual(line.substr(10)) ? "" : line.substr(10);
   }
   // The resolution line.
   std::istringstream resolution(reader.line());
@@ -133,6 +161,7 @@ ImageFile decodeHdr(const std::string& path, Bytes bytes) {
   file.image = {static_cast<uint32_t>(header.width), static_cast<uint32_t>(header.height), 3, {}};
   file.image.pixels.reserve(header.width * header.height * 3);
   file.exposure = header.exposure;
+  file.primaries = header.primaries;
   ScanLines lines(path, reader.rest(), header.width);
   for (uint64_t y = 0; y < header.height; ++y) {
     for (const auto& [r, g, b, e] : lines.next()) {

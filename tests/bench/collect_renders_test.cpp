@@ -265,6 +265,32 @@ TEST_F(CollectRenders, runsOfOtherRadiiAndPassesAreSeriesOfTheirOwn) {
   EXPECT_EQ(series[2].label, "ppm direct pass radius 0.004");
 }
 
+TEST_F(CollectRenders, listedSeedsMeetAtEqualTimes) {
+  for (const char* name : {"a.exr", "b.exr", "c.exr", "d.exr", "e.exr"}) {
+    writeExr((folder / name).string(), speckled(0.1F));
+  }
+  std::ofstream(folder / "images.csv")
+      << "image,seconds,method,seed\na.exr,1,x,1\nb.exr,2,x,1\nc.exr,4,x,1\nd.exr,1.02,x,2\ne.exr,3.9,x,2\n";
+  const ReportSeries series = collectRenders(folder).scenes[0].series.at(0);
+  ASSERT_EQ(series.runs.size(), 2U);
+  const auto numbers = [](const ReportRun& run) {
+    std::vector<unsigned> found;
+    for (const ReportPoint& point : run.points) found.push_back(point.number);
+    return found;
+  };
+  EXPECT_EQ(numbers(series.runs[0]), (std::vector<unsigned>{0, 1, 2}));
+  EXPECT_EQ(numbers(series.runs[1]), (std::vector<unsigned>{0, 2}));
+}
+
+TEST_F(CollectRenders, aListOfTheCurrentFolderNeedsNoFolder) {
+  writeExr((folder / "a.exr").string(), speckled(0.1F));
+  std::ofstream(folder / "list.csv") << "a.exr,1\n";
+  const fs::path before = fs::current_path();
+  fs::current_path(folder);
+  EXPECT_NO_THROW(EXPECT_EQ(collectRenders("list.csv").scenes.at(0).name, "box"));
+  fs::current_path(before);
+}
+
 TEST_F(CollectRenders, statsOfAReferenceAreNoRun) {
   addRun("box.pt");
   std::ofstream(folder / "box.reference.json") << "{}";

@@ -11,6 +11,7 @@
 #include "bench/report/embedded_images.h"
 #include "bench/report/html_text.h"
 #include "bench/report/scene_section.h"
+#include "bench/report/speedup_section.h"
 #include "bench/report/summary_section.h"
 #include "tests/bench/sample_report.h"
 
@@ -138,6 +139,16 @@ TEST(Summary, heatMapsShadeByTheDistanceToTheBestOfTheRow) {
       contains(maps, "<td class=\"n\" style=\"--behind:0.50\">0.04<td class=\"n best\" style=\"--behind:0.00\">0.01"));
   EXPECT_TRUE(contains(renderTargetMaps(report), "data-name=\"time to SSIM 0.9\""));
   EXPECT_TRUE(contains(maps, "<td class=\"n none\">–")) << "the second scene has one method";
+}
+
+TEST(Summary, everySeriesOfAMethodHasAColumnAndARow) {
+  ConvergenceReport report = sampleReport();
+  for (ReportSeries& series : report.scenes[0].series) series.method = "pt";
+  for (const std::string& html : {renderHeatMaps(report), renderRanking(report), renderSpeedUps(report)}) {
+    for (const char* label : {"pt", "bpt", "vcm"}) {
+      EXPECT_TRUE(contains(html, std::string("<i class=\"swatch m-pt\"></i>") + label)) << html;
+    }
+  }
 }
 
 TEST(Summary, aPerfectScoreIsNotBehindItself) {

@@ -32,5 +32,23 @@ TEST(PlotFiles, areOneSvgForEachSceneAndMetricInsideTheFolder) {
   fs::remove_all(folder);
 }
 
+TEST(PlotFiles, ofScenesOfOneNameLieApart) {
+  const fs::path folder = fs::path(testing::TempDir()) / "wavecrest_plot_names";
+  fs::remove_all(folder);
+  ConvergenceReport report = sampleReport();
+  report.scenes.assign(4, sampleReport().scenes[0]);
+  report.scenes[0].name = "a room";
+  report.scenes[1].name = "a/room";
+  report.scenes[2].name = "A room";
+  report.scenes[3].name = "a_room.2";
+  const std::vector<fs::path> paths = writePlotFiles(report, folder);
+  ASSERT_EQ(paths.size(), 4U * 4U);
+  EXPECT_EQ(paths[0], folder / "a_room.rmse.svg");
+  EXPECT_EQ(paths[4], folder / "a_room.2.rmse.svg");
+  EXPECT_EQ(paths[8], folder / "A_room.3.rmse.svg");
+  EXPECT_EQ(paths[12], folder / "a_room.2.2.rmse.svg");
+  fs::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace wavecrest

@@ -136,5 +136,17 @@ TEST(MethodsOf, areInTheOrderOfTheStyleListThenOthers) {
   EXPECT_EQ(methodsOf(report), (std::vector<std::string>{"pt", "bpt", "vcm", "zz"}));
 }
 
+TEST(SeriesNames, tellSeriesOfOneMethodApart) {
+  ConvergenceReport report = sampleReport();
+  for (ReportSeries& series : report.scenes[0].series) series.method = "pt";
+  EXPECT_EQ(seriesNamesOf(report), (std::vector<SeriesName>{{"pt", "pt"}, {"pt", "bpt"}, {"pt", "vcm"}}));
+  EXPECT_EQ(seriesOf(report.scenes[0], {"pt", "vcm"}), &report.scenes[0].series[2]);
+  EXPECT_EQ(seriesOf(report.scenes[1], {"pt", "vcm"}), nullptr);
+  EXPECT_EQ(findSeriesName(report, "vcm")->label, "vcm");
+  report.scenes[0].series[0].label = report.scenes[1].series[0].label = "pt sobol";
+  EXPECT_EQ(findSeriesName(report, "pt")->label, "pt sobol");
+  EXPECT_FALSE(findSeriesName(report, "lt"));
+}
+
 }  // namespace
 }  // namespace wavecrest

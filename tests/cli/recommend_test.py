@@ -37,6 +37,12 @@ class Recommend(CommandTest):
             self.assertAlmostEqual(row["pilot_seconds"], 0.25, delta=0.15)
         self.assert_one_error_line(self.recommend("--clock", "moon", expect=USAGE), "--clock")
 
+    def test_a_single_method_has_one_pilot_of_all_the_time(self):
+        told = self.recommend("--budget", "2s", "--target-ssim", "0.5", "--methods", "pt", "--clock", "cpu", "--json")
+        (row,) = json.loads(told.stdout)["table"]
+        # 0.6 of the budget. A longer pilot of one among several has 0.25.
+        self.assertGreater(row["pilot_seconds"], 1.1)
+
     def test_what_cannot_be_is_a_usage_error(self):
         self.recommend("--target-ssim", "1.5", expect=USAGE)
         self.assert_one_error_line(self.recommend("--methods", "xx", expect=USAGE), "--methods xx: unknown")

@@ -149,6 +149,24 @@ TEST_F(CompareCommand, NonFinitePixelsAreExcludedCountedAndReported) {
   EXPECT_EQ(json["cvvdp"], 10.0);
 }
 
+TEST_F(CompareCommand, NonFinitePixelsAreExcludedFromErrorsOfCodes) {
+  const Image a{32, 32, 3, std::vector<float>(32 * 32 * 3, 0.5f)}, b{32, 32, 3, std::vector<float>(32 * 32 * 3, 0.25f)};
+  Image half = b;
+  for (size_t i = 0; i < half.pixels.size() / 2; ++i) half.pixels[i] = std::numeric_limits<float>::quiet_NaN();
+  writeExr(files_.path("a.exr"), a);
+  writeExr(files_.path("b.exr"), b);
+  writeExr(files_.path("half.exr"), half);
+  const auto scores = [&](const std::string& test) {
+    return runCompare({files_.path("a.exr"), files_.path(test), "--gamma", "--json", "--metrics", "rmse,relmse,mape"})
+        .json();
+  };
+  const auto all = scores("b.exr"), some = scores("half.exr");
+  for (const char* metric : {"rmse", "relmse", "mape"}) {
+    EXPECT_GT(all[metric], 0.0) << metric;
+    EXPECT_NEAR(some[metric], all[metric], 1e-6) << metric;  // floats in place of whole codes
+  }
+}
+
 TEST_F(CompareCommand, NonFinitePixelsFailEveryCheck) {
   Image a{32, 32, 3, std::vector<float>(32 * 32 * 3, 0.5f)}, b = a;
   for (size_t i = 0; i < b.pixels.size() / 2; ++i) b.pixels[i] = std::numeric_limits<float>::quiet_NaN();

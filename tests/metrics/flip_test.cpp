@@ -161,6 +161,18 @@ TEST(HdrFlip, TakesBlackAndConstantImages) {
   EXPECT_GT(PreparedHdrFlip(black).compare(grey).mean, 0.1) << "a black reference has an exposure too";
 }
 
+// The last exposures show the median: a difference there is seen by features that are not kept.
+TEST(HdrFlip, SeesDifferencesAtEveryExposure) {
+  Image reference{24, 16, 3, std::vector<float>(24 * 16 * 3, 0.01f)};
+  reference.pixels[0] = 1e30f;
+  Image test = reference;
+  for (size_t i = 300; i < 600; ++i) test.pixels[i] *= 8;
+  const PreparedHdrFlip prepared(reference);
+  ASSERT_GT(prepared.exposures().size(), PreparedHdrFlip::kKeptExposures);
+  EXPECT_EQ(prepared.compare(reference).mean, 0.0);
+  EXPECT_GT(prepared.compare(test).mean, 0.01);
+}
+
 TEST(HdrFlip, TakesAnyLight) {
   Image reference = hdrPattern(24, 16, 0), test = reference;
   test.pixels[5] = 3e38f;

@@ -88,6 +88,12 @@ TEST_F(ImageFiles, BigEndianPfmIsRead) {
   EXPECT_EQ(readImage(path("a.pfm")).image.pixels, (std::vector<float>{1, 2, -3}));
 }
 
+TEST_F(ImageFiles, LinesOfAPfmMayEndWithCrLf) {
+  const std::string numbers("\x3f\x80\0\0\x40\0\0\0\xc0\x40\0\0", 12);
+  writeText("a.pfm", "PF\r\n1 1\r\n1.0\r\n" + numbers);
+  EXPECT_EQ(readImage(path("a.pfm")).image.pixels, (std::vector<float>{1, 2, -3}));
+}
+
 TEST_F(ImageFiles, ScaleOfAPfmIsAFactor) {
   writeText("a.pfm", std::string("PF\n1 1\n2.5\n") + std::string("\x3f\x80\0\0\x40\0\0\0\xc0\x40\0\0", 12));
   EXPECT_EQ(readImage(path("a.pfm")).image.pixels, (std::vector<float>{2.5f, 5, -7.5f}));
@@ -131,6 +137,24 @@ TEST_F(ImageFiles, RadianceRunLengthAndPlainPixelsAreRead) {
   EXPECT_NE(complaint("b.hdr"), "") << "the blank line must end the header";
   writeText("b.hdr", "#?RGBE\nEXPOSURE=2\n\n-Y 1 +X 3\n" + std::string("\x80\x40\0\x82\1\1\1\2", 8));
   EXPECT_EQ(readImage(path("b.hdr")).image.pixels, (std::vector<float>{1, .5, 0, 1, .5, 0, 1, .5, 0}));
+}
+
+TEST_F(ImageFiles, RadianceColourCorrectionIsDividedOutAndOtherPrimariesAreRefused) {
+  const auto write = [&](const std::string& lines) {
+    writeText("a.hdr", "#?RGBE\n" + lines + "\n-Y 1 +X 1\n" + std::string("\x80\x40\x20\x82", 4));
+  };
+  write("");
+  EXPECT_EQ(readImage(path("a.hdr")).image.pixels, (std::vector<float>{2, 1, .5}));
+  write("COLORCORR=2 1 0.5\nEXPOSURE=2\nCOLORCORR=1 4 1\n");
+  EXPECT_EQ(readImage(path("a.hdr")).image.pixels, (std::vector<float>{.5, .125, .5}));
+  write("COLORCORR=2 1\n");
+  EXPECT_NE(complaint("a.hdr").find("exposure"), std::string::npos) << complaint("a.hdr");
+  for (const char* usual : {"0.640 0.330 0.290 0.600 0.150 0.060 0.333 0.333", ".64 .33 .3 .6 .15 .06 .3127 .329"}) {
+    write(std::string("PRIMARIES= ") + usual + "\n");
+    EXPECT_EQ(complaint("a.hdr"), "");
+  }
+  write("PRIMARIES=.708 .292 .17 .797 .131 .046 .3127 .329\n");  // Rec. 2020
+  EXPECT_NE(complaint("a.hdr").find("primaries '.708 .292"), std::string::npos) << complaint("a.hdr");
 }
 
 TEST_F(ImageFiles, BadFilesAreNamedWithWhatIsWrong) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "metrics/false_colour.h"
@@ -56,6 +57,20 @@ TEST(MetricList, mapsOfTheGreatestLightAreFinite) {
         << metric.name;
     EXPECT_GT(measured.map.front(), measured.map.back()) << metric.name;
   }
+}
+
+// Most pixels are not finite; the exposures are those of the others.
+TEST(MetricList, excludedPixelsDoNotChooseExposuresOfHdrFlip) {
+  ImageFile whole = topRows(8), part = topRows(8);
+  for (float& value : whole.image.pixels) value = 8;
+  for (size_t i = size_t{3} * 200 * 3; i < part.image.pixels.size(); i += 3) {
+    part.image.pixels[i] = 1e5f;  // the other channels of a pixel do not count either
+    part.image.pixels[i + 1] = std::numeric_limits<float>::quiet_NaN();
+    part.image.pixels[i + 2] = std::numeric_limits<float>::infinity();
+  }
+  const PreparedReference a("whole", std::move(whole)), b("part", part);
+  EXPECT_EQ(b.hdrFlip().exposures(), a.hdrFlip().exposures());
+  EXPECT_EQ(findMetric("hdrflip")->measure(b, b.prepareTest("part", part), false).scores[0].value, 0.0);
 }
 
 }  // namespace
