@@ -63,7 +63,7 @@ Geometry readDisk(LoadContext& context, Parameters& parameters, const Matrix4& t
 }
 
 Geometry readSphere(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
-  const Double3 center = parameters.vector("center").value_or(Double3{0, 0, 0});
+  Double3 center = parameters.vector("center").value_or(Double3{0, 0, 0});
   const double radius = parameters.positiveReal("radius", 1);
   const Double3 x = column(toWorld, 0), y = column(toWorld, 1), z = column(toWorld, 2);
   // The image must be a sphere.
@@ -71,6 +71,8 @@ Geometry readSphere(LoadContext& context, Parameters& parameters, const Matrix4&
     context.unsupported(parameters.locationOf("to_world"),
                         "sphere scaled differently along its axes; expected a uniform scale (or a mesh)");
   }
+  // In files of 0.5 and 0.6 to_world scales the radius, and not the center.
+  if (parameters.object().legacy && length(x) > 0) center = (1 / length(x)) * center;
   // A mirroring transform turns a sphere inside out, in Mitsuba as here.
   const bool mirrored = determinant3(toWorld) < 0;
   return Sphere{.center = transformPoint(toWorld, center),

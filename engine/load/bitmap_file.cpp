@@ -72,8 +72,9 @@ std::shared_ptr<const Bitmap> readBitmap(LoadContext& context, const std::filesy
   const std::string key = (raw ? "raw:" : "linear:") + path.string();
   if (const auto known = context.bitmaps.find(key); known != context.bitmaps.end()) return known->second;
   ImageFile file = readImageFile(path, where);
-  if (file.exposure != 1) {
-    context.note(where, "EXPOSURE of a Radiance picture", "left out, as in Mitsuba: pixels are taken as stored");
+  if (file.exposure != ImageFile{}.exposure || !file.primaries.empty()) {
+    context.note(where, "EXPOSURE, COLORCORR or PRIMARIES of a Radiance picture",
+                 "left out, as in Mitsuba: pixels are taken as stored");
   }
   auto bitmap = std::make_shared<Bitmap>();
   bitmap->width = file.image.width;

@@ -33,11 +33,8 @@ Rgb uniformSpectrum(double value, ColorRole role, bool legacy) {
   return role == ColorRole::emission && !legacy ? scaled(value, xyzToRgb({1, 1, 1})) : grey(value);
 }
 
-Rgb readSrgb(std::string_view text, const SourceLocation& where);
-
-// One number (grey), three linear numbers, or "#rrggbb", which is gamma-encoded.
-Rgb readRgb(std::string_view text, const SourceLocation& where) {
-  if (!text.empty() && text[0] == '#') return readSrgb(text, where);
+// One number (grey) or three.
+Rgb readRgbNumbers(std::string_view text, const SourceLocation& where) {
   const std::vector<double> values = parseReals(text, where);
   if (values.size() == 1) return grey(values[0]);
   if (values.size() == 3) return {values[0], values[1], values[2]};
@@ -51,21 +48,31 @@ int hexDigit(char c) {
   return -1;
 }
 
+bool isHexCode(std::string_view text) { return !text.empty() && text[0] == '#'; }
+
+// "#rrggbb" as it stands, from 0 to 1.
+Rgb readHexCode(std::string_view text, const SourceLocation& where) {
+  const std::string digits = toLower(text.substr(1));
+  const bool valid =
+      digits.size() == 6 && std::all_of(digits.begin(), digits.end(), [](char c) { return hexDigit(c) >= 0; });
+  if (!valid) throw LoadError(where, "bad colour " + inQuotes(text) + "; expected #rrggbb");
+  Rgb code{};
+  for (size_t i = 0; i < 3; ++i) code[i] = (16 * hexDigit(digits[2 * i]) + hexDigit(digits[2 * i + 1])) / 255.0;
+  return code;
+}
+
 // "#rrggbb" or gamma-encoded numbers in [0, 1].
 Rgb readSrgb(std::string_view text, const SourceLocation& where) {
-  Rgb encoded{};
-  if (!text.empty() && text[0] == '#') {
-    const std::string digits = toLower(text.substr(1));
-    const bool valid =
-        digits.size() == 6 && std::all_of(digits.begin(), digits.end(), [](char c) { return hexDigit(c) >= 0; });
-    if (!valid) throw LoadError(where, "bad colour " + inQuotes(text) + "; expected #rrggbb");
-    for (size_t i = 0; i < 3; ++i) encoded[i] = (16 * hexDigit(digits[2 * i]) + hexDigit(digits[2 * i + 1])) / 255.0;
-  } else {
-    encoded = readRgb(text, where);
-  }
+  const Rgb encoded = isHexCode(text) ? readHexCode(text, where) : readRgbNumbers(text, where);
   Rgb linear{};
   for (size_t i = 0; i < 3; ++i) linear[i] = srgbToLinear(encoded[i]);
   return linear;
+}
+
+// Linear numbers, or "#rrggbb", which is gamma-encoded but in files of 0.5 and 0.6.
+Rgb readRgb(std::string_view text, const SourceLocation& where, bool legacy) {
+  if (!isHexCode(text)) return readRgbNumbers(text, where);
+  return legacy ? readHexCode(text, where) : readSrgb(text, where);
 }
 
 // A piecewise linear spectrum as it stands in a file.
@@ -93,7 +100,8 @@ Rgb readSpectrum(std::string_view text, const XmlElement& element, ColorRole rol
   if (tokens.size() == 1 && tokens[0].find(':') == std::string_view::npos) {
     return uniformSpectrum(parseReal(tokens[0], where), role, element.legacy);
   }
-  if (tokens.size() == 3 && text.find(':') == std::string_view::npos) return readRgb(text, where);  // of version 0.6
+  if (tokens.size() == 3 && text.find(':') == std::string_view::npos)
+    return readRgbNumbers(text, where);  // of version 0.6
   Spectrum spectrum;
   for (const std::string_view token : tokens) {
     const size_t colon = token.find(':');
@@ -252,7 +260,7 @@ Rgb readColor(LoadContext& context, const XmlElement& element, ColorRole role) {
   if (!value) throw LoadError(where, "<" + element.tag + "> has no value; expected the attribute value");
   // Convert the value by its tag.
   if (element.tag == "rgb")
-    color = readRgb(*value, where);
+    color = readRgb(*value, where, element.legacy);
   else if (element.tag == "srgb")
     color = readSrgb(*value, where);
   else if (element.tag == "spectrum")

@@ -13,8 +13,14 @@ namespace wavecrest {
 
 namespace {
 
-// Mitsuba's sampling_weight only guides which light is sampled.
-void ignoreCommonParameters(Parameters& parameters) { parameters.ignore({"sampling_weight"}); }
+// Mitsuba's sampling_weight only guides which light is sampled. Returns false if the light is never sampled.
+bool readIsSampled(Parameters& parameters) {
+  const double weight = parameters.real("sampling_weight", 1);
+  if (weight < 0) {
+    throw LoadError(parameters.locationOf("sampling_weight"), "sampling_weight is negative; expected 0 or more");
+  }
+  return weight > 0;
+}
 
 Matrix4 readToWorld(Parameters& parameters) { return parameters.transform("to_world").value_or(identityMatrix()); }
 
@@ -34,6 +40,12 @@ bool isInfinite(const EmitterKind& kind) {
          std::holds_alternative<SunskyEmitter>(kind);
 }
 
+// Whether the light is a point or a direction: paths cannot hit it by chance.
+bool isDelta(const EmitterKind& kind) {
+  return std::holds_alternative<PointEmitter>(kind) || std::holds_alternative<SpotEmitter>(kind) ||
+         std::holds_alternative<ProjectorEmitter>(kind) || std::holds_alternative<DirectionalEmitter>(kind);
+}
+
 }  // namespace
 
 void addEmitter(LoadContext& context, const XmlElement& emitter) {
@@ -48,8 +60,13 @@ void addEmitter(LoadContext& context, const XmlElement& emitter) {
   if (!plugin) return;
   Parameters parameters(context, emitter);
   EmitterKind kind = plugin->read(context, parameters);
-  ignoreCommonParameters(parameters);
+  const bool isSampled = readIsSampled(parameters);
   parameters.finish();
+  if (!isSampled && isDelta(kind)) {
+    context.note(emitter.location(), parameters.describe() + " of sampling_weight 0",
+                 "left out, since Mitsuba never samples it");
+    return;
+  }
   // Only one light may surround the scene. A sun and a sky of the same day become one light.
   if (isInfinite(kind)) {
     for (Emitter& other : context.scene.emitters) {
@@ -70,7 +87,7 @@ AreaEmitter readAreaEmitter(LoadContext& context, const XmlElement& emitter, uin
   }
   Parameters parameters(context, emitter);
   AreaEmitter light{.radiance = readTexturedEmission(context, parameters, "radiance"), .shape = shape};
-  ignoreCommonParameters(parameters);
+  readIsSampled(parameters);
   // The light is where its shape is.
   if (parameters.has("to_world")) {
     throw LoadError(parameters.locationOf("to_world"), "area light has a to_world; expected it on the shape");

@@ -34,6 +34,8 @@ void checkUnusedDefinition(LoadContext& context, const XmlElement& element) {
   context.scene.textures.resize(textures);
   std::erase_if(context.materials, [&](const auto& entry) { return entry.second >= materials; });
   std::erase_if(context.textures, [&](const auto& entry) { return entry.second >= textures; });
+  // The scalar version of a texture has a higher index than the texture.
+  std::erase_if(context.scalarTextures, [&](const auto& entry) { return entry.second >= textures; });
 }
 
 // Reads the first sensor. Further sensors are left out with a note.

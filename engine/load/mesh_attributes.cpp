@@ -14,19 +14,25 @@ class AttributeSearch {
  public:
   explicit AttributeSearch(const LoadContext& context) : context_(context) {}
 
-  void visit(const XmlElement& element) {
-    if (!visited_.insert(&element).second) return;
-    if (element.tag == "texture" && element.get("type") == "mesh_attribute") {
-      add(element);
-    } else if (element.tag == "texture" && !otherTexture_ && element.get("type") != "rawconstant") {
-      // Every other texture than a rawconstant needs the texture coordinates of the file.
-      otherTexture_ = &element;
-    }
-    for (const XmlElement& child : element.children) {
-      // Follow only what may contain or refer to a texture of the shape.
-      const bool belongs =
-          child.tag == "ref" || child.tag == "bsdf" || child.tag == "texture" || child.tag == "emitter";
-      if (belongs) visit(context_.resolve(child));
+  // In the order of the file. A list in place of recursion: chains of references can be too long for the stack.
+  void visit(const XmlElement& shape) {
+    std::vector<const XmlElement*> waiting{&shape};
+    while (!waiting.empty()) {
+      const XmlElement& element = context_.resolve(*waiting.back());
+      waiting.pop_back();
+      if (!visited_.insert(&element).second) continue;
+      if (element.tag == "texture" && element.get("type") == "mesh_attribute") {
+        add(element);
+      } else if (element.tag == "texture" && !otherTexture_ && element.get("type") != "rawconstant") {
+        // Every other texture than a rawconstant needs the texture coordinates of the file.
+        otherTexture_ = &element;
+      }
+      for (auto child = element.children.rbegin(); child != element.children.rend(); ++child) {
+        // Follow only what may contain or refer to a texture of the shape.
+        const bool belongs =
+            child->tag == "ref" || child->tag == "bsdf" || child->tag == "texture" || child->tag == "emitter";
+        if (belongs) waiting.push_back(&*child);
+      }
     }
   }
   // The name of the attribute; empty if there is none. LoadError if the shape has another texture too: baking replaces

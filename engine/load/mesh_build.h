@@ -19,6 +19,7 @@ struct TriangleSoup {
   std::vector<uint32_t> vertexOf;
   MeshAttribute attribute;    // without values: none is asked for
   uint64_t droppedFaces = 0;  // of fewer than three corners
+  bool usesLibrary = false;   // the file gives its faces materials of a library (MTL)
 };
 
 struct MeshPlacement {

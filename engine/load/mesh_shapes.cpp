@@ -24,15 +24,29 @@ MeshPlacement readPlacement(Parameters& parameters, const Matrix4& toWorld) {
   return placement;
 }
 
+// Mitsuba 0.6 loads one mesh of an OBJ file by its index, and takes materials from the library that the file names.
+void checkLegacyObj(LoadContext& context, Parameters& parameters, const TriangleSoup& soup) {
+  constexpr int64_t kAll = -1, kMostMeshes = int64_t{1} << 31;
+  if (parameters.integer("shape_index", kAll, kAll, kMostMeshes) != kAll) {
+    context.unsupported(parameters.locationOf("shape_index"),
+                        "one mesh of an OBJ file is not supported; expected a file of this mesh alone, without "
+                        "shape_index");
+  }
+  if (!parameters.boolean("load_materials", true) || !soup.usesLibrary || !parameters.objects("bsdf").empty()) return;
+  context.note(parameters.locationOf("filename"), "materials of an OBJ file (mtllib, usemtl)",
+               parameters.objects("emitter").empty() ? "left out: a shape without a bsdf is diffuse of reflectance 0.5"
+                                                     : "left out: a light without a bsdf is black");
+}
+
 // A mesh from a file that has only this mesh, without attributes. The file may have been read ahead.
 Geometry readMeshShape(LoadContext& context, Parameters& parameters, const Matrix4& toWorld) {
   const MeshPlacement placement = readPlacement(parameters, toWorld);
   const MeshFile file = meshFileOf(context, parameters);
   context.listFile(file.path);
-  if (std::optional<SerializedMesh> mesh = context.meshesAhead->take(parameters.object())) {
-    return buildMesh(context, std::move(mesh->soup), placement, file.where);
-  }
-  return buildMesh(context, readMeshFile(file), placement, file.where);
+  std::optional<SerializedMesh> ahead = context.meshesAhead->take(parameters.object());
+  TriangleSoup soup = ahead ? std::move(ahead->soup) : readMeshFile(file);
+  if (file.kind == MeshFile::Kind::obj && parameters.object().legacy) checkLegacyObj(context, parameters, soup);
+  return buildMesh(context, std::move(soup), placement, file.where);
 }
 
 }  // namespace

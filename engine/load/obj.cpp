@@ -1,4 +1,4 @@
-// Wavefront OBJ: v, vt, vn and f lines; every other line (groups, materials, smoothing) is skipped as in Mitsuba.
+// Wavefront OBJ: v, vt, vn and f lines; every other line (groups, materials, smoothing) is skipped as in Mitsuba 3.
 #include <limits>
 #include <unordered_map>
 
@@ -43,6 +43,10 @@ class ObjReader {
         uvs_.push_back(uv);
       } else if (scanner_.takeWord("f")) {
         readFace();
+      } else if (scanner_.takeWord("mtllib")) {
+        hasLibrary_ = true;
+      } else if (scanner_.takeWord("usemtl")) {
+        usesLibrary_ = hasLibrary_;
       }
       scanner_.skipLine();
     }
@@ -129,6 +133,7 @@ class ObjReader {
   TriangleSoup assemble() {
     TriangleSoup soup;
     soup.droppedFaces = droppedFaces_;
+    soup.usesLibrary = usesLibrary_;
     soup.triangles = std::move(triangles_);
     soup.positions.reserve(corners_.size());
     for (const Corner& corner : corners_) {
@@ -141,7 +146,7 @@ class ObjReader {
   }
 
   TextScanner scanner_;
-  bool flipTexCoords_, hasUvs_ = false, hasNormals_ = false;
+  bool flipTexCoords_, hasUvs_ = false, hasNormals_ = false, hasLibrary_ = false, usesLibrary_ = false;
   uint64_t droppedFaces_ = 0;
   std::vector<Float3> positions_, normals_;
   std::vector<Float2> uvs_;

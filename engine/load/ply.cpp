@@ -37,21 +37,6 @@ uint64_t readCount(Source& source, const PlyProperty& property) {
 // coordinates, and 9 to 11 the attribute. All properties that are not needed share slot 8.
 constexpr int kNormalSlot = 3, kUvSlot = 6, kNoSlot = 8, kAttributeSlot = 9, kRowSlots = 12;
 
-// The slot of a property, by the names that PLY files commonly use.
-int slotOf(const PlyProperty& property) {
-  struct Entry {
-    std::string_view name;
-    int slot;
-  };
-  static constexpr Entry kNames[] = {{"x", 0}, {"y", 1}, {"z", 2}, {"nx", 3}, {"ny", 4},        {"nz", 5},
-                                     {"u", 6}, {"v", 7}, {"s", 6}, {"t", 7},  {"texture_u", 6}, {"texture_v", 7}};
-  if (property.isList) return kNoSlot;
-  for (const Entry& entry : kNames) {
-    if (entry.name == property.name) return entry.slot;
-  }
-  return kNoSlot;
-}
-
 bool isFinite(const float* values, int count) {
   return std::all_of(values, values + count, [](float v) { return std::isfinite(v); });
 }
@@ -61,6 +46,26 @@ const PlyProperty* propertyOf(const PlyElement& element, std::string_view name) 
   const auto found = std::ranges::find_if(
       element.properties, [&](const PlyProperty& property) { return !property.isList && property.name == name; });
   return found == element.properties.end() ? nullptr : &*found;
+}
+
+// Names of the properties that are u and v.
+using UvNames = std::array<std::string_view, 2>;
+
+// The names that PLY files commonly use, of the first pair that is complete. Empty: there is none.
+UvNames uvNamesOf(const PlyElement& element) {
+  static constexpr UvNames kPairs[] = {{"u", "v"}, {"texture_u", "texture_v"}, {"s", "t"}, {"texture_s", "texture_t"}};
+  for (const UvNames& pair : kPairs) {
+    if (propertyOf(element, pair[0]) != nullptr && propertyOf(element, pair[1]) != nullptr) return pair;
+  }
+  return {};
+}
+
+// The slot of a property, by its name.
+int slotOf(const PlyProperty& property, const UvNames& uvNames) {
+  const std::string_view names[] = {"x", "y", "z", "nx", "ny", "nz", uvNames[0], uvNames[1]};
+  if (property.isList) return kNoSlot;
+  const auto* const found = std::ranges::find(names, property.name);
+  return found == std::end(names) ? kNoSlot : static_cast<int>(found - names);
 }
 
 // Channel of the attribute that a property is, or -1.
@@ -99,9 +104,10 @@ void readVertices(Source& source, const PlyElement& element, const SourceLocatio
   std::vector<int> slots;
   bool present[kRowSlots] = {};
   startAttribute(element, false, soup.attribute);
+  const UvNames uvNames = uvNamesOf(element);
   for (const PlyProperty& property : element.properties) {
     const int channel = attributeChannel(soup.attribute, property);
-    slots.push_back(channel < 0 ? slotOf(property) : kAttributeSlot + channel);
+    slots.push_back(channel < 0 ? slotOf(property, uvNames) : kAttributeSlot + channel);
     present[slots.back()] = true;
   }
   if (!present[0] || !present[1] || !present[2]) {

@@ -16,10 +16,12 @@ bool isFlat(const Mesh& mesh) {
   return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const std::array<uint32_t, 3>& corners) {
     const Double3 p0 = widened(mesh.positions[corners[0]]);
     const Double3 across = cross(widened(mesh.positions[corners[1]]) - p0, widened(mesh.positions[corners[2]]) - p0);
-    const double area = length(across);
-    if (!(area > 0)) return true;  // cannot be hit
+    const double area2 = dot(across, across);
+    if (!(area2 > 0)) return true;  // cannot be hit
     return std::all_of(corners.begin(), corners.end(), [&](uint32_t corner) {
-      return dot(widened(mesh.normals[corner]), across) >= kFlatCosine * area;
+      // The sine, as rounding a normal to float changes its length, and with it the cosine, by more than kFlatSine2.
+      const Double3 normal = widened(mesh.normals[corner]), sine = cross(normal, across);
+      return dot(normal, across) > 0 && dot(sine, sine) <= kFlatSine2 * dot(normal, normal) * area2;
     });
   });
 }

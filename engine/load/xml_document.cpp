@@ -72,13 +72,20 @@ class XmlReader {
   size_t elementCount_ = 0, byteCount_ = 0;
 };
 
-// "3.0.0" -> 3.0; nothing if it is no version number.
-std::optional<double> majorVersion(const std::string& text) {
+// The first two parts of a version.
+struct Version {
+  double major, minor;
+};
+
+// "3.1.0" -> 3, 1; nothing if it is no version number.
+std::optional<Version> versionOf(const std::string& text) {
   if (text.empty() || !std::isdigit(static_cast<unsigned char>(text[0])) ||
       text.find_first_not_of("0123456789.") != std::string::npos || text.size() > 20) {
     return std::nullopt;
   }
-  return std::floor(std::strtod(text.c_str(), nullptr));
+  const auto part = [&](size_t at) { return std::floor(std::strtod(text.c_str() + at, nullptr)); };
+  const size_t point = text.find('.');
+  return Version{.major = part(0), .minor = point == std::string::npos ? 0 : part(point + 1)};
 }
 
 // The root element of a file with everything below it. `namedAt` is blamed if the file cannot be read.
@@ -110,11 +117,12 @@ XmlElement XmlReader::readFile(const std::filesystem::path& path, const SourceLo
     throw LoadError(rootAt,
                     std::string("<") + root.name() + "> has no version; expected for example version=\"3.0.0\"");
   }
-  const std::optional<double> major = majorVersion(version.value());
-  if (!major || *major > 3) {
-    throw LoadError(rootAt, std::string("version \"") + version.value() + "\" is not supported; expected 0.5.0 to 3.x");
+  // Sensors of files before 0.4 are mirrored, and their fields of view are others.
+  const std::optional<Version> known = versionOf(version.value());
+  if (!known || known->major > 3 || (known->major == 0 && known->minor < 4)) {
+    throw LoadError(rootAt, std::string("version \"") + version.value() + "\" is not supported; expected 0.4.0 to 3.x");
   }
-  file.legacy = *major < 2;
+  file.legacy = known->major < 2;
   // Convert the tree. openFiles_ holds the chain of includes, which readInclude searches for cycles.
   openFiles_.push_back(path);
   XmlElement element = readElement(file, root, 1);

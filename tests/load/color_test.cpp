@@ -44,6 +44,20 @@ TEST(Color, SrgbHexIsDecoded) {
   expectRgb(reflectanceOf(R"(<srgb name="reflectance" value="#FF8005"/>)"), {1, 0.2158605, 5 / 255.0 / 12.92}, 1e-7);
 }
 
+TEST(Color, RgbHexIsDecodedButInOldFiles) {
+  const auto colorOf = [](const std::string& tag, std::string_view version) {
+    const Scene scene =
+        load(sceneXml("<shape type=\"sphere\"><bsdf type=\"diffuse\"><" + tag +
+                          " name=\"reflectance\" value=\"#FF8005\"/></bsdf></shape>" + std::string(kSensor),
+                      version));
+    return std::get<Diffuse>(scene.materials.at(0).kind).reflectance.value;
+  };
+  const Rgb decoded{1, 0.2158605, 5 / 255.0 / 12.92};
+  expectRgb(colorOf("rgb", "3.0.0"), decoded, 1e-7);
+  expectRgb(colorOf("rgb", "0.6.0"), {1, 128 / 255.0, 5 / 255.0}, 0);
+  expectRgb(colorOf("srgb", "0.6.0"), decoded, 1e-7);
+}
+
 TEST(Color, SrgbNumbersAreDecoded) {
   expectRgb(reflectanceOf(R"(<srgb name="reflectance" value="0.5"/>)"), {0.2140411, 0.2140411, 0.2140411}, 1e-7);
 }

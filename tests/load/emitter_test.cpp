@@ -219,5 +219,19 @@ TEST(Light, SamplingWeightIsAccepted) {
   EXPECT_EQ(emitterOf<ConstantEmitter>("constant", R"(<float name="sampling_weight" value="2"/>)").radiance, kOne);
 }
 
+TEST(Light, OfSamplingWeight0IsLeftOutIfPathsCannotHitIt) {
+  const auto sceneOf = [](const std::string& type) {
+    return loadBody("<emitter type=\"" + type + R"("><float name="sampling_weight" value="0"/></emitter>)");
+  };
+  for (const char* type : {"point", "spot", "projector", "directional"}) {
+    const Scene scene = sceneOf(type);
+    EXPECT_TRUE(scene.emitters.empty()) << type;
+    ASSERT_EQ(scene.notes.size(), 1u) << type;
+    EXPECT_EQ(scene.notes[0].what, "emitter \"" + std::string(type) + "\" of sampling_weight 0");
+  }
+  EXPECT_EQ(sceneOf("constant").emitters.size(), 1u);
+  expectEmitterError("point", R"(<float name="sampling_weight" value="-1"/>)", "sampling_weight is negative");
+}
+
 }  // namespace
 }  // namespace wavecrest

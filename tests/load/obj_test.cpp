@@ -64,6 +64,43 @@ TEST(Obj, OtherLinesAreSkipped) {
       1u);
 }
 
+Scene sceneOfObj(std::string_view content, std::string_view version, std::string_view options) {
+  const Folder folder;
+  folder.write("mesh.obj", content);
+  return load(folder, sceneXml(R"(<shape type="obj"><string name="filename" value="mesh.obj"/>)" +
+                                   std::string(options) + "</shape>" + std::string(kSensor),
+                               version));
+}
+
+TEST(Obj, MaterialsOfALibraryAreNotedInOldFiles) {
+  const std::string faces = std::string(kQuad) + "usemtl red\nf 1 2 3\n", text = "mtllib x.mtl\n" + faces;
+  const auto effectOf = [&](std::string_view options) {
+    const Scene scene = sceneOfObj(text, "0.6.0", options);
+    return scene.notes.size() == 1 ? scene.notes[0].effect : std::to_string(scene.notes.size()) + " notes";
+  };
+  EXPECT_EQ(effectOf(""), "left out: a shape without a bsdf is diffuse of reflectance 0.5");
+  EXPECT_EQ(effectOf(R"(<emitter type="area"/>)"), "left out: a light without a bsdf is black");
+  EXPECT_EQ(effectOf(R"(<bsdf type="diffuse"/>)"), "0 notes");
+  EXPECT_EQ(effectOf(R"(<boolean name="loadMaterials" value="false"/>)"), "0 notes");
+  EXPECT_TRUE(sceneOfObj(faces, "0.6.0", "").notes.empty()) << "no library";
+  EXPECT_TRUE(sceneOfObj(text, "3.0.0", "").notes.empty()) << "as in Mitsuba 3";
+}
+
+TEST(Obj, OneMeshOfAnOldFileIsRefused) {
+  const std::string text = std::string(kQuad) + "f 1 2 3\n";
+  const auto index = [](const char* value) {
+    return R"(<integer name="shapeIndex" value=")" + std::string(value) + "\"/>";
+  };
+  const Folder folder;
+  folder.write("mesh.obj", text);
+  expectError(folder,
+              sceneXml("\n<shape type=\"obj\"><string name=\"filename\" value=\"mesh.obj\"/>" + index("1") +
+                           "</shape>" + std::string(kSensor),
+                       "0.6.0"),
+              2, "one mesh of an OBJ file is not supported; expected a file of this mesh alone");
+  EXPECT_TRUE(sceneOfObj(text, "0.6.0", index("-1")).notes.empty()) << "all meshes";
+}
+
 TEST(Obj, IndexThatIsMissingAfterASlashIsAbsent) {
   const std::string text = std::string(kQuad) + "vt 0.25 0.5\nvn 0 0.6 0.8\n";
   for (const char* face : {"f 1/1/ 2/1/ 3/1/\n", "f 1/1 2/1 3/1/ \n"}) {

@@ -11,6 +11,7 @@
 
 #include "engine/load/load.h"
 #include "engine/load/plugins.h"
+#include "tests/load/scene_file.h"
 
 namespace wavecrest {
 namespace {
@@ -96,6 +97,24 @@ TEST(PluginReference, hasEachParameterThatTheLoaderAsksForAndItsDefault) {
         }
       }
     }
+  }
+}
+
+// Of the sphere's material.
+double intIorOf(const std::string& bsdf) {
+  const Scene scene = loadBody("<shape type=\"sphere\">" + bsdf + "</shape>");
+  const Material& material = scene.materials.at(0);
+  const auto* const plastic = std::get_if<Plastic>(&material.kind);
+  return plastic != nullptr ? plastic->intIor : std::get<Dielectric>(material.kind).intIor;
+}
+
+TEST(PluginReference, namesTheSubstanceWithin) {
+  for (const std::string type : {"dielectric", "thindielectric", "roughdielectric", "plastic", "roughplastic"}) {
+    const std::string substance = parametersOf(*entryOf("bsdf", type)).at("int_ior").at("default");
+    const std::string begin = "<bsdf type=\"" + type + "\">";
+    EXPECT_EQ(intIorOf(begin + R"(<string name="int_ior" value=")" + substance + "\"/></bsdf>"),
+              intIorOf(begin + "</bsdf>"))
+        << type;
   }
 }
 

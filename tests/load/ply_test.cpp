@@ -115,6 +115,29 @@ TEST(Ply, TextureCoordinatesAndNormalsAreRead) {
   EXPECT_EQ(mesh.uvs[0], (Float2{0.25f, 0.5f}));
 }
 
+// A triangle whose vertices have more properties, with their values for vertex 0.
+Mesh meshWithProperties(const std::vector<std::string>& names, const std::string& values) {
+  std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  std::string zeros;
+  for (const std::string& name : names) {
+    header += "property float " + name + "\n";
+    zeros += " 0";
+  }
+  return meshOfPly(header + "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0 " + values +
+                   "\n1 0 0" + zeros + "\n0 1 0" + zeros + "\n3 0 1 2\n");
+}
+
+TEST(Ply, TextureCoordinatesAreTheFirstPairThatIsComplete) {
+  const Float2 first{0.125f, 0.25f}, second{0.5f, 0.75f};
+  EXPECT_EQ(meshWithProperties({"u", "v", "s", "t"}, ".125 .25 .5 .75").uvs.at(0), first);
+  EXPECT_EQ(meshWithProperties({"s", "u", "t", "v"}, ".5 .125 .75 .25").uvs.at(0), first);
+  EXPECT_EQ(meshWithProperties({"s", "t", "texture_u", "texture_v"}, ".5 .75 .125 .25").uvs.at(0), first);
+  EXPECT_EQ(meshWithProperties({"s", "t", "u"}, ".5 .75 .125").uvs.at(0), second);
+  EXPECT_EQ(meshWithProperties({"texture_s", "texture_t"}, ".5 .75").uvs.at(0), second);
+  EXPECT_TRUE(meshWithProperties({"u", "t"}, ".5 .75").uvs.empty());
+}
+
 TEST(Ply, FlipTexCoords) {
   const Mesh mesh = meshOfPly(
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "

@@ -89,6 +89,17 @@ TEST(Sphere, CenterAndRadiusComeBeforeToWorld) {
   EXPECT_EQ(s.radius, 6);
 }
 
+// Mitsuba 0.6 takes the scale out of to_world before it moves the center.
+TEST(Sphere, CenterIsNotScaledInOldFiles) {
+  const Scene scene = load(sceneXml(R"(<shape type="sphere"><point name="center" x="1" y="2" z="3"/>
+      <float name="radius" value="2"/><transform name="toWorld"><scale value="4"/><translate x="10"/></transform>
+      </shape>)" + std::string(kSensor),
+                                    "0.6.0"));
+  const Sphere& s = std::get<Sphere>(scene.shapes.at(0).kind);
+  EXPECT_EQ(s.center, (Double3{11, 2, 3}));
+  EXPECT_EQ(s.radius, 8);
+}
+
 TEST(Sphere, MirroringTransformTurnsItInsideOut) {
   EXPECT_TRUE(shapeOf<Sphere>("sphere", kMirror).flipNormals);
   EXPECT_TRUE(shapeOf<Sphere>("sphere", kFlip).flipNormals);

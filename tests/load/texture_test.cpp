@@ -84,13 +84,13 @@ Scene sceneOfFile(const Folder& folder, std::string_view file) {
 
 TEST(Bitmap, ExposureOfARadiancePictureIsLeftOut) {
   const Folder folder;
-  for (const char* exposure : {"2", "0", "nonsense"}) {
-    folder.write("a.hdr",
-                 "#?RGBE\nEXPOSURE=" + std::string(exposure) + "\n\n-Y 1 +X 1\n" + std::string("\x40\x20\0\x82", 4));
+  for (const char* line :
+       {"EXPOSURE=2", "EXPOSURE=0", "EXPOSURE=nonsense", "COLORCORR=1 2 1", "PRIMARIES=1 0 0 1 0 0 1 1"}) {
+    folder.write("a.hdr", "#?RGBE\n" + std::string(line) + "\n\n-Y 1 +X 1\n" + std::string("\x40\x20\0\x82", 4));
     const Scene scene = sceneOfFile(folder, "a.hdr");
     EXPECT_EQ(std::get<BitmapTexture>(scene.textures.at(0).kind).bitmap->pixels, (std::vector<float>{1, 0.5f, 0}));
     ASSERT_EQ(scene.notes.size(), 1u);
-    EXPECT_EQ(scene.notes[0].what, "EXPOSURE of a Radiance picture");
+    EXPECT_EQ(scene.notes[0].what, "EXPOSURE, COLORCORR or PRIMARIES of a Radiance picture");
   }
 }
 

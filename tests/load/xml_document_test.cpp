@@ -171,6 +171,25 @@ TEST(Structure, UnusedDefinitionIsCheckedButLeavesNothingBehind) {
                      "unknown parameter \"albedo\" of bsdf \"diffuse\"; expected reflectance");
 }
 
+// The second definition's textures get the indices of the first one's. A scalar version of the first one's bitmap would
+// stand where the second has a checkerboard, in which bumps are flat.
+TEST(Structure, UnusedDefinitionsDoNotShareScalarTextures) {
+  std::string picture = "PF\n2 1\n-1.0\n";
+  for (const float value : {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f}) appendValue<float>(picture, value, false);
+  const Folder folder;
+  folder.write("bumps.pfm", picture);
+  const std::string bitmap =
+      R"(<string name="filename" value="bumps.pfm"/><boolean name="raw" value="true"/></texture>)";
+  const Scene scene = loadBody(folder, R"(<bsdf type="bumpmap" id="first"><texture type="bitmap">)" + bitmap +
+                                           R"(<bsdf type="diffuse"/></bsdf>
+    <bsdf type="mask" id="second"><texture type="bitmap" name="opacity" id="bumps">)" +
+                                           bitmap + R"(<bsdf type="coating">
+      <texture type="checkerboard" name="specular_reflectance"/>
+      <bsdf type="bumpmap"><ref id="bumps"/><bsdf type="diffuse"/></bsdf></bsdf></bsdf>)");
+  EXPECT_TRUE(scene.textures.empty());
+  for (const Note& note : scene.notes) EXPECT_EQ(note.what.find("bumpmap of a checkerboard"), std::string::npos);
+}
+
 TEST(Structure, MalformedXmlNamesItsLine) {
   expectError("<scene version=\"3.0.0\">\n\n<shape type=\"sphere\"</scene>", 3, "malformed XML");
 }
@@ -193,7 +212,15 @@ TEST(Structure, RootMustBeAScene) {
 
 TEST(Structure, VersionIsRequired) { expectError("<scene></scene>", 1, "has no version"); }
 
-TEST(Structure, VersionMustBeKnown) { expectError(sceneXml("", "4.0.0"), 1, "version \"4.0.0\" is not supported"); }
+TEST(Structure, VersionMustBeKnown) {
+  for (const char* version : {"4.0.0", "0.3.0", "0.3", "0.1.2", "0"}) {
+    expectError(sceneXml("", version), 1,
+                "version \"" + std::string(version) + "\" is not supported; expected 0.4.0 to 3.x");
+  }
+  for (const char* version : {"0.4.0", "0.10.0", "2.0.0", "3"}) {
+    EXPECT_EQ(load(sceneXml(std::string(kSensor) + std::string(kSphere), version)).shapes.size(), 1u) << version;
+  }
+}
 
 TEST(Structure, SceneWithoutSensorIsAnError) { expectError("\n" + sceneXml(kSphere), 2, "no sensor"); }
 
@@ -261,10 +288,12 @@ TEST(Structure, DeepNestingIsAnError) {
 
 TEST(Structure, LongChainOfReferencesIsAnError) {
   std::string body = "<bsdf type=\"diffuse\" id=\"m0\"/>";
-  for (int i = 1; i < 1000; ++i) {
+  constexpr int kLinks = 100'000;  // more than a stack of 8 MiB has room for
+  for (int i = 1; i < kLinks; ++i) {
     body += "<bsdf type=\"mask\" id=\"m" + std::to_string(i) + "\"><ref id=\"m" + std::to_string(i - 1) + "\"/></bsdf>";
   }
-  expectErrorOnLine2(body + "<shape type=\"sphere\"><ref id=\"m999\"/></shape>", "references nest deeper than 64");
+  expectErrorOnLine2(body + "<shape type=\"sphere\"><ref id=\"m" + std::to_string(kLinks - 1) + "\"/></shape>",
+                     "references nest deeper than 64");
 }
 
 TEST(Structure, TooManyAttributesAreAnError) {
