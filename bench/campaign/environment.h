@@ -8,8 +8,6 @@
 
 namespace wavecrest {
 
-std::string cpuName();
-
 // version, commit, cpu, host, isa, threads: keys of the results file's campaign table.
 std::map<std::string, std::string> environment(const RenderSettings& settings);
 

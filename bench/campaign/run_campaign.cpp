@@ -362,7 +362,7 @@ class Campaign {
   void putBiases(const CampaignScene& entry, const std::vector<CampaignMethod>& methods) {
     if (settings_.seeds < 2) return;
     const CampaignResults results = readResults(resultsFile(settings_));
-    const Reference reference = readReference(settings_.out / referenceFile(entry.name));
+    std::optional<Reference> reference;  // once it is needed: a restored campaign may lack it
     for (const CampaignMethod& method : methods) {
       const std::string name = method.name();
       // The method's runs, and the last snapshot that all of them have.
@@ -377,7 +377,8 @@ class Campaign {
         return bias.scene == entry.name && bias.method == name && bias.seeds == runs.size() && bias.number == last;
       };
       if (std::any_of(results.biases.begin(), results.biases.end(), known)) continue;
-      store_->putBiases(measureBiases(runs, reference));
+      if (!reference) reference = readReference(settings_.out / referenceFile(entry.name));
+      store_->putBiases(measureBiases(runs, *reference));
     }
   }
 

@@ -16,7 +16,7 @@ std::string orUnknown(std::string text) {
 
 MachineRecord readMachine() {
   const std::string info = systemFile("/proc/cpuinfo");
-  MachineRecord machine{.cpu = orUnknown(cpuInfoValue(info, "model name")),
+  MachineRecord machine{.cpu = cpuName(info),
                         .topology = topologyOfThisMachine(),
                         .cpuLimit = parseCpuMax(systemFile("/sys/fs/cgroup/cpu.max")),
                         .governor = orUnknown(systemFile("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")),

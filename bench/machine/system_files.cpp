@@ -50,6 +50,16 @@ std::string cpuInfoValue(std::string_view text, std::string_view key) {
   return {};
 }
 
+std::string cpuName(std::string_view text) {
+  std::string name = cpuInfoValue(text, "model name");
+  if (name.empty()) return "unknown";
+  const std::string family = cpuInfoValue(text, "cpu family"), model = cpuInfoValue(text, "model");
+  if (name.find_first_of("0123456789") == std::string::npos && !family.empty() && !model.empty()) {
+    name += " (family " + family + ", model " + model + ")";
+  }
+  return name;
+}
+
 std::vector<std::string> relevantFlags(std::string_view flags) {
   constexpr std::array<std::string_view, 14> kRelevant{
       "sse4_2",   "avx",      "avx2",     "fma",         "f16c",        "bmi2",     "avx512f",

@@ -27,6 +27,10 @@ std::string chosenWord(std::string_view text);
 // The values of a key in the first block of /proc/cpuinfo; empty if it is missing.
 std::string cpuInfoValue(std::string_view text, std::string_view key);
 
+// What /proc/cpuinfo says that the processor is, or "unknown". Hypervisors leave no more than "AMD EPYC" of a name:
+// where it has no digit, family and model follow, which tell Zen 4 from Zen 5.
+std::string cpuName(std::string_view text);
+
 // Those of a CPU's flags that kernels could make use of, in a fixed order, and "hypervisor".
 std::vector<std::string> relevantFlags(std::string_view flags);
 

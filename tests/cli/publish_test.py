@@ -229,8 +229,8 @@ class Publishing(CommandTest):
         self.made_up_campaign()
         self.assertEqual(self.publish().returncode, 0)
         figure = self.read("standard/cornell-diffuse.svg")
-        self.assertNotIn("<image", figure, "restored results have no images")
-        self.assertEqual(re.findall(r'class="name">([^<]*)<', figure), ["SSIM", "Time to equal relMSE"])
+        self.assertIn("<image", figure, "the repository's reference, as restored results have no images")
+        self.assertEqual(re.findall(r'class="name">([^<]*)<', figure), ["cornell-diffuse", "SSIM", "Time to equal relMSE"])
         self.assertEqual(figure.count("<polyline"), 3)
         # Lines of -auto rows are dashed, in the panel and in the legend.
         self.assertEqual(figure.count("stroke-dasharray=\"7 4\""), 2)
@@ -344,6 +344,13 @@ END
         biases = "SELECT * FROM bias ORDER BY scene, method, number"
         self.assertEqual(rows("b", biases), rows("a", biases))
         self.assertGreater(len(rows("a", biases)), 0)
+        # It goes on with a further scene, and what was there stays.
+        scores = "SELECT m.* FROM run JOIN measurement m ON run.id = m.run WHERE scene = 'cornell-diffuse' ORDER BY 1, 2, 3"
+        before = rows("b", scores)
+        self.run_wavecrest("converge", "cornell-mirror", "--out", "b", "--resume")
+        self.assertEqual(rows("b", scores), before)
+        runs = [(scene, method, seed) for scene in ("cornell-diffuse", "cornell-mirror") for method in ("lt", "pt") for seed in (1, 2)]
+        self.assertEqual(rows("b", "SELECT scene, method, seed FROM run ORDER BY scene, method, seed"), runs)
 
     def test_a_figure_is_repeated_by_all_rows(self):
         for name in ("bench", "scenes", "tools"):

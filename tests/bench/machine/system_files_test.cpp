@@ -38,6 +38,14 @@ TEST(CpuInfo, keysAreWhole) {
   EXPECT_EQ(cpuInfoValue(kInfo, "mod"), "");
 }
 
+TEST(CpuName, hasFamilyAndModelWhereItTellsNoProcessor) {
+  const std::string rest = "\ncpu family\t: 25\nmodel\t\t: 17\n";
+  EXPECT_EQ(cpuName("model name\t: AMD EPYC" + rest), "AMD EPYC (family 25, model 17)");
+  EXPECT_EQ(cpuName("model name\t: AMD EPYC 9654 96-Core Processor" + rest), "AMD EPYC 9654 96-Core Processor");
+  EXPECT_EQ(cpuName("model name\t: a CPU\n"), "a CPU");
+  EXPECT_EQ(cpuName(""), "unknown");
+}
+
 TEST(Flags, areThoseThatKernelsUse) {
   EXPECT_EQ(relevantFlags("fpu hypervisor avx2 avx512f_x"), (std::vector<std::string>{"avx2", "hypervisor"}));
 }
