@@ -22,7 +22,8 @@ constexpr size_t kMutationKinds = 6;
 //
 // The densities belong to METHODS 7.6: eye[i] and light[i] are those of x_i per area, made from the eye's side and from
 // the light's; eyeChoice and lightChoice those of the direction that leaves x_i, per solid angle or, of a delta lobe,
-// its probability. step is f c / pdf of an eye walk at x_i; at x_1 its end is the light: f c L n_0 / (d^2 light[0]).
+// its probability, whatever that of the normal that a light walk draws. step is f c / pdf of an eye walk at x_i; at x_1
+// its end is the light: f c L n_0 / (d^2 light[0]).
 template <class S>
 struct PathVertices : Columns<PathVertices<S>>, VertexDetails<S> {
   Column<S> positionX, positionY, positionZ;  // of x_0 at infinity: the direction towards it

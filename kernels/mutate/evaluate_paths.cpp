@@ -38,14 +38,18 @@ WAVECREST_INLINE TwoWayScattering<typename P::Real> scatteringOf(const ShadingLa
       // A delta lobe cannot be evaluated: it is sampled once more, by the number that leads to it. Both densities are
       // divided by the squared index on the light's side, for etaRatio is eta_wi / eta_wo.
       const Uniform4 u{numberOfEvent<P, kFeatures>(shading.bsdf, event), Float(0), Float(0), Float(0)};
-      const auto sample = shading.sampled(delta, u);
-      const Mask found = active & (eventOf<P, kFeatures>(shading.bsdf, shading.wi, sample, u.a) == event);
+      Mask reflected = noLanes();
+      const auto sample = shading.sampled(delta, u, reflected);
+      const Mask found = active & (eventOf<P, kFeatures>(shading.bsdf, sample, reflected, u.a) == event);
       out.step = select(delta, zeroUnless(found, sample.weight), out.step);
       out.eyePdf = select(delta, sample.pdf * abs(sample.wo.z), out.eyePdf);
       out.lightPdf =
           select(delta, sample.pdfReverse * sample.etaRatio * sample.etaRatio * abs(shading.wi.z), out.lightPdf);
       out.eyeChoice = select(delta, sample.pdf, out.eyeChoice);
-      out.lightChoice = select(delta, sample.pdfReverse, out.lightChoice);
+      // What a light walk chooses, given its normal, which a caustic perturbation draws anew. An absent surface has
+      // none.
+      const Real share = select(event == eventCode(PathEvent::passed), Real(1), shading.shareOfNormal(towardsLight));
+      out.lightChoice = select(delta, sample.pdfReverse / max(share, Real(1e-6f)), out.lightChoice);
     }
   }
   return out;

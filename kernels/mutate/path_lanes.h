@@ -96,12 +96,12 @@ WAVECREST_INLINE Float numberOfEvent(const BsdfInputOf<P, kFeatures>& bsdf, UInt
                 select(event == eventCode(PathEvent::refracted), refracts, last));
 }
 
-// The event that sampling by the number u.a led to.
+// The event that sampling by the number u.a led to, to the side of the normal that `reflected` says.
 template <class P, uint32_t kFeatures>
-WAVECREST_INLINE UInt eventOf(const BsdfInputOf<P, kFeatures>& bsdf, Vec3<typename P::Real> wi,
-                              const BsdfSample<typename P::Real>& sample, [[maybe_unused]] Float number) {
+WAVECREST_INLINE UInt eventOf(const BsdfInputOf<P, kFeatures>& bsdf, const BsdfSample<typename P::Real>& sample,
+                              Mask reflected, [[maybe_unused]] Float number) {
   using Real = typename P::Real;
-  UInt event = select((wi.z * sample.wo.z) > Real(0), eventCode(PathEvent::reflected), eventCode(PathEvent::refracted));
+  UInt event = select(reflected, eventCode(PathEvent::reflected), eventCode(PathEvent::refracted));
   if constexpr (has(kFeatures, kLayeredBsdfs)) {
     const Real opacity = bsdf.opacity();
     event = select((opacity < Real(1)) & (to<Real>(number) >= opacity), eventCode(PathEvent::passed), event);
@@ -122,8 +122,9 @@ WAVECREST_INLINE WalkStep<typename P::Real> walkOn(const ShadingLanes<P, kFeatur
                                                    Mask same, UInt event) {
   using Real = typename P::Real;
   u.a = select(same, numberOfEvent<P, kFeatures>(shading.bsdf, event), u.a);
-  const auto sample = shading.sampled(active, u);
-  WalkStep<Real> step{shading.toWorld(sample.wo), eventOf<P, kFeatures>(shading.bsdf, shading.wi, sample, u.a),
+  Mask reflected = noLanes();
+  const auto sample = shading.sampled(active, u, reflected);
+  WalkStep<Real> step{shading.toWorld(sample.wo), eventOf<P, kFeatures>(shading.bsdf, sample, reflected, u.a),
                       noLanes()};
   step.alive =
       active & (maxComponent(sample.weight) > Real(0)) & (sample.pdf > Real(0)) & (!same | (step.event == event));

@@ -76,10 +76,28 @@ struct ShadingLanes {
   // (METHODS 3.9), which it takes from this frame. The weights of mapped lanes are such that the product has the
   // cosines to the normal that f is taken with.
   WAVECREST_INLINE BsdfSample<Real> sampled(Mask active, const Uniform4& u) const {
+    Mask reflected = noLanes();
+    return sampled(active, u, reflected);
+  }
+  // reflected: lanes whose two directions are on one side of the normal that was sampled with, which wo may not tell.
+  WAVECREST_INLINE BsdfSample<Real> sampled(Mask active, const Uniform4& u, Mask& reflected) const {
     if constexpr (has(kFeatures, kNormalMaps)) {
-      if (map.present) return bsdf.walk == Walk::camera ? sampledFromEye(active, u) : sampledFromLight(active, u);
+      if (map.present && bsdf.walk == Walk::light) return sampledFromLight(active, u, reflected);
     }
-    return sampleBsdf<P, kFeatures>(bsdf, active, wi, u);
+    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, wi, u);
+    reflected = (wi.z * sample.wo.z) > Real(0);
+    if constexpr (has(kFeatures, kNormalMaps)) {
+      if (map.present) mapSampleFromEye(active, u, sample);
+    }
+    return sample;
+  }
+
+  // The probability with which a light walk that comes from `direction` samples with this frame's normal.
+  WAVECREST_INLINE Real shareOfNormal([[maybe_unused]] Vec3<Real> direction) const {
+    if constexpr (has(kFeatures, kNormalMaps)) {
+      if (map.present) return select(map.lanes, map.lightShare(frame.n, direction), Real(1));
+    }
+    return Real(1);
   }
 
  private:
@@ -168,11 +186,10 @@ struct ShadingLanes {
   }
 
   // A camera walk samples with this frame's normal, which is the one that the eye faces.
-  WAVECREST_INLINE BsdfSample<Real> sampledFromEye(Mask active, const Uniform4& u) const {
-    BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, wi, u);
+  WAVECREST_INLINE void mapSampleFromEye(Mask active, const Uniform4& u, BsdfSample<Real>& sample) const {
     const Straight straight = straightOn(sample, wi, u);
     const Mask mapped = andNot(active & map.lanes, straight.absent());
-    if (none(mapped)) return sample;
+    if (none(mapped)) return;
     // The reverse walk comes from a light. Through a delta lobe it takes this way only if it draws this normal; other
     // lobes have the density of the mixture.
     const Vec3<Real> direction = toWorld(sample.wo);
@@ -183,11 +200,10 @@ struct ShadingLanes {
     // What a pane lets through is not dimmed: the light is right behind.
     const Mask dimmed = andNot(mapped, straight.pane);
     sample.weight = select(dimmed, sample.weight * lightFactor(dimmed, direction), sample.weight);
-    return sample;
   }
 
   // A light walk draws one of the two normals and samples with it.
-  WAVECREST_INLINE BsdfSample<Real> sampledFromLight(Mask active, const Uniform4& u) const {
+  WAVECREST_INLINE BsdfSample<Real> sampledFromLight(Mask active, const Uniform4& u, Mask& reflected) const {
     const Real one(1), tiny(1e-12f);
     // Draw the normal by u.b.
     const View other = otherView();
@@ -200,6 +216,7 @@ struct ShadingLanes {
     // Sample in the frame of the drawn normal. wo is the result in this frame.
     const Vec3<Real> from = select(drawsOther, other.wi, wi);
     BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdfIn(drawsOther, other), active, from, numbers);
+    reflected = (from.z * sample.wo.z) > Real(0);
     const Straight straight = straightOn(sample, from, u);
     const Mask mapped = andNot(active & map.lanes, straight.absent());
     const Vec3<Real> direction = select(drawsOther, other.toWorld(sample.wo), toWorld(sample.wo));

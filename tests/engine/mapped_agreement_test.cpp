@@ -5,6 +5,7 @@
 // alone may differ by a few per cent of the mean, its bias by the radius.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -168,6 +169,21 @@ TEST_P(MappedAgreementTest, everyMethod) {
                       where(variant == MetropolisVariant::mmlt ? "mlt of numbers" : "mlt of paths"));
     }
   }
+}
+
+// A mirror whose map turns its normal by 40 degrees towards the camera: what it sends to the ball in front of it comes
+// by the mirror image of that normal, which a walk from the lamp draws now and then, and is a reflection all the same.
+TEST(MappedAgreement, reflectionsByTheOtherNormal) {
+  const std::vector<MappedCase> cases = mappedCases();
+  const auto mirror = std::ranges::find(cases, std::string("mirror"), [](const MappedCase& c) { return c.name; });
+  Scene scene = mappedFloor(*mirror, MapKind::normal, RoomLight::quad);
+  auto tilted = std::make_shared<Bitmap>();
+  tilted->width = tilted->height = 1;
+  for (const float value : {0.0f, -0.6428f, 0.766f}) tilted->pixels.push_back(0.5f + 0.5f * value);
+  for (Texture& texture : scene.textures) texture.kind = BitmapTexture{.bitmap = tilted};
+  const SeedMeans reference = renderSeeds(scene, mappedSettings(Method::bpt), 8 * mappedIterations());
+  const RenderSettings ofPaths = mappedSettings(Method::mlt, MetropolisVariant::pathspace);
+  expectSameTruth(reference, renderSeeds(scene, ofPaths, 4 * mappedIterations(), 7000), "mlt of paths");
 }
 
 INSTANTIATE_TEST_SUITE_P(Engine, MappedAgreementTest, testing::Range<size_t>(0, 21),
