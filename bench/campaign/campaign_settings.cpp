@@ -42,10 +42,13 @@ constexpr std::array kStandardRows{rowOf(Method::pt),
                                    rowOf(Method::bpm),
                                    rowOf(Method::vcm)};
 // The study's methods with its settings, then today's best methods, with default settings where the two differ.
-constexpr std::array kStudyRows{
-    rowOf(Method::pt),      rowOf(Method::lt),  rowOf(Method::bpt),     kPathSpace,
-    rowOf(Method::ppm),     rowOf(Method::vcm), automatic(Method::ppm), automatic(Method::bpm),
-    automatic(Method::vcm), rowOf(Method::mlt), automatic(Method::gpt), automatic(Method::evcm)};
+constexpr std::array kStudyRows{rowOf(Method::pt),      rowOf(Method::lt),
+                                rowOf(Method::bpt),     kPathSpace,
+                                rowOf(Method::ppm),     CampaignMethod{.method = Method::ppm, .directPass = true},
+                                rowOf(Method::vcm),     automatic(Method::ppm),
+                                automatic(Method::bpm), automatic(Method::vcm),
+                                rowOf(Method::mlt),     automatic(Method::gpt),
+                                automatic(Method::evcm)};
 
 // Snapshots without an interval are at render times of a fixed ratio.
 constexpr std::array kProfiles{

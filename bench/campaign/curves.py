@@ -7,8 +7,8 @@ in order of time, with NaN for a value that is none; a series is the runs of one
 
 import math
 
-# Rows of the study's methods with its settings; its Metropolis light transport mutates paths.
-STUDY_ROWS = ("pt", "lt", "bpt", "mlt-pathspace", "ppm", "vcm")
+# Rows of the study's methods with its settings; its Metropolis light transport mutates paths, and its ppm is one of two.
+STUDY_ROWS = ("pt", "lt", "bpt", "mlt-pathspace", "ppm", "ppm-direct", "vcm")
 
 
 def read_series(measurements):

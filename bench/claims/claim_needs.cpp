@@ -40,9 +40,8 @@ std::optional<double> lightPathShare(const json& stats) {
   return paths / iterations * radius * radius / kStudyPixels;
 }
 
-// Camera and light paths per pixel, or mutations, as a share of what the study had time for. Of a method that merges a
-// light path counts for each camera path, as in the study: with more of them an iteration meets more photons, but
-// convergence goes by iterations.
+// Of a method that merges a light path counts for each camera path, as in the study: with more of them an iteration
+// meets more photons, but convergence goes by iterations.
 std::optional<double> pathShare(const json& stats, const std::string& method, const std::string& scene) {
   const double pixels = stats.value("width", 0.0) * stats.value("height", 0.0);
   if (!(pixels > 0)) return std::nullopt;
@@ -84,6 +83,19 @@ std::optional<double> leastShare(const SceneLosses& scene, const std::string& me
 
 }  // namespace
 
+std::optional<double> studyPathShare(const SceneLosses& scene, const std::string& method) {
+  return leastShare(scene, method, [&](const json& stats) { return pathShare(stats, method, scene.name()); });
+}
+
+std::string pathShares(const Claim& claim, const SceneLosses& scene) {
+  std::string shares;
+  for (const std::string& method : methodsOf(claim)) {
+    const std::optional<double> share = studyPathShare(scene, method);
+    if (share) shares += fmt::format("{}{} {:.2g}", shares.empty() ? "" : ", ", scene.rowOf(method), *share);
+  }
+  return shares.empty() ? shares : "of the study's paths per pixel: " + shares;
+}
+
 std::string unmetNeed(const Claim& claim, const SceneLosses& scene) {
   const std::set<std::string> methods = methodsOf(claim);
   if (std::string times = unequalTimes(methods, scene); !times.empty()) return times;
@@ -92,16 +104,15 @@ std::string unmetNeed(const Claim& claim, const SceneLosses& scene) {
     if (claim.needs.lightPaths > 0 && merges(method)) {
       const std::optional<double> share = leastShare(scene, method, lightPathShare);
       if (share && *share < claim.needs.lightPaths) {
-        return fmt::format("a search of {} meets {:.2g} of the study's light paths; needs {:g}", method, *share,
-                           claim.needs.lightPaths);
+        return fmt::format("a search of {} meets {:.2g} of the study's light paths; needs {:g}", scene.rowOf(method),
+                           *share, claim.needs.lightPaths);
       }
     }
     // Paths per pixel by the end of the run.
     if (claim.needs.paths > 0) {
-      const auto ofScene = [&](const json& stats) { return pathShare(stats, method, scene.name()); };
-      const std::optional<double> share = leastShare(scene, method, ofScene);
+      const std::optional<double> share = studyPathShare(scene, method);
       if (share && *share < kPathTolerance * claim.needs.paths) {
-        return fmt::format("{} made {:.2g} of the study's paths per pixel; needs {:g}", method, *share,
+        return fmt::format("{} made {:.2g} of the study's paths per pixel; needs {:g}", scene.rowOf(method), *share,
                            claim.needs.paths);
       }
     }

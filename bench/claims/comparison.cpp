@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "bench/claims/scene_losses.h"
-
 namespace wavecrest {
 
 std::string plusMinus(double halfWidth) {
@@ -45,8 +43,6 @@ std::string nameOf(const std::string& metric) {
   if (metric == "q_mos") return "Q_MOS";
   return metric == "rmse" ? "RMSE" : metric;
 }
-
-std::string shown(const std::string& method) { return SceneLosses::rowOf(method); }
 
 double meanOfLog(std::span<const double> values) { return std::exp(meanBand(values).mean); }
 

@@ -32,7 +32,4 @@ std::string plusMinus(double halfWidth);
 // A metric in print.
 std::string nameOf(const std::string& metric);
 
-// A method in print: the row that it is judged by.
-std::string shown(const std::string& method);
-
 }  // namespace wavecrest

@@ -15,11 +15,13 @@ std::vector<Explanation> parseExplanations(std::string_view text) {
   std::vector<Explanation> explanations;
   try {
     const json profiles = json::parse(text);
-    for (const auto& [profile, entries] : profiles.items()) {
+    for (const auto& [profile, campaign] : profiles.items()) {
+      const std::string commit = campaign.at("commit");
       std::set<std::string> explained;
-      for (const json& entry : entries) {
+      for (const json& entry : campaign.at("findings")) {
         Explanation& explanation = explanations.emplace_back();
         explanation.profile = profile;
+        explanation.commit = commit;
         entry.at("text").get_to(explanation.text);
         entry.at("verdict").get_to(explanation.verdict);
         entry.at("claims").get_to(explanation.claims);
@@ -43,6 +45,10 @@ const std::vector<Explanation>& studyExplanations() {
   // Parsed at the first call.
   static const std::vector<Explanation> explanations = parseExplanations(kExplanationsJson);
   return explanations;
+}
+
+bool isOf(const Explanation& explanation, std::string_view profile, std::string_view commit) {
+  return explanation.profile == profile && explanation.commit == commit;
 }
 
 const Explanation* findExplanation(std::string_view claim, std::string_view verdict, std::string_view profile) {

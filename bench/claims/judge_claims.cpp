@@ -13,15 +13,40 @@ namespace {
 using V = ClaimVerdict;
 
 // All conditions of a claim on one scene. A need that the campaign does not meet overrides their verdict.
-Judgement judgeOnScene(const Claim& claim, const std::string& name, const CampaignResults& results) {
-  const SceneLosses scene(name, results);
+Judgement judgeReading(const Claim& claim, const SceneLosses& scene) {
   Judgement all;
   for (const Condition& condition : claim.conditions) all.add(judgeCondition(condition, scene));
+  if (const std::string shares = pathShares(claim, scene); !shares.empty()) all.evidence += "; " + shares;
   if (const std::string need = unmetNeed(claim, scene); !need.empty()) {
     all.verdict = V::notJudged;
     all.figure = need;
   }
   return all;
+}
+
+bool speaksOfPpm(const Claim& claim) {
+  return std::ranges::any_of(claim.conditions, [](const Condition& condition) {
+    return std::ranges::count(condition.methods, "ppm") + std::ranges::count(condition.than, "ppm") > 0;
+  });
+}
+
+// The study does not say what ppm has its direct light from. With both readings measured, a finding holds or fails
+// where it does by both; where they differ it is open, or lacks time if it does by one of them and fails by the other.
+Judgement judgeOnScene(const Claim& claim, const std::string& name, const CampaignResults& results) {
+  const SceneLosses first(name, results), second(name, results, PpmReading::nextEvent);
+  const Judgement one = judgeReading(claim, first);
+  if (!speaksOfPpm(claim) || !second.missing("ppm").empty()) return one;
+  const Judgement other = judgeReading(claim, second);
+  Judgement both = other.verdict == V::notJudged ? one : one.verdict == V::notJudged ? other : one;
+  if (one.verdict != other.verdict && one.verdict != V::notJudged && other.verdict != V::notJudged) {
+    const bool noneHolds = one.verdict != V::holds && other.verdict != V::holds;
+    const bool lacksTime = one.verdict == V::notReached || other.verdict == V::notReached;
+    both.verdict = noneHolds && lacksTime ? V::notReached : V::undecided;
+    both.figure = fmt::format("by {}: {}, {}; by {}: {}, {}", first.rowOf("ppm"), toString(one.verdict), one.figure,
+                              second.rowOf("ppm"), toString(other.verdict), other.figure);
+    both.evidence = one.evidence + "; " + other.evidence;
+  }
+  return both;
 }
 
 // A claim about many scenes: how many of them it holds in.

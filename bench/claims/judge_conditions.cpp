@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "bench/claims/claim_needs.h"
 #include "bench/claims/comparison.h"
 #include "bench/claims/reached_later.h"
 
@@ -43,6 +44,9 @@ class Judge {
   }
 
  private:
+  // A method in print: the row that it is judged by.
+  std::string shown(const std::string& method) const { return scene_.rowOf(method); }
+
   // ---- what is collected --------------------------------------------------------------------------------------------
 
   // Adds a text to the evidence, unless it is there already.
@@ -111,7 +115,7 @@ class Judge {
                     shown(b), meanBand(scene_.scores(b, metric)).mean);
     if (factor != 1)
       text += fmt::format(", losses {:.2g} : 1, limit {:g}", meanOfLog(lossesA) / meanOfLog(lossesB), factor);
-    Comparison result = above(lossDifference(metric, lossesA, lossesB), std::log(factor), text);
+    Comparison result = above(scene_.lossDifference(metric, a, b), std::log(factor), text);
     // Where even the larger one is mostly noise of the reference, the true losses may differ by any factor.
     if (result.verdict != V::holds && nearFloor(metric, lossesA) && nearFloor(metric, lossesB)) {
       result.verdict = V::notJudged;
@@ -127,6 +131,11 @@ class Judge {
     return c;
   }
 
+  // Whether the loss of `a` is within the factor of that of `b`.
+  Comparison notLarger(const std::string& metric, const std::string& a, const std::string& b) const {
+    return withTime(negated(largerLoss(metric, a, b, condition_.factor)), metric, a, b, condition_.factor);
+  }
+
   // Takes the best loss that both methods reach. Compares the time that each needs to get there.
   Comparison faster(const std::string& metric, const std::string& a, const std::string& b) const {
     const std::vector<double> lossesA = scene_.logLosses(a, metric), lossesB = scene_.logLosses(b, metric);
@@ -134,11 +143,13 @@ class Judge {
     // The larger final loss is the best one that both reach.
     const double loss = std::max(meanOfLog(lossesA), meanOfLog(lossesB));
     const std::vector<double> timesA = scene_.logTimes(a, metric, loss), timesB = scene_.logTimes(b, metric, loss);
-    // Error of unbiased methods falls with the root of time, so a logarithm of time varies twice as much as that of a
-    // loss. Single seeds therefore get twice the band of losses.
+    // A logarithm of time varies by that of a loss over the slope of the curve.
     Band band = differenceBand(timesB, timesA);
-    if (timesA.size() == 1 || timesB.size() == 1)
-      band.halfWidth = 2 * lossDifference(metric, lossesA, lossesB).halfWidth;
+    if (timesA.size() == 1 || timesB.size() == 1) {
+      const double flattest =
+          std::min(steepness(a, metric, meanOfLog(timesA)), steepness(b, metric, meanOfLog(timesB)));
+      band.halfWidth = scene_.lossDifference(metric, a, b).halfWidth / flattest;
+    }
     Comparison result =
         above(band, 0,
               fmt::format("to {} {:.3g} {} takes {:.3g} s, {} {:.3g} s", nameOf(metric), scoreOfLoss(metric, loss),
@@ -148,7 +159,31 @@ class Judge {
       result.verdict = V::notJudged;
       result.text += "; that is the reference's own noise";
     }
-    return result;
+    return withTime(std::move(result), metric, a, b, 1);
+  }
+
+  // How steeply a loss falls about a time: minus d log(loss) / d log(time), at least 0.
+  double steepness(const std::string& method, const std::string& metric, double seconds) const {
+    const std::vector<double> slopes = scene_.lossSlopes(method, metric, seconds);
+    return slopes.empty() ? 0 : std::max(0.0, -meanBand(slopes).mean);
+  }
+
+  // A comparison of `a` and `b` that fails because the loss of `a` is not within the factor of that of `b`. Where it
+  // falls faster, so that at these rates it would be within the time that the study had, time is what it lacks.
+  Comparison withTime(Comparison comparison, const std::string& metric, const std::string& a, const std::string& b,
+                      double factor) const {
+    if (comparison.verdict != V::fails) return comparison;
+    const std::optional<double> shareA = studyPathShare(scene_, a), shareB = studyPathShare(scene_, b);
+    const double end = scene_.endSeconds(a);
+    const double closing = steepness(a, metric, end) - steepness(b, metric, end);
+    const double behind = meanOfLog(scene_.logLosses(a, metric)) / meanOfLog(scene_.logLosses(b, metric)) / factor;
+    if (!shareA || !shareB || !(closing > 0) || !(behind > 1)) return comparison;
+    const double times = std::pow(behind, 1 / closing);  // as long as the runs
+    if (!(times * std::min(*shareA, *shareB) <= 1)) return comparison;
+    comparison.verdict = V::notReached;
+    comparison.text +=
+        fmt::format("; at these rates {} after {:g} s", factor == 1 ? "level" : "within it", roundedTime(times * end));
+    return comparison;
   }
 
   // Adds a comparison of each of `methods` with each of `than`.
@@ -163,7 +198,19 @@ class Judge {
   // Those that hold come first, by how clearly they do; those that fail come last.
   static bool isClearer(const Comparison& x, const Comparison& y) {
     const auto rank = [](const Comparison& c) {
-      return c.verdict == V::holds ? 0 : c.verdict == V::undecided ? 1 : c.verdict == V::notJudged ? 2 : 3;
+      switch (c.verdict) {
+        case V::holds:
+          return 0;
+        case V::undecided:
+          return 1;
+        case V::notJudged:
+          return 2;
+        case V::notReached:
+          return 3;
+        case V::fails:
+          break;
+      }
+      return 4;
     };
     return rank(x) != rank(y) ? rank(x) < rank(y) : x.margin > y.margin;
   }
@@ -192,12 +239,12 @@ class Judge {
   void judgeMetric(const std::string& metric) {
     switch (condition_.kind) {
       case ConditionKind::better:
-        return forPairs([&](const auto& a, const auto& b) { return largerLoss(metric, b, a, 1); });
+        return forPairs(
+            [&](const auto& a, const auto& b) { return withTime(largerLoss(metric, b, a, 1), metric, a, b, 1); });
       case ConditionKind::faster:
         return forPairs([&](const auto& a, const auto& b) { return faster(metric, a, b); });
       case ConditionKind::good:
-        return forPairs(
-            [&](const auto& a, const auto& b) { return negated(largerLoss(metric, a, b, condition_.factor)); });
+        return forPairs([&](const auto& a, const auto& b) { return notLarger(metric, a, b); });
       case ConditionKind::worseHere:
         return forPairs([&](const auto& a, const auto& b) { return worseHere(metric, a, b); });
       case ConditionKind::equal:
@@ -233,9 +280,7 @@ class Judge {
     std::vector<Comparison> candidates;
     for (const std::string& method : condition_.methods) {
       if (!measured(method)) continue;
-      const auto all = againstAll(method, [&](const std::string& other) {
-        return negated(largerLoss(metric, method, other, condition_.factor));
-      });
+      const auto all = againstAll(method, [&](const std::string& other) { return notLarger(metric, method, other); });
       if (!all.empty()) candidates.push_back(worst(all));
     }
     if (!candidates.empty()) add(best(candidates));
@@ -245,19 +290,18 @@ class Judge {
   void equal(const std::string& metric) {
     for (const std::string& a : condition_.methods) {
       for (const std::string& b : condition_.methods) {
-        if (a != b && measured(a) && measured(b)) add(negated(largerLoss(metric, a, b, condition_.factor)));
+        if (a != b && measured(a) && measured(b)) add(notLarger(metric, a, b));
       }
     }
   }
 
   // Whether `a` is further behind `b` here than in the control, by the factor.
   Comparison worseHere(const std::string& metric, const std::string& a, const std::string& b) {
-    const SceneLosses control(condition_.control, scene_.results());
+    const SceneLosses control = scene_.other(condition_.control);
     // The logarithm of the ratio of losses in a scene.
     const auto behind = [&](const SceneLosses& scene) -> std::optional<Band> {
-      const std::vector<double> lossesA = scene.logLosses(a, metric), lossesB = scene.logLosses(b, metric);
-      if (lossesA.empty() || lossesB.empty()) return std::nullopt;
-      return lossDifference(metric, lossesA, lossesB);
+      if (scene.logLosses(a, metric).empty() || scene.logLosses(b, metric).empty()) return std::nullopt;
+      return scene.lossDifference(metric, a, b);
     };
     const std::optional<Band> here = behind(scene_), there = behind(control);
     if (!here || !there) return {V::notJudged, 0, "the control, " + condition_.control + ", was not measured"};
@@ -279,7 +323,7 @@ class Judge {
         add({V::notJudged, 0, fmt::format("{} of {} was not measured", nameOf(metric), shown(method))});
         continue;
       }
-      const Band band = scoreBand(metric, values);
+      const Band band = scene_.scoreBand(method, metric);
       const std::string value = fmt::format("{} of {} is {:.3g}", nameOf(metric), shown(method), band.mean),
                         text = fmt::format("{}, limit {:g}", value, condition_.score);
       Comparison result = reaches ? above(band, condition_.score, text) : below(band, condition_.score, text);
@@ -296,23 +340,23 @@ class Judge {
     // The error of every control has to fall faster than the limit.
     std::string controls;
     for (const std::string& method : condition_.than) {
-      const std::vector<double> slopes = scene_.errorSlopes(method);
-      if (slopes.empty()) continue;
-      const Band band = slopeBand(slopes);
+      if (scene_.errorSlopes(method).empty()) continue;
+      const Band band = scene_.slopeBand(method);
       note(fmt::format("slope of {} {:.2f}{}", shown(method), band.mean, plusMinus(band.halfWidth)));
       controls += fmt::format(", control {} {:.2f}", shown(method), band.mean);
-      if (below(band, condition_.slope, "").verdict == V::holds) continue;
-      add({V::notJudged, 0, fmt::format("the control, {}, may stall as well: slope {:.2f}", shown(method), band.mean)});
+      const V falls = below(band, condition_.slope, "").verdict;
+      if (falls == V::holds) continue;
+      add({falls == V::undecided ? V::undecided : V::notJudged, 0,
+           fmt::format("the control, {}, may stall as well: slope {:.2f}", shown(method), band.mean)});
     }
     // A method stalls if its slope is above the limit.
     for (const std::string& method : condition_.methods) {
       if (!measured(method)) continue;
-      const std::vector<double> slopes = scene_.errorSlopes(method);
-      if (slopes.empty()) {
+      if (scene_.errorSlopes(method).empty()) {
         add({V::notJudged, 0, "no error without the reference's noise was measured"});
         continue;
       }
-      const Band band = slopeBand(slopes);
+      const Band band = scene_.slopeBand(method);
       note(fmt::format("slope of {} {:.2f}{}", shown(method), band.mean, plusMinus(band.halfWidth)));
       add(above(band, condition_.slope,
                 fmt::format("error of {} goes as t^{:.2f}, limit {:g}{}", shown(method), band.mean, condition_.slope,
@@ -326,26 +370,32 @@ class Judge {
     for (const std::string& method : condition_.methods) {
       // Shares in order of snapshots.
       std::vector<double> shares;
+      unsigned seeds = 0;
       for (const BiasRecord& bias : scene_.results().biases) {
-        const bool ofMethod = bias.scene == scene_.name() && bias.method == SceneLosses::rowOf(method);
+        const bool ofMethod = bias.scene == scene_.name() && bias.method == scene_.rowOf(method);
         if (ofMethod && bias.meanSquareError > 0) {
           shares.push_back(bias.biasSquared / bias.meanSquareError);
+          seeds = bias.seeds;
         }
       }
       if (shares.size() > kBiasSnapshots) shares.erase(shares.begin(), shares.end() - kBiasSnapshots);
       if (shares.empty()) {
         if (measured(method))
-          add({V::notJudged, 0, "bias of " + shown(method) + " was not measured: it takes two seeds"});
+          add({V::notJudged, 0, "bias of " + shown(method) + " was not measured: it takes several seeds"});
         continue;
       }
       // The share has to reach the limit at all of these snapshots, or at none.
       const auto reached = std::count_if(shares.begin(), shares.end(), [&](double s) { return s >= condition_.share; });
-      const V verdict = reached == static_cast<std::ptrdiff_t>(shares.size()) ? V::holds
-                        : reached == 0                                        ? V::fails
-                                                                              : V::undecided;
+      V verdict = reached == static_cast<std::ptrdiff_t>(shares.size()) ? V::holds
+                  : reached == 0                                        ? V::fails
+                                                                        : V::undecided;
       // The last snapshot gives the figure.
-      const std::string text = fmt::format("bias^2 of {} is {:.1f} % of its mean square error, limit {:g} %",
-                                           shown(method), 100 * shares.back(), 100 * condition_.share);
+      std::string text = fmt::format("bias^2 of {} is {:.1f} % of its mean square error, limit {:g} %", shown(method),
+                                     100 * shares.back(), 100 * condition_.share);
+      if (seeds < kFewestSeedsForShare) {
+        verdict = V::undecided;
+        text += fmt::format(", by {} seeds", seeds);
+      }
       note(text);
       add({verdict, shares.back() - condition_.share, text});
     }

@@ -2,22 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "bench/claims/seed_spread_json.h"
 
 namespace wavecrest {
 namespace {
 
 constexpr double kSmallestLoss = 1e-9;  // of images that equal the reference
-constexpr double kSlopeSpan = 4;        // a slope is measured from a fraction of 1 / 4 of the time to the end
+constexpr double kSlopeSpan = 4;        // a slope is measured over so many times the time
 
-// How far two seeds of one method lie apart, in 95 of 100 pairs of the standard campaign (bench/claims/seed-spread):
-// differences of logarithms of losses, and of slopes.
-double seedSpread(const std::string& metric) {
-  if (metric == "ssim") return std::log(1.05);
-  if (metric == "q_mos") return std::log(1.3);
-  return std::log(1.4);
+// A logarithm of time and one of a loss or error.
+struct LogPoint {
+  double time, loss;
+};
+
+// The slope of the line through the points by least squares. It takes two different times.
+std::optional<double> slopeThrough(const std::vector<LogPoint>& points) {
+  double n = 0, sumX = 0, sumY = 0, sumXX = 0, sumXY = 0;
+  for (const auto& [x, y] : points) {
+    n += 1;
+    sumX += x;
+    sumY += y;
+    sumXX += x * x;
+    sumXY += x * y;
+  }
+  const double spread = n * sumXX - sumX * sumX;
+  if (n < 2 || !(spread > 0)) return std::nullopt;
+  return (n * sumXY - sumX * sumY) / spread;
 }
-constexpr double kSlopeSpread = 0.35;
 
 // A score of a snapshot; nothing if it was not measured or is not finite.
 std::optional<double> scoreOf(const SnapshotRecord& snapshot, const std::string& metric) {
@@ -42,22 +57,48 @@ double lossOf(const std::string& metric, double score) {
 // lossOf is the identity or a reflection c - x, so it is its own inverse.
 double scoreOfLoss(const std::string& metric, double loss) { return lossOf(metric, loss); }
 
-Band lossDifference(const std::string& metric, std::span<const double> a, std::span<const double> b) {
-  Band band = differenceBand(a, b);
-  if (a.size() == 1 || b.size() == 1) band.halfWidth = seedSpread(metric);
+std::string SceneLosses::rowOf(const std::string& method) const {
+  if (method == "mlt") return "mlt-pathspace";
+  return method == "ppm" && reading_ == PpmReading::nextEvent ? "ppm-direct" : method;
+}
+
+// How far two seeds of the method's row lie apart, in logarithms of losses or in slopes ("slope"); of rows that the
+// standard campaign does not have the most of all rows, and of other metrics that of RMSE.
+double SceneLosses::seedSpread(const std::string& method, const std::string& metric) const {
+  static const auto kSpreads = nlohmann::json::parse(kSeedSpreadJson).get<std::map<std::string, nlohmann::json>>();
+  const auto of = [&](const nlohmann::json& row) {
+    return (row.contains(metric) ? row.at(metric) : row.at("rmse")).get<double>();
+  };
+  if (const auto row = kSpreads.find(rowOf(method)); row != kSpreads.end()) return of(row->second);
+  double most = 0;
+  for (const auto& [name, row] : kSpreads) most = std::max(most, of(row));
+  return most;
+}
+
+// The difference of two seeds has twice the variance of one, so half widths are those of differences over sqrt(2).
+Band SceneLosses::lossDifference(const std::string& metric, const std::string& a, const std::string& b) const {
+  const std::vector<double> lossesA = logLosses(a, metric), lossesB = logLosses(b, metric);
+  Band band = differenceBand(lossesA, lossesB);
+  if (lossesA.size() == 1 || lossesB.size() == 1) {
+    band.halfWidth = std::hypot(seedSpread(a, metric), seedSpread(b, metric)) / std::numbers::sqrt2;
+  }
   return band;
 }
 
-Band slopeBand(std::span<const double> slopes) {
+Band SceneLosses::slopeBand(const std::string& method) const {
+  const std::vector<double> slopes = errorSlopes(method);
   Band band = meanBand(slopes);
-  if (slopes.size() == 1) band.halfWidth = kSlopeSpread;
+  if (slopes.size() == 1) band.halfWidth = seedSpread(method, "slope") / std::numbers::sqrt2;
   return band;
 }
 
-Band scoreBand(const std::string& metric, std::span<const double> scores) {
-  Band band = meanBand(scores);
-  // The spread is one of log losses. A loss that grows by e^spread moves the score by loss * (e^spread - 1).
-  if (scores.size() == 1) band.halfWidth = lossOf(metric, band.mean) * std::expm1(seedSpread(metric));
+Band SceneLosses::scoreBand(const std::string& method, const std::string& metric) const {
+  const std::vector<double> values = scores(method, metric);
+  Band band = meanBand(values);
+  // A loss that grows by e^spread moves the score by loss * (e^spread - 1).
+  if (values.size() == 1) {
+    band.halfWidth = lossOf(metric, band.mean) * std::expm1(seedSpread(method, metric) / std::numbers::sqrt2);
+  }
   return band;
 }
 
@@ -153,26 +194,36 @@ double SceneLosses::endSeconds(const std::string& method) const {
   return meanOf(perSeed(method, [](const RunRecord& run) { return run.snapshots.back().renderSeconds; })).mean;
 }
 
+std::vector<double> SceneLosses::lossSlopes(const std::string& method, const std::string& metric,
+                                            double seconds) const {
+  constexpr size_t kLeastPoints = 3;
+  std::vector<double> slopes;
+  for (const RunRecord* run : runs(method)) {
+    std::vector<LogPoint> points;
+    for (const SnapshotRecord& snapshot : run->snapshots) {
+      const double away = snapshot.renderSeconds / seconds;
+      const std::optional<double> score = scoreOf(snapshot, metric);
+      if (!score || away * kSlopeSpan < 0.999 || away > 1.001 * kSlopeSpan) continue;
+      points.push_back({std::log(snapshot.renderSeconds), logLoss(metric, *score)});
+    }
+    const std::optional<double> slope = points.size() < kLeastPoints ? std::nullopt : slopeThrough(points);
+    if (!slope) return {};
+    slopes.push_back(*slope);
+  }
+  return slopes;
+}
+
 std::vector<double> SceneLosses::errorSlopes(const std::string& method) const {
   return perSeed(method, [](const RunRecord& run) -> std::optional<double> {
-    // The factor 0.999 keeps a snapshot at exactly a quarter of the time.
+    // The factor 0.999 keeps a snapshot at exactly a quarter of the time. The error is the root of the mean square.
     const double from = run.snapshots.back().renderSeconds / kSlopeSpan * 0.999;
-    // Sums for a straight line through (log time, log error). The error is the root of the mean square.
-    double n = 0, sumX = 0, sumY = 0, sumXX = 0, sumXY = 0;
+    std::vector<LogPoint> points;
     for (const SnapshotRecord& snapshot : run.snapshots) {
       const std::optional<double> mse = scoreOf(snapshot, kUnbiasedMse);
       if (!mse || *mse <= 0 || snapshot.renderSeconds < from) continue;
-      const double x = std::log(snapshot.renderSeconds), y = 0.5 * std::log(*mse);
-      n += 1;
-      sumX += x;
-      sumY += y;
-      sumXX += x * x;
-      sumXY += x * y;
+      points.push_back({std::log(snapshot.renderSeconds), 0.5 * std::log(*mse)});
     }
-    // The slope of the least-squares line. It takes two different times.
-    const double spread = n * sumXX - sumX * sumX;
-    if (n < 2 || !(spread > 0)) return std::nullopt;
-    return (n * sumXY - sumX * sumY) / spread;
+    return slopeThrough(points);
   });
 }
 

@@ -17,22 +17,22 @@ namespace wavecrest {
 double lossOf(const std::string& metric, double score);
 double scoreOfLoss(const std::string& metric, double loss);
 
-// mean(a) - mean(b) of logarithms of losses. With one seed on either side the band is the spread that single seeds
-// have among each other in the standard campaign (bench/claims/seed-spread).
-Band lossDifference(const std::string& metric, std::span<const double> a, std::span<const double> b);
-// The same of slopes, and of one method's slope or score alone.
-Band slopeBand(std::span<const double> slopes);
-Band scoreBand(const std::string& metric, std::span<const double> scores);
+// What the study's ppm had its direct light from, which its text leaves open: photons, as in SmallVCM, or next event
+// estimation, as in its other methods.
+enum class PpmReading { photons, nextEvent };
 
 class SceneLosses {
  public:
-  SceneLosses(std::string scene, const CampaignResults& results) : scene_(std::move(scene)), results_(results) {}
+  SceneLosses(std::string scene, const CampaignResults& results, PpmReading reading = PpmReading::photons)
+      : scene_(std::move(scene)), results_(results), reading_(reading) {}
+  // Another scene of the same results, read in the same way.
+  SceneLosses other(std::string scene) const { return {std::move(scene), results_, reading_}; }
 
   const std::string& name() const { return scene_; }
   const CampaignResults& results() const { return results_; }
 
   // The row of the campaign that a claim's method is judged by. The study's MLT mutates paths, so it is mlt-pathspace.
-  static std::string rowOf(const std::string& method) { return method == "mlt" ? "mlt-pathspace" : method; }
+  std::string rowOf(const std::string& method) const;
   // Why a method has no values; empty if it has.
   std::string missing(const std::string& method) const;
   std::vector<const RunRecord*> runs(const std::string& method) const;
@@ -41,6 +41,12 @@ class SceneLosses {
   std::vector<double> scores(const std::string& method, const std::string& metric) const;
   std::vector<double> logLosses(const std::string& method, const std::string& metric) const;
 
+  // mean(a) - mean(b) of the logarithms of the losses of two methods. A single seed has the spread that two seeds of
+  // its row have in the standard campaign (bench/claims/seed-spread), as have the bands below.
+  Band lossDifference(const std::string& metric, const std::string& a, const std::string& b) const;
+  Band slopeBand(const std::string& method) const;  // of errorSlopes
+  Band scoreBand(const std::string& method, const std::string& metric) const;
+
   // The loss that the reference's own noise gives; nothing where that is not known.
   std::optional<double> floorLoss(const std::string& metric) const;
 
@@ -48,6 +54,10 @@ class SceneLosses {
   // logarithms; of a seed that has more at its end, the logarithm of that. The first snapshot's time where it is there
   // already.
   std::vector<double> logTimes(const std::string& method, const std::string& metric, double loss) const;
+
+  // d log(loss) / d log(time) of each seed's curve from a quarter of this time to four times it, by least squares;
+  // empty where a curve has fewer than three snapshots there.
+  std::vector<double> lossSlopes(const std::string& method, const std::string& metric, double seconds) const;
 
   // When this loss would be reached, by the slope of the runs' own curves; seconds at which they end, a mean.
   std::optional<TimeToLoss> timeToLoss(const std::string& method, const std::string& metric, double loss) const;
@@ -60,9 +70,11 @@ class SceneLosses {
  private:
   std::vector<double> perSeed(const std::string& method,
                               const std::function<std::optional<double>(const RunRecord&)>& function) const;
+  double seedSpread(const std::string& method, const std::string& metric) const;
 
   std::string scene_;
   const CampaignResults& results_;
+  PpmReading reading_;
 };
 
 }  // namespace wavecrest

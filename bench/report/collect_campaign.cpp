@@ -276,8 +276,8 @@ std::string profileOf(const CampaignResults& results) {
 }
 
 // A stored claim with its source and explanation, which are in bench/claims and not in results files. Explanations
-// speak of the results of the standard profile.
-ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile) {
+// speak of the results of one campaign each.
+ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile, std::string_view commit) {
   ReportClaim shown{.scene = record.scene,
                     .statement = record.statement,
                     .verdict = record.verdict,
@@ -292,7 +292,10 @@ ReportClaim shownClaim(const ClaimRecord& record, std::string_view profile) {
       record.verdict != toString(ClaimVerdict::holds) && record.verdict != toString(ClaimVerdict::notJudged);
   const Explanation* explanation = open ? findExplanation(claim->id, record.verdict, profile) : nullptr;
   if (explanation == nullptr) return shown;
-  if (explanation->profile != profile) shown.explanation = "In the " + explanation->profile + " campaign: ";
+  shown.explainedHere = isOf(*explanation, profile, commit);
+  if (!shown.explainedHere) {
+    shown.explanation = fmt::format("In the {} campaign of commit {}: ", explanation->profile, explanation->commit);
+  }
   shown.explanation += explanation->text;
   return shown;
 }
@@ -331,7 +334,10 @@ ConvergenceReport collectCampaign(const CampaignResults& results) {
   // A scene whose runs are still to come has nothing to show.
   std::erase_if(report.scenes, [](const ReportScene& scene) { return scene.series.empty() && scene.refusals.empty(); });
   const std::string profile = profileOf(results);
-  for (const ClaimRecord& claim : results.claims) report.claims.push_back(shownClaim(claim, profile));
+  const auto commit = results.campaign.find("commit");
+  for (const ClaimRecord& claim : results.claims) {
+    report.claims.push_back(shownClaim(claim, profile, commit == results.campaign.end() ? "" : commit->second));
+  }
   for (const auto& [key, value] : results.campaign) report.environment.push_back({key, value});
   return report;
 }

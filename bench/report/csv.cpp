@@ -54,8 +54,8 @@ std::string claimsAsCsv(const ConvergenceReport& report) {
   std::string csv = "id,scene,statement,source,verdict,figure,explanation,evidence\n";
   for (const ReportClaim& claim : report.claims) {
     append(csv, "{},{},{},{},{},{},{},{}\n", field(claim.id), field(claim.scene), field(claim.statement),
-           field(claim.source), field(claim.verdict), field(claim.figure), field(claim.explanation),
-           field(claim.evidence));
+           field(claim.source), field(claim.verdict), field(claim.figure),
+           field(claim.explainedHere ? claim.explanation : ""), field(claim.evidence));
   }
   return csv;
 }

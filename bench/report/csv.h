@@ -11,7 +11,7 @@ namespace wavecrest {
 /// iterations, metric, value. RFC 4180; numbers with all their digits, nothing where there is no number.
 std::string measurementsAsCsv(const ConvergenceReport& report);
 
-/// A line for each finding of the study, with its verdict, evidence and explanation.
+/// A line for each finding of the study, with its verdict, evidence and, if it has one of its own, explanation.
 std::string claimsAsCsv(const ConvergenceReport& report);
 
 /// A line for each series and metric: mean and extremes over seeds at the end, what the reference's own noise would

@@ -120,6 +120,7 @@ struct ReportClaim {
   std::string evidence = {};
   std::string source = {};       ///< the study's words
   std::string explanation = {};  ///< why it does not hold or is open, where somebody has written that down
+  bool explainedHere = true;     ///< of this campaign, and not of one with the same verdict
   std::string id = {};           ///< in bench/claims
 };
 

@@ -7,6 +7,7 @@
 
 #include "bench/report/html_text.h"
 #include "bench/report/series_values.h"
+#include "bench/statistics/bands.h"
 
 namespace wavecrest {
 namespace {

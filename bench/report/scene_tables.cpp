@@ -10,6 +10,7 @@
 #include "bench/report/method_style.h"
 #include "bench/report/series_values.h"
 #include "bench/report/time_ahead.h"
+#include "bench/statistics/bands.h"
 
 namespace wavecrest {
 namespace {

@@ -85,8 +85,4 @@ std::optional<SeriesName> findSeriesName(const ConvergenceReport& report, const 
 /// The series of a scene with this name, or null.
 const ReportSeries* seriesOf(const ReportScene& scene, const SeriesName& name);
 
-// Seeds from which a share of bias is shown. It comes from pairs of seeds: two have one, and its error is as large as
-// itself.
-constexpr size_t kFewestSeedsForShare = 4;
-
 }  // namespace wavecrest

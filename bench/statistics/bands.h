@@ -28,6 +28,10 @@ double studentQuantile(double degreesOfFreedom);
 // Stegun 1964, 26.7.3 and 26.7.4).
 double studentTail(double t, int degreesOfFreedom);
 
+// Seeds from which the share of squared bias in an error is told. It comes from pairs of seeds: two have one, and its
+// error is as large as itself.
+constexpr unsigned kFewestSeedsForShare = 4;
+
 Band meanBand(std::span<const double> values);
 // mean(a) - mean(b).
 Band differenceBand(std::span<const double> a, std::span<const double> b);

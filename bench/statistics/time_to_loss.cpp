@@ -1,5 +1,6 @@
 #include "bench/statistics/time_to_loss.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace wavecrest {
@@ -7,6 +8,7 @@ namespace {
 
 constexpr double kFittedPart = 0.25;  // of a run's time, from where its points are fitted
 constexpr size_t kLeastPoints = 3;
+constexpr double kBend = 0.75;
 
 // Natural logarithms of time and loss.
 struct LogPoint {
@@ -55,7 +57,7 @@ std::vector<LogPoint> lastPart(const std::vector<LossPoint>& run) {
 }  // namespace
 
 std::optional<TimeToLoss> timeToLoss(std::span<const std::vector<LossPoint>> runs, double loss) {
-  std::vector<double> times, slopes;  // of each seed; times are logarithms
+  std::vector<double> times, slopes, ends;  // of each seed; times are logarithms
   Line line;
   for (const std::vector<LossPoint>& run : runs) {
     const std::vector<LogPoint> points = lastPart(run);
@@ -64,6 +66,7 @@ std::optional<TimeToLoss> timeToLoss(std::span<const std::vector<LossPoint>> run
     if (!(line.slope < 0)) return std::nullopt;
     times.push_back(line.meanTime + (std::log(loss) - line.meanLoss) / line.slope);
     slopes.push_back(line.slope);
+    ends.push_back(points.back().time);
   }
   if (times.empty()) return std::nullopt;
   Band time = meanBand(times), slope = meanBand(slopes);
@@ -75,6 +78,7 @@ std::optional<TimeToLoss> timeToLoss(std::span<const std::vector<LossPoint>> run
     time.halfWidth = quantile * error;
     slope.halfWidth = quantile * std::sqrt(line.residual / line.sumTime);
   }
+  time.halfWidth = std::max(time.halfWidth, kBend * (time.mean - meanOf(ends).mean));
   return TimeToLoss{.seconds = std::exp(time.mean),
                     .low = std::exp(time.mean - time.halfWidth),
                     .high = std::exp(time.mean + time.halfWidth),

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/claims/explanations.h"
 #include "bench/report/collect.h"
 #include "bench/report/results_folder.h"
 #include "bench/results/read_results.h"
@@ -209,21 +210,24 @@ TEST_F(CollectCampaign, findingsAreJudgedOverAllParts) {
 }
 
 TEST_F(CollectCampaign, explanationsOfTheStandardCampaignSayThatElsewhere) {
-  const auto explanation = [&](const std::string& profile, const std::string& verdict) {
-    const fs::path file = folder / (profile + verdict + ".sqlite");
+  const Explanation* const own = findExplanation("dragon-caustics.pt-stalls", "does not hold", "standard");
+  ASSERT_NE(own, nullptr);
+  const auto explanation = [&](const std::string& profile, const std::string& verdict, const std::string& commit) {
+    const fs::path file = folder / (profile + verdict + commit + ".sqlite");
     ResultsStore store(file);
-    store.putCampaign({{"profile", profile}});
+    store.putCampaign({{"profile", profile}, {"commit", commit}});
     store.putScene({.name = "box", .hash = "1", .referenceFile = "", .width = kSide, .height = kSide});
     store.putRun(run("pt", 1, 0.2));
     store.putClaims({{"dragon-caustics.pt-stalls", "box", "a", verdict, "0.1", "0.1"}});
     return collectReport(std::vector<fs::path>{file}).claims.at(0).explanation;
   };
-  const std::string standard = explanation("standard", "does not hold");
-  EXPECT_FALSE(standard.empty());
-  EXPECT_EQ(explanation("quick", "does not hold"), "In the standard campaign: " + standard);
-  EXPECT_EQ(explanation("standard", "undecided"), "") << "it explains another verdict";
-  EXPECT_EQ(explanation("quick", "holds"), "");
-  EXPECT_EQ(explanation("quick", "not judged"), "");
+  EXPECT_EQ(explanation("standard", "does not hold", own->commit), own->text);
+  const std::string elsewhere = "In the standard campaign of commit " + own->commit + ": " + own->text;
+  EXPECT_EQ(explanation("quick", "does not hold", own->commit), elsewhere);
+  EXPECT_EQ(explanation("standard", "does not hold", "0"), elsewhere) << "another program";
+  EXPECT_EQ(explanation("standard", "undecided", own->commit), "") << "it explains another verdict";
+  EXPECT_EQ(explanation("quick", "holds", own->commit), "");
+  EXPECT_EQ(explanation("quick", "not judged", own->commit), "");
 }
 
 TEST_F(CollectCampaign, refusesResultsWithoutAMeasurement) {

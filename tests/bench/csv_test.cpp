@@ -69,6 +69,8 @@ TEST(Csv, findingsComeWithTheirExplanations) {
                       .explanation = "d",
                       .id = "e"};
   EXPECT_EQ(claimsAsCsv(report).substr(claimsAsCsv(report).find('\n')), "\ne,box,\"a, b\",,undecided,f,d,c\n");
+  report.claims[0].explainedHere = false;
+  EXPECT_EQ(claimsAsCsv(report).substr(claimsAsCsv(report).find('\n')), "\ne,box,\"a, b\",,undecided,f,,c\n");
 }
 
 TEST(Csv, summaryHasTheTimeToATarget) {

@@ -268,6 +268,11 @@ class Publishing(CommandTest):
         for spread, shown in ((4.96e-4, "0.0005"), (3e-5, "0.00003"), (1e-4, "0.0001"), (9.7e-5, "0.0001")):
             self.assertEqual(publish.shown_spread(spread, "{:.3f}"), shown)
 
+    def test_the_spread_of_seeds_is_that_of_the_standard_campaign(self):
+        claims = ROOT / "bench" / "claims"
+        spread = subprocess.run([sys.executable, claims / "seed-spread"], check=True, capture_output=True, text=True)
+        self.assertEqual(spread.stdout, (claims / "seed_spread.json").read_text())
+
     def test_what_cannot_be_judged_is_not_counted(self):
         self.campaign(methods="bpm")  # of which the study says nothing
         result = self.publish()
@@ -377,7 +382,7 @@ exec {WAVECREST} "$@"
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(self.read("asked"), "--program-only\n")
         figure = self.read("out/repeat-figure/page/cornell-mirror.svg")
-        self.assertEqual(figure.count("<polyline"), 12 * 3, "twelve rows by three metrics")
+        self.assertEqual(figure.count("<polyline"), 13 * 3, "thirteen rows by three metrics")
         self.assertIn("<image", figure)
         self.assertIn("open out/repeat-figure/page/cornell-mirror.svg", result.stdout)
         self.assertIn("compare it with bench/campaign/study/cornell-mirror.svg", result.stdout)

@@ -112,10 +112,13 @@ TEST(ReferenceFile, aCompactOneHoldsNothingAboveTheLargestHalf) {
   EXPECT_THROW(writeCompactReference(folder.path("r.exr"), bright), ImageError);
 }
 
-TEST(ReferenceFile, relativeErrorIsThatOfTheDefinition) {
-  // Samples 1 with a half difference of 0.1: sqrt(0.01 / (1 + 0.01)).
-  const Image mean = noise(4, 4, 1, 0, 1), difference = noise(4, 4, 0.1f, 0, 1);
-  EXPECT_NEAR(relativeError(mean, difference), std::sqrt(0.01 / 1.01), 1e-6);
+TEST(ReferenceFile, relativeErrorIsThatOfTheDefinitionHoweverBrightTheSceneIs) {
+  // Samples of one brightness with a half difference of a tenth of it.
+  for (const float brightness : {1.0f, 1e-3f, 1e3f}) {
+    const Image mean = noise(4, 4, brightness, 0, 1), difference = noise(4, 4, 0.1f * brightness, 0, 1);
+    EXPECT_NEAR(relativeError(mean, difference), 0.1, 1e-6) << brightness;
+  }
+  EXPECT_EQ(relativeError(noise(4, 4, 0, 0, 1), noise(4, 4, 0, 0, 1)), 0) << "of a black image";
 }
 
 TEST(ReferenceFile, anyOtherExrIsAReferenceOfUnknownNoise) {

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <set>
 
+#include "bench/until/film_error.h"
 #include "tests/bench/campaign/small_references.h"
 #include "tests/metrics/temporary_folder.h"
 
@@ -97,6 +99,27 @@ TEST(RenderReference, stopsAtARelativeError) {
   EXPECT_LE(reference.info.relativeError, 0.15);
   EXPECT_GT(reference.info.iterations, 1u);
   EXPECT_FALSE(reference.noiseFloors.empty());
+}
+
+TEST(RenderReference, anErrorCountsAfterAFewIterations) {
+  const test::TemporaryFolder folder;
+  const ReferenceGoal goal{.relativeError = 1e3, .seconds = std::nullopt, .iterations = std::nullopt};
+  const Reference reference =
+      renderReference(tinyScene(), settingsOf(Method::pt), "test", goal, folder.path("r.exr"), {});
+  EXPECT_GE(reference.info.iterations, 8u);
+}
+
+TEST(RenderReference, aBlackImageHasNoErrorAndEndsWhereThatIsTheGoal) {
+  const test::TemporaryFolder folder;
+  const std::string dark = folder.path("dark.xml");
+  std::ofstream(dark) << R"(<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/></scene>)";
+  const Scene scene = test::sceneOf(16, 12, dark.c_str());
+  const ReferenceGoal goal{.relativeError = 0.5, .seconds = std::nullopt, .iterations = std::nullopt};
+  for (int call = 0; call < 2; ++call) {  // also where it goes on
+    const Reference reference = renderReference(scene, settingsOf(Method::pt), "test", goal, folder.path("r.exr"), {});
+    EXPECT_GE(reference.info.iterations, kBlackIterations);
+    EXPECT_TRUE(isBlack(reference.mean.pixels));
+  }
 }
 
 TEST(RenderReference, anotherReferenceIsNotContinued) {

@@ -58,7 +58,7 @@ TEST(StudyClaims, areJudgedForTheScenesOfATimedCampaignOnly) {
   CampaignResults results;
   results.scenes.push_back({.name = "cornell-glossy", .hash = "0", .referenceFile = ""});
   const std::vector<ClaimRecord> records = judgeStudyClaims(results);
-  EXPECT_EQ(records.size(), 5u) << "three of the scene, two about all nine";
+  EXPECT_EQ(records.size(), 6u) << "four of the scene, two about all nine";
   for (const ClaimRecord& record : records) EXPECT_EQ(record.verdict, "not judged") << record.id;
   results.campaign["spp"] = "4";
   EXPECT_TRUE(judgeStudyClaims(results).empty());
@@ -66,20 +66,28 @@ TEST(StudyClaims, areJudgedForTheScenesOfATimedCampaignOnly) {
 
 TEST(Explanations, areOfKnownClaimsAndOneOfEachInAProfile) {
   const std::string entry = R"({"claims": ["pool-interior.pt-fails"], "verdict": "undecided", "text": "so"})";
-  const auto explanations = parseExplanations(R"({"quick": [)" + entry + R"(], "study": [)" + entry + "]}");
+  const auto ofStudy = [](const std::string& entries) {
+    return R"("study": {"commit": "c", "findings": [)" + entries + "]}";
+  };
+  const auto explanations =
+      parseExplanations(R"({"quick": {"commit": "b", "findings": [)" + entry + "]}," + ofStudy(entry) + "}");
   ASSERT_EQ(explanations.size(), 2u);
   EXPECT_EQ(explanations[1].profile, "study");
+  EXPECT_TRUE(isOf(explanations[1], "study", "c"));
+  EXPECT_FALSE(isOf(explanations[1], "study", "b"));
+  EXPECT_FALSE(isOf(explanations[1], "quick", "c"));
   EXPECT_EQ(explanations[1].verdict, "undecided");
   EXPECT_EQ(explanations[1].text, "so");
-  EXPECT_THROW(parseExplanations(R"({"study": [)" + entry + "," + entry + "]}"), ClaimListError);
-  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": ["nothing"], "verdict": "undecided", "text": "so"}]})"),
-               ClaimListError);
-  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": [], "verdict": "undecided", "text": "so"}]})"),
-               ClaimListError);
-  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": ["pool-interior.pt-fails"], "verdict": "undecided"}]})"),
-               ClaimListError);
-  EXPECT_THROW(parseExplanations(R"({"study": [{"claims": ["pool-interior.pt-fails"], "text": "so"}]})"),
-               ClaimListError);
+  for (const std::string& entries : {
+           entry + "," + entry,
+           std::string(R"({"claims": ["nothing"], "verdict": "undecided", "text": "so"})"),
+           std::string(R"({"claims": [], "verdict": "undecided", "text": "so"})"),
+           std::string(R"({"claims": ["pool-interior.pt-fails"], "verdict": "undecided"})"),
+           std::string(R"({"claims": ["pool-interior.pt-fails"], "text": "so"})"),
+       }) {
+    EXPECT_THROW(parseExplanations("{" + ofStudy(entries) + "}"), ClaimListError) << entries;
+  }
+  EXPECT_THROW(parseExplanations(R"({"study": {"findings": []}})"), ClaimListError) << "of no campaign";
   EXPECT_THROW(parseExplanations("["), ClaimListError);
 }
 

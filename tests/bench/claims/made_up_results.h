@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/claims/judge_claims.h"
+#include "bench/statistics/bands.h"
 
 namespace wavecrest {
 
@@ -53,9 +54,9 @@ class MadeUp {
         {.scene = "s", .method = method, .seed = 1, .state = RunState::refused, .reason = "it cannot"});
     return *this;
   }
-  MadeUp& bias(const std::string& method, const std::vector<double>& shares) {
+  MadeUp& bias(const std::string& method, const std::vector<double>& shares, unsigned seeds = kFewestSeedsForShare) {
     for (unsigned i = 0; i < shares.size(); ++i) {
-      results_.biases.push_back({"s", method, i, 2, 1.0, 1 - shares[i], shares[i]});
+      results_.biases.push_back({"s", method, i, seeds, 1.0, 1 - shares[i], shares[i]});
     }
     return *this;
   }

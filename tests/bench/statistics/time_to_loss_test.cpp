@@ -24,8 +24,10 @@ TEST(TimeToLoss, followsTheLineOfTheLastPartOfARun) {
   const auto time = timeToLoss(runs, 0.01);
   ASSERT_TRUE(time);
   EXPECT_NEAR(time->seconds, 100, 1e-6);
-  EXPECT_NEAR(time->low, 100, 1e-3);
-  EXPECT_NEAR(time->high, 100, 1e-3);
+  // The line has no error, but curves bend: 8 s are the end.
+  const double bend = std::pow(100 / 8.0, 0.75);
+  EXPECT_NEAR(time->low, 100 / bend, 1e-3);
+  EXPECT_NEAR(time->high, 100 * bend, 1e-3);
   EXPECT_NEAR(time->slope.mean, -1, 1e-9);
   EXPECT_NEAR(time->slope.halfWidth, 0, 1e-6);
 }
@@ -33,7 +35,7 @@ TEST(TimeToLoss, followsTheLineOfTheLastPartOfARun) {
 TEST(TimeToLoss, ofOneRunHasTheErrorOfItsLine) {
   // Three points, logarithms of time -1, 0 and 1 times log 2 about the middle. Off the line of slope -1 by d, -2 d and
   // d, whose residual variance is 6 d^2, of one degree of freedom.
-  const double d = 0.01;
+  const double d = 0.03;
   const std::vector<LossCurve> runs{curve({1, 0.5 * std::exp(d), 0.25 * std::exp(-2 * d), 0.125 * std::exp(d)})};
   const auto time = timeToLoss(runs, 0.0625);
   ASSERT_TRUE(time);
@@ -42,8 +44,8 @@ TEST(TimeToLoss, ofOneRunHasTheErrorOfItsLine) {
   EXPECT_NEAR(time->slope.halfWidth, 12.706 * std::sqrt(6 * d * d / 2) / std::log(2), 1e-3);
   // Two steps beyond the middle: variance 6 d^2 (1 / 3 + 4 / 2).
   const double half = 12.706 * std::sqrt(6 * d * d * (1.0 / 3 + 2));
-  EXPECT_NEAR(time->low, 16 * std::exp(-half), 1e-3);
-  EXPECT_NEAR(time->high, 16 * std::exp(half), 1e-3);
+  EXPECT_NEAR(time->low, 16 * std::exp(-half), 1e-2);
+  EXPECT_NEAR(time->high, 16 * std::exp(half), 1e-2);
 }
 
 TEST(TimeToLoss, ofSeveralRunsHasTheirSpread) {

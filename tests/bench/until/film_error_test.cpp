@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <random>
+#include <string>
 
 #include "bench/until/until.h"
 #include "engine/load/load.h"
 #include "scenes/scene_list.h"
 #include "tests/effort.h"
+#include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {
 namespace {
@@ -130,6 +133,19 @@ TEST(FilmError, isNotToldOfOneSampleThatOutshinesAllOrOfBlackFilms) {
   EXPECT_FALSE(estimateFilmError(slices, 64));
 }
 
+TEST(FilmError, isNoneOfFilmsWithoutVarianceButForTheRoundingOfSlices) {
+  std::vector<Film> slices(kFewestSlices, Film(size_t{3} * 64 * 64, 0.3f));
+  const std::optional<FilmError> none = estimateFilmError(slices, 64);
+  ASSERT_TRUE(none);
+  EXPECT_LE(none->interval.high, 1e-6);
+  for (size_t k = 0; k < slices.size(); ++k) {
+    for (float& value : slices[k]) value *= 1 + static_cast<float>(k % 3) * 0x1p-23f;
+  }
+  const std::optional<FilmError> rounding = estimateFilmError(slices, 64);
+  ASSERT_TRUE(rounding);
+  EXPECT_LE(rounding->interval.high, 1e-6);
+}
+
 TEST(FilmSlices, areMeansOfTheirOwnIterationsAlone) {
   FilmSlices slices;
   // Iteration i has the value i: the mean of n of them is (n - 1) / 2.
@@ -162,6 +178,21 @@ TEST(FilmErrorWatch, goesOnAfterAnInterrupt) {
   EXPECT_EQ(found.iterations, wanted.iterations);
   EXPECT_EQ(found.error->value, wanted.error->value);
   EXPECT_LE(found.error->interval.high, 0.3);
+}
+
+TEST(FilmErrorWatch, endsAtABlackFilmWhereNothingElseWould) {
+  const test::TemporaryFolder folder;
+  const std::string dark = folder.path("dark.xml");
+  std::ofstream(dark) << R"(<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/></scene>)";
+  LoadOptions options;
+  options.filmSize = {kWidth, kHeight};
+  const Scene scene = loadScene(dark, options);
+  const RenderSettings settings = settingsOf(scene, Method::pt, 1);
+  const auto session = Session::create(scene, settings);
+  FilmErrorWatch watch;
+  const ErrorNow now = watch.renderUntil(*session, settings, 0.1);
+  EXPECT_TRUE(now.black && !now.reached && !now.error);
+  EXPECT_GE(now.iterations, kBlackIterations);
 }
 
 TEST(FilmErrorWatch, saysWhichIterationsAreNotIndependent) {
