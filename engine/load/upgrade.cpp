@@ -44,24 +44,22 @@ void upgradeElement(XmlElement& element) {
 
 void upgradeChildren(XmlElement& element) {
   if (!element.isObject()) return;
-  // Take out the four values. Those that are absent leave the texture coordinates as they are.
-  std::string offset[2] = {"0", "0"}, scale[2] = {"1", "1"};
+  // Take out the values. Those that are absent leave the texture coordinates as they are.
+  std::string offset[2] = {"0", "0"}, scale[2], bothScales = "1";
   bool any = false;
   XmlElement transform;
   std::erase_if(element.children, [&](const XmlElement& child) {
-    const std::string_view name = child.get("name");
-    for (int axis = 0; axis < 2; ++axis) {
-      const bool isOffset = name == (axis == 0 ? "uoffset" : "voffset");
-      const bool isScale = name == (axis == 0 ? "uscale" : "vscale");
-      if (!isOffset && !isScale) continue;
-      (isOffset ? offset : scale)[axis] = child.get("value");
-      any = true;
-      // An error in the transform is reported at the last of the values.
-      transform.line = child.line;
-      return true;
-    }
-    return false;
+    constexpr std::string_view kNames[] = {"uoffset", "voffset", "uscale", "vscale", "uvscale"};
+    std::string* const values[] = {&offset[0], &offset[1], &scale[0], &scale[1], &bothScales};
+    const auto* const name = std::ranges::find(kNames, child.get("name"));
+    if (name == std::end(kNames)) return false;
+    *values[name - kNames] = child.get("value");
+    any = true;
+    // An error in the transform is reported at the last of the values.
+    transform.line = child.line;
+    return true;
   });
+  for (std::string& own : scale) own = own.empty() ? bothScales : own;
   // The reflectance of `diffuse` had a longer name.
   if (element.tag == "bsdf" && element.get("type") == "diffuse") {
     for (XmlElement& child : element.children) {
@@ -71,7 +69,7 @@ void upgradeChildren(XmlElement& element) {
     }
   }
   if (!any) return;
-  // Mitsuba 3 upgrades to scale * translate: the offset is applied before the scale.
+  // As 0.6 does: first the scale. Mitsuba 3 upgrades to the other order, which moves the texture.
   transform.tag = "transform";
   transform.file = element.file;
   transform.attributes = {{"name", "to_uv"}};
@@ -80,7 +78,7 @@ void upgradeChildren(XmlElement& element) {
   translate.attributes = {{"x", offset[0]}, {"y", offset[1]}};
   scaling.tag = "scale";
   scaling.attributes = {{"x", scale[0]}, {"y", scale[1]}};
-  transform.children = {std::move(translate), std::move(scaling)};
+  transform.children = {std::move(scaling), std::move(translate)};
   element.children.push_back(std::move(transform));
 }
 

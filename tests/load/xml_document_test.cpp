@@ -358,11 +358,14 @@ TEST(Upgrade, LookAtAndTextureScalesAreUnderstood) {
   const Scene scene = load(sceneXml(R"(
     <sensor type="perspective"><transform name="toWorld"><lookAt origin="0,0,5" target="0,0,0" up="0,1,0"/></transform></sensor>
     <shape type="sphere"><bsdf type="diffuse"><texture name="reflectance" type="checkerboard">
-      <float name="uscale" value="2"/><float name="voffset" value="0.25"/></texture></bsdf></shape>)",
+      <float name="uscale" value="2"/><float name="uoffset" value="0.5"/><float name="uvscale" value="3"/>
+      <float name="voffset" value="0.25"/></texture></bsdf></shape>)",
                                     "0.6.0"));
   EXPECT_EQ(scene.sensor.toWorld[2][3], 5);
   const Matrix4& toUv = scene.textures.at(0).toUv;
   EXPECT_EQ(toUv[0][0], 2);
+  EXPECT_EQ(toUv[0][3], 0.5) << "the offset is not scaled";
+  EXPECT_EQ(toUv[1][1], 3) << "the scale of both axes, unless one has its own";
   EXPECT_EQ(toUv[1][3], 0.25);
 }
 
