@@ -1,15 +1,7 @@
 # Library wavecrest_version, what engine/version.h declares: the project's version, and the commit that is built.
 # Configuring again after each commit keeps the latter true: results are filed under it. A unit of its own, so that
 # a commit costs no more than this file and a link.
-execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} rev-parse --short=12 HEAD
-                OUTPUT_VARIABLE WAVECREST_COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} rev-parse --path-format=absolute --git-path logs/HEAD
-                OUTPUT_VARIABLE commit_log OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-if(NOT WAVECREST_COMMIT)
-  set(WAVECREST_COMMIT unknown)
-elseif(EXISTS "${commit_log}")
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${commit_log}")
-endif()
+include(commit)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/version.cpp CONTENT
 "#include \"engine/version.h\"
 

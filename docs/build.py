@@ -19,10 +19,12 @@ import subprocess
 import sys
 
 sys.dont_write_bytecode = True  # nothing is written into the tree
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "tools"))
 
 from gallery_page import gallery_page  # noqa: E402
 from language_pages import language_pages  # noqa: E402
 from pictures import ROOT, Pictures  # noqa: E402
+from tree_files import tree_files  # noqa: E402
 
 # Title of each section, and the folders whose Markdown files it holds, in this order.
 SECTIONS = {
@@ -31,15 +33,6 @@ SECTIONS = {
     "How it works": ["engine", "kernels", "tests"],
 }
 FRONT = "README.md"
-
-
-def markdown_files():
-    """The tree's own Markdown files, those that git knows of or could."""
-    listed = subprocess.run(
-        ["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"],
-        cwd=ROOT, capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    return sorted(file for file in listed.stdout.split() if (ROOT / file).is_file())
 
 
 def page_of(file):
@@ -151,7 +144,7 @@ def main():
     arguments = parser.parse_args()
     pages = arguments.out.resolve() / "pages"
     shutil.rmtree(arguments.out, ignore_errors=True)
-    files = markdown_files()
+    files = tree_files(ROOT, "*.md")
     titles = {}
     for file in files:
         text = (ROOT / file).read_text()

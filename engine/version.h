@@ -4,6 +4,6 @@
 namespace wavecrest {
 
 extern const char* const kVersion;
-extern const char* const kCommit;  // 12 hexadecimal digits, or "unknown" outside of a repository
+extern const char* const kCommit;  // 12 hexadecimal digits, or "unknown" outside of a repository and of archives of one
 
 }  // namespace wavecrest

@@ -1,6 +1,6 @@
 """The lint target: formatting of every source file, and clang-tidy over what changed or over every translation unit.
 
-    lint.py format [--fix]             clang-format 14 on all C++ files that git knows
+    lint.py format [--fix]             clang-format 14 on all C++ files of the tree
     lint.py tidy [--build DIR] [FILE…] clang-tidy 14 with DIR/compile_commands.json (default build/lint, which this
                                        configures); FILEs are substrings of paths, default all
     lint.py tidy --changed             the units that differ from main, and one for each header that does
@@ -21,6 +21,7 @@ import sys
 import tempfile
 
 import changed_units
+from tree_files import tree_files
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LINT_BUILD = ROOT / "build" / "lint"
@@ -38,16 +39,8 @@ def find_tool(name):
     sys.exit(f"lint: {name} {VERSION} not found; install the Debian package {name}-{VERSION}")
 
 
-def source_files():
-    """All C++ files in the tree, committed or about to be, except ignored ones."""
-    patterns = ["*.cpp", "*.h"]
-    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", *patterns]
-    names = subprocess.check_output(command, cwd=ROOT, text=True).split()
-    return sorted(name for name in set(names) if (ROOT / name).exists())
-
-
 def check_format(fix):
-    files = source_files()
+    files = tree_files(ROOT, "*.cpp", "*.h")
     mode = ["-i"] if fix else ["--dry-run", "--Werror"]
     status = subprocess.run([find_tool("clang-format"), *mode, *files], cwd=ROOT, check=False).returncode
     print(f"lint: {len(files)} files {'formatted' if fix else 'checked'}")

@@ -200,7 +200,7 @@ def step_mpi(tally):
     """Processes of Open MPI that share a render, and the ratio of their speed to that of threads."""
     if not run(tally, "mpi: packages", ["tools/install-packages", "mpi"]):
         return
-    if build(tally, "release", "-DWAVECREST_SHARED=ON", "-DWAVECREST_MPI=ON", targets=("wavecrest", "wavecrest_mpi")):
+    if build(tally, "release", "-DWAVECREST_SHARED=ON", "-DWAVECREST_MPI=ON", targets=("wavecrest",)):
         test(tally, "release", "--label-regex", "^mpi$")
         methods = ["--methods", "pt,vcm", "--seconds", "2", "--rounds", "3"]
         run(tally, "mpi: against threads", ["bench/ranks/against-threads", "build/release/wavecrest", *methods])

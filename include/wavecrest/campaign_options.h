@@ -11,10 +11,10 @@ namespace wavecrest::api {
 struct CampaignOptions {
   // What the campaign is, by the name of the option: "scenes", "--methods", "--profile", "--time", "--time-factor",
   // "--snapshot-every", "--spp", "--seeds", "--size", "--precision", "--sampler", "--images", "--radius",
-  // "--radius-alpha", "--light-paths", "--roulette", "--direct-pass", "--mlt", "--clock", "--crop", "-D"; only what
-  // differs from the defaults. "scenes", "--methods", "--mlt", "--crop" and "-D" take several words, the others one;
-  // that of "--direct-pass" is "yes". They are stored with the results as they are given, so that going on needs none
-  // of them and is refused with others.
+  // "--radius-alpha", "--merge-vertices", "--light-paths", "--roulette", "--direct-pass", "--mlt", "--clock", "--crop",
+  // "-D"; only what differs from the defaults. "scenes", "--methods", "--mlt", "--crop" and "-D" take several words,
+  // the others one; that of "--direct-pass" is "yes". They are stored with the results as they are given, so that going
+  // on needs none of them and is refused with others.
   std::map<std::string, std::vector<std::string>> defining{};
 
   // How it is run; may change from one process to the next.

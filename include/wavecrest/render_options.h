@@ -8,7 +8,7 @@
 namespace wavecrest::api {
 
 struct RenderOptions {
-  std::string method = "pt";  // pt, lt, bpt, mlt, ppm, bpm, vcm or gpt
+  std::string method = "pt";  // pt, lt, bpt, mlt, ppm, bpm, vcm, gpt or evcm
   std::string time{};         // of rendering: "6s", "100ms", "1h30m"
   uint64_t spp = 0;  // iterations: paths, of mlt mutations, per pixel. Neither time nor spp: what the scene says
   uint64_t seed = 0;

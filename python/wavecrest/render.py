@@ -124,9 +124,9 @@ class Scene:
     ) -> Result:
         """Renders for so much time ("30s", or seconds) or so many iterations, whichever ends first.
 
-        Further options are those of `wavecrest render`: sampler, filter_mode, precision, isa, accel, max_depth, rr_depth,
-        roulette, wave, memory, radius (a number, or "auto"), radius_alpha, merge_vertices, light_paths, direct_pass,
-        connection_roulette, guide, guide_memory, mlt, chains, bootstrap, restart, no_direct_pass.
+        Further options are those of `wavecrest render`: sampler, filter_mode, precision, isa, accel, instances, max_depth,
+        rr_depth, roulette, wave, memory, radius (a number, or "auto"), radius_alpha, merge_vertices, light_paths,
+        direct_pass, connection_roulette, guide, guide_memory, mlt, chains, bootstrap, restart, no_direct_pass.
         Other Python threads run meanwhile. Ctrl-C raises Interrupted, a KeyboardInterrupt whose `result` is the image so
         far.
         """
@@ -155,7 +155,7 @@ class Scene:
         for name in ("time", "spp"):
             if options.get(name) is not None:
                 raise UsageError(f"snapshots: {name} is for render(); expected times or iterations alone")
-        due: Sequence[float] = times if times is not None else iterations or ()
+        due: Sequence[float] = times if times is not None else iterations if iterations is not None else ()
         if any(b <= a for a, b in zip(due, due[1:])) or any(not at > 0 for at in due):
             raise UsageError(f"snapshots at {list(due)}: expected positive numbers in growing order")
         native = self._begin(method, {"seed": seed, "threads": threads, **options})
@@ -186,12 +186,13 @@ def _result_so_far(native: _native.Render) -> Result | None:
 
 def _snapshots(native: _native.Render, due: Sequence[float], in_time: bool) -> Iterator[Result]:
     for at in due:
-        interrupted = native.run_until(seconds=at) if in_time else native.run_until(iterations=int(at))
+        interrupted = native.run_until(seconds=float(at)) if in_time else native.run_until(iterations=int(at))
         result = _result_so_far(native)
         if interrupted:
             raise Interrupted(result)
         if result is None:
-            warnings.warn(f"the snapshot at {at:g} s is left out: no whole pass over the film yet", stacklevel=2)
+            when = f"at {at:g} s" if in_time else f"after {at:g} iterations"
+            warnings.warn(f"the snapshot {when} is left out: no whole pass over the film yet", stacklevel=2)
         else:
             yield result
 

@@ -13,11 +13,16 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 from typing import NamedTuple
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+
+from tree_files import tree_files  # noqa: E402  (the path has to be set first)
+
 BARE = os.environ.get("NEWCOMER_ROOT", "")
 
 
@@ -96,10 +101,7 @@ class Newcomer(unittest.TestCase):
             self.addCleanup(folder.cleanup)
             self.checkout = folder.name
         self.path = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
-        listed = subprocess.run(
-            ["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True
-        )
-        for name in filter(lambda name: (ROOT / name).is_file(), listed.stdout.splitlines()):
+        for name in tree_files(ROOT):
             self.file(name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, self.file(name))
 

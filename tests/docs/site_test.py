@@ -57,7 +57,8 @@ class Site(unittest.TestCase):
         (tree / "docs").mkdir()
         for file in [*(ROOT / "docs").glob("*.py"), ROOT / "docs/site.css"]:
             shutil.copy(file, tree / "docs")
-        subprocess.run(["git", "init", "--quiet", tree], check=True)
+        (tree / "tools").mkdir()
+        shutil.copy(ROOT / "tools/tree_files.py", tree / "tools")
         readme = tree / "README.md"
         readme.write_text("# A tree\n\n[good](docs/build.py), [within](#a-tree)\n")
         self.assertEqual(build(tree, self.folder / "out").returncode, 0)

@@ -50,7 +50,8 @@ class Rendering(unittest.TestCase):
         self.assertEqual(result.stats["method"], "pt")
 
     def test_snapshots_are_stages_of_one_render(self):
-        images = [snapshot.image for snapshot in small().snapshots("bpt", iterations=[1, 2, 4], seed=3, threads=2)]
+        counts = numpy.array([1, 2, 4])
+        images = [snapshot.image for snapshot in small().snapshots("bpt", iterations=counts, seed=3, threads=2)]
         for count, image in zip((1, 2, 4), images):
             numpy.testing.assert_array_equal(image, small().render("bpt", spp=count, seed=3, threads=2).image)
         seconds = [snapshot.seconds for snapshot in small().snapshots("pt", times=[0.05, 0.1], threads=2)]

@@ -6,7 +6,7 @@ if [ -z "$WAVECREST_SOURCE" ]; then
   exit 2
 fi
 cmake -S "$WAVECREST_SOURCE" -B build -DCMAKE_BUILD_TYPE=Release -DWAVECREST_TESTS=OFF -DWAVECREST_BENCH=OFF
-cmake --build build --target wavecrest --parallel "$NUM_CPU_CORES"
+cmake --build build --target wavecrest wavecrest_scene_assets --parallel "$NUM_CPU_CORES"
 echo $? > ~/install-exit-status
 
 cat > wavecrest <<LAUNCHER
