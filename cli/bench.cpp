@@ -162,6 +162,23 @@ void refuseOptionsOfOtherModes(const BenchOptions& options, std::string_view mod
   }
 }
 
+// Refuses what modes that measure nothing would ignore, and a scene on stdin where other processes render it. Throws
+// UsageError.
+void refuseWhatModeIgnores(const BenchOptions& options, std::string_view mode) {
+  if (mode == "--compare" || mode == "--machines") {
+    const bool measures =
+        !options.scenes.empty() || !options.methods.empty() || !options.duration.empty() || !options.size.empty();
+    if (measures || options.threads != 0) {
+      throw UsageError(
+          fmt::format("{} measures nothing; expected no scenes, --methods, --duration, --size or --threads", mode));
+    }
+  }
+  const bool starts = mode == "--against" || mode == "--scaling";
+  if (starts && std::find(options.scenes.begin(), options.scenes.end(), kStandardStream) != options.scenes.end()) {
+    throw UsageError(fmt::format("{}: other processes cannot read the scene from stdin; expected a file", mode));
+  }
+}
+
 // Checks all names of files before anything is measured. Throws UsageError.
 void checkBenchFiles(const BenchOptions& options) {
   FileCheck files;
@@ -179,9 +196,19 @@ void checkBenchFiles(const BenchOptions& options) {
   }
 }
 
+// Variables are defaults: a mode that does not take their options is run without them.
+void forgetBenchVariables(BenchOptions& options, const Command& command) {
+  const std::string_view mode = chosenMode(options).option;
+  const bool measures = mode != "--compare" && mode != "--machines";
+  const bool takesSize = measures && mode != "--score" && mode != "--extremes";
+  if (!takesSize && command.fromVariable("--size")) options.size.clear();
+  if (!measures && command.fromVariable("--threads")) options.threads = 0;
+}
+
 int runBench(const BenchOptions& options) {
   const BenchMode mode = chosenMode(options);
   refuseOptionsOfOtherModes(options, mode.option);
+  refuseWhatModeIgnores(options, mode.option);
   checkBenchFiles(options);
   return mode.run(options);
 }
@@ -242,7 +269,10 @@ void addBenchCommand(CommandLine& program, int& exitCode) {
   command.addFlag("--extremes", options->extremes, "take scenes and renders to their extremes, one property at a time");
   command.add("--html", options->html,
               "--extremes, --tradeoff, --machines: write a page; -: to stdout, instead of the tables");
-  command.run([options, &exitCode] { exitCode = runBench(*options); });
+  command.run([options, command, &exitCode] {
+    forgetBenchVariables(*options, command);
+    exitCode = runBench(*options);
+  });
 }
 
 }  // namespace wavecrest

@@ -34,9 +34,6 @@ std::vector<std::filesystem::path> resultFiles(const std::vector<std::string>& p
 }  // namespace
 
 int runBenchMachines(const BenchOptions& options) {
-  if (!options.scenes.empty() || !options.methods.empty() || !options.duration.empty() || !options.size.empty()) {
-    throw UsageError("--machines measures nothing; expected no scenes, --methods, --duration or --size");
-  }
   // Results of bench's other modes may lie beside scores.
   std::vector<MachineScore> scores;
   for (const std::filesystem::path& file : resultFiles(options.machines)) {

@@ -25,12 +25,23 @@ CLI::Option* withVariable(CLI::Option* option, const std::string& name) {
   return option;
 }
 
+// Whether one of the arguments names the option.
+bool isAmong(const std::vector<std::string>& arguments, const CLI::Option& option) {
+  return std::ranges::any_of(arguments, [&](const std::string& word) {
+    return word.starts_with('-') && option.check_name(word.substr(0, word.find('=')));
+  });
+}
+
 // CLI11 reads variables for all commands. Those of commands that are not asked for are not to be read, as a wrong value
-// is an error.
-void forgetVariablesOfOthers(CLI::App& program, const std::vector<std::string>& arguments) {
+// is an error; nor are those of options among the arguments, which come before them.
+void forgetUnreadVariables(CLI::App& program, const std::vector<std::string>& arguments) {
+  // Help tells of all variables.
+  const bool asksHelp = std::ranges::find(arguments, std::string("--help")) != arguments.end();
   for (CLI::App* const command : program.get_subcommands([](CLI::App*) { return true; })) {
-    if (std::ranges::find(arguments, command->get_name()) != arguments.end()) continue;
-    for (CLI::Option* const option : command->get_options()) option->envname("");
+    const bool asked = std::ranges::find(arguments, command->get_name()) != arguments.end();
+    for (CLI::Option* const option : command->get_options()) {
+      if (!asked || (!asksHelp && isAmong(arguments, *option))) option->envname("");
+    }
   }
 }
 
@@ -40,10 +51,7 @@ std::string originOf(const CLI::App& program, const CLI::App& command, const std
                      const std::string& message) {
   const CLI::Option* const option = command.get_option_no_throw(message.substr(0, message.find(':')));
   if (option == nullptr) return "";
-  const bool isArgument = std::ranges::any_of(arguments, [&](const std::string& word) {
-    return word.starts_with('-') && option->check_name(word.substr(0, word.find('=')));
-  });
-  if (isArgument) return "";
+  if (isAmong(arguments, *option)) return "";
   const std::string variable = option->get_envname();
   const char* const value = variable.empty() ? nullptr : std::getenv(variable.c_str());
   if (value != nullptr && message.find(fmt::format("'{}'", value)) != std::string::npos) return variable + ": ";
@@ -147,6 +155,14 @@ void Command::addFlag(const std::string& name, bool& value, const std::string& d
   app_->add_flag(name, value, description);
 }
 bool Command::given(const std::string& name) const { return app_->get_option(name)->count() > 0; }
+bool Command::fromVariable(const std::string& name) const {
+  // Options among the arguments have lost their variables (forgetUnreadVariables). What the settings file says counts
+  // as a variable's only where both are the same.
+  const CLI::Option* const option = app_->get_option(name);
+  const std::string variable = option->get_envname();
+  const char* const value = variable.empty() ? nullptr : std::getenv(variable.c_str());
+  return value != nullptr && option->results() == std::vector<std::string>{value};
+}
 void Command::run(std::function<void()> callback) const { app_->callback(std::move(callback)); }
 
 CommandLine::CommandLine(const std::string& description, const std::string& name)
@@ -211,7 +227,7 @@ bool CommandLine::parse(std::vector<std::string> arguments, int& exitCode) {
     throw UsageError("unknown command '" + arguments.front() + "'; expected one of " + CLI::detail::join(names, ", ") +
                      didYouMean(arguments.front(), names));
   }
-  forgetVariablesOfOthers(*app_, arguments);
+  forgetUnreadVariables(*app_, arguments);
   // CLI11 takes the arguments as a stack, the first one at the end.
   std::vector<std::string> stack(arguments.rbegin(), arguments.rend());
   try {

@@ -71,7 +71,9 @@ class Command {
   Option add(const std::string& name, uint64_t& value, const std::string& description) const;
   Option add(const std::string& name, double& value, const std::string& description) const;
   void addFlag(const std::string& name, bool& value, const std::string& description) const;
-  bool given(const std::string& name) const;       // in the arguments, once they are read
+  bool given(const std::string& name) const;  // in the arguments, the settings file or a variable, once they are read
+  // Whether the value came from a variable: a default, which never contradicts what was asked for.
+  bool fromVariable(const std::string& name) const;
   void run(std::function<void()> callback) const;  // then
 
  private:

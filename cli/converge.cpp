@@ -110,6 +110,18 @@ std::unique_ptr<CampaignView> openPage(const ConvergeOptions& options, const Cam
   return view;
 }
 
+// Variables are defaults of a new campaign: one that goes on has its own.
+void forgetCampaignVariables(ConvergeOptions& options, const Command& command) {
+  if (!options.resume) return;
+  ConvergeOptions without = options;
+  for (const char* name : {"--size", "--precision", "--sampler"}) {
+    if (command.fromVariable(name)) without.defining.erase(name);
+  }
+  if (command.fromVariable("--threads")) without.threads = 0;
+  std::error_code ignored;
+  if (fs::exists(resultsFile(campaignSettings(without)), ignored)) options = without;
+}
+
 int runConverge(ConvergeOptions options) {
   // Settings, of options and of the results file that the campaign goes on with.
   const CampaignSettings settings = begunCampaign(options);
@@ -229,6 +241,7 @@ void addConvergeCommand(CommandLine& program, int& exitCode) {
     if (options->directPass) options->defining["--direct-pass"] = {"yes"};
     // Whatever is wrong with files leaves as InputError.
     try {
+      forgetCampaignVariables(*options, command);
       exitCode = runConverge(*options);
     } catch (const ReferenceError& error) {
       throw InputError(error.what());

@@ -123,6 +123,9 @@ void printNoteList(const std::vector<Note>& notes) {
 
 // Prints what inspectScene finds, as text or JSON. Nothing is rendered, but for a picture of the guide.
 int runInspect(const InspectOptions& options) {
+  if (options.json && !options.guide.pixel.empty()) {
+    throw UsageError("--json and --guide: the picture of a guide has no JSON; expected one of them");
+  }
   // Of the planned render only the settings that decide kernels, intersector and memory are needed.
   RenderSettings settings;
   settings.precision = static_cast<Precision>(parseChoice("--precision", options.precision, kPrecisionNames));

@@ -102,7 +102,7 @@ int run(std::vector<std::string> arguments) {
   try {
     refuseLaunched(arguments);
     CommandLine program("wavecrest measures light-transport methods against each other", "wavecrest");
-    program.setVersion(kVersion);
+    program.setVersion(fmt::format("{} ({})", kVersion, kCommit));
     addCompareCommand(program, exitCode);
     addConvergeCommand(program, exitCode);
     addReferenceCommand(program, exitCode);

@@ -13,6 +13,7 @@
 #include "bench/campaign/render_reference.h"
 #include "bench/results/noise_floors.h"
 #include "bench/statistics/chains_mislead.h"
+#include "bench/until/film_error.h"
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "cli/interrupt.h"
@@ -158,7 +159,7 @@ void requireExr(std::string_view option, const std::filesystem::path& file) {
 int runReference(const ReferenceOptions& options) {
   // Checks options and file names before anything takes time.
   const std::filesystem::path scenePath = findScene(options.scene.scene);
-  const std::string output = options.output.empty() ? scenePath.stem().string() + ".reference.exr" : options.output;
+  const std::string output = options.output.empty() ? stemOf(options.scene) + ".reference.exr" : options.output;
   requireExr("-o", output);
   if (!options.compact.empty()) requireExr("--compact", options.compact);
   FileCheck files;
@@ -206,6 +207,12 @@ int runReference(const ReferenceOptions& options) {
       tell("wavecrest: interrupted before anything was rendered; no reference was written");
       return kExitInterrupted;
     }
+    if (!goal.seconds && !goal.iterations && isBlack(reference.mean.pixels) && !guard.interrupted()) {
+      throw InputError(
+          fmt::format("{}: is black after {} iterations of each half, so its relative error is not known; expected a "
+                      "scene that the method finds light in, or --time or --spp",
+                      output, reference.info.iterations));
+    }
     if (!options.compact.empty() && !guard.interrupted()) writeCompactReference(options.compact, reference);
     showReference(output, reference, kind);
     // Checks it against another reference of the scene.
@@ -237,7 +244,8 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
   command.add("-m,--method", options->method, "auto: by the scene's classes of paths; or a method").showDefault();
   command
       .add("--until-relative-error", options->relativeError,
-           "stop when a pixel is off by this share of its value, in the mean; 0.01 if nothing else is asked for")
+           "stop when a pixel is off by this share of the brightness around it, in the mean, after 8 iterations at "
+           "least; 0.01 if nothing else is asked for")
       .between(1e-9, 1.0);
   command.add("--time", options->time, "stop after this much render time in all: 10m, 6h");
   command.add("--spp", options->spp, "stop after N iterations of each half").atLeast(1);
@@ -261,7 +269,11 @@ void addReferenceCommand(CommandLine& program, int& exitCode) {
               "another reference of the scene: fail with exit code 4 where a z-test says that they differ in truth");
   command.add("--progress", options->progress, "auto, bar, jsonl or none").showDefault();
   command.addFlag("--quiet", options->quiet, "print the result only: neither progress nor notes");
-  command.run([options, &exitCode] { exitCode = runReference(*options); });
+  command.run([options, command, &exitCode] {
+    // The variable's auto is for `render`.
+    if (options->sampler == "auto" && command.fromVariable("--sampler")) options->sampler = ReferenceOptions().sampler;
+    exitCode = runReference(*options);
+  });
 }
 
 }  // namespace wavecrest

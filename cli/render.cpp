@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/file_check.h"
@@ -130,11 +131,6 @@ uint64_t pathsOf(uint64_t iterations, const FilmArea& film) {
   return iterations > kMost / pixels ? kMost : iterations * pixels;
 }
 
-// Where the image goes without -o: SCENE.exr in the working directory.
-std::string defaultOutput(const std::string& scene) {
-  return scene == kStandardStream ? "stdin.exr" : findScene(scene).stem().string() + ".exr";
-}
-
 // One render from its options to its files. Under a launcher each process has one, of a share of the render.
 class RenderRun {
  public:
@@ -172,8 +168,19 @@ class RenderRun {
   unsigned firstSnapshot_ = 0;
 };
 
+// Refuses what --dry-run, which shows a plan as text and no image, would ignore. Throws UsageError.
+void refuseBesideDryRun(const RenderOptions& options) {
+  for (const auto& [option, given] :
+       {std::pair("--view", !options.live.view.empty()), std::pair("--tev", !options.live.tev.empty()),
+        std::pair("--stats -", options.stats == kStandardStream)}) {
+    if (!options.dryRun || !given) continue;
+    throw UsageError(fmt::format("--dry-run and {}: nothing is rendered; expected one of them", option));
+  }
+}
+
 // Checks options and output names before anything takes time, locks the checkpoint, and reads it with --resume.
 void RenderRun::check() {
+  refuseBesideDryRun(options_);
   schedule_ = parseSnapshotSchedule("--snapshot-every", options_.snapshotEvery);
   kind_ = ranks_.kind(
       quietIf(options_.quiet, static_cast<ProgressKind>(parseChoice("--progress", options_.progress, kProgressNames))));
@@ -303,7 +310,7 @@ Ending RenderRun::render() {
     if (until_) {
       do {
         outputs_->setUntil(until_->render(*session_, settings_));
-      } while (session_->interrupted() && goOnUnlessStopped());
+      } while (session_->interrupted() && goOnUnlessStopped() && !until_->over());
     } else {
       renderWithSnapshots(
           *session_, settings_, schedule_,
@@ -316,6 +323,12 @@ Ending RenderRun::render() {
   }
   // Signals find no session from here on.
   guard_->watch(nullptr);
+  if (until_ && until_->black() && !stopped) {
+    throw InputError(
+        fmt::format("--until-relative-error: after {} iterations the image is black, which has no relative error; "
+                    "expected a scene that the method finds light in, or --spp or --time beside it",
+                    session_->statistics().iterations));
+  }
   return stopped ? Ending::stopped : Ending::complete;
 }
 
@@ -343,17 +356,17 @@ int RenderRun::endAlone(Ending ending, const RanksError& error) {
 }
 
 // The files of the whole render, images from the first whole one on. A part without an image of its own needs no whole
-// pass: its checkpoint is what it is for.
+// pass, but paths: its checkpoint is what it is for.
 int RenderRun::write(Ending ending, const Rendered& rendered) {
   if (!ranks_.several()) outputs_->writeCheckpoint(*session_);
   const RenderStatistics& statistics = rendered.statistics;
-  const bool refuses = !options_.outputs.empty() || (ending == Ending::stopped && statistics.paths == 0);
+  const bool refuses = !options_.outputs.empty() || statistics.paths == 0;
   if (refuses && !outputs_->hasImage(statistics)) {
     outputs_->writeStats(rendered);
     return endWithoutImage(ending, statistics);
   }
   live_->look(true);
-  warnOfLosses(kind_, settings_, statistics);
+  warnOfLosses(options_, kind_, settings_, statistics);
   outputs_->write(rendered);
   if (!options_.outputs.empty() && !outputs_->failed()) live_->showFile(options_.outputs.front());
   showSummary(options_, settings_, kind_, statistics);
@@ -363,10 +376,11 @@ int RenderRun::write(Ending ending, const Rendered& rendered) {
 // Of a render that has no whole image: nothing takes the place of an image that may be there. The checkpoint keeps what
 // has been rendered.
 int RenderRun::endWithoutImage(Ending ending, const RenderStatistics& statistics) const {
+  const char* const what = options_.outputs.empty() ? "checkpoint" : "image";
   const std::string when =
       statistics.paths == 0 ? "before anything was rendered" : "before one whole pass over the film";
   if (ending == Ending::stopped) {
-    tell("wavecrest: interrupted {}; no image was written", when);
+    tell("wavecrest: interrupted {}; no {} was written", when, what);
     return kExitInterrupted;
   }
   // A pass takes about as much longer as pixels are missing.
@@ -377,8 +391,8 @@ int RenderRun::endWithoutImage(Ending ending, const RenderStatistics& statistics
         static_cast<double>(statistics.paths) / static_cast<double>(session_->film().area().pixels.size());
     longer = fmt::format("more than {:.1g} s", statistics.renderSeconds / std::min(passes, 1.0));
   }
-  tell("wavecrest: error: --time: {:.2g} s ended {}; no image was written; expected {}{}{}", statistics.renderSeconds,
-       when, longer, options_.checkpoint.file.empty() ? "" : " with --resume",
+  tell("wavecrest: error: --time: {:.2g} s ended {}; no {} was written; expected {}{}{}", statistics.renderSeconds,
+       when, what, longer, options_.checkpoint.file.empty() ? "" : " with --resume",
        statistics.paths == 0 ? "" : ", or --partial");
   return kExitInput;
 }
@@ -392,7 +406,7 @@ void addRenderCommand(CommandLine& program, int& exitCode) {
   addRenderOptions(command, *options);
   command.run([options, &exitCode] {
     // A part is a checkpoint; it has an image only where one is asked for.
-    if (options->outputs.empty() && options->part.empty()) options->outputs = {defaultOutput(options->scene.scene)};
+    if (options->outputs.empty() && options->part.empty()) options->outputs = {stemOf(options->scene) + ".exr"};
     exitCode = RenderRun(*options).run();
   });
 }

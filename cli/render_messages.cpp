@@ -117,9 +117,10 @@ void showPlan(const RenderOptions& options, const Scene& scene, const RenderSett
 
 // Pixels without samples, samples that were not finite, clamped splats, and paths that
 // were cut.
-void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const RenderStatistics& statistics) {
+void warnOfLosses(const RenderOptions& options, ProgressKind kind, const RenderSettings& settings,
+                  const RenderStatistics& statistics) {
   const StageCounters& counters = statistics.counters;
-  if (!statistics.hasWholeImage()) {
+  if (!statistics.hasWholeImage() && !options.outputs.empty()) {
     warn(kind, "--partial: there was no whole pass over the film; pixels without a sample are black");
   }
   if (counters.nonFinite != 0) {

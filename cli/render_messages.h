@@ -21,7 +21,8 @@ void showChoice(ProgressKind kind, Method method, const std::optional<MethodChoi
 // What --dry-run prints on stdout: scene, kernels, end, memory and outputs of the render.
 void showPlan(const RenderOptions& options, const Scene& scene, const RenderSettings& settings, const DryPlan& plan);
 // After a render: what the image lacks.
-void warnOfLosses(ProgressKind kind, const RenderSettings& settings, const RenderStatistics& statistics);
+void warnOfLosses(const RenderOptions& options, ProgressKind kind, const RenderSettings& settings,
+                  const RenderStatistics& statistics);
 // One line with its outputs, its iterations and its speed.
 void showSummary(const RenderOptions& options, const RenderSettings& settings, ProgressKind kind,
                  const RenderStatistics& statistics);

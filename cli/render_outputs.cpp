@@ -204,6 +204,7 @@ nlohmann::ordered_json RenderOutputs::stats(const RenderStatistics& statistics,
   auto stats = renderStats(scene_, settings_, statistics, loadSeconds_, wallSeconds(), snapshots_);
   if (!names_.checkpoint.empty()) stats["resumed_from"] = resumedFrom_;
   stats["notes"] = notesSoFar();
+  stats["decisions"] = decisionsJson(scene_, settings_, statistics);
   if (processes.is_null()) return stats;
   // Of all processes: threads add up, and there is no share.
   uint64_t threads = 0;

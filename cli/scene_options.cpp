@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/file_check.h"
 #include "engine/load/load.h"
 #include "library/campaign_rows.h"
 #include "library/option_values.h"
@@ -29,6 +30,10 @@ Scene loadScene(const SceneOptions& options, ProgressKind kind) {
   for (const std::string& warning : scene.warnings) warn(kind, warning);
   if (scene.emitters.empty()) warn(kind, fmt::format("{}: the scene has no light; its image is black", options.scene));
   return scene;
+}
+
+std::string stemOf(const SceneOptions& options) {
+  return options.scene == kStandardStream ? "stdin" : findScene(options.scene).stem().string();
 }
 
 void printNotes(const std::vector<Note>& notes, ProgressKind kind) {

@@ -23,6 +23,9 @@ void addSceneOptions(const Command& command, SceneOptions& options);
 // scene that cannot be read.
 Scene loadScene(const SceneOptions& options, ProgressKind kind = ProgressKind::automatic);
 
+// What files without a name of their own are called after: the stem of the scene's file, or stdin.
+std::string stemOf(const SceneOptions& options);
+
 // One a line on stderr, unless quiet.
 void printNotes(const std::vector<Note>& notes, ProgressKind kind);
 inline void printNotes(const Scene& scene, ProgressKind kind) { printNotes(scene.notes, kind); }

@@ -60,6 +60,7 @@ nlohmann::ordered_json UntilGoal::render(Session& session, const RenderSettings&
   // Only an SSIM goal has a reference.
   if (!reference_) return renderUntilError(session, settings);
   const SsimNow now = renderUntilSsim(session, settings, {.reference = *reference_, .ssim = request_.ssim});
+  reached_ = now.reached;
   return {{"reached", now.reached}, {"iterations", now.iterations}, {"ssim", now.ssim}, {"ssim_goal", request_.ssim}};
 }
 
@@ -67,6 +68,8 @@ nlohmann::ordered_json UntilGoal::renderUntilError(Session& session, const Rende
   // An error that is not known yet is null.
   using Json = nlohmann::ordered_json;
   const ErrorNow now = error_.renderUntil(session, settings, request_.relativeError);
+  reached_ = now.reached;
+  black_ = now.black;
   return {{"reached", now.reached},
           {"iterations", now.iterations},
           {"relative_error", now.error ? Json(now.error->value) : Json()},

@@ -26,7 +26,11 @@ class UntilGoal {
   // Renders to the goal, to the settings' end or to an interrupt. Returns what was reached, for stats. May be called
   // again for the same session.
   nlohmann::ordered_json render(Session& session, const RenderSettings& settings);
-  // The same in one line.
+  // Whether the goal is reached, or never will be.
+  bool over() const { return reached_ || black_; }
+  // Whether the film was found black, which has no error.
+  bool black() const { return black_; }
+  // What was reached in one line.
   static std::string describe(const nlohmann::ordered_json& reached);
 
  private:
@@ -35,6 +39,7 @@ class UntilGoal {
   UntilRequest request_;
   std::unique_ptr<PreparedReference> reference_;
   FilmErrorWatch error_;
+  bool reached_ = false, black_ = false;
 };
 
 }  // namespace wavecrest

@@ -15,6 +15,7 @@
 #include "bench/report/results_folder.h"
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
+#include "engine/load/input_file.h"
 #include "library/campaign_resume.h"
 #include "library/campaign_rows.h"
 #include "library/errors.h"
@@ -125,7 +126,7 @@ std::vector<CampaignScene> chosenScenes(const CampaignOptions& options, const Pr
   std::set<std::string> names;
   for (const std::string& word : words) {
     const fs::path file = findScene(word);
-    const std::string name = file.stem().string();
+    const std::string name = word == kStandardInput ? "stdin" : file.stem().string();
     if (!names.insert(name).second) throw UsageError(fmt::format("{}: a second scene of the name '{}'", word, name));
     scenes.push_back({.name = name, .word = word, .file = file, .effort = effortOf(options, profile, name)});
   }

@@ -33,7 +33,10 @@ struct Render::Data {
   }
   nlohmann::ordered_json stats() const {
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    return renderStats(scene->scene, settings, session->statistics(), scene->loadSeconds, wall, {});
+    const RenderStatistics statistics = session->statistics();
+    nlohmann::ordered_json all = renderStats(scene->scene, settings, statistics, scene->loadSeconds, wall, {});
+    all["decisions"] = decisionsJson(scene->scene, settings, statistics);
+    return all;
   }
 };
 

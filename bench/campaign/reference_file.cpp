@@ -7,10 +7,11 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "bench/until/film_error.h"
 #include "metrics/metric_list.h"
 #include "metrics/noise_floor.h"
-#include "metrics/rmse.h"
 
 namespace wavecrest {
 namespace {
@@ -120,10 +121,17 @@ Image Reference::half(float sign) const {
 }
 
 double relativeError(const Image& mean, const Image& difference) {
-  // relmse of half A against the mean: their difference is D.
-  Image half = mean;
-  for (size_t i = 0; i < half.pixels.size(); ++i) half.pixels[i] += difference.pixels[i];
-  return std::sqrt(relmse(mean, half).relmse);
+  if (mean.pixels.empty()) return 0;
+  // Samples that are not finite count as black, so that one of them does not hide all others.
+  std::vector<float> film = mean.pixels;
+  for (float& sample : film) sample = std::isfinite(sample) ? sample : 0.0f;
+  const std::vector<float> weights = errorWeights(film, mean.width);
+  double sum = 0;
+  for (size_t i = 0; i < film.size(); ++i) {
+    const double d = difference.pixels[i];
+    if (std::isfinite(d)) sum += double{weights[i]} * d * d;
+  }
+  return std::sqrt(sum / static_cast<double>(film.size()));
 }
 
 void setHalves(Reference& reference, const Image& a, const Image& b) {

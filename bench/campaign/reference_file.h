@@ -31,7 +31,7 @@ struct ReferenceInfo {
   std::string methodReason;
   uint64_t iterations = 0;   // of each half
   double renderSeconds = 0;  // of both halves
-  double relativeError = 0;  // root of the mean relative variance, see relativeError()
+  double relativeError = 0;  // root of the mean relative variance, see relativeError(); of older files by another rule
   std::string version, commit;
 
   static constexpr const char *kWholeSamples = "float", *kCompactSamples = "half";
@@ -52,8 +52,9 @@ struct Reference {
   Image half(float sign) const;
 };
 
-// Root of the mean over samples of D^2 / (M^2 + epsilon), with epsilon as in relMSE: what share of its value a sample
-// is off by, about.
+// Root of the mean over samples of D^2 / brightness^2, the brightness of M around the pixel (errorWeights of
+// bench/until/film_error.h): what share of its value a sample is off by, about, however bright the scene is. Of a black
+// image 0.
 double relativeError(const Image& mean, const Image& difference);
 
 // Fills the noise floor of every metric that the image is large enough for, under its scoreName.

@@ -11,6 +11,7 @@
 #include "bench/campaign/file_lock.h"
 #include "bench/campaign/shrunk_reference.h"
 #include "bench/film_image.h"
+#include "bench/until/film_error.h"
 #include "engine/scene/hash_text.h"
 #include "engine/version.h"
 #include "metrics/image/atomic_file.h"
@@ -22,6 +23,8 @@ namespace {
 constexpr double kSaveSeconds = 30;                       // of render time that a crash may cost
 constexpr double kShortestLook = 0.2, kLongestLook = 10;  // seconds between looks at the goal,
 constexpr double kLookFraction = 0.1;                     // a part of the time so far
+// Iterations of each half before an error counts: of fewer, what is rarely found is missing in both halves.
+constexpr uint64_t kFewestIterations = 8;
 
 // The images of halves A and B.
 using Halves = std::array<Image, 2>;
@@ -75,11 +78,19 @@ Image joined(const Image& before, uint64_t n0, const Image& now, uint64_t n) {
 }
 
 // Whether any part of the goal is reached. Without an iteration nothing is.
-bool reached(const ReferenceGoal& goal, const ReferenceInfo& info) {
+bool reached(const ReferenceGoal& goal, const Reference& reference) {
+  const ReferenceInfo& info = reference.info;
   if (info.iterations == 0) return false;
-  return (goal.relativeError && info.relativeError <= *goal.relativeError) ||
+  const bool errorIsKnown = info.iterations >= kFewestIterations && !isBlack(reference.mean.pixels);
+  return (goal.relativeError && errorIsKnown && info.relativeError <= *goal.relativeError) ||
          (goal.seconds && info.renderSeconds >= *goal.seconds) ||
          (goal.iterations && info.iterations >= *goal.iterations);
+}
+
+// Whether an error is the whole goal, and a black image keeps it from being known.
+bool neverReached(const ReferenceGoal& goal, const Reference& reference) {
+  return !goal.seconds && !goal.iterations && reference.info.iterations >= kBlackIterations &&
+         isBlack(reference.mean.pixels);
 }
 
 // A pixel that is not finite would stay so, however long the reference goes on. Throws ReferenceMismatch.
@@ -206,7 +217,9 @@ Reference renderReference(const Scene& scene, const RenderSettings& settings, co
     }
     requireSame(file, reference.info, wanted);
     requireFinite(file, reference);
-    if (reached(goal, reference.info)) return reference;
+    // Files of earlier versions have an error by another rule.
+    reference.info.relativeError = relativeError(reference.mean, *reference.difference);
+    if (reached(goal, reference) || neverReached(goal, reference)) return reference;
     reference.info.version = wanted.version;
     reference.info.commit = wanted.commit;
   }
@@ -220,7 +233,7 @@ Reference renderReference(const Scene& scene, const RenderSettings& settings, co
     savedSeconds = reference.info.renderSeconds;
   };
   // Renders from look to look. Between looks both halves have equal iterations, so any look may save.
-  while (!reached(goal, reference.info)) {
+  while (!reached(goal, reference) && !neverReached(goal, reference)) {
     if (!halves.render(nextIterations(goal, reference.info, halves.done(), halves.seconds()), hooks)) break;
     halves.collect(reference);
     if (hooks.advance) hooks.advance(reference.info);

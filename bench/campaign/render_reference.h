@@ -20,7 +20,9 @@ namespace wavecrest {
 // hours, an error a thousand times that of blurring.
 constexpr double kReferenceRadius = 1e-3;
 
-// Counted from the beginning of the reference, over all calls that worked on it; the first that is reached counts.
+// Counted from the beginning of the reference, over all calls that worked on it; the first that is reached counts. An
+// error counts after a few iterations, and never of a black image: one that is black after kBlackIterations
+// (bench/until/film_error.h) ends a render that has no other goal.
 struct ReferenceGoal {
   std::optional<double> relativeError;
   std::optional<double> seconds;       // of render time, both halves together

@@ -1,6 +1,11 @@
 #include "bench/campaign/render_stats.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "bench/enumerator_name.h"
 #include "bench/machine/machine_record.h"
@@ -164,6 +169,79 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
   };
   addMethodStats(scene, settings, statistics, stats);
   return stats;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json decision(const char* setting, Json value, const std::string& why) {
+  return {{"setting", setting}, {"value", std::move(value)}, {"why", why}};
+}
+
+// What trials found: the work of each candidate for the same error, over that of the chosen one.
+std::string whyChosen(const MethodChoice& choice) {
+  const auto chosen = std::ranges::find(choice.trials, choice.method, &MethodTrial::method);
+  const double least = chosen == choice.trials.end() ? 0 : chosen->inefficiency();
+  if (!(least > 0)) return "trials found no light to compare methods by";
+  std::vector<std::string> trials;
+  for (const MethodTrial& trial : choice.trials) {
+    trials.push_back(fmt::format("{} {:.2f}", toString(trial.method), trial.inefficiency() / least));
+  }
+  return fmt::format("work for the same error in trials, over its own: {}", fmt::join(trials, ", "));
+}
+
+std::string whySampler(Method method, SamplerKind sampler) {
+  if (sampler != bestSampler(method)) return "the error of independent samples is known after fewer iterations";
+  const char* const gain = sampler == SamplerKind::sobol ? "lower the noise of" : "are worth nothing to";
+  return fmt::format("Sobol points {} {}", gain, toString(method));
+}
+
+// Light paths of an iteration, of a method that merges.
+Json photonsDecision(const RenderSettings& settings, const RenderStatistics& statistics, uint64_t pixels) {
+  const uint64_t wanted = lightPathsWanted(settings, pixels);
+  const uint64_t traced = statistics.iterations > 0 ? statistics.lightPaths / statistics.iterations : wanted;
+  if (settings.memoryBytes && traced < wanted) {
+    return decision("light_paths", traced, fmt::format("memory holds no more; {} without a budget", wanted));
+  }
+  return decision("light_paths", wanted,
+                  wanted > pixels ? "more than pixels, as so few photons would hardly be found" : "as many as pixels");
+}
+
+}  // namespace
+
+Json decisionsJson(const Scene& scene, const RenderSettings& settings, const RenderStatistics& statistics) {
+  Json all = Json::array();
+  const Method method = statistics.renderedBy(settings.method);
+  if (statistics.choice) {
+    // Trials of gpt are about its guide.
+    const bool ofGuide = settings.method == Method::gpt;
+    const GuideTarget guide = method == Method::gpt ? GuideTarget::radiance : GuideTarget::off;
+    const std::string name(ofGuide ? enumeratorName(kGuideTargetNames, guide) : toString(method));
+    all.push_back(decision(ofGuide ? "guide" : "method", name, whyChosen(*statistics.choice)));
+  }
+  if (!settings.samplerIsChosen) {
+    const std::string name(toString(statistics.sampler));
+    all.push_back(decision("sampler", name, whySampler(method, statistics.sampler)));
+  }
+  const uint64_t pixels = uint64_t{scene.film.imageWidth()} * scene.film.imageHeight();
+  const bool merges = strategiesOf(method).merge;
+  if (merges && !settings.lightPaths) all.push_back(photonsDecision(settings, statistics, pixels));
+  if (merges && !settings.radius && statistics.mergeRadius) {
+    const MergeRadius& radius = *statistics.mergeRadius;
+    all.push_back(decision("radius", radius.first,
+                           fmt::format("by the view and the light paths: {:.3g} pixels and {:.3g} photons in a search "
+                                       "where camera paths first merge",
+                                       radius.inPixels(), radius.photonsPerSearch())));
+  }
+  // Light tracing has a whole number of light walks to each camera walk.
+  if (method == Method::lt && settings.balancedWalks && statistics.paths > 0) {
+    const auto walks = static_cast<uint64_t>(
+        std::llround(static_cast<double>(statistics.lightPaths) / static_cast<double>(statistics.paths)));
+    all.push_back(decision("light_paths", walks * pixels,
+                           fmt::format("{} to a camera path, by the error and the work of either", walks)));
+  }
+  return all;
 }
 
 nlohmann::ordered_json choiceJson(const MethodChoice& choice) {

@@ -21,6 +21,11 @@ nlohmann::ordered_json renderStats(const Scene& scene, const RenderSettings& set
 // a search meets; the latter two where a typical camera path first merges.
 nlohmann::ordered_json mergeRadiusJson(const MergeRadius& radius);
 
+// What the program decided for itself where no option did, and why: objects of setting, value and why. Settings are
+// method, guide, sampler, light_paths (of an iteration) and radius.
+nlohmann::ordered_json decisionsJson(const Scene& scene, const RenderSettings& settings,
+                                     const RenderStatistics& statistics);
+
 // What the trials of evcm found, and the method that they led to.
 nlohmann::ordered_json choiceJson(const MethodChoice& choice);
 

@@ -39,8 +39,13 @@ constexpr double kDarkest = 0.01;
 // 1 / brightness^2 of each sample of the film.
 std::vector<float> errorWeights(std::span<const float> film, size_t width);
 
+// Whether no sample is above 0: such a film has no relative error.
+bool isBlack(std::span<const float> film);
+// Iterations after which a film that is still black is not expected to find any light.
+constexpr uint64_t kBlackIterations = 512;
+
 // slices: independent images of one size and of equal numbers of iterations; the film is their mean. Nothing where
-// slices are fewer than kFewestSlices or too uneven to tell: black images, or one sample that outshines the rest.
+// slices are fewer than kFewestSlices, black, or too uneven to tell, as with one sample that outshines the rest.
 std::optional<FilmError> estimateFilmError(std::span<const std::vector<float>> slices, size_t width);
 constexpr size_t kFewestSlices = 8;
 

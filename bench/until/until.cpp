@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "bench/film_image.h"
 
@@ -40,11 +42,14 @@ SsimNow renderUntilSsim(Session& session, const RenderSettings& settings, const 
 ErrorNow FilmErrorWatch::renderUntil(Session& session, const RenderSettings& settings, double relativeError) {
   const uint64_t most = settings.iterations.value_or(std::numeric_limits<uint64_t>::max());
   if (now_.iterations == 0 && slices_.slices().empty()) slices_ = FilmSlices(independentRun(settings));
-  while (!now_.reached) {
+  const bool endless = !settings.iterations && !settings.seconds;
+  while (!now_.reached && !now_.black) {
     const uint64_t next = slices_.nextIterations();
     session.renderUntil(std::min(next, most), settings.seconds);
     if (session.statistics().iterations == next) {
-      slices_.add(session.film().resolve());
+      std::vector<float> film = session.film().resolve();
+      now_.black = endless && next >= kBlackIterations && isBlack(film);
+      slices_.add(std::move(film));
       now_.iterations = next;
       now_.error = estimateFilmError(slices_.slices(), session.film().area().width);
       now_.reached = now_.error && now_.error->interval.high <= relativeError;

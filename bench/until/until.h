@@ -30,6 +30,7 @@ struct ErrorNow {
   uint64_t iterations = 0;         // at the last look
   std::optional<FilmError> error;  // nothing while it cannot be told
   bool reached = false;            // all of the interval is at the goal or below
+  bool black = false;              // after kBlackIterations: nothing but the goal would end the render, and never does
 };
 
 // The relative RMSE of a session's film against its expectation (film_error.h), watched from the first iteration on.
@@ -37,8 +38,9 @@ struct ErrorNow {
 // of the error.
 class FilmErrorWatch {
  public:
-  // Goes on to the goal, to the iterations or the time of the settings, or to an interrupt. May be called again, for
-  // the same session. Settings must be such that whyNoFilmError has nothing to say.
+  // Goes on to the goal, to the iterations or the time of the settings, or to an interrupt; without either of them also
+  // to a film that is found black. May be called again, for the same session. Settings must be such that whyNoFilmError
+  // has nothing to say.
   ErrorNow renderUntil(Session& session, const RenderSettings& settings, double relativeError);
 
  private:

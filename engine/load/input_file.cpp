@@ -75,9 +75,7 @@ std::vector<char> inflateAll(const std::vector<char>& compressed, const std::str
   return out;
 }
 
-}  // namespace
-
-std::vector<char> readStandardInput(size_t limit) {
+std::vector<char> readAllOfStandardInput(size_t limit) {
   std::vector<char> bytes;
   // The length of standard input is not known in advance: read pieces of 64 KiB until nothing comes.
   for (size_t count = 1; count > 0;) {
@@ -92,6 +90,14 @@ std::vector<char> readStandardInput(size_t limit) {
   }
   if (std::ferror(stdin)) throw LoadError({kStandardInput, 0}, "cannot read standard input; expected a scene");
   return isGzip(bytes) ? inflateAll(bytes, kStandardInput) : bytes;
+}
+
+}  // namespace
+
+// Campaigns and `bench --tradeoff` load a scene more than once.
+std::vector<char> readStandardInput(size_t limit) {
+  static const std::vector<char> bytes = readAllOfStandardInput(limit);
+  return bytes;
 }
 
 std::vector<char> readInputFile(const std::filesystem::path& path, const SourceLocation& where, size_t limit) {

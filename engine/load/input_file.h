@@ -21,7 +21,7 @@ constexpr size_t kHighestRatio = 100;  // ASCII meshes compress about 4 to 1; bo
 // As the name of a scene file.
 constexpr const char* kStandardInput = "-";
 
-// All of standard input, which may be compressed too.
+// All of standard input, which may be compressed too. It is read once: a later call gets the same bytes.
 std::vector<char> readStandardInput(size_t limit);
 
 // Reads `path`; if its content starts with the gzip magic, returns the inflated data. `where` is the line that names

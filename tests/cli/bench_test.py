@@ -344,10 +344,28 @@ class Modes(CommandTest):
              r"--write-pictures measures nothing"),
             (["--score", "small", "--write-hashes", "-"], r"--write-hashes -: expected a file$"),
             (["cornell-diffuse", "--compare", "a.json", "b.json"], r"--compare measures nothing; expected no scenes"),
+            (["--size", "8x8", "--compare", "a.json", "b.json"], r"--compare measures nothing; expected no scenes"),
+            (["--threads", "1", "--compare", "a.json", "b.json"], r"--compare measures nothing; expected no scenes"),
+            (["--threads", "1", "--machines", "m.json"], r"--machines measures nothing; expected no scenes"),
+            (["-", "--against", WAVECREST], r"--against: other processes cannot read the scene from stdin"),
+            (["-", "--scaling"], r"--scaling: other processes cannot read the scene from stdin"),
             (["--extremes", "--duration", "1s"], r"--extremes has scenes, methods, sizes and lengths of its own"),
         ]:
             with self.subTest(arguments):
                 self.assert_one_error_line(self.run_wavecrest("bench", *arguments, expect=USAGE), answer)
+
+    def test_variables_are_defaults_that_contradict_no_mode(self):
+        variables = {"WAVECREST_SIZE": "8x8", "WAVECREST_THREADS": "1"}
+        for arguments, answer in [
+            (["--score", "tiny"], r"--score tiny: unknown"),  # which comes after the size
+            (["--machines", "none.json"], r".*none\.json: cannot be read"),
+            (["--compare", "a.json", "b.json"], r".*[ab]\.json: cannot be read"),
+        ]:
+            with self.subTest(arguments):
+                result = self.run_wavecrest("bench", *arguments, expect=None, variables=variables)
+                self.assert_one_error_line(result, answer)
+        typed = self.run_wavecrest("bench", "--score", "tiny", "--size", "8x8", expect=USAGE, variables=variables)
+        self.assert_one_error_line(typed, "--score has sizes")
 
     def test_files_are_checked_before_anything_is_measured(self):
         for arguments, answer in [

@@ -251,6 +251,18 @@ class Extending(Converge):
         with contextlib.closing(sqlite3.connect(self.results("a"))) as database:
             self.assertEqual(database.execute("SELECT value FROM campaign WHERE key = 'threads'").fetchall(), [("1",)])
 
+    def test_variables_are_defaults_of_a_new_campaign(self):
+        given = ["cornell-diffuse", "--methods", "pt", "--seeds", "1", "--time", "0.05s", "--out", "a"]
+        variables = {"WAVECREST_SIZE": "20x20", "WAVECREST_THREADS": "1", "WAVECREST_SAMPLER": "sobol"}
+        self.run_wavecrest("converge", *given, "--resume", variables=variables)
+        others = {"WAVECREST_SIZE": "24x24", "WAVECREST_THREADS": "2", "WAVECREST_SAMPLER": "independent"}
+        self.run_wavecrest("converge", "--out", "a", "--resume", "--time", "0.1s", variables=others)
+        with contextlib.closing(sqlite3.connect(self.results("a"))) as database:
+            told = dict(database.execute("SELECT key, value FROM campaign"))
+        self.assertEqual((told["size"], told["threads"], told["sampler"]), ("20x20", "1", "sobol"))
+        result = self.run_wavecrest("converge", "--out", "a", "--resume", "--size", "24x24", expect=USAGE, variables=others)
+        self.assert_one_error_line(result, r"--size 24x24: .* was begun with 20x20")
+
     def test_by_a_larger_part_of_the_profiles_time(self):
         quick = ["cornell-diffuse", "--methods", "pt", "--size", "20x20", "--seeds", "1", "--out", "a", "--images", "last"]
         self.converge(*quick, "--time-factor", "0.02")

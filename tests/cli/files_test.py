@@ -7,6 +7,7 @@ import resource
 import subprocess
 import unittest
 
+from campaign_harness import ROOM
 from harness import (
     DONE,
     FAILURE,
@@ -136,6 +137,15 @@ class Streams(CommandTest):
         broken = self.run_with("render", "-", input="<scene>\n</scene>", capture_output=True)
         self.assertEqual(broken.returncode, INPUT)
         self.assert_one_error_line(broken, r"-:1: ")
+
+    def test_a_scene_from_stdin_is_loaded_as_often_as_need_be(self):
+        options = ["--methods", "pt", "--size", "32x24", "--spp", "1", "--seeds", "1", "--out", "a", "--progress", "none"]
+        scene = ROOM.replace("RADIANCE", "1")
+        result = self.run_with("converge", "-", *options, input=scene, capture_output=True)
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        result = self.run_with("reference", "-", "--size", "8x8", "--spp", "1", input=scene, capture_output=True)
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        self.assertTrue((self.folder / "stdin.reference.exr").exists())
 
     def test_what_stdout_does_not_take_is_an_error(self):
         with open("/dev/full", "w") as full:

@@ -118,6 +118,9 @@ class Inspect(CommandTest):
             result = self.run_wavecrest("inspect", "cornell-diffuse", *alone, expect=USAGE)
             self.assert_one_error_line(result, ".*--guide")
 
+        result = self.run_wavecrest("inspect", "cornell-diffuse", "--guide", "1,1", "--json", expect=USAGE)
+        self.assert_one_error_line(result, "--json and --guide")
+
     def test_a_scene_that_cannot_be_read_is_bad_input(self):
         self.assert_one_error_line(self.run_wavecrest("inspect", "absent.xml", expect=INPUT), ".*absent.xml")
 

@@ -102,10 +102,17 @@ class Sums(PartsTest):
     def test_less_than_a_whole_pass_is_no_image(self):
         part = ["render", "cornell-diffuse", "--size", "1280x960", "--threads", "1", "--spp", "4", "--part", "1/2"]
         part += ["--checkpoint", "part", "--time", "0.02s"]
-        self.run_wavecrest(*part, expect=None)
+        self.assertNotIn("--partial", self.run_wavecrest(*part, expect=None).stderr)  # which is for images
         result = self.merge("part", "-o", "merged.pfm", expect=INPUT)
         self.assertIn("no whole pass over the film: no image was written", result.stderr.splitlines()[-1])
         self.assertFalse((self.folder / "merged.pfm").exists())
+
+    def test_a_part_without_paths_is_none(self):
+        # Trials take more than the time, so no path of the part is traced.
+        part = ["render", "cornell-diffuse", "-m", "evcm", "--size", "64x48", "--spp", "4", "--time", "0.001s"]
+        result = self.run_wavecrest(*part, "--part", "1/2", "--checkpoint", "part", expect=INPUT)
+        self.assertRegex(result.stderr.splitlines()[-1], "ended before anything was rendered; no checkpoint was written")
+        self.assertFalse((self.folder / "part").exists())
 
     def test_a_longer_render_takes_what_there_is_and_the_second_half_of_its_own_parts(self):
         first = self.all_parts("pt")
@@ -191,7 +198,7 @@ class References(PartsTest):
         self.merge(*files, "--reference", "references/cornell-diffuse.exr", "--stats", "merged.json")
         attributes = read_exr_header(self.path("references/cornell-diffuse.exr"))
         self.assertEqual(attributes["wavecrest:iterations"], "500")
-        # Both are root mean squares of relative errors, each relative to a brightness of its own kind.
+        # Both are root mean squares of errors relative to the brightness around a pixel: of four parts, and of two halves.
         told = read_json(self.path("merged.json"))["relative_error"]
         self.assertLess(0.3 * told, float(attributes["wavecrest:relative_error"]))
         self.assertLess(float(attributes["wavecrest:relative_error"]), 3 * told)

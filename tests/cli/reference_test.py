@@ -53,9 +53,9 @@ class Reference(CommandTest):
         self.assertNotEqual(errors[0], errors[1])
 
     def test_a_goal_that_is_reached_changes_nothing(self):
-        self.reference("--spp", "4", "-o", "r.exr")
+        self.reference("--spp", "64", "-o", "r.exr")
         before = pathlib.Path(self.path("r.exr")).read_bytes()
-        self.reference("--spp", "4", "-o", "r.exr")
+        self.reference("--spp", "64", "-o", "r.exr")
         self.reference("--until-relative-error", "0.9", "-o", "r.exr")
         self.assertEqual(pathlib.Path(self.path("r.exr")).read_bytes(), before)
 
@@ -100,6 +100,17 @@ class Reference(CommandTest):
         self.assertGreaterEqual(float(self.header("time.exr")["wavecrest:render_seconds"]), 0.3)
         self.reference("--until-relative-error", "0.2", "-o", "error.exr")
         self.assertLessEqual(float(self.header("error.exr")["wavecrest:relative_error"]), 0.2)
+
+    def test_a_black_one_is_told(self):
+        dark = self.write("dark.xml", '<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/></scene>')
+        result = self.reference("--method", "pt", scene=dark, size="16x16", expect=INPUT)
+        self.assertRegex(result.stderr.splitlines()[-1], r"error: dark\.reference\.exr: is black after \d+ iterations")
+
+    def test_a_variable_that_is_for_renders_is_no_mistake(self):
+        self.run_wavecrest("reference", "cornell-diffuse", "--size", "16x16", "--spp", "1", "-o", "r.exr",
+                           variables={"WAVECREST_SAMPLER": "auto"})  # fmt: skip
+        self.assertEqual(self.header("r.exr")["wavecrest:sampler"], "independent")
+        self.reference("--sampler", "auto", expect=USAGE)
 
     def test_another_reference_is_not_overwritten(self):
         self.reference("--spp", "1", "-o", "r.exr")

@@ -34,6 +34,7 @@ STATS = {
     "paths_per_second": NUMBER, "rays_per_second": NUMBER, "bytes_per_path": int, "peak_memory_bytes": int,
     "nonfinite_samples": int, "close_pairs": int, "paths_cut": int, "throughput_cut": NUMBER, "cut_energy": NUMBER,
     "saturated_splats": int, "stages": list, "snapshots": list, "notes": list,
+    "decisions": list,
 }  # fmt: skip
 
 
@@ -157,6 +158,24 @@ class Statistics(CommandTest):
             self.assertLess(abs(stats["b_pooled"] - stats["b"]), 6 * stats["b_error"])
             self.assertEqual((stats["stuck_runs"], stats["stuck_chains"]), (0, []))
             self.assertEqual(stats["direct_paths"] > 0, variant != "pssmlt")
+
+    def test_decisions_are_those_that_no_option_made(self):
+        def decided(*arguments):
+            decisions = self.stats("--spp", "2", *arguments)["decisions"]
+            self.assertTrue(all(one["why"] for one in decisions))
+            return {one["setting"]: one["value"] for one in decisions}
+
+        self.assertEqual(decided(), {"sampler": "sobol"})
+        self.assertEqual(decided("--sampler", "sobol"), {})
+        ppm = decided("-m", "ppm")
+        self.assertEqual((ppm["sampler"], ppm["light_paths"]), ("independent", 4096))
+        self.assertEqual(ppm["radius"], read_json(self.path("stats.json"))["radius"])
+        self.assertEqual(set(decided("-m", "ppm", "--radius", "0.01", "--light-paths", "99")), {"sampler"})
+        evcm = decided("-m", "evcm")
+        self.assertEqual(evcm["method"], read_json(self.path("stats.json"))["choice"]["method"])
+        self.assertIn(decided("-m", "gpt")["guide"], ("radiance", "off"))
+        lt = decided("-m", "lt")
+        self.assertEqual(lt["light_paths"], read_json(self.path("stats.json"))["light_paths"] / 2)
 
     def test_clocks_are_consistent(self):
         stats = self.stats("--time", "0.3s")

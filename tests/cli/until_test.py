@@ -34,6 +34,19 @@ class Until(CommandTest):
         self.stats_of("--until-relative-error", "0.4", "-m", "ppm", "--spp", "8")
         self.assertRegex(self.result.stderr, "leaves out the bias of merging")
 
+    def test_films_without_variance_and_without_light_end(self):
+        self.write("sky.xml", '<scene version="3.0.0"><sensor type="perspective"/><emitter type="constant"/>'
+                   '<shape type="sphere"><point name="center" x="0" y="0" z="-10"/></shape></scene>')  # behind
+        sky = ["render", "sky.xml", "--size", "16x16", "--stats", "sky.json", "-o", "sky.pfm"]
+        self.run_wavecrest(*sky, "--until-relative-error", "0.01")
+        self.assertTrue(read_json(self.path("sky.json"))["until"]["reached"])
+        self.write("dark.xml", '<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/></scene>')
+        dark = ["render", "dark.xml", "--size", "16x16", "-o", "dark.pfm", "--until-relative-error", "0.01"]
+        result = self.run_wavecrest(*dark, expect=INPUT)
+        self.assertRegex(result.stderr.splitlines()[-1], r"error: --until-relative-error: after \d+ iterations .* is black")
+        self.assertFalse((self.folder / "dark.pfm").exists())
+        self.run_wavecrest(*dark, "--spp", "600")
+
     def test_what_does_not_fit_together_is_refused(self):
         for arguments in (
             ("--until-ssim", "0.9"),

@@ -195,6 +195,7 @@ class Usage(CommandTest):
             self.run_wavecrest("help", "compare").stdout, self.run_wavecrest("compare", "--help").stdout
         )
         self.assertEqual(self.run_wavecrest("-V").stdout, self.run_wavecrest("--version").stdout)
+        self.assertRegex(self.run_wavecrest("-V").stdout, r"^\d+\.\d+\.\d+ \(([0-9a-f]{12}|unknown)\)\n$")
         self.run_wavecrest("help", "nothing", expect=USAGE)
         self.assertIn("sample_count, or 4", self.run_wavecrest("help", "render").stdout)
 
@@ -204,6 +205,9 @@ class Usage(CommandTest):
             self.assertIn(word, result.stdout)
         self.assertEqual(list(self.folder.iterdir()), [])
         self.render("--dry-run", "-o", "absent/image.exr", expect=USAGE)
+        for beside in ("--view", "--tev", "--stats=-"):
+            result = self.render("--dry-run", "-o", "image.exr", beside, expect=USAGE)
+            self.assert_one_error_line(result, f"--dry-run and {beside.split('=')[0]}")
         result = self.render("--dry-run", "--until-relative-error", "0.1", "-o", "image.exr")
         self.assertIn("ends     once the relative error is 0.1\n", result.stdout)
         self.render("--dry-run", "--until-relative-error", "0.1", "--snapshot-every", "1s", "-o", "a.exr", expect=USAGE)

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bench/extremes/extreme_scenes.h"
+#include "engine/compile/lights.h"
 #include "engine/compile/textures.h"
 #include "engine/plan/render_plan.h"
 #include "engine/scene/scene_error.h"
@@ -138,9 +139,10 @@ TEST(LargeEnvironment, tableLeadsToEveryTexel) {
   // What the alias table gives each row is its probability: an entry's own share, and what others hand on.
   std::vector<double> drawn(bitmap->height, 0), expected(bitmap->height, 0);
   uint32_t lastColumn = 0;
-  const double each = 1.0 / static_cast<double>(environment.table.size());
+  const std::vector<double> rows = entryShares(bitmap->height), columns = entryShares(bitmap->width);
   for (size_t i = 0; i < environment.table.size(); ++i) {
     const AliasEntry& entry = environment.table[i];
+    const double each = rows[i / bitmap->width] * columns[i % bitmap->width];
     drawn[i / bitmap->width] += each * static_cast<double>(entry.keep);
     lastColumn = std::max(lastColumn, entry.other & ((1u << kTexelBits) - 1));
     drawn.at(entry.other >> kTexelBits) += each * (1 - static_cast<double>(entry.keep));

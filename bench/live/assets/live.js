@@ -62,10 +62,24 @@ function ticksOf(low, high, log) {
 function rangeOf(values, log) {
   const finite = values.filter((value) => Number.isFinite(value) && (!log || value > 0));
   if (finite.length === 0) return null;
-  let low = Math.min(...finite), high = Math.max(...finite);
+  // As arguments of Math.min, as many values as a long render has would be too many.
+  let low = finite.reduce((least, value) => Math.min(least, value));
+  let high = finite.reduce((most, value) => Math.max(most, value));
   if (!log) return [0, high > 0 ? high * 1.15 : 1];
   if (high / low < 1.5) [low, high] = [low / 1.3, high * 1.3];
   return [low, high];
+}
+
+// Points that a plot keeps, of a render that may go on for days.
+const mostPoints = 4000;
+
+// Appends to the points of a curve. Once they are too many, every other one goes.
+function addPoint(points, point) {
+  points.push(point);
+  if (points.length <= mostPoints) return;
+  let kept = 0;
+  for (let i = points.length % 2 ? 0 : 1; i < points.length; i += 2) points[kept++] = points[i];
+  points.length = kept;
 }
 
 // curves: [{points: [[x, y, low?, high?], ...], color: class, thin?, name?}]. Replaces what the plot showed.

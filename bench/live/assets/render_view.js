@@ -87,12 +87,12 @@ function onEvent(event) {
   $("iterations").textContent = event.iterations;
   if (event.paths_per_second !== null) {
     $("rate").textContent = `${number(event.paths_per_second * 1e-6)} M`;
-    if (!event.last) rates.push([event.seconds, event.paths_per_second * 1e-6]);
+    if (!event.last) addPoint(rates, [event.seconds, event.paths_per_second * 1e-6]);
   }
   if (event.error && event.error.iterations !== errors.iterations) {
     const { value, low, high } = event.error;
     errors.iterations = event.error.iterations;
-    errors.push([event.seconds, value, low, high]);
+    addPoint(errors, [event.seconds, value, low, high]);
     $("error").textContent = number(value);
     $("interval").textContent = `${number(low)} to ${number(high)}`;
   }
