@@ -210,7 +210,7 @@ TEST_F(CollectCampaign, findingsAreJudgedOverAllParts) {
 }
 
 TEST_F(CollectCampaign, explanationsOfTheStandardCampaignSayThatElsewhere) {
-  const Explanation* const own = findExplanation("dragon-caustics.pt-stalls", "does not hold", "standard");
+  const Explanation* const own = findExplanation("cornell-mirror.pt-loses-lead", "does not hold", "standard");
   ASSERT_NE(own, nullptr);
   const auto explanation = [&](const std::string& profile, const std::string& verdict, const std::string& commit) {
     const fs::path file = folder / (profile + verdict + commit + ".sqlite");
@@ -218,14 +218,14 @@ TEST_F(CollectCampaign, explanationsOfTheStandardCampaignSayThatElsewhere) {
     store.putCampaign({{"profile", profile}, {"commit", commit}});
     store.putScene({.name = "box", .hash = "1", .referenceFile = "", .width = kSide, .height = kSide});
     store.putRun(run("pt", 1, 0.2));
-    store.putClaims({{"dragon-caustics.pt-stalls", "box", "a", verdict, "0.1", "0.1"}});
+    store.putClaims({{"cornell-mirror.pt-loses-lead", "box", "a", verdict, "0.1", "0.1"}});
     return collectReport(std::vector<fs::path>{file}).claims.at(0).explanation;
   };
   EXPECT_EQ(explanation("standard", "does not hold", own->commit), own->text);
   const std::string elsewhere = "In the standard campaign of commit " + own->commit + ": " + own->text;
   EXPECT_EQ(explanation("quick", "does not hold", own->commit), elsewhere);
   EXPECT_EQ(explanation("standard", "does not hold", "0"), elsewhere) << "another program";
-  EXPECT_EQ(explanation("standard", "undecided", own->commit), "") << "it explains another verdict";
+  EXPECT_EQ(explanation("standard", "not reached in this time", own->commit), "") << "it explains another verdict";
   EXPECT_EQ(explanation("quick", "holds", own->commit), "");
   EXPECT_EQ(explanation("quick", "not judged", own->commit), "");
 }

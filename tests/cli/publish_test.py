@@ -217,7 +217,7 @@ class Publishing(CommandTest):
         self.assertEqual(readme.count("<img"), 1)
         # No Q_MOS was measured, so the table has the two targets of SSIM.
         self.assertIn("| scene | rows | SSIM 0.9 | SSIM 0.95 |", page)
-        self.assertIn("| cornell-diffuse | study<br>now | bpt 10 s<br>vcm-auto 7.2 s | bpt 32 s<br>vcm-auto 10 s", page)
+        self.assertIn("| cornell-diffuse | study<br>all | bpt 10 s<br>vcm-auto 7.2 s | bpt 32 s<br>vcm-auto 10 s", page)
         speeds = page.split("## Speed-up over pt")[1].split("## ")[0]
         self.assertIn("| scene | bpt | vcm-auto |", speeds)
         self.assertIn("| cornell-diffuse | 1.3 | 10 |", speeds)
@@ -349,6 +349,8 @@ END
         biases = "SELECT * FROM bias ORDER BY scene, method, number"
         self.assertEqual(rows("b", biases), rows("a", biases))
         self.assertGreater(len(rows("a", biases)), 0)
+        own = "SELECT count(*) FROM campaign WHERE key = 'reference_folder'"
+        self.assertEqual(rows("b", own), rows("a", own))
         # It goes on with a further scene, and what was there stays.
         scores = "SELECT m.* FROM run JOIN measurement m ON run.id = m.run WHERE scene = 'cornell-diffuse' ORDER BY 1, 2, 3"
         before = rows("b", scores)

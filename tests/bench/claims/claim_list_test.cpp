@@ -92,11 +92,11 @@ TEST(Explanations, areOfKnownClaimsAndOneOfEachInAProfile) {
 }
 
 TEST(Explanations, areOfTheProfileWhereItHasOne) {
-  const Explanation* standard = findExplanation("dragon-caustics.pt-stalls", "does not hold", "standard");
+  const Explanation* standard = findExplanation("cornell-mirror.pt-loses-lead", "does not hold", "standard");
   ASSERT_NE(standard, nullptr);
   EXPECT_EQ(standard->profile, "standard");
-  EXPECT_NE(findExplanation("dragon-caustics.pt-stalls", "does not hold", "quick"), nullptr);
-  EXPECT_EQ(findExplanation("dragon-caustics.pt-stalls", "undecided", "standard"), nullptr);
+  EXPECT_NE(findExplanation("cornell-mirror.pt-loses-lead", "does not hold", "quick"), nullptr);
+  EXPECT_EQ(findExplanation("cornell-mirror.pt-loses-lead", "not reached in this time", "standard"), nullptr);
   EXPECT_EQ(findExplanation("nothing", "does not hold", "standard"), nullptr);
 }
 
