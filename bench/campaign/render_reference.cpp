@@ -81,7 +81,8 @@ Image joined(const Image& before, uint64_t n0, const Image& now, uint64_t n) {
 bool reached(const ReferenceGoal& goal, const Reference& reference) {
   const ReferenceInfo& info = reference.info;
   if (info.iterations == 0) return false;
-  const bool errorIsKnown = info.iterations >= kFewestIterations && !isBlack(reference.mean.pixels);
+  const uint64_t fewest = info.relativeError <= kNoVariance ? kBlackIterations : kFewestIterations;
+  const bool errorIsKnown = info.iterations >= fewest && !isBlack(reference.mean.pixels);
   return (goal.relativeError && errorIsKnown && info.relativeError <= *goal.relativeError) ||
          (goal.seconds && info.renderSeconds >= *goal.seconds) ||
          (goal.iterations && info.iterations >= *goal.iterations);

@@ -67,6 +67,13 @@ nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainSta
   return stats;
 }
 
+// Light paths of an iteration, of a method that merges: as many as wanted, or as memory holds.
+uint64_t lightPathsTraced(const RenderSettings& settings, const RenderStatistics& statistics, uint64_t pixels) {
+  const uint64_t wanted = lightPathsWanted(settings, pixels);
+  if (!settings.memoryBytes || statistics.iterations == 0) return wanted;
+  return std::min(wanted, statistics.lightPaths / statistics.iterations);
+}
+
 // Adds the keys that some methods, or parts of an image, have.
 void addMethodStats(const Scene& scene, const RenderSettings& settings, const RenderStatistics& statistics,
                     nlohmann::ordered_json& stats) {
@@ -76,7 +83,7 @@ void addMethodStats(const Scene& scene, const RenderSettings& settings, const Re
     const uint64_t pixels = uint64_t{scene.film.imageWidth()} * scene.film.imageHeight();
     stats.update({{"radius_choice", settings.radius ? "fixed" : "auto"},
                   {"radius_alpha", settings.radiusAlpha},
-                  {"light_paths_per_iteration", lightPathsWanted(settings, pixels)}});
+                  {"light_paths_per_iteration", lightPathsTraced(settings, statistics, pixels)}});
     if (statistics.mergeRadius) stats.update(mergeRadiusJson(*statistics.mergeRadius));
     if (method == Method::ppm) stats["direct_pass"] = settings.directPass;
     if (choosesMergeVertices(method)) {
@@ -200,8 +207,8 @@ std::string whySampler(Method method, SamplerKind sampler) {
 // Light paths of an iteration, of a method that merges.
 Json photonsDecision(const RenderSettings& settings, const RenderStatistics& statistics, uint64_t pixels) {
   const uint64_t wanted = lightPathsWanted(settings, pixels);
-  const uint64_t traced = statistics.iterations > 0 ? statistics.lightPaths / statistics.iterations : wanted;
-  if (settings.memoryBytes && traced < wanted) {
+  const uint64_t traced = lightPathsTraced(settings, statistics, pixels);
+  if (traced < wanted) {
     return decision("light_paths", traced, fmt::format("memory holds no more; {} without a budget", wanted));
   }
   return decision("light_paths", wanted,
@@ -226,7 +233,10 @@ Json decisionsJson(const Scene& scene, const RenderSettings& settings, const Ren
   }
   const uint64_t pixels = uint64_t{scene.film.imageWidth()} * scene.film.imageHeight();
   const bool merges = strategiesOf(method).merge;
-  if (merges && !settings.lightPaths) all.push_back(photonsDecision(settings, statistics, pixels));
+  if (merges &&
+      (!settings.lightPaths || lightPathsTraced(settings, statistics, pixels) < lightPathsWanted(settings, pixels))) {
+    all.push_back(photonsDecision(settings, statistics, pixels));
+  }
   if (merges && !settings.radius && statistics.mergeRadius) {
     const MergeRadius& radius = *statistics.mergeRadius;
     all.push_back(decision("radius", radius.first,

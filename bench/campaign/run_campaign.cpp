@@ -369,7 +369,7 @@ class Campaign {
       std::vector<const RunRecord*> runs;
       unsigned last = std::numeric_limits<unsigned>::max();
       for (const RunRecord& run : results.runs) {
-        if (run.scene != entry.name || run.method != name || run.state != RunState::done) continue;
+        if (run.scene != entry.name || run.method != name || run.snapshots.empty()) continue;
         runs.push_back(&run);
         last = std::min(last, run.snapshots.back().number);
       }

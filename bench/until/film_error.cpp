@@ -12,8 +12,6 @@ namespace {
 
 // Of the squared error, relative to it: beyond, neither its distribution nor the interval's ends mean much.
 constexpr double kMostDeviation = 0.5;
-// Of the error: below, slices differ by the rounding of their floats, which is the same in all pixels.
-constexpr double kRounding = 1e-6;
 // U has longer tails than Student's distribution where few pixels carry the error, and who stops at the first interval
 // below a goal picks one that is low by chance. This factor makes up for both: tests/bench/until/film_error_test.cpp.
 constexpr double kWidening = 1.4;
@@ -119,11 +117,11 @@ std::optional<FilmError> estimateFilmError(std::span<const std::vector<float>> s
   double squaredError = 0;  // V
   for (size_t k = 0; k < slices.size(); ++k) squaredError += products(k, k) / pairs;
   const double value = std::sqrt(squaredError);
-  // A film without variance, as of a constant sky, is its expectation.
-  if (value <= kRounding) return FilmError{.value = value, .interval = {value, value}};
+  if (value <= kNoVariance) return FilmError{.value = value, .interval = {value, value}};
   // U is the mean of pairs / 2 different products <d_j, d_k>, which are uncorrelated.
   const double deviation = std::sqrt(2 / pairs * squaredCrossProduct(products)) / squaredError;  // of U / V
-  if (!(deviation <= kMostDeviation)) return std::nullopt;
+  // Where one slice alone has found something, no two of them tell how often that is.
+  if (!(deviation > 0 && deviation <= kMostDeviation)) return std::nullopt;
   // Of the products of K slices, K (K - 3) / 2 are free of their mean. The root halves the logarithm's deviation.
   const double margin = std::exp(0.5 * kWidening * studentQuantile(0.5 * count * (count - 3)) * deviation);
   return FilmError{.value = value, .interval = {value / margin, value * margin}};

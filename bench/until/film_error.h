@@ -41,8 +41,11 @@ std::vector<float> errorWeights(std::span<const float> film, size_t width);
 
 // Whether no sample is above 0: such a film has no relative error.
 bool isBlack(std::span<const float> film);
-// Iterations after which a film that is still black is not expected to find any light.
+// Iterations after which a film that is still black is not expected to find any light, nor one without variance any
+// that is rare.
 constexpr uint64_t kBlackIterations = 512;
+// An error up to this is the rounding of equal slices: a film without variance, as of a constant sky.
+constexpr double kNoVariance = 1e-6;
 
 // slices: independent images of one size and of equal numbers of iterations; the film is their mean. Nothing where
 // slices are fewer than kFewestSlices, black, or too uneven to tell, as with one sample that outshines the rest.

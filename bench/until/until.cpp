@@ -52,6 +52,7 @@ ErrorNow FilmErrorWatch::renderUntil(Session& session, const RenderSettings& set
       slices_.add(std::move(film));
       now_.iterations = next;
       now_.error = estimateFilmError(slices_.slices(), session.film().area().width);
+      if (now_.error && now_.error->value <= kNoVariance && next < kBlackIterations) now_.error.reset();
       now_.reached = now_.error && now_.error->interval.high <= relativeError;
     }
     if (next >= most || session.statistics().iterations < next) break;  // its time is over, or it was interrupted

@@ -133,6 +133,12 @@ TEST(FilmError, isNotToldOfOneSampleThatOutshinesAllOrOfBlackFilms) {
   EXPECT_FALSE(estimateFilmError(slices, 64));
 }
 
+TEST(FilmError, isNotToldOfWhatOneSliceAloneHasFound) {
+  std::vector<Film> slices(kFewestSlices, Film(size_t{3} * 64 * 64, 0.3f));
+  for (size_t i = 0; i < slices[2].size(); i += 7) slices[2][i] = 0.6f;
+  EXPECT_FALSE(estimateFilmError(slices, 64));
+}
+
 TEST(FilmError, isNoneOfFilmsWithoutVarianceButForTheRoundingOfSlices) {
   std::vector<Film> slices(kFewestSlices, Film(size_t{3} * 64 * 64, 0.3f));
   const std::optional<FilmError> none = estimateFilmError(slices, 64);
@@ -192,6 +198,23 @@ TEST(FilmErrorWatch, endsAtABlackFilmWhereNothingElseWould) {
   FilmErrorWatch watch;
   const ErrorNow now = watch.renderUntil(*session, settings, 0.1);
   EXPECT_TRUE(now.black && !now.reached && !now.error);
+  EXPECT_GE(now.iterations, kBlackIterations);
+}
+
+// A sky alone, or one whose rare companion has not been found yet: the first looks cannot tell.
+TEST(FilmErrorWatch, believesInAFilmWithoutVarianceOnlyAfterManyIterations) {
+  const test::TemporaryFolder folder;
+  const std::string sky = folder.path("sky.xml");
+  std::ofstream(sky) << R"(<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><rfilter type="box"/>
+      </film></sensor><emitter type="constant"/><shape type="sphere"><point name="center" z="-9"/></shape></scene>)";
+  LoadOptions options;
+  options.filmSize = {kWidth, kHeight};
+  const Scene scene = loadScene(sky, options);
+  const RenderSettings settings = settingsOf(scene, Method::pt, 1);
+  const auto session = Session::create(scene, settings);
+  FilmErrorWatch watch;
+  const ErrorNow now = watch.renderUntil(*session, settings, 0.1);
+  EXPECT_TRUE(now.reached);
   EXPECT_GE(now.iterations, kBlackIterations);
 }
 
