@@ -39,8 +39,8 @@ class PreparedFlip {
 };
 
 // HDR-FLIP against one reference of linear light. Its pixels that are not finite do not choose exposures. Light of many
-// stops has many exposures: the reference's features are kept for the first kKeptExposures, and made again for the
-// others in each comparison.
+// stops has many exposures. Features of the reference are stored for the first kKeptExposures; those of the others are
+// computed in each comparison.
 class PreparedHdrFlip {
  public:
   explicit PreparedHdrFlip(const Image& reference, double pixelsPerDegree = kFlipPixelsPerDegree, Isa isa = bestIsa());

@@ -61,7 +61,7 @@ std::vector<float> errorMap(const ErrorPair& images, MapOf kind) {
   return map;
 }
 
-// Makes a pixel of the codes NaN where it is not finite in either image: there the codes are the reference's, which
+// Sets the pixels of `codes` to NaN that are not finite in one of the images. They hold the reference's codes, which
 // would count as no error.
 void excludeNonFinite(const Image& reference, const Image& test, Image& codes) {
   for (size_t pixel = 0; pixel < codes.pixelCount(); ++pixel) {

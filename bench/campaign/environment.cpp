@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "bench/machine/system_files.h"
+#include "bench/machine/machine_record.h"
 #include "engine/version.h"
 
 namespace wavecrest {
@@ -14,7 +14,7 @@ std::map<std::string, std::string> environment(const RenderSettings& settings) {
   if (gethostname(host.data(), host.size() - 1) != 0) host = {"unknown"};
   return {{"version", kVersion},
           {"commit", kCommit},
-          {"cpu", cpuName(systemFile("/proc/cpuinfo"))},
+          {"cpu", machineRecord().cpu},
           {"host", host.data()},
           {"isa", std::string(toString(settings.isa))},
           {"threads", std::to_string(settings.threads)}};

@@ -9,8 +9,8 @@
 #include "bench/campaign/render_stats.h"
 #include "bench/checkpoint/checkpoint.h"
 #include "bench/film_image.h"
+#include "bench/machine/machine_record.h"
 #include "bench/machine/machine_watch.h"
-#include "bench/machine/system_files.h"
 #include "bench/results/snapshot_notes.h"
 #include "engine/scene/scene_error.h"
 #include "metrics/image/image_io.h"
@@ -164,7 +164,7 @@ class SnapshotTaker {
         renderStats(request_.scene, request_.settings, statistics, request_.loadSeconds, wall, {});
     all.erase("stages");
     all.erase("snapshots");
-    all["cpu"] = cpuName(systemFile("/proc/cpuinfo"));
+    all["cpu"] = machineRecord().cpu;
     if (request_.settings.seconds) {
       all["asked_seconds"] = *request_.settings.seconds;
       all["doubts"] = doubts();

@@ -30,23 +30,22 @@ bool speaksOfPpm(const Claim& claim) {
   });
 }
 
-// The study does not say what ppm has its direct light from. With both readings measured, a finding holds or fails
-// where it does by both; where they differ it is open, or lacks time if it does by one of them and fails by the other.
+// The study does not say where ppm has its direct light from. If both readings were measured, a finding holds or fails
+// if it does so by both. If they differ it is undecided, or not reached in this time if it holds by neither and lacks
+// no more than time by one of them.
 Judgement judgeOnScene(const Claim& claim, const std::string& name, const CampaignResults& results) {
   const SceneLosses first(name, results), second(name, results, PpmReading::nextEvent);
   const Judgement one = judgeReading(claim, first);
   if (!speaksOfPpm(claim) || !second.missing("ppm").empty()) return one;
   const Judgement other = judgeReading(claim, second);
-  Judgement both = other.verdict == V::notJudged ? one : one.verdict == V::notJudged ? other : one;
-  if (one.verdict != other.verdict && one.verdict != V::notJudged && other.verdict != V::notJudged) {
-    const bool noneHolds = one.verdict != V::holds && other.verdict != V::holds;
-    const bool lacksTime = one.verdict == V::notReached || other.verdict == V::notReached;
-    both.verdict = noneHolds && lacksTime ? V::notReached : V::undecided;
-    both.figure = fmt::format("by {}: {}, {}; by {}: {}, {}", first.rowOf("ppm"), toString(one.verdict), one.figure,
-                              second.rowOf("ppm"), toString(other.verdict), other.figure);
-    both.evidence = one.evidence + "; " + other.evidence;
-  }
-  return both;
+  if (other.verdict == one.verdict || other.verdict == V::notJudged) return one;
+  if (one.verdict == V::notJudged) return other;
+  const bool noneHolds = one.verdict != V::holds && other.verdict != V::holds;
+  const bool lacksTime = one.verdict == V::notReached || other.verdict == V::notReached;
+  return {.verdict = noneHolds && lacksTime ? V::notReached : V::undecided,
+          .figure = fmt::format("by {}: {}, {}; by {}: {}, {}", first.rowOf("ppm"), toString(one.verdict), one.figure,
+                                second.rowOf("ppm"), toString(other.verdict), other.figure),
+          .evidence = one.evidence + "; " + other.evidence};
 }
 
 // A claim about many scenes: how many of them it holds in.

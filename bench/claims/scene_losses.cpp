@@ -62,8 +62,9 @@ std::string SceneLosses::rowOf(const std::string& method) const {
   return method == "ppm" && reading_ == PpmReading::nextEvent ? "ppm-direct" : method;
 }
 
-// How far two seeds of the method's row lie apart, in logarithms of losses or in slopes ("slope"); of rows that the
-// standard campaign does not have the most of all rows, and of other metrics that of RMSE.
+// The largest difference of two seeds of the method's row in the standard campaign: of logarithms of losses by the
+// metric, or of slopes ("slope"). A row that is not in that campaign gets the largest of all rows, a metric that is not
+// in it gets that of RMSE.
 double SceneLosses::seedSpread(const std::string& method, const std::string& metric) const {
   static const auto kSpreads = nlohmann::json::parse(kSeedSpreadJson).get<std::map<std::string, nlohmann::json>>();
   const auto of = [&](const nlohmann::json& row) {

@@ -41,8 +41,8 @@ class SceneLosses {
   std::vector<double> scores(const std::string& method, const std::string& metric) const;
   std::vector<double> logLosses(const std::string& method, const std::string& metric) const;
 
-  // mean(a) - mean(b) of the logarithms of the losses of two methods. A single seed has the spread that two seeds of
-  // its row have in the standard campaign (bench/claims/seed-spread), as have the bands below.
+  // mean(a) - mean(b) of the logarithms of the losses of two methods. With one seed the half width, here and in the
+  // bands below, comes from how far two seeds of the row are apart in the standard campaign (bench/claims/seed-spread).
   Band lossDifference(const std::string& metric, const std::string& a, const std::string& b) const;
   Band slopeBand(const std::string& method) const;  // of errorSlopes
   Band scoreBand(const std::string& method, const std::string& metric) const;

@@ -35,7 +35,8 @@ ReportSeries falling(double power, const std::vector<double>& scales, bool simil
 }
 
 TEST(TimeAhead, followsTheCurvesOwnSlope) {
-  // 1 / t is 0.025 at 40 s; the run ends at 16 s. The points lie on the line, so only what curves bend is not known.
+  // 1 / t is 0.025 at 40 s; the run ends at 16 s. The points lie on the line, so the interval is only that of bent
+  // curves.
   const auto ahead = timeAhead(falling(1, {1}), kError, 0, 0.025, {});
   ASSERT_TRUE(ahead);
   EXPECT_NEAR(ahead->seconds, 24, 1e-6);

@@ -186,34 +186,32 @@ TEST(FilmErrorWatch, goesOnAfterAnInterrupt) {
   EXPECT_LE(found.error->interval.high, 0.3);
 }
 
-TEST(FilmErrorWatch, endsAtABlackFilmWhereNothingElseWould) {
+// Path tracing of the scene until its error is a tenth, without another limit.
+ErrorNow watchedUntilATenth(const std::string& xml) {
   const test::TemporaryFolder folder;
-  const std::string dark = folder.path("dark.xml");
-  std::ofstream(dark) << R"(<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/></scene>)";
+  const std::string file = folder.path("scene.xml");
+  std::ofstream(file) << xml;
   LoadOptions options;
   options.filmSize = {kWidth, kHeight};
-  const Scene scene = loadScene(dark, options);
+  const Scene scene = loadScene(file, options);
   const RenderSettings settings = settingsOf(scene, Method::pt, 1);
   const auto session = Session::create(scene, settings);
   FilmErrorWatch watch;
-  const ErrorNow now = watch.renderUntil(*session, settings, 0.1);
+  return watch.renderUntil(*session, settings, 0.1);
+}
+
+TEST(FilmErrorWatch, endsAtABlackFilmWhereNothingElseWould) {
+  const ErrorNow now =
+      watchedUntilATenth(R"(<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/></scene>)");
   EXPECT_TRUE(now.black && !now.reached && !now.error);
   EXPECT_GE(now.iterations, kBlackIterations);
 }
 
-// A sky alone, or one whose rare companion has not been found yet: the first looks cannot tell.
+// A sky alone, or one beside a small lamp that no path has hit yet: the first looks cannot tell.
 TEST(FilmErrorWatch, believesInAFilmWithoutVarianceOnlyAfterManyIterations) {
-  const test::TemporaryFolder folder;
-  const std::string sky = folder.path("sky.xml");
-  std::ofstream(sky) << R"(<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><rfilter type="box"/>
-      </film></sensor><emitter type="constant"/><shape type="sphere"><point name="center" z="-9"/></shape></scene>)";
-  LoadOptions options;
-  options.filmSize = {kWidth, kHeight};
-  const Scene scene = loadScene(sky, options);
-  const RenderSettings settings = settingsOf(scene, Method::pt, 1);
-  const auto session = Session::create(scene, settings);
-  FilmErrorWatch watch;
-  const ErrorNow now = watch.renderUntil(*session, settings, 0.1);
+  const ErrorNow now = watchedUntilATenth(
+      R"(<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><rfilter type="box"/></film></sensor>
+         <emitter type="constant"/><shape type="sphere"><point name="center" z="-9"/></shape></scene>)");
   EXPECT_TRUE(now.reached);
   EXPECT_GE(now.iterations, kBlackIterations);
 }
