@@ -35,9 +35,9 @@ bool speaksOfPpm(const Claim& claim) {
 // no more than time by one of them.
 Judgement judgeOnScene(const Claim& claim, const std::string& name, const CampaignResults& results) {
   const SceneLosses first(name, results), second(name, results, PpmReading::nextEvent);
-  const Judgement one = judgeReading(claim, first);
+  Judgement one = judgeReading(claim, first);
   if (!speaksOfPpm(claim) || !second.missing("ppm").empty()) return one;
-  const Judgement other = judgeReading(claim, second);
+  Judgement other = judgeReading(claim, second);
   if (other.verdict == one.verdict || other.verdict == V::notJudged) return one;
   if (one.verdict == V::notJudged) return other;
   const bool noneHolds = one.verdict != V::holds && other.verdict != V::holds;
