@@ -63,15 +63,6 @@ Box boxOf(const Extent& extent) {
   return box;
 }
 
-template <class S>
-BoundingSphere boundPrimitives(const RecordArray<PrimitiveRecord<S>>& records) {
-  Extent all;
-  for (const PrimitiveRecord<S>& record : records) all.include(record);
-  return all.sphere();
-}
-template BoundingSphere boundPrimitives(const RecordArray<PrimitiveRecord<float>>&);
-template BoundingSphere boundPrimitives(const RecordArray<PrimitiveRecord<double>>&);
-
 Double3 originOf(const BoundingSphere& bounds) {
   constexpr double kFarRadii = 8;
   Double3 origin{};

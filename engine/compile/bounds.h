@@ -5,7 +5,6 @@
 #include <limits>
 #include <span>
 
-#include "engine/compile/record_array.h"
 #include "engine/scene/scene.h"
 #include "kernels/extend/leaves.h"
 #include "kernels/scene_view.h"
@@ -46,9 +45,6 @@ Extent extentOf(const PrimitiveRecord<S>& record) {
   extent.include(record);
   return extent;
 }
-
-template <class S>
-BoundingSphere boundPrimitives(const RecordArray<PrimitiveRecord<S>>& records);
 
 // Where kernels have their origin, so that float resolves a scene that is far from its own: on each axis 0, or the
 // centre of the box if that is farther away than eight radii of the scene. Nearer scenes lose three bits of 24 at most

@@ -115,7 +115,7 @@ struct NearBox {
   NearBox(const CameraView& camera, double nearClip) {
     const Double3 origin = vec(camera.origin);
     low = high = origin;
-    // A Gaussian is cut at 4.5 deviations (filterRadius in camera_lanes.h).
+    // A Gaussian is cut at 4.5 deviations (filterRadius in kernels/scene_view.h).
     const double around = 1 + 4.5 * camera.filterScale;  // pixels; filters reach over the picture's border
     for (const double x : {-around, camera.width + around}) {
       for (const double y : {-around, camera.height + around}) {
@@ -127,8 +127,9 @@ struct NearBox {
         }
       }
     }
-    // Rays start anywhere on the lens; the rest covers rounding.
-    const double margin = camera.lensRadius + nearClip * 1e-3;
+    // Rays start anywhere on the lens, and cross in the focus; the rest covers rounding.
+    const double spread = camera.lensRadius > 0 ? std::max(1.0, std::abs(nearClip / camera.focusDistance - 1)) : 0;
+    const double margin = camera.lensRadius * spread + nearClip * 1e-3;
     for (size_t i = 0; i < 3; ++i) {
       low[i] -= margin;
       high[i] += margin;
@@ -167,14 +168,13 @@ struct NearBox {
 // lengths, that of a sphere two.
 constexpr double kLargestRadius = 3e12, kSmallestRadius = 5e-13, kSmallestSphere = 1e-18;
 
-// Throws SceneError where the scene is too large or too small, or a sphere too small. groupExtent: of the largest group
-// in its space. What is not a number is refused as well.
-void checkRange(const Scene& scene, double radius, double groupExtent) {
-  if (!(std::max(radius, groupExtent) <= kLargestRadius && radius >= kSmallestRadius)) {
-    throw SceneError(SourceLocation{scene.name},
-                     fmt::format("the scene's radius is {:g}; expected {:g} to {:g}",
-                                 radius >= kSmallestRadius ? std::max(radius, groupExtent) : radius, kSmallestRadius,
-                                 kLargestRadius));
+// Throws SceneError where the scene is too large or too small, or a sphere too small. radii: of the world, and of
+// groups in their spaces. What is not a number is refused as well.
+void checkRange(const Scene& scene, const std::vector<double>& radii) {
+  for (const double radius : radii) {
+    if (radius >= kSmallestRadius && radius <= kLargestRadius) continue;
+    throw SceneError(SourceLocation{scene.name}, fmt::format("the scene's radius is {:g}; expected {:g} to {:g}",
+                                                             radius, kSmallestRadius, kLargestRadius));
   }
   for (const Shape& shape : scene.shapes) {
     const auto* sphere = std::get_if<Sphere>(&shape.kind);
@@ -284,12 +284,14 @@ std::unique_ptr<CompiledScene<S>> compileScene(const Scene& scene, Accel accel, 
     throw SceneError(where, "no shape of the scene has a surface; expected one of positive area");
   }
   BoundingSphere bounds = geometry.bounds<S>();
-  checkRange(scene, bounds.radius, geometry.groupExtent());
   const Double3 origin = compiled->origin = originOf(bounds);
   if (origin != Double3{}) {
     geometry.moveTo(origin);
     bounds = geometry.bounds<S>();
   }
+  std::vector<double> radii = geometry.groupRadii();
+  radii.push_back(bounds.radius);
+  checkRange(scene, radii);
   compiled->bounds = bounds;
   SceneView<S>& view = compiled->view;
   view.camera = compileCamera(scene.sensor, scene.film, origin);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/compile/affine.h"
+#include "engine/compile/tessellate.h"
 #include "engine/scene/scene_error.h"
 
 namespace wavecrest {
@@ -12,10 +13,9 @@ namespace {
 
 // About the primitives that a shape becomes.
 uint64_t primitivesOf(const Shape& shape) {
-  constexpr uint64_t kTessellated = 256;
   if (const auto* mesh = std::get_if<Mesh>(&shape.kind)) return mesh->triangles.size();
-  const bool round = std::holds_alternative<Disk>(shape.kind) || std::holds_alternative<Cylinder>(shape.kind);
-  return round ? kTessellated : 1;
+  if (std::holds_alternative<Disk>(shape.kind)) return kDiskTriangles;
+  return std::holds_alternative<Cylinder>(shape.kind) ? kCylinderTriangles : 1;
 }
 
 struct GroupSize {

@@ -141,6 +141,15 @@ Rgb mean(const TexturedRgb& colour, const Scene& scene) {
   return colour.texture == kNone ? colour.value : mean(scene.textures[colour.texture]);
 }
 
+// The greatest value of any channel.
+double greatest(const Texture& texture) {
+  if (const auto* checkerboard = std::get_if<CheckerboardTexture>(&texture.kind)) {
+    return std::max(std::ranges::max(checkerboard->color0), std::ranges::max(checkerboard->color1));
+  }
+  const std::vector<float>& pixels = std::get<BitmapTexture>(texture.kind).bitmap->pixels;
+  return pixels.empty() ? 0 : static_cast<double>(std::ranges::max(pixels));
+}
+
 double average(const Rgb& colour) { return (colour[0] + colour[1] + colour[2]) / 3; }
 
 // ---- fields ---------------------------------------------------------------------------------------------------------
@@ -329,6 +338,16 @@ MaterialRecord compileMaterial(const Material& material, const Scene& scene, boo
   }
   // The fields of this kind of BSDF.
   std::visit(Compiler(record, scene, passes), material.kind);
+  // Light that is reflected again and again between base and boundary has to fade. Constants are at most 1.
+  const auto* plastic = std::get_if<Plastic>(&material.kind);
+  if (plastic != nullptr && plastic->nonlinear && plastic->diffuseReflectance.texture != kNone) {
+    const double most = greatest(scene.textures[plastic->diffuseReflectance.texture]);
+    if (most * record.internalDiffuse >= 1) {
+      throw SceneError(material.source, "diffuse_reflectance texture of a nonlinear plastic has values up to " +
+                                            std::to_string(most) + "; expected less than " +
+                                            std::to_string(1 / record.internalDiffuse));
+    }
+  }
   return record;
 }
 

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "engine/scene/vector_math.h"
+#include "kernels/extend/corner_weld.h"
+#include "kernels/extend/offset.h"
 
 namespace wavecrest {
 namespace {
@@ -15,21 +17,28 @@ Double3 position(const Mesh& mesh, uint32_t vertex) { return widened(mesh.positi
 
 using Edge = std::pair<uint32_t, uint32_t>;
 
-// Whether the triangles (a, b, c) and (a', c', b') that share the edge b-c, a and d opposite, are one parallelogram
-// with a continuous parameterisation: d = b + c - a in position, uv and normal.
-bool formParallelogram(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+// Whether the triangles (a, b, c) and (d, otherC, otherB), which share the edge b-c, are one parallelogram with a
+// continuous parameterisation: d = b + c - a in position, uv and normal, and the same on both sides of the edge. d is
+// no farther off than CornerWeld makes good.
+bool formParallelogram(const Mesh& mesh, const FaceCorners& triangle, const FaceCorners& other, const Double3& origin) {
+  const auto [a, b, c] = triangle;
+  const auto [d, otherC, otherB] = other;
   const Double3 e1 = position(mesh, b) - position(mesh, a), e2 = position(mesh, c) - position(mesh, a);
   const Double3 gap = position(mesh, d) - position(mesh, a) - e1 - e2;
   if (length(gap) > 1e-6 * (length(e1) + length(e2))) return false;
+  const double limit = kQuadUnits * kUnitRoundoff * reachOf(position(mesh, a) - origin, e1, e2);
+  if (std::ranges::any_of(gap, [limit](double along) { return std::abs(along) > limit; })) return false;
   if (!mesh.uvs.empty()) {
+    const auto& uvs = mesh.uvs;
     for (size_t i = 0; i < 2; ++i) {
-      if (std::abs(mesh.uvs[d][i] + mesh.uvs[a][i] - mesh.uvs[b][i] - mesh.uvs[c][i]) > 1e-5f) return false;
+      if (std::abs(uvs[d][i] + uvs[a][i] - uvs[b][i] - uvs[c][i]) > 1e-5f) return false;
+      if (std::abs(uvs[otherB][i] - uvs[b][i]) + std::abs(uvs[otherC][i] - uvs[c][i]) > 1e-5f) return false;
     }
   }
   // Vertex normals have to be the face's: the record of a quad has only three of them.
   if (!mesh.normals.empty()) {
     const Double3 face = normalized(cross(e1, e2));
-    for (const uint32_t vertex : {a, b, c, d}) {
+    for (const uint32_t vertex : {a, b, c, d, otherB, otherC}) {
       if (dot(widened(mesh.normals[vertex]), face) < 1 - 1e-6) return false;
     }
   }
@@ -52,7 +61,7 @@ bool hasArea(const Mesh& mesh, const FaceCorners& corners) {
 
 // Quads of pairs of triangles that form parallelograms, then the triangles that are left. A triangle takes its partner
 // among the earlier ones, across its first edge that has one.
-MeshFaces pairFaces(const Mesh& mesh) {
+MeshFaces pairFaces(const Mesh& mesh, const Double3& origin) {
   MeshFaces faces;
   const auto count = static_cast<uint32_t>(mesh.triangles.size());
   const std::vector<uint32_t> welded = weldedVertices(mesh);
@@ -65,8 +74,10 @@ MeshFaces pairFaces(const Mesh& mesh) {
       const uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];  // edge b-c opposite a
       const auto twin = open.find({welded[c], welded[b]});
       if (twin == open.end()) continue;
-      const uint32_t other = twin->second / 3, d = mesh.triangles[other][twin->second % 3];
-      if (used[other] || !formParallelogram(mesh, a, b, c, d)) continue;
+      const uint32_t other = twin->second / 3, d = twin->second % 3;
+      const auto& o = mesh.triangles[other];
+      if (used[other]) continue;
+      if (!formParallelogram(mesh, {a, b, c}, {o[d], o[(d + 1) % 3], o[(d + 2) % 3]}, origin)) continue;
       used[i] = used[other] = true;
       faces.quads.push_back({a, b, c});
     }
@@ -83,10 +94,10 @@ MeshFaces pairFaces(const Mesh& mesh) {
 
 }  // namespace
 
-MeshFaces facesOf(const Mesh& mesh, bool usesUv, const ParallelFor& parallelFor) {
+MeshFaces facesOf(const Mesh& mesh, bool usesUv, const Double3& origin, const ParallelFor& parallelFor) {
   MeshFaces faces;
   if (mesh.triangles.size() <= kMergeLimit && !(usesUv && mesh.uvs.empty())) {
-    faces = pairFaces(mesh);
+    faces = pairFaces(mesh, origin);
     std::erase_if(faces.quads, [&](const FaceCorners& quad) { return !hasArea(mesh, quad); });
     std::erase_if(faces.triangles, [&](uint32_t i) { return !hasArea(mesh, mesh.triangles[i]); });
     return faces;

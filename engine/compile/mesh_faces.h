@@ -26,7 +26,7 @@ struct MeshFaces {
   }
 };
 // usesUv: (u, v) matters to the material or the light. Without texture coordinates triangles then stay apart, since
-// each has its own (u, v).
-MeshFaces facesOf(const Mesh& mesh, bool usesUv, const ParallelFor& parallelFor);
+// each has its own (u, v). origin: that of the kernels, in the mesh's coordinates.
+MeshFaces facesOf(const Mesh& mesh, bool usesUv, const Double3& origin, const ParallelFor& parallelFor);
 
 }  // namespace wavecrest

@@ -130,7 +130,8 @@ PrimitiveList::Surface PrimitiveList::surfaceOf(const Shape& shape, bool copied)
     surface.mesh = &tessellations_.emplace_back(tessellated(there));
     surface.moved = !copied;
   }
-  surface.faces = &faces_.emplace_back(facesOf(*surface.mesh, usesUv(scene_, shape), parallelFor_));
+  surface.faces = &faces_.emplace_back(
+      facesOf(*surface.mesh, usesUv(scene_, shape), surface.moved ? Double3{} : origin, parallelFor_));
   return surface;
 }
 
@@ -188,11 +189,12 @@ FaceCorners PrimitiveList::cornersOf(const Run& run, size_t index) const {
   return corners;
 }
 
-// Position of a vertex. That of a copy is rounded to float, so that all faces around the vertex agree on it.
+// Position of a vertex relative to the origin. That of a copy is rounded to float, so that all faces around the vertex
+// agree on it.
 Double3 PrimitiveList::cornerOf(const Run& run, uint32_t vertex) const {
   const Double3 p = widened(run.mesh->positions[vertex]);
-  if (run.placed == nullptr) return p;
-  Double3 there = run.placed->point(p);
+  if (run.placed == nullptr) return run.moved ? p : p - origin_;
+  Double3 there = run.placed->point(p) - origin_;
   for (double& coordinate : there) coordinate = static_cast<float>(coordinate);
   return there;
 }
@@ -223,7 +225,7 @@ PrimitiveRecord<S> PrimitiveList::recordOf(const Run& run, size_t index, bool wi
     const FaceCorners vertices = cornersOf(run, index);
     const auto at = [&](size_t k) { return cornerOf(run, vertices[k]); };
     const Double3 p0 = at(0), e1 = at(1) - p0, e2 = at(2) - p0;
-    setFace(record, run.moved ? p0 : p0 - origin_, e1, e2, {});
+    setFace(record, p0, e1, e2, {});
     if (!withNormal) return record;
     const Double3 across = cross(e1, e2);
     assign(record.normal, across * (1 / length(across)));

@@ -164,10 +164,11 @@ BoundingSphere SceneGeometry::bounds() const {
 template BoundingSphere SceneGeometry::bounds<float>() const;
 template BoundingSphere SceneGeometry::bounds<double>() const;
 
-double SceneGeometry::groupExtent() const {
-  double extent = 0;
-  for (const Group& group : groups_) extent = std::max(extent, group.radius);
-  return extent;
+std::vector<double> SceneGeometry::groupRadii() const {
+  std::vector<double> radii;
+  radii.reserve(groups_.size() + 1);
+  for (const Group& group : groups_) radii.push_back(group.radius);
+  return radii;
 }
 
 namespace {

@@ -25,8 +25,8 @@ class SceneGeometry {
   // Of the world as S has it, with the boxes of instances.
   template <class S>
   BoundingSphere bounds() const;
-  // The longest that coordinates in a group are.
-  double groupExtent() const;
+  // Of spheres about the origins of groups with all of the group in them.
+  std::vector<double> groupRadii() const;
 
   // Primitives of the groups come after those of the world. This and the next throw SceneError where there are more
   // records than lanes can index.

@@ -8,13 +8,6 @@
 namespace wavecrest {
 namespace {
 
-// Segments of a full turn.
-constexpr uint32_t kSegments = 256;
-// Rings of a disc, and parts of a cylinder along its axis. Triangles as long as the whole shape and as narrow as a
-// segment have boxes that overlap by far: closest hits in four times as many shorter ones take three quarters of the
-// time.
-constexpr uint32_t kRings = 4, kParts = 4;
-
 Float3 rounded(const Double3& p) {
   return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
 }

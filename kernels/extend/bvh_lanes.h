@@ -57,8 +57,10 @@ WAVECREST_INLINE FaceHit<Number> intersectFaces(Vec3<Number> a, Vec3<Number> b, 
   const Number zero(0.0f);
   const Number least = min(first, min(hit.second, hit.third)), most = max(first, max(hit.second, hit.third));
   inside = (least >= zero) | (most <= zero);
-  // A triangle seen from its edge covers nothing: 0 / 0 is no distance.
-  const Vec3<Number> normal = cross(b - a, c - a);
+  // Two edges, of which one is the shortest or nearly so: the product of two long ones that are almost parallel rounds
+  // to another plane. A triangle seen from its edge covers nothing: 0 / 0 is no distance.
+  const Vec3<Number> ab = b - a, ac = c - a, bc = c - b;
+  const Vec3<Number> normal = cross(ab, select(length2(bc) < length2(ac), bc, ac));
   hit.t = dot(normal, a) / dot(normal, direction);
   return hit;
 }

@@ -1,6 +1,7 @@
 // One ray in the hierarchy of bvh.h, and a packet of rays that stay together: the walkers of walk_bvh.h.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -31,6 +32,12 @@ WAVECREST_INLINE uint32_t greatestAxis(float x, float y, float z) {
   const uint32_t isX = static_cast<uint32_t>(x >= y) & static_cast<uint32_t>(x >= z);
   return (1 - isX) * (2 - static_cast<uint32_t>(y >= z));
 }
+
+// The power of two up to |a|: the factor for a shadow ray's direction, which is as long as its segment, against spheres
+// so large that their products would overflow. a: 1 over the direction's greatest part.
+constexpr uint32_t kExponentBits = 0x7f800000u;
+WAVECREST_INLINE float powerUpTo(float a) { return std::bit_cast<float>(std::bit_cast<uint32_t>(a) & kExponentBits); }
+WAVECREST_INLINE Float powerUpTo(Float a) { return fromBits(bits(a) & UInt(kExponentBits)); }
 
 // What a ray has met. t: nothing beyond counts, the distance of the hit or the ray's end. second, third: weights of the
 // corners, or t and 0 of a sphere. id: of the face, or kMiss.
@@ -115,8 +122,10 @@ struct alignas(64) BvhRay {
   }
   WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
     using Group = FloatGroup<kLeafSize>;
-    const Group distance = intersectSpheres(loadPoints(spheres.center), loadGroup<kLeafSize>(spheres.radius),
-                                            broadcast<kLeafSize>(origin), broadcast<kLeafSize>(direction));
+    const Group scale(kAnyHit ? powerUpTo(shear[2]) : 1.0f);
+    const Group distance =
+        scale * intersectSpheres(loadPoints(spheres.center), loadGroup<kLeafSize>(spheres.radius),
+                                 broadcast<kLeafSize>(origin), broadcast<kLeafSize>(direction) * scale);
     keep(distance > Group(0.0f), distance, distance, Group(0.0f), spheres.id);
   }
 
@@ -203,8 +212,9 @@ struct BvhPacket {
     end = greatestLane(t);
   }
   WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
-    forEachSphere(spheres, [&](Float distance, UInt sphere)
-                               HWY_ATTR { keep(distance > Float(0), distance, distance, Float(0), sphere); });
+    forEachSphere(spheres, direction, [&](Float distance, UInt sphere) HWY_ATTR {
+      keep(distance > Float(0), distance, distance, Float(0), sphere);
+    });
     end = greatestLane(t);
   }
 
@@ -264,12 +274,12 @@ struct BvhPacket {
       if (any(met)) take(met, hit, face);
     });
   }
-  // Calls take(distances, id) for each sphere; they are negative where a ray misses it.
+  // Calls take(distances in units of `along`, id) for each sphere; they are negative where a ray misses it.
   template <class Take>
-  WAVECREST_INLINE void forEachSphere(const SphereLeaf& spheres, const Take& take) const {
+  WAVECREST_INLINE void forEachSphere(const SphereLeaf& spheres, Vec3<Float> along, const Take& take) const {
     forEachSlot(spheres.id, [&](size_t slot, UInt sphere) HWY_ATTR {
       const Vec3<Float> center{spheres.center[0][slot], spheres.center[1][slot], spheres.center[2][slot]};
-      take(intersectSpheres(center, Float(spheres.radius[slot]), origin, direction), sphere);
+      take(intersectSpheres(center, Float(spheres.radius[slot]), origin, along), sphere);
     });
   }
 

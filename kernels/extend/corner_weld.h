@@ -19,15 +19,17 @@ class CornerWeld {
  public:
   // quads: those of the scene. Quads that are hardly larger than what is welded are left out.
   explicit CornerWeld(const std::vector<PrimitiveRecord<double>>& quads);
-  // The point that takes the place of a corner of any face.
-  Corner operator()(const Corner& corner) const;
+  // The point that takes the place of a corner of any face. edge2: the face's shortestEdge2. A face that is hardly
+  // larger than what a point welds keeps its corner there.
+  Corner operator()(const Corner& corner, double edge2) const;
 
  private:
   struct Point {
     Corner corner;
     float tolerance;  // greatest distance along an axis of what becomes this point
+    double edge2;     // of its quad
   };
-  const Point* find(const Corner& corner) const;
+  const Point* find(const Corner& corner, double edge2) const;
 
   std::vector<Point> points_;  // sorted by x
   float widest_ = 0;           // greatest tolerance
@@ -35,5 +37,12 @@ class CornerWeld {
 
 // A corner of a quad or triangle before it is welded.
 Corner cornerAt(const PrimitiveRecord<double>& record, double u, double v);
+// The square of the shortest of e1, e2 and e2 - e1.
+double shortestEdge2(const PrimitiveRecord<double>& record);
+
+// Bounds the coordinates of a quad's corners: the greatest sum of |p0|, |e1| and |e2| along an axis.
+double reachOf(const std::array<double, 3>& p0, const std::array<double, 3>& e1, const std::array<double, 3>& e2);
+// How far the fourth corner of a quad may lie off the vertex that it stands for, in units of rounding of the reach.
+constexpr double kQuadUnits = 2;
 
 }  // namespace wavecrest

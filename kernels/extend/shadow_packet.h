@@ -73,7 +73,11 @@ struct ShadowPacket : BvhPacket {
     stopIfBlocked();
   }
   WAVECREST_INLINE void visit(const SphereLeaf& spheres) {
-    forEachSphere(spheres, [&](Float distance, UInt) HWY_ATTR { block((distance > Float(0)) & (distance <= t)); });
+    const Float scale = powerUpTo(shear.z);
+    forEachSphere(spheres, direction * scale, [&](Float scaled, UInt) HWY_ATTR {
+      const Float distance = scaled * scale;
+      block((distance > Float(0)) & (distance <= t));
+    });
     stopIfBlocked();
   }
 

@@ -52,8 +52,8 @@ template <class Real>
 WAVECREST_INLINE Vec3<Real> normalize(Vec3<Real> a) {
   return a * (Real(1) / sqrt(length2(a)));
 }
-template <class Real>
-WAVECREST_INLINE Vec3<Real> select(Mask m, Vec3<Real> yes, Vec3<Real> no) {
+template <class Real, class MaskOf>
+WAVECREST_INLINE Vec3<Real> select(MaskOf m, Vec3<Real> yes, Vec3<Real> no) {
   return {select(m, yes.x, no.x), select(m, yes.y, no.y), select(m, yes.z, no.z)};
 }
 template <class Real>

@@ -71,7 +71,7 @@ double sharedArea(const Face& a, const Face& b) {
 // sees.
 std::vector<std::string> flushFacesOf(const Scene& scene) {
   const auto compiled = compileScene<double>(scene, Accel::bvh);
-  const BoundingSphere bounds = boundPrimitives(compiled->primitives.records);
+  const BoundingSphere& bounds = compiled->bounds;
   const double tolerance = 1e-5 * bounds.radius;
   const auto facesOut = [&](const Face& face) {
     for (size_t axis = 0; axis < 3; ++axis) {

@@ -156,6 +156,34 @@ TEST(FarScene, isMovedOnlyAlongAxesOnWhichItIsFar) {
   EXPECT_EQ(originAt({std::ceil(8 * radius), 0, -1024}), (Double3{std::ceil(8 * radius), 0, -1024}));
 }
 
+// Vertices of copies are rounded to float relative to the kernels' origin, where they are close to it.
+TEST(FarScene, copiesHaveTheirSize) {
+  for (const Double3& at : {Double3{5'400'000, 0, 0}, Double3{5'400'000, -7'000'000, 6'000'000}}) {
+    Scene scene;
+    scene.groups.push_back({.id = "cube", .source = {}});
+    Mesh cube;
+    for (uint32_t i = 0; i < 8; ++i) {
+      cube.positions.push_back({(i & 1) != 0 ? 0.1f : -0.1f, (i & 2) != 0 ? 0.1f : -0.1f, (i & 4) != 0 ? 0.1f : -0.1f});
+    }
+    cube.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    addShape(scene, cube, addDiffuse(scene, 0.5, 0.5, 0.5)).group = 0;
+    scene.instances.push_back({.id = {},
+                               .group = 0,
+                               .toWorld = {{{1, 0, 0, at[0]}, {0, 1, 0, at[1]}, {0, 0, 1, at[2]}, {0, 0, 0, 1}}},
+                               .source = {}});
+    setCamera(scene, at + Double3{0, 0, 1}, 60, 8, 8);
+    for (const Instancing instancing : {Instancing::kept, Instancing::expanded}) {
+      const auto compiled = compileScene<float>(scene, Accel::bvh, true, instancing);
+      EXPECT_EQ(compiled->origin, at);
+      for (size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(compiled->bounds.low[axis], -0.1, 1e-6) << kInstancingNames[static_cast<size_t>(instancing)];
+        EXPECT_NEAR(compiled->bounds.high[axis], 0.1, 1e-6) << kInstancingNames[static_cast<size_t>(instancing)];
+      }
+    }
+  }
+}
+
 // ---- walls that paths have just left --------------------------------------------------------------------------------
 
 struct Placement {

@@ -232,6 +232,17 @@ TEST(Instances, inTheSamePlaceAreTakenInTheirOrder) {
   }
 }
 
+// Rays are intersected in the group's space, whose products float must hold.
+TEST(Instances, ofTinyGroupsAreRefusedUnlessCopied) {
+  Scene scene;
+  scene.groups.push_back({.id = "tiny", .source = {}});
+  addShape(scene, Rectangle{{0, 0, 0}, {1e-13, 0, 0}, {0, 1e-13, 0}}, addDiffuse(scene, 0.5, 0.5, 0.5)).group = 0;
+  addInstance(scene, 0, placedAt({0, 0, 0}, {{1e13, 0, 0}, {0, 1e13, 0}, {0, 0, 1e13}}));
+  setCamera(scene, {0, 0, 2}, 60, 8, 8);
+  EXPECT_THROW(compileScene<float>(scene, Accel::bvh, true, Instancing::kept), SceneError);
+  EXPECT_NO_THROW(compileScene<float>(scene, Accel::bvh, true, Instancing::expanded));
+}
+
 // ---- closed meshes --------------------------------------------------------------------------------------------------
 
 struct Setting {
@@ -340,6 +351,21 @@ TEST(InstancingRule, copiesWhereTheyAreFew) {
   scene.instances.resize(1000, scene.instances.front());
   EXPECT_TRUE(keeps(scene));
   EXPECT_FALSE(keeps(scene, Instancing::expanded));
+}
+// 256 segments in 4 rings, the innermost of triangles, and in 4 parts.
+TEST(InstancingRule, countsTheTrianglesOfDisksAndCylinders) {
+  const auto keepsCopies = [](const auto& kind, size_t copies) {
+    Scene scene;
+    scene.groups.push_back({.id = "round", .source = {}});
+    addShape(scene, kind, 0).group = 0;
+    addInstance(scene, 0, allKindsOfPlaces().front());
+    scene.instances.resize(1 + copies, scene.instances.front());
+    return keeps(scene);
+  };
+  EXPECT_FALSE(keepsCopies(Disk{}, kMostCopies / 1792));
+  EXPECT_TRUE(keepsCopies(Disk{}, kMostCopies / 1792 + 1));
+  EXPECT_FALSE(keepsCopies(Cylinder{}, kMostCopies / 2048));
+  EXPECT_TRUE(keepsCopies(Cylinder{}, kMostCopies / 2048 + 1));
 }
 TEST(InstancingRule, takesNoNoticeOfGroupsWithoutInstances) {
   Scene scene = placedScene(allKindsOfPlaces(), false);

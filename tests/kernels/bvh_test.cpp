@@ -129,6 +129,31 @@ TEST_P(BvhRaysTest, raysThatAreNoRaysMissAndHarmNoOther) {
   }
 }
 
+// A cube that is smaller than what a corner of the ground welds (corner_weld.h).
+TEST_P(BvhRaysTest, smallBodiesAtTheCornerOfALargeQuadAreHit) {
+  constexpr double kLow = 2e-4, kHigh = 1.2e-3;
+  std::vector<PrimitiveRecord<double>> list{quadPrimitive({0, 0, 0}, {0, 0, 1e4}, {1e4, 0, 0})};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (const double side : {kLow, kHigh}) {
+      Point p{kLow, kLow, kLow}, alongU{}, alongV{};
+      p[axis] = side;
+      alongU[(axis + 1) % 3] = alongV[(axis + 2) % 3] = kHigh - kLow;
+      list.push_back(facePrimitive(PrimitiveKind::quad, p, alongU, alongV));
+    }
+  }
+  const StageScene<float> scene(list);
+  RandomPoints random(32);
+  std::vector<TestRay> rays;
+  const auto beside = [&] { return random.uniform(1.05 * kLow, 0.99 * kHigh); };
+  for (size_t i = 0; i < 200; ++i) rays.push_back(roundedRay({beside(), 1, beside()}, {0, -1, 0}));
+  for (const char* name : {"bvh", "packets"}) {
+    for (const Found& found : hits(named(name), scene, rays)) {
+      ASSERT_NE(found.primitive, kMiss) << name;
+      ASSERT_NE(found.primitive, 0u) << name;
+    }
+  }
+}
+
 // ---- shadow rays ----------------------------------------------------------------------------------------------------
 
 // Segments to a few lights, most of them behind something: from one place in packets, from anywhere, and along the
@@ -195,6 +220,18 @@ TEST_P(BvhRaysTest, shadowRaysSeeWhatTheyWouldSeeAlone) {
   for (const size_t count : {size_t{1}, size_t{7}, size_t{255}, size_t{257}, RayBatch::kCapacity}) {
     compare(count, false);
     compare(count, true);
+  }
+}
+
+// The square of the length of a segment times that of such a radius is more than float holds.
+TEST_P(BvhRaysTest, largeSpheresBlockLongShadowRays) {
+  RandomPoints random(36);
+  const StageScene<float> scene({spherePrimitive({0, 0, 0}, 3e9)});
+  RayBatch batch;
+  for (size_t i = 0; i < 300; ++i) batch.push(aimedRay(random.direction() * 1e10, random.inCube(1e9)));
+  for (const auto& [length, blocks] : {std::pair{2e10f, true}, std::pair{6e9f, false}}) {
+    const std::vector<bool> blocked = batch.occluded(named("bvh"), scene.view, length);
+    EXPECT_EQ(std::ranges::count(blocked, blocks), 300) << length;
   }
 }
 

@@ -22,13 +22,13 @@ struct Placement {
 
 template <class S>
 struct Fixture {
-  Fixture(std::vector<PrimitiveRecord<double>> primitives, const Point& eye, double spread, const Intersector& chosen)
+  Fixture(std::vector<PrimitiveRecord<double>> primitives, const CameraView& camera, const Intersector& chosen)
       : scene(std::move(primitives)),
         stages(findStages<S>(bestIsa(), precision(), chooseSpecialization(kCurvedShapes, precision()))) {
     std::fill_n(scene.materials[0].reflectance, 3, 1.0f);
     scene.materials[0].opacity = 1;
     scene.view.materials = scene.materials.data();
-    scene.setCamera(pinholeCamera(eye, Point{-0.5, 0.5, 0.7} * spread, {spread / 32, 0, 0}, {0, -spread / 32, 0}, 32));
+    scene.setCamera(camera);
     if constexpr (sizeof(S) == sizeof(double)) {
       extend = chosen.extendPrecise;
     } else {
@@ -58,13 +58,18 @@ struct Fixture {
   Wave<S> wave{kRayCount, {}};
 };
 
+// A camera that looks along z.
+CameraView cameraAt(const Point& eye, double spread) {
+  return pinholeCamera(eye, Point{-0.5, 0.5, 0.7} * spread, {spread / 32, 0, 0}, {0, -spread / 32, 0}, 32);
+}
+
 class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersector, Placement>> {
  protected:
   const Intersector& intersector() const { return std::get<0>(GetParam()); }
   double scale() const { return std::get<1>(GetParam()).scale; }
   Point center() const { return Point{0.6, -0.5, 0.62} * (scale() * std::get<1>(GetParam()).distance); }
 
-  Point below() const { return center() - Point{0, 0, 3 * scale()}; }
+  CameraView below() const { return cameraAt(center() - Point{0, 0, 3 * scale()}, 0.5); }
 
   // The cube of bounceInCube() with its normals outward.
   std::vector<PrimitiveRecord<double>> solidCube() const {
@@ -75,7 +80,7 @@ class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersecto
 
   template <class S>
   void bounceInCube(bool triangles) {
-    Fixture<S> f(turnedCube(scale(), center(), triangles).walls, center(), 1, intersector());
+    Fixture<S> f(turnedCube(scale(), center(), triangles).walls, cameraAt(center(), 1), intersector());
     const auto wallOf = [&](uint32_t primitive) {  // the two triangles of a wall count as one
       const auto& n = f.scene.precise[primitive].normal;
       return std::array{std::lround(n[0] * 1000), std::lround(n[1] * 1000), std::lround(n[2] * 1000)};
@@ -105,7 +110,7 @@ class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersecto
   // A chord that leaves a sphere at angle theta to the normal has length 2 R cos(theta).
   template <class S>
   void bounceInSphere() {
-    Fixture<S> f(hollowSphere(scale(), center()).walls, center(), 1, intersector());
+    Fixture<S> f(hollowSphere(scale(), center()).walls, cameraAt(center(), 1), intersector());
     const double radius = f.scene.records[0].e1[0];
     // Two ends, each off by the offset and by the rounding of coordinates of the size of the centre's.
     const double error = 64 * 0x1p-24 * (length(center()) + radius);
@@ -135,8 +140,8 @@ class SelfIntersectionTest : public testing::TestWithParam<std::tuple<Intersecto
 
   // A convex body cannot be met again from outside.
   template <class S>
-  void leaveSolidBody(const std::vector<PrimitiveRecord<double>>& body, const Point& eye) {
-    Fixture<S> f(body, eye, 0.5, intersector());
+  void leaveSolidBody(const std::vector<PrimitiveRecord<double>>& body, const CameraView& camera) {
+    Fixture<S> f(body, camera, intersector());
     for (uint32_t iteration = 0; iteration < effort(16, 2); ++iteration) {
       f.begin(iteration);
       f.context.depth = 1;
@@ -162,7 +167,17 @@ TEST_P(SelfIntersectionOfTowersTest, outside) {
     faces.push_back(quadPrimitive({side, -s, foot}, {side, s, foot}, {side, -s, height}));
     faces.push_back(quadPrimitive({-s, side, foot}, {s, side, foot}, {-s, side, height}));
   }
-  leaveSolidBody<float>(faces, {0, 0, -3 * s});
+  leaveSolidBody<float>(faces, cameraAt({0, 0, -3 * s}, 0.5));
+}
+
+// Each half of a long quad has two long edges that are almost parallel.
+class SelfIntersectionOfStripsTest : public SelfIntersectionTest {};
+TEST_P(SelfIntersectionOfStripsTest, fromEitherHalf) {
+  const Point along = turned({2, 0, 0}) * scale(), across = turned({0, 0.005, 0}) * scale();
+  const Point above = normalized(cross(along, across)) * scale();
+  leaveSolidBody<float>({facePrimitive(PrimitiveKind::quad, center() - along * 0.5 - across * 0.5, along, across)},
+                        pinholeCamera(center() + above, along * -0.5 - across * 0.5 - above, along * (1.0 / 32),
+                                      across * (1.0 / 32), 32));
 }
 
 class SelfIntersectionOfQuadsTest : public SelfIntersectionTest {};
@@ -202,6 +217,7 @@ std::string nameOfPlacement(const testing::TestParamInfo<std::tuple<Intersector,
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionOfQuadsTest, placements(4), nameOfPlacement);
+INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionOfStripsTest, placements(4), nameOfPlacement);
 INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionOfTrianglesTest, placements(5), nameOfPlacement);
 INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionTest, placements(7), nameOfPlacement);
 INSTANTIATE_TEST_SUITE_P(Kernels, SelfIntersectionOfTowersTest, placements(7), nameOfPlacement);

@@ -1,0 +1,82 @@
+// Which pairs of a mesh's triangles become quads, and that faces still meet where they did.
+#include "engine/compile/mesh_faces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "engine/compile/primitives.h"
+#include "tests/engine/test_scenes.h"
+
+namespace wavecrest {
+namespace {
+
+// A turned cube of half edge 1 with vertices as six decimals write them, or as they are in float.
+Mesh turnedCube(double turn, bool sixDecimals) {
+  Mesh mesh;
+  for (uint32_t i = 0; i < 8; ++i) {
+    const double x = (i & 1) != 0 ? 1 : -1, y = (i & 2) != 0 ? 1 : -1, z = (i & 4) != 0 ? 1 : -1;
+    const double a = turn, b = 0.7 * turn, across = x * std::cos(a) + z * std::sin(a);
+    Double3 p{across * std::cos(b) - y * std::sin(b) + 0.3, across * std::sin(b) + y * std::cos(b) - 0.2,
+              z * std::cos(a) - x * std::sin(a) + 0.1};
+    if (sixDecimals) {
+      for (double& c : p) c = std::round(c * 1e6) / 1e6;
+    }
+    mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+// How many different corners the leaves of the mesh have.
+size_t cornersInLeaves(const Mesh& mesh) {
+  Scene scene;
+  addShape(scene, mesh, addDiffuse(scene, 0.5, 0.5, 0.5));
+  const PrimitiveList list(scene, false, inTurn);
+  LeafMaker leaves(list.source(), inTurn);
+  std::set<Corner> corners;
+  for (const Piece& piece : leaves.faces()) {
+    const FaceLeaf leaf = leaves.faceLeaf(&piece.id, 1);
+    for (const auto& corner : leaf.corner) corners.insert(Corner{corner[0][0], corner[1][0], corner[2][0]});
+  }
+  return corners.size();
+}
+
+TEST(MeshFaces, ofACubeMeetInItsCorners) {
+  for (double turn = 0.05; turn < 6; turn += 0.1) {
+    for (const bool sixDecimals : {true, false}) {
+      const Mesh cube = turnedCube(turn, sixDecimals);
+      EXPECT_EQ(cornersInLeaves(cube), 8u) << turn;
+      if (!sixDecimals) {
+        EXPECT_EQ(facesOf(cube, false, {}, inTurn).quads.size(), 6u) << turn;
+      }
+    }
+  }
+}
+
+// A square of two triangles, whose common edge is that of vertices 1 and 2 in the one, 4 and 5 in the other.
+Mesh splitSquare() {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}};
+  mesh.uvs = {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {0, 1}, {1, 0}};
+  mesh.normals.assign(6, {0, 0, 1});
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  return mesh;
+}
+
+TEST(MeshFaces, stayTrianglesWhereTheirSidesOfTheEdgeDiffer) {
+  const auto quads = [](const Mesh& mesh) { return facesOf(mesh, true, {}, inTurn).quads.size(); };
+  EXPECT_EQ(quads(splitSquare()), 1u);
+  Mesh mesh = splitSquare();
+  std::swap(mesh.uvs[4], mesh.uvs[5]);
+  EXPECT_EQ(quads(mesh), 0u) << "texture coordinates";
+  mesh = splitSquare();
+  mesh.normals[4] = {0, 0.6f, 0.8f};
+  EXPECT_EQ(quads(mesh), 0u) << "normals";
+}
+
+}  // namespace
+}  // namespace wavecrest
