@@ -224,6 +224,13 @@ struct CameraView {
   double filterScale = 0;               // radius of the tent, standard deviation of the Gaussian, in pixels
 };
 
+// How far a filter reaches from the centre of a pixel. A Gaussian's rest beyond four and a half deviations is below
+// 1e-5.
+inline double filterRadius(const CameraView& camera) {
+  if (camera.filter == FilterKind::box) return 0.5;
+  return camera.filter == FilterKind::tent ? camera.filterScale : 4.5 * camera.filterScale;
+}
+
 // Bits of a texel's column and of its row in the alias table of an environment.
 constexpr uint32_t kTexelBits = 16, kMostTexelsAcross = 1u << kTexelBits;
 

@@ -42,6 +42,10 @@ bool isBlend(const XmlElement& element) {
   return element.get("type") == "blendbsdf" || element.get("type") == "mixturebsdf";
 }
 
+// Far more parts than kernels take, of which those of weight 0 are still to be removed. Each level of blends that name
+// one BSDF twice doubles them.
+constexpr size_t kMostRead = 1024;
+
 // Adds a part to a blend of constant weights. If the part is such a blend itself, adds its parts instead, with the
 // products of the weights.
 void addPart(LoadContext& context, const XmlElement& element, double weight, Blend& blend) {
@@ -53,6 +57,10 @@ void addPart(LoadContext& context, const XmlElement& element, double weight, Ble
       for (size_t i = 0; i < parts.materials.size(); ++i) {
         blend.materials.push_back(parts.materials[i]);
         blend.weights.push_back(weight * parts.weights[i]);
+      }
+      if (blend.materials.size() > kMostRead) {
+        throw LoadError(element.location(), "a blend of " + std::to_string(blend.materials.size()) +
+                                                " BSDFs; expected at most " + std::to_string(kMostRead));
       }
       return;
     }

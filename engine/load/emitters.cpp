@@ -131,7 +131,7 @@ EmitterKind readSpot(LoadContext& context, Parameters& parameters) {
   // The light projects the texture as a picture: to_world may scale it, but not shear it.
   if (const XmlElement* texture = parameters.element("texture")) {
     checkPerpendicular(spot.toWorld, "the spot light", parameters.locationOf("to_world"));
-    spot.texture = textureOf(context, *texture);
+    spot.texture = emissionTextureOf(context, *texture, parameters.locationOf("texture"));
   }
   return spot;
 }

@@ -139,6 +139,12 @@ uint32_t textureOf(LoadContext& context, const XmlElement& texture) {
   return index;
 }
 
+uint32_t emissionTextureOf(LoadContext& context, const XmlElement& texture, const SourceLocation& where) {
+  const uint32_t index = textureOf(context, texture);
+  checkRange(context, context.scene.textures[index], ColorRole::emission, where);
+  return index;
+}
+
 TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::string_view name, double fallback) {
   return readTextured(context, parameters, name, fallback, ColorRole::reflectance);
 }

@@ -13,6 +13,8 @@ uint32_t defaultMaterial(LoadContext& context, bool isLight);
 uint32_t textureOf(LoadContext& context, const XmlElement& texture);
 // The same without a place in the scene, for textures that are made of it.
 Texture readTexture(LoadContext& context, const XmlElement& texture);
+// textureOf for a light, whose values may not be negative. where: what refers to the texture.
+uint32_t emissionTextureOf(LoadContext& context, const XmlElement& texture, const SourceLocation& where);
 
 // A parameter that is a colour or a texture; TexturedRgb::texture says which.
 TexturedRgb readTexturedRgb(LoadContext& context, Parameters& parameters, std::string_view name, double fallback);

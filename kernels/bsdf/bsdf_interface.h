@@ -41,6 +41,7 @@ struct BsdfSample {
   Real pdf, pdfReverse;  // of a delta lobe: discrete probabilities
   Real etaRatio;         // eta_wi / eta_wo: 1 unless refracted
   Mask specular;         // a delta lobe was taken
+  Mask absent = {};      // of these: the surface is absent (opacity_lanes.h)
 };
 
 // Which lobes sample() chooses from. specularOnly: the delta lobes, with their probabilities renormalised.

@@ -20,7 +20,8 @@ WAVECREST_INLINE BsdfSample<Real> select(Mask m, const BsdfSample<Real>& yes, co
           select(m, yes.pdf, no.pdf),
           select(m, yes.pdfReverse, no.pdfReverse),
           select(m, yes.etaRatio, no.etaRatio),
-          (yes.specular & m) | andNot(no.specular, m)};
+          (yes.specular & m) | andNot(no.specular, m),
+          (yes.absent & m) | andNot(no.absent, m)};
 }
 
 // What BSDFs of a feature set see of a surface.

@@ -19,7 +19,8 @@ WAVECREST_INLINE BsdfSample<Real> passThrough(Vec3<Real> wi, Real weight, Real p
           .pdf = pick,
           .pdfReverse = pick,
           .etaRatio = Real(1),
-          .specular = allLanes()};
+          .specular = allLanes(),
+          .absent = allLanes()};
 }
 
 // hasDelta(): lanes whose surface has a delta lobe; sampleSurface(u): a sample of what the surface does where it is.

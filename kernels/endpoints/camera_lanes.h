@@ -178,13 +178,6 @@ WAVECREST_INLINE Projection<typename P::Real> project(const CameraView& camera, 
   return out;
 }
 
-// How far a filter reaches from the centre of a pixel. A Gaussian's rest beyond four and a half deviations is below
-// 1e-5.
-inline double filterRadius(const CameraView& camera) {
-  if (camera.filter == FilterKind::box) return 0.5;
-  return camera.filter == FilterKind::tent ? camera.filterScale : 4.5 * camera.filterScale;
-}
-
 // The pixel that a splat goes to, along one axis, and what its value is multiplied by.
 //
 // A filter h spreads a contribution at raster r over all pixels j with h(r - centre_j) > 0. One of them is taken with

@@ -127,12 +127,8 @@ WAVECREST_INLINE LightSample<typename P::Real> sampleLight(const SceneView<typen
   sample.radiance = light.radiance;
   const Real pick = light.pick;
 
-  // Quads and triangles: uniform over the area. A triangle folds the square's far half back. Lanes of other lights get
-  // numbers that are replaced below.
-  const Mask triangle = light.kind == lightKind(LightKind::triangle);
-  const Mask fold = triangle & (u + v > Real(1));
-  u = select(fold, Real(1) - u, u);
-  v = select(fold, Real(1) - v, v);
+  // Quads and triangles: uniform over the area. Lanes of other lights get numbers that are replaced below.
+  foldOntoTriangle(light.kind == lightKind(LightKind::triangle), u, v);
   Vec3<Real> point = mulAdd(light.e1, u, mulAdd(light.e2, v, light.p0));
   Vec3<Real> normal = light.normal;
   Real pdfA = light.inverseArea;

@@ -64,9 +64,7 @@ WAVECREST_INLINE EmittedRay<typename P::Real> emitFromArea(const SceneView<typen
                                                            const Uniform4& v) {
   using Real = typename P::Real;
   Real a = to<Real>(v.a), b = to<Real>(v.b);
-  const Mask fold = (light.kind == lightKind(LightKind::triangle)) & (a + b > Real(1));
-  a = select(fold, Real(1) - a, a);
-  b = select(fold, Real(1) - b, b);
+  foldOntoTriangle(light.kind == lightKind(LightKind::triangle), a, b);
   Vec3<Real> point = mulAdd(light.e1, a, mulAdd(light.e2, b, light.p0));
   Vec3<Real> normal = light.normal;
   Mask sphere = noLanes();

@@ -1,4 +1,4 @@
-// The generator matrices of the first four Sobol dimensions, for 2^32 points, computed from their primitive
+// The generator matrices of the third and fourth Sobol dimension, for 2^32 points, computed from their primitive
 // polynomials.
 //
 // A column is kept with its bits reversed (the first binary digit of the number is bit 0), the order in which the
@@ -40,7 +40,6 @@ constexpr SobolColumns sobolColumns(size_t degree, uint32_t inner, std::array<ui
 
 // Dimension 0 is the identity (van der Corput); dimension 1 is Pascal's triangle, which sobol_lanes.h evaluates by
 // shifts.
-inline constexpr SobolColumns kSobolDimension1 = sobolColumns(1, 0, {1, 0, 0});
 inline constexpr SobolColumns kSobolDimension2 = sobolColumns(2, 1, {1, 3, 0});
 inline constexpr SobolColumns kSobolDimension3 = sobolColumns(3, 1, {1, 3, 1});
 

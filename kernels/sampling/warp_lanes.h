@@ -1,7 +1,8 @@
-// Warps: from numbers in [0,1) to points on discs, spheres, cones and triangles, each with its density.
+// Warps: from numbers in [0,1) to points on discs, spheres, cones and triangles.
 //
-// Directions are in a local frame whose z axis is the normal or the axis. Densities are per solid angle (PdfW) or per
-// area of the unit shape (PdfA). The maps are continuous, so that well distributed numbers stay well distributed.
+// Directions are in a local frame whose z axis is the normal or the axis. Points are uniform, except on the
+// hemisphere, where their density is proportional to the cosine. The maps are continuous but for foldOntoTriangle, so
+// that well distributed numbers stay well distributed.
 #pragma once
 
 #include "kernels/simd/math.h"
@@ -30,10 +31,6 @@ WAVECREST_INLINE Vec2<Real> concentricDisc(Real u, Real v) {
   const Real across = radius * angle.sin;
   return {select(alongX, along, across), select(alongX, across, along)};
 }
-template <class Real>
-WAVECREST_INLINE Real concentricDiscPdfA() {
-  return Real(kInvPi);
-}
 
 // ---- hemisphere, proportional to the cosine -------------------------------------------------------------------------
 
@@ -44,11 +41,6 @@ WAVECREST_INLINE Vec3<Real> cosineHemisphere(Real u, Real v) {
   const Real radius = sqrt(u);
   return {radius * azimuth.cos, radius * azimuth.sin, sqrt(Real(1) - u)};
 }
-// Zero below the horizon.
-template <class Real>
-WAVECREST_INLINE Real cosineHemispherePdfW(Real cosTheta) {
-  return max(cosTheta, Real(0)) * Real(kInvPi);
-}
 
 // ---- sphere ---------------------------------------------------------------------------------------------------------
 
@@ -58,10 +50,6 @@ WAVECREST_INLINE Vec3<Real> uniformSphere(Real u, Real v) {
   const SinCos<Real> azimuth = sinCos2Pi(v);
   const Real sinTheta = Real(2) * sqrt(u * (Real(1) - u));
   return {sinTheta * azimuth.cos, sinTheta * azimuth.sin, negMulAdd(Real(2), u, Real(1))};
-}
-template <class Real>
-WAVECREST_INLINE Real uniformSpherePdfW() {
-  return Real(kInvPi / 4);
 }
 
 // ---- cone around the z axis -----------------------------------------------------------------------------------------
@@ -79,24 +67,15 @@ WAVECREST_INLINE Vec3<Real> uniformCone(Real u, Real v, Real oneMinusCosMax) {
   const Real sinTheta = sqrt(oneMinusCos * (Real(2) - oneMinusCos));
   return {sinTheta * azimuth.cos, sinTheta * azimuth.sin, Real(1) - oneMinusCos};
 }
-template <class Real>
-WAVECREST_INLINE Real uniformConePdfW(Real oneMinusCosMax) {
-  return Real(kInvPi / 2) / oneMinusCosMax;
-}
 
 // ---- triangle -------------------------------------------------------------------------------------------------------
 
-// Barycentrics of the second and third corner; the first has the rest. The unit square is folded along its diagonal's
-// halves (Heitz, "A Low-Distortion Map Between Triangle and Square", 2019): no square root. Density: 1 / area.
+// In these lanes the unit square's far half is folded back, onto the triangle u + v <= 1.
 template <class Real>
-WAVECREST_INLINE Vec2<Real> uniformTriangle(Real u, Real v) {
-  const Mask below = u > v;
-  const Real half = Real(0.5) * min(u, v);
-  return {select(below, u - half, half), select(below, half, v - half)};
-}
-template <class Real>
-WAVECREST_INLINE Real uniformTrianglePdfA(Real area) {
-  return Real(1) / area;
+WAVECREST_INLINE void foldOntoTriangle(Mask triangle, Real& u, Real& v) {
+  const Mask fold = triangle & (u + v > Real(1));
+  u = select(fold, Real(1) - u, u);
+  v = select(fold, Real(1) - v, v);
 }
 
 WAVECREST_SIMD_END

@@ -22,7 +22,8 @@ WAVECREST_INLINE Real luminanceOf(Vec3<Real> rgb) {
   return mulAdd(Real(0.2126f), rgb.x, mulAdd(Real(0.7152f), rgb.y, Real(0.0722f) * rgb.z));
 }
 
-// eta_wi / eta_wo of directions that the guide chose through a rough boundary: roulette alone asks for it.
+// eta_wi / eta_wo of directions that the guide chose through a rough boundary: roulette alone asks for it. 1 in blends,
+// whose parts may have different ones.
 template <class P, uint32_t kBsdfs>
 WAVECREST_INLINE typename P::Real guidedEtaRatio(const ShadingLanes<P, kBsdfs>& shading, Mask drawn,
                                                  typename P::Real woCosine) {
@@ -30,8 +31,12 @@ WAVECREST_INLINE typename P::Real guidedEtaRatio(const ShadingLanes<P, kBsdfs>& 
   if constexpr (has(kBsdfs, kLayeredBsdfs)) {
     const auto is = [&](BsdfKind kind)
                         WAVECREST_LAMBDA { return shading.bsdf.kind == UInt(static_cast<uint32_t>(kind)); };
-    const Mask refracted = drawn & (is(BsdfKind::roughDielectric) | is(BsdfKind::beckmannDielectric)) &
-                           (shading.wi.z * woCosine < Real(0));
+    Mask rough = is(BsdfKind::roughDielectric) | is(BsdfKind::beckmannDielectric);
+    if constexpr (has(kBsdfs, kCompoundBsdfs)) {
+      rough = rough | is(BsdfKind::anisotropicDielectric) | is(BsdfKind::anisotropicBeckmannDielectric) |
+              is(BsdfKind::principled);
+    }
+    const Mask refracted = drawn & rough & (shading.wi.z * woCosine < Real(0));
     if (any(refracted)) {
       const Real eta = shading.bsdf.eta();
       return select(refracted, select(shading.wi.z > Real(0), reciprocal(eta), eta), Real(1));

@@ -87,7 +87,7 @@ struct ShadingLanes {
     BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdf, active, wi, u);
     reflected = (wi.z * sample.wo.z) > Real(0);
     if constexpr (has(kFeatures, kNormalMaps)) {
-      if (map.present) mapSampleFromEye(active, u, sample);
+      if (map.present) mapSampleFromEye(active, sample);
     }
     return sample;
   }
@@ -173,22 +173,15 @@ struct ShadingLanes {
     out.f = select(mapped, out.f * lightFactor(seesThis, direction), out.f);
   }
 
-  // Lanes that went straight on, and of them those through a pane. The others went through an absent surface, whatever
-  // its normal. u: the numbers that the sample was taken with.
-  struct Straight {
-    Mask all, pane;
-    Mask absent() const { return andNot(all, pane); }
-  };
-  WAVECREST_INLINE Straight straightOn(const BsdfSample<Real>& sample, Vec3<Real> from, const Uniform4& u) const {
-    const Mask all = sample.specular & (sample.wo.x == -from.x) & (sample.wo.y == -from.y) & (sample.wo.z == -from.z);
-    const Mask thin = bsdf.kind == UInt(static_cast<uint32_t>(BsdfKind::thinDielectric));
-    return {all, all & thin & (to<Real>(u.a) < bsdf.opacity())};
+  // Lanes that went straight on through a pane, not through an absent surface, which has no normal.
+  static WAVECREST_INLINE Mask throughPane(const BsdfSample<Real>& sample, Vec3<Real> from) {
+    const Mask straight = (sample.wo.x == -from.x) & (sample.wo.y == -from.y) & (sample.wo.z == -from.z);
+    return andNot(straight & sample.specular, sample.absent);
   }
 
   // A camera walk samples with this frame's normal, which is the one that the eye faces.
-  WAVECREST_INLINE void mapSampleFromEye(Mask active, const Uniform4& u, BsdfSample<Real>& sample) const {
-    const Straight straight = straightOn(sample, wi, u);
-    const Mask mapped = andNot(active & map.lanes, straight.absent());
+  WAVECREST_INLINE void mapSampleFromEye(Mask active, BsdfSample<Real>& sample) const {
+    const Mask mapped = andNot(active & map.lanes, sample.absent);
     if (none(mapped)) return;
     // The reverse walk comes from a light. Through a delta lobe it takes this way only if it draws this normal; other
     // lobes have the density of the mixture.
@@ -198,7 +191,7 @@ struct ShadingLanes {
     sample.pdfReverse = select(mapped, back, sample.pdfReverse);
     if (any(finite)) sample.pdfReverse = select(finite, scattering(finite, direction).pdfReverse, sample.pdfReverse);
     // What a pane lets through is not dimmed: the light is right behind.
-    const Mask dimmed = andNot(mapped, straight.pane);
+    const Mask dimmed = andNot(mapped, throughPane(sample, wi));
     sample.weight = select(dimmed, sample.weight * lightFactor(dimmed, direction), sample.weight);
   }
 
@@ -217,8 +210,7 @@ struct ShadingLanes {
     const Vec3<Real> from = select(drawsOther, other.wi, wi);
     BsdfSample<Real> sample = sampleBsdf<P, kFeatures>(bsdfIn(drawsOther, other), active, from, numbers);
     reflected = (from.z * sample.wo.z) > Real(0);
-    const Straight straight = straightOn(sample, from, u);
-    const Mask mapped = andNot(active & map.lanes, straight.absent());
+    const Mask mapped = andNot(active & map.lanes, sample.absent);
     const Vec3<Real> direction = select(drawsOther, other.toWorld(sample.wo), toWorld(sample.wo));
     const Vec3<Real> wo = select(drawsOther, toLocal(direction), sample.wo);
 
@@ -226,7 +218,7 @@ struct ShadingLanes {
     // A delta lobe joins its two directions by the drawn normal alone, which must be the one that the eye faces.
     const Mask delta = mapped & sample.specular, joins = andNot(drawsOther, seesThis) | andNot(seesThis, drawsOther);
     const Real turn = abs(from.z * wo.z) / max(abs(sample.wo.z * wi.z), tiny);  // of cosines to this frame's
-    const Real dimming = select(straight.pane, one, lightFactor(seesThis, direction));
+    const Real dimming = select(throughPane(sample, from), one, lightFactor(seesThis, direction));
     const Real factor = zeroUnless(joins, turn * dimming / drawn);
     sample.weight = select(delta, sample.weight * factor, sample.weight);
     sample.pdfReverse = select(delta, sample.pdfReverse * turn, sample.pdfReverse);

@@ -25,13 +25,13 @@ WAVECREST_INLINE Vec3<Real> bumped(const TextureRecord* textures, const float* t
   // The tangents of p + h n: along the normal they have the slope of h and nothing else.
   const Vec3<Real> du = mulAdd(normal, hu - dot(normal, tangents.dpDu), tangents.dpDu);
   const Vec3<Real> dv = mulAdd(normal, hv - dot(normal, tangents.dpDv), tangents.dpDv);
-  const Vec3<Real> across = cross(du, dv);
-  const Real length = sqrt(max(length2(across), Real(1e-37f)));
-  const Vec3<Real> turned = across * (copySign(Real(1), dot(across, geometric)) / length);
-  return turned;
+  // Of unit vectors, whose products stay in range whatever the scene's scale.
+  const Vec3<Real> across = cross(normalize(du), normalize(dv));
+  const Real square = length2(across);
+  return select(square > Real(1e-30f), across * (copySign(Real(1), dot(across, geometric)) / sqrt(square)), normal);
 }
 
-// A normal read from a map, in the frame of the surface and its u direction.
+// A normal read from a map, in the frame of the surface and its u direction. The surface's own where the map has none.
 template <class Real>
 WAVECREST_INLINE Vec3<Real> mapped(const TextureRecord* textures, const float* texels, UInt id, Float u, Float v,
                                    Vec3<Real> normal, const Tangents<Real>& tangents) {
@@ -40,7 +40,8 @@ WAVECREST_INLINE Vec3<Real> mapped(const TextureRecord* textures, const float* t
       to<Real>(evalTexture(textures, texels, id, u, v)) * Real(2) - Vec3<Real>{Real(1), Real(1), Real(1)};
   const Vec3<Real> s = normalize(mulAdd(normal, -dot(normal, tangents.dpDu), tangents.dpDu));
   const Vec3<Real> t = cross(normal, s);
-  return normalize(mulAdd(s, local.x, mulAdd(t, local.y, normal * local.z)));
+  const Vec3<Real> turned = mulAdd(s, local.x, mulAdd(t, local.y, normal * local.z));
+  return select(length2(turned) > Real(1e-12f), normalize(turned), normal);
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 // method the radius is small; where it is all of a method, a few per cent of the image's mean are allowed.
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "tests/effort.h"
 #include "tests/engine/light_scenes.h"
 #include "tests/engine/render_statistics.h"
@@ -286,6 +284,7 @@ TEST(SlowAgreement, inSmallVcmsBoxesOfExtendedLights) {
     expectAgreement(sceneFile(name, 32, 32), {Method::lt, Method::bpt, Method::vcm}, std::string(", ") + name);
   }
 }
+
 // The t value of the difference between two methods' mean images.
 double meanExcess(const SeedMeans& more, const SeedMeans& less) {
   std::vector<double> differences;
@@ -300,7 +299,6 @@ double meanExcess(const SeedMeans& more, const SeedMeans& less) {
   return mean / std::sqrt(squares / (kSeeds - 1) / kSeeds);
 }
 
-double sumOf(const RgbImage& image) { return std::accumulate(image.begin(), image.end(), 0.0); }
 double relativeExcess(const SeedMeans& more, const SeedMeans& less) {
   double a = 0, b = 0;
   for (size_t s = 0; s < kSeeds; ++s) {

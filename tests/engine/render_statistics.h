@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@
 namespace wavecrest {
 
 using RgbImage = std::vector<float>;  // row by row, as Film::resolve()
+inline double sumOf(const RgbImage& image) { return std::accumulate(image.begin(), image.end(), 0.0); }
 
 inline RgbImage render(const Scene& scene, const RenderSettings& settings, uint64_t iterations) {
   const auto session = Session::create(scene, settings);

@@ -321,6 +321,15 @@ TEST(Bsdf, BlendsWithinEachOtherBecomeOne) {
   EXPECT_TRUE(std::holds_alternative<Conductor>(scene.materials.at(blend.materials[2]).kind));
 }
 
+TEST(Bsdf, BlendsThatNameOneBsdfTwiceOnEveryLevelAreRefused) {
+  std::string body = R"(<bsdf type="diffuse" id="b0"/>)";
+  for (int level = 1; level <= 40; ++level) {
+    const std::string part = "<ref id=\"b" + std::to_string(level - 1) + "\"/>";
+    body += "<bsdf type=\"blendbsdf\" id=\"b" + std::to_string(level) + "\">" + part + part + "</bsdf>";
+  }
+  expectErrorOnLine2(body + R"(<shape type="sphere"><ref id="b40"/></shape>)", "BSDFs; expected at most");
+}
+
 TEST(Bsdf, MixtureOfMoreThanOneIsScaled) {
   const Scene scene = sceneWith(R"(<bsdf type="mixturebsdf"><string name="weights" value="1.5 0.5"/>
       <bsdf type="diffuse"/><bsdf type="plastic"/></bsdf>)");

@@ -89,6 +89,9 @@ TEST(SpotLight, MayHaveATexture) {
                      texture + R"(<transform name="to_world"><matrix value="1 1 0 0 0 1 0 0 0 0 1 0 0 0 0 1"/>)"
                                R"(</transform>)",
                      "of the spot light shears");
+  expectEmitterError(
+      "spot", R"(<texture type="rawconstant" name="texture"><vector name="value" x="-1" y="0" z="0"/></texture>)",
+      "emission texture has a value of -1");
 }
 
 TEST(Projector, Defaults) {
