@@ -1,8 +1,9 @@
 // The MIS recursion in lanes: one set of partial sums for every method (Georgiev, "Implementing Vertex Connection and
 // Merging", 2012; the constants of the strategies are in MisSettings).
 //
-// Weights use the balance heuristic, path tracing alone the power heuristic; roulette is not part of any density. Path
-// tracing needs only dVCM: without kBidirectional the other sums do not exist.
+// Weights use the balance heuristic. Walks whose only strategies are emission and next event estimation use the power
+// heuristic (METHODS 5.1). Roulette is not part of any density. Path tracing needs only dVCM: without kBidirectional
+// the other sums do not exist.
 #pragma once
 
 #include "kernels/lane_support.h"

@@ -13,11 +13,6 @@ namespace {
 // How far a Gaussian's samples lie from the centre at most, in standard deviations: uniform numbers have 24 bits.
 constexpr double kFarthestSample = 5.8;
 
-// As kernels/endpoints/camera_lanes.h has it: beyond it a Gaussian is below 1e-5 of its total.
-double filterRadius(const CameraView& camera) {
-  return camera.filter == FilterKind::tent ? camera.filterScale : 4.5 * camera.filterScale;
-}
-
 // Pixels that the filter reaches from the nearest one on, and that a tile's samples reach around it.
 uint32_t reachOf(const CameraView& camera) { return static_cast<uint32_t>(filterRadius(camera) + 0.5); }
 uint32_t marginOf(const CameraView& camera) {
@@ -53,14 +48,13 @@ SpreadSums::SpreadSums(const CameraView& camera, const FilmArea& area)
       place_.push_back(static_cast<uint8_t>(y * kFilmTile + x));
     }
   }
-  // Each tile has three planes. Kernels may write a block of lanes beyond the last plane.
-  sums_.resize(3 * planeSize_ * tiles_.size() + kTileSumsSlack);
+  // Each tile has three planes.
+  sums_.resize(3 * planeSize_ * tiles_.size());
 }
 
 size_t SpreadSums::bytesFor(const CameraView& camera, const FilmArea& area) {
   const size_t rowSize = kFilmTile + 2 * marginOf(camera);
-  return (3 * rowSize * rowSize * FilmArea::tilesOf(area.width, area.height) + kTileSumsSlack) * sizeof(double) +
-         area.size();
+  return 3 * rowSize * rowSize * FilmArea::tilesOf(area.width, area.height) * sizeof(double) + area.size();
 }
 
 double SpreadSums::filterAt(double distance) const {

@@ -92,7 +92,7 @@ Guide::Guide(const double (&center)[3], const double (&halfExtent)[3], GuideTarg
   share_ = zeros<float>(cells);
   roots_ = zeros<float>(cells);
   std::fill_n(share_.get(), tree_.cells(), 1.0f);
-  view_ = {.share = share_.get(), .bins = bins_.get(), .draws = false, .roots = roots_.get()};
+  view_ = {.share = share_.get(), .bins = bins_.get(), .roots = roots_.get()};
 }
 
 template <class S>
@@ -192,7 +192,6 @@ void Guide::fold() {
     const size_t end = std::min(cells, (task + 1) * kCellsOfTask);
     for (size_t cell = task * kCellsOfTask; cell < end; ++cell) makeHistogram(cell);
   });
-  view_.draws = std::any_of(share_.get(), share_.get() + cells, [](float share) { return share < 1; });
   ++folds_;
 }
 
@@ -253,7 +252,6 @@ void Guide::restore(StateReader& in) {
       throw StateError("what it has learned is damaged");
     }
   }
-  view_.draws = std::any_of(share_.get(), share_.get() + cells, [](float share) { return share < 1; });
 }
 
 }  // namespace wavecrest

@@ -107,7 +107,8 @@ class Planner {
     const size_t waves = piecesOf(lightPaths, settings_.waveSize);
     const size_t stores =
         plan_.pipeline.has(Fold::photonMap) ? lightStores(settings_, area_.size(), waves) : settings_.threads;
-    return stores * emptyStore_.bytesFor(memory_.verticesPerWave);
+    const size_t room = memory_.verticesPerWave;
+    return stores * (room == 0 ? emptyStore_.bytes() : emptyStore_.bytesFor(room));
   }
   size_t photons(size_t lightPaths) const {
     const double perPath = static_cast<double>(pilot_.stored) / static_cast<double>(std::max<size_t>(pilot_.paths, 1));

@@ -71,6 +71,7 @@ class Caller {
             .generate = call(walk.walk, false, {walk.generate}, walk.generate),
             .firstDepth = calls(walk.walk, true, walk.first),
             .perDepth = calls(walk.walk, false, walk.steps),
+            .stores = walk.steps.has(StageId::storeLightVertices),
             .splats = walk.steps.has(StageId::connectToCamera)};
   }
 

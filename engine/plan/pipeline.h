@@ -37,6 +37,7 @@ struct Pass {
   StageCall<S> generate;
   std::vector<StageCall<S>> firstDepth = {};  // at depth 1, where it differs; else empty
   std::vector<StageCall<S>> perDepth = {};
+  bool stores = false;  // its vertices are stored in the context's light store
   bool splats = false;  // its contributions are splats, which a SplatDrain takes to the film
 
   // Rows of its statistics: its stages, and what the drain does.

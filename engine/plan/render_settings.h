@@ -116,7 +116,7 @@ struct RenderSettings {
   bool directPass = false;      // ppm: direct light by next event estimation, the rest from photons
   uint64_t firstIteration = 0;  // of this session: what came before was rendered by another
   // N_L, the light paths of an iteration. Unset: one per pixel (lightPathsWanted). To be set for methods with a photon
-  // map only: all other methods trace one light path with each camera path.
+  // map only: bpt traces one light path with each camera path, lt up to four (balancedWalks).
   std::optional<uint64_t> lightPaths;
   std::optional<uint64_t> memoryBytes;           // budget; lowers N_L where that is what fills the memory
   std::optional<uint64_t> iterations;            // stop after this many,

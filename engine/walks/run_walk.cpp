@@ -73,8 +73,7 @@ void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, Stage
   // Begin without light vertices and without splats.
   context.walk = pass.walk;
   context.depth = 0;
-  const bool storing = pass.walk == Walk::light && context.light.store != nullptr;
-  if (storing) context.light.store->clear();
+  if (pass.stores) context.light.store->clear();
   wave.splats.size = 0;
   // Empties the queue of splats. The drain has the last row of the tally.
   const auto drainSplats = [&] {
@@ -95,7 +94,7 @@ void runPass(const Pass<S>& pass, StageContext<S>& context, Wave<S>& wave, Stage
   // Go depth by depth until no path is left.
   for (context.depth = 1; context.depth <= context.limits.maxDepth && wave.rays.size != 0; ++context.depth) {
     // Each live path may leave one light vertex.
-    if (storing) context.light.store->beginDepth(wave.rays.size);
+    if (pass.stores) context.light.store->beginDepth(wave.rays.size);
     if (context.depth == 1 && !pass.firstDepth.empty()) {
       runDepth(pass.firstDepth, context, wave, first);
     } else {

@@ -13,7 +13,10 @@ namespace {
 // of several iterations fit.
 constexpr uint64_t kPathsOfBlock = uint64_t{1} << 20;
 
-// The cell of the first vertex with more than delta lobes of one camera path through a pixel (y << 16 | x).
+constexpr uint64_t kPathsOfLook = 64;
+
+// The cell of the first vertex with more than delta lobes of a camera path through a pixel (y << 16 | x): of the first
+// of some paths that has one, as others may leave the scene.
 template <class S>
 std::optional<uint32_t> cellSeen(const RenderPlan<S>& plan, const RenderSettings& settings, const CellTreeView& cells,
                                  uint32_t pixel) {
@@ -22,7 +25,9 @@ std::optional<uint32_t> cellSeen(const RenderPlan<S>& plan, const RenderSettings
     if (depth != 0 && wave.joinable != 0) cell = wave.cells.cell[0];
     return !cell;
   };
-  walkViews<S>(plan, settings, {&pixel, 1}, settings.seed, &cells, look, nullptr);
+  for (uint64_t path = 0; path < kPathsOfLook && !cell; ++path) {
+    walkViews<S>(plan, settings, {&pixel, 1}, settings.seed + path, &cells, look, nullptr);
+  }
   return cell;
 }
 
@@ -54,7 +59,6 @@ Learner<S>::Learner(const RenderPlan<S>& plan, const RenderSettings& settings, s
 
 template <class S>
 void Learner<S>::prepare(StageContext<S>& context, uint64_t iteration) const {
-  if (!guide_) return;
   context.learned.cells = &guide_->cellTree();
   context.learned.guide = &view_;
   context.learned.records = gathers(iteration, gathering_);
@@ -75,11 +79,9 @@ void Learner<S>::updateView() {
 
 template <class S>
 void Learner<S>::fold(const Film& film) {
-  if (guide_) {
-    guide_->fold();
-    if (worth_) worth_->fold(luminanceInWaveOrder(film));
-    updateView();
-  }
+  guide_->fold();
+  if (worth_) worth_->fold(luminanceInWaveOrder(film));
+  updateView();
   blockEnd_ = endOfBlock(blockEnd_);
 }
 
@@ -101,7 +103,6 @@ template <class S>
 void Learner<S>::save(StateWriter& out) const {
   if (!learns()) return;
   out.value(blockEnd_);
-  if (!guide_) return;
   guide_->save(out);
   if (worth_) worth_->save(out);
 }
@@ -111,7 +112,6 @@ void Learner<S>::restore(StateReader& in) {
   if (!learns()) return;
   blockEnd_ = in.value<uint64_t>();
   if (!std::has_single_bit(blockEnd_)) throw StateError("its blocks of iterations are others");
-  if (!guide_) return;
   guide_->restore(in);
   if (worth_) worth_->restore(in);
   updateView();

@@ -51,11 +51,9 @@ struct TileSamples {
 };
 
 // What a tile's samples have added up to: a plane of each colour, row by row, over the tile and the margin around it.
-// Rows may be written up to a block of lanes beyond their end, by zeros: the last plane is followed by that much room.
 struct TileSums {
   double* values = nullptr;
   size_t rowSize = 0, planeSize = 0;
 };
-constexpr size_t kTileSumsSlack = 32;
 
 }  // namespace wavecrest

@@ -36,7 +36,6 @@ constexpr float kGuideDensityOfUnit = kGuideBins / 4.0f / (1u << kGuideUnitBits)
 struct GuideView {
   const float* share = nullptr;    // of each cell: probability of the BSDF; 1 where the cell has no histogram
   const uint32_t* bins = nullptr;  // words of GuideBin, kGuideBins to a cell
-  bool draws = false;              // any share is below 1
   // A path's worth (engine/learn/path_worth.h) is luminance of its throughput x root of its cell x perBrightness of its
   // run of kWorthRun pixels in the order of waves. roots: root mean square of what came back to each cell, 0 where it
   // is not known yet. perBrightness: scale / brightness of the pixels; none as long as it is not known.

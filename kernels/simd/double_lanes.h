@@ -176,14 +176,6 @@ WAVECREST_INLINE Double gather(const double* base, UInt index) {
                       WAVECREST_LAMBDA { return hn::GatherIndex(DoubleTag(), base, hn::PromoteTo(LongTag(), half)); },
                   split(hn::BitCast(IntTag(), index.v)));
 }
-// Lanes with equal indices: the last one wins.
-WAVECREST_INLINE void storeScattered(Double a, double* base, UInt index) {
-  HWY_ALIGN double values[kLanes];
-  HWY_ALIGN uint32_t indices[kLanes];
-  store(a, values);
-  store(index, indices);
-  for (size_t i = 0; i < kLanes; ++i) base[indices[i]] = values[i];
-}
 // Shared, not inlined: a stage compresses a dozen columns.
 inline WAVECREST_NOINLINE Double compress(Double a, Mask m) {
   HWY_ALIGN double in[kLanes];

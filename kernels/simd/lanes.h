@@ -227,10 +227,6 @@ WAVECREST_INLINE UInt inOrder(UInt a, UInt order) {
   return {hn::TableLookupLanes(a.v, hn::IndicesFromVec(tag, order.v))};
 }
 WAVECREST_INLINE Float inOrder(Float a, UInt order) { return fromBits(inOrder(bits(a), order)); }
-// Lanes with equal indices: the last one wins.
-WAVECREST_INLINE void storeScattered(Float a, float* base, UInt index) {
-  hn::ScatterIndex(a.v, FloatTag(), base, hn::BitCast(IntTag(), index.v));
-}
 
 // The 32-bit items where m holds, moved to the front in order; what follows them is not defined.
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4

@@ -55,6 +55,7 @@ uint64_t spreadSamples(const TileSamples<S>& samples, const SpreadAxis& x, const
   if (samples.count != kTilePixels) tile = Tile<S>{};
   const uint64_t nonFinite = collect(samples, x, y, tile);
   HWY_ALIGN S line[kLine]{};
+  const size_t width = kFilmTile + x.taps - 1;
   for (size_t c = 0; c < 3; ++c) {
     double* const plane = sums.values + c * sums.planeSize;
     for (size_t row = 0; row < kFilmTile + y.taps - 1; ++row) {
@@ -70,12 +71,19 @@ uint64_t spreadSamples(const TileSamples<S>& samples, const SpreadAxis& x, const
         store(sum, line + kBefore + column);
       }
       double* const target = plane + (y.first + row) * sums.rowSize + x.first;
-      for (size_t column = 0; column < kFilmTile + x.taps - 1; column += kLanes) {
+      for (size_t column = 0; column < width; column += kLanes) {
         Real sum(0);
         for (size_t tap = 0; tap < x.taps; ++tap) {
           sum = mulAdd(Real(x.weight[tap]), loadUnaligned(line + kBefore + column - tap), sum);
         }
-        storeUnaligned(loadUnaligned(target + column) + to<Double>(sum), target + column);
+        if (column + kLanes <= width) {
+          storeUnaligned(loadUnaligned(target + column) + to<Double>(sum), target + column);
+          continue;
+        }
+        // What follows the row may be the sums of another tile, to which another thread adds at the same time.
+        HWY_ALIGN double rest[kLanes];
+        store(to<Double>(sum), rest);
+        for (size_t k = 0; k < width - column; ++k) target[column + k] += rest[k];
       }
     }
   }

@@ -30,6 +30,12 @@ double filterAt(const CameraView& camera, double x) {
   return std::exp(-0.5 * x * x / (camera.filterScale * camera.filterScale));
 }
 
+template <class S>
+const auto& spreadStages(Isa isa) {
+  constexpr Precision kPrecision = sizeof(S) == 8 ? Precision::doubled : Precision::floating;
+  return findStages<S>(isa, kPrecision, chooseSpecialization(0, kPrecision));
+}
+
 struct FilmCase {
   uint32_t x0, y0, width, height;
 };
@@ -78,10 +84,8 @@ void expectTheFormula(Isa isa, const CameraView& camera, const FilmCase& film, d
     wave.radiance.green[lane] = value(random);
     wave.radiance.blue[lane] = value(random);
   }
-  constexpr Precision kPrecision = sizeof(S) == 8 ? Precision::doubled : Precision::floating;
-  const auto& stages = findStages<S>(isa, kPrecision, chooseSpecialization(0, kPrecision));
   SpreadSums sums(camera, area);
-  EXPECT_EQ(sums.add(wave, places, stages.spreadSamples), 0u);
+  EXPECT_EQ(sums.add(wave, places, spreadStages<S>(isa).spreadSamples), 0u);
   const std::vector<double> image = sums.resolve(std::vector<uint64_t>(area.pixels.size(), places.size()));
   const std::vector<double> expected = spreadByFormula(camera, area, wave, places);
   for (size_t i = 0; i < image.size(); ++i) {
@@ -118,12 +122,39 @@ TEST_P(SpreadSumsTest, samplesThatAreNotFiniteAreBlackAndCounted) {
   wave.radiance.red[300] = HUGE_VALF;
   SpreadSums sums(cameraOf(FilterKind::tent, 1), area);
   const FilterPlace centre;
-  EXPECT_EQ(sums.add(wave, {&centre, 1},
-                     findStages<float>(GetParam(), Precision::floating, chooseSpecialization(0, Precision::floating))
-                         .spreadSamples),
-            2u);
+  EXPECT_EQ(sums.add(wave, {&centre, 1}, spreadStages<float>(GetParam()).spreadSamples), 2u);
   const std::vector<double> image = sums.resolve(std::vector<uint64_t>(400, 1));
   for (size_t i = 0; i < 1200; ++i) EXPECT_TRUE(image[i] == 0 || std::abs(image[i] - 1) < 1e-6) << image[i];
+}
+
+// Spreads a tile by a tent of radius 1, at (0.5, 1.49): the taps reach the last row of the tile's sums, and other tiles
+// have their sums behind it. All sums begin as -0, which adding a zero would turn into 0.
+template <class S>
+void expectOnlyReachedSums(Isa isa) {
+  const SpreadAxis x{.first = 1, .taps = 3, .weight = {0, 1, 0}, .scale = {1}};
+  const SpreadAxis y{.first = 2, .taps = 3, .weight = {0, 0.51f, 0.49f}, .scale = {1}};
+  constexpr size_t kRow = kFilmTile + 4, kPlane = kRow * kRow, kReached = kFilmTile + 2;
+  const std::vector<S> ones(kTilePixels, 1);
+  std::vector<uint8_t> place(kTilePixels);
+  for (size_t i = 0; i < place.size(); ++i) place[i] = static_cast<uint8_t>(i);
+  std::vector<double> sums(3 * kPlane + 64, -0.0);
+  const TileSamples<S> samples{.red = ones.data(),
+                               .green = ones.data(),
+                               .blue = ones.data(),
+                               .stride = 1,
+                               .count = kTilePixels,
+                               .place = place.data()};
+  EXPECT_EQ(spreadStages<S>(isa).spreadSamples(samples, x, y, {sums.data(), kRow, kPlane}), 0u);
+  for (size_t i = 0; i < sums.size(); ++i) {
+    const size_t row = i % kPlane / kRow - y.first, column = i % kRow - x.first;  // before it they wrap
+    const bool reached = i < 3 * kPlane && row < kReached && column < kReached;
+    ASSERT_EQ(std::signbit(sums[i]), !reached) << i;
+  }
+}
+
+TEST_P(SpreadSumsTest, areOnlyWrittenWhereTheFilterReaches) {
+  expectOnlyReachedSums<float>(GetParam());
+  expectOnlyReachedSums<double>(GetParam());
 }
 
 // Those of FilterKind::box reach their own pixel alone, and very wide ones would be margin for the most part.
@@ -140,12 +171,14 @@ TEST(CanSpread, neitherBoxesNorVeryWideFilters) {
 Scene filteredScene(uint32_t width, uint32_t height, ReconstructionFilter filter = ReconstructionFilter::gaussian) {
   Scene scene = sceneFile("cornell-diffuse", width, height);
   scene.film.filter = filter;
+  scene.film.filterRadius = 1;  // of a tent
   return scene;
 }
 
 struct SpreadCase {
   Method method;
   SamplerKind sampler;
+  ReconstructionFilter filter = ReconstructionFilter::gaussian;
 };
 
 class SpreadRenderTest : public testing::TestWithParam<SpreadCase> {
@@ -161,7 +194,7 @@ class SpreadRenderTest : public testing::TestWithParam<SpreadCase> {
     return settings;
   }
   // Neither side is a multiple of a tile, nor the number of pixels one of any size of waves.
-  const Scene scene_ = filteredScene(40, 27);
+  const Scene scene_ = filteredScene(40, 27, GetParam().filter);
   static constexpr uint64_t kIterations = 19;
 };
 
@@ -192,14 +225,19 @@ TEST_P(SpreadRenderTest, interruptionsChangeNoBit) {
   EXPECT_EQ(last->film().resolve(), render(scene_, settings(), kIterations));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Engine, SpreadRenderTest,
-    testing::Values(SpreadCase{Method::pt, SamplerKind::independent}, SpreadCase{Method::pt, SamplerKind::sobol},
-                    SpreadCase{Method::lt, SamplerKind::independent}, SpreadCase{Method::bpt, SamplerKind::independent},
-                    SpreadCase{Method::mlt, SamplerKind::independent}),
-    [](const auto& instance) {
-      return std::string(toString(instance.param.method)) + "_" + std::string(toString(instance.param.sampler));
-    });
+INSTANTIATE_TEST_SUITE_P(Engine, SpreadRenderTest,
+                         testing::Values(SpreadCase{Method::pt, SamplerKind::independent},
+                                         SpreadCase{Method::pt, SamplerKind::sobol},
+                                         SpreadCase{Method::lt, SamplerKind::independent},
+                                         SpreadCase{Method::bpt, SamplerKind::independent},
+                                         SpreadCase{Method::mlt, SamplerKind::independent},
+                                         SpreadCase{Method::pt, SamplerKind::sobol, ReconstructionFilter::tent},
+                                         SpreadCase{Method::lt, SamplerKind::independent, ReconstructionFilter::tent}),
+                         [](const auto& instance) {
+                           return std::string(toString(instance.param.method)) + "_" +
+                                  std::string(toString(instance.param.sampler)) + "_" +
+                                  std::string(kFilterNames[static_cast<size_t>(instance.param.filter)]);
+                         });
 
 // The same image as of samples that go to one pixel each, up to the film's edge, and less noise.
 TEST(SpreadRenders, expectTheSampledImageWithLessNoise) {

@@ -50,7 +50,7 @@ struct FixedGuide {
       roots.push_back(cell % 3 == 0 ? 4.0f : 0.2f);
     }
     for (size_t run = 0; run * kWorthRun < pixels; ++run) perBrightness.push_back(run % 2 == 0 ? 1.0f : 0.25f);
-    guide = {.share = share.data(), .bins = bins.data(), .draws = true};
+    guide = {.share = share.data(), .bins = bins.data()};
     if (!wrong.decidesSurvival) return;
     guide.roots = roots.data();
     guide.perBrightness = perBrightness.data();
@@ -157,7 +157,6 @@ TEST(Guide, letsPathsGoOnByWhatTheyAreWorth) {
     const RenderPlan<float> plan = planRender<float>(scene, settings);
     const WrongGuide wrong{.bsdfShare = 1, .weights = histogram([](size_t) { return 1.0; }), .decidesSurvival = true};
     FixedGuide guide(plan.view, wrong, size_t{scene.film.width} * scene.film.height);
-    guide.guide.draws = false;
     std::fill(guide.roots.begin(), guide.roots.end(), 2.0f);
     const std::optional<SurvivalRule> rule = survivalRule(settings, Walk::camera);
     const FilmArea area = filmArea(scene.film);
@@ -352,6 +351,15 @@ TEST(Guide, tellsWhatItHasLearnedWhereAPixelLooks) {
   EXPECT_GT(front, 0.9);
   // Methods that learn nothing have nothing to tell.
   EXPECT_FALSE(Session::create(scene, guideSettings(Method::pt))->learnedDirections(12, 8));
+}
+
+TEST(Guide, tellsWhereAPixelLooksAlsoIfMostOfItsPathsSeeNothing) {
+  Scene scene = roomScene({.light = RoomLight::quad, .width = 8, .height = 8});
+  for (Material& material : scene.materials) material.opacity = TexturedFloat{0.3};
+  const auto session = Session::create(scene, guideSettings());
+  for (uint32_t y = 0; y < 8; ++y) {
+    for (uint32_t x = 0; x < 8; ++x) EXPECT_TRUE(session->learnedDirections(x, y)) << x << ',' << y;
+  }
 }
 
 TEST(Guide, rendersWhereNothingCanBeLearned) {

@@ -105,6 +105,13 @@ TEST(MemoryPlan, severalIterationsAreUnderWayWhereOneIsTooLittleForAllThreads) {
   EXPECT_EQ(atOnce(kSmall, 64), 1u) << "light paths alone give all threads work";
 }
 
+// The light walks of lt store no vertices.
+TEST(MemoryPlan, hasRoomForLightVerticesWhereTheyAreStored) {
+  const Scene scene = sceneFile("cornell-diffuse", 40, 30);
+  const auto bytes = [&](Method method) { return planMemory(scene, plannedSettings(method)).use.lightVertices; };
+  EXPECT_LT(10 * bytes(Method::lt), bytes(Method::bpt));
+}
+
 // With one light path per pixel no photon would be found.
 TEST(MemoryPlan, methodsThatOnlyMergeHaveLightPathsOnAFilmOfOnePixel) {
   const Scene scene = sceneFile("cornell-diffuse", 1, 1);

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/pilot/finished_plan.h"
 #include "engine/session/session.h"
 #include "tests/effort.h"
+#include "tests/engine/light_scenes.h"
 #include "tests/engine/test_scenes.h"
 
 namespace wavecrest {
@@ -45,6 +47,31 @@ TEST(WalkBalance, dependsNeitherOnSeedsNorOnThreadsNorOnWaves) {
   other.threads = 3;
   other.waveSize = 300;
   EXPECT_EQ(lightPathsOf("cornell-spheres", other), wanted);
+}
+
+// A coated wall fills the view. Its coat reflects the wall behind the camera, which gets light from the coated wall
+// alone. So both walks find light in every pixel, and most of the light and of the noise is that of light walks.
+Scene coatedWall(uint32_t side) {
+  Scene scene;
+  const uint32_t coated = addMaterial(scene, Plastic{.intIor = 2.5}), diffuse = addDiffuse(scene, 0.8, 0.8, 0.8);
+  addShape(scene, Rectangle{{-5, -5, -2}, {10, 0, 0}, {0, 10, 0}}, coated);    // facing +z
+  addShape(scene, Rectangle{{20, -20, 3}, {-40, 0, 0}, {0, 40, 0}}, diffuse);  // facing -z
+  addEmitter(scene, SpotEmitter{.position = {0, 0.5, 0},
+                                .direction = {0, 0, -1},
+                                .intensity = {1, 1, 1},
+                                .cutoffAngle = 60,
+                                .beamWidth = 50});
+  setCamera(scene, {0, 0, 0}, 60, side, side);
+  return scene;
+}
+
+// Small films leave cells without pixels.
+TEST(WalkBalance, isThatOfTheSceneOnFilmsOfAnySize) {
+  for (const uint32_t side : {1u, 8u, 24u, 64u}) {
+    EXPECT_EQ(planMemory(coatedWall(side), balanceSettings(Method::lt)).lightPaths,
+              size_t{kMostLightWalks} * side * side)
+        << side;
+  }
 }
 
 // The light that reaches the film together, of equal numbers of light paths, differs by its noise alone.

@@ -82,7 +82,7 @@ TEST_P(GuideLanesTest, drawsWhatItSaysWithTheDensityItSays) {
   for (uint32_t column = 64; column < 127; ++column) words[column] = GuideBin{.units = 0, .own = 0, .other = 5}.word();
   words[5] = GuideBin{.units = kAll / 4, .own = 0, .other = 5}.word();
   words[200] = GuideBin{.units = kAll / 4 * 3, .own = 0, .other = 200}.word();
-  const GuideView guide{.share = nullptr, .bins = words.data(), .draws = true};
+  const GuideView guide{.share = nullptr, .bins = words.data()};
   constexpr size_t kDraws = 1 << 14;
   alignas(64) static std::array<float, kDraws> b, c, d, x, y, z, pdf;
   std::mt19937 random(3);

@@ -77,23 +77,6 @@ TEST_P(LaneMovesTest, storeRecordsTransposesSixteenColumns) {
   }
 }
 
-TEST_P(LaneMovesTest, storeScatteredKeepsTheLastOfEqualIndices) {
-  const size_t n = lanes().lanes;
-  const std::vector<float> floats = realInputs<float>(64, 5);
-  const std::vector<double> doubles = realInputs<double>(64, 6);
-  std::vector<uint32_t> index(n);
-  for (size_t i = 0; i < n; ++i) index[i] = static_cast<uint32_t>(i / 2 * 3);  // lanes 2k and 2k + 1 collide
-  std::vector<float> floatsOut(64, -1.0f), floatsExpected(64, -1.0f);
-  std::vector<double> doublesOut(64, -1.0), doublesExpected(64, -1.0);
-  lanes().storeScattered(floats.data(), doubles.data(), index.data(), floatsOut.data(), doublesOut.data());
-  for (size_t i = 0; i < n; ++i) {
-    floatsExpected[index[i]] = floats[i];
-    doublesExpected[index[i]] = doubles[i];
-  }
-  EXPECT_EQ(floatsOut, floatsExpected);
-  EXPECT_EQ(doublesOut, doublesExpected);
-}
-
 TEST_P(LaneMovesTest, compressMovesTheChosenLanesToTheFrontInOrder) {
   const size_t n = lanes().lanes;
   const std::vector<float> floats = realInputs<float>(16, 8);

@@ -147,13 +147,6 @@ constexpr LanesEntries kLanesEntries = {
           storeRecords(doubles, stream, doublesOut);
           flushStream();
         },
-    .storeScattered =
-        [](const float* floats, const double* doubles, const uint32_t* index, float* floatsOut, double* doublesOut)
-            HWY_ATTR {
-              const UInt i = loadUnaligned(index);
-              storeScattered(loadUnaligned(floats), floatsOut, i);
-              storeScattered(loadUnaligned(doubles), doublesOut, i);
-            },
     .compress =
         [](const uint32_t* flags, const float* floats, const double* doubles, const uint32_t* uints, float* floatsOut,
            double* doublesOut, uint32_t* uintsOut) HWY_ATTR {

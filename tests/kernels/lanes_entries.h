@@ -37,8 +37,6 @@ struct LanesEntries {
                    float* floatsOut, double* doublesOut, uint32_t* uintsOut);
   // Sixteen columns of kLanes numbers, one after the other, as records.
   void (*storeRecords)(const float* floats, const double* doubles, bool stream, float* floatsOut, double* doublesOut);
-  void (*storeScattered)(const float* floats, const double* doubles, const uint32_t* index, float* floatsOut,
-                         double* doublesOut);
   size_t (*compress)(const uint32_t* flags, const float* floats, const double* doubles, const uint32_t* uints,
                      float* floatsOut, double* doublesOut, uint32_t* uintsOut);
   // Lanes in the given order, and in that which splits them; `rest` as flags.
