@@ -10,6 +10,7 @@
 #include "cli/inspect_guide.h"
 #include "cli/scene_options.h"
 #include "engine/inspect/inspection.h"
+#include "engine/scene/scene_error.h"
 #include "library/inspection_json.h"
 #include "library/option_ranges.h"
 #include "library/option_values.h"

@@ -58,10 +58,11 @@ int runMerge(const MergeOptions& options) {
   }
   // Images, reference, checkpoint and statistics.
   if (!options.outputs.empty()) {
-    if (merged.header.holds.chains.empty() && merged.film->minSamples() == 0) {
-      throw InputError("no whole pass over the film: no image was written; expected parts of at least one");
-    }
+    // Chains have made a pass once they have made as many mutations as there are pixels.
     const FilmArea& area = merged.film->area();
+    const bool whole =
+        merged.header.holds.chains.empty() ? merged.film->minSamples() != 0 : merged.film->splatCount() >= area.size();
+    if (!whole) throw InputError("no whole pass over the film: no image was written; expected parts of at least one");
     const Image image{.width = area.width, .height = area.height, .channels = 3, .pixels = merged.film->resolve()};
     for (const std::string& name : options.outputs) {
       WritingProgress progress(kind, name);

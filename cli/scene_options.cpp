@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/file_check.h"
 #include "engine/load/load.h"
+#include "engine/scene/scene_error.h"
 #include "library/campaign_rows.h"
 #include "library/option_values.h"
 #include "scenes/scene_list.h"
@@ -38,11 +39,6 @@ std::string stemOf(const SceneOptions& options) {
 
 void printNotes(const std::vector<Note>& notes, ProgressKind kind) {
   for (const Note& one : notes) note(kind, toString(one));
-}
-
-std::string toString(const Note& note) {
-  const std::string more = note.count > 1 ? fmt::format(" ({} times)", note.count) : "";
-  return fmt::format("{}: {}{}: {}", toString(note.source), note.what, more, note.effect);
 }
 
 }  // namespace wavecrest

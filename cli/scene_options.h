@@ -30,7 +30,4 @@ std::string stemOf(const SceneOptions& options);
 void printNotes(const std::vector<Note>& notes, ProgressKind kind);
 inline void printNotes(const Scene& scene, ProgressKind kind) { printNotes(scene.notes, kind); }
 
-// FILE:LINE: what the file says (how often, if more than once): what wavecrest does.
-std::string toString(const Note& note);
-
 }  // namespace wavecrest

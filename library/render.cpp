@@ -9,6 +9,7 @@
 #include "bench/campaign/render_stats.h"
 #include "bench/film_image.h"
 #include "bench/json_text.h"
+#include "engine/scene/scene_error.h"
 #include "engine/session/session.h"
 #include "library/image_conversion.h"
 #include "library/render_settings.h"
@@ -18,6 +19,16 @@
 #include "wavecrest/error.h"
 
 namespace wavecrest::api {
+namespace {
+
+// What was approximated or left out when the scene was loaded, in the words of `wavecrest render`.
+nlohmann::ordered_json loadingNotes(const wavecrest::Scene& scene) {
+  nlohmann::ordered_json notes = scene.warnings;
+  for (const Note& note : scene.notes) notes.push_back(toString(note));
+  return notes;
+}
+
+}  // namespace
 
 struct Render::Data {
   std::shared_ptr<const Scene::Data> scene;
@@ -35,6 +46,8 @@ struct Render::Data {
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const RenderStatistics statistics = session->statistics();
     nlohmann::ordered_json all = renderStats(scene->scene, settings, statistics, scene->loadSeconds, wall, {});
+    if (!settings.measureStages) all.erase("stages");
+    all["notes"] = loadingNotes(scene->scene);
     all["decisions"] = decisionsJson(scene->scene, settings, statistics);
     return all;
   }

@@ -116,6 +116,7 @@ RenderSettings settingsOfAnyMethod(const api::RenderOptions& options, const Scen
   settings.seed = options.seed;
   settings.threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   settings.waveSize = options.wave;
+  settings.measureStages = options.measureStages;
   settings.metropolis = chosenChains(options);
   settings.radius = options.radius != 0 ? std::optional(options.radius) : std::nullopt;
   settings.radiusAlpha = options.radiusAlpha;

@@ -10,7 +10,6 @@
 #include "bench/json_text.h"
 #include "engine/inspect/inspection.h"
 #include "engine/load/load.h"
-#include "engine/plan/render_plan.h"
 #include "engine/scene/hash_text.h"
 #include "library/errors.h"
 #include "library/inspection_json.h"
@@ -73,8 +72,8 @@ Scene Scene::load(const std::string& nameOrPath, const LoadOptions& options) {
 
 const std::string& Scene::name() const { return data_->scene.name; }
 // Size of the rendered rectangle: the crop window, or the whole film.
-uint32_t Scene::width() const { return filmArea(data_->scene.film).width; }
-uint32_t Scene::height() const { return filmArea(data_->scene.film).height; }
+uint32_t Scene::width() const { return data_->scene.film.imageWidth(); }
+uint32_t Scene::height() const { return data_->scene.film.imageHeight(); }
 uint64_t Scene::spp() const { return data_->scene.defaults.sampleCount; }
 std::string Scene::hash() const { return hashText(data_->scene.hash); }
 const std::vector<std::string>& Scene::warnings() const { return data_->scene.warnings; }

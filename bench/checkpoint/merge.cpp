@@ -83,12 +83,12 @@ bool isSummed(std::string_view key) {
   return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
 }
 
-// Scalars of the statistics of all parts: sums, and what is the same in all.
+// Scalars of the statistics of all parts: sums, and what is the same in all. Decisions, too, are the same.
 void addStats(Json& stats, const Json& more) {
   Json sum = Json::object();
   for (const auto& [key, value] : stats.items()) {
     const auto other = more.find(key);
-    if (other == more.end() || !value.is_primitive()) continue;
+    if (other == more.end() || !(value.is_primitive() || key == "decisions")) continue;
     if (!isSummed(key)) {
       if (value == *other) sum[key] = value;
     } else if (value.is_number_float() || other->is_number_float()) {
@@ -124,12 +124,13 @@ uint64_t iterationsOf(const Holdings& holdings) {
   return std::min_element(holdings.chains.begin(), holdings.chains.end(), less)->iterations;
 }
 
-// Whether the iterations of different parts are independent of each other. Those of one run of Sobol points are not.
+// Whether the iterations of different parts are independent of each other. Those of one run of Sobol points are not,
+// and the direct pass of mlt has one run for all parts.
 bool areIndependent(std::span<const CheckpointHeader> headers) {
   if (headers.front().render.value("sampler", "") != "sobol") return true;
   const auto isWhole = [](const Holdings::Run& run) { return run.begin % kSobolRun == 0; };
   return std::all_of(headers.begin(), headers.end(), [&](const CheckpointHeader& header) {
-    return std::all_of(header.holds.runs.begin(), header.holds.runs.end(), isWhole);
+    return header.holds.chains.empty() && std::all_of(header.holds.runs.begin(), header.holds.runs.end(), isWhole);
   });
 }
 

@@ -27,7 +27,7 @@ WatchedSession::WatchedSession(std::unique_ptr<Session> session, const RenderSet
       taker_(std::move(taker)),
       blocks_(session_->film().area().width, session_->film().area().height, kErrorBlocks),
       errorKnowable_(blocks_.count() > 0 && whyNoFilmError(settings).empty()),
-      run_(independentRun(settings)) {}
+      run_(independentRun(settings, session_->film().spreads())) {}
 
 template <class Step>
 void WatchedSession::whileWaiting(Step step) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "bench/results/distinct_values.h"
 #include "bench/results/schema.h"
 #include "bench/results/within_folder.h"
 

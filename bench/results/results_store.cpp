@@ -1,5 +1,6 @@
 #include "bench/results/results_store.h"
 
+#include "bench/results/distinct_values.h"
 #include "bench/results/schema.h"
 #include "bench/results/within_folder.h"
 

@@ -49,9 +49,14 @@ class FilmErrorWatch {
 };
 
 // Length of a run, in iterations from the image's first one, such that different runs are independent samples: 1, or
-// kSobolRun for Sobol points, which are scrambled anew for each run.
-inline uint64_t independentRun(const RenderSettings& settings) {
-  return settings.sampler == SamplerKind::sobol ? kSobolRun : 1;
+// kSobolRun for Sobol points, which are scrambled anew for each run. spreads: whether the film spreads samples, as it
+// does by every filter but a box. Then it is 2 at least: all pixels of an iteration share one place in the filter, and
+// an odd iteration has the mirror image of the place before (sharedPlace in kernels/endpoints/camera_lanes.h). The
+// places of all pairs are one Sobol sequence: short runs still depend on each other a little, and overestimate the
+// error.
+inline uint64_t independentRun(const RenderSettings& settings, bool spreads) {
+  if (settings.sampler == SamplerKind::sobol) return kSobolRun;
+  return spreads ? 2 : 1;
 }
 
 // Why no runs of iterations of these settings are independent, so that their spread does not tell the error. Empty:

@@ -260,8 +260,7 @@ void ChainSession<S>::renderUntil(std::optional<uint64_t> iterations, std::optio
     // Set the limits of this call, in steps and in seconds.
     const uint64_t restart = epochSteps(settings_.metropolis, epochs_.targets.size());
     const uint64_t goal = iterations ? stepsFor(*iterations) : std::numeric_limits<uint64_t>::max();
-    constexpr double kEndless = std::numeric_limits<double>::infinity();
-    const double end = std::min(seconds.value_or(kEndless), settings_.seconds.value_or(kEndless));
+    const double end = seconds.value_or(std::numeric_limits<double>::infinity());
     const Stop stop = [&] { return (seconds && clock.look() >= *seconds) || this->interrupted(); };
     arena_.execute([&] {
       while (!stop()) {

@@ -13,6 +13,12 @@ inline std::string toString(const SourceLocation& where) {
   return where.line == 0 ? where.file : where.file + ":" + std::to_string(where.line);
 }
 
+// FILE:LINE: what the file says (how often, if more than once): what wavecrest does.
+inline std::string toString(const Note& note) {
+  const std::string more = note.count > 1 ? " (" + std::to_string(note.count) + " times)" : "";
+  return toString(note.source) + ": " + note.what + more + ": " + note.effect;
+}
+
 // what() reads "FILE:LINE: what is wrong; what was expected".
 class SceneError : public std::runtime_error {
  public:

@@ -13,8 +13,8 @@ struct CampaignOptions {
   // "--snapshot-every", "--spp", "--seeds", "--size", "--precision", "--sampler", "--images", "--radius",
   // "--radius-alpha", "--merge-vertices", "--light-paths", "--roulette", "--direct-pass", "--mlt", "--clock", "--crop",
   // "-D"; only what differs from the defaults. "scenes", "--methods", "--mlt", "--crop" and "-D" take several words,
-  // the others one; that of "--direct-pass" is "yes". They are stored with the results as they are given, so that going
-  // on needs none of them and is refused with others.
+  // the others one; that of "--direct-pass" is "yes". They are stored with the results as given, with the scenes by
+  // default, so that going on needs none of them and is refused with others.
   std::map<std::string, std::vector<std::string>> defining{};
 
   // How it is run; may change from one process to the next.

@@ -41,8 +41,8 @@ class WAVECREST_EXPORT Render {
   uint64_t iterations() const;  // whole ones, of all pixels
   // Of iterations() > 0: before that, pixels without any sample would be black. Throws Error.
   Image image() const;
-  // Numbers so far: the object that `wavecrest render --stats` writes. With times of single stages if that was asked
-  // for before the render began, which costs some percent.
+  // Numbers so far: the object that `wavecrest render --stats` writes, `stages` where RenderOptions::measureStages says
+  // so. `notes` is what was approximated or left out when the scene was loaded.
   std::string stats() const;
   // The image, by extension: .exr with the scalar stats as attributes, .pfm or .png. Throws Error.
   void write(const std::string& file) const;

@@ -20,12 +20,13 @@ struct RenderOptions {
   std::string roulette = "efficiency";  // throughput, albedo or efficiency: what decides whether a walk goes on
   uint32_t wave = 2048;                 // paths per wave
   std::string memory{};                 // budget: "800M", "2GiB"; empty: none
+  bool measureStages = false;           // stats have `stages` with the time of each, which costs some percent
 
   // ppm, bpm, vcm: the first radius of merges, relative to the bounding sphere's (0: auto, what the image needs), and
   // how slowly it shrinks.
   double radius = 0, radiusAlpha = 0.75;
   std::string mergeVertices = "first";  // vcm: camera paths merge at "all" vertices, or at the "first" alone
-  uint64_t lightPaths = 0;              // of an iteration of ppm, bpm or vcm; 0: as many as pixels
+  uint64_t lightPaths = 0;              // of an iteration; 0: as many as pixels, of ppm and bpm at least 4096
   bool directPass = false;              // ppm: direct light by next event estimation
   // bpt, vcm: Russian roulette of connections whose contribution is below this share of a typical pixel's brightness.
   // 0: no roulette. Small scenes, whose shadow rays cost next to nothing, never use it.

@@ -58,7 +58,7 @@ enum class RunState {
   done,
   refused,  // the method cannot render the scene; `reason` says why
 };
-std::string_view toString(RunState state);
+constexpr std::string_view toString(RunState state) { return state == RunState::done ? "done" : "refused"; }
 
 struct RunRecord {
   std::string scene, method;
@@ -86,9 +86,6 @@ struct ClaimRecord {
   std::string figure = {};    // in some ten words: what decides it, or why it is not judged
   std::string evidence = {};  // values and bands, for people
 };
-
-// Appends a value to a list "a, b" that lacks it: how facts of the environment that differ are told.
-void addDistinct(std::string& list, const std::string& value);
 
 struct CampaignResults {
   std::map<std::string, std::string> campaign;  // settings and environment; keys in bench/results/README.md

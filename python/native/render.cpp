@@ -70,6 +70,7 @@ void addOptions(nb::module_& module) {
       .def_rw("roulette", &RenderOptions::roulette)
       .def_rw("wave", &RenderOptions::wave)
       .def_rw("memory", &RenderOptions::memory)
+      .def_rw("measure_stages", &RenderOptions::measureStages)
       .def_rw("radius", &RenderOptions::radius)
       .def_rw("radius_alpha", &RenderOptions::radiusAlpha)
       .def_rw("merge_vertices", &RenderOptions::mergeVertices)

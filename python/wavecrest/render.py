@@ -51,7 +51,8 @@ def _options(method: str, settings: Mapping[str, Any]) -> _native.RenderOptions:
 class Result:
     """The image of a render so far, and how it came about.
 
-    `image` is float32, height x width x 3, linear radiance; `stats` has the keys of `wavecrest render --stats`.
+    `image` is float32, height x width x 3, linear radiance; `stats` has the keys of `wavecrest render --stats`, of which
+    `stages` only with measure_stages.
     """
 
     def __init__(self, image: FloatArray, stats: dict[str, Any]) -> None:
@@ -126,9 +127,9 @@ class Scene:
 
         Further options are those of `wavecrest render`: sampler, filter_mode, precision, isa, accel, instances, max_depth,
         rr_depth, roulette, wave, memory, radius (a number, or "auto"), radius_alpha, merge_vertices, light_paths,
-        direct_pass, connection_roulette, guide, guide_memory, mlt, chains, bootstrap, restart, no_direct_pass.
-        Other Python threads run meanwhile. Ctrl-C raises Interrupted, a KeyboardInterrupt whose `result` is the image so
-        far.
+        direct_pass, connection_roulette, guide, guide_memory, mlt, chains, bootstrap, restart, no_direct_pass; and
+        measure_stages: the result's stats have the time of each stage. Other Python threads run meanwhile. Ctrl-C raises
+        Interrupted, a KeyboardInterrupt whose `result` is the image so far; None before the first whole pass.
         """
         native = self._begin(method, {"time": time, "spp": spp, "seed": seed, "threads": threads, **options})
         if native.run():
@@ -172,7 +173,11 @@ class Scene:
         return Table({"class": row["class"], **row["methods"], "description": row["description"]} for row in rows)
 
     def _begin(self, method: str, settings: Mapping[str, Any]) -> _native.Render:
-        return _native.Render(self._native, _options(method, settings))
+        options = _options(method, settings)
+        try:
+            return _native.Render(self._native, options)
+        except KeyboardInterrupt:
+            raise Interrupted() from None
 
 
 def _result(native: _native.Render) -> Result:

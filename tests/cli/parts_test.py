@@ -50,6 +50,7 @@ class Sums(PartsTest):
             whole, merged = read_json(self.path("whole.json")), read_json(self.path("merged.json"))
             for count in COUNTS:
                 self.assertEqual(merged[count], whole[count], f"{method}: {count}")
+            self.assertEqual(merged["decisions"], whole["decisions"], method)
             self.assertEqual(merged["parts"], PARTS)
             self.assertEqual(read_exr_header(self.path("merged.exr"))["wavecrest:iterations"], str(SPP))
 
@@ -105,7 +106,12 @@ class Sums(PartsTest):
         self.assertNotIn("--partial", self.run_wavecrest(*part, expect=None).stderr)  # which is for images
         result = self.merge("part", "-o", "merged.pfm", expect=INPUT)
         self.assertIn("no whole pass over the film: no image was written", result.stderr.splitlines()[-1])
+        # Chains need as many mutations as there are pixels: 9 steps of 38 chains for 408 are too few.
+        files = self.all_parts("mlt", name="chains", spp=1)
+        result = self.merge(*files[:3], "-o", "merged.pfm", expect=INPUT)
+        self.assertIn("no whole pass over the film: no image was written", result.stderr.splitlines()[-1])
         self.assertFalse((self.folder / "merged.pfm").exists())
+        self.merge(*files, "-o", "merged.pfm")
 
     def test_a_part_without_paths_is_none(self):
         # Trials take more than the time, so no path of the part is traced.
@@ -185,6 +191,9 @@ class Sums(PartsTest):
         self.assertNotIn("relative_error", read_json(self.path("merged.json")))
         self.merge(*self.all_parts("pt", name="runs", spp=64 * PARTS), "--stats", "merged.json")
         self.assertLess(read_json(self.path("merged.json"))["relative_error"], told)
+        # All parts of mlt have one sequence in their direct pass.
+        self.merge(*self.all_parts("mlt", "--sampler", "sobol", name="chains"), "--stats", "merged.json")
+        self.assertNotIn("relative_error", read_json(self.path("merged.json")))
         # One part says nothing.
         self.merge(files[0], "--stats", "merged.json")
         self.assertNotIn("relative_error", read_json(self.path("merged.json")))

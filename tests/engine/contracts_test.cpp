@@ -38,6 +38,7 @@ std::vector<Scene> scenes() {
 
 void renderByAll(const Scene& scene, Precision precision, Isa isa) {
   for (const MethodEntry& entry : kMethods) {
+    if (isChosenByTrials(entry.method)) continue;  // tries and renders by some of the others
     RenderSettings settings = settingsOf(entry.method, precision, isa);
     if (entry.method != Method::mlt) {
       for (const Accel accel : {Accel::small, Accel::bvh, Accel::embree}) {

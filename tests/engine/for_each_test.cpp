@@ -1,4 +1,4 @@
-// Turns go round, whether or not all threads come.
+// Turns go round, whether or not all threads come, until the last is over or one fails.
 #include "engine/tasks/for_each.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace wavecrest {
@@ -31,6 +34,23 @@ TEST_P(TakeTurnsTest, allAreTakenAndNoneTwiceAtATime) {
     });
   });
   for (size_t i = 0; i < turns.size(); ++i) EXPECT_EQ(turns[i], 100 * static_cast<int>(i + 1)) << i;
+}
+
+TEST_P(TakeTurnsTest, anExceptionEndsThemAll) {
+  constexpr int kMost = 3000;  // of a millisecond each: more than one that is under way takes to notice
+  std::atomic<bool> thrown = false;
+  std::atomic<int> after = 0;
+  const auto turn = [&](size_t i) {
+    if (i == 0) {
+      thrown = true;
+      throw std::runtime_error("the first turn");
+    }
+    if (!thrown) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return ++after < kMost;
+  };
+  arena_.execute([&] { EXPECT_THROW(takeTurns(2, kThreads, turn), std::runtime_error); });
+  EXPECT_LT(after, kMost);
 }
 
 TEST(TakeTurns, waitForNoThreadThatIsLate) {

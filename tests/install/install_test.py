@@ -78,6 +78,7 @@ class Installed(unittest.TestCase):
                 "rmse to itself 0",
                 "early image differs 1",
                 "error in no-such-scene.xml, input 1",
+                "run refused",
             ],
         )
         compared = run(self.program, "compare", self.render("program.exr"), image, "--metrics", "rmse", "--max-rmse", 0)

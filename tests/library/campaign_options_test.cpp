@@ -1,15 +1,22 @@
-// Words of a campaign's options that are refused before anything is rendered or stored.
+// Words of a campaign's options that are refused before anything is rendered or stored, and words that make a campaign
+// larger.
 #include "library/campaign_options.h"
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+
+#include "bench/results/results_store.h"
 #include "library/errors.h"
 #include "tests/library/refusal.h"
+#include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {
 namespace {
 
 using Words = std::vector<std::string>;
+using Defining = std::map<std::string, Words>;
 
 api::CampaignOptions campaignOf(const std::string& option, const Words& words) {
   return {.defining = {{option, words}}, .out = "no-such-folder"};
@@ -63,6 +70,62 @@ TEST(CampaignOptions, aDirectPassIsGivenByYesAlone) {
 TEST(CampaignOptions, threadsHaveTheRangeOfTheCommandLine) {
   EXPECT_EQ(refusalOfCampaign({.out = "no-such-folder", .threads = 4097}),
             "--threads 4097: expected a number from 1 to 4096");
+}
+
+// What a campaign that was begun with some options has once it is resumed with others.
+CampaignSettings resumed(const Defining& begun, const Defining& added) {
+  const test::TemporaryFolder folder;
+  const api::CampaignOptions first{.defining = begun, .out = folder.folder().string()};
+  const CampaignSettings settings = campaignSettings(first);
+  ResultsStore(resultsFile(settings)).putCampaign(campaignKeys(first, settings));
+  api::CampaignOptions options{.defining = added, .out = first.out, .resume = true};
+  return begunCampaign(options);
+}
+
+TEST(CampaignOptions, aSceneIsAddedToThoseByDefaultWhichMayLackTheDragon) {
+  const test::TemporaryFolder scenes;
+  setenv("WAVECREST_SCENES", scenes.folder().c_str(), 1);
+  const CampaignSettings settings = resumed({}, {{"scenes", {"mine.xml"}}});
+  unsetenv("WAVECREST_SCENES");
+  Words words;
+  for (const CampaignScene& scene : settings.scenes) words.push_back(scene.word);
+  EXPECT_EQ(words, (Words{"cornell-diffuse", "cornell-mirror", "cornell-glossy", "cornell-spheres", "lafortune-room",
+                          "pool-interior", "veach-door", "mine.xml"}));
+}
+
+TEST(CampaignOptions, scenesByDefaultAreThoseOfTheBeginningAlsoWhereTheDragonHasBeenFetchedSince) {
+  const test::TemporaryFolder scenes, folder;
+  setenv("WAVECREST_SCENES", scenes.folder().c_str(), 1);
+  const api::CampaignOptions first{.out = folder.folder().string()};
+  const CampaignSettings begun = campaignSettings(first);
+  ResultsStore(resultsFile(begun)).putCampaign(campaignKeys(first, begun));
+  std::filesystem::create_directory(scenes.folder() / "assets");
+  scenes.write("assets/dragon_res2.ply", "");
+  api::CampaignOptions again{.out = first.out, .resume = true};
+  const CampaignSettings settings = begunCampaign(again);
+  EXPECT_EQ(campaignSettings(first).scenes.size(), 9u) << "or the dragon is not found";
+  unsetenv("WAVECREST_SCENES");
+  EXPECT_EQ(begun.scenes.size(), 7u);
+  EXPECT_EQ(settings.scenes.size(), 7u);
+}
+
+// The command that extended a campaign is given again after a kill.
+TEST(CampaignOptions, whatACampaignHasMayBeGivenAgain) {
+  const Defining begun = {{"scenes", {"cornell-diffuse", "cornell-mirror"}}, {"--methods", {"pt", "lt"}}};
+  const CampaignSettings settings = resumed(
+      begun, {{"scenes", {"cornell-mirror"}}, {"--methods", {"lt"}}, {"--seeds", {"2"}}, {"--images", {"all"}}});
+  EXPECT_EQ(settings.scenes.size(), 2u);
+  EXPECT_EQ(settings.methods.size(), 2u);
+  EXPECT_EQ(settings.seeds, 2u);
+  EXPECT_TRUE(settings.keepImages);
+}
+
+TEST(CampaignOptions, aMethodIsAddedToTheProfilesWithTheVariantsOfMltThatWereAskedFor) {
+  const CampaignSettings settings =
+      resumed({{"--profile", {"standard"}}, {"--mlt", {"pssmlt"}}}, {{"--methods", {"gpt"}}});
+  Words names;
+  for (const CampaignMethod& row : settings.methods) names.push_back(row.name());
+  EXPECT_EQ(names, (Words{"pt", "lt", "bpt", "mlt-pssmlt", "ppm", "ppm-direct", "bpm", "vcm", "gpt"}));
 }
 
 }  // namespace

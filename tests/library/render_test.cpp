@@ -1,10 +1,12 @@
-// An image of the library's renders is whole or none.
+// An image of the library's renders is whole or none, and what their statistics tell.
 #include "wavecrest/render.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
+#include "tests/metrics/temporary_folder.h"
 #include "wavecrest/error.h"
 
 namespace wavecrest::api {
@@ -31,6 +33,27 @@ TEST(Render, hasAnImageFromTheFirstWholePassOn) {
     EXPECT_EQ(render.iterations(), 1u) << method;
     const Image image = render.image();
     EXPECT_GT(*std::max_element(image.pixels.begin(), image.pixels.end()), 0) << method;
+  }
+}
+
+TEST(Render, statsTellNotesAndTimesOfStagesThatAreMeasured) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("scene.xml", R"(<scene version="3.0.0"><integrator type="bdpt"/>
+      <sensor type="perspective"/><emitter type="constant"/><shape type="sphere"/></scene>)");
+  const Scene scene = Scene::load(file, {.defines = {}, .width = 16, .height = 12});
+  for (const bool measured : {false, true}) {
+    RenderOptions options;
+    options.spp = 1;
+    options.measureStages = measured;
+    Render render(scene, options);
+    render.run();
+    const nlohmann::json stats = nlohmann::json::parse(render.stats());
+    ASSERT_EQ(stats.at("notes").size(), 1u);
+    EXPECT_NE(stats.at("notes").at(0).get<std::string>().find("integrator \"bdpt\""), std::string::npos);
+    ASSERT_EQ(stats.contains("stages"), measured);
+    if (measured) {
+      EXPECT_GT(stats.at("stages").at(0).at("items").get<uint64_t>(), 0u);
+    }
   }
 }
 

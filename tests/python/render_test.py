@@ -8,6 +8,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 
 import numpy
 import wavecrest as wc
@@ -105,6 +106,19 @@ signal.signal(signal.SIGINT, signal.SIG_DFL)
 """
         result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=100, check=False)
         self.assertEqual(result.stdout.splitlines(), ["interrupted True True", "again 2"], result.stderr)
+
+    def test_ctrl_c_while_a_render_is_built_has_no_image_yet(self):
+        scene = small()
+        for begin in (lambda: scene.render(spp=1), lambda: scene.snapshots(iterations=[1])):
+            with unittest.mock.patch.object(wc.render._native, "Render", side_effect=KeyboardInterrupt):
+                with self.assertRaises(wc.Interrupted) as raised:
+                    begin()
+            self.assertIsNone(raised.exception.result)
+
+    def test_stages_are_timed_where_that_is_asked_for(self):
+        self.assertNotIn("stages", small().render(spp=1).stats)
+        stages = small().render(spp=1, measure_stages=True).stats["stages"]
+        self.assertGreater(sum(stage["items"] for stage in stages), 0)
 
     def test_a_forked_child_saves_and_reads_as_its_parent_does(self):
         # The child has none of the threads that compressed the parent's file. It ends as every program does.

@@ -1,7 +1,8 @@
 // Renders a built-in scene in two steps, writes the image and compares it with itself; then asks for a scene that is
-// not there. Prints what it finds, line by line, for install_test.py.
+// not there, and for the name of a state. Prints what it finds, line by line, for install_test.py.
 #include <wavecrest/wavecrest.h>
 #include <cstdio>
+#include <string>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
@@ -27,4 +28,5 @@ int main(int argc, char** argv) {
   } catch (const wc::Error& error) {
     std::printf("error in %s, input %d\n", error.file().c_str(), error.kind() == wc::ErrorKind::input);
   }
+  std::printf("run %s\n", std::string(toString(wavecrest::RunState::refused)).c_str());
 }
