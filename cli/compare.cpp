@@ -230,7 +230,9 @@ int compare(const CompareOptions& options) {
   if (options.printsText()) printText(tests);
   if (options.json) fmt::print("{}\n", jsonText(toJson(tests), 2));
   if (!options.mapFolder.empty()) writeMaps(options, tests);
-  if (!options.html.empty()) writeText(options.html, comparePage(options.reference, reference.image(), tests));
+  if (!options.html.empty()) {
+    writeText(options.html, comparePage(options.reference, reference.image(), tests, options.exposure));
+  }
   // Checks all tests, also after one that fails.
   bool held = true;
   for (const MeasuredTest& test : tests) held = checkThresholds(options, test, tests.size() == 1) && held;

@@ -89,7 +89,7 @@ void addTable(std::string& page, const std::vector<MeasuredTest>& tests) {
 }  // namespace
 
 std::string comparePage(const std::string& referenceFile, const ComparedImage& reference,
-                        const std::vector<MeasuredTest>& tests) {
+                        const std::vector<MeasuredTest>& tests, double exposure) {
   std::string page = pageHead("Against " + referenceFile);
   append(page, "<header><h1>Against {}</h1></header>\n<main>\n", escapeHtml(referenceFile));
   addTable(page, tests);
@@ -105,8 +105,8 @@ std::string comparePage(const std::string& referenceFile, const ComparedImage& r
   for (const MeasuredTest& test : tests) pictures += pane(test.codes, test.light, test.label, test.file);
   std::string groups = viewerGroup("Pictures", "", pictures);
   for (size_t i = 0; i < tests.front().scores.size(); ++i) groups += mapGroup(tests, i);
-  append(page, "<h3>Pictures and maps</h3>\n{}</main>\n<script>\n{}{}</script>\n</body></html>\n", viewer(groups),
-         kFloatsJs, kReportJs);
+  append(page, "<h3>Pictures and maps</h3>\n{}</main>\n<script>\n{}{}</script>\n</body></html>\n",
+         viewer(groups, {}, exposure), kFloatsJs, kReportJs);
   return page;
 }
 

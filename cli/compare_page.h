@@ -9,8 +9,8 @@
 
 namespace wavecrest {
 
-// The page. Every score has its map.
+// The page. Every score has its map. exposure: stops, of the codes.
 std::string comparePage(const std::string& referenceFile, const ComparedImage& reference,
-                        const std::vector<MeasuredTest>& tests);
+                        const std::vector<MeasuredTest>& tests, double exposure);
 
 }  // namespace wavecrest

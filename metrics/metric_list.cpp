@@ -91,12 +91,12 @@ Measurement measureRmse(const PreparedReference& reference, const ComparedImage&
   const bool asCodes = reference.settings().gammaCorrectedErrors || (bothCodes && reference.settings().exposure == 0);
   if (asCodes && test.nonFinitePixels == 0) {
     const Image8 &a = reference.image().codes, &b = test.codes;
-    result.scores = {{"", rmse(a, b, CodeScale::gammaCorrected).rmse}};
+    result.scores = {{"", rmse(a, b)}};
     if (withMap) result.map = errorMap({toUnitRange(a), toUnitRange(b)}, MapOf::rmse);
     return result;
   }
   onOneScaleOrCodes(reference, test, [&](const ErrorPair& images) {
-    result.scores = {{"", rmse(images.reference, images.test).rmse}};
+    result.scores = {{"", rmse(images.reference, images.test)}};
     if (withMap) result.map = errorMap(images, MapOf::rmse);
   });
   return result;

@@ -23,8 +23,4 @@ struct NoiseFloor {
 // Halves of the same size in linear light. Metrics whose smallest size exceeds the image's are left out.
 std::vector<NoiseFloor> noiseFloors(const Image& halfA, const Image& halfB, std::span<const Metric> metrics);
 
-// Mean over samples of (test - A)(test - B): the mean square error of a test image without the reference's noise, as
-// the halves' errors are independent. May be slightly negative. Pixels that are not finite are left out.
-double unbiasedMeanSquareError(const Image& test, const Image& halfA, const Image& halfB);
-
 }  // namespace wavecrest

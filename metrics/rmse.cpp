@@ -4,11 +4,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <vector>
-
-#include "metrics/image/srgb.h"
 
 namespace wavecrest {
 namespace {
@@ -21,7 +21,7 @@ struct RowSums {
 
 // Sums rows in parallel and adds the rows in order. value(image, i) gives sample i of an image as a double.
 template <class AnyImage, class Value>
-RmseResult rmseOf(const AnyImage& reference, const AnyImage& test, Value value) {
+double rmseOf(const AnyImage& reference, const AnyImage& test, Value value) {
   std::vector<RowSums> rows(reference.height);
   tbb::parallel_for(size_t{0}, rows.size(), [&](size_t y) {
     const size_t begin = y * reference.width * 3, end = begin + size_t{reference.width} * 3;
@@ -46,12 +46,8 @@ RmseResult rmseOf(const AnyImage& reference, const AnyImage& test, Value value) 
     sum.excluded += row.excluded;
   }
   // Means over the pixels that are not excluded. Without any such pixel they are 0 / 0, NaN.
-  RmseResult result;
-  result.excludedPixels = sum.excluded;
   const auto count = static_cast<double>(reference.pixelCount() - sum.excluded);
-  result.rmse = std::sqrt((sum.squares[0] + sum.squares[1] + sum.squares[2]) / (3 * count));
-  for (size_t c = 0; c < 3; ++c) result.channels[c] = std::sqrt(sum.squares[c] / count);
-  return result;
+  return std::sqrt((sum.squares[0] + sum.squares[1] + sum.squares[2]) / (3 * count));
 }
 
 // Mean over channels of the error of each pixel. error(r, difference) is that of a sample.
@@ -73,16 +69,12 @@ std::vector<double> pixelErrors(const Image& reference, const Image& test, Error
 
 }  // namespace
 
-RmseResult rmse(const Image& reference, const Image& test) {
+double rmse(const Image& reference, const Image& test) {
   return rmseOf(reference, test, [](const Image& image, size_t i) { return double{image.pixels[i]}; });
 }
 
-RmseResult rmse(const Image8& reference, const Image8& test, CodeScale scale) {
-  if (scale == CodeScale::gammaCorrected) {
-    return rmseOf(reference, test, [](const Image8& image, size_t i) { return image.pixels[i] / 255.0; });
-  }
-  const auto& decode = srgbDecodeTable();
-  return rmseOf(reference, test, [&](const Image8& image, size_t i) { return decode[image.pixels[i]]; });
+double rmse(const Image8& reference, const Image8& test) {
+  return rmseOf(reference, test, [](const Image8& image, size_t i) { return image.pixels[i] / 255.0; });
 }
 
 RelmseResult relmse(const Image& reference, const Image& test, const RelmseSettings& settings) {
@@ -92,7 +84,6 @@ RelmseResult relmse(const Image& reference, const Image& test, const RelmseSetti
   RelmseResult result;
   // Pixels that are not finite are excluded.
   const auto finiteEnd = std::remove_if(errors.begin(), errors.end(), [](double e) { return !std::isfinite(e); });
-  result.excludedPixels = static_cast<uint64_t>(errors.end() - finiteEnd);
   errors.erase(finiteEnd, errors.end());
 
   // Both means from one order: the part below the cut, then the worst pixels.

@@ -1,29 +1,20 @@
 // Root mean square error, relative mean square error and mean absolute percentage error: the metrics defined on numbers
 // as they are read.
 //
-// A pixel with a NaN or infinity in either image is excluded from every mean, and counted. All arithmetic is in double
-// and summed in a fixed order, so results do not depend on the number of threads.
+// A pixel with a NaN or infinity in either image is excluded from every mean. All arithmetic is in double and summed in
+// a fixed order, so results do not depend on the number of threads.
 #pragma once
-
-#include <array>
-#include <cstdint>
 
 #include "metrics/image/image.h"
 
 namespace wavecrest {
 
-struct RmseResult {
-  double rmse = 0;  // over all pixels and channels
-  std::array<double, 3> channels{};
-  uint64_t excludedPixels = 0;
-};
+// Over all pixels and channels. Both images have three channels and the same size; images without a finite pixel give
+// NaN.
+double rmse(const Image& reference, const Image& test);
 
-// Both images have three channels and the same size; images without a finite pixel give NaN.
-RmseResult rmse(const Image& reference, const Image& test);
-
-// 8-bit codes as values in 0..1, as they are (gamma-corrected) or decoded to linear light. Exact where floats are not.
-enum class CodeScale { gammaCorrected, linear };
-RmseResult rmse(const Image8& reference, const Image8& test, CodeScale scale);
+// 8-bit codes as gamma-corrected values in 0..1. Exact where floats are not.
+double rmse(const Image8& reference, const Image8& test);
 
 struct RelmseSettings {
   double epsilon = 1e-2;          // keeps black pixels from dominating, as in Rousselle et al. 2012
@@ -33,7 +24,6 @@ struct RelmseSettings {
 struct RelmseResult {
   double relmse = 0;   // mean over pixels of mean over channels of (test - reference)^2 / (reference^2 + epsilon)
   double trimmed = 0;  // the same without the worst pixels: robust against fireflies
-  uint64_t excludedPixels = 0;
 };
 
 RelmseResult relmse(const Image& reference, const Image& test, const RelmseSettings& settings = {});

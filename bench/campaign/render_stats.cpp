@@ -23,7 +23,8 @@ uint64_t peakMemoryBytes() {
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-// The part of the stats that only mlt has: brightness b, chains, and acceptance of each kind of mutation.
+// The part of the stats that only mlt has: its settings, brightness b, and acceptance of each kind of mutation.
+// restart: 0 where the number of bootstraps decides.
 nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainStatistics& chains) {
   const ChainCounters& counters = chains.counters;
   // Accepted over proposed; 0 where nothing was proposed.
@@ -39,6 +40,9 @@ nlohmann::ordered_json chainStats(const RenderSettings& settings, const ChainSta
   nlohmann::ordered_json stats = {
       {"mlt", enumeratorName(kMetropolisVariantNames, settings.metropolis.variant)},
       {"chains", settings.metropolis.chains},
+      {"bootstrap", settings.metropolis.bootstrapSamples},
+      {"restart", settings.metropolis.restartSteps.value_or(0)},
+      {"direct_pass", settings.metropolis.directPass && settings.metropolis.variant != MetropolisVariant::pssmlt},
       {"direct_paths", chains.directPaths},
       {"chain_bytes", chains.bytes},
       {"bootstrap_epochs", chains.epochs},
@@ -190,7 +194,7 @@ Json decision(const char* setting, Json value, const std::string& why) {
 std::string whyChosen(const MethodChoice& choice) {
   const auto chosen = std::ranges::find(choice.trials, choice.method, &MethodTrial::method);
   const double least = chosen == choice.trials.end() ? 0 : chosen->inefficiency();
-  if (!(least > 0)) return "trials found no light to compare methods by";
+  if (!(least > 0)) return "trials found no error to compare methods by";
   std::vector<std::string> trials;
   for (const MethodTrial& trial : choice.trials) {
     trials.push_back(fmt::format("{} {:.2f}", toString(trial.method), trial.inefficiency() / least));

@@ -13,6 +13,7 @@
 #include "bench/report/method_style.h"
 #include "bench/report/other_images.h"
 #include "bench/report/results_folder.h"
+#include "bench/report/run_series.h"
 #include "bench/report/series_facts.h"
 #include "bench/report/shown_metrics.h"
 #include "metrics/image/image_io.h"
@@ -42,10 +43,20 @@ std::string attribute(const ImageFile& image, const std::string& key) {
   return entry == image.metadata.end() ? "" : entry->second;
 }
 
-// Throws if an image is of another scene than the runs. An empty hash is unknown and agrees with any.
+// Throws if a file is of another scene than the runs. An empty hash is unknown and agrees with any.
 void requireHash(const fs::path& file, const std::string& found, const std::string& ofRuns) {
   if (found.empty() || ofRuns.empty() || found == ofRuns) return;
   throw ResultsError(fmt::format("{}: is of scene_hash {}; expected {} as the renders", file.string(), found, ofRuns));
+}
+
+// The hash of the scene that all runs rendered; empty if none says it. Throws if two differ.
+std::string commonHash(const std::vector<RunFile*>& runs) {
+  std::string hash;
+  for (const RunFile* run : runs) {
+    requireHash(run->path, run->sceneHash, hash);
+    if (hash.empty()) hash = run->sceneHash;
+  }
+  return hash;
 }
 
 // Throws unless the metadata have the scene hash and the relative error that `wavecrest reference` writes.
@@ -153,7 +164,7 @@ void addStages(std::vector<ReportStage>& sums, const nlohmann::json& stats) {
 }
 
 // Measures all runs of a group and sums up what they cost.
-ReportSeries collectSeries(const std::vector<const RunFile*>& runs, const std::string& label,
+ReportSeries collectSeries(const std::vector<RunFile*>& runs, const std::string& label,
                            const PreparedReference& reference) {
   ReportSeries series;
   series.method = methodId(runs.front()->method);
@@ -168,70 +179,6 @@ ReportSeries collectSeries(const std::vector<const RunFile*>& runs, const std::s
   }
   addSeriesFacts(series, stats);
   return series;
-}
-
-// Settings of the stats that make another series of a method. Runs that agree in all of them differ by their seeds.
-constexpr const char* kSeriesSettings[] = {"sampler",
-                                           "precision",
-                                           "filter_mode",
-                                           "max_depth",
-                                           "rr_depth",
-                                           "roulette",
-                                           "mlt",
-                                           "chains",
-                                           "direct_pass",
-                                           "radius",
-                                           "radius_alpha",
-                                           "light_paths_per_iteration",
-                                           "connection_roulette"};
-
-// What a run's stats say of a setting; null where they do not.
-nlohmann::json settingOf(const RunFile& run, const char* name) { return run.stats.value(name, nlohmann::json()); }
-
-bool isSameSeries(const RunFile& a, const RunFile& b) {
-  return a.method == b.method && std::ranges::all_of(kSeriesSettings, [&](const char* name) {
-           return settingOf(a, name) == settingOf(b, name);
-         });
-}
-
-// Groups the runs of one scene by method and settings, in order of first appearance.
-std::vector<std::vector<const RunFile*>> groupBySettings(const std::vector<const RunFile*>& runs) {
-  std::vector<std::vector<const RunFile*>> groups;
-  for (const RunFile* run : runs) {
-    const auto group =
-        std::ranges::find_if(groups, [&](const auto& known) { return isSameSeries(*known.front(), *run); });
-    if (group == groups.end()) {
-      groups.push_back({run});
-    } else {
-      group->push_back(run);
-    }
-  }
-  return groups;
-}
-
-// The method, and where several series share it what tells them apart: words as they are, numbers and switches with the
-// setting's name.
-std::string seriesLabel(const std::vector<std::vector<const RunFile*>>& groups, const RunFile& run) {
-  std::string label = run.method;
-  for (const char* name : kSeriesSettings) {
-    const nlohmann::json own = settingOf(run, name);
-    const bool differs = std::ranges::any_of(groups, [&](const auto& group) {
-      return group.front()->method == run.method && settingOf(*group.front(), name) != own;
-    });
-    if (!differs) continue;
-    std::string words = name;
-    std::ranges::replace(words, '_', ' ');
-    if (own.is_string()) {
-      label += " " + own.get<std::string>();
-    } else if (own.is_number_integer()) {
-      label += fmt::format(" {} {}", words, own.get<int64_t>());
-    } else if (own.is_number()) {
-      label += fmt::format(" {} {:g}", words, own.get<double>());
-    } else if (own.is_boolean()) {
-      label += (own.get<bool>() ? " " : " no ") + words;
-    }
-  }
-  return label;
 }
 
 // Where runs and references come from.
@@ -264,15 +211,15 @@ std::vector<RunFile> readAllRuns(const RenderFolder& from) {
                   from.folder.string()));
 }
 
-// One scene with all its runs, of which there is at least one.
-ReportScene collectScene(const RenderFolder& from, const std::string& name, const std::vector<const RunFile*>& runs) {
+// One scene with all its runs, of which there is at least one. Adds to the report's remarks.
+ReportScene collectScene(const RenderFolder& from, const std::string& name, const std::vector<RunFile*>& runs,
+                         std::vector<std::string>& remarks) {
   ReportScene scene;
   scene.name = name;
-  // The reference has to be of the scene that the first run rendered, whose stats come first.
   const bool given = !from.reference.empty();
   const bool anyOther = std::ranges::any_of(runs, [](const RunFile* run) { return run->other; });
   const SceneReference reference = readReference(given ? std::vector{from.reference} : findReference(from.folder, name),
-                                                 runs.front()->sceneHash, given || anyOther);
+                                                 commonHash(runs), given || anyOther);
   scene.width = reference.image.image().codes.width;
   scene.height = reference.image.image().codes.height;
   scene.referenceOrigin = reference.origin;
@@ -281,7 +228,10 @@ ReportScene collectScene(const RenderFolder& from, const std::string& name, cons
   std::vector<std::vector<TimedImage>> images;
   const auto groups = groupBySettings(runs);
   for (const auto& group : groups) {
-    scene.series.push_back(collectSeries(group, seriesLabel(groups, *group[0]), reference.image));
+    const std::string label = seriesLabel(groups, *group[0]);
+    numberSnapshots(group);
+    if (std::string remark = remarkOnEnds(group, label); !remark.empty()) remarks.push_back(std::move(remark));
+    scene.series.push_back(collectSeries(group, label, reference.image));
     auto& run = images.emplace_back();
     for (const SnapshotFile& snapshot : group[0]->snapshots) run.push_back({snapshot.seconds, snapshot.image});
   }
@@ -297,7 +247,7 @@ ConvergenceReport collectRenders(const fs::path& path, const fs::path& givenRefe
   const fs::path besideList = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const RenderFolder from{
       .folder = isList ? besideList : path, .list = isList ? path : path / kImageList, .reference = givenReference};
-  const std::vector<RunFile> files = readAllRuns(from);
+  std::vector<RunFile> files = readAllRuns(from);
   // List the scenes in order of first appearance.
   std::vector<const nlohmann::json*> stats;
   std::vector<std::string> scenes;
@@ -313,11 +263,11 @@ ConvergenceReport collectRenders(const fs::path& path, const fs::path& givenRefe
   for (const Metric* metric : reportedMetrics()) report.metrics.push_back(shownMetric(*metric));
   for (const char* key : kEnvironmentKeys) addDistinct(report.environment, stats, key);
   for (const std::string& scene : scenes) {
-    std::vector<const RunFile*> runs;
-    for (const RunFile& file : files) {
+    std::vector<RunFile*> runs;
+    for (RunFile& file : files) {
       if (file.scene == scene) runs.push_back(&file);
     }
-    report.scenes.push_back(collectScene(from, scene, runs));
+    report.scenes.push_back(collectScene(from, scene, runs, report.remarks));
   }
   return report;
 }

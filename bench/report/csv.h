@@ -15,7 +15,7 @@ std::string measurementsAsCsv(const ConvergenceReport& report);
 std::string claimsAsCsv(const ConvergenceReport& report);
 
 /// A line for each series and metric: mean and extremes over seeds at the end, what the reference's own noise would
-/// score, and the render time to the metric's target, where it has one and the mean curve reaches it.
+/// score, and the render time from which on the mean curve has the metric's target, where it has one and ends with it.
 std::string summaryAsCsv(const ConvergenceReport& report);
 
 }  // namespace wavecrest

@@ -8,9 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <optional>
-#include <utility>
 
 #include "metrics/image/image_io.h"
 
@@ -68,32 +66,6 @@ struct OtherImage {
   SnapshotFile snapshot;
 };
 
-// Measured times of seeds differ a little. Up to this factor they count as one time.
-constexpr double kSameTime = 1.1;
-
-// Numbers the snapshots of all runs of a series by time: curves are means over the snapshots of one number.
-void numberByTime(const std::vector<RunFile*>& runs) {
-  std::vector<std::pair<const RunFile*, SnapshotFile*>> order;
-  for (RunFile* run : runs) {
-    for (SnapshotFile& snapshot : run->snapshots) order.emplace_back(run, &snapshot);
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [](const auto& a, const auto& b) { return a.second->seconds < b.second->seconds; });
-  unsigned number = 0;
-  double first = 0;
-  std::vector<const RunFile*> met;  // runs with a snapshot of this number
-  for (const auto& [run, snapshot] : order) {
-    const bool again = std::find(met.begin(), met.end(), run) != met.end();
-    if (again || (!met.empty() && snapshot->seconds > kSameTime * first)) {
-      ++number;
-      met.clear();
-    }
-    if (met.empty()) first = snapshot->seconds;
-    met.push_back(run);
-    snapshot->number = number;
-  }
-}
-
 // Images of one scene, method and seed are one run, in order of time.
 std::vector<RunFile> runsOf(const std::vector<OtherImage>& images) {
   std::vector<RunFile> runs;
@@ -117,10 +89,6 @@ std::vector<RunFile> runsOf(const std::vector<OtherImage>& images) {
     std::stable_sort(run.snapshots.begin(), run.snapshots.end(),
                      [](const SnapshotFile& a, const SnapshotFile& b) { return a.seconds < b.seconds; });
   }
-  // Runs of one scene and method are the seeds of a series.
-  std::map<std::pair<std::string, std::string>, std::vector<RunFile*>> series;
-  for (RunFile& run : runs) series[{run.scene, run.method}].push_back(&run);
-  for (const auto& [name, seeds] : series) numberByTime(seeds);
   return runs;
 }
 

@@ -20,8 +20,8 @@ struct ResultsError : std::runtime_error {
 };
 
 struct SnapshotFile {
-  unsigned number = 0;
-  double seconds = 0;  ///< render clock
+  unsigned number = 0;  ///< as the stats say; 0 of other images
+  double seconds = 0;   ///< render clock
   uint64_t iterations = 0;
   std::filesystem::path image;
 };

@@ -33,7 +33,7 @@ std::string methodCell(const ReportSeries& series) {
 // A dash for zero, which other programs leave open.
 std::string countCell(double count) { return count > 0 ? formatCount(count) : "–"; }
 
-// "12 s", or for a method that never got there a dash and how much longer it would take.
+// "12 s", or for a method that does not end with the target a dash and how much longer it would take.
 std::string targetCell(const ReportScene& scene, const ReportSeries& series, const ReportMetric& metric,
                        size_t metricIndex) {
   const std::optional<TargetTime> time = timeToReach(series, metric, metricIndex, *metric.target);

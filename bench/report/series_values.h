@@ -11,14 +11,13 @@
 
 namespace wavecrest {
 
-/// The k-th snapshots of all runs of a series.
+/// The snapshots of one number of all runs of a series.
 struct CurvePoint {
   double seconds = 0, iterations = 0;  ///< means over runs
   double mean = 0, low = 0, high = 0;  ///< of the metric, over runs
 };
 
-/// Runs of one series meet at their k-th snapshot, since all were asked for the same times. Snapshots that no run has a
-/// finite value for are left out.
+/// One point for each number of a snapshot, in their order. Snapshots that no run has a finite value for are left out.
 std::vector<CurvePoint> meanCurve(const ReportSeries& series, size_t metric);
 
 /// The value of a metric at the end of a series: mean over its runs, NaN if there is none.
@@ -39,13 +38,13 @@ bool isBetter(const ReportMetric& metric, double a, double b);
 /// The best of the final values of all series of a scene; NaN if there is none.
 double bestFinalValue(const ReportScene& scene, const ReportMetric& metric, size_t metricIndex);
 
-/// When a score is reached. atMost: the first snapshot has it already, so it may have been sooner.
+/// From when on a score is there. atMost: all snapshots have it, so it may have been sooner.
 struct TargetTime {
   double seconds = 0;
   bool atMost = false;
 };
-/// When the mean curve first reaches a score: between snapshots by straight lines over the logarithm of time. Nothing
-/// if it never does.
+/// The time from which on all points of the mean curve have a score or a better one: between snapshots by straight
+/// lines over the logarithm of time. Nothing if the last point does not have it, even where an earlier one does.
 std::optional<TargetTime> timeToReach(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
                                       double target);
 /// "2.1 s", or "≤ 0.1 s".

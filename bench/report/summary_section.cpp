@@ -49,11 +49,12 @@ HeatMap metricMap(const ReportMetric& metric, size_t index) {
       .higherIsBetter = metric.higherIsBetter};
 }
 
-// Render times until a metric reaches its target, NaN where it never does. The tint is full at 16 times the fastest.
+// Render times from which on a metric has its target, NaN where it does not end with it. The tint is full at 16 times
+// the fastest.
 HeatMap targetMap(const ReportMetric& metric, size_t index) {
   return {
       .name = fmt::format("time to {} {}", metric.name, *metric.target),
-      .explanation = fmt::format("render time until {} reaches {}; – where it never did", metric.name, *metric.target),
+      .explanation = fmt::format("from when on {} is {} or better; – if not at the end", metric.name, *metric.target),
       .value =
           [&metric, index](const ReportScene&, const ReportSeries& series) {
             return timeToReach(series, metric, index, *metric.target).value_or(TargetTime{kNan}).seconds;
@@ -232,8 +233,8 @@ std::string renderClaims(const ConvergenceReport& report) {
   const auto judged = std::ssize(report.claims) - count("not judged");
   std::string html = "<section id=\"claims\"><h2>The study's findings</h2><p class=\"facts\">";
   if (judged > 0) {
-    append(html, "{} hold, {} do not, {} not in this time, {} are undecided within noise. ", count("holds"),
-           count("does not hold"), count("not reached in this time"), count("undecided"));
+    append(html, "{} hold, {} do not, {} not in this time, {} are undecided. ", count("holds"), count("does not hold"),
+           count("not reached in this time"), count("undecided"));
   }
   if (count("not judged") > 0) {
     append(html, "{} cannot be judged by this campaign, which counts neither for nor against them.",

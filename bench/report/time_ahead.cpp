@@ -26,13 +26,14 @@ std::optional<TimeAhead> timeAhead(const ReportSeries& series, const ReportMetri
   const double end = finalSeconds(series);
   if (!reached || !(end > 0) || !(reached->seconds <= kFarthestTime * end)) return std::nullopt;
   const auto after = [&](double seconds) { return std::max(0.0, seconds - end); };
-  return TimeAhead{.seconds = after(reached->seconds), .interval = {after(reached->low), after(reached->high)}};
+  return TimeAhead{
+      .seconds = after(reached->seconds), .interval = {after(reached->low), after(reached->high)}, .end = end};
 }
 
 std::string formatTimeAhead(const TimeAhead& ahead) {
   const std::string low = formatSeconds(roundedTime(ahead.interval.low)),
                     high = formatSeconds(roundedTime(ahead.interval.high));
-  const bool open = !(ahead.interval.high <= kFarthestTime * std::max(ahead.seconds, 1e-9));
+  const bool open = !(ahead.interval.high <= kFarthestTime * ahead.end);
   return fmt::format("about {} more ({}{})", formatSeconds(roundedTime(ahead.seconds)), low,
                      open ? " or longer" : " to " + high);
 }

@@ -14,6 +14,7 @@ namespace wavecrest {
 struct TimeAhead {
   double seconds = 0;
   Range interval;  ///< high may be infinite
+  double end = 0;  ///< of the runs, in seconds
 };
 
 /// Nothing where the target was reached, no score of the metric is the best, a run has fewer than three snapshots in
@@ -22,7 +23,7 @@ struct TimeAhead {
 std::optional<TimeAhead> timeAhead(const ReportSeries& series, const ReportMetric& metric, size_t metricIndex,
                                    double target, std::optional<double> floor);
 
-/// "about 9 s more (7 s to 14 s)".
+/// "about 9 s more (7 s to 14 s)"; "or longer" in place of a high end beyond 100 times the render time.
 std::string formatTimeAhead(const TimeAhead& ahead);
 
 }  // namespace wavecrest

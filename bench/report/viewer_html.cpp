@@ -25,12 +25,13 @@ std::string viewerGroup(std::string_view kind, std::string_view head, std::strin
   return html;
 }
 
-std::string viewer(std::string_view groups, std::span<const PictureCrop> crops) {
+std::string viewer(std::string_view groups, std::span<const PictureCrop> crops, double exposure) {
   std::string words;
   for (const PictureCrop& crop : crops) {
     append(words, "{}{},{},{}x{}", words.empty() ? "" : " ", crop.x, crop.y, crop.width, crop.height);
   }
-  const std::string data = words.empty() ? "" : fmt::format(" data-crops=\"{}\"", words);
+  std::string data = words.empty() ? "" : fmt::format(" data-crops=\"{}\"", words);
+  if (exposure != 0) append(data, " data-exposure=\"{}\"", exposure);
   return fmt::format("<div class=\"viewer\"{}>{}</div>\n", data, groups);
 }
 

@@ -25,8 +25,9 @@ std::string viewerPane(const ViewerPane& pane);
 std::string viewerGroup(std::string_view kind, std::string_view head, std::string_view panes,
                         std::string_view step = {});
 
-/// crops: parts of the pictures that get buttons of their own; all must lie in the pictures.
-std::string viewer(std::string_view groups, std::span<const PictureCrop> crops = {});
+/// crops: parts of the pictures that get buttons of their own; all must lie in the pictures. exposure: stops that the
+/// pictures are brighter than their floats; the slider adds to them.
+std::string viewer(std::string_view groups, std::span<const PictureCrop> crops = {}, double exposure = 0);
 
 /// The colours of maps (metrics/false_colour.h) with their values.
 std::string colourBar(double range);

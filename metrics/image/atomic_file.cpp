@@ -41,13 +41,23 @@ class Descriptor {
   throw ImageError(path, std::string(step) + " failed: " + std::strerror(error), "expected a writable place");
 }
 
-// Every temporary name contains this, after the target's name.
-constexpr const char* kTemporary = ".tmp.";
+// Comes after the target's name in every temporary name, before the numbers of the process and of the file.
+constexpr const char* kTemporary = ".tmp";
 
 // Unique among the processes and threads that may write beside each other.
 std::string temporaryName(const std::string& path) {
   static std::atomic<unsigned> counter{0};
-  return path + kTemporary + std::to_string(::getpid()) + "." + std::to_string(counter++);
+  return path + kTemporary + "." + std::to_string(::getpid()) + "." + std::to_string(counter++);
+}
+
+// The target's name, of a name that temporaryName() may have given; empty for any other.
+std::string targetOfTemporary(fs::path name) {
+  for (int numbers = 0; numbers < 2; ++numbers) {
+    const std::string number = name.extension().string();
+    if (number.size() < 2 || number.find_first_not_of("0123456789", 1) != std::string::npos) return "";
+    name.replace_extension();
+  }
+  return name.extension() == kTemporary ? name.stem().string() : "";
 }
 
 // What a chain of symbolic links ends at, or the path itself.
@@ -203,12 +213,12 @@ void writeFileAtomically(const std::string& path, std::string_view text) {
 void removeTemporaries(const std::string& path) {
   // The folder of a bare file name is the current one, which only the absolute path names.
   const fs::path target = fs::absolute(targetOf(path));
-  const std::string begin = target.filename().string() + kTemporary;
-  removeFiles(target.parent_path(), [&](const std::string& name) { return name.starts_with(begin); });
+  const std::string own = target.filename().string();
+  removeFiles(target.parent_path(), [&](const std::string& name) { return targetOfTemporary(name) == own; });
 }
 
 void removeTemporariesIn(const std::string& folder) {
-  removeFiles(folder, [](const std::string& name) { return name.find(kTemporary) != std::string::npos; });
+  removeFiles(folder, [](const std::string& name) { return !targetOfTemporary(name).empty(); });
 }
 
 }  // namespace wavecrest

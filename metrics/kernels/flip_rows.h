@@ -35,6 +35,6 @@ struct FlipErrorRow {
   float* error;         // out; combined with what is there by max
 };
 
-constexpr float kFlipColourExponent = 0.7f, kFlipFeatureExponent = 0.5f;
+constexpr float kFlipColourExponent = 0.7f;
 
 }  // namespace wavecrest

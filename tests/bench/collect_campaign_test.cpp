@@ -15,6 +15,7 @@
 #include "bench/results/read_results.h"
 #include "bench/results/results_store.h"
 #include "metrics/image/image_io.h"
+#include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {
 namespace {
@@ -30,15 +31,11 @@ Image grey(float value) {
 class CollectCampaign : public testing::Test {
  protected:
   void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::path(testing::TempDir()) / (std::string("wavecrest_campaign_") + info->name());
-    fs::remove_all(folder);
     fs::create_directories(folder / "images");
     writeExr((folder / "images/box.exr").string(), grey(0.5F),
              {{"wavecrest:method", "bpt"}, {"wavecrest:relative_error", "0.0123"}});
     writeExr((folder / "images/last.exr").string(), grey(0.6F));
   }
-  void TearDown() override { fs::remove_all(folder); }
 
   // Two snapshots; the second has the image.
   static RunRecord run(const std::string& method, uint64_t seed, double last) {
@@ -85,7 +82,8 @@ class CollectCampaign : public testing::Test {
 
   ConvergenceReport collect() const { return collectReport(std::vector<fs::path>{folder}); }
 
-  fs::path folder;
+  const test::TemporaryFolder temporary;
+  const fs::path folder = temporary.folder();
 };
 
 TEST_F(CollectCampaign, gathersSeedsIntoSeriesByMethod) {

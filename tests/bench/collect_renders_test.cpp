@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "bench/report/results_folder.h"
+#include "bench/report/series_values.h"
 #include "bench/report/shown_metrics.h"
 #include "bench/report/write_report.h"
 #include "metrics/image/image_io.h"
 #include "metrics/image/srgb.h"
+#include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {
 namespace {
@@ -45,14 +47,7 @@ void writeWhole(const fs::path& file, const Image& mean) {
 
 class CollectRenders : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::path(testing::TempDir()) / (std::string("wavecrest_collect_") + info->name());
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-    writeWhole(folder / "box.reference.exr", speckled(0));
-  }
-  void TearDown() override { fs::remove_all(folder); }
+  void SetUp() override { writeWhole(folder / "box.reference.exr", speckled(0)); }
 
   // A run of two snapshots, of error 0.2 and 0.1, and no final image.
   json addRun(const std::string& stem, const json& changes = json::object()) {
@@ -78,6 +73,14 @@ class CollectRenders : public testing::Test {
     return stats;
   }
 
+  // A run without snapshots.
+  void addFinal(const std::string& stem, uint64_t seed, double seconds, uint64_t iterations) {
+    addRun(stem,
+           {{"seed", seed}, {"render_seconds", seconds}, {"iterations", iterations}, {"snapshots", json::array()}});
+    for (const char* snapshot : {".000.exr", ".001.exr"}) fs::remove(folder / (stem + snapshot));
+    writeExr((folder / (stem + ".exr")).string(), speckled(0.1F));
+  }
+
   // The text of the error that collecting ends in.
   std::string error() const {
     try {
@@ -90,7 +93,8 @@ class CollectRenders : public testing::Test {
     return "none";
   }
 
-  fs::path folder;
+  const test::TemporaryFolder temporary;
+  const fs::path folder = temporary.folder();
 };
 
 TEST_F(CollectRenders, measuresEverySnapshot) {
@@ -193,6 +197,13 @@ TEST_F(CollectRenders, anotherScenesReferenceIsRefused) {
   EXPECT_NE(error().find("box.reference.2.exr: is of scene_hash 00ff; expected 1234"), std::string::npos) << error();
 }
 
+TEST_F(CollectRenders, runsOfTwoScenesOfOneNameAreRefused) {
+  addRun("a");
+  addRun("b", {{"seed", 2}, {"scene_hash", "00ff"}});
+  addRun("c", {{"seed", 3}, {"scene_hash", "1234"}});
+  EXPECT_NE(error().find("c.json: is of scene_hash 1234; expected 00ff"), std::string::npos) << error();
+}
+
 TEST_F(CollectRenders, halvesOfOneSeedAreNotIndependent) {
   addRun("box.pt");
   fs::remove(folder / "box.reference.exr");
@@ -228,6 +239,14 @@ TEST_F(CollectRenders, runsThatDifferByTheSeedAreOneSeries) {
   EXPECT_EQ(scene.series[0].stages.at(0).items, 20U);
 }
 
+TEST_F(CollectRenders, oneSeedTwiceIsRefused) {
+  addRun("box.pt.1");
+  addRun("box.pt.2");
+  EXPECT_NE(error().find("box.pt.2.json: has the seed 1 and the settings of "), std::string::npos) << error();
+  addRun("box.pt.2", {{"max_depth", 4}});
+  EXPECT_EQ(error(), "none");
+}
+
 TEST_F(CollectRenders, runsOfOtherPathsAreNotSeedsOfOneSeries) {
   addRun("a", {{"max_depth", 64}, {"rr_depth", 5}});
   addRun("b", {{"seed", 2}, {"max_depth", 4}, {"rr_depth", 5}});
@@ -238,6 +257,29 @@ TEST_F(CollectRenders, runsOfOtherPathsAreNotSeedsOfOneSeries) {
   ASSERT_EQ(scene.series.size(), 5U);
   EXPECT_EQ(scene.series[1].label, "pt max depth 4 rr depth 5");
   EXPECT_EQ(scene.series[4].label, "ppm light paths per iteration 2048");
+}
+
+TEST_F(CollectRenders, runsOfOtherSettingsOfAMethodAreNotSeedsOfOneSeries) {
+  addRun("a", {{"method", "vcm"}, {"merge_vertices", "all"}});
+  addRun("b", {{"method", "vcm"}, {"merge_vertices", "first"}, {"seed", 2}});
+  addRun("c", {{"method", "gpt"}, {"guide", {{"target", "radiance"}, {"cells", 7}}}});
+  addRun("d", {{"method", "gpt"}, {"guide", {{"target", "variance"}, {"cells", 7}}}, {"seed", 2}});
+  addRun("e", {{"method", "gpt"}, {"guide", {{"target", "variance"}, {"cells", 9}}}, {"seed", 3}});
+  addRun("f", {{"method", "mlt"}, {"bootstrap", 4096}, {"restart", 0}, {"direct_pass", true}});
+  addRun("g", {{"method", "mlt"}, {"bootstrap", 4096}, {"restart", 9}, {"direct_pass", true}, {"seed", 2}});
+  addRun("h", {{"method", "mlt"}, {"bootstrap", 8192}, {"restart", 0}, {"direct_pass", false}, {"seed", 3}});
+  const ReportScene scene = collectRenders(folder).scenes[0];
+  std::vector<std::string> labels;
+  for (const ReportSeries& series : scene.series) labels.push_back(series.label);
+  const std::vector<std::string> expected{"vcm all",
+                                          "vcm first",
+                                          "gpt radiance",
+                                          "gpt variance",
+                                          "mlt bootstrap 4096 restart 0 direct pass",
+                                          "mlt bootstrap 4096 restart 9 direct pass",
+                                          "mlt bootstrap 8192 restart 0 no direct pass"};
+  EXPECT_EQ(labels, expected);
+  EXPECT_EQ(scene.series.at(3).runs.size(), 2U);
 }
 
 TEST_F(CollectRenders, seriesOfOneMethodAreNamedByWhatDiffers) {
@@ -280,6 +322,27 @@ TEST_F(CollectRenders, listedSeedsMeetAtEqualTimes) {
   };
   EXPECT_EQ(numbers(series.runs[0]), (std::vector<unsigned>{0, 1, 2}));
   EXPECT_EQ(numbers(series.runs[1]), (std::vector<unsigned>{0, 2}));
+}
+
+TEST_F(CollectRenders, seedsOfOtherLengthsDoNotMeet) {
+  addFinal("a", 1, 10, 100);
+  addFinal("b", 2, 60, 600);
+  const ConvergenceReport report = collectRenders(folder);
+  const std::vector<CurvePoint> curve = meanCurve(report.scenes[0].series.at(0), 0);
+  ASSERT_EQ(curve.size(), 2U);
+  EXPECT_EQ(curve[0].seconds, 10);
+  EXPECT_EQ(curve[1].seconds, 60);
+  EXPECT_EQ(report.remarks,
+            std::vector<std::string>{
+                "box: runs of pt end after 10 s to 60 s; scores at the end are means over all of them."});
+}
+
+TEST_F(CollectRenders, seedsOfEqualIterationsMeetWhateverTheirTimes) {
+  addFinal("a", 1, 4, 64);
+  addFinal("b", 2, 5, 64);
+  const ConvergenceReport report = collectRenders(folder);
+  EXPECT_EQ(meanCurve(report.scenes[0].series.at(0), 0).size(), 1U);
+  EXPECT_TRUE(report.remarks.empty());
 }
 
 TEST_F(CollectRenders, aListOfTheCurrentFolderNeedsNoFolder) {

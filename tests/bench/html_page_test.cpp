@@ -177,8 +177,7 @@ TEST(Summary, claimsCarryTheirVerdicts) {
   report.claims[0].figure = "SSIM 0.9 < 0.95";
   report.claims[1].verdict = "not judged";
   const std::string unjudged = renderClaims(report);
-  EXPECT_TRUE(
-      contains(unjudged, "0 not in this time, 0 are undecided within noise. 1 cannot be judged by this campaign"));
+  EXPECT_TRUE(contains(unjudged, "0 not in this time, 0 are undecided. 1 cannot be judged by this campaign"));
   EXPECT_TRUE(contains(unjudged, "<td>SSIM 0.9 &lt; 0.95<details>")) << "the figure that decides is in view";
   report.claims[0].verdict = "not judged";
   EXPECT_TRUE(contains(renderClaims(report), "<p class=\"facts\">All 2 cannot be judged")) << "no count of verdicts";

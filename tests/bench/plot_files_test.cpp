@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "tests/bench/sample_report.h"
+#include "tests/metrics/temporary_folder.h"
 
 namespace wavecrest {
 namespace {
@@ -14,8 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(PlotFiles, areOneSvgForEachSceneAndMetricInsideTheFolder) {
-  const fs::path folder = fs::path(testing::TempDir()) / "wavecrest_plot_files";
-  fs::remove_all(folder);
+  const test::TemporaryFolder files;
+  const fs::path& folder = files.folder();
   ConvergenceReport report = sampleReport();
   report.scenes[1].name = "../out of/here";
   const std::vector<fs::path> paths = writePlotFiles(report, folder);
@@ -29,12 +30,11 @@ TEST(PlotFiles, areOneSvgForEachSceneAndMetricInsideTheFolder) {
     EXPECT_EQ(text.find("<svg "), 0U) << path;
     EXPECT_NE(text.find("class=\"line\""), std::string::npos) << path;
   }
-  fs::remove_all(folder);
 }
 
 TEST(PlotFiles, ofScenesOfOneNameLieApart) {
-  const fs::path folder = fs::path(testing::TempDir()) / "wavecrest_plot_names";
-  fs::remove_all(folder);
+  const test::TemporaryFolder files;
+  const fs::path& folder = files.folder();
   ConvergenceReport report = sampleReport();
   report.scenes.assign(4, sampleReport().scenes[0]);
   report.scenes[0].name = "a room";
@@ -47,7 +47,6 @@ TEST(PlotFiles, ofScenesOfOneNameLieApart) {
   EXPECT_EQ(paths[4], folder / "a_room.2.rmse.svg");
   EXPECT_EQ(paths[8], folder / "A_room.3.rmse.svg");
   EXPECT_EQ(paths[12], folder / "a_room.2.2.rmse.svg");
-  fs::remove_all(folder);
 }
 
 }  // namespace

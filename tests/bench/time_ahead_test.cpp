@@ -60,6 +60,21 @@ TEST(TimeAhead, hasTheIntervalOfItsSeeds) {
   EXPECT_NEAR(ahead->interval.high, 40 * std::exp(half) - 16, 0.01);
 }
 
+TEST(TimeAhead, isNoTimeWhereTheLastPointIsAboveTheLine) {
+  ReportSeries series = falling(1, {1}, true);
+  const double seconds[] = {4, 5.66, 8, 11.3, 16}, losses[] = {0.1, 0.083, 0.069, 0.0585, 0.0503};
+  for (size_t i = 0; i < 5; ++i) {
+    ReportPoint& point = series.runs[0].points[i];
+    point.seconds = seconds[i];
+    point.values = {1 - losses[i]};
+  }
+  // The line is at 0.05 after 15.7 s, with an interval of 14.7 s to 16.88 s.
+  const auto ahead = timeAhead(series, kSimilarity, 0, 0.95, {});
+  ASSERT_TRUE(ahead);
+  EXPECT_EQ(formatTimeAhead(*ahead), "about 0 s more (0 s to 0.88 s)");
+  EXPECT_EQ(formatTimeAhead({.seconds = 24, .interval = {4, 1601}, .end = 16}), "about 24 s more (4 s or longer)");
+}
+
 TEST(TimeAhead, isUnknownWhereTheCurveDoesNotLeadThere) {
   EXPECT_FALSE(timeAhead(falling(1, {1}), kError, 0, 0.1, {})) << "reached";
   EXPECT_FALSE(timeAhead(falling(0, {1}), kError, 0, 0.1, {})) << "flat";

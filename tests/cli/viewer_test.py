@@ -24,6 +24,11 @@ def half(value):
     return round(value * 2 ** (11 - exponent)) / 2 ** (11 - exponent)
 
 
+def srgb(light):
+    """The code of light from 0 to 1, not yet rounded."""
+    return 255 * (12.92 * light if light <= 0.0031308 else 1.055 * light ** (1 / 2.4) - 0.055)
+
+
 def top_down(name):
     width, height, values = read_pfm(name)
     rows = [values[3 * width * y : 3 * width * (y + 1)] for y in range(height)]
@@ -41,9 +46,22 @@ class ViewerTest(CommandTest):
         self.browser = Browser(1400, 1000, self.folder)
         self.addCleanup(self.browser.close)
 
-    def open_comparison(self):
-        self.run_wavecrest("compare", "reference.pfm", "noisy.pfm", "better.pfm", "--html", "page.html", "--metrics", "rmse,relmse")
+    def open_comparison(self, *options):
+        self.run_wavecrest("compare", "reference.pfm", "noisy.pfm", "better.pfm", "--html", "page.html", "--metrics", "rmse,relmse", *options)
         self.browser.open((self.folder / "page.html").as_uri())
+
+    def open_times(self):
+        """A report of two methods at two times each."""
+        (self.folder / "images").mkdir()
+        for name, spp in (("reference", 64), ("pt.1", 1), ("pt.4", 4), ("lt.2", 2), ("lt.4", 4)):
+            self.run_wavecrest("render", "cornell-diffuse", "--size", self.SIZE, "--spp", spp, "-m", name.split(".")[0].replace("reference", "pt"),
+                               "-o", f"images/{name}.{'exr' if name == 'reference' else 'pfm'}", "--quiet")  # fmt: skip
+        self.run_wavecrest("report", "images")
+        self.browser.open((self.folder / "images/report.html").as_uri())
+
+    def slide(self, selector, value):
+        script = "const slider = document.querySelector(arguments[0]); slider.value = arguments[1]; slider.dispatchEvent(new Event('input'))"
+        self.browser.run(script, selector, value)
 
     def floats(self):
         """The floats of each pane as the page has read them."""
@@ -66,16 +84,14 @@ class ViewerTest(CommandTest):
         canvas = "document.querySelectorAll('.pane')[1].querySelector('canvas.light')"
         pixel = f"return [...{canvas}.getContext('2d').getImageData(20, 20, 1, 1).data]"
         self.assertFalse(self.browser.run(f"return Boolean({canvas})"))
-        self.browser.run("const slider = document.querySelector('.floats input'); slider.value = 2; slider.dispatchEvent(new Event('input'))")
+        self.slide(".floats input", 2)
         self.browser.until(canvas)
         width, _, values = top_down(self.path("noisy.pfm"))
         at = 3 * (20 * width + 20)
         self.assertIn("+2 EV", self.browser.run("return document.querySelector('.floats label output').textContent"))
         bright = self.browser.run(pixel)
         for code, value in zip(bright, values[at : at + 3]):
-            light = min(max(4 * half(value), 0), 1)
-            expected = 255 * (12.92 * light if light <= 0.0031308 else 1.055 * light ** (1 / 2.4) - 0.055)
-            self.assertLess(abs(code - expected), 2)
+            self.assertLess(abs(code - srgb(min(max(4 * half(value), 0), 1))), 1)
         # The wipe shows the reference as exposed.
         self.browser.click("Wipe")
         self.assertEqual(self.browser.run("return document.querySelectorAll('.over canvas').length"), 1)
@@ -89,6 +105,28 @@ class ViewerTest(CommandTest):
         self.assertFalse(self.browser.run("return document.querySelector('.viewer').classList.contains('flip')"))
         self.browser.run("document.querySelector('.viewer').dispatchEvent(new KeyboardEvent('keydown', { key: '0' }))")
         self.browser.until(f"!{canvas}")
+
+    def test_codes_are_the_nearest(self):
+        self.open_comparison()
+        codes = self.browser.run("return [...srgbCodes]")
+        self.assertEqual(len(codes), 4097)
+        for i, code in enumerate(codes):
+            self.assertLess(abs(code - srgb(i / 4096)), 0.5 + 1e-9, i)
+
+    def test_the_slider_adds_to_the_exposure_of_the_comparison(self):
+        self.open_comparison("--exposure", 2)
+        canvas = "document.querySelectorAll('.pane')[1].querySelector('canvas.light')"
+        self.slide(".floats input", 1)
+        self.browser.until(canvas)
+        width, _, values = top_down(self.path("noisy.pfm"))
+        at = 3 * (20 * width + 20)
+        codes = self.browser.run(f"return [...{canvas}.getContext('2d').getImageData(20, 20, 1, 1).data]")
+        for code, value in zip(codes, values[at : at + 3]):
+            self.assertLess(abs(code - srgb(min(max(8 * half(value), 0), 1))), 1)
+        self.browser.click("Luminance")
+        text = "document.querySelector('.values output').textContent"
+        self.browser.until(f"{text}.startsWith('luminance')")
+        self.assertIn("from 0.00195 (dark) to 2 (white)", self.browser.run(f"return {text}"))
 
     def test_pixels_that_are_no_numbers_have_a_luminance(self):
         name = self.path("noisy.pfm")
@@ -190,27 +228,48 @@ class ViewerTest(CommandTest):
             self.assertIn(crop.removeprefix("Crop ").replace(" at", " pixels at"), text)
             self.assertRegex(text, r"pt\s+\d\S*\s+\d\S*\s+\d")
 
+    def test_values_are_those_of_the_time_on_show(self):
+        self.open_times()
+        panes = "[...document.querySelectorAll('.panes:not(.away) .pane[data-floats]')]"
+        self.browser.run("document.querySelector('.viewer').scrollIntoView()")
+
+        def values_at(x, *actions):
+            place = {"type": "pointerMove", "origin": {ELEMENT: self.browser.find(".panes:not(.away) .frame")}, "x": x, "y": 0}
+            self.browser.pointer(place, *actions)
+            return self.browser.run("return document.querySelector('.values output').textContent")
+
+        values_at(0, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0})
+        self.browser.until(f"{panes}.every((pane) => pane.image)")
+        at_end = values_at(3)
+        self.assertRegex(at_end, r"^\(\d+, \d+\)  reference ")
+        # Neither exposed nor clicked.
+        self.slide(".tools .time", 0)
+        self.assertNotEqual(self.browser.run("return document.querySelector('.values output').textContent"), at_end)
+        self.browser.until(f"{panes}.every((pane) => pane.image)")
+        earlier = values_at(4)
+        self.assertRegex(earlier, r"^\(\d+, \d+\)  reference ")
+        x, y = map(int, re.match(r"\((\d+), (\d+)\)", earlier).groups())
+        self.run_wavecrest("render", "cornell-diffuse", "--size", self.SIZE, "--spp", 1, "-m", "pt", "-o", "first.pfm", "--quiet")
+        width, _, values = top_down(self.path("first.pfm"))
+        shown = re.search(r"pt (\S+) (\S+) (\S+)", earlier).groups()
+        for text, value in zip(shown, values[3 * (y * width + x) :]):
+            self.assertAlmostEqual(float(text), half(value), delta=0.006 * half(value))
+
     def test_a_slider_shows_the_pictures_of_earlier_times(self):
-        (self.folder / "images").mkdir()
-        for name, spp in (("reference", 64), ("pt.1", 1), ("pt.4", 4), ("lt.2", 2), ("lt.4", 4)):
-            self.run_wavecrest("render", "cornell-diffuse", "--size", self.SIZE, "--spp", spp, "-m", name.split(".")[0].replace("reference", "pt"),
-                               "-o", f"images/{name}.{'exr' if name == 'reference' else 'pfm'}", "--quiet")  # fmt: skip
-        self.run_wavecrest("report", "images")
-        self.browser.open((self.folder / "images/report.html").as_uri())
+        self.open_times()
         shown = (
             "return [...document.querySelectorAll('.viewer .panes:not(.away) .pane')]"
             ".map((pane) => [pane.dataset.name, pane.querySelector('figcaption').textContent])"
         )
-        slide = "const slider = document.querySelector('.tools .time'); slider.value = arguments[0]; slider.dispatchEvent(new Event('input'));"
         at_end = [["reference", "reference"], ["lt", "lt, 4 s"], ["pt", "pt, 4 s"]]
         self.assertEqual(sorted(self.browser.run(shown)), sorted(at_end))
-        self.browser.run(slide, 0)
+        self.slide(".tools .time", 0)
         earlier = self.browser.run(shown)
         self.assertEqual(earlier[0][0], "reference")
         self.assertEqual(sorted(row[1] for row in earlier[1:]), ["lt, 2 s", "pt, 1 s"])
         self.assertEqual(self.browser.run("return document.querySelector('.tools .time + output').textContent"), "1 s")
         # Floats, exposure and back to the end.
-        self.browser.run("const slider = document.querySelector('.floats input'); slider.value = 2; slider.dispatchEvent(new Event('input'))")
+        self.slide(".floats input", 2)
         self.browser.until("document.querySelectorAll('.panes:not(.away) canvas.light').length === 3")
         self.run_wavecrest("render", "cornell-diffuse", "--size", self.SIZE, "--spp", 1, "-m", "pt", "-o", "first.pfm", "--quiet")
         values = self.browser.run(
@@ -222,7 +281,7 @@ class ViewerTest(CommandTest):
         self.browser.until("document.querySelectorAll('.panes:not(.away) canvas.light').length === 3")
         # Neutral again, at whatever time.
         self.browser.run("document.querySelector('.viewer').dispatchEvent(new KeyboardEvent('keydown', { key: '0' }))")
-        self.browser.run(slide, 0)
+        self.slide(".tools .time", 0)
         self.browser.until("document.querySelectorAll('.panes:not(.away) canvas.light').length === 0")
         # Maps are those of the end, and pictures come back at the time that was chosen.
         self.browser.click("Error maps")

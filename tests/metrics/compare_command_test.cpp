@@ -254,6 +254,12 @@ TEST_F(CompareCommand, ThePageHoldsScoresImagesAndMaps) {
   EXPECT_EQ(onStdout.output.find("map " + files_.path("maps")), std::string::npos) << onStdout.output.substr(0, 80);
 }
 
+TEST_F(CompareCommand, ThePageSaysTheExposureOfItsPictures) {
+  const auto run =
+      runCompare({linearCopy("ref"), linearCopy("test"), "--metrics", "rmse", "--exposure", "1.5", "--html", "-"});
+  EXPECT_NE(run.output.find("<div class=\"viewer\" data-exposure=\"1.5\">"), std::string::npos);
+}
+
 TEST_F(CompareCommand, NoFileIsWrittenOverAnother) {
   writePng(files_.path("rmse.png"), test::patternImage(32, 32));
   writePng(files_.path("test.png"), test::patternImage(32, 32));

@@ -40,6 +40,13 @@ inline Image toFloats(const Image8& codes) {
   return image;
 }
 
+// Linear light of codes, rounded to floats.
+inline Image lightOf(const Image8& codes) {
+  Image light{codes.width, codes.height, 3, {}};
+  for (const uint8_t code : codes.pixels) light.pixels.push_back(static_cast<float>(srgbDecodeTable()[code]));
+  return light;
+}
+
 // A picture with structure at all scales: gradients, edges and a little texture. Any size.
 inline Image8 patternImage(uint32_t width, uint32_t height) {
   Image8 image{width, height, {}};

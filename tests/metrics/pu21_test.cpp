@@ -11,12 +11,7 @@
 namespace wavecrest {
 namespace {
 
-// Linear light of a golden image.
-Image lightOf(const Image8& codes) {
-  Image light{codes.width, codes.height, 3, {}};
-  for (const uint8_t code : codes.pixels) light.pixels.push_back(static_cast<float>(srgbDecodeTable()[code]));
-  return light;
-}
+using test::lightOf;
 
 Image constantLight(uint32_t width, uint32_t height, float value) {
   return {width, height, 3, std::vector<float>(size_t{width} * height * 3, value)};

@@ -55,11 +55,11 @@ async function decodeFloats(text, width, height) {
   return floats;
 }
 
-// sRGB codes of light from 0 to 1.
+// sRGB codes of light from 0 to 1; the array rounds.
 const kCodes = 4096;
 const srgbCodes = Uint8ClampedArray.from({ length: kCodes + 1 }, (_, i) => {
   const light = i / kCodes;
-  return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055) + 0.5;
+  return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
 });
 
 // Luminance in stops from kDarkest to kBrightest, through these colours.
@@ -83,7 +83,7 @@ function drawFloats(canvas, image, exposure, luminance) {
     if (luminance) {
       [codes[o], codes[o + 1], codes[o + 2]] = stopColour(factor * luminanceOf(floats, i));
     } else {
-      for (let c = 0; c < 3; ++c) codes[o + c] = srgbCodes[Math.min(Math.max(factor * floats[i + c], 0), 1) * kCodes | 0];
+      for (let c = 0; c < 3; ++c) codes[o + c] = srgbCodes[Math.min(Math.max(factor * floats[i + c], 0), 1) * kCodes + 0.5 | 0];
     }
     codes[o + 3] = 255;
   }
@@ -108,6 +108,8 @@ function cropErrors(test, reference, crop) {
 const kCropMetrics = ["RMSE", "relMSE", "MAPE"];
 const kCropFormulas = "RMSE: root of the mean of (x − r)²; relMSE: mean of (x − r)² / (r² + 0.01); MAPE: mean of |x − r| / (|r| + 0.01)";
 
+const kPointText = "point at an image: values";
+
 const shortNumber = (value) => (value === 0 ? "0" : Number(value.toPrecision(3)).toString());
 
 function download(name, type, content) {
@@ -122,7 +124,9 @@ function download(name, type, content) {
 class FloatTools {
   constructor(viewer) {
     this.viewer = viewer;
-    this.exposure = 0;
+    this.base = Number(viewer.root.dataset.exposure ?? 0);  // stops that the page's pictures have already
+    this.exposure = 0;                                       // stops beyond these
+    this.asked = false;                                      // whether anybody has asked for floats
     this.luminance = false;
     this.cropping = false;
     this.crop = null;
@@ -163,11 +167,20 @@ class FloatTools {
   // Those of the time that was chosen.
   get panes() { return [...this.viewer.pictures.querySelectorAll(".pane[data-floats]")]; }
 
+  get ready() { return this.panes.every((pane) => pane.image); }
+
+  // In pixels, of every pane.
+  get size() {
+    const { width, height } = this.panes[0].dataset;
+    return { width: Number(width), height: Number(height) };
+  }
+
   get neutral() { return this.exposure === 0 && !this.luminance; }
 
   // After another time was chosen: what was asked of the pictures before.
   async update() {
-    if (this.neutral && !this.crop && !this.viewer.pictures.querySelector("canvas.light")) return;
+    if (!this.asked) return;
+    this.values.textContent = kPointText;
     await this.draw();
     if (!this.result.hidden) this.showCrop();
   }
@@ -177,8 +190,9 @@ class FloatTools {
     return `(${x}, ${y})  ` + this.panes.map((pane) => `${pane.dataset.name} ${values(pane.image)}`).join(" · ");
   }
 
-  // Reads the floats of all panes, once.
+  // Reads the floats of all panes, once; also of a time that is chosen meanwhile.
   async load() {
+    this.asked = true;
     const missing = this.panes.filter((pane) => !pane.image);
     if (!missing.length) return;
     try {
@@ -191,7 +205,8 @@ class FloatTools {
       throw error;
     }
     this.room.textContent = this.valuesText(9999, 9999, () => "0.00000 0.00000 0.00000");
-    this.values.textContent = "point at an image: values";
+    this.values.textContent = kPointText;
+    await this.load();
   }
 
   say() {
@@ -226,9 +241,9 @@ class FloatTools {
         canvas = Object.assign(document.createElement("canvas"), { className: "light" });
         pane.querySelector("img").after(canvas);
       }
-      drawFloats(canvas, pane.image, this.exposure, this.luminance);
+      drawFloats(canvas, pane.image, this.base + this.exposure, this.luminance);
     }
-    const bound = (stops) => shortNumber(2 ** (stops - this.exposure));
+    const bound = (stops) => shortNumber(2 ** (stops - this.base - this.exposure));
     if (this.luminance) this.values.textContent = `luminance from ${bound(kDarkest)} (dark) to ${bound(kBrightest)} (white), in stops`;
     this.viewer.updateWipe();
     this.viewer.apply();
@@ -244,7 +259,7 @@ class FloatTools {
   // The pixel under the pointer.
   pixelAt(frame, event) {
     const box = frame.getBoundingClientRect(), { zoom, x, y } = this.viewer.view;
-    const { width, height } = this.panes[0].image;
+    const { width, height } = this.size;
     const place = (at, from, size, corner, count) =>
       Math.min(Math.max(Math.floor(((at - from) / size / zoom + corner) * count), 0), count - 1);
     return [place(event.clientX, box.left, box.width, x, width), place(event.clientY, box.top, box.height, y, height)];
@@ -253,7 +268,7 @@ class FloatTools {
   addPointer(frame) {
     let begin = null;
     frame.addEventListener("pointermove", (event) => {
-      if (!this.panes[0].image) return;
+      if (!this.ready) return;
       const [x, y] = this.pixelAt(frame, event);
       this.values.textContent = this.valuesText(x, y, ({ width, floats }) => {
         const i = 3 * (y * width + x);
@@ -263,14 +278,15 @@ class FloatTools {
     });
     frame.addEventListener("pointerdown", (event) => {
       this.load().catch(() => {});  // which has said so
-      if (this.cropping && this.panes[0].image) begin = this.pixelAt(frame, event);
+      if (this.cropping && this.ready) begin = this.pixelAt(frame, event);
     });
     frame.addEventListener("pointercancel", () => { begin = null; });
     frame.addEventListener("pointerup", (event) => {
-      if (!begin) return;
-      this.setCrop(begin, this.pixelAt(frame, event));
+      if (begin && this.ready) {
+        this.setCrop(begin, this.pixelAt(frame, event));
+        this.showCrop();
+      }
       begin = null;
-      this.showCrop();
     });
   }
 
@@ -288,7 +304,7 @@ class FloatTools {
         continue;
       }
       if (!edges) frame.append(edges = Object.assign(document.createElement("div"), { className: "crop" }));
-      const { width, height } = this.panes[0].image, { zoom, x, y } = this.viewer.view, percent = (value) => 100 * zoom * value + "%";
+      const { width, height } = this.size, { zoom, x, y } = this.viewer.view, percent = (value) => 100 * zoom * value + "%";
       Object.assign(edges.style, {
         left: percent(this.crop.x / width - x), top: percent(this.crop.y / height - y),
         width: percent(this.crop.width / width), height: percent(this.crop.height / height),
@@ -322,7 +338,7 @@ class FloatTools {
   // The crop of a pane as it is shown, each pixel `scale` wide.
   cropCanvas(pane, scale) {
     const { x, y, width, height } = this.crop, whole = document.createElement("canvas"), canvas = document.createElement("canvas");
-    drawFloats(whole, pane.image, this.exposure, this.luminance);
+    drawFloats(whole, pane.image, this.base + this.exposure, this.luminance);
     canvas.width = scale * width;
     canvas.height = scale * height;
     const context = canvas.getContext("2d");
