@@ -1,15 +1,18 @@
 #include "cli/inspect_guide.h"
 
 #include <fmt/core.h>
+#include <strings.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
 
+#include "cli/file_check.h"
 #include "engine/session/session.h"
 #include "library/errors.h"
 #include "library/option_values.h"
@@ -55,24 +58,24 @@ void writeGuidePicture(const Scene& scene, RenderSettings settings, const GuideO
   const auto [x, y] = parsePixel(options.pixel, scene.film.imageWidth(), scene.film.imageHeight());
   const double seconds = parseDuration("--time", options.time.empty() ? "10s" : options.time);
   const std::string file = options.output.empty() ? scene.name + ".guide.exr" : options.output;
-  checkImageTarget(file);
+  FileCheck files;
+  for (const std::string& input : scene.files) files.input("the scene", input);
+  files.image("-o", file);
   settings.method = Method::gpt;
   if (settings.guide == GuideTarget::automatic) settings.guide = GuideTarget::radiance;
   settings.sampler = bestSampler(settings);
   const std::unique_ptr<Session> session = Session::create(scene, settings);
   session->renderUntil(std::nullopt, seconds);
   const std::optional<LearnedDirections> learned = session->learnedDirections(x, y);
-  if (!learned) {
-    fmt::print("pixel {},{} sees no rough surface\n", x, y);
-    return;
-  }
+  if (!learned) throw InputError(fmt::format("--guide {},{}: sees no rough surface; expected a pixel that does", x, y));
   Image picture = pictureOf(*learned);
   const float greatest = *std::max_element(picture.pixels.begin(), picture.pixels.end());
   fmt::print(
       "pixel {},{}: cell {} of {}, after {} iterations; the guide draws {:.0f} % of directions, at most {:.3g} a "
       "steradian\n",
       x, y, learned->cell, learned->cells, session->statistics().iterations, 100 * learned->guidedShare, greatest);
-  if (file.ends_with(".png") && greatest > 0) {
+  // As writeImage goes by the extension.
+  if (strcasecmp(std::filesystem::path(file).extension().c_str(), ".png") == 0 && greatest > 0) {
     for (float& value : picture.pixels) value /= greatest;
   }
   writeImage(file, picture);

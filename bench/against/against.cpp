@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr double kLongestRun = 0.25;  // CPU seconds: short, so that a pair meets the machine in one state
 constexpr double kPatience = 20, kSlowest = 20;
-constexpr size_t kFewestRounds = 12;  // below that no ranks reach the level of a family of 40
 
 double cpuSecondsOf(const nlohmann::json& stats) { return stats.at("cpu_seconds").get<double>(); }
 
@@ -76,7 +75,7 @@ class Runner {
     for (ProgramCopy* program : {&ours_, &other_}) tryCopy(*program);
     for (size_t i = 0; i < children_.size(); ++i) prepare(i);
     // Each round has one pair of runs for each row.
-    const auto rounds = static_cast<size_t>(std::round(request_.seconds / (2 * runSeconds_)));
+    const size_t rounds = roundsOf(request_.seconds, longestRun_);
     for (size_t round = 0; round < rounds; ++round) {
       for (size_t i = 0; i < children_.size(); ++i) measurePair(i, round);
       progress(round + 1, rounds);
@@ -136,6 +135,7 @@ class Runner {
       child.iterations = static_cast<uint64_t>(std::ceil(static_cast<double>(child.iterations) * factor));
       seconds = cpuSecondsOf(render(ours_, child));
     }
+    longestRun_ = std::max({longestRun_, seconds, cpuSecondsOf(other)});
     result_.rows[i].iterations = child.iterations;
   }
 
@@ -153,6 +153,7 @@ class Runner {
 
   const AgainstRequest& request_;
   const double runSeconds_;  // CPU time of a run, about
+  double longestRun_ = 0;    // CPU time of the longest run, of one iteration where that takes more than runSeconds_
   double ownSeconds_ = 0;    // that a run of this build took at most
   ProgramCopy ours_, other_;
   const ScratchFolder folder_;
@@ -165,6 +166,11 @@ class Runner {
 bool AgainstResult::anySlower() const {
   return std::any_of(rows.begin(), rows.end(),
                      [](const AgainstRow& row) { return row.comparison.verdict == SpeedVerdict::slower; });
+}
+
+size_t roundsOf(double seconds, double longestRun) {
+  const double rounds = std::round(seconds / (2 * std::max(longestRun, kLongestRun)));
+  return std::max(kFewestRounds, static_cast<size_t>(rounds));
 }
 
 AgainstResult runAgainst(const AgainstRequest& request, const std::function<void(size_t, size_t)>& progress) {

@@ -49,6 +49,11 @@ struct AgainstResult {
   bool anySlower() const;
 };
 
+// Rounds of a request for so many seconds, where the longest run takes longestRun: CPU seconds, and at least
+// kFewestRounds rounds, below which no ranks reach the level of a family of 40.
+constexpr size_t kFewestRounds = 12;
+size_t roundsOf(double seconds, double longestRun);
+
 // progress: called after each round with the number of rounds done and of all.
 AgainstResult runAgainst(const AgainstRequest& request, const std::function<void(size_t, size_t)>& progress);
 

@@ -14,7 +14,10 @@
 #include <fstream>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <thread>
+
+#include "metrics/image/image_io.h"
 
 namespace wavecrest {
 namespace {
@@ -31,9 +34,20 @@ std::string lastLine(const fs::path& file) {
   return last;
 }
 
+// This process' environment without the variables that are defaults of options.
+std::vector<char*> environmentOfChild() {
+  std::vector<char*> kept;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view name = *variable;
+    if (!name.starts_with("WAVECREST_") || name.starts_with(kImageLimitVariable)) kept.push_back(*variable);
+  }
+  kept.push_back(nullptr);
+  return kept;
+}
+
 // In the child between fork and exec: only what is safe in a signal handler. It dies with the thread that started it,
 // and has a process group of its own, so that what it starts can be ended with it.
-[[noreturn]] void becomeProgram(char* const* words, const char* errors, int failure) {
+[[noreturn]] void becomeProgram(char* const* words, char* const* environment, const char* errors, int failure) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   setpgid(0, 0);
   // No input, no output, and errors in the file.
@@ -42,7 +56,7 @@ std::string lastLine(const fs::path& file) {
       dup2(log, STDERR_FILENO) >= 0) {
     ::close(nothing);
     ::close(log);
-    execv(words[0], words);
+    execve(words[0], words, environment);
   }
   const int error = errno;
   [[maybe_unused]] const ssize_t told = ::write(failure, &error, sizeof error);
@@ -51,11 +65,12 @@ std::string lastLine(const fs::path& file) {
 
 // Starts a program. Throws ChildError where that fails.
 pid_t startProgram(const std::vector<std::string>& arguments, const fs::path& errors) {
-  // Arguments end with a null pointer. execv does not write to them.
+  // Arguments end with a null pointer. execve does not write to them.
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
+  const std::vector<char*> environment = environmentOfChild();
   const auto fail = [&](int error) {
     throw ChildError(fmt::format("{}: {}", arguments.front(), std::strerror(error)));
   };
@@ -63,7 +78,7 @@ pid_t startProgram(const std::vector<std::string>& arguments, const fs::path& er
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail(errno);
   const pid_t child = fork();
-  if (child == 0) becomeProgram(words.data(), errors.c_str(), ends[1]);
+  if (child == 0) becomeProgram(words.data(), environment.data(), errors.c_str(), ends[1]);
   int error = child < 0 ? errno : 0;
   ::close(ends[1]);
   if (child > 0 && ::read(ends[0], &error, sizeof error) > 0) waitpid(child, nullptr, 0);

@@ -32,7 +32,8 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-// What a render is asked for, in options that every version of wavecrest has.
+// What a render is asked for, in options that every version of wavecrest has. Variables such as WAVECREST_SAMPLER are
+// not passed on to it.
 struct ChildRequest {
   std::filesystem::path scene;
   std::string method;

@@ -16,22 +16,25 @@ using Json = nlohmann::json;
 
 constexpr const char* kNoResult = "is not a result of wavecrest bench; expected one written by --json";
 
-// CPU seconds per path of each slice on one thread, by "scene method WxH".
+// CPU seconds per path on one thread, the median of each visit, by "scene method WxH".
 using Series = std::map<std::string, std::vector<double>>;
 
-// CPU seconds per path of a method's slices on one thread; empty if one thread was not measured.
-std::vector<double> slicesOfOneThread(const Json& method) {
-  std::vector<double> values;
+// CPU seconds per path of a method on one thread, the median of each visit; empty if one thread was not measured. The
+// slices of one visit are not independent: a machine whose speed drifts moves them together.
+std::vector<double> visitsOfOneThread(const Json& method) {
+  std::map<size_t, std::vector<double>> visits;
   for (const Json& row : method.at("scaling")) {
     if (row.at("threads") != 1) continue;
     for (const Json& slice : row.at("slices")) {
       const double seconds = slice.at("cpu_seconds").get<double>(), paths = slice.at("paths").get<double>();
       const double perPath = seconds / paths;
       if (!(perPath > 0 && std::isfinite(perPath))) throw StoredMismatch(kNoResult);
-      values.push_back(perPath);
+      visits[slice.at("visit").get<size_t>()].push_back(perPath);
     }
   }
-  return values;
+  std::vector<double> medians;
+  for (const auto& [visit, values] : visits) medians.push_back(median(values));
+  return medians;
 }
 
 // The series of all scenes and methods. Throws StoredMismatch where the file is not of bench.
@@ -43,8 +46,8 @@ Series seriesOf(const Json& result) {
         const std::string name =
             fmt::format("{} {} {}x{}", scene.at("scene").get<std::string>(), method.at("method").get<std::string>(),
                         scene.at("width").get<int>(), scene.at("height").get<int>());
-        const std::vector<double> values = slicesOfOneThread(method);
-        // Without slices of one thread there is nothing to compare.
+        const std::vector<double> values = visitsOfOneThread(method);
+        // Without visits on one thread there is nothing to compare.
         if (!values.empty()) series[name] = values;
       }
     }
@@ -118,7 +121,7 @@ std::string toText(const StoredComparison& result) {
   }
   for (const std::string& name : result.unmatched) line(text, "only in one of them: {}", name);
   line(text,
-       "\nspeed: of the second over the first, CPU time per path on one thread; p: rank-sum test of slices, corrected");
+       "\nspeed: of the second over the first, CPU time per path on one thread; p: rank-sum test of visits, corrected");
   line(text, "for {} comparisons. They were not measured in turn: --against tells a build from a machine that changed.",
        result.rows.size());
   return fmt::to_string(text);

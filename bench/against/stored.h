@@ -1,7 +1,7 @@
 // Two stored results of `wavecrest bench --json`, of one machine, compared.
 //
-// Their slices were not measured in turn, so a verdict may come from the machine: a clock, a neighbour or a temperature
-// that changed between the two. What is compared is CPU time per path on one thread.
+// They were not measured in turn, so a verdict may come from the machine: a clock, a neighbour or a temperature that
+// changed between the two. What is compared is CPU time per path on one thread: the medians of the visits.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

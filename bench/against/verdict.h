@@ -19,7 +19,9 @@ std::string_view toString(SpeedVerdict verdict);
 struct Comparison {
   double speedup = 1;       // this build's speed over the other's, median
   Interval interval{1, 1};  // of the median, kIntervalLevel for this comparison alone
-  double probability = 1;   // of ranks this uneven without a difference; after judge(), corrected for the family
+  // Of ranks this uneven without a difference, 1 where they weigh more on the other side than the median's; after
+  // judge(), corrected for the family.
+  double probability = 1;
   SpeedVerdict verdict{};
 };
 

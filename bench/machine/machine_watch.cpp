@@ -20,14 +20,18 @@ double nowSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// CPU seconds of this process, in user and in kernel mode.
+// CPU seconds of this process and of its children that have ended, in user and in kernel mode.
 double ownSeconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
   const auto seconds = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  double sum = 0;
+  for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    getrusage(who, &usage);
+    sum += seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  }
+  return sum;
 }
 
 // CPU seconds of the whole machine; nothing where /proc/stat does not tell.
@@ -56,7 +60,7 @@ MachineState MachineWatch::state() const {
   // Without /proc/stat only time and clock rates are known.
   const std::optional<CpuTimes> times = cpuTimes();
   if (!times || !timesBegin_ || state.seconds <= 0) return state;
-  // Busy time includes all programs, also this one.
+  // Busy time includes all programs, also this one and its children.
   const double busy = times->busy - timesBegin_->busy, own = ownSeconds() - ownBegin_;
   // A kernel that keeps no such count leaves zeros, although at least this process was busy.
   if (busy <= 0) return state;

@@ -99,6 +99,8 @@ def main():
     parser.add_argument("--bench", default=str(ROOT / "build" / "release" / "bench" / "micro" / "metrics_bench"))
     parser.add_argument("--json", type=pathlib.Path, help="also write all times here")
     options = parser.parse_args()
+    if options.json:
+        options.json.parent.mkdir(parents=True, exist_ok=True)
     times = measure_rounds(options.bench, options.rounds)
     print(f"{'metric':8} {'program':15} {'CPU ms, median':>15} {'min':>8} {'wall ms, median':>16} {'min':>8} {'ratio':>7}")
     for (metric, program), row in times.items():

@@ -89,6 +89,10 @@ def main():
         table.main([word for word in sys.argv[1:] if word != "--table"])
         return
     options = parse_arguments()
+    if not options.scene.is_file():
+        raise Failed(f"{options.scene}: cannot be read; expected a scene's XML file")
+    if options.json:
+        options.json.parent.mkdir(parents=True, exist_ok=True)
     results = {"scene": str(options.scene), "size": options.size, "spp": options.spp, "methods": {}}
     text = scene_xml.flatten(options.scene, size=options.size, box_filter=options.filter == "box")
     max_depth = scene_xml.max_depth(text) if options.max_depth is None else options.max_depth

@@ -32,10 +32,14 @@ class Wavecrest:
         with tempfile.TemporaryDirectory() as folder:
             image, stats = os.path.join(folder, "image.pfm"), os.path.join(folder, "stats.json")
             command = [self.program, "render", job.scene, "--method", job.method, "--spp", self.spp, "--seed", seed]
-            command += ["--threads", job.threads, "--max-depth", job.max_depth, "--rr-depth", job.rr_depth]
+            command += ["--threads", job.threads] if job.threads else []  # without: its default
+            command += ["--max-depth", job.max_depth, "--rr-depth", job.rr_depth]
             command += ["--progress", "none", "-o", image, "--stats", stats, *self.options]
             words = [str(word) for word in command]
-            done = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            try:
+                done = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            except OSError as error:
+                raise Failed(f"{self.program}: {error.strerror}") from None
             if done.returncode != 0:
                 raise Failed((done.stderr.strip().splitlines() or [f"status {done.returncode}"])[-1])
             with open(stats, encoding="utf-8") as file:
@@ -64,7 +68,7 @@ class SmallVcm:
         named = re.match(r"smallvcm-(\d)", pathlib.Path(job.scene).name)
         self.scene, self.comparable = (named[1], True) if named else ("0", False)
         if self.comparable and (job.size, job.max_depth, job.rr_depth) != (self.SIZE, self.DEPTH, self.RR_DEPTH):
-            raise ValueError("SmallVCM's scenes need --size 512x512 --max-depth 10 --rr-depth 1 to be the same work")
+            raise Failed("SmallVCM's scenes need --size 512x512 --max-depth 10 --rr-depth 1 to be the same work")
         self.about = f"SmallVCM, its scene {self.scene}"
         self.render(0)
 
@@ -74,11 +78,14 @@ class SmallVcm:
             output = os.path.join(folder, "image.hdr")
             command = [self.program, "-s", self.scene, "-a", self.job.method, "-i", str(self.job.spp), "-o", output]
             start = time.perf_counter()
-            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, preexec_fn=self._limit_threads)
+            try:
+                process = subprocess.Popen(command, stdout=subprocess.DEVNULL, preexec_fn=self._limit_threads)
+            except OSError as error:
+                raise Failed(f"{self.program}: {error.strerror}") from None
             _, status, usage = os.wait4(process.pid, 0)
             wall = time.perf_counter() - start
             if status != 0:
-                raise RuntimeError(f"{self.program} ended with wait status {status}")
+                raise Failed(f"{self.program} ended with wait status {status}")
             image = read_rgbe(output)
         paths = image.shape[0] * image.shape[1] * self.job.spp
         return Sample(paths, usage.ru_utime + usage.ru_stime, wall, image if self.comparable else None, seeded=False)

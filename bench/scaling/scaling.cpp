@@ -117,8 +117,11 @@ std::vector<PartsScaling> partsScaling(const Session& session) {
 
 }  // namespace
 
-ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& file, const RenderSettings& settings,
+ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& file, RenderSettings settings,
                              double seconds) {
+  // Threads render as `render` does by default, because the processes do.
+  takeProgramDefaults(settings);
+  settings.sampler = bestSampler(settings);
   const FilmArea area = filmArea(scene.film);
   ScalingResult result;
   result.scene = scene.name;

@@ -48,8 +48,9 @@ struct ScalingResult {
 constexpr uint32_t kMostPredictedThreads = 256, kMostPredictedMachines = 64;
 
 // Measures and records in turn for about `seconds` of render time. Tasks are recorded on one thread while the work is
-// cut as for the number of threads in question. file: the scene's, for the processes, which run this program.
-ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& file, const RenderSettings& settings,
+// cut as for the number of threads in question. file: the scene's, for the processes, which run this program. settings:
+// method, instruction set, threads and limits of paths; all else is what `render` takes by default.
+ScalingResult measureScaling(const Scene& scene, const std::filesystem::path& file, RenderSettings settings,
                              double seconds);
 
 // A table for a terminal.

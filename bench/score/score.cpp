@@ -95,7 +95,7 @@ ScoreRow measureRow(const ScoreRequest& request, const ScoreEntry& entry, const 
                            .method = std::string(toString(entry.method)),
                            .size = fmt::format("{}x{}", entry.width, entry.height),
                            .iterations = kProcessSlices * entry.iterations / kScoreSlices,
-                           .more = {"--isa", std::string(toString(request.isa))},
+                           .more = optionsOf(settings),
                            .imageFile = {}};
   row.processesPathsPerSecond = rateOfProcesses(request.threads, child);
   // Both scores are relative to one thread of the reference machine, which has 100.

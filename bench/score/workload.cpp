@@ -1,6 +1,10 @@
 #include "bench/score/workload.h"
 
+#include <fmt/format.h>
+
 #include <span>
+
+#include "bench/enumerator_name.h"
 
 namespace wavecrest {
 namespace {
@@ -78,6 +82,23 @@ RenderSettings scoreSettings(const Scene& scene, const ScoreEntry& entry, Isa is
   settings.limits = pathLimits(scene.defaults.maxDepth, scene.defaults.rrDepth);
   if (dependsOnWaves(entry.method)) settings.piecesForThreads = kPiecesForThreads;
   return settings;
+}
+
+std::vector<std::string> optionsOf(const RenderSettings& settings) {
+  std::vector<std::string> options;
+  const auto add = [&](std::string_view option, std::string_view value) {
+    options.emplace_back(option);
+    options.emplace_back(value);
+  };
+  add("--isa", toString(settings.isa));
+  add("--precision", enumeratorName(kPrecisionNames, settings.precision));
+  add("--sampler", toString(settings.sampler));
+  if (hasRouletteChoice(settings.method)) add("--roulette", enumeratorName(kRouletteNames, settings.roulette));
+  if (strategiesOf(settings.method).merge && settings.radius) add("--radius", fmt::to_string(*settings.radius));
+  if (choosesMergeVertices(settings.method)) {
+    add("--merge-vertices", enumeratorName(kMergeVerticesNames, settings.mergeVertices));
+  }
+  return options;
 }
 
 }  // namespace wavecrest

@@ -37,4 +37,7 @@ std::vector<ScoreEntry> workloadOf(ScoreSize size);
 // What decides the image of an entry, and how work is cut: fixed, but for instruction set and threads.
 RenderSettings scoreSettings(const Scene& scene, const ScoreEntry& entry, Isa isa, uint32_t threads);
 
+// The same settings as options of `render`, where it has other defaults. It has no option for the light walks of lt.
+std::vector<std::string> optionsOf(const RenderSettings& settings);
+
 }  // namespace wavecrest

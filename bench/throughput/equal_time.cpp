@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/film_image.h"
+#include "engine/inspect/path_classes.h"
 #include "metrics/rmse.h"
 
 namespace wavecrest {
@@ -24,17 +25,18 @@ ErrorAtTime errorNow(const Session& session, const NoisyReference& reference) {
 }  // namespace
 
 NoisyReference renderReference(const Scene& scene, const RenderSettings& settings, double seconds) {
+  RenderSettings own = settings;
+  own.method = classifyPaths(scene).reference.method;
+  own.sampler = bestSampler(own.method);
   Image halves[2];
   for (size_t i = 0; i < 2; ++i) {
-    RenderSettings own = settings;
-    own.sampler = SamplerKind::sobol;
     own.seed = kReferenceSeeds[i];
     const auto session = Session::create(scene, own);
     session->renderUntil(std::nullopt, seconds / 2);
     session->renderUntil(1, std::nullopt);  // a whole image, however long that takes
     halves[i] = filmImage(*session);
   }
-  NoisyReference reference{.image = halves[0], .noise = 0, .seconds = seconds};
+  NoisyReference reference{.method = own.method, .image = halves[0], .noise = 0, .seconds = seconds};
   for (size_t i = 0; i < reference.image.pixels.size(); ++i) {
     reference.image.pixels[i] = 0.5f * (halves[0].pixels[i] + halves[1].pixels[i]);
   }

@@ -14,6 +14,7 @@
 namespace wavecrest {
 
 struct NoisyReference {
+  Method method{};
   Image image;
   double noise = 0;  // relMSE of the image against the unknown truth, expected
   double seconds = 0;
@@ -32,6 +33,7 @@ struct ErrorRow {
   std::vector<ErrorAtTime> points;  // at a quarter, half and all of the time
 };
 
+// By the method that `inspect` names for the scene, whatever the settings' own is.
 NoisyReference renderReference(const Scene& scene, const RenderSettings& settings, double seconds);
 
 // Every method with every sampler, each for the same render time.

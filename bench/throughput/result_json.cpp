@@ -151,7 +151,10 @@ Json toJson(const SceneResult& result) {
           {"threads", result.threads},
           {"methods", methods},
           {"interval_level", kIntervalLevel},
-          {"reference", {{"seconds", result.reference.seconds}, {"relmse", result.reference.noise}}},
+          {"reference",
+           {{"method", std::string(toString(result.reference.method))},
+            {"seconds", result.reference.seconds},
+            {"relmse", result.reference.noise}}},
           {"errors", errorsJson(result.errors)}};
 }
 

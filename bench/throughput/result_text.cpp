@@ -87,8 +87,8 @@ void addPolicies(Text& text, const PolicyTable& table) {
 
 // relMSE over time. The efficiency is that of the last point.
 void addErrors(Text& text, const SceneResult& result) {
-  line(text, "\n  relMSE at equal time (reference: {:.2g} s, its own noise {:.1e}, subtracted)",
-       result.reference.seconds, result.reference.noise);
+  line(text, "\n  relMSE at equal time (reference: {}, {:.2g} s, its own noise {:.1e}, subtracted)",
+       toString(result.reference.method), result.reference.seconds, result.reference.noise);
   for (const ErrorRow& row : result.errors) {
     std::string points;
     for (const ErrorAtTime& at : row.points) {

@@ -1,9 +1,11 @@
 """Tests of bench/peers: its statistics on made-up noise, its conversion of scenes, and its table."""
 
+import json
 import pathlib
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -14,11 +16,12 @@ import luxcore_scene  # noqa: E402
 import measure  # noqa: E402
 import neutral_convert  # noqa: E402
 import neutral_scene  # noqa: E402
+import peers  # noqa: E402
 import table_scenes  # noqa: E402
 import table_text  # noqa: E402
-from job import Job, Sample  # noqa: E402
+from job import Failed, Job, Sample  # noqa: E402
 from mitsuba_support import scene_xml, variant  # noqa: E402
-from programs import SmallVcm, read_pfm, read_rgbe  # noqa: E402
+from programs import SmallVcm, Wavecrest, read_pfm, read_rgbe  # noqa: E402
 
 ROOM = ROOT / "tests" / "oracle" / "scenes" / "parts" / "room.xml"
 
@@ -108,8 +111,41 @@ class Measure(unittest.TestCase):
 
     def test_smallvcm_refuses_its_scenes_at_other_work_than_its_own(self):
         job = Job("smallvcm-1-ceiling.xml", "vcm", (256, 256), 16, 1, 10, 1)
-        with self.assertRaisesRegex(ValueError, "512x512"):
+        with self.assertRaisesRegex(Failed, "512x512"):
             SmallVcm("smallvcm", job)
+
+
+class Programs(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def main(self, *words):
+        with unittest.mock.patch.object(sys, "argv", ["peers", *map(str, words)]):
+            peers.main()
+
+    def test_what_is_missing_has_a_reason(self):
+        job = Job("smallvcm-1-ceiling.xml", "vcm", (512, 512), 16, 1, 10, 1)
+        for program in (Wavecrest, SmallVcm):
+            with self.assertRaisesRegex(Failed, "^/absent: No such file"):
+                program("/absent", job)
+        with self.assertRaisesRegex(Failed, "absent.xml: cannot be read"):
+            self.main(self.folder / "absent.xml")
+
+    def test_no_number_of_threads_is_left_to_the_program(self):
+        program = self.folder / "program"
+        program.write_text('#!/bin/sh\necho "$@" >&2\nexit 1\n', encoding="utf-8")
+        program.chmod(0o755)
+        for threads, told in ((2, r"--threads 2 --max-depth"), (0, r"--seed 0 --max-depth")):
+            with self.assertRaisesRegex(Failed, told):
+                Wavecrest(program, Job("scene.xml", "pt", (8, 8), 1, threads, -1, 5))
+
+    def test_the_folder_of_the_figures_is_made(self):
+        figures = self.folder / "out" / "peers.json"
+        with unittest.mock.patch.object(peers, "run_method", return_value=[]):
+            self.main(ROOM, "--json", figures)
+        self.assertEqual(json.loads(figures.read_text(encoding="utf-8"))["methods"], {"pt": []})
 
 
 class LuxcoreScene(unittest.TestCase):

@@ -1,12 +1,44 @@
 """wavecrest inspect: the keys that scripts rely on, the words of the table, and that it tells what a render then does."""
 
 import json
+import pathlib
+import struct
 import unittest
+import zlib
 
-from harness import INPUT, USAGE, CommandTest, png_size, read_json
+from harness import DONE, INPUT, USAGE, CommandTest, png_size, read_json
 
 KEYS = ["features", "primitives", "bounds", "specialization", "accel", "memory", "path_classes", "reference_method", "notes"]
 METHODS = {"pt", "lt", "bpt", "ppm", "bpm", "vcm"}
+
+
+# Pixels in the middle see a sphere, those in the corners see the sky.
+SPHERE = """<scene version="3.0.0">
+  <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/></film></sensor>
+  <shape type="sphere"><point name="center" x="0" y="0" z="5"/><bsdf type="diffuse">
+    <texture type="bitmap" name="reflectance"><string name="filename" value="texture.png"/></texture></bsdf></shape>
+  <emitter type="constant"/>
+</scene>
+"""
+
+
+def greatest_code(path):
+    """Of a PNG of three channels of 8 bits."""
+    data, at, packed = pathlib.Path(path).read_bytes(), 8, b""
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        packed += data[at + 8 : at + 8 + size] if kind == b"IDAT" else b""
+        at += size + 12
+    row_bytes = 3 * png_size(path)[0]
+    raw, above, greatest = zlib.decompress(packed), bytes(row_bytes), 0
+    for begin in range(0, len(raw), row_bytes + 1):
+        row = bytearray(raw[begin + 1 : begin + 1 + row_bytes])
+        for i in range(row_bytes):
+            left, up, corner = (row[i - 3], above[i], above[i - 3]) if i >= 3 else (0, above[i], 0)
+            paeth = min((left, up, corner), key=lambda value: abs(left + up - corner - value))
+            row[i] = row[i] + (0, left, up, (left + up) // 2, paeth)[raw[begin]] & 255
+        greatest, above = max(greatest, *row), row
+    return greatest
 
 
 class Inspect(CommandTest):
@@ -120,6 +152,21 @@ class Inspect(CommandTest):
 
         result = self.run_wavecrest("inspect", "cornell-diffuse", "--guide", "1,1", "--json", expect=USAGE)
         self.assert_one_error_line(result, "--json and --guide")
+
+    def test_a_picture_of_the_guide_is_bright_and_no_file_of_the_scene(self):
+        self.render("--spp", "1", "-o", "texture.png")
+        self.write("scene.xml", SPHERE)
+        before = pathlib.Path(self.path("texture.png")).read_bytes()
+
+        def guide(pixel, output, expect=DONE):
+            return self.run_wavecrest("inspect", "scene.xml", "--guide", pixel, "--time", "50ms", "-o", output, expect=expect)
+
+        self.assert_one_error_line(guide("4,4", "texture.png", USAGE), "-o texture.png: is the file of the scene too")
+        self.assertEqual(pathlib.Path(self.path("texture.png")).read_bytes(), before)
+        self.assert_one_error_line(guide("0,0", "guide.exr", INPUT), "--guide 0,0: sees no rough surface")
+        for name in ("guide.png", "guide.PNG"):
+            guide("4,4", name)
+            self.assertEqual(greatest_code(self.path(name)), 255, name)
 
     def test_a_scene_that_cannot_be_read_is_bad_input(self):
         self.assert_one_error_line(self.run_wavecrest("inspect", "absent.xml", expect=INPUT), ".*absent.xml")

@@ -74,7 +74,7 @@ class Stored(CommandTest):
         self.assertRegex(result.stderr.splitlines()[-1], "^wavecrest: error: ", arguments)
 
     def test_results_of_bench_with_other_values(self):
-        slices = [{"cpu_seconds": 1.0 + 0.01 * i, "paths": 1000} for i in range(8)]
+        slices = [{"visit": i // 2, "cpu_seconds": 1.0 + 0.01 * i, "paths": 1000} for i in range(8)]
         method = {"method": "pt", "scaling": [{"threads": 1, "slices": slices}]}
         scene = {"scene": "s", "width": 8, "height": 8, "methods": [method]}
         whole = {"machine": {"cpu": "c", "cores": 2}, "scenes": [scene]}
@@ -83,7 +83,7 @@ class Stored(CommandTest):
         first = ("scenes", 0, "methods", 0, "scaling", 0, "slices", 0)
         places = [("machine",), ("machine", "cpu"), ("machine", "cores"), ("scenes",), ("scenes", 0), ("scenes", 0, "width"),
                   (*first[:3],), (*first[:4],), (*first[:4], "method"), (*first[:5],), (*first[:6],), (*first[:7],), first,
-                  (*first, "cpu_seconds"), (*first, "paths")]  # fmt: skip
+                  (*first, "visit"), (*first, "cpu_seconds"), (*first, "paths")]  # fmt: skip
         for place in places:
             for value in (None, [], {}, "text", -1, 0, True):
                 changed = copy.deepcopy(whole)

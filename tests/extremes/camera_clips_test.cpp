@@ -57,6 +57,18 @@ TEST(CameraClips, arePlanes) {
   EXPECT_EQ(meanOf(twoSquares(1.01, 2.99), Method::pt, 1), 1);
 }
 
+// Behind the focus a lens sees what is far beside the frustum of its middle.
+TEST(CameraClips, hideWhatOnlyTheRimOfALensSees) {
+  Scene scene = twoSquares(1, 100);
+  scene.shapes.resize(1);
+  scene.shapes[0].kind = Rectangle{.corner = {0.9, -0.5, -0.9}, .edgeU = {0.4, 0, 0}, .edgeV = {0, 1, 0}};
+  scene.sensor.kind = Sensor::Kind::thinlens;
+  scene.sensor.apertureRadius = scene.sensor.focusDistance = 0.1;
+  EXPECT_EQ(meanOf(scene, Method::pt, 4), 1);
+  scene.sensor.nearClip = 0.5;
+  EXPECT_LT(meanOf(scene, Method::pt, 4), 1) << "the square is seen";
+}
+
 TEST(CameraClips, cutParallelRays) {
   Scene scene = twoSquares(2, 2.9);
   scene.sensor.kind = Sensor::Kind::orthographic;

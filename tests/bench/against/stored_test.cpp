@@ -3,20 +3,28 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <random>
 
 namespace wavecrest {
 namespace {
 
 using Json = nlohmann::json;
 
-// A result with one scene of two methods, whose slices take about `seconds` for a million paths.
-Json resultOf(double seconds) {
+// A result with one scene of two methods, whose slices take about `seconds` for a million paths. drift: called for each
+// visit, what multiplies its times.
+Json resultOf(double seconds, const std::function<double()>& drift = {}) {
   Json methods = Json::array();
   for (const char* method : {"pt", "vcm"}) {
     Json slices = Json::array();
-    for (int i = 0; i < 15; ++i) {
-      slices.push_back({{"paths", 1000000}, {"cpu_seconds", seconds * (1 + 0.001 * (i * 7 % 15))}});
+    for (int visit = 0; visit < 6; ++visit) {
+      const double secondsOfVisit = drift ? seconds * drift() : seconds;
+      for (int i = 5 * visit; i < 5 * visit + 5; ++i) {
+        slices.push_back(
+            {{"visit", visit}, {"paths", 1000000}, {"cpu_seconds", secondsOfVisit * (1 + 0.001 * (i * 7 % 15))}});
+      }
     }
     methods.push_back(
         {{"method", method},
@@ -51,6 +59,21 @@ TEST(Stored, namesOfScenesMayHaveBlanks) {
 TEST(Stored, equalResultsGetNoVerdict) {
   EXPECT_FALSE(compareStored(resultOf(1), resultOf(1), {}).anySlower());
   EXPECT_EQ(compareStored(resultOf(1.1), resultOf(1), {}).rows[0].comparison.verdict, SpeedVerdict::faster);
+}
+
+// All slices of a visit are slow where the machine is.
+TEST(Stored, aSpeedThatDriftsBetweenVisitsGivesVerdictsAsOftenAsStated) {
+  constexpr int kPairs = 60;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(1, 0.02);
+  const auto drift = [&] { return noise(random); };
+  int alarms = 0;
+  for (int pair = 0; pair < kPairs; ++pair) {
+    const StoredComparison result = compareStored(resultOf(1, drift), resultOf(1, drift), {});
+    const auto differs = [](const StoredRow& row) { return row.comparison.verdict != SpeedVerdict::noDifference; };
+    alarms += std::any_of(result.rows.begin(), result.rows.end(), differs) ? 1 : 0;
+  }
+  EXPECT_LE(alarms, 11);  // 3 expected, five standard deviations of 1.7
 }
 
 TEST(Stored, whatOnlyOneHasIsListed) {

@@ -86,6 +86,20 @@ TEST(Verdict, aLossWithinTheToleranceIsNone) {
   EXPECT_EQ(verdictOn(NoisyRuns(1).pairs(400, 1.05), family), SpeedVerdict::slower);
 }
 
+// Of 40 pairs 21 are 0.1 % faster and 19 are 1 % slower: their signed ranks, 231 and 589, have a probability of 0.015.
+TEST(Verdict, aMedianAndRanksThatDisagreeGiveNone) {
+  NoisyRuns::Pairs pairs{.ours = std::vector<double>(40, 1.0), .other = std::vector<double>(21, 1.001)};
+  pairs.other.resize(40, 0.99);
+  EXPECT_EQ(verdictOn(pairs, {.level = 0.05}), SpeedVerdict::noDifference);
+  // The same of independent runs: the median of ours is smaller, but in 279 of 400 pairs ours is larger.
+  std::vector<double> ours(11, 1.0), other(11, 1.001);
+  ours.resize(20, 2.0);
+  other.resize(20, 0.5);
+  const Comparison comparison = compareUnpaired(ours, other, {});
+  EXPECT_GT(comparison.speedup, 1);
+  EXPECT_EQ(comparison.probability, 1);
+}
+
 TEST(Verdict, speedupAndItsIntervalAreOfThisBuildOverTheOther) {
   const NoisyRuns::Pairs pairs = NoisyRuns(2).pairs(100, 0.5);
   const Comparison comparison = comparePaired(pairs.ours, pairs.other, {});

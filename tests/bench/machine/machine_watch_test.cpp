@@ -2,6 +2,9 @@
 #include "bench/machine/machine_watch.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <ctime>
@@ -46,6 +49,26 @@ TEST(MachineWatch, ownWorkIsNotThatOfOthers) {
   if (!state.othersCores) GTEST_SKIP() << "this kernel does not count CPU time";
   const double own = static_cast<double>(clock() - begin) / CLOCKS_PER_SEC / state.seconds;
   EXPECT_LE(*state.othersCores, count - own + 0.3);  // the kernel counts in steps of 10 ms
+}
+
+// The same of children, one for each hardware thread.
+TEST(MachineWatch, workOfChildrenIsNotThatOfOthers) {
+  const uint32_t count = machineRecord().topology.hardwareThreads;
+  const MachineWatch watch;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(400);
+  for (uint32_t i = 0; i < count; ++i) {
+    if (fork() != 0) continue;
+    while (std::chrono::steady_clock::now() < end) {
+    }
+    _exit(0);
+  }
+  double own = 0;
+  for (rusage usage{}; wait4(-1, nullptr, 0, &usage) > 0;) {
+    own += static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+  }
+  const MachineState state = watch.state();
+  if (!state.othersCores) GTEST_SKIP() << "this kernel does not count CPU time";
+  EXPECT_LE(*state.othersCores, count - own / state.seconds + 0.3);
 }
 
 }  // namespace

@@ -48,6 +48,23 @@ INSTANTIATE_TEST_SUITE_P(Methods, ScoreImageTest,
                                          Method::vcm),
                          [](const auto& instance) { return std::string(toString(instance.param)); });
 
+// The program's own defaults are others.
+TEST(Workload, processesRenderWithTheSettingsOfThreads) {
+  const Scene scene = smallBox(16, 12);
+  const auto options = [&](Method method) {
+    std::string text;
+    for (const std::string& word : optionsOf(scoreSettings(scene, smallEntry(method), Isa::scalar, 1))) {
+      text += word + " ";
+    }
+    return text;
+  };
+  const std::string all = "--isa scalar --precision float --sampler independent ";
+  EXPECT_EQ(options(Method::mlt), all);
+  EXPECT_EQ(options(Method::pt), all + "--roulette throughput ");
+  EXPECT_EQ(options(Method::ppm), all + "--roulette throughput --radius 0.001 ");
+  EXPECT_EQ(options(Method::vcm), all + "--roulette throughput --radius 0.001 --merge-vertices all ");
+}
+
 TEST(Workload, hasEveryMethodOfTheStudyOnEveryScene) {
   EXPECT_EQ(workloadOf(ScoreSize::small).size(), 4 * kStudyMethods);
   for (const ScoreSize size : {ScoreSize::medium, ScoreSize::large}) {
